@@ -1,0 +1,29 @@
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "command.h"
+
+/// The program: parses, runs the chosen subcommand, and turns errors into one line and exit code 2.
+int main(int argc, char** argv) {
+  using namespace railstep;
+  CLI::App app{"railstep: real-time, fixed-step simulation of flexible railway track"};
+  app.name("railstep");
+  app.require_subcommand(1);
+  const std::vector<Command> commands = {add_fit(app)};
+  try {
+    app.parse(argc, argv);
+    for (const Command& command : commands)
+      if (command.parser->parsed()) return static_cast<int>(command.run());
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : static_cast<int>(Exit::bad_input);  // CLI11's own codes start at 100
+  } catch (const InputError& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return static_cast<int>(Exit::bad_input);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return static_cast<int>(Exit::not_reached);
+  }
+  return static_cast<int>(Exit::bad_input);
+}
