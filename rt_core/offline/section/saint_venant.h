@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "offline/section/section.h"
+
+namespace railstep {
+
+/// Lower and upper bound of the torsion constant: Prandtl's stress function can only be too soft,
+/// the warping function only too stiff.
+struct TorsionBounds {
+  double lower;  // J, m4
+  double upper;  // J, m4
+};
+
+/// Saint-Venant torsion and flexure of a solid section, by quadratic finite elements on its right
+/// half.
+///
+/// Torsion about the centroid, warping w: lap(w) = 0, dw/dn = n_y z - n_z y, and
+///   J = int (w,y - z)^2 + (w,z + y)^2 dA  (from above);
+/// stress function p: lap(p) = -2, p = 0 outside, J = 2 int p dA (from below). The mean of the two
+/// is returned; the mesh is refined until they agree to 1e-4, so J is proved to 5e-5.
+///
+/// Shear centre (Trefftz 1935, ZAMM 15, 220: shear and torsion energies uncoupled), above the
+/// centroid: z_s = (1/I_z) int w y dA, I_z = int y^2 dA. It does not depend on nu.
+///
+/// Shear factor (Cowper 1966, J. Appl. Mech. 33, 335), p along the force, q across it:
+///   k = 2 (1 + nu) I_p / (nu/2 (I_q - I_p) - (A/I_p) int p (chi + p q^2) dA),
+/// with I_p = int p^2 dA, I_q = int q^2 dA and the flexure function chi: lap(chi) = 0,
+///   dchi/dn = -n_p (nu/2 p^2 + (1 - nu/2) q^2) - n_q (2 + nu) p q.
+///
+/// @param polygon  counter-clockwise (y, z) in m, simple, symmetric about y = 0, which it meets
+///                 twice; first point not repeated; re-entrant corners allowed
+/// @param poisson  nu of the material, -1 < nu <= 0.5
+/// @throws std::invalid_argument with one sentence when polygon or poisson is not as above
+SaintVenant saint_venant(const std::vector<std::array<double, 2>>& polygon, double poisson);
+
+/// The two bounds of J from a mesh whose triangles are at most `size` times sqrt(A) wide, finer at
+/// re-entrant corners; to show convergence and to check saint_venant.
+/// @throws std::invalid_argument as saint_venant, and when size is not in (0, 1]
+TorsionBounds torsion_bounds(const std::vector<std::array<double, 2>>& polygon, double size);
+
+}  // namespace railstep
