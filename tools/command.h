@@ -16,5 +16,6 @@ struct Command {
 };
 
 Command add_fit(CLI::App& app);
+Command add_run(CLI::App& app);
 
 }  // namespace railstep

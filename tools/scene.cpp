@@ -20,7 +20,7 @@ TrackScene read_track(const Table& t) {
   track.bay = t.number("bay_m", between(0.05, 5.0));
   track.elements_per_bay = static_cast<int>(t.integer("elements_per_bay", 1, 1000, 2));
   track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
-  track.ends = t.choice("ends", {"free", "clamped"}, 0) == 0 ? Ends::free : Ends::clamped;
+  track.ends = t.choice("ends", {"free", "clamped"}, 0) == 0 ? RailEnds::free : RailEnds::clamped;
   track.gravity = t.boolean("gravity", false);
   track.axial_points = static_cast<int>(t.integer("axial_points", 1, 5, 2));
   return track;
@@ -50,7 +50,7 @@ Spring read_spring(const Table& t, const std::string& axis, bool required = fals
 }
 
 std::optional<SupportScene> read_support(const Table& root, const TrackScene& track) {
-  if (track.ends == Ends::clamped && !root.has("support")) return std::nullopt;
+  if (track.ends == RailEnds::clamped && !root.has("support")) return std::nullopt;
   const Table t = root.table("support");
   SupportScene s;
   s.x = read_spring(t, "x");
@@ -105,8 +105,8 @@ StepScene read_step(const Table& t) {
   s.steps = whole_steps(t, "duration_s", duration, s.dt);
   s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.6);
   s.scheme = t.choice("scheme", {"generalised-alpha", "backward-euler"}, 0) == 0
-                 ? Scheme::generalised_alpha
-                 : Scheme::backward_euler;
+                 ? TimeScheme::generalised_alpha
+                 : TimeScheme::backward_euler;
   s.start =
       t.choice("start", {"equilibrium", "released"}, 0) == 0 ? Start::equilibrium : Start::released;
   return s;

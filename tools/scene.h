@@ -8,15 +8,13 @@
 #include <vector>
 
 #include "offline/section/section.h"
+#include "offline/track/track.h"
 
 namespace railstep {
 
-enum class Unknowns { full, vertical };
-enum class Ends { free, clamped };
 enum class Height { axis, head, foot };  // where in the section a force acts or a sensor sits
 enum class Side { left, right };         // left is +y
-enum class ElementLaw { corrected, paper };
-enum class Scheme { generalised_alpha, backward_euler };
+enum class TimeScheme { generalised_alpha, backward_euler };
 enum class Start { equilibrium, released };
 enum class GuideMethod { augmented_lagrangian, baumgarte };
 enum class Condensation { full, modal };
@@ -45,7 +43,7 @@ struct TrackScene {
   double bay;         // m
   int elements_per_bay;
   double rail_spacing;  // between the rails' centres, m
-  Ends ends;
+  RailEnds ends;
   bool gravity;      // on the rails
   int axial_points;  // Gauss points along an element
   [[nodiscard]] double length() const { return static_cast<double>(bays) * bay; }
@@ -54,7 +52,7 @@ struct TrackScene {
 struct RailScene {
   RailShape shape;
   double young, poisson, density;  // Pa, 1, kg/m3
-  ElementLaw element;
+  ElasticLaw element;
   std::optional<double> shear_factor_y, shear_factor_z;  // replace the section's
   double crown_radius;                                   // m
 };
@@ -127,7 +125,7 @@ struct StepScene {
   std::int64_t steps_per_frame;
   std::int64_t steps;  // of the whole run
   double rho_inf;
-  Scheme scheme;
+  TimeScheme scheme;
   Start start;
 };
 

@@ -1,0 +1,154 @@
+#include "build.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "offline/pack/scheme.h"
+#include "offline/track/statics.h"
+#include "online/step/load.h"
+
+namespace railstep {
+namespace {
+
+/// Refuses what a scene may say but a run does not step, so that nothing is left out in silence.
+void refuse_unstepped(const Scene& scene) {
+  const auto refuse = [&](bool wanted, const char* what) {
+    if (wanted) throw InputError(fmt::format("{}: run {}", scene.file.string(), what));
+  };
+  refuse(!scene.wheelsets.empty(), "steps moving loads; accepted is a scene without [[wheelset]]");
+  refuse(scene.loads.empty(), "needs a [[load]] and the scene has none");
+  refuse(scene.track.gravity, "steps rails without weight; accepted is track.gravity = false");
+  refuse(scene.condense.kind == Condensation::modal,
+         "steps the full track; accepted is condense.kind = \"full\"");
+  refuse(!scene.sensors.empty(),
+         "traces what is under the loads; accepted is a scene without [[sensor]]");
+  refuse(scene.trace_supports,
+         "traces what is under the loads; accepted is output.supports = false");
+  refuse(scene.step.steps % scene.step.steps_per_frame != 0,
+         "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
+}
+
+/// A scene's table is 0 before its first row; the model's keeps its first value. A row one bit
+/// earlier makes them the same function.
+std::vector<double> packed_table(const TimeTable& table) {
+  std::vector<double> rows = {
+      std::nextafter(table.time.front(), -std::numeric_limits<double>::infinity()), 0.};
+  for (std::size_t i = 0; i < table.time.size(); ++i) {
+    rows.push_back(table.time[i]);
+    rows.push_back(table.value[i]);
+  }
+  return rows;
+}
+
+/// Height over the axis, m.
+double height_z(Height at, const Section& section) {
+  if (at == Height::axis) return 0.;
+  return (at == Height::head ? section.height : 0.) - section.area.centroid_height;
+}
+
+std::vector<MovingLoad> loads_of(const Scene& scene) {
+  const Section section = section_of(scene);
+  std::vector<MovingLoad> loads;
+  for (const LoadScene& l : scene.loads) {
+    const double never = std::copysign(std::numeric_limits<double>::infinity(), l.speed);
+    loads.push_back({.rail = l.rail == Side::right ? 1 : 0,
+                     .start = l.start,
+                     .speed = l.speed,
+                     .stop = l.stop.value_or(never),
+                     .force = l.force_z,
+                     .z = height_z(l.at, section),
+                     .table = l.factor ? packed_table(*l.factor) : std::vector<double>{}});
+  }
+  return loads;
+}
+
+PackOptions options_of(const Scene& scene) {
+  const StepScene& step = scene.step;
+  if (step.steps_per_frame > std::numeric_limits<int>::max())
+    throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
+                                 scene.file.string(), step.steps_per_frame,
+                                 std::numeric_limits<int>::max()));
+  return {.scheme = step.scheme == TimeScheme::backward_euler
+                        ? backward_euler(step.dt)
+                        : generalised_alpha(step.dt, step.rho_inf),
+          .steps_per_frame = static_cast<int>(step.steps_per_frame),
+          .residual_flexibility = scene.condense.residual_flexibility};
+}
+
+Support support_of(const SupportScene& s, const Section& section) {
+  return {.stiffness = {s.x.stiffness, s.y.stiffness, s.z.stiffness},
+          .damping = {s.x.damping, s.y.damping, s.z.damping},
+          .roll_stiffness = s.roll.stiffness,
+          .roll_damping = s.roll.damping,
+          .height_z = height_z(s.at, section),
+          .half_spread = s.half_spread};
+}
+
+Sleeper sleeper_of(const SleeperScene& s) {
+  const Spring held{};  // without stiffness the track holds that direction
+  const Spring x = s.ballast_x.value_or(held), y = s.ballast_y.value_or(held);
+  return {.mass = s.mass,
+          .roll_inertia = s.roll_inertia,
+          .ballast_stiffness = {x.stiffness, y.stiffness, s.ballast_z.stiffness},
+          .ballast_damping = {x.damping, y.damping, s.ballast_z.damping}};
+}
+
+}  // namespace
+
+Track track_of(const Scene& scene) {
+  const Section section = section_of(scene);
+  Track track;
+  track.section = {
+      .area = section.area.area,
+      .inertia_y = section.area.inertia_y,
+      .inertia_z = section.area.inertia_z,
+      .torsion = section.shear.torsion,
+      .shear_factor_y = section.shear.shear_factor_y,
+      .shear_factor_z = section.shear.shear_factor_z,
+      .shear_centre_z = section.shear.shear_centre_height - section.area.centroid_height};
+  track.material = {scene.rail.young, scene.rail.poisson, scene.rail.density};
+  track.law = scene.rail.element;
+  track.axial_points = scene.track.axial_points;
+  track.unknowns = scene.track.unknowns;
+  track.rails = scene.track.rails;
+  track.bays = static_cast<int>(scene.track.bays);  // read_scene keeps it under kMostElements
+  track.bay_length = scene.track.bay;
+  track.elements_per_bay = scene.track.elements_per_bay;
+  track.rail_spacing = scene.track.rail_spacing;
+  track.ends = scene.track.ends;
+  if (scene.support) track.support = support_of(*scene.support, section);
+  if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
+  return track;
+}
+
+Simulation::Simulation(const Scene& scene) try {
+  refuse_unstepped(scene);
+  const Track track = track_of(scene);
+  packed_ = std::make_unique<PackedModel>(track, loads_of(scene), options_of(scene));
+  memory_.resize(static_cast<std::size_t>(state_doubles(model())), 0.);
+  scratch_.resize(static_cast<std::size_t>(workspace_doubles(model())), 0.);
+  state = state_on(model(), memory_.data());
+  workspace = workspace_on(model(), scratch_.data());
+  if (scene.step.start == Start::equilibrium) start_in_equilibrium(track);
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+}
+
+void Simulation::start_in_equilibrium(const Track& track) {
+  std::vector<PointForce> forces;
+  for (std::int32_t i = 0; i < model().loads; ++i) {
+    const LoadModel& load = model().load[i];
+    const PlacedLoad at = place(model(), load, 0);
+    if (at.on_rail) forces.push_back({{load.rail, at.x, 0., load.row[8], 2}, at.force});
+  }
+  const std::vector<Eigen::VectorXd> displacement = Statics(track).solve(forces);
+  for (std::size_t l = 0; l < displacement.size(); ++l)
+    for (Eigen::Index i = 0; i < displacement[l].size(); ++i)
+      state.u[model().line[l].first + i] = displacement[l][i];
+}
+
+}  // namespace railstep

@@ -1,0 +1,38 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "offline/pack/pack.h"
+#include "read.h"
+#include "scene.h"
+
+namespace railstep {
+
+/// The section that a scene names, whichever way it does; shear factors given in [rail] replace the
+/// section's. Constants that need a Saint-Venant solution are of the scene's Poisson ratio.
+/// Throws InputError.
+Section section_of(const Scene& scene);
+
+/// The track of a scene, about the section's centroid. Throws InputError.
+Track track_of(const Scene& scene);
+
+/// A scene made ready to step: its model, the state at its start, and scratch.
+class Simulation {
+ public:
+  /// Throws InputError, in one sentence, for what makes no model (a free rigid mode, say) and for
+  /// what `railstep run` does not step.
+  explicit Simulation(const Scene& scene);
+
+  const Model& model() const { return packed_->model(); }
+  State state;
+  Workspace workspace;
+
+ private:
+  /// Displacements in static equilibrium under the loads as they stand at t = 0.
+  void start_in_equilibrium(const Track& track);
+
+  std::unique_ptr<PackedModel> packed_;
+  std::vector<double> memory_, scratch_;
+};
+
+}  // namespace railstep

@@ -1,0 +1,127 @@
+#include "run_report.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <stdexcept>
+
+#include "write.h"
+
+namespace railstep {
+namespace {
+
+constexpr const char* kStyle =
+    "body{font:15px/1.5 sans-serif;max-width:960px;margin:2em auto;padding:0 1em}"
+    "svg{width:100%;height:auto}td,th{text-align:left;padding-right:2em}";
+
+/// A file of its own in the temporary folder, gone at the end of the scope.
+class ScriptFile {
+ public:
+  explicit ScriptFile(const std::string& text)
+      : name_((std::filesystem::temp_directory_path() / "railstep-XXXXXX").string()) {
+    const int descriptor = mkstemp(name_.data());
+    if (descriptor < 0) throw std::runtime_error("no temporary file can be made for gnuplot");
+    close(descriptor);
+    std::FILE* out = std::fopen(name_.c_str(), "wb");
+    if (out) std::fwrite(text.data(), 1, text.size(), out);
+    if (!out || std::fclose(out) != 0)
+      throw std::runtime_error("the temporary file for gnuplot cannot be written");
+  }
+  ScriptFile(const ScriptFile&) = delete;
+  ScriptFile& operator=(const ScriptFile&) = delete;
+  ~ScriptFile() { std::remove(name_.c_str()); }
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
+/// What gnuplot draws of a script, from its <svg> on. The script's text stays out of the shell.
+std::string drawn(const std::string& script) {
+  const ScriptFile file(script);
+  std::FILE* in = popen(fmt::format("gnuplot '{}'", file.name()).c_str(), "r");
+  if (!in) throw std::runtime_error("gnuplot cannot be started");
+  std::string svg;
+  char buffer[4096];
+  for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, in)) > 0;)
+    svg.append(buffer, got);
+  const std::size_t start = svg.find("<svg");
+  if (pclose(in) != 0 || start == std::string::npos)
+    throw std::runtime_error("gnuplot failed to draw the report");
+  return svg.substr(start);
+}
+
+/// One curve per load; at most kPoints of them drawn, evenly thinned.
+std::string deflection_script(const Scene& scene, const RunRecord& record) {
+  constexpr std::size_t kPoints = 4000;
+  const std::size_t columns = 1 + 2 * scene.loads.size(), rows = record.rows.size() / columns;
+  const std::size_t every = rows / kPoints + 1;
+  std::string data, plots;
+  for (std::size_t r = 0; r < rows; r += every) {
+    for (std::size_t c = 0; c < columns; ++c)
+      data += fmt::format("{:.9g} ", record.rows[r * columns + c]);
+    data += '\n';
+  }
+  for (std::size_t i = 0; i < scene.loads.size(); ++i)
+    plots += fmt::format("{} $rows using 1:(1e3*${}) with lines lw 1.5 title \"{}\"",
+                         i == 0 ? "" : ",", 3 + 2 * i, scene.loads[i].name);
+  return fmt::format(
+      "set terminal svg size 900,420 name 'deflection' noenhanced font 'sans,12'\n"
+      "set xlabel 'time, s'\nset ylabel 'deflection under the load, mm'\nset grid\n"
+      "$rows << EOD\n{}EOD\nplot{}\n",
+      data, plots);
+}
+
+/// Bins of a twentieth of a decade, both axes logarithmic: rare slow frames must show.
+std::string histogram_script(const RunRecord& record) {
+  std::map<int, int> count;
+  for (const double us : record.frame_us)
+    ++count[static_cast<int>(std::floor(20. * std::log10(std::max(us, 1e-3))))];
+  std::string data;
+  for (const auto& [bin, frames] : count)
+    data += fmt::format("{:.6g} {} {:.6g} {:.6g}\n", std::pow(10., (bin + .5) / 20.), frames,
+                        std::pow(10., bin / 20.), std::pow(10., (bin + 1) / 20.));
+  return fmt::format(
+      "set terminal svg size 900,420 name 'frames' noenhanced font 'sans,12'\n"
+      "set xlabel 'wall time of a frame, us'\nset ylabel 'frames'\nset logscale xy\n"
+      "set yrange [0.5:*]\nset grid\nset style fill solid 0.5\n"
+      "$bins << EOD\n{}EOD\n"
+      "plot $bins using 1:2:3:4:(0.5):2 with boxxyerror notitle\n",
+      data);
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+void need_gnuplot() {
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    throw std::runtime_error("--report draws with gnuplot, which is not installed");
+}
+
+std::string run_report(const Scene& scene, const RunRecord& record) {
+  std::string status;
+  for (const std::string& name : status_names(record.status))
+    status += fmt::format("<p>{}: {}.</p>\n", name, status_sentence(name));
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}</title>\n"
+      "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}<table>\n"
+      "<tr><th>frames</th><th>dt, s</th><th>frame median, us</th><th>p99, us</th><th>max, us</th>"
+      "</tr>\n<tr><td>{3}</td><td>{4:.6g}</td><td>{5:.3g}</td><td>{6:.3g}</td><td>{7:.3g}</td>"
+      "</tr>\n</table>\n<h2>Deflection under the loads</h2>\n{8}\n<h2>Wall time of a frame</h2>\n"
+      "{9}\n</body>\n</html>\n",
+      escaped(scene.file.stem().string()), kStyle, status, record.frame_us.size(), scene.step.dt,
+      quantile(record.frame_us, .5), quantile(record.frame_us, .99), quantile(record.frame_us, 1.),
+      drawn(deflection_script(scene, record)), drawn(histogram_script(record)));
+}
+
+}  // namespace railstep

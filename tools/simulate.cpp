@@ -1,0 +1,114 @@
+#include "simulate.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "online/step/step.h"
+
+namespace railstep {
+namespace {
+
+struct StatusText {
+  Status bit;
+  const char* name;
+  const char* sentence;
+};
+constexpr StatusText kStatus[] = {
+    {Status::off_rail, "off_rail",
+     "a load is past the end of the rail and its force is 0: lengthen the track"},
+    {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
+};
+
+void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
+  const Model& model = run.model();
+  row.assign({static_cast<double>(run.state.steps) * model.scheme.dt});
+  for (std::int32_t i = 0; i < model.loads; ++i) {
+    row.push_back(outputs.load_x[i]);
+    row.push_back(outputs.load_deflection[i]);
+  }
+}
+
+double timed_frame(Simulation& run, Outputs& outputs) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  // the status stands in the outputs too
+  static_cast<void>(advance_frame(run.model(), run.state, run.workspace, outputs));
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+std::vector<std::string> trace_columns(const Scene& scene) {
+  std::vector<std::string> columns = {"time_s"};
+  for (const LoadScene& load : scene.loads) {
+    columns.push_back(load.name + ".x_m");
+    columns.push_back(load.name + ".deflection_z_m");
+  }
+  return columns;
+}
+
+RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
+                   const std::function<void(std::int64_t)>& after) {
+  RunRecord record;
+  Outputs outputs{};
+  std::vector<double> row;
+  const auto take = [&] {
+    record.status = record.status | outputs.status;
+    record.first_bad_unknown = outputs.first_bad_unknown;
+    if (!trace && !keep_rows) return;
+    write_row(run, outputs, row);
+    if (trace) trace->row(row);
+    if (keep_rows) record.rows.insert(record.rows.end(), row.begin(), row.end());
+  };
+  publish(run.model(), run.state, outputs);
+  take();
+  for (std::int64_t n = 0; n < frames && record.first_bad_unknown < 0; ++n) {
+    record.frame_us.push_back(timed_frame(run, outputs));
+    take();
+    if (after) after(n + 1);
+  }
+  return record;
+}
+
+std::vector<std::string> status_names(Status status) {
+  std::vector<std::string> names;
+  for (const StatusText& text : kStatus)
+    if (has(status, text.bit)) names.emplace_back(text.name);
+  return names;
+}
+
+std::string status_sentence(const std::string& name) {
+  for (const StatusText& text : kStatus)
+    if (name == text.name) return text.sentence;
+  return {};
+}
+
+std::string unknown_place(const Model& model, std::int32_t unknown) {
+  static const char* const names[9] = {
+      "x position",         "lateral position", "height", "lateral slope a_x", "a_y", "roll a_z",
+      "vertical slope b_x", "roll b_y",         "b_z"};
+  for (std::int32_t l = model.lines - 1; l >= 0; --l) {
+    const LineModel& line = model.line[l];
+    if (unknown < line.first) continue;
+    for (std::int32_t i = 0; i < 9 * (2 * model.elements + 1); ++i)
+      if (line.unknown_of[i] == unknown - line.first)
+        return fmt::format("{} of rail node {}", names[i % 9], i / 9);
+    break;
+  }
+  return "a sleeper's motion";
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double rank = std::ceil(q * static_cast<double>(values.size()));
+  const auto at = static_cast<std::ptrdiff_t>(std::max(rank, 1.)) - 1;
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+}  // namespace railstep

@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "build.h"
+#include "trace.h"
+
+namespace railstep {
+
+/// What a run of whole frames met and took.
+struct RunRecord {
+  Status status = Status::ok;           // of all frames together
+  std::int32_t first_bad_unknown = -1;  // -1: all finite
+  std::vector<double> frame_us;         // [frames] wall time of the steps alone, us
+  std::vector<double> rows;             // the trace, row after row; only when asked for
+};
+
+/// Columns of a trace: time_s, then x_m and deflection_z_m of every load.
+std::vector<std::string> trace_columns(const Scene& scene);
+
+/// Steps `frames` frames from the state as it stands; stops early when the state is not finite.
+/// @param trace     gets a row for the state at the start and one a frame; may be null
+/// @param keep_rows also keep the rows in the record
+/// @param after     called after every frame with the number of frames done; may be empty
+RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
+                   const std::function<void(std::int64_t)>& after = {});
+
+/// Names of the bits that are set, as in the JSON; empty when all is well.
+std::vector<std::string> status_names(Status status);
+/// What a status bit means and what to do about it, by its name.
+std::string status_sentence(const std::string& name);
+/// Where an unknown of the state sits, in words.
+std::string unknown_place(const Model& model, std::int32_t unknown);
+
+/// Time of the q-th part of the frames (0 to 1), us: the smallest that this part does not exceed.
+double quantile(std::vector<double> values, double q);
+
+}  // namespace railstep
