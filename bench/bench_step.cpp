@@ -1,0 +1,150 @@
+// One step of the peers' moving-load scene (lines_to_beat.csv), with its error from the same run.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "offline/pack/pack.h"
+#include "offline/pack/scheme.h"
+#include "online/step/step.h"
+
+namespace railstep {
+namespace {
+
+constexpr double kStep = 1e-3, kSpeed = 30., kBay = .6;  // s, m/s, m
+constexpr int kCompared = 300;  // steps compared with the reference at most: 0.3 s, 15 bays
+constexpr int kStartUp = 50;    // steps; what a suddenly appearing load rings, design.md section 8
+
+/// 0.2319 m by 0.0375 m rectangle on springs at every bay border, k = 0.8497 (reference.md).
+Track peers_track(int bays, int elements_per_bay, int rails, Unknowns unknowns) {
+  const double h = .2319, b = .0375;
+  Track t;
+  t.section = {.area = h * b,
+               .inertia_y = b * h * h * h / 12.,
+               .inertia_z = h * b * b * b / 12.,
+               .torsion = h * b * b * b / 3. * (1. - .63 * b / h),
+               .shear_factor_y = .8497,
+               .shear_factor_z = .8497};
+  t.unknowns = unknowns;
+  t.rails = rails;
+  t.bays = bays;
+  t.bay_length = kBay;
+  t.elements_per_bay = elements_per_bay;
+  t.support.stiffness = {3e6, 3e7, 3e7};
+  t.support.damping = {3e4, 3e4, 3e4};
+  return t;
+}
+
+/// 50 kN on every rail from the first mid-bay to the last, then again from rest.
+class MovingLoadRun {
+ public:
+  MovingLoadRun(const Track& track, double dt, int steps_per_frame)
+      : frames_(static_cast<int>(std::lround((track.length() - kBay) / (kSpeed * kStep)))) {
+    std::vector<MovingLoad> loads;
+    for (int rail = 0; rail < track.rails; ++rail)
+      loads.push_back({.rail = rail,
+                       .start = .5 * kBay,
+                       .speed = kSpeed,
+                       .stop = track.length(),
+                       .force = -50e3});
+    packed_ = std::make_unique<PackedModel>(
+        track, loads, PackOptions{generalised_alpha(dt, .6), steps_per_frame, true, 16});
+    memory_.resize(static_cast<std::size_t>(state_doubles(packed_->model())));
+    scratch_.resize(static_cast<std::size_t>(workspace_doubles(packed_->model())));
+    state_ = state_on(packed_->model(), memory_.data());
+    workspace_ = workspace_on(packed_->model(), scratch_.data());
+  }
+
+  /// One frame; the reset at the track's end is part of the time, once in a whole passage.
+  double frame() {
+    if (done_ == frames_) restart();
+    ++done_;
+    benchmark::DoNotOptimize(advance_frame(packed_->model(), state_, workspace_, outputs_));
+    return outputs_.load_deflection[0];
+  }
+
+  /// Deflections under the first load from rest, one a frame.
+  std::vector<double> deflections() {
+    restart();
+    std::vector<double> z;
+    for (int i = 0; i < std::min(frames_, kCompared); ++i) z.push_back(frame());
+    restart();
+    return z;
+  }
+
+  int unknowns() const { return packed_->model().unknowns; }
+
+ private:
+  void restart() {
+    std::fill(memory_.begin(), memory_.end(), 0.);
+    state_.steps = 0;
+    done_ = 0;
+  }
+
+  int frames_, done_ = 0;
+  std::unique_ptr<PackedModel> packed_;
+  std::vector<double> memory_, scratch_;
+  State state_;
+  Workspace workspace_;
+  Outputs outputs_{};
+};
+
+/// Largest difference from step `first` on, over the peak of `reference` there.
+double largest_error(const std::vector<double>& z, const std::vector<double>& reference,
+                     std::size_t first) {
+  double largest = 0., peak = 0.;
+  for (std::size_t i = first; i < reference.size(); ++i) {
+    largest = std::max(largest, std::abs(z[i] - reference[i]));
+    peak = std::max(peak, std::abs(reference[i]));
+  }
+  return largest / peak;
+}
+
+struct Reference {
+  std::vector<double> z;  // m, every 1 ms
+  double own_error;       // after start-up, from halving mesh and step once more
+};
+
+/// Eight elements per bay and 0.1 ms, and residual flexibility: without it the kink under a load
+/// inside an element is missed in proportion to the element's length, 4e-4 of the peak with eight
+/// per bay. The rails share nothing: one of them is enough.
+const Reference& reference_for(int bays, Unknowns unknowns) {
+  static std::map<std::pair<int, Unknowns>, Reference> made;
+  auto [at, fresh] = made.try_emplace({bays, unknowns});
+  if (fresh) {
+    const auto refined = [&](int per_bay, int steps) {
+      const Track track = peers_track(bays, per_bay, 1, unknowns);
+      return MovingLoadRun(track, kStep / steps, steps).deflections();
+    };
+    at->second.z = refined(8, 10);
+    at->second.own_error = largest_error(at->second.z, refined(16, 20), kStartUp);
+  }
+  return at->second;
+}
+
+void step(benchmark::State& run, Unknowns unknowns) {
+  const int bays = static_cast<int>(run.range(0));
+  MovingLoadRun scene(peers_track(bays, 1, 2, unknowns), kStep, 1);
+  const Reference& reference = reference_for(bays, unknowns);
+  const std::vector<double> z = scene.deflections();
+  for (auto _ : run) scene.frame();
+  run.counters["error"] = largest_error(z, reference.z, kStartUp);
+  run.counters["error_from_start"] = largest_error(z, reference.z, 0);
+  run.counters["reference_error"] = reference.own_error;
+  run.counters["unknowns"] = scene.unknowns();
+}
+
+void step_vertical(benchmark::State& run) { step(run, Unknowns::vertical); }
+void step_full(benchmark::State& run) { step(run, Unknowns::full); }
+
+BENCHMARK(step_vertical)->ArgName("elements")->Arg(4)->Arg(16)->Arg(64)->Arg(256);
+BENCHMARK(step_full)->ArgName("elements")->Arg(4)->Arg(16)->Arg(64)->Arg(256);
+
+}  // namespace
+}  // namespace railstep
+
+BENCHMARK_MAIN();
