@@ -1,0 +1,317 @@
+#include "read.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "read_document.h"
+
+namespace railstep {
+
+struct Table::View {
+  std::shared_ptr<Document> document;
+  const toml::table* table;
+  std::string name;
+};
+
+namespace {
+
+/// A value as the file writes it, short enough for a sentence.
+std::string shown(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (node.is_array()) return "an array";
+  std::ostringstream out;
+  node.visit([&](const auto& n) {
+    if constexpr (toml::is_value<decltype(n)>) out << n;
+  });
+  std::string text = out.str();
+  if (const auto* s = node.as_string()) text = '"' + s->get() + '"';
+  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+}
+
+std::string kind(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "a boolean";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::table:
+      return "a table";
+    default:
+      return "a date or time";
+  }
+}
+
+std::string listed(std::initializer_list<std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names)
+    text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+  return text;
+}
+
+std::string bracketed(const std::string& name) { return name.empty() ? "" : "[" + name + "] "; }
+
+[[noreturn]] void refuse_at(const toml::source_region& source, const Document& document,
+                            const std::string& table, std::string_view sentence) {
+  throw InputError(
+      fmt::format("{}: {}{}", place(source, document.file), bracketed(table), sentence));
+}
+
+std::vector<std::string> to_vector(const std::set<std::string, std::less<>>& keys) {
+  return {keys.begin(), keys.end()};
+}
+
+/// Refuses unknown keys of `table` and of all opened tables in it.
+void check_keys(const Document& document, const toml::table& table, const std::string& name) {
+  const auto found = document.known.find(&table);
+  if (found == document.known.end()) return;  // never opened: its reader did not want it
+  for (const auto& [key, value] : table) {
+    const std::string word(key.str());
+    if (!found->second.contains(word)) {
+      const std::string near = nearest(word, to_vector(found->second));
+      refuse_at(key.source(), document, name,
+                near.empty() ? fmt::format("unknown key '{}'; no key is accepted here", word)
+                             : fmt::format("unknown key '{}'; did you mean '{}'?", word, near));
+    }
+    const std::string below = name.empty() ? word : name + "." + word;
+    if (const toml::table* sub = value.as_table()) check_keys(document, *sub, below);
+    if (const toml::array* array = value.as_array())
+      for (std::size_t i = 0; i < array->size(); ++i)
+        if (const toml::table* sub = array->get(i)->as_table())
+          check_keys(document, *sub, fmt::format("{}[{}]", below, i));
+  }
+}
+
+}  // namespace
+
+bool Range::holds(double value) const {
+  return (value > least || (least_itself && value == least)) &&
+         (value < most || (most_itself && value == most));
+}
+
+std::string Range::text() const {
+  std::string low, high;
+  if (least > -std::numeric_limits<double>::infinity())
+    low = fmt::format("{} {:.15g}", least_itself ? "at least" : "above", least);
+  if (most < std::numeric_limits<double>::infinity())
+    high = fmt::format("{} {:.15g}", most_itself ? "at most" : "below", most);
+  if (low.empty() && high.empty()) return "any finite number";
+  return low + (low.empty() || high.empty() ? "" : ", ") + high;
+}
+
+void Table::refuse(std::string_view key, std::string_view sentence) const {
+  const toml::node* node = view_->table->get(key);
+  refuse_at(node ? node->source() : view_->table->source(), *view_->document, view_->name,
+            sentence);
+}
+
+struct Table::Entry {
+  const View& view;
+  std::string_view key;
+  const toml::node* node;  // null where the key is absent
+
+  [[noreturn]] void refuse(const toml::node& at, std::string_view sentence) const {
+    refuse_at(at.source(), *view.document, view.name, sentence);
+  }
+  [[noreturn]] void refuse_kind(std::string_view accepted) const {
+    refuse(*node,
+           fmt::format("{} = {} is {}; {} is accepted", key, shown(*node), kind(*node), accepted));
+  }
+  [[nodiscard]] double number(const toml::node& at, const Range& accepted) const {
+    const std::string found = fmt::format("{} = {}", key, shown(at));
+    if (!at.is_number()) refuse(at, fmt::format("{} is {}; a number is accepted", found, kind(at)));
+    const double value = *at.value<double>();
+    if (!std::isfinite(value))
+      refuse(at, fmt::format("{} is not finite; accepted is {}", found, accepted.text()));
+    if (accepted.holds(value)) return value;
+    // Millimetres typed as metres are the likeliest slip: say so where it would explain the value.
+    const bool millimetres = key.ends_with("_m") && accepted.holds(value / 1000.0);
+    refuse(at, fmt::format("{} is out of range; accepted is {}{}", found, accepted.text(),
+                           millimetres ? " (metres; was it given in millimetres?)" : ""));
+  }
+  [[nodiscard]] const toml::array& array(std::size_t least, std::size_t most) const {
+    const toml::array* found = node->as_array();
+    if (!found) refuse_kind("an array");
+    if (found->size() < least || found->size() > most)
+      refuse(*node, fmt::format("{} has {} entries; accepted are {} to {}", key, found->size(),
+                                least, most));
+    return *found;
+  }
+};
+
+Table::Entry Table::look_up(std::string_view key) const {
+  view_->document->known[view_->table].emplace(key);
+  return {*view_, key, view_->table->get(key)};
+}
+
+Table::Entry Table::need(std::string_view key) const {
+  const Entry entry = look_up(key);
+  if (entry.node) return entry;
+  // The likeliest reason is a misspelt key: name the nearest one nobody has asked for yet.
+  const auto& known = view_->document->known[view_->table];
+  std::vector<std::string> unread;
+  for (const auto& [other, value] : *view_->table)
+    if (!known.contains(other.str())) unread.emplace_back(other.str());
+  const std::string near = misspelt(key, unread);
+  refuse(near.empty() ? key : std::string_view(near),
+         near.empty() ? fmt::format("key '{}' is missing; it has no default", key)
+                      : fmt::format("key '{}' is missing; did you mean it by '{}'?", key, near));
+}
+
+bool Table::has(std::string_view key) const { return look_up(key).node != nullptr; }
+
+double Table::number(std::string_view key, const Range& accepted) const {
+  const Entry entry = need(key);
+  return entry.number(*entry.node, accepted);
+}
+
+double Table::number(std::string_view key, const Range& accepted, double otherwise) const {
+  return has(key) ? number(key, accepted) : otherwise;
+}
+
+std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64_t most) const {
+  const Entry entry = need(key);
+  const auto* value = entry.node->as_integer();
+  if (!value) entry.refuse_kind("an integer");
+  if (value->get() < least || value->get() > most)
+    entry.refuse(*entry.node, fmt::format("{} = {} is out of range; accepted is {} to {}", key,
+                                          value->get(), least, most));
+  return value->get();
+}
+
+std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64_t most,
+                            std::int64_t otherwise) const {
+  return has(key) ? integer(key, least, most) : otherwise;
+}
+
+bool Table::boolean(std::string_view key) const {
+  const Entry entry = need(key);
+  const auto* value = entry.node->as_boolean();
+  if (!value) entry.refuse_kind("true or false");
+  return value->get();
+}
+
+bool Table::boolean(std::string_view key, bool otherwise) const {
+  return has(key) ? boolean(key) : otherwise;
+}
+
+std::string Table::string(std::string_view key) const {
+  const Entry entry = need(key);
+  const auto* value = entry.node->as_string();
+  if (!value) entry.refuse_kind("a string");
+  if (value->get().empty())
+    entry.refuse(*entry.node, fmt::format("{} is an empty string; a name is accepted", key));
+  return value->get();
+}
+
+std::string Table::string(std::string_view key, std::string_view otherwise) const {
+  return has(key) ? string(key) : std::string(otherwise);
+}
+
+std::size_t Table::choice(std::string_view key,
+                          std::initializer_list<std::string_view> names) const {
+  const Entry entry = need(key);
+  const auto* value = entry.node->as_string();
+  if (!value) entry.refuse_kind(fmt::format("one of {}", listed(names)));
+  const auto* found = std::find(names.begin(), names.end(), value->get());
+  if (found == names.end())
+    entry.refuse(*entry.node, fmt::format("{} = {} is unknown; accepted are {}", key,
+                                          shown(*entry.node), listed(names)));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::size_t Table::choice(std::string_view key, std::initializer_list<std::string_view> names,
+                          std::size_t otherwise) const {
+  return has(key) ? choice(key, names) : otherwise;
+}
+
+std::filesystem::path Table::path(std::string_view key) const {
+  const std::string text = string(key);
+  if (text.find('\0') != std::string::npos) refuse(key, "a path with NUL; a file name is accepted");
+  return (file().parent_path() / text).lexically_normal();
+}
+
+std::vector<double> Table::numbers(std::string_view key, const Range& accepted, std::size_t least,
+                                   std::size_t most) const {
+  const Entry entry = need(key);
+  std::vector<double> values;
+  for (const toml::node& node : entry.array(least, most))
+    values.push_back(entry.number(node, accepted));
+  return values;
+}
+
+std::vector<double> Table::rows(std::string_view key, std::size_t columns) const {
+  const Entry entry = need(key);
+  std::vector<double> values;
+  for (const toml::node& row : entry.array(1, 100'000)) {
+    const toml::array* array = row.as_array();
+    if (!array || array->size() != columns)
+      entry.refuse(row, fmt::format("{}: {} of {} entries; accepted are rows of {} numbers", key,
+                                    kind(row), array ? array->size() : 0, columns));
+    for (const toml::node& node : *array) values.push_back(entry.number(node, any_number()));
+  }
+  return values;
+}
+
+Table Table::table(std::string_view key) const {
+  const Entry entry = need(key);
+  const toml::table* found = entry.node->as_table();
+  if (!found) entry.refuse_kind("a table");
+  view_->document->known[found];  // opened, so its keys are checked even if none is asked for
+  return Table(std::make_shared<const View>(
+      View{view_->document, found,
+           name().empty() ? std::string(key) : fmt::format("{}.{}", name(), key)}));
+}
+
+std::optional<Table> Table::table_if(std::string_view key) const {
+  if (!has(key)) return std::nullopt;
+  return table(key);
+}
+
+std::vector<Table> Table::tables(std::string_view key) const {
+  const Entry entry = look_up(key);
+  if (!entry.node) return {};
+  std::vector<Table> found;
+  const std::string prefix = name().empty() ? "" : name() + ".";
+  for (const toml::node& node : entry.array(0, 100'000)) {
+    const toml::table* table = node.as_table();
+    if (!table)
+      entry.refuse(node, fmt::format("{} holds {}; [[{}]] tables are accepted", key, kind(node),
+                                     prefix + std::string(key)));
+    view_->document->known[table];
+    found.push_back(Table(std::make_shared<const View>(
+        View{view_->document, table, fmt::format("{}{}[{}]", prefix, key, found.size())})));
+  }
+  return found;
+}
+
+void Table::finish() const { check_keys(*view_->document, *view_->table, view_->name); }
+
+std::string Table::name() const { return view_->name; }
+
+const std::filesystem::path& Table::file() const { return view_->document->file; }
+
+Table read_toml_text(std::string_view text, const std::filesystem::path& file,
+                     const std::vector<std::string>& overrides) {
+  auto document = std::make_shared<Document>();
+  document->file = file;
+  document->root = parse_toml(text, file.string());
+  for (const std::string& option : overrides) apply_override(document->root, option);
+  const toml::table* root = &document->root;
+  document->known[root];
+  return Table(std::make_shared<const Table::View>(Table::View{std::move(document), root, ""}));
+}
+
+Table read_toml(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return read_toml_text(read_text(file), file, overrides);
+}
+
+}  // namespace railstep

@@ -1,0 +1,115 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace railstep {
+
+/// Bad input, in one sentence that names file, line or key, what was found and what is accepted.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// An interval of accepted numbers. Infinite ends are never reached: no value read is infinite.
+struct Range {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool least_itself = true;  // is `least` accepted, or only what is above it?
+  bool most_itself = true;
+  [[nodiscard]] bool holds(double value) const;  // false for NaN
+  [[nodiscard]] std::string text() const;        // "above 0, at most 10"
+};
+inline Range any_number() { return {}; }
+inline Range at_least(double least) { return {.least = least}; }
+inline Range above(double least) { return {.least = least, .least_itself = false}; }
+inline Range between(double least, double most) { return {.least = least, .most = most}; }
+inline Range above_upto(double least, double most) {
+  return {.least = least, .most = most, .least_itself = false};
+}
+
+/// One table of a TOML file. Every getter records its key as known, so that `finish` can refuse the
+/// rest. Copies are views of the same file. All getters throw InputError,
+/// "file:line:col: [table] what was found; what is accepted". A getter with `otherwise` returns it
+/// where the key is absent; one without requires the key.
+class Table {
+ public:
+  [[nodiscard]] bool has(std::string_view key) const;  // also marks the key as known
+  /// An integer or a float, finite and in `accepted`; a string is refused.
+  [[nodiscard]] double number(std::string_view key, const Range& accepted) const;
+  [[nodiscard]] double number(std::string_view key, const Range& accepted, double otherwise) const;
+  [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t least,
+                                     std::int64_t most) const;
+  [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t least, std::int64_t most,
+                                     std::int64_t otherwise) const;
+  [[nodiscard]] bool boolean(std::string_view key) const;
+  [[nodiscard]] bool boolean(std::string_view key, bool otherwise) const;
+  /// A string, not empty.
+  [[nodiscard]] std::string string(std::string_view key) const;
+  [[nodiscard]] std::string string(std::string_view key, std::string_view otherwise) const;
+  /// One of `names`; returns its index.
+  [[nodiscard]] std::size_t choice(std::string_view key,
+                                   std::initializer_list<std::string_view> names) const;
+  [[nodiscard]] std::size_t choice(std::string_view key,
+                                   std::initializer_list<std::string_view> names,
+                                   std::size_t otherwise) const;
+  /// A path, relative to the folder of the file it stands in (from --set too).
+  [[nodiscard]] std::filesystem::path path(std::string_view key) const;
+  /// An array of `least` to `most` numbers.
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, const Range& accepted,
+                                            std::size_t least = 1,
+                                            std::size_t most = 100'000) const;
+  /// An array of rows of `columns` finite numbers each, [[a, b], ...], at least one row.
+  /// @returns row after row, [rows * columns]
+  [[nodiscard]] std::vector<double> rows(std::string_view key, std::size_t columns) const;
+  [[nodiscard]] Table table(std::string_view key) const;  // required
+  [[nodiscard]] std::optional<Table> table_if(std::string_view key) const;
+  /// [[key]], in the file's order; empty where absent.
+  [[nodiscard]] std::vector<Table> tables(std::string_view key) const;
+
+  /// Throws InputError at `key` (at the table where the key is absent):
+  /// "place: [table] `sentence`".
+  [[noreturn]] void refuse(std::string_view key, std::string_view sentence) const;
+  /// Refuses, here and in all tables below that were opened, any key no getter asked for, naming
+  /// the nearest known one. Call once, on the root, after everything was read.
+  void finish() const;
+  [[nodiscard]] std::string name() const;  // "rail.constants", "load[1]"; root: ""
+  [[nodiscard]] const std::filesystem::path& file() const;
+
+ private:
+  friend Table read_toml(const std::filesystem::path&, const std::vector<std::string>&);
+  friend Table read_toml_text(std::string_view, const std::filesystem::path&,
+                              const std::vector<std::string>&);
+  struct View;   // the document and the table in it
+  struct Entry;  // one key of it, with the checks the getters share
+  [[nodiscard]] Entry look_up(std::string_view key) const;  // marks the key as known
+  [[nodiscard]] Entry need(std::string_view key) const;     // and throws where it is absent
+  explicit Table(std::shared_ptr<const View> view) : view_(std::move(view)) {}
+  std::shared_ptr<const View> view_;
+};
+
+inline constexpr std::size_t kLargestFile = 1u << 20;  // bytes
+
+/// Reads a text file whole. Throws InputError where it is missing, a folder, empty or over
+/// kLargestFile.
+std::string read_text(const std::filesystem::path& file);
+
+/// Parses a TOML file, then applies `overrides`, each "key.path=value" with a TOML value and
+/// name[i] for the i-th entry of an array, as if written in the file; their errors name the option.
+/// Throws InputError on anything that is not one TOML 1.0 document nested at most 32 deep.
+Table read_toml(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+/// The same on text already read; `file` is the name used in errors and for relative paths.
+Table read_toml_text(std::string_view text, const std::filesystem::path& file,
+                     const std::vector<std::string>& overrides = {});
+
+/// The entry of `known` nearest to `word` by edit distance, where letters missing at the end of
+/// `word` cost an eighth ("stifness" is near "stiffness_z_n_per_m"). Empty if `known` is.
+std::string nearest(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace railstep
