@@ -20,7 +20,7 @@ struct TorsionBounds {
 /// Torsion about the centroid, warping w: lap(w) = 0, dw/dn = n_y z - n_z y, and
 ///   J = int (w,y - z)^2 + (w,z + y)^2 dA  (from above);
 /// stress function p: lap(p) = -2, p = 0 outside, J = 2 int p dA (from below). The mean of the two
-/// is returned; the mesh is refined until they agree to 4e-4, so J is proved to 2e-4.
+/// is returned; the mesh is refined until they agree to 1e-4, so J is proved to 5e-5.
 ///
 /// Shear centre (Trefftz 1935, ZAMM 15, 220: shear and torsion energies uncoupled), above the
 /// centroid: z_s = (1/I_z) int w y dA, I_z = int y^2 dA. It does not depend on nu.

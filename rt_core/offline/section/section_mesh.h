@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "offline/section/half_polygon.h"
+
+namespace railstep {
+
+/// Conforming triangles of half a section.
+struct SectionMesh {
+  std::vector<std::array<double, 2>> points;  // (y, z), m; on the axis y is exactly 0
+  std::vector<std::array<int, 3>> triangles;  // corners, counter-clockwise
+};
+
+/// Ruppert's Delaunay refinement (1995, J. Algorithms 18, 548): boundary pieces with a point in
+/// their diametral circle are halved, and triangles too flat (circumradius over 1.5 times the
+/// shortest edge) or too large get their circumcentre as a new point. Every vertex of `half` is a
+/// mesh point. The same input gives the same mesh.
+/// @param half  from right_half
+/// @param size  widest triangle, m; shrinks to size/100 at re-entrant corners (over 200 degrees),
+///              growing with 0.3 times the distance, because the gradients there are singular
+/// @throws std::invalid_argument when the outline is too fine for 200000 points of that size
+SectionMesh mesh_half(const HalfPolygon& half, double size);
+
+}  // namespace railstep
