@@ -1,0 +1,83 @@
+#include "offline/track/statics.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace railstep {
+
+namespace {
+
+/// Where unknown `i` of a line sits, in words, for messages.
+std::string place_of(const Line& line, int unknown) {
+  static const char* const names[9] = {
+      "x position",         "lateral position", "height", "lateral slope a_x", "a_y", "roll a_z",
+      "vertical slope b_x", "roll b_y",         "b_z"};
+  for (std::size_t node = 0; node < line.unknown_of.size(); ++node)
+    for (std::size_t k = 0; k < 9; ++k)
+      if (line.unknown_of[node][k] == unknown)
+        return std::string(names[k]) + " of rail node " + std::to_string(node);
+  return "a sleeper's motion";
+}
+
+void refuse_free_modes(const Line& line,
+                       const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor) {
+  const Eigen::VectorXd pivots = factor.vectorD();
+  const Eigen::VectorXd diagonal =
+      factor.permutationP() * Eigen::VectorXd(line.stiffness.diagonal());
+  for (int i = 0; i < pivots.size(); ++i) {
+    if (pivots[i] > 1e-12 * diagonal[i]) continue;
+    const int unknown = factor.permutationPinv().indices()[i];
+    throw std::invalid_argument("the track has a free rigid mode: nothing holds the " +
+                                place_of(line, unknown));
+  }
+}
+
+}  // namespace
+
+Statics::Statics(Track track) : track_(std::move(track)), lines_(assemble(track_)) {
+  factors_ = std::vector<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(lines_.size());
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    factors_[i].compute(lines_[i].stiffness);
+    if (factors_[i].info() != Eigen::Success)
+      throw std::invalid_argument("the track's stiffness cannot be factored");
+    refuse_free_modes(lines_[i], factors_[i]);
+  }
+}
+
+std::vector<Eigen::VectorXd> Statics::solve(const std::vector<PointForce>& forces,
+                                            double gravity) const {
+  std::vector<Eigen::VectorXd> result;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(lines_[i].unknowns());
+    if (gravity != 0.) load += weight(track_, lines_[i], gravity);
+    for (const PointForce& f : forces) load += f.force * point_row(track_, lines_[i], f.at);
+    result.push_back(factors_[i].solve(load));
+  }
+  return result;
+}
+
+double Statics::at(const std::vector<Eigen::VectorXd>& displacement, const RailPoint& point) const {
+  double sum = 0.;
+  for (std::size_t i = 0; i < lines_.size(); ++i)
+    sum += point_row(track_, lines_[i], point).dot(displacement[i]);
+  return sum;
+}
+
+double Statics::flexibility(const RailPoint& a, const RailPoint& b) const {
+  return at(solve({{b, 1.}}), a);
+}
+
+double Statics::support_force(const std::vector<Eigen::VectorXd>& displacement, int rail,
+                              int seat) const {
+  const double x = seat * track_.bay_length;
+  double gap = at(displacement, {rail, x, 0., track_.support.height_z, 2});
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const int sleeper = lines_[i].sleeper_unknown_of[static_cast<std::size_t>(seat)][2];
+    if (sleeper >= 0)
+      gap -= lines_[i].rail_factor[static_cast<std::size_t>(rail)] * displacement[i][sleeper];
+  }
+  return -track_.support.stiffness[2] * gap;
+}
+
+}  // namespace railstep

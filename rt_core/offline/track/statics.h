@@ -1,0 +1,50 @@
+#pragma once
+#include <Eigen/SparseCholesky>
+#include <vector>
+
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// A point force on a rail; newton along the point's direction.
+struct PointForce {
+  RailPoint at;
+  double force;  // N
+};
+
+/// Factored stiffness of every line of a track, for many right-hand sides.
+class Statics {
+ public:
+  /// Throws std::invalid_argument when a line has a free rigid mode (a pivot below 1e-12 of the
+  /// largest after scaling by the diagonal), naming where it moves most.
+  explicit Statics(Track track);
+
+  /// Displacements of each line's unknowns under the forces, and the track's weight if asked.
+  std::vector<Eigen::VectorXd> solve(const std::vector<PointForce>& forces,
+                                     double gravity = 0.) const;
+  /// Displacement of a point, m, given the lines' displacements.
+  double at(const std::vector<Eigen::VectorXd>& displacement, const RailPoint& point) const;
+  /// Flexibility G(a, b): displacement at a under a unit force at b, m/N. Symmetric.
+  double flexibility(const RailPoint& a, const RailPoint& b) const;
+  /// Force of seat `seat` on its rail along z, N, up positive.
+  double support_force(const std::vector<Eigen::VectorXd>& displacement, int rail, int seat) const;
+
+  const Track& track() const { return track_; }
+  const std::vector<Line>& lines() const { return lines_; }
+
+ private:
+  Track track_;
+  std::vector<Line> lines_;
+  std::vector<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;
+};
+
+/// Undamped modes of one line: K phi = omega^2 M phi, phi' M phi = 1, lowest first.
+struct Modes {
+  Eigen::VectorXd frequency;  // Hz; free rigid modes come as 0
+  Eigen::MatrixXd shape;      // [unknowns][modes], sign fixed: the largest entry is positive
+};
+
+/// All modes by a dense solution; for lines of up to some thousand unknowns.
+Modes modes(const Line& line);
+
+}  // namespace railstep

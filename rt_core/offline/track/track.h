@@ -1,0 +1,91 @@
+#pragma once
+#include <Eigen/SparseCore>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "offline/element/matrices.h"
+
+namespace railstep {
+
+/// Which unknowns a node carries: all nine, or [r_z, b_x] for vertical bending alone.
+enum class Unknowns { full, vertical };
+
+enum class RailEnds { free, clamped };
+
+/// Spring-dampers between one rail and what carries it, at each bay border.
+struct Support {
+  std::array<double, 3> stiffness{};  // x, y, z, N/m
+  std::array<double, 3> damping{};    // x, y, z, N s/m
+  double roll_stiffness = 0.;         // N m/rad
+  double roll_damping = 0.;           // N m s/rad
+  double height_z = 0.;               // of the seat above the axis, m
+  double half_spread = 0.;            // a pair of half springs at y = +- this, m
+};
+
+/// Rigid sleeper under both rails on ballast; it moves vertically and rolls, and moves along x or
+/// y only where its ballast has stiffness in that direction (else it is held there).
+struct Sleeper {
+  double mass = 0.;                           // whole, kg
+  double roll_inertia = 0.;                   // about x, also used about z, kg m2
+  std::array<double, 3> ballast_stiffness{};  // x, y, z per end, N/m
+  std::array<double, 3> ballast_damping{};    // x, y, z per end, N s/m
+};
+
+/// A straight track of one rail, or of two alike ones, with uniform supports.
+struct Track {
+  BeamSection section;
+  Material material;
+  ElasticLaw law = ElasticLaw::corrected;
+  int axial_points = 2;
+  Unknowns unknowns = Unknowns::full;
+  int rails = 2;
+  int bays = 1;
+  double bay_length = .6;  // m
+  int elements_per_bay = 2;
+  double rail_spacing = 1.5;  // m
+  RailEnds ends = RailEnds::free;
+  Support support;
+  std::optional<Sleeper> sleeper;
+
+  int elements() const { return bays * elements_per_bay; }
+  int nodes() const { return 2 * elements() + 1; }
+  double element_length() const { return bay_length / elements_per_bay; }
+  double length() const { return bays * bay_length; }
+};
+
+/// A material point of one rail.
+struct RailPoint {
+  int rail;       // 0 left (+y), 1 right
+  double x;       // along the undeformed rail, m
+  double y, z;    // over the section, from the axis, m
+  int direction;  // 0 x, 1 y, 2 z
+};
+
+/// One independent part of the track: M a + C v + K u = f with banded matrices.
+///
+/// Two rails that share sleepers are taken in mirror coordinates (left +- mirrored right)/sqrt 2;
+/// rails that share nothing stand for themselves. Whatever then does not couple (vertical and
+/// lateral motion of a section symmetric in y, say) becomes a line of its own.
+struct Line {
+  Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
+  std::vector<std::array<int, 9>> unknown_of;            // [nodes]; -1 where not carried
+  std::vector<std::array<int, 3>> sleeper_unknown_of;    // [seats] x, y, z; -1 where held
+  std::array<double, 2> rail_factor;                     // weight of the line in left, right
+  bool mirrored;                                         // right rail: lateral unknowns change sign
+
+  int unknowns() const { return static_cast<int>(stiffness.rows()); }
+};
+
+/// Assembles the track and splits it into independent lines, each numbered along x.
+/// Throws std::invalid_argument on counts or lengths that make no track.
+std::vector<Line> assemble(const Track& track);
+
+/// Coefficients of the displacement of a material point over the unknowns of one line. Transposed,
+/// it spreads a unit force at that point. Throws std::out_of_range off the rail.
+Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point);
+
+/// Nodal forces of the rails' and sleepers' own weight on one line. @param gravity m/s2, > 0 down
+Eigen::VectorXd weight(const Track& track, const Line& line, double gravity = 9.81);
+
+}  // namespace railstep

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+
+#include "online/math/lanes.h"
+
+namespace railstep {
+
+/// Factors of a symmetric positive definite band matrix A = L D L', L unit lower in 8x8 blocks,
+/// made by factor_band() (offline/pack/band_factor.h). Views only; n = 8 panels unknowns.
+///
+/// `forward` and `backward` are full panels; the columns that would lie before the first or behind
+/// the last unknown hold zeros and are never multiplied, so no vector needs padding.
+struct Band {
+  int panels;              // n / 8
+  int left;                // columns of L left of a panel, a multiple of 8
+  const double* forward;   // [panels][left][8]  L(8p + lane, 8p - left + k)
+  const double* inverse;   // [panels][8][8]     D_p^-1, column after column
+  const double* backward;  // [panels][left][8]  L(8p + 8 + k, 8p + lane)
+};
+
+namespace band_detail {
+
+/// x_p -= A[k][.] x[k] for k < width (a multiple of 8), for R right-hand sides.
+///
+/// Even and odd k are summed apart, then added: two chains hide the latency of a lone right-hand
+/// side. With more of them the chains run one after the other, which frees registers and keeps
+/// the bits.
+template <int R>
+inline void subtract_panel(const double* __restrict A, int width, const double* x, double* x_p,
+                           std::ptrdiff_t stride) noexcept {
+  double even[R][kLanes] = {};
+  double odd[R][kLanes] = {};
+  if constexpr (R == 1) {
+    for (int k = 0; k < width; k += 2) {
+      const double* a = A + k * kLanes;
+#pragma omp simd
+      for (int l = 0; l < kLanes; ++l) even[0][l] += a[l] * x[k];
+#pragma omp simd
+      for (int l = 0; l < kLanes; ++l) odd[0][l] += a[kLanes + l] * x[k + 1];
+    }
+  } else {
+    for (int k = 0; k < width; k += 2)
+      for (int r = 0; r < R; ++r) {
+#pragma omp simd
+        for (int l = 0; l < kLanes; ++l) even[r][l] += A[k * kLanes + l] * x[k + r * stride];
+      }
+    for (int k = 1; k < width; k += 2)
+      for (int r = 0; r < R; ++r) {
+#pragma omp simd
+        for (int l = 0; l < kLanes; ++l) odd[r][l] += A[k * kLanes + l] * x[k + r * stride];
+      }
+  }
+  for (int r = 0; r < R; ++r) {
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) x_p[r * stride + l] -= even[r][l] + odd[r][l];
+  }
+}
+
+/// x_p = D^-1 x_p, columns in order.
+template <int R>
+inline void multiply_block(const double* __restrict D, double* x_p,
+                           std::ptrdiff_t stride) noexcept {
+  for (int r = 0; r < R; ++r) {
+    double* x = x_p + r * stride;
+    double sum[kLanes] = {};
+    for (int k = 0; k < kLanes; ++k) {
+#pragma omp simd
+      for (int l = 0; l < kLanes; ++l) sum[l] += D[k * kLanes + l] * x[k];
+    }
+    for (int l = 0; l < kLanes; ++l) x[l] = sum[l];
+  }
+}
+
+}  // namespace band_detail
+
+/// Solves A x = b in place for R right-hand sides at once: L y = b, z = D^-1 y, L' x = z.
+///
+/// Every right-hand side gets the bits it would get alone.
+/// @param x  [R] vectors of 8 panels entries, `stride` doubles apart; b in, x out
+/// Cannot fail: NaN in, NaN out. Work: R * panels * (32 left + 128) flops.
+template <int R>
+inline void solve_band(const Band& S, double* x, std::ptrdiff_t stride) noexcept {
+  static_assert(R >= 1 && R <= 4);
+  const std::ptrdiff_t panel = static_cast<std::ptrdiff_t>(S.left) * kLanes;
+  const int n = S.panels * kLanes;
+  for (int p = 0; p < S.panels; ++p) {
+    // Columns before unknown 0 are skipped; x is addressed from the first real one.
+    const int at = p * kLanes;
+    const int width = at < S.left ? at : S.left;
+    band_detail::subtract_panel<R>(S.forward + p * panel + (S.left - width) * kLanes, width,
+                                   x + (at - width), x + at, stride);
+  }
+  for (int p = 0; p < S.panels; ++p)
+    band_detail::multiply_block<R>(S.inverse + static_cast<std::ptrdiff_t>(p) * kLanes * kLanes,
+                                   x + p * kLanes, stride);
+  for (int p = S.panels - 2; p >= 0; --p) {
+    const int next = (p + 1) * kLanes;
+    const int width = n - next < S.left ? n - next : S.left;
+    band_detail::subtract_panel<R>(S.backward + p * panel, width, x + next, x + next - kLanes,
+                                   stride);
+  }
+}
+
+}  // namespace railstep

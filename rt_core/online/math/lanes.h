@@ -1,0 +1,14 @@
+#pragma once
+
+namespace railstep {
+
+/// Rows of a panel: every kernel keeps this many sums side by side, whatever the vector width of
+/// the machine, so that each sum is taken in the same written order everywhere.
+inline constexpr int kLanes = 8;
+
+/// Sum of the 8 lanes, halves first: ((0+4)+(2+6)) + ((1+5)+(3+7)).
+inline double lane_sum(const double* s) noexcept {
+  return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+}
+
+}  // namespace railstep

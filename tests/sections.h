@@ -1,0 +1,29 @@
+#pragma once
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// Section F of the reference numbers: the exact three-rectangle fit for H = 185.7375 mm.
+inline BeamSection section_f() {
+  return {.area = 8700e-6,
+          .inertia_y = 39.0e-6,
+          .inertia_z = 6.0e-6,
+          .torsion = 1.9514e-6,
+          .shear_factor_y = .4796,
+          .shear_factor_z = .4721,
+          .shear_centre_z = -.0391};
+}
+
+/// Rectangle of the peers' moving-load scene, 231.9 mm high and 37.5 mm wide, k = .8497 for both
+/// directions, J by the series of Saint-Venant.
+inline BeamSection peers_rectangle() {
+  const double h = .2319, b = .0375;
+  return {.area = h * b,
+          .inertia_y = b * h * h * h / 12.,
+          .inertia_z = h * b * b * b / 12.,
+          .torsion = h * b * b * b / 3. * (1. - .63 * b / h),
+          .shear_factor_y = .8497,
+          .shear_factor_z = .8497};
+}
+
+}  // namespace railstep
