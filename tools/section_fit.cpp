@@ -26,12 +26,15 @@ std::array<double, 2> head_widths(const std::vector<Rectangles<double>>& family)
 }
 
 void refuse_empty(const std::vector<Rectangles<double>>& family, const FitTargets& t) {
-  if (family.empty())
-    throw std::runtime_error(fmt::format(
-        "no three rectangles {:.6g} m high have the area {:.6g} m2, inertias {:.6g} and {:.6g} m4 "
-        "and "
-        "centroid height {:.6g} m",
-        t.height, t.area.area, t.area.inertia_y, t.area.inertia_z, t.area.centroid_height));
+  if (!family.empty()) return;
+  const RelativeErrors e = relative_errors(t, closest(t));
+  throw std::runtime_error(
+      fmt::format("no three rectangles {:.6g} m high have the area {:.6g} m2, inertias {:.6g} and "
+                  "{:.6g} m4 and "
+                  "centroid height {:.6g} m; the closest found err by {:+.2e}, {:+.2e}, {:+.2e} "
+                  "and {:+.2e} of them",
+                  t.height, t.area.area, t.area.inertia_y, t.area.inertia_z, t.area.centroid_height,
+                  e.area, e.inertia_y, e.inertia_z, e.centroid_height));
 }
 
 SectionFit describe(const FitTargets& targets, const Rectangles<double>& section,

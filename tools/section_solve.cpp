@@ -153,6 +153,18 @@ bool solve_exact(const FitTargets& targets, bool head_width_fixed, Rectangles<do
   return true;
 }
 
+Rectangles<double> closest(const FitTargets& targets) {
+  const double H = targets.height;
+  Unknowns u{0.4 * H, {0.8 * H, 0.15 * H, 0.1 * H, 0.25 * H}};  // a rail's proportions
+  ceres::Problem problem;
+  add_properties(problem, targets, u);
+  problem.SetParameterLowerBound(&u.head, 0, 1e-3 * H);
+  for (int i = 0; i < 4; ++i) problem.SetParameterLowerBound(u.p.data(), i, 1e-3 * H);
+  ceres::Solver::Summary summary;
+  ceres::Solve(to_round_off(), &problem, &summary);
+  return rectangles_of(u, H);
+}
+
 double slope(const FitTargets& targets, std::span<const Point> polygon,
              const Rectangles<double>& section) {
   const auto& [w, h] = section;

@@ -23,6 +23,9 @@ double slope(const FitTargets& targets, std::span<const Point> polygon,
 bool descend(const FitTargets& targets, std::span<const Point> polygon, Rectangles<double>& section,
              int& iterations);
 
+/// The least-squares compromise for targets that no exact section has.
+Rectangles<double> closest(const FitTargets& targets);
+
 /// Root of the diagonal of (J'J)^-1, J = d(relative errors)/d(foot width, height, web width, head
 /// height), m.
 std::array<double, 4> sensitivity(const FitTargets& targets, const Rectangles<double>& section);

@@ -10,6 +10,8 @@
 namespace railstep {
 namespace {
 
+constexpr double kRounding = 1e-8;  // m
+
 /// Centre, half angle and bisector of an arc.
 struct Arc {
   Point centre;
@@ -83,9 +85,12 @@ std::array<double, 2> extent(const std::vector<Segment>& segments) {
     high = std::max(high, s.to[1]);
     if (s.radius == 0.0) continue;
     const Arc a = arc_of(s);
-    // The arc holds its circle's lowest or highest point if that lies within its half angle.
-    if (-a.outwards[1] > std::cos(a.half)) low = std::min(low, a.centre[1] - a.radius);
-    if (a.outwards[1] > std::cos(a.half)) high = std::max(high, a.centre[1] + a.radius);
+    // The arc holds its circle's lowest or highest point if that lies within its half angle. A
+    // crown whose centre is off the axis by the drawing's rounding rises 0.2 nm above its middle:
+    // not meant.
+    const double bottom = a.centre[1] - a.radius, top = a.centre[1] + a.radius;
+    if (-a.outwards[1] > std::cos(a.half) && bottom < low - kRounding) low = bottom;
+    if (a.outwards[1] > std::cos(a.half) && top > high + kRounding) high = top;
   }
   return {low, high};
 }

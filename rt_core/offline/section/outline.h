@@ -59,8 +59,8 @@ double area_inside(std::span<const Point> polygon, double y0, double y1, double 
 /// at.
 double length_inside(std::span<const Point> polygon, int axis, double at, double from, double to);
 
-/// Area between a simple polygon and its mirror image about y = 0, over its own area; by 1000 levels
-/// of z, so good to 1e-3 of itself. 0 for a symmetric one.
+/// Area between a simple polygon and its mirror image about y = 0, over its own area; by 1000
+/// levels of z, so good to 1e-3 of itself. 0 for a symmetric one.
 double asymmetry(std::span<const Point> polygon);
 
 }  // namespace railstep
