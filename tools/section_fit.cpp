@@ -45,6 +45,7 @@ SectionFit describe(const FitTargets& targets, const Rectangles<double>& section
           .stationarity = kNone,
           .family_points = static_cast<int>(family_points),
           .iterations = iterations,
+          .from_start = false,
           .sensitivity = sensitivity(targets, section)};
 }
 
@@ -79,6 +80,7 @@ SectionFit fit_section(const Outline& outline, const std::optional<Rectangles<do
       family.begin(), family.end(),
       [&](const auto& a, const auto& b) { return difference(a) < difference(b); });
   int iterations = 0;
+  bool from_start = false;
   if (!solve_exact(targets, true, best, iterations))
     throw std::runtime_error("Ceres did not bring the section's four errors to round-off");
   bool flat = descend(targets, points, best, iterations);
@@ -89,10 +91,11 @@ SectionFit fit_section(const Outline& outline, const std::optional<Rectangles<do
         descend(targets, points, other, iterations) &&
         difference(other) <= difference(best) + 1e-12 * targets.area.area) {
       best = other;
-      flat = true;
+      flat = from_start = true;
     }
   }
   SectionFit fit = describe(targets, best, family.size(), iterations);
+  fit.from_start = from_start;
   fit.symmetric_difference = difference(best);
   fit.stationarity = flat ? slope(targets, points, best) : kNone;
   return fit;

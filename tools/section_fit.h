@@ -24,6 +24,7 @@ struct SectionFit {
   double stationarity;  // d(symmetric difference)/d(head width), m; 0 at a smooth minimum, or NaN
   int family_points;    // exact sections compared in the search over the whole family
   int iterations;       // of Ceres in the final solves
+  bool from_start;      // the start given led here by itself
   /// Change of foot width and height, web width, head height (m) per unit relative error of all
   /// four properties, root of the covariance's diagonal at fixed head width: how well-posed the fit
   /// is.
