@@ -133,7 +133,7 @@ TEST_CASE("an unknown key is refused with the nearest known one, in any opened t
 TEST_CASE("a missing key is named, with the misspelt one where there is one", "[read]") {
   const Table root = parse("[step]\ndt = 0.001\n\n[rail]\nx = 1\n");
   CHECK(sentence([&] { (void)root.table("step").number("dt_s", above(0)); }) ==
-        "bay.toml:2:6: [step] key 'dt_s' is missing; did you mean it by 'dt'?");
+        "bay.toml:2:1: [step] key 'dt_s' is missing; did you mean it by 'dt'?");
   CHECK_THAT(sentence([&] { (void)root.table("rail").number("poisson", above(0)); }),
              Contains("bay.toml:4:1: [rail] key 'poisson' is missing; it has no default"));
 }

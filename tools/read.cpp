@@ -161,9 +161,9 @@ Table::Entry Table::need(std::string_view key) const {
   for (const auto& [other, value] : *view_->table)
     if (!known.contains(other.str())) unread.emplace_back(other.str());
   const std::string near = misspelt(key, unread);
-  refuse(near.empty() ? key : std::string_view(near),
-         near.empty() ? fmt::format("key '{}' is missing; it has no default", key)
-                      : fmt::format("key '{}' is missing; did you mean it by '{}'?", key, near));
+  if (near.empty()) refuse(key, fmt::format("key '{}' is missing; it has no default", key));
+  refuse_at(view_->table->find(near)->first.source(), *view_->document, view_->name,
+            fmt::format("key '{}' is missing; did you mean it by '{}'?", key, near));
 }
 
 bool Table::has(std::string_view key) const { return look_up(key).node != nullptr; }
@@ -245,6 +245,20 @@ std::vector<double> Table::numbers(std::string_view key, const Range& accepted, 
   std::vector<double> values;
   for (const toml::node& node : entry.array(least, most))
     values.push_back(entry.number(node, accepted));
+  return values;
+}
+
+std::vector<std::string> Table::strings(std::string_view key, std::size_t least,
+                                        std::size_t most) const {
+  const Entry entry = need(key);
+  std::vector<std::string> values;
+  for (const toml::node& node : entry.array(least, most)) {
+    const auto* value = node.as_string();
+    if (!value)
+      entry.refuse(
+          node, fmt::format("{} = {} is {}; a string is accepted", key, shown(node), kind(node)));
+    values.push_back(value->get());
+  }
   return values;
 }
 

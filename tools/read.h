@@ -65,6 +65,9 @@ class Table {
   [[nodiscard]] std::vector<double> numbers(std::string_view key, const Range& accepted,
                                             std::size_t least = 1,
                                             std::size_t most = 100'000) const;
+  /// An array of `least` to `most` strings.
+  [[nodiscard]] std::vector<std::string> strings(std::string_view key, std::size_t least,
+                                                 std::size_t most) const;
   /// An array of rows of `columns` finite numbers each, [[a, b], ...], at least one row.
   /// @returns row after row, [rows * columns]
   [[nodiscard]] std::vector<double> rows(std::string_view key, std::size_t columns) const;

@@ -31,13 +31,15 @@ inline void subtract_panel(const double* __restrict A, int width, const double* 
                            std::ptrdiff_t stride) noexcept {
   double even[R][kLanes] = {};
   double odd[R][kLanes] = {};
-  if constexpr (R == 1) {
+  if constexpr (R <= 2) {
     for (int k = 0; k < width; k += 2) {
       const double* a = A + k * kLanes;
+      for (int r = 0; r < R; ++r) {
 #pragma omp simd
-      for (int l = 0; l < kLanes; ++l) even[0][l] += a[l] * x[k];
+        for (int l = 0; l < kLanes; ++l) even[r][l] += a[l] * x[k + r * stride];
 #pragma omp simd
-      for (int l = 0; l < kLanes; ++l) odd[0][l] += a[kLanes + l] * x[k + 1];
+        for (int l = 0; l < kLanes; ++l) odd[r][l] += a[kLanes + l] * x[k + 1 + r * stride];
+      }
     }
   } else {
     for (int k = 0; k < width; k += 2)

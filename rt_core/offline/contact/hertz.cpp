@@ -1,0 +1,88 @@
+#include "offline/contact/hertz.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace railstep {
+namespace {
+
+void require(bool holds, const char* what, double got) {
+  if (!holds) throw std::invalid_argument(std::string(what) + ", it is " + std::to_string(got));
+}
+
+/// What the axes need of m; ratio = (E/k^2 - K)/(K - E) falls from infinity at k = 0 to 1 at k = 1.
+struct Shape {
+  double K, K_less_E, ratio;
+};
+
+Shape shape(double m) {
+  const auto [K, E] = elliptic_integrals(m);
+  // Near a circle numerator and denominator vanish like pi m/4: series, off by O(m^2).
+  if (m < 1e-5) {
+    const double half_pi = std::numbers::pi / 2.0;
+    return {K, half_pi * m * (0.5 + m * (3.0 / 16.0)), 1.0 + 0.75 * m};
+  }
+  return {K, K - E, (E / (1.0 - m) - K) / (K - E)};
+}
+
+/// m = 1 - k^2 of the ratio of curvatures >= 1, by bisection in log k.
+double find_modulus(double ratio) {
+  if (ratio == 1.0) return 0.0;
+  double low = std::log(1e-7), high = 0.0;  // log k
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (shape(-std::expm1(2.0 * middle)).ratio > ratio ? low : high) = middle;
+  }
+  return -std::expm1(low + high);
+}
+
+}  // namespace
+
+EllipticIntegrals elliptic_integrals(double m) {
+  double a = 1.0, b = std::sqrt(1.0 - m), sum = m, weight = 1.0;
+  // c_n^2 2^n, c_0^2 = m; quadratic convergence: m = 1 - 1e-14 needs 7 rounds.
+  for (int i = 0; i < 12; ++i) {
+    const double c = 0.5 * (a - b), mean = 0.5 * (a + b);
+    weight *= 2.0;
+    sum += weight * c * c;
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  const double K = std::numbers::pi / (2.0 * a);
+  return {K, K * (1.0 - 0.5 * sum)};
+}
+
+HertzContact hertz_contact(double wheel_radius, double crown_radius, double young, double poisson,
+                           double load) {
+  const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
+  require(positive(wheel_radius), "the wheel radius must be a positive length", wheel_radius);
+  require(positive(crown_radius), "the crown radius must be a positive length", crown_radius);
+  require(positive(young), "Young's modulus must be positive", young);
+  require(poisson > -1.0 && poisson <= 0.5, "Poisson's ratio must be in (-1, 1/2]", poisson);
+  require(positive(load), "the load must be positive", load);
+  const double along = 0.5 / wheel_radius, across = 0.5 / crown_radius;
+  const double small = std::min(along, across), ratio = std::max(along, across) / small;
+  require(ratio <= 1e6, "the radii must be within 1 : 1e6 of each other (else a line contact)",
+          ratio);
+
+  const double m = find_modulus(ratio);
+  const Shape s = shape(m);
+  const double modulus = young / (2.0 * (1.0 - poisson * poisson));
+  // (K - E)/m tends to pi/4 for a circle.
+  const double per_m = m > 0.0 ? s.K_less_E / m : std::numbers::pi / 4.0;
+  const double longer = std::cbrt(3.0 * load * per_m / (2.0 * std::numbers::pi * modulus * small));
+  const double shorter = longer * std::sqrt(1.0 - m);
+  HertzContact out{};
+  out.peak_pressure = 1.5 * load / (std::numbers::pi * longer * shorter);
+  out.approach = out.peak_pressure * shorter * s.K / modulus;
+  out.constant = load / (out.approach * std::sqrt(out.approach));
+  out.half_along = along > across ? shorter : longer;
+  out.half_across = along > across ? longer : shorter;
+  out.stiffness = 1.5 * load / out.approach;
+  return out;
+}
+
+}  // namespace railstep

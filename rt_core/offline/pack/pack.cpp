@@ -1,0 +1,100 @@
+#include "offline/pack/pack.h"
+
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "offline/condense/flexibility.h"
+#include "offline/pack/band_factor.h"
+
+namespace railstep {
+
+const double* PackedModel::keep(std::vector<double> values) {
+  return reals_.emplace_back(std::make_unique<std::vector<double>>(std::move(values)))->data();
+}
+
+const std::int32_t* PackedModel::keep(std::vector<std::int32_t> values) {
+  return integers_.emplace_back(std::make_unique<std::vector<std::int32_t>>(std::move(values)))
+      ->data();
+}
+
+Diagonals PackedModel::keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded) {
+  std::map<std::int32_t, std::vector<double>> found;  // offset -> values by row
+  for (int j = 0; j < A.outerSize(); ++j)
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(A, j); entry; ++entry) {
+      auto& values = found[static_cast<std::int32_t>(j - entry.row())];
+      values.resize(static_cast<std::size_t>(padded), 0.);
+      values[static_cast<std::size_t>(entry.row())] = entry.value();
+    }
+  std::vector<std::int32_t> offsets;
+  std::vector<double> values;
+  for (const auto& [offset, diagonal] : found) {
+    offsets.push_back(offset);
+    values.insert(values.end(), diagonal.begin(), diagonal.end());
+  }
+  const int count = static_cast<int>(offsets.size());
+  return {padded, count, keep(std::move(offsets)), keep(std::move(values))};
+}
+
+void PackedModel::add_line(const Track& track, const Line& line) {
+  if (model_.lines == kMaxLines) throw std::invalid_argument("the track falls into too many lines");
+  const Scheme& s = model_.scheme;
+  BandFactor factor = factor_band(
+      Eigen::SparseMatrix<double>(line.stiffness + s.kv * line.damping + s.kg * line.mass));
+  const int padded = 8 * factor.panels;
+  LineModel& packed = model_.line[model_.lines++];
+  packed.first = model_.unknowns;
+  packed.step = {factor.panels, factor.left, keep(std::move(factor.forward)),
+                 keep(std::move(factor.inverse)), keep(std::move(factor.backward))};
+  packed.mass = keep_diagonals(line.mass, padded);
+  packed.damping = keep_diagonals(line.damping, padded);
+  std::vector<std::int32_t> unknowns;
+  for (const auto& node : line.unknown_of)
+    unknowns.insert(unknowns.end(), node.begin(), node.end());
+  packed.unknown_of = keep(std::move(unknowns));
+  for (int rail = 0; rail < 2; ++rail)
+    packed.rail_factor[rail] =
+        rail < track.rails ? line.rail_factor[static_cast<std::size_t>(rail)] : 0.;
+  packed.mirrored = line.mirrored ? 1 : 0;
+  model_.unknowns += padded;
+}
+
+void PackedModel::add_load(const Track& track, const std::vector<Line>& lines,
+                           const MovingLoad& load, const PackOptions& options) {
+  if (model_.loads == kMaxLoads) throw std::invalid_argument("more than 32 loads");
+  if (load.rail < 0 || load.rail >= track.rails)
+    throw std::invalid_argument("a load stands on a rail that the track does not have");
+  for (int i = 0; i < model_.loads; ++i)
+    if (options.residual_flexibility && model_.load[i].rail == load.rail)
+      throw std::invalid_argument(
+          "residual flexibility acts under one load per rail; for several on one rail set "
+          "residual_flexibility = false");
+  LoadModel& packed = model_.load[model_.loads++];
+  packed.row[2] = 1.;
+  packed.row[8] = load.z;
+  packed.rail = load.rail;
+  packed.start = load.start;
+  packed.speed = load.speed;
+  packed.stop = load.stop;
+  packed.force = load.force;
+  packed.table_points = static_cast<std::int32_t>(load.table.size() / 2);
+  packed.table = keep(load.table);
+  if (options.residual_flexibility)
+    packed.residual = keep(residual_flexibility(track, lines, {load.rail, 0., 0., load.z, 2},
+                                                options.residual_points));
+}
+
+PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& loads,
+                         const PackOptions& options) {
+  if (options.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
+  model_.scheme = options.scheme;
+  model_.steps_per_frame = options.steps_per_frame;
+  model_.residual_points = options.residual_points;
+  model_.elements = track.elements();
+  model_.element_length = track.element_length();
+  const std::vector<Line> lines = assemble(track);
+  for (const Line& line : lines) add_line(track, line);
+  for (const MovingLoad& load : loads) add_load(track, lines, load, options);
+}
+
+}  // namespace railstep

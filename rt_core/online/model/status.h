@@ -1,0 +1,20 @@
+#pragma once
+#include <cstdint>
+
+namespace railstep {
+
+/// What a frame met; several can be true, the step goes on.
+enum class Status : std::uint32_t {
+  ok = 0,
+  off_rail = 1u << 0,         // a load left the rail, its force is 0: lengthen the track
+  nonfinite_state = 1u << 1,  // the state is no longer finite: Outputs name the first bad unknown
+};
+
+constexpr Status operator|(Status a, Status b) noexcept {
+  return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr bool has(Status status, Status bit) noexcept {
+  return (static_cast<std::uint32_t>(status) & static_cast<std::uint32_t>(bit)) != 0u;
+}
+
+}  // namespace railstep

@@ -1,0 +1,14 @@
+#pragma once
+#include "online/model/state.h"
+
+namespace railstep {
+
+/// Advances by one frame of model.steps_per_frame steps. No heap, no exceptions, no clock; the
+/// same work for every state. A state that stops being finite is reported and left as it is.
+[[nodiscard]] Status advance_frame(const Model& model, State& state, Workspace& workspace,
+                                   Outputs& outputs) noexcept;
+
+/// Outputs of a state as it stands, without a step: the first row of a trace.
+void publish(const Model& model, const State& state, Outputs& outputs) noexcept;
+
+}  // namespace railstep

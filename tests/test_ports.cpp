@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "online/contact/ports.h"
+
+using namespace railstep;
+
+namespace {
+
+using Real = long double;
+
+struct Case {
+  int n;
+  std::vector<double> W, C, d_free;
+};
+
+double log_uniform(double low, double high, std::mt19937& random) {
+  return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
+}
+
+/// W = B B' of a random rank (so often singular) plus, half the time, a small diagonal, of about
+/// 1e-11 m/N to `softest`. A wheel on a rail has w C sqrt(d) of 0.1 to 10; here it runs from 1e-5
+/// to 1e3 for 1e-8 m/N and to 1e4 for 1e-7 m/N.
+Case random_case(int n, double softest, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  std::uniform_int_distribution<int> coin(0, 1), rank(1, n);
+  Case c{n, std::vector<double>(static_cast<std::size_t>(n * n), 0.0), {}, {}};
+  const int columns = rank(random);
+  std::vector<double> B(static_cast<std::size_t>(n * columns));
+  for (double& b : B) b = normal(random);
+  const double compliance = log_uniform(1e-11, softest, random);
+  const double own = coin(random) ? 0.1 * compliance : 0.0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      double sum = 0.0;
+      for (int k = 0; k < columns; ++k)
+        sum += B[static_cast<std::size_t>(i * columns + k)] *
+               B[static_cast<std::size_t>(j * columns + k)];
+      c.W[static_cast<std::size_t>(i * n + j)] = compliance * sum / columns + (i == j ? own : 0.0);
+    }
+  for (int i = 0; i < n; ++i) {
+    c.C.push_back(log_uniform(1e9, 1e12, random));
+    c.d_free.push_back((coin(random) ? 1 : -1) * log_uniform(1e-6, 1e-2, random));
+  }
+  return c;
+}
+
+/// Root of d + w C d^1.5 = d_free by bisection, in long double.
+Real bisect(Real w, Real C, Real d_free) {
+  if (d_free <= 0) return d_free;
+  Real low = 0, high = d_free;
+  for (int i = 0; i < 200; ++i) {
+    const Real middle = (low + high) / 2;
+    (middle + w * C * middle * std::sqrt(middle) < d_free ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+/// Gauss-Seidel on the convex function: each port in turn solved by bisection, which converges
+/// for every semidefinite W. Returns the forces, or none if 20000 sweeps did not settle them.
+std::vector<Real> gauss_seidel(const Case& c) {
+  const auto n = static_cast<std::size_t>(c.n);
+  std::vector<Real> f(n, 0);
+  for (int sweep = 0; sweep < 20000; ++sweep) {
+    Real change = 0, largest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      Real others = c.d_free[i];
+      for (std::size_t j = 0; j < n; ++j)
+        if (j != i) others -= c.W[i * n + j] * f[j];
+      const Real d = bisect(c.W[i * n + i], c.C[i], others);
+      const Real force = d > 0 ? c.C[i] * d * std::sqrt(d) : 0;
+      change = std::max(change, std::abs(force - f[i]));
+      largest = std::max(largest, force);
+      f[i] = force;
+    }
+    if (change <= 1e-17L * largest) return f;
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a lone port agrees with bisection in long double", "[ports]") {
+  std::mt19937 random(1);
+  int most = 0;
+  double worst = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    const Case c = random_case(1, 1e-7, random);
+    double f = 0.0, d = 0.0;
+    const PortResult got = solve_ports(1, c.W.data(), c.C.data(), c.d_free.data(), &f, &d);
+    REQUIRE(got.status == PortStatus::converged);
+    most = std::max(most, got.iterations);
+    const double want = static_cast<double>(bisect(c.W[0], c.C[0], c.d_free[0]));
+    // d + w C d^1.5 rises at least with slope 1 and its residual is held to 1e-12 of twice d_free.
+    CHECK(std::abs(d - want) <= 2e-12 * std::abs(c.d_free[0]));
+    worst = std::max(worst, std::abs(d - want) / std::abs(c.d_free[0]));
+  }
+  INFO("most iterations " << most << ", largest error over d_free " << worst);
+  CHECK(most <= 4);
+}
+
+/// max |d + W f - d_free| of an answer, in long double; checks the laws on the way.
+Real true_residual(const Case& c, const std::vector<double>& f, const std::vector<double>& d) {
+  const auto n = static_cast<std::size_t>(c.n);
+  Real worst = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    Real sum = static_cast<Real>(d[i]) - c.d_free[i];
+    for (std::size_t j = 0; j < n; ++j) sum += static_cast<Real>(c.W[i * n + j]) * f[j];
+    worst = std::max(worst, std::abs(sum));
+  }
+  return worst;
+}
+
+/// The length that residuals are measured against: max |d_free_i| + sum_j |W_ij| f_j.
+template <typename T>
+double length(const Case& c, const std::vector<T>& f) {
+  const auto n = static_cast<std::size_t>(c.n);
+  Real scale = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    Real size = std::abs(c.d_free[i]);
+    for (std::size_t j = 0; j < n; ++j) size += std::abs(c.W[i * n + j] * f[j]);
+    scale = std::max(scale, size);
+  }
+  return static_cast<double>(scale);
+}
+
+TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
+  std::mt19937 random(2);
+  int most = 0, compared = 0, histogram[kPortSweeps + 1] = {};
+  double worst = 0.0;
+  for (int i = 0; i < 9600; ++i) {
+    const Case c = random_case(1 + i % 8, 1e-8, random);
+    const auto n = static_cast<std::size_t>(c.n);
+    std::vector<double> f(n, 0.0), d(n);
+    const PortResult got =
+        solve_ports(c.n, c.W.data(), c.C.data(), c.d_free.data(), f.data(), d.data());
+    REQUIRE(got.status == PortStatus::converged);
+    ++histogram[got.iterations];
+    most = std::max(most, got.iterations);
+    // The sum of at most 9 terms is rounded within 9 eps of the length.
+    CHECK(std::abs(static_cast<double>(true_residual(c, f, d)) - got.residual) <=
+          9 * 0x1p-52 * length(c, f));
+    const std::vector<Real> want = gauss_seidel(c);
+    if (want.empty()) continue;
+    ++compared;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double exact = static_cast<double>(std::pow(std::cbrt(want[k] / c.C[k]), 2));
+      worst = std::max(worst, std::abs(std::max(d[k], 0.0) - exact) / length(c, want));
+    }
+  }
+  for (int k = 0; k <= kPortSweeps; ++k) UNSCOPED_INFO(k << " iterations: " << histogram[k]);
+  INFO("most iterations " << most << ", compared " << compared << ", largest error " << worst);
+  // (f - g)'(d(f) - d(g)) <= (f - g)'residual: weighted by the contact stiffnesses, d is no
+  // further off than the residual, 1e-12. Stiffnesses differ by up to (1e12/1e9) sqrt(d ratio),
+  // whose root (some 30) enters when the worst port is the softest.
+  CHECK(worst <= 30e-12);
+  CHECK(compared > 9000);
+}
+
+TEST_CASE("an extreme case is solved or says how far it came", "[ports]") {
+  std::mt19937 random(3);
+  int capped = 0;
+  for (int i = 0; i < 9600; ++i) {
+    const Case c = random_case(1 + i % 8, 1e-7, random);
+    const auto n = static_cast<std::size_t>(c.n);
+    for (int cap : {0, 2, 8}) {
+      std::vector<double> f(n, 0.0), d(n);
+      const PortResult got =
+          solve_ports(c.n, c.W.data(), c.C.data(), c.d_free.data(), f.data(), d.data(), cap);
+      CHECK(got.iterations <= cap);
+      CHECK((got.status == PortStatus::converged) ==
+            (got.residual <= kPortTolerance * length(c, f)));
+      CHECK(std::abs(static_cast<double>(true_residual(c, f, d)) - got.residual) <=
+            9 * 0x1p-52 * length(c, f));
+      for (std::size_t k = 0; k < n; ++k) CHECK((std::isfinite(f[k]) && f[k] >= 0.0));
+      if (cap == 8 && got.status == PortStatus::cap_reached) ++capped;
+    }
+  }
+  UNSCOPED_INFO("cap of 8 reached in " << capped << " of 9600");
+  CHECK(capped < 96);  // one in a hundred: beyond that the cap would rule, not the method
+}
+
+TEST_CASE("the last forces are a start: at the answer no iteration is left", "[ports]") {
+  std::mt19937 random(4);
+  int cold = 0, warm = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Case c = random_case(1 + i % 8, 1e-8, random);
+    const auto n = static_cast<std::size_t>(c.n);
+    std::vector<double> f(n, 0.0), d(n), again;
+    const auto solve = [&] {
+      return solve_ports(c.n, c.W.data(), c.C.data(), c.d_free.data(), f.data(), d.data());
+    };
+    REQUIRE(solve().status == PortStatus::converged);
+    again = f;
+    CHECK(solve().iterations == 0);
+    for (double& x : c.d_free) x *= 1.01;
+    f = again;
+    warm += solve().iterations;
+    std::fill(f.begin(), f.end(), 0.0);
+    cold += solve().iterations;
+  }
+  INFO("1 % more penetration: " << warm << " iterations warm, " << cold << " cold");
+  CHECK(warm < cold);
+}
+
+TEST_CASE("a number that is none gives no force and says so", "[ports]") {
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  for (double x : {bad, inf, -inf})
+    for (int place = 0; place < 8; ++place) {
+      double in[8] = {1e-9, 1e-10, 1e-10, 1e-9, 1e11, 1e11, 1e-4, 1e-4};
+      in[place] = x;
+      double f[2] = {1.0, 1.0}, d[2];
+      CHECK(solve_ports(2, in, in + 4, in + 6, f, d).status == PortStatus::bad_input);
+      for (int k = 0; k < 2; ++k) CHECK((f[k] == 0.0 && d[k] == 0.0));
+    }
+  // A start that is none is no start, not an error.
+  const double W = 1e-9, C = 1e11, d_free = 1e-4;
+  for (double start : {bad, inf, -1.0}) {
+    double f = start, d = bad, cold = 0.0, d_cold;
+    CHECK(solve_ports(1, &W, &C, &d_free, &f, &d).status == PortStatus::converged);
+    CHECK(solve_ports(1, &W, &C, &d_free, &cold, &d_cold).status == PortStatus::converged);
+    CHECK((f == cold && d == d_cold));
+  }
+  // Too large to square: still finite.
+  const double huge = 1e300;
+  double f = 0.0, d = 0.0;
+  CHECK(solve_ports(1, &huge, &huge, &huge, &f, &d).status == PortStatus::cap_reached);
+  CHECK((std::isfinite(f) && std::isfinite(d)));
+  CHECK(solve_ports(kPorts + 1, &W, &C, &d_free, &f, &d).status == PortStatus::bad_input);
+}

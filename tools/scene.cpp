@@ -1,0 +1,167 @@
+#include "scene.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene_read.h"
+
+namespace railstep {
+namespace {
+
+TrackScene read_track(const Table& t) {
+  TrackScene track;
+  track.unknowns =
+      t.choice("unknowns", {"full", "vertical"}) == 0 ? Unknowns::full : Unknowns::vertical;
+  track.rails = static_cast<int>(t.integer("rails", 1, 2, 2));
+  track.bays = t.integer("bays", 1, std::int64_t{1} << 53);
+  track.bay = t.number("bay_m", between(0.05, 5.0));
+  track.elements_per_bay = static_cast<int>(t.integer("elements_per_bay", 1, 1000, 2));
+  track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
+  track.ends = t.choice("ends", {"free", "clamped"}, 0) == 0 ? Ends::free : Ends::clamped;
+  track.gravity = t.boolean("gravity", false);
+  track.axial_points = static_cast<int>(t.integer("axial_points", 1, 5, 2));
+  return track;
+}
+
+/// Refuses a size that no machine steps, before anything of that size exists. The bytes are those
+/// of four banded matrices of doubles (M, C, K and the factored step matrix).
+void check_size(const Table& t, const TrackScene& track) {
+  const double elements = static_cast<double>(track.rails) * static_cast<double>(track.bays) *
+                          static_cast<double>(track.elements_per_bay);
+  if (elements <= static_cast<double>(kMostElements)) return;
+  const bool full = track.unknowns == Unknowns::full;
+  const double unknowns = elements * (full ? 18.0 : 4.0);  // two nodes an element
+  const double bandwidth = full ? 54.0 : 12.0;
+  t.refuse("bays",
+           fmt::format("bays = {} makes {:.0f} elements, about {:.3g} bytes; accepted are "
+                       "at most {} elements",
+                       track.bays, elements, 4.0 * 8.0 * unknowns * bandwidth, kMostElements));
+}
+
+Spring read_spring(const Table& t, const std::string& axis, bool required = false) {
+  const std::string stiffness = "stiffness_" + axis + "_n_per_m";
+  const std::string damping = "damping_" + axis + "_n_s_per_m";
+  const Range k = between(0.0, 1e13), c = between(0.0, 1e11);
+  if (required) return {t.number(stiffness, k), t.number(damping, c, 0.0)};
+  return {t.number(stiffness, k, 0.0), t.number(damping, c, 0.0)};
+}
+
+std::optional<SupportScene> read_support(const Table& root, const TrackScene& track) {
+  if (track.ends == Ends::clamped && !root.has("support")) return std::nullopt;
+  const Table t = root.table("support");
+  SupportScene s;
+  s.x = read_spring(t, "x");
+  s.y = read_spring(t, "y");
+  s.z = read_spring(t, "z", true);
+  s.roll = {t.number("stiffness_roll_n_m_per_rad", between(0.0, 1e13), 0.0),
+            t.number("damping_roll_n_m_s_per_rad", between(0.0, 1e11), 0.0)};
+  s.at = t.choice("at", {"foot", "axis"}, 0) == 0 ? Height::foot : Height::axis;
+  s.half_spread = t.number("half_spread_m", between(0.0, 0.5), 0.0);
+  return s;
+}
+
+std::optional<SleeperScene> read_sleeper(const Table& root, const Scene& scene) {
+  const std::optional<Table> t = root.table_if("sleeper");
+  const std::optional<Table> ballast = root.table_if("ballast");
+  if (!t && !ballast) return std::nullopt;
+  if (!ballast) t->refuse("", "there is a sleeper but no [ballast] under it; both or none");
+  if (!t) ballast->refuse("", "there is ballast but no [sleeper] on it; both or none");
+  if (!scene.support) t->refuse("", "there is a sleeper but no [support] on it");
+  SleeperScene s;
+  s.mass = t->number("mass_kg", between(0.0, 1e5));  // 0: pad and ballast in series
+  s.roll_inertia = scene.track.rails == 2 ? t->number("roll_inertia_kg_m2", between(0.0, 1e6))
+                                          : t->number("roll_inertia_kg_m2", between(0.0, 1e6), 0.0);
+  s.ballast_z = read_spring(*ballast, "z", true);
+  for (auto [axis, spring] : {std::pair("x", &s.ballast_x), std::pair("y", &s.ballast_y)})
+    if (ballast->has(fmt::format("stiffness_{}_n_per_m", axis)) ||
+        ballast->has(fmt::format("damping_{}_n_s_per_m", axis)))
+      *spring = read_spring(*ballast, axis, true);
+  return s;
+}
+
+/// The whole number of `dt` in `time`; 1e-9 forgives the rounding of decimal numbers, no more.
+std::int64_t whole_steps(const Table& t, std::string_view key, double time, double dt) {
+  const double steps = std::round(time / dt);
+  if (steps < 1.0 || std::fabs(time / dt - steps) > 1e-9 * steps)
+    t.refuse(key, fmt::format("{} = {:.15g} is not a whole number of steps of dt_s = {:.15g}; "
+                              "accepted is a multiple of dt_s",
+                              key, time, dt));
+  return static_cast<std::int64_t>(steps);
+}
+
+StepScene read_step(const Table& t) {
+  StepScene s;
+  s.dt = t.number("dt_s", between(1e-7, 0.1));
+  const double duration = t.number("duration_s", above_upto(0.0, 1e7));
+  if (s.dt > duration)
+    t.refuse("dt_s", fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; accepted is "
+                                 "at most the duration",
+                                 s.dt, duration));
+  const double frame = t.number("frame_s", above_upto(0.0, duration), s.dt);
+  s.steps_per_frame = whole_steps(t, "frame_s", frame, s.dt);
+  s.steps = whole_steps(t, "duration_s", duration, s.dt);
+  s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.6);
+  s.scheme = t.choice("scheme", {"generalised-alpha", "backward-euler"}, 0) == 0
+                 ? Scheme::generalised_alpha
+                 : Scheme::backward_euler;
+  s.start =
+      t.choice("start", {"equilibrium", "released"}, 0) == 0 ? Start::equilibrium : Start::released;
+  return s;
+}
+
+CondenseScene read_condense(const Table& root) {
+  CondenseScene c{Condensation::full, std::nullopt, std::nullopt, true};
+  const std::optional<Table> t = root.table_if("condense");
+  if (!t) return c;
+  c.kind = t->choice("kind", {"full", "modal"}, 0) == 0 ? Condensation::full : Condensation::modal;
+  if (t->has("modes_per_bay"))
+    c.modes_per_bay = static_cast<int>(t->integer("modes_per_bay", 1, 1000));
+  if (t->has("highest_hz")) c.highest_hz = t->number("highest_hz", above_upto(0.0, 1e6));
+  if (c.modes_per_bay && c.highest_hz)
+    t->refuse("highest_hz", "highest_hz is given beside modes_per_bay; one of them is accepted");
+  if (c.kind == Condensation::modal && !c.modes_per_bay && !c.highest_hz)
+    t->refuse("kind", "kind = \"modal\" needs modes_per_bay or highest_hz");
+  c.residual_flexibility = t->boolean("residual_flexibility", true);
+  return c;
+}
+
+}  // namespace
+
+double TimeTable::at(double t) const {
+  if (time.empty() || t < time.front()) return 0.0;
+  const auto next = std::upper_bound(time.begin(), time.end(), t);
+  if (next == time.end()) return value.back();
+  const auto i = static_cast<std::size_t>(next - time.begin());
+  const double part = (t - time[i - 1]) / (time[i] - time[i - 1]);
+  return value[i - 1] + part * (value[i] - value[i - 1]);
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const Table root = read_toml(file, overrides);
+  const std::int64_t schema = root.integer("schema", 1, std::numeric_limits<std::int64_t>::max());
+  if (schema > 1)
+    root.refuse("schema",
+                fmt::format("schema = {} is newer than this program; accepted is 1", schema));
+  Scene scene;
+  scene.file = file;
+  scene.track = read_track(root.table("track"));
+  check_size(root.table("track"), scene.track);
+  scene.rail = read_rail(root.table("rail"));
+  scene.support = read_support(root, scene.track);
+  scene.sleeper = read_sleeper(root, scene);
+  scene.step = read_step(root.table("step"));
+  scene.condense = read_condense(root);
+  scene.loads = read_loads(root, scene);
+  scene.wheelsets = read_wheelsets(root, scene);
+  scene.sensors = read_sensors(root, scene);
+  const std::optional<Table> output = root.table_if("output");
+  scene.trace_supports = output && output->boolean("supports", false);
+  root.finish();
+  check_names(root, scene);
+  return scene;
+}
+
+}  // namespace railstep

@@ -1,0 +1,179 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "offline/section/section.h"
+
+namespace railstep {
+
+enum class Unknowns { full, vertical };
+enum class Ends { free, clamped };
+enum class Height { axis, head, foot };  // where in the section a force acts or a sensor sits
+enum class Side { left, right };         // left is +y
+enum class ElementLaw { corrected, paper };
+enum class Scheme { generalised_alpha, backward_euler };
+enum class Start { equilibrium, released };
+enum class GuideMethod { augmented_lagrangian, baumgarte };
+enum class Condensation { full, modal };
+
+/// Three stacked rectangles from the foot up, m.
+struct RectangleSizes {
+  double foot_width, foot_height, web_width, web_height, head_width, head_height;
+};
+/// One rectangle, m; its shear factors are Cowper's unless [rail] overrides them.
+struct RectangleSize {
+  double height, width;
+};
+struct ProfileFile {
+  std::filesystem::path path;  // an outline to be fitted with three rectangles
+};
+struct SectionFile {
+  std::filesystem::path path;  // what `railstep fit --out` wrote
+};
+using RailShape = std::variant<ProfileFile, SectionFile, Section, RectangleSizes, RectangleSize>;
+
+/// Which rails there are and how they are cut up. x runs from 0 to length().
+struct TrackScene {
+  Unknowns unknowns;
+  int rails;          // 1 (on y = 0) or 2 (left on y = +rail_spacing / 2)
+  std::int64_t bays;  // per rail; supports stand at the bays + 1 bay borders
+  double bay;         // m
+  int elements_per_bay;
+  double rail_spacing;  // between the rails' centres, m
+  Ends ends;
+  bool gravity;      // on the rails
+  int axial_points;  // Gauss points along an element
+  [[nodiscard]] double length() const { return static_cast<double>(bays) * bay; }
+};
+
+struct RailScene {
+  RailShape shape;
+  double young, poisson, density;  // Pa, 1, kg/m3
+  ElementLaw element;
+  std::optional<double> shear_factor_y, shear_factor_z;  // replace the section's
+  double crown_radius;                                   // m
+};
+
+/// A spring and a damper in parallel.
+struct Spring {
+  double stiffness = 0.0;  // N/m, or N m/rad
+  double damping = 0.0;    // N s/m, or N m s/rad
+};
+
+/// The pad at each bay border of each rail.
+struct SupportScene {
+  Spring x, y, z, roll;
+  Height at;           // foot or axis
+  double half_spread;  // m; over 0: half of each spring at y = -half_spread and +half_spread
+};
+
+struct SleeperScene {
+  double mass;          // both ends together, kg; one rail rests on half of it
+  double roll_inertia;  // about x, kg m2
+  Spring ballast_z;     // under each end
+  std::optional<Spring> ballast_x, ballast_y;  // under each end; none: held in that direction
+};
+
+/// A function of time: 0 before the first row, linear between rows, the last value after.
+struct TimeTable {
+  std::vector<double> time;   // s, rising
+  std::vector<double> value;  // [time.size()]
+  [[nodiscard]] double at(double t) const;
+};
+
+/// A force on a rail at x = start + speed * t.
+struct LoadScene {
+  std::string name;
+  Side rail;
+  double start, speed, force_z;  // m, m/s, N (up positive)
+  Height at;                     // axis or head
+  std::optional<TimeTable> factor;
+  std::optional<double> stop;  // m; the load is taken off there
+  bool may_leave_rail;         // then it is simply gone past the end
+};
+
+struct GuideScene {
+  GuideMethod method;
+  int cap;             // iterations a step
+  double tolerance;    // of the constraint, m
+  double alpha, beta;  // Baumgarte, 1/s
+};
+
+struct BodyForce {
+  int direction;    // 0 x, 1 y, 2 z
+  TimeTable force;  // N, on the centre
+};
+
+/// Two wheels on one axle; needs two rails.
+struct WheelsetScene {
+  std::string name;
+  std::array<std::string, 2> wheels;                     // names: left, right
+  double mass, inertia_roll, inertia_spin, inertia_yaw;  // kg, kg m2
+  double radius, tread_half_width;                       // m
+  double start, speed;                                   // m, m/s
+  double carried_mass;                                   // kg: weight without inertia
+  bool gravity, may_leave_rail;
+  GuideScene guide;
+  std::vector<BodyForce> forces;
+};
+
+struct StepScene {
+  double dt;  // s
+  std::int64_t steps_per_frame;
+  std::int64_t steps;  // of the whole run
+  double rho_inf;
+  Scheme scheme;
+  Start start;
+};
+
+struct CondenseScene {
+  Condensation kind;
+  std::optional<int> modes_per_bay;
+  std::optional<double> highest_hz;
+  bool residual_flexibility;
+};
+
+struct RailSensor {
+  Side rail;
+  double position;  // m
+  Height at;
+};
+struct SleeperSensor {
+  std::int64_t sleeper;      // from 0 along x
+  std::optional<Side> rail;  // the end under that rail; none: its centre
+};
+struct WheelsetSensor {
+  std::size_t wheelset;  // index into Scene::wheelsets; its centre
+};
+struct SensorScene {
+  std::string name;
+  std::variant<RailSensor, SleeperSensor, WheelsetSensor> on;
+};
+
+/// One scene, every number checked and in SI. config/README.md, "Scenes", has it key by key.
+struct Scene {
+  std::filesystem::path file;
+  TrackScene track;
+  RailScene rail;
+  std::optional<SupportScene> support;  // none only between clamped ends
+  std::optional<SleeperScene> sleeper;
+  std::vector<LoadScene> loads;
+  std::vector<WheelsetScene> wheelsets;
+  StepScene step;
+  CondenseScene condense;
+  std::vector<SensorScene> sensors;
+  bool trace_supports;
+  [[nodiscard]] double duration() const { return static_cast<double>(step.steps) * step.dt; }
+};
+
+inline constexpr std::int64_t kMostElements = 100'000;
+
+/// Reads and checks a scene; nothing of its size is allocated. Throws InputError.
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+}  // namespace railstep

@@ -1,0 +1,226 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "scene_read.h"
+
+namespace railstep {
+namespace {
+
+const Range kSpeed = between(-2000.0, 2000.0);
+const Range kForce = between(-1e8, 1e8);
+
+/// A name stands in the trace's header, so it is a word.
+std::string checked_name(const Table& t, std::string_view key, const std::string& name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
+    t.refuse(key, fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
+                              "and -",
+                              key, name.substr(0, 64)));
+  if (name.starts_with("support_"))
+    t.refuse(key, fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
+                              "does not start with support_",
+                              key, name));
+  return name;
+}
+
+Side read_side(const Table& t, const Scene& scene) {
+  // One rail is the left one, so that a scene can leave the key out.
+  const std::size_t side = scene.track.rails == 1 ? t.choice("rail", {"left", "right"}, 0)
+                                                  : t.choice("rail", {"left", "right"});
+  if (side == 1 && scene.track.rails == 1)
+    t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
+  return side == 0 ? Side::left : Side::right;
+}
+
+TimeTable read_time_table(const Table& t, std::string_view key, const Range& accepted) {
+  const std::vector<double> rows = t.rows(key, 2);
+  TimeTable table;
+  for (std::size_t i = 0; i < rows.size(); i += 2) {
+    if (rows[i] < 0.0 || (i > 0 && rows[i] <= rows[i - 2]))
+      t.refuse(key,
+               fmt::format("{}: the time {:.15g} s of row {} does not rise; accepted are times "
+                           "from 0 on, each above the one before",
+                           key, rows[i], i / 2));
+    if (!accepted.holds(rows[i + 1]))
+      t.refuse(key, fmt::format("{}: {:.15g} in row {} is out of range; accepted is {}", key,
+                                rows[i + 1], i / 2, accepted.text()));
+    table.time.push_back(rows[i]);
+    table.value.push_back(rows[i + 1]);
+  }
+  return table;
+}
+
+/// Refuses a path that runs off the rail before the end of the run, or before `stop`.
+void check_path(const Table& t, const Scene& scene, double start, double speed,
+                const std::optional<double>& stop) {
+  const double length = scene.track.length();
+  double end = start + speed * scene.duration();
+  if (stop) end = speed >= 0.0 ? std::min(end, *stop) : std::max(end, *stop);
+  // A path may end exactly on the border; 1e-9 of the length forgives its rounding.
+  if (end >= -1e-9 * length && end <= length * (1.0 + 1e-9)) return;
+  t.refuse("speed_m_per_s",
+           fmt::format("speed_m_per_s = {:.15g} from start_m = {:.15g} leads to x = {:.6g} m, off "
+                       "the rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
+                       speed, start, end, length));
+}
+
+LoadScene read_load(const Table& t, const Scene& scene) {
+  const double length = scene.track.length();
+  LoadScene load;
+  load.name = checked_name(t, "name", t.string("name"));
+  load.rail = read_side(t, scene);
+  load.may_leave_rail = t.boolean("may_leave_rail", false);
+  load.start = t.number("start_m", load.may_leave_rail ? between(-1e6, 1e6) : between(0.0, length));
+  load.speed = t.number("speed_m_per_s", kSpeed);
+  load.force_z = t.number("force_z_n", kForce);
+  load.at = t.choice("at", {"axis", "head"}, 0) == 0 ? Height::axis : Height::head;
+  if (t.has("table")) load.factor = read_time_table(t, "table", between(-1e6, 1e6));
+  if (t.has("stop_m")) {
+    load.stop = t.number("stop_m", between(0.0, length));
+    if ((*load.stop - load.start) * load.speed <= 0.0)
+      t.refuse("stop_m", fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
+                                     "is a place the load moves to",
+                                     *load.stop, load.start));
+  }
+  if (!load.may_leave_rail) check_path(t, scene, load.start, load.speed, load.stop);
+  return load;
+}
+
+GuideScene read_guide(const Table& wheelset) {
+  GuideScene g{GuideMethod::augmented_lagrangian, 20, 1e-10, 0.0, 0.0};
+  const std::optional<Table> t = wheelset.table_if("guide");
+  if (!t) return g;
+  const bool baumgarte = t->choice("method", {"augmented_lagrangian", "baumgarte"}, 0) == 1;
+  g.method = baumgarte ? GuideMethod::baumgarte : GuideMethod::augmented_lagrangian;
+  g.cap = static_cast<int>(t->integer("cap", 1, 1000, g.cap));
+  g.tolerance = t->number("tolerance", between(1e-15, 1e-2), g.tolerance);
+  if (!baumgarte && (t->has("alpha_per_s") || t->has("beta_per_s")))
+    t->refuse(t->has("alpha_per_s") ? "alpha_per_s" : "beta_per_s",
+              "alpha_per_s and beta_per_s are Baumgarte's; accepted with method = \"baumgarte\"");
+  if (baumgarte) {
+    g.alpha = t->number("alpha_per_s", above_upto(0.0, 1e6));
+    g.beta = t->number("beta_per_s", above_upto(0.0, 1e6));
+  }
+  return g;
+}
+
+WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
+  if (scene.track.rails != 2) t.refuse("", "a wheelset needs two rails; accepted with rails = 2");
+  const Range inertia = above_upto(0.0, 1e6);
+  WheelsetScene w;
+  w.name = checked_name(t, "name", t.string("name"));
+  w.wheels = {w.name + "_left", w.name + "_right"};
+  if (t.has("wheels")) {
+    const std::vector<std::string> names = t.strings("wheels", 2, 2);
+    w.wheels = {checked_name(t, "wheels", names[0]), checked_name(t, "wheels", names[1])};
+  }
+  w.mass = t.number("mass_kg", above_upto(0.0, 1e6));
+  w.inertia_roll = t.number("inertia_roll_kg_m2", inertia);
+  w.inertia_spin = t.number("inertia_spin_kg_m2", inertia);
+  w.inertia_yaw = t.number("inertia_yaw_kg_m2", inertia);
+  w.radius = t.number("radius_m", between(0.02, 3.0));
+  w.tread_half_width = t.number("tread_half_width_m", between(0.005, 0.3), 0.065);
+  w.may_leave_rail = t.boolean("may_leave_rail", false);
+  w.start = t.number("start_m",
+                     w.may_leave_rail ? between(-1e6, 1e6) : between(0.0, scene.track.length()));
+  w.speed = t.number("speed_m_per_s", kSpeed);
+  w.carried_mass = t.number("carried_mass_kg", between(0.0, 1e6), 0.0);
+  w.gravity = t.boolean("gravity", true);
+  w.guide = read_guide(t);
+  for (const Table& force : t.tables("force"))
+    w.forces.push_back({static_cast<int>(force.choice("direction", {"x", "y", "z"})),
+                        read_time_table(force, "table", kForce)});
+  if (!w.may_leave_rail) check_path(t, scene, w.start, w.speed, std::nullopt);
+  return w;
+}
+
+WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
+  const std::string name = t.string("wheelset");
+  std::string known;
+  for (std::size_t i = 0; i < scene.wheelsets.size(); ++i) {
+    if (scene.wheelsets[i].name == name) return {i};
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", scene.wheelsets[i].name);
+  }
+  t.refuse("wheelset",
+           fmt::format("wheelset = \"{}\" is unknown; {}", name,
+                       known.empty() ? "the scene has no wheelset" : "accepted are " + known));
+}
+
+SensorScene read_sensor(const Table& t, const Scene& scene) {
+  SensorScene sensor;
+  sensor.name = checked_name(t, "name", t.string("name"));
+  switch (t.choice("on", {"rail", "sleeper", "wheelset"})) {
+    case 0: {
+      RailSensor rail{read_side(t, scene), 0.0, Height::axis};
+      rail.position = t.number("position_m", between(0.0, scene.track.length()));
+      const Height heights[] = {Height::axis, Height::head, Height::foot};
+      rail.at = heights[t.choice("at", {"axis", "head", "foot"}, 0)];
+      sensor.on = rail;
+      break;
+    }
+    case 1: {
+      if (!scene.sleeper)
+        t.refuse("on",
+                 "on = \"sleeper\", but the scene has no [sleeper]; accepted are \"rail\", "
+                 "\"wheelset\"");
+      SleeperSensor sleeper{t.integer("sleeper", 0, scene.track.bays), std::nullopt};
+      if (t.has("rail")) sleeper.rail = read_side(t, scene);
+      sensor.on = sleeper;
+      break;
+    }
+    default:
+      sensor.on = read_wheelset_sensor(t, scene);
+  }
+  return sensor;
+}
+
+}  // namespace
+
+std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {
+  std::vector<LoadScene> loads;
+  for (const Table& t : root.tables("load")) loads.push_back(read_load(t, scene));
+  return loads;
+}
+
+std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene) {
+  std::vector<WheelsetScene> wheelsets;
+  for (const Table& t : root.tables("wheelset")) wheelsets.push_back(read_wheelset(t, scene));
+  return wheelsets;
+}
+
+std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene) {
+  std::vector<SensorScene> sensors;
+  for (const Table& t : root.tables("sensor")) sensors.push_back(read_sensor(t, scene));
+  return sensors;
+}
+
+void check_names(const Table& root, const Scene& scene) {
+  // A sensor may bear its wheelset's name: only wheels, not wheelsets, have columns of their own.
+  std::map<std::string, std::string> traced, wheelsets;  // name -> where it was given first
+  const auto claim = [](auto& taken, const Table& t, std::string_view key,
+                        const std::string& name) {
+    const auto [first, is_new] = taken.emplace(name, t.name());
+    if (!is_new)
+      t.refuse(key, fmt::format("{} = \"{}\" is taken by [{}]; accepted is a name used once", key,
+                                name, first->second));
+  };
+  const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
+             sensors = root.tables("sensor");
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    claim(traced, loads[i], "name", scene.loads[i].name);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    claim(wheelsets, bodies[i], "name", scene.wheelsets[i].name);
+    for (const std::string& wheel : scene.wheelsets[i].wheels)
+      claim(traced, bodies[i], "wheels", wheel);
+  }
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    claim(traced, sensors[i], "name", scene.sensors[i].name);
+}
+
+}  // namespace railstep

@@ -1,0 +1,94 @@
+#include <fmt/core.h>
+
+#include "scene_read.h"
+
+namespace railstep {
+namespace {
+
+// A rail's section is under a metre in every direction; what is larger was given in millimetres.
+const Range kSize = between(1e-4, 1.0);
+const Range kShearFactor = above_upto(0.0, 1.2);
+
+Section read_constants(const Table& t) {
+  Section s{};
+  const Range inertia = above_upto(0.0, 0.1);
+  s.area.area = t.number("area_m2", above_upto(0.0, 1.0));
+  s.area.inertia_y = t.number("inertia_y_m4", inertia);
+  s.area.inertia_z = t.number("inertia_z_m4", inertia);
+  s.shear.torsion = t.number("torsion_m4", inertia);
+  s.shear.shear_factor_y = t.number("shear_factor_y", kShearFactor);
+  s.shear.shear_factor_z = t.number("shear_factor_z", kShearFactor);
+  s.height = t.number("height_m", kSize);
+  s.area.centroid_height = t.number("centroid_height_m", above_upto(0.0, s.height));
+  s.shear.shear_centre_height = t.number("shear_centre_height_m", between(-1.0, 1.0));
+  return s;
+}
+
+RectangleSizes read_rectangles(const Table& t) {
+  const RectangleSizes r{t.number("foot_width_m", kSize), t.number("foot_height_m", kSize),
+                         t.number("web_width_m", kSize),  t.number("web_height_m", kSize),
+                         t.number("head_width_m", kSize), t.number("head_height_m", kSize)};
+  const double height = r.foot_height + r.web_height + r.head_height;
+  if (!kSize.holds(height))
+    t.refuse("foot_height_m", fmt::format("foot, web and head are {:.6g} m high together; accepted "
+                                          "is {}",
+                                          height, kSize.text()));
+  return r;
+}
+
+/// Exactly one of the five ways to give a section.
+RailShape read_shape(const Table& rail) {
+  const char* const ways[] = {"profile", "section", "constants", "rectangles", "rectangle"};
+  std::string found;
+  for (const char* way : ways) {
+    if (!rail.has(way)) continue;
+    if (!found.empty())
+      rail.refuse(way, fmt::format("{} is given beside {}; exactly one of profile, section, "
+                                   "constants, rectangles, rectangle is accepted",
+                                   way, found));
+    found = way;
+  }
+  if (found == "profile") return ProfileFile{rail.path("profile")};
+  if (found == "section") return SectionFile{rail.path("section")};
+  if (found == "constants") return read_constants(rail.table("constants"));
+  if (found == "rectangles") return read_rectangles(rail.table("rectangles"));
+  if (found == "rectangle") {
+    const Table t = rail.table("rectangle");
+    return RectangleSize{t.number("height_m", kSize), t.number("width_m", kSize)};
+  }
+  rail.refuse("",
+              "no section is given; exactly one of profile, section, constants, rectangles, "
+              "rectangle is accepted");
+}
+
+/// A shear factor that replaces the section's, from [rail] or [rail.rectangle].
+std::optional<double> read_override(const Table& rail, std::string_view key) {
+  const std::optional<Table> rectangle = rail.table_if("rectangle");
+  const bool inside = rectangle && rectangle->has(key);
+  if (inside && rail.has(key))
+    rail.refuse(key, fmt::format("{} is given in [rail] and in [rail.rectangle]; one of them is "
+                                 "accepted",
+                                 key));
+  if (inside) return rectangle->number(key, kShearFactor);
+  if (rail.has(key)) return rail.number(key, kShearFactor);
+  return std::nullopt;
+}
+
+}  // namespace
+
+RailScene read_rail(const Table& rail) {
+  RailScene r;
+  r.shape = read_shape(rail);
+  r.young = rail.number("young_pa", between(1e5, 1e13), 210e9);
+  // Beyond these a material makes work out of nothing; at 0.5 it cannot be compressed at all.
+  r.poisson = rail.number("poisson", {-1.0, 0.5, false, false}, 0.3);
+  r.density = rail.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
+  r.element = rail.choice("element", {"corrected", "paper"}, 0) == 0 ? ElementLaw::corrected
+                                                                     : ElementLaw::paper;
+  r.shear_factor_y = read_override(rail, "shear_factor_y");
+  r.shear_factor_z = read_override(rail, "shear_factor_z");
+  r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), 0.3);
+  return r;
+}
+
+}  // namespace railstep
