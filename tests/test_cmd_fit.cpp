@@ -10,7 +10,7 @@
 
 #include "profiles.h"
 #include "read.h"
-#include "section_fit.h"
+#include "section_file.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -197,6 +197,11 @@ TEST_CASE("the written section reads back bit for bit, and the page stands alone
     for (const auto& [key, value] : all[part].items())
       CHECK(table.number(key, any_number()) == value.get<double>());
   }
+  const Section section = read_section(out), again = read_profile_section(profile_file("136re"));
+  CHECK(section.area.inertia_y == all["section"]["inertia_y_m4"].get<double>());
+  CHECK(section.shear.torsion == again.shear.torsion);
+  CHECK(section.shear.shear_centre_height == again.shear.shear_centre_height);
+  CHECK(section.height == all["section"]["height_m"].get<double>());
   const std::string html = content(page);
   CHECK_THAT(html, Contains("<svg") && Contains("class=\"outline\"") &&
                        Contains("class=\"rectangles\"") && Contains("136RE, 10 in crown"));
@@ -249,6 +254,18 @@ TEST_CASE("a usage error ends with 2 and names the option", "[cli][bad_input]") 
     CHECK(ran.out.empty());
     CHECK_THAT(ran.error, Contains(words));
   }
+}
+
+TEST_CASE("a plain rectangle is three rectangles of one width", "[cli]") {
+  const Folder folder;
+  const std::string file = folder.file("bar.csv", "0 0\n30 0\n30 20\n0 20\n");
+  const Ran ran = fit(file + " --unit mm --json");
+  REQUIRE(ran.code == 0);
+  CHECK(ran.error.empty());
+  const json all = json::parse(ran.out);
+  for (const char* key : {"foot_width_m", "web_width_m", "head_width_m"})
+    CHECK_THAT(all["dimensions"][key].get<double>(), WithinAbs(0.03, 1e-9));  // the fit's own 1e-9
+  CHECK_THAT(all["symmetric_difference_m2"].get<double>(), WithinAbs(0.0, 1e-10));
 }
 
 TEST_CASE("no good fit ends with 1 and states the errors", "[cli][bad_input]") {

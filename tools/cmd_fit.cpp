@@ -9,12 +9,12 @@
 #include "fit_report.h"
 #include "offline/section/outline_mirror.h"
 #include "offline/section/saint_venant.h"
+#include "section_file.h"
 #include "write.h"
 
 namespace railstep {
 namespace {
 
-constexpr double kPoisson = 0.3;          // of steel, in Cowper's factors
 constexpr double kChordTolerance = 1e-5;  // m, of the outline in the Saint-Venant solution
 constexpr double kMostAsymmetry = 0.05;  // of the area; beyond, a shear centre off the axis is felt
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -74,17 +74,15 @@ FitTargets parse_targets(const std::string& text) {
 SaintVenant outline_shear(const Outline& outline, double uneven) {
   const std::vector<Point> points = polygon(outline, 0.5 * kChordTolerance);
   if (uneven > kMostAsymmetry) return {kNone, kNone, kNone, kNone};
-  const SaintVenant right = saint_venant(mirrored_side(points, 1, 0.5 * kChordTolerance), kPoisson);
+  const SaintVenant right =
+      saint_venant(mirrored_side(points, 1, 0.5 * kChordTolerance), kFitPoisson);
   if (uneven < 1e-6) return right;
-  const SaintVenant left = saint_venant(mirrored_side(points, -1, 0.5 * kChordTolerance), kPoisson);
+  const SaintVenant left =
+      saint_venant(mirrored_side(points, -1, 0.5 * kChordTolerance), kFitPoisson);
   const auto mean = [](double a, double b) { return 0.5 * (a + b); };
   return {mean(right.torsion, left.torsion), mean(right.shear_factor_y, left.shear_factor_y),
           mean(right.shear_factor_z, left.shear_factor_z),
           mean(right.shear_centre_height, left.shear_centre_height)};
-}
-
-Section section_of(const SectionFit& fit, double height) {
-  return {properties(fit.section), saint_venant(polygon(fit.section), kPoisson), height};
 }
 
 FitResult fit_profile(Profile profile) {
@@ -93,7 +91,7 @@ FitResult fit_profile(Profile profile) {
   r.fit = fit_section(outline);
   r.asymmetry = asymmetry(polygon(outline, kChordTolerance));
   r.outline = {properties(outline), outline_shear(outline, r.asymmetry), outline.height};
-  r.section = section_of(r.fit, outline.height);
+  r.section = fitted_section(r.fit, outline.height);
   return r;
 }
 
@@ -102,7 +100,7 @@ FitResult fit_to_targets(const FitTargets& t, double head_width) {
   r.fit = fit_targets(t, head_width);
   r.asymmetry = kNone;
   r.outline = {t.area, {kNone, kNone, kNone, kNone}, t.height};
-  r.section = section_of(r.fit, t.height);
+  r.section = fitted_section(r.fit, t.height);
   return r;
 }
 

@@ -66,21 +66,31 @@ void add_properties(ceres::Problem& problem, const FitTargets& targets, Unknowns
       nullptr, &u.head, u.p.data());
 }
 
-/// d(foot width, foot height, web width, head height)/d(head width) at constant properties.
-Eigen::Vector4d tangent(const FitTargets& targets, const Rectangles<double>& section) {
+/// Derivatives of the four relative errors.
+struct Derivatives {
+  Eigen::Vector4d by_head;  // head width
+  Eigen::Matrix4d by_rest;  // a column each: foot width, foot height, web width, head height
+};
+
+Derivatives derivatives(const FitTargets& targets, const Rectangles<double>& section) {
   using Jet = ceres::Jet<double, 5>;
   const Unknowns u = unknowns_of(section);
   const Jet head(u.head, 0);
   Jet p[4], residual[4];
   for (int i = 0; i < 4; ++i) p[i] = Jet(u.p[static_cast<std::size_t>(i)], i + 1);
   PropertyResidual{targets}(&head, p, residual);
-  Eigen::Matrix4d by_rest;
-  Eigen::Vector4d by_head;
+  Derivatives d;
   for (int i = 0; i < 4; ++i) {
-    by_head[i] = residual[i].v[0];
-    by_rest.row(i) = residual[i].v.tail<4>();
+    d.by_head[i] = residual[i].v[0];
+    d.by_rest.row(i) = residual[i].v.tail<4>();
   }
-  return by_rest.partialPivLu().solve(-by_head);
+  return d;
+}
+
+/// d(foot width, foot height, web width, head height)/d(head width) at constant properties.
+Eigen::Vector4d tangent(const FitTargets& targets, const Rectangles<double>& section) {
+  const Derivatives d = derivatives(targets, section);
+  return d.by_rest.partialPivLu().solve(-d.by_head);
 }
 
 /// Slope at a head width, the section found by continuation from a neighbour.
@@ -203,20 +213,14 @@ bool descend(const FitTargets& targets, std::span<const Point> polygon, Rectangl
 }
 
 std::array<double, 4> sensitivity(const FitTargets& targets, const Rectangles<double>& section) {
-  Unknowns u = unknowns_of(section);
-  ceres::Problem problem;
-  add_properties(problem, targets, u);
-  problem.SetParameterBlockConstant(&u.head);
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;
-  ceres::Covariance covariance(options);
+  // The covariance is inv(J) inv(J)', so its diagonal holds the squares of inv(J)'s row norms; not
+  // by ceres::Covariance, which logs on stderr where J is singular.
+  const Eigen::Matrix4d inverse = derivatives(targets, section).by_rest.fullPivLu().inverse();
   std::array<double, 4> result;
-  result.fill(std::numeric_limits<double>::infinity());
-  const std::vector<std::pair<const double*, const double*>> blocks = {{u.p.data(), u.p.data()}};
-  if (!covariance.Compute(blocks, &problem)) return result;  // singular: at the family's fold
-  double block[16];
-  covariance.GetCovarianceBlock(u.p.data(), u.p.data(), block);
-  for (std::size_t i = 0; i < 4; ++i) result[i] = std::sqrt(block[5 * i]);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double norm = inverse.row(static_cast<Eigen::Index>(i)).norm();
+    result[i] = std::isfinite(norm) ? norm : std::numeric_limits<double>::infinity();
+  }
   return result;
 }
 
