@@ -225,6 +225,8 @@ TEST_CASE("a bad outline is refused in a sentence that says why", "[outline][bad
                            {0.02, 0.4, 0}}),
                      false),
              Contains("accepted"));
+  CHECK_THAT(refusal(rows({{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 11}, {0, 0.1, 0}}), true),
+             Contains("row 3") && Contains("over the limit of 10000 mm"));
   // An arc that runs through the opposite side although its end points do not.
   CHECK_THAT(refusal(rows({{0, 0, 0},
                            {0.1, 0, 0},

@@ -17,7 +17,7 @@ void check_half(std::span<const OutlineRow> half);
 /// The side that closes a list of points is no longer than three times its longest other side.
 void check_closing(std::span<const OutlineRow> points);
 
-/// An arc's radius is at least half its chord.
+/// An arc's radius is at least half its chord and at most 10 m.
 void check_segment(const Segment& segment);
 
 /// Between 1 mm and 1 m: else the unit is wrong.
