@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <string>
 
 #include "read.h"
@@ -235,4 +236,24 @@ TEST_CASE("tables that need each other are asked for", "[scene]") {
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].force[0].table=[[1, 1], [1, 2]]"}),
              Contains("does not rise"));
   CHECK_THAT(with("moving_load", {"schema=2"}), Contains("schema = 2 is newer"));
+}
+
+TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]") {
+  const std::filesystem::path source(RAILSTEP_SOURCE);
+  const std::string documented = read_text(source / "config/README.md");
+  const std::regex getter(
+      "(?:->|\\.)(?:number|integer|boolean|string|strings|choice|path|rows|table|table_if|tables)"
+      "\\(\\s*\"([a-z0-9_]+)\"|read_time_table\\([a-z]+, \"([a-z_]+)\"");
+  int keys = 0;
+  for (const char* name : {"scene.cpp", "scene_rail.cpp", "scene_bodies.cpp"}) {
+    const std::string text = read_text(source / "tools" / name);
+    for (std::sregex_iterator at(text.begin(), text.end(), getter), end; at != end; ++at, ++keys) {
+      const std::string key = (*at)[1].matched ? (*at)[1] : (*at)[2];
+      INFO(key);
+      // As a key of its own, after its table's name, or as a table's own heading.
+      const bool found = std::regex_search(documented, std::regex("[`.\\[]" + key + "[`\\]]"));
+      CHECK(found);
+    }
+  }
+  CHECK(keys > 70);  // the pattern still sees the reader's getters
 }

@@ -9,8 +9,8 @@
 namespace railstep {
 
 /// The section that a scene names, whichever way it does; shear factors given in [rail] replace the
-/// section's. Constants that need a Saint-Venant solution are of the scene's Poisson ratio.
-/// Throws InputError.
+/// section's. Those of rectangles are at the scene's Poisson ratio, those of a profile or a section
+/// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
 Section section_of(const Scene& scene);
 
 /// The track of a scene, about the section's centroid. Throws InputError.

@@ -1,11 +1,11 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "build.h"
 #include "offline/section/rectangles.h"
 #include "offline/section/saint_venant.h"
+#include "section_file.h"
 
 namespace railstep {
 namespace {
@@ -20,10 +20,8 @@ Section solved(const AreaProperties<double>& area, const Polygon& polygon, doubl
 Section from(const RectangleSizes& r, double poisson) {
   const Rectangles<double> shape{{r.foot_width, r.web_width, r.head_width},
                                  {r.foot_height, r.web_height, r.head_height}};
-  Polygon outline = polygon(shape);
-  // Where a rectangle is as wide as the next, their corners coincide: one of them is enough.
-  outline.erase(std::unique(outline.begin(), outline.end()), outline.end());
-  return solved(properties(shape), outline, r.foot_height + r.web_height + r.head_height, poisson);
+  return solved(properties(shape), polygon(shape), r.foot_height + r.web_height + r.head_height,
+                poisson);
 }
 
 Section from(const RectangleSize& r, double poisson) {
@@ -34,22 +32,10 @@ Section from(const RectangleSize& r, double poisson) {
 
 Section from(const Section& given, double) { return given; }
 
-/// The dimensions alone: all else in the file follows from them and the scene's Poisson ratio.
-Section from(const SectionFile& file, double poisson) {
-  const Table t = read_toml(file.path).table("dimensions");
-  const Range size = between(1e-4, 1.0);
-  return from(RectangleSizes{t.number("foot_width_m", size), t.number("foot_height_m", size),
-                             t.number("web_width_m", size), t.number("web_height_m", size),
-                             t.number("head_width_m", size), t.number("head_height_m", size)},
-              poisson);
-}
+/// As the file has them: its shear factors are those at kFitPoisson, like a profile's.
+Section from(const SectionFile& file, double) { return read_section(file.path); }
 
-Section from(const ProfileFile& file, double) {
-  throw InputError(
-      fmt::format("[rail] profile = '{}': run takes no outline; accepted is section = a file that "
-                  "`railstep fit --out` wrote, or rectangles, rectangle, constants",
-                  file.path.filename().string()));
-}
+Section from(const ProfileFile& file, double) { return read_profile_section(file.path); }
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "offline/section/section.h"
@@ -39,13 +40,19 @@ AreaProperties<T> properties(const Rectangles<T>& section) {
 }
 
 /// The union's outline, counter-clockwise from the foot's lower right corner, first not repeated.
+/// Steps narrower than 1e-8 of the height are left out: no mesh could follow them.
 inline std::vector<std::array<double, 2>> polygon(const Rectangles<double>& section) {
+  const double least = 1e-8 * (section.height[0] + section.height[1] + section.height[2]);
   std::vector<std::array<double, 2>> right;
   double z = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    right.push_back({0.5 * section.width[i], z});
+    const double half = 0.5 * section.width[i];
+    const bool step = right.empty() || std::abs(right.back()[0] - half) > least;
+    if (!step) right.pop_back();
+    const double side = step ? half : right.back()[0];
+    if (step) right.push_back({side, z});
     z += section.height[i];
-    right.push_back({0.5 * section.width[i], z});
+    right.push_back({side, z});
   }
   std::vector<std::array<double, 2>> all = right;
   for (auto p = right.rbegin(); p != right.rend(); ++p) all.push_back({-(*p)[0], (*p)[1]});

@@ -1,0 +1,16 @@
+#pragma once
+#include <vector>
+
+#include "offline/section/outline.h"
+
+namespace railstep {
+
+/// One side of a polygon about y = 0 and its mirror image, counter-clockwise, exactly symmetric,
+/// with the points dropped that lie within `tolerance` (m) of the chord of what is kept (Ramer
+/// 1972).
+/// @param polygon  simple, counter-clockwise
+/// @param side     +1 the side y > 0, -1 the other
+/// Throws std::invalid_argument where the polygon does not meet the axis exactly twice.
+std::vector<Point> mirrored_side(std::span<const Point> polygon, int side, double tolerance);
+
+}  // namespace railstep

@@ -1,0 +1,21 @@
+#pragma once
+#include <filesystem>
+
+#include "section_fit.h"
+
+namespace railstep {
+
+inline constexpr double kFitPoisson = 0.3;  // of steel, in Cowper's shear factors
+
+/// All properties of the three rectangles; `height` of the profile, m.
+Section fitted_section(const SectionFit& fit, double height);
+
+/// Reads a profile and fits it: what a scene's `profile` names. Throws InputError on a bad file,
+/// std::runtime_error where no three rectangles fit.
+Section read_profile_section(const std::filesystem::path& file);
+
+/// Reads a section file, as `railstep fit --out` writes it: what a scene's `section` names. Only
+/// its table [section] is used; the others say where it came from. Throws InputError.
+Section read_section(const std::filesystem::path& file);
+
+}  // namespace railstep
