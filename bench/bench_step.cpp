@@ -131,8 +131,12 @@ void step(benchmark::State& run, Unknowns unknowns) {
   MovingLoadRun scene(peers_track(bays, 1, 2, unknowns), kStep, 1);
   const Reference& reference = reference_for(bays, unknowns);
   const std::vector<double> z = scene.deflections();
+  const Track one_rail = peers_track(bays, 1, 1, unknowns);
+  const std::vector<double> fine_step = MovingLoadRun(one_rail, kStep / 10, 10).deflections();
   for (auto _ : run) scene.frame();
   run.counters["error"] = largest_error(z, reference.z, kStartUp);
+  run.counters["error_of_mesh"] = largest_error(fine_step, reference.z, kStartUp);
+  run.counters["error_of_step"] = largest_error(z, fine_step, kStartUp);
   run.counters["error_from_start"] = largest_error(z, reference.z, 0);
   run.counters["reference_error"] = reference.own_error;
   run.counters["unknowns"] = scene.unknowns();
