@@ -23,39 +23,23 @@ namespace band_detail {
 
 /// x_p -= A[k][.] x[k] for k < width (a multiple of 8), for R right-hand sides.
 ///
-/// Even and odd k are summed apart, then added: two chains hide the latency of a lone right-hand
-/// side. With more of them the chains run one after the other, which frees registers and keeps
-/// the bits.
+/// Even and odd k are summed apart, then added: two chains hide the latency of the additions. The
+/// right-hand sides follow each other panel by panel, so that one's last sums overlap with the next
+/// one's first; keeping all their sums at once spills registers on g++ 12 and was slower.
 template <int R>
 inline void subtract_panel(const double* __restrict A, int width, const double* x, double* x_p,
                            std::ptrdiff_t stride) noexcept {
-  double even[R][kLanes] = {};
-  double odd[R][kLanes] = {};
-  if constexpr (R <= 2) {
+  for (int r = 0; r < R; ++r, x += stride, x_p += stride) {
+    double even[kLanes] = {}, odd[kLanes] = {};
     for (int k = 0; k < width; k += 2) {
       const double* a = A + k * kLanes;
-      for (int r = 0; r < R; ++r) {
 #pragma omp simd
-        for (int l = 0; l < kLanes; ++l) even[r][l] += a[l] * x[k + r * stride];
+      for (int l = 0; l < kLanes; ++l) even[l] += a[l] * x[k];
 #pragma omp simd
-        for (int l = 0; l < kLanes; ++l) odd[r][l] += a[kLanes + l] * x[k + 1 + r * stride];
-      }
+      for (int l = 0; l < kLanes; ++l) odd[l] += a[kLanes + l] * x[k + 1];
     }
-  } else {
-    for (int k = 0; k < width; k += 2)
-      for (int r = 0; r < R; ++r) {
 #pragma omp simd
-        for (int l = 0; l < kLanes; ++l) even[r][l] += A[k * kLanes + l] * x[k + r * stride];
-      }
-    for (int k = 1; k < width; k += 2)
-      for (int r = 0; r < R; ++r) {
-#pragma omp simd
-        for (int l = 0; l < kLanes; ++l) odd[r][l] += A[k * kLanes + l] * x[k + r * stride];
-      }
-  }
-  for (int r = 0; r < R; ++r) {
-#pragma omp simd
-    for (int l = 0; l < kLanes; ++l) x_p[r * stride + l] -= even[r][l] + odd[r][l];
+    for (int l = 0; l < kLanes; ++l) x_p[l] -= even[l] + odd[l];
   }
 }
 

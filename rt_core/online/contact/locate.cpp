@@ -1,0 +1,178 @@
+#include "online/contact/locate.h"
+
+#include <cmath>
+
+namespace railstep {
+namespace {
+
+struct Vector {
+  double x, y, z;
+};
+
+Vector operator+(Vector a, Vector b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector operator-(Vector a, Vector b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector operator*(double s, Vector a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
+double dot(Vector a, Vector b) noexcept { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
+Vector cross(Vector a, Vector b) noexcept {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Vector load(const double* v) noexcept { return {v[0], v[1], v[2]}; }
+
+/// r, a and b at a place, with derivatives by xi.
+struct Frame {
+  Vector r, a, b, r1, a1, b1, r2, b2;
+};
+
+Vector blend(const double* node, const double* N) noexcept {
+  return N[0] * load(node) + N[1] * load(node + 9) + N[2] * load(node + 18);
+}
+
+Frame frame(const RailShape& rail, RailPlace at) noexcept {
+  const double xi = at.xi;
+  const double N[3] = {-0.5 * xi * (1.0 - xi), (1.0 - xi) * (1.0 + xi), 0.5 * xi * (1.0 + xi)};
+  const double N1[3] = {xi - 0.5, -2.0 * xi, xi + 0.5};
+  const double N2[3] = {1.0, -2.0, 1.0};
+  const double* node = rail.nodes + 18 * static_cast<std::int64_t>(at.element);
+  return {blend(node, N),      blend(node + 3, N),  blend(node + 6, N), blend(node, N1),
+          blend(node + 3, N1), blend(node + 6, N1), blend(node, N2),    blend(node + 6, N2)};
+}
+
+/// What a search asks of a place: `pull` > 0 if the answer lies ahead, `stiffness` its falling
+/// slope by xi, or a positive substitute (`exact` false) where the slope would lead away.
+struct Probe {
+  double pull, stiffness;
+  bool exact;
+};
+
+Probe probe(double pull, double slope, double substitute) noexcept {
+  // Below a tenth of the straight rail's slope the point is near the centre of curvature.
+  const bool exact = slope > 0.1 * substitute;
+  return {pull, exact ? slope : substitute, exact};
+}
+
+struct Found {
+  LocateStatus status;
+  int steps;
+  RailPlace place;
+};
+
+/// Position along the rail in elements, for ordering only.
+double along(RailPlace at) noexcept { return at.element + 0.5 * (at.xi + 1.0); }
+
+/// The place at `s` elements, the element before a border if `s` falls on one.
+RailPlace place_at(double s, int elements) noexcept {
+  int element = static_cast<int>(s);
+  if (element > elements - 1) element = elements - 1;
+  return {element, 2.0 * (s - element) - 1.0};
+}
+
+RailPlace clipped(RailPlace at, int elements) noexcept {
+  if (at.element < 0) return {0, -1.0};
+  if (at.element >= elements) return {elements - 1, 1.0};
+  const double xi = at.xi;
+  return {at.element, xi >= -1.0 && xi <= 1.0 ? xi : xi > 1.0 ? 1.0 : xi < -1.0 ? -1.0 : 0.0};
+}
+
+/// Root of a falling function along the rail, by Newton inside the bracket of signs.
+template <typename Ask>
+Found search(int elements, RailPlace at, int cap, Ask ask) noexcept {
+  constexpr double kQuadratic = 1e-9;  // a Newton step this short leaves 1e-18 times a curvature
+  constexpr double kRounding = 1e-14;
+  double low = -1.0, high = elements + 1.0;       // outside: not seen yet
+  int low_element = -1, high_element = elements;  // that saw them
+  cap = cap < 1 ? 1 : cap > kLocateSteps ? kLocateSteps : cap;
+  bool hopped = false;  // from the other side of this border, which pointed here
+  for (int steps = 1; steps <= cap; ++steps) {
+    const Probe got = ask(at);
+    const double step = got.pull / got.stiffness;
+    if (!std::isfinite(step)) return {LocateStatus::cap_reached, steps, at};
+    const bool ahead = step > 0.0;
+    const double target = at.xi + step;
+    if (std::fabs(step) <= (got.exact ? kQuadratic : kRounding) && std::fabs(target) <= 1.0)
+      return {LocateStatus::found, steps, {at.element, target}};
+
+    const bool on_border = at.xi == (ahead ? 1.0 : -1.0);
+    const int next = at.element + (ahead ? 1 : -1);
+    if (on_border && (hopped || std::fabs(step) <= kEndSlack))
+      return {LocateStatus::found, steps, at};
+    if (on_border && (next < 0 || next >= elements))
+      return {ahead ? LocateStatus::off_end : LocateStatus::off_start, steps, at};
+    (ahead ? low : high) = along(at);
+    (ahead ? low_element : high_element) = at.element;
+    hopped = false;
+    if (on_border) {
+      at = {next, ahead ? -1.0 : 1.0};
+      hopped = true;
+      continue;
+    }
+
+    if (std::fabs(target) <= 1.0) {
+      const double s = along({at.element, target});
+      at = s > low && s < high ? RailPlace{at.element, target}
+                               : place_at(0.5 * (low + high), elements);
+      continue;
+    }
+    // Across a border. Where the far side was already seen to point back, stop on the border.
+    const bool seen = next == (ahead ? high_element : low_element);
+    const double s = along(at) + 0.5 * step;
+    if (next < 0 || next >= elements)
+      at.xi = ahead ? 1.0 : -1.0;
+    else if (seen)
+      at = {next, ahead ? -1.0 : 1.0};
+    else if (s <= 0.0 || s >= elements)
+      at = ahead ? RailPlace{elements - 1, 1.0} : RailPlace{0, -1.0};
+    else
+      at = s > low && s < high ? place_at(s, elements) : place_at(0.5 * (low + high), elements);
+  }
+  return {LocateStatus::cap_reached, cap, at};
+}
+
+double finite_or_zero(double x) noexcept { return std::isfinite(x) ? x : 0.0; }
+
+}  // namespace
+
+PointOnRail locate_point(const RailShape& rail, const double* point, RailPlace start,
+                         int cap) noexcept {
+  const Vector X = load(point);
+  const Found found =
+      search(rail.elements, clipped(start, rail.elements), cap, [&](RailPlace at) noexcept {
+        const Frame f = frame(rail, at);
+        const Vector n = cross(f.a, f.b), n1 = cross(f.a1, f.b) + cross(f.a, f.b1);
+        const double straight = dot(f.r1, n);
+        return probe(dot(X - f.r, n), straight - dot(X - f.r, n1), straight);
+      });
+  const Frame f = frame(rail, found.place);
+  const Vector n = cross(f.a, f.b), d = X - f.r;
+  const double size = dot(n, n);
+  const double y = finite_or_zero(dot(cross(d, f.b), n) / size);
+  const double z = finite_or_zero(dot(cross(f.a, d), n) / size);
+  const Vector miss = d - (y * f.a + z * f.b);
+  return {found.status, found.steps, found.place, y, z, finite_or_zero(std::sqrt(dot(miss, miss)))};
+}
+
+WheelOnRail locate_wheel(const RailShape& rail, const double* p, const double* e, double z_crown,
+                         RailPlace start, int cap) noexcept {
+  const Vector axle = load(p), direction = load(e);
+  const auto across = [&](Vector v) noexcept { return v - dot(direction, v) * direction; };
+  const Found found =
+      search(rail.elements, clipped(start, rail.elements), cap, [&](RailPlace at) noexcept {
+        const Frame f = frame(rail, at);
+        const Vector w = across(f.r + z_crown * f.b - axle);
+        const Vector c1 = f.r1 + z_crown * f.b1, c2 = f.r2 + z_crown * f.b2;
+        const Vector across1 = across(c1);
+        const double straight = dot(across1, across1);
+        return probe(-dot(w, c1), straight + dot(w, c2), straight);
+      });
+  const Frame f = frame(rail, found.place);
+  const Vector c = f.r + z_crown * f.b - axle, w = across(c);
+  const double distance = finite_or_zero(std::sqrt(dot(w, w)));
+  const double scale = distance > 0.0 ? -1.0 / distance : 0.0;
+  return {found.status,
+          found.steps,
+          found.place,
+          distance,
+          {finite_or_zero(scale * w.x), finite_or_zero(scale * w.y), finite_or_zero(scale * w.z)},
+          finite_or_zero(dot(direction, c))};
+}
+
+}  // namespace railstep

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+
+namespace railstep {
+
+/// A deformed rail of 3-node elements; a and b span the cross-section:
+/// r(xi, y, z) = sum N_i(xi) (r_i + y a_i + z b_i), N = -xi(1-xi)/2, 1-xi^2, xi(1+xi)/2.
+struct RailShape {
+  int elements;         // >= 1
+  const double* nodes;  // [2 elements + 1][9]: r (m), a, b (1); element e has 2e, 2e+1, 2e+2
+};
+
+/// A place on the rail's axis; xi in [-1, 1].
+struct RailPlace {
+  int element;
+  double xi;
+};
+
+enum class LocateStatus : std::uint8_t {
+  found,
+  off_start,    // the answer lies before element 0; the place is the rail's start
+  off_end,      // behind the last element; the place is the rail's end
+  cap_reached,  // not settled (or not a number); the place is the last one tried
+};
+
+inline constexpr int kLocateSteps = 8;  // evaluations of one search
+/// How far beyond an end, in xi, still counts as on the rail: rounding of coordinates of 1 km.
+inline constexpr double kEndSlack = 1e-12;
+
+struct PointOnRail {
+  LocateStatus status;
+  int steps;        // evaluations of the rail
+  RailPlace place;  // of the cross-section through the point
+  double y, z;      // in that section, m
+  double residual;  // |r(xi, y, z) - point|, m: 0 to rounding when found
+};
+
+/// Inverse map: the section plane (spanned by a and b) through a point, and where in it.
+///
+/// Newton on (point - r).(a x b) = 0, from which y and z follow linearly; kept in the bracket of
+/// signs seen, free to cross element borders. On a border either side gives the same point.
+/// @param point  [3] m
+/// @param start  the last step's place (clipped to the rail)
+/// @param cap    most evaluations, clipped to 1..8
+/// Cannot fail otherwise: the result is finite for every input, NaN included.
+[[nodiscard]] PointOnRail locate_point(const RailShape& rail, const double* point, RailPlace start,
+                                       int cap = kLocateSteps) noexcept;
+
+struct WheelOnRail {
+  LocateStatus status;
+  int steps;
+  RailPlace place;   // of the crown point nearest to the axle
+  double distance;   // from the crown's centre curve to the axle line, m
+  double normal[3];  // unit, from the curve to the axle, square to the axle; 0 if they meet
+  double along;      // e.(c - p): where along the axle, m
+};
+
+/// Closest approach of the axle line p + t e to the curve c(s) = r + z_crown b.
+///
+/// Newton on the derivative of |(I - e e')(c - p)|^2 / 2, which jumps at element borders: a border
+/// whose two sides both point at it is the answer. A border bent towards the axle can have one
+/// nearest point on each side, micrometres apart in distance; the one reached first is returned.
+/// @param p, e     [3] m; [3] unit
+/// @param z_crown  height of the crown's centre of curvature above the axis, m
+[[nodiscard]] WheelOnRail locate_wheel(const RailShape& rail, const double* p, const double* e,
+                                       double z_crown, RailPlace start,
+                                       int cap = kLocateSteps) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#elif !defined(__aarch64__)
+#error "float_mode.h knows x86 with SSE2 and aarch64; add the control word of this machine"
+#endif
+
+namespace railstep {
+
+/// Round to nearest, subnormals flushed to zero (results and operands), no exception traps, for as
+/// long as it lives; then the caller's mode again. Subnormals cost up to 95 times a normal number,
+/// and a caller's rounding mode would change the bits.
+///
+/// The control word is written through volatile code, but a compiler may still move plain
+/// arithmetic across it: keep the guarded arithmetic in functions of another file.
+class FloatMode {
+ public:
+  FloatMode() noexcept : before_(read()) { write((before_ & ~kCleared) | kSet); }
+  ~FloatMode() { write(before_); }
+  FloatMode(const FloatMode&) = delete;
+  FloatMode& operator=(const FloatMode&) = delete;
+
+#if defined(__SSE2__)
+  using Word = std::uint32_t;
+  static Word read() noexcept { return _mm_getcsr(); }
+
+ private:
+  // MXCSR: bits 13-14 rounding, 7-12 masks of traps, 0-5 their sticky flags, 15 FTZ, 6 DAZ.
+  static constexpr Word kCleared = 0x6000u | 0x1f80u | 0x3fu, kSet = 0x8040u | 0x1f80u;
+  static void write(Word word) noexcept { _mm_setcsr(word); }
+#else
+  using Word = std::uint64_t;
+  static Word read() noexcept {
+    Word word;
+    asm volatile("mrs %0, fpcr" : "=r"(word) : : "memory");
+    return word;
+  }
+
+ private:
+  // FPCR: bits 22-23 rounding, 8-12 and 15 traps, 24 FZ (results and operands).
+  static constexpr Word kCleared = 0xc00000u | 0x9f00u, kSet = 0x1000000u;
+  static void write(Word word) noexcept { asm volatile("msr fpcr, %0" : : "r"(word) : "memory"); }
+#endif
+
+  Word before_;
+};
+
+}  // namespace railstep
