@@ -15,7 +15,7 @@ struct TorsionBounds {
 };
 
 /// Saint-Venant torsion and flexure of a solid section, by quadratic finite elements on its right
-/// half.
+/// half. Heights are above the polygon's lowest point, the foot.
 ///
 /// Torsion about the centroid, warping w: lap(w) = 0, dw/dn = n_y z - n_z y, and
 ///   J = int (w,y - z)^2 + (w,z + y)^2 dA  (from above);
