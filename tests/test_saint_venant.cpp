@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "offline/section/quadratic_elements.h"
 #include "offline/section/saint_venant.h"
@@ -321,9 +324,13 @@ TEST_CASE("what is not a section is refused in one sentence", "[saint_venant][ba
   says({{-1, 0}, {1, 0}, {1, 2}, {-0.1, 2.5}, {0.1, 2.5}, {-1, 2}}, "crosses itself");
   says({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "symmetric");
   // the points are symmetric, the way through them is not
-  says({{-2, 0}, {2, 0}, {0, 2}, {1, 1}, {-1, 1}}, "symmetric");
+  says({{-2, 0}, {2, 0}, {0, 3}, {1, 1}, {-1, 1}}, "symmetric");
   // a waist of no width
   says({{-1, 0}, {1, 0}, {1e-8, 1}, {1, 2}, {-1, 2}, {-1e-8, 1}}, "exactly twice");
+  // a tall web on a narrow foot: Cowper's lateral denominator is negative
+  const Polygon tall = three_rectangles({66.4616, 5.96772, 19.542, 223.889, 34.4917, 12.3391});
+  says(tall, "Cowper");
+  CHECK(saint_venant(tall, 0.0).shear_factor_y > 0.0);
   for (const double nu : {-1.0, 0.51, nan})
     CHECK_THROWS_WITH(saint_venant(good, nu), Catch::Contains("Poisson"));
   for (const double size : {0.0, -1.0, 2.0, nan})
