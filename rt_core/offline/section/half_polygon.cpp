@@ -57,12 +57,18 @@ bool crosses_itself(const std::vector<Point>& polygon) {
   return false;
 }
 
+/// True when the mirrored outline runs through the same points backwards.
 bool is_symmetric(const std::vector<Point>& polygon, double tolerance) {
-  return std::all_of(polygon.begin(), polygon.end(), [&](const Point& p) {
-    return std::any_of(polygon.begin(), polygon.end(), [&](const Point& q) {
-      return std::hypot(p[0] + q[0], p[1] - q[1]) <= tolerance;
-    });
-  });
+  const std::size_t n = polygon.size();
+  const auto mirrored = [&](std::size_t i, std::size_t j) {
+    return std::hypot(polygon[i][0] + polygon[j][0], polygon[i][1] - polygon[j][1]) <= tolerance;
+  };
+  for (std::size_t start = 0; start < n; ++start) {
+    std::size_t i = 0;
+    while (i < n && mirrored(i, (start + n - i) % n)) ++i;
+    if (i == n) return true;
+  }
+  return false;
 }
 
 void check(const std::vector<Point>& polygon) {
@@ -112,7 +118,7 @@ HalfPolygon right_half(const std::vector<Point>& polygon) {
       ++departures;
     }
   if (departures != 1)
-    throw std::invalid_argument("the section's outline must cross its axis exactly twice");
+    throw std::invalid_argument("the section's outline must meet its axis exactly twice");
   HalfPolygon half{all[first]};
   for (std::size_t i = first + 1; half.size() == 1 || half.back()[0] > 0.0; ++i)
     half.push_back(all[i % n]);

@@ -14,7 +14,7 @@ using HalfPolygon = std::vector<std::array<double, 2>>;
 ///                 height
 /// @throws std::invalid_argument with one sentence: fewer than three points, a number that is not
 ///         finite, coinciding neighbours, clockwise, crossing itself, not symmetric, or not
-///         crossing its axis exactly twice
+///         meeting its axis exactly twice
 HalfPolygon right_half(const std::vector<std::array<double, 2>>& polygon);
 
 /// True when `point` is inside the closed polygon; either answer on its boundary.

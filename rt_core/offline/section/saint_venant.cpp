@@ -1,5 +1,6 @@
 #include "offline/section/saint_venant.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -114,10 +115,16 @@ TorsionBounds bounds(const Discrete& d, const VectorXd& warping) {
           2.0 * (d.inertia_y + d.inertia_z - d.warping_load.dot(warping))};
 }
 
-/// Cowper's factor from the whole section's integrals.
+/// Cowper's factor from the whole section's integrals. Its denominator may vanish when the force is
+/// not along the axis of symmetry; a stiffness cannot be made of what then comes out.
 double shear_factor(double nu, double area, double inertia_p, double inertia_q, double flexure) {
-  return 2.0 * (1.0 + nu) * inertia_p /
-         (0.5 * nu * (inertia_q - inertia_p) - area / inertia_p * flexure);
+  const double k = 2.0 * (1.0 + nu) * inertia_p /
+                   (0.5 * nu * (inertia_q - inertia_p) - area / inertia_p * flexure);
+  if (!(k > 0.0 && k <= 1.0))
+    throw std::invalid_argument(
+        "Cowper's shear factor of this section is not between 0 and 1; with a Poisson's ratio of 0 "
+        "it is the energy's factor and always is");
+  return k;
 }
 
 /// @return nothing when the bounds of J are still too far apart

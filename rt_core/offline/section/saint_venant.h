@@ -15,7 +15,7 @@ struct TorsionBounds {
 };
 
 /// Saint-Venant torsion and flexure of a solid section, by quadratic finite elements on its right
-/// half.
+/// half. Heights are above the polygon's lowest point, the foot.
 ///
 /// Torsion about the centroid, warping w: lap(w) = 0, dw/dn = n_y z - n_z y, and
 ///   J = int (w,y - z)^2 + (w,z + y)^2 dA  (from above);
@@ -33,7 +33,9 @@ struct TorsionBounds {
 /// @param polygon  counter-clockwise (y, z) in m, simple, symmetric about y = 0, which it meets
 ///                 twice; first point not repeated; re-entrant corners allowed
 /// @param poisson  nu of the material, -1 < nu <= 0.5
-/// @throws std::invalid_argument with one sentence when polygon or poisson is not as above
+/// @throws std::invalid_argument with one sentence when polygon or poisson is not as above, or
+///         when Cowper's lateral factor leaves (0, 1], as it can with nu > 0 for sections far from
+///         symmetric about their horizontal axis (with nu = 0 it is the energy's factor)
 SaintVenant saint_venant(const std::vector<std::array<double, 2>>& polygon, double poisson);
 
 /// The two bounds of J from a mesh whose triangles are at most `size` times sqrt(A) wide, finer at
