@@ -1,3 +1,5 @@
+#include <unistd.h>  // getpid: test cases run side by side, each in its own folder
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -32,7 +34,8 @@ std::string parse_sentence(const std::string& text) {
 }
 
 std::filesystem::path folder() {
-  const auto made = std::filesystem::temp_directory_path() / "railstep_test_read";
+  const auto made =
+      std::filesystem::temp_directory_path() / ("railstep_test_read_" + std::to_string(getpid()));
   std::filesystem::create_directories(made);
   return made;
 }
@@ -151,6 +154,8 @@ TEST_CASE("what is not one TOML document is refused with line and column", "[rea
   CHECK_THAT(parse_sentence(std::string("a = 1\nb\0c = 2\n", 14)),
              Contains("bay.toml:2:2: holds a NUL byte"));
   CHECK_THAT(parse_sentence("a = \"\xff\xfe\""), Contains("bay.toml:1:"));
+  CHECK(parse_sentence("a = tr\n").find('\n') == std::string::npos);  // one sentence, one line
+  CHECK(parse_sentence("\"a\\nb\" = 1\n").find('\n') == std::string::npos);
   CHECK_THAT(parse_sentence("a = 1,5\n"), Contains("bay.toml:1:"));  // decimal comma
   const Table marked = parse(
       "\xef\xbb\xbf"

@@ -62,7 +62,7 @@ std::string bracketed(const std::string& name) { return name.empty() ? "" : "[" 
 [[noreturn]] void refuse_at(const toml::source_region& source, const Document& document,
                             const std::string& table, std::string_view sentence) {
   throw InputError(
-      fmt::format("{}: {}{}", place(source, document.file), bracketed(table), sentence));
+      one_line(fmt::format("{}: {}{}", place(source, document.file), bracketed(table), sentence)));
 }
 
 std::vector<std::string> to_vector(const std::set<std::string, std::less<>>& keys) {
@@ -77,9 +77,11 @@ void check_keys(const Document& document, const toml::table& table, const std::s
     const std::string word(key.str());
     if (!found->second.contains(word)) {
       const std::string near = nearest(word, to_vector(found->second));
+      const std::string shown_word = word.substr(0, 60);
       refuse_at(key.source(), document, name,
-                near.empty() ? fmt::format("unknown key '{}'; no key is accepted here", word)
-                             : fmt::format("unknown key '{}'; did you mean '{}'?", word, near));
+                near.empty()
+                    ? fmt::format("unknown key '{}'; no key is accepted here", shown_word)
+                    : fmt::format("unknown key '{}'; did you mean '{}'?", shown_word, near));
     }
     const std::string below = name.empty() ? word : name + "." + word;
     if (const toml::table* sub = value.as_table()) check_keys(document, *sub, below);

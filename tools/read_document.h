@@ -20,6 +20,8 @@ struct Document {
 
 /// "file:line:col", or the option's text for a value that came from --set.
 std::string place(const toml::source_region& source, const std::filesystem::path& file);
+/// `text` with control characters as '?', so that a quoted value cannot break the sentence.
+std::string one_line(std::string text);
 /// Parses; `name` is what errors and source regions call the text. Throws InputError.
 toml::table parse_toml(std::string_view text, const std::string& name);
 /// The entry of `unread` that looks like `wanted` misspelt: at most a third of its letters away.

@@ -97,7 +97,7 @@ toml::table& descend(toml::table& table, const Step& step, const std::string& op
 }  // namespace
 
 void apply_override(toml::table& root, const std::string& text) {
-  const std::string option = "--set " + text;
+  const std::string option = one_line("--set " + text);
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) refuse_path(option);
   std::string_view path = std::string_view(text).substr(0, equals);

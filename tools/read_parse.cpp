@@ -103,6 +103,12 @@ std::string place(const toml::source_region& source, const std::filesystem::path
   return fmt::format("{}:{}:{}", name, source.begin.line, source.begin.column);
 }
 
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
 toml::table parse_toml(std::string_view text, const std::string& name) {
   if (const auto nul = text.find('\0'); nul != std::string_view::npos) {
     const Position p = position_of(text, nul);
@@ -114,7 +120,8 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}: {}; a TOML 1.0 document is accepted",
-                                 place(error.source(), name), error.description()));
+                                 place(error.source(), name),
+                                 one_line(std::string(error.description()))));
   }
 }
 
