@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "offline/condense/flexibility.h"
+#include "offline/contact/hertz.h"
 #include "offline/pack/band_factor.h"
 
 namespace railstep {
@@ -84,7 +85,57 @@ void PackedModel::add_load(const Track& track, const std::vector<Line>& lines,
                                                 options.residual_points));
 }
 
+void PackedModel::add_wheelset(const Track& track, const std::vector<Line>& lines,
+                               const Wheelset& wheelset, const Railhead& head,
+                               const PackOptions& options) {
+  if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
+  if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
+  if (options.residual_flexibility && (model_.wheelsets > 0 || model_.loads > 0))
+    throw std::invalid_argument(
+        "residual flexibility acts under one load or wheelset per rail; for several set "
+        "residual_flexibility = false");
+  if (wheelset.forces.size() > static_cast<std::size_t>(kMaxBodyForces))
+    throw std::invalid_argument("more than 4 forces on one wheelset");
+  for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
+                               wheelset.inertia_yaw, wheelset.radius})
+    if (!(inertia > 0.))
+      throw std::invalid_argument("a wheelset's mass, inertias and radius are above zero");
+  WheelsetModel& packed = model_.wheelset[model_.wheelsets++];
+  packed.first = model_.unknowns;
+  model_.unknowns += 8;
+  const double m = wheelset.mass;
+  const double masses[6] = {
+      m, m, m, wheelset.inertia_roll, wheelset.inertia_spin, wheelset.inertia_yaw};
+  for (int k = 0; k < 6; ++k) packed.mass[k] = masses[k];
+  packed.weight = wheelset.weight;
+  packed.radius = wheelset.radius;
+  packed.tread_half_width = wheelset.tread_half_width;
+  packed.start = wheelset.start;
+  packed.speed = wheelset.speed;
+  packed.rest_z = head.top_z + wheelset.radius;
+  packed.hertz = hertz_contact(wheelset.radius, head.crown_radius, track.material.young,
+                               track.material.poisson, 1e3)
+                     .constant;
+  packed.guide = wheelset.guide;
+  packed.cap = wheelset.cap;
+  packed.tolerance = wheelset.tolerance;
+  packed.alpha = wheelset.alpha;
+  packed.beta = wheelset.beta;
+  for (const Wheelset::Force& force : wheelset.forces)
+    packed.force[packed.forces++] = {
+        force.direction, static_cast<std::int32_t>(force.table.size() / 2), keep(force.table)};
+  if (!options.residual_flexibility) return;
+  for (int rail = 0; rail < 2; ++rail)
+    packed.residual[rail] = keep(
+        residual_flexibility(track, lines, {rail, 0., 0., head.top_z, 2}, options.residual_points));
+}
+
 PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& loads,
+                         const PackOptions& options)
+    : PackedModel(track, loads, {}, {}, options) {}
+
+PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& loads,
+                         const std::vector<Wheelset>& wheelsets, const Railhead& head,
                          const PackOptions& options) {
   if (options.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
   model_.scheme = options.scheme;
@@ -92,9 +143,23 @@ PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& load
   model_.residual_points = options.residual_points;
   model_.elements = track.elements();
   model_.element_length = track.element_length();
+  model_.rail_y[0] = track.rails == 2 ? track.rail_spacing / 2. : 0.;
+  model_.rail_y[1] = -model_.rail_y[0];
+  model_.head_z = head.top_z;
+  model_.crown_radius = head.crown_radius;
+  model_.head_half_width = head.half_width;
   const std::vector<Line> lines = assemble(track);
   for (const Line& line : lines) add_line(track, line);
   for (const MovingLoad& load : loads) add_load(track, lines, load, options);
+  for (const Wheelset& wheelset : wheelsets) add_wheelset(track, lines, wheelset, head, options);
+  if (options.gravity == 0.) return;
+  std::vector<double> force(static_cast<std::size_t>(model_.unknowns), 0.);
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const Eigen::VectorXd own = weight(track, lines[l], options.gravity);
+    for (Eigen::Index i = 0; i < own.size(); ++i)
+      force[static_cast<std::size_t>(model_.line[l].first + i)] = own[i];
+  }
+  model_.constant_force = keep(std::move(force));
 }
 
 }  // namespace railstep

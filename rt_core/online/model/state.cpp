@@ -1,7 +1,6 @@
 #include "online/model/state.h"
 
 #include <cstring>
-#include <initializer_list>
 
 namespace railstep {
 
@@ -19,12 +18,12 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
 
 std::uint64_t state_hash(const Model& model, const State& state) noexcept {
   std::uint64_t hash = mix(0xcbf29ce484222325u, static_cast<std::uint64_t>(state.steps));
-  for (const double* field : {state.u, state.v, state.a, state.g})
-    for (std::int32_t i = 0; i < model.unknowns; ++i) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, field + i, sizeof word);
-      hash = mix(hash, word);
-    }
+  const std::int64_t count = state_doubles(model);  // one block, from u on
+  for (std::int64_t i = 0; i < count; ++i) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, state.u + i, sizeof word);
+    hash = mix(hash, word);
+  }
   return hash;
 }
 

@@ -8,44 +8,65 @@ namespace railstep {
 
 /// All a replay needs, nothing else. The caller owns the memory: state_doubles() of it.
 struct State {
-  std::int64_t steps;  // time = steps * dt, so it never drifts
-  double* u;           // [unknowns] displacement: m; slopes 1
-  double* v;           // [unknowns] velocity
-  double* a;           // [unknowns] the scheme's acceleration
-  double* g;           // [unknowns] true acceleration
+  std::int64_t steps;   // time = steps * dt, so it never drifts
+  double* u;            // [unknowns] displacement: m; slopes 1
+  double* v;            // [unknowns] velocity
+  double* a;            // [unknowns] the scheme's acceleration
+  double* g;            // [unknowns] true acceleration
+  double* wheel_force;  // [2 wheelsets] N, of the last step: where the contact solve starts
+  double* multiplier;   // [2 wheelsets] guide forces: N along x, N m about z
 };
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
   double* u_star;  // [unknowns]
   double* v_star;  // [unknowns]
-  double* solved;  // [unknowns] right-hand side, then the new displacement
   double* scaled;  // [unknowns]
+  double* solved;  // [1 + 2 wheelsets][unknowns] right-hand side of the track without wheels, then
+                   // of a unit force at each wheel; after the solve, the displacements
 };
 
 /// What a frame publishes.
 struct Outputs {
   Status status;
-  std::int32_t first_bad_unknown;     // -1: all finite
-  double load_x[kMaxLoads];           // m; where the load is, or was when taken off
-  double load_deflection[kMaxLoads];  // of the loaded point, m, up positive
-  double load_force[kMaxLoads];       // N, up positive
+  std::int32_t first_bad_unknown;       // -1: all finite
+  double load_x[kMaxLoads];             // m; where the load is, or was when taken off
+  double load_deflection[kMaxLoads];    // of the loaded point, m, up positive
+  double load_force[kMaxLoads];         // N, up positive
+  double wheel_force[kMaxWheels];       // N on the wheel, up positive, at the frame's end
+  double wheel_force_mean[kMaxWheels];  // N, over the frame's steps
+  double wheel_force_peak[kMaxWheels];  // N
+  double wheel_impulse[kMaxWheels];     // N s
+  double wheel_gap[kMaxWheels];         // m, negative in contact
+  double wheel_rail_z[kMaxWheels];      // displacement of the rail's axis under it, m
+  double constraint_violation;          // largest of the frame, m or rad
+  std::int32_t iterations;              // largest of the frame, of contact and joint solves
 };
 
-inline std::int64_t state_doubles(const Model& model) noexcept { return 4LL * model.unknowns; }
-inline std::int64_t workspace_doubles(const Model& model) noexcept { return 4LL * model.unknowns; }
+inline std::int64_t state_doubles(const Model& model) noexcept {
+  return 4LL * model.unknowns + 4LL * model.wheelsets;
+}
+inline std::int64_t workspace_doubles(const Model& model) noexcept {
+  return (4LL + 2LL * model.wheelsets) * model.unknowns;
+}
 
 /// Views over the caller's memory, which must be aligned to doubles.
 inline State state_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns;
-  return {0, memory, memory + n, memory + 2 * n, memory + 3 * n};
+  return {0,
+          memory,
+          memory + n,
+          memory + 2 * n,
+          memory + 3 * n,
+          memory + 4 * n,
+          memory + 4 * n + 2 * model.wheelsets};
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns;
   return {memory, memory + n, memory + 2 * n, memory + 3 * n};
 }
 
-/// FNV-1a over the step count and the bits of u, v, a, g: equal states have equal hashes.
+/// FNV-1a over the step count and the bits of all fields: equal states have equal hashes.
 std::uint64_t state_hash(const Model& model, const State& state) noexcept;
 
 }  // namespace railstep

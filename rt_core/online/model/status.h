@@ -6,8 +6,10 @@ namespace railstep {
 /// What a frame met; several can be true, the step goes on.
 enum class Status : std::uint32_t {
   ok = 0,
-  off_rail = 1u << 0,         // a load left the rail, its force is 0: lengthen the track
-  nonfinite_state = 1u << 1,  // the state is no longer finite: Outputs name the first bad unknown
+  off_rail = 1u << 0,         // a load or wheel left the rail, its force is 0: lengthen the track
+  contact_lost = 1u << 1,     // a wheel stood free of its rail during the frame
+  cap_reached = 1u << 2,      // contact, joint or projection hit its cap: shorten dt
+  nonfinite_state = 1u << 3,  // the state is no longer finite: Outputs name the first bad unknown
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {

@@ -1,5 +1,6 @@
 #include "online/step/step.h"
 
+#include "online/step/couple.h"
 #include "online/step/load.h"
 
 namespace railstep {
@@ -21,7 +22,7 @@ void inertia(const Model& model, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
   for (std::int32_t i = 0; i < model.unknowns; ++i) {
-    w.solved[i] = 0.;
+    w.solved[i] = model.constant_force == nullptr ? 0. : model.constant_force[i];
     w.scaled[i] = c.kg * w.u_star[i];
   }
   for (std::int32_t l = 0; l < model.lines; ++l) {
@@ -73,16 +74,45 @@ std::int32_t first_bad(const Model& model, const State& s) noexcept {
   return -1;
 }
 
+void start_frame(const Model& model, Outputs& out) noexcept {
+  out.status = Status::ok;
+  out.constraint_violation = 0.;
+  out.iterations = 0;
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+    out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
+}
+
+/// Adds what a step met to the frame's outputs.
+void collect(const Model& model, const State& s, const CoupleResult& met, Outputs& out) noexcept {
+  out.status = out.status | met.status;
+  if (met.violation > out.constraint_violation) out.constraint_violation = met.violation;
+  if (met.iterations > out.iterations) out.iterations = met.iterations;
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
+    const double force = s.wheel_force[i];
+    out.wheel_force[i] = force;
+    out.wheel_impulse[i] += force * model.scheme.dt;
+    out.wheel_force_mean[i] = out.wheel_impulse[i] / (model.scheme.dt * model.steps_per_frame);
+    if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
+    out.wheel_gap[i] = met.gap[i];
+    out.wheel_rail_z[i] = met.rail_z[i];
+  }
+}
+
 }  // namespace
 
 Status advance_frame(const Model& model, State& state, Workspace& workspace,
                      Outputs& outputs) noexcept {
+  start_frame(model, outputs);
   for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {
     predict(model, state, workspace);
     inertia(model, workspace);
     add_loads(model, state.steps + 1, workspace);
-    solve(model, workspace);
+    if (model.wheelsets > 0)
+      collect(model, state, couple(model, state.steps + 1, state, workspace), outputs);
+    else
+      solve(model, workspace);
     correct(model, state, workspace);
+    if (model.wheelsets > 0) project_guides(model, state);
     ++state.steps;
   }
   publish(model, state, outputs);
@@ -90,7 +120,6 @@ Status advance_frame(const Model& model, State& state, Workspace& workspace,
 }
 
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept {
-  outputs.status = Status::ok;
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const PlacedLoad at = place(model, model.load[i], state.steps);
     outputs.load_x[i] = at.x;

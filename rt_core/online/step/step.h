@@ -8,7 +8,8 @@ namespace railstep {
 [[nodiscard]] Status advance_frame(const Model& model, State& state, Workspace& workspace,
                                    Outputs& outputs) noexcept;
 
-/// Outputs of a state as it stands, without a step: the first row of a trace.
+/// Loads and health of a state as it stands; advance_frame() ends with it, and a trace starts with
+/// it on Outputs{}.
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept;
 
 }  // namespace railstep

@@ -1,0 +1,269 @@
+#include "online/step/couple.h"
+
+#include <cmath>
+
+#include "online/contact/ports.h"
+#include "online/step/table.h"
+#include "online/step/wheel.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr int kGuided[2] = {0, 5};  // x and yaw
+
+/// The augmented Lagrangian's penalty over the coordinate's inertia term kg m: each iteration
+/// leaves 1/(1 + this) of the violation.
+constexpr double kPenalty = 1e3;
+
+/// The step's coupled problem: contacts, compliance between them, and the bodies' own motion.
+struct Coupling {
+  int wheels;
+  WheelContact contact[kMaxWheels];
+  double W[kMaxWheels * kMaxWheels];  // m/N
+  double hertz[kMaxWheels];
+  double track_free[kMaxWheels];        // penetration from the track and the frozen geometry
+  double compliance[kMaxWheelsets][6];  // of the coordinates, m/N or rad/(N m)
+  double free[kMaxWheelsets][6];        // coordinates without wheel forces and multipliers
+  double force[kMaxWheels];             // N
+  double penetration[kMaxWheels];
+};
+
+double target(const WheelsetModel& w, int guided, double time) noexcept {
+  return guided == 0 ? w.speed * time : 0.;
+}
+
+/// Forces other than contact and guide: weight, tables and the gyroscopic terms of an axisymmetric
+/// body, at the velocities v* (roll r, spin s, yaw y; cos(roll) = 1):
+///   Ix r'' = Iy s' y' - Ix y'^2 r,   Iz y'' = -Iy s' r' + 2 Ix y' r' r
+void applied_force(const WheelsetModel& w, double time, const double* p, const double* v,
+                   double* force) noexcept {
+  for (int k = 0; k < 6; ++k) force[k] = 0.;
+  force[2] = -w.weight;
+  for (std::int32_t i = 0; i < w.forces; ++i)
+    force[w.force[i].direction] += table_value(w.force[i].table, w.force[i].points, time);
+  const double spin = w.speed / w.radius + v[4];
+  force[3] = w.mass[4] * spin * v[5] - w.mass[3] * v[5] * v[5] * p[3];
+  force[5] = -w.mass[4] * spin * v[3] + 2. * w.mass[3] * v[5] * v[3] * p[3];
+}
+
+/// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
+/// guide does not give way at all: g = [x'' - 2 alpha (v - x') - beta^2 (u - x)] at the step's end.
+void free_bodies(const Model& model, double time, const Workspace& w, Coupling& c) noexcept {
+  const double kg = model.scheme.kg, kv = model.scheme.kv;
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& set = model.wheelset[b];
+    const double* p = w.u_star + set.first;
+    const double* v = w.v_star + set.first;
+    double force[6];
+    applied_force(set, time, p, v, force);
+    for (int k = 0; k < 6; ++k) {
+      c.compliance[b][k] = 1. / (kg * set.mass[k]);
+      c.free[b][k] = p[k] + c.compliance[b][k] * force[k];
+    }
+    for (const int k : kGuided) {
+      const double goal = target(set, k, time), rate = k == 0 ? set.speed : 0.;
+      if (set.guide == Guide::augmented_lagrangian) {
+        // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
+        const double penalty = kPenalty * kg * set.mass[k];
+        c.compliance[b][k] = 1. / (kg * set.mass[k] + penalty);
+        c.free[b][k] = c.compliance[b][k] * (kg * set.mass[k] * p[k] + force[k] + penalty * goal);
+      } else {
+        const double beta2 = set.beta * set.beta;
+        const double g = (-2. * set.alpha * (v[k] - rate) - beta2 * (p[k] - goal)) /
+                         (1. + 2. * set.alpha * kv / kg + beta2 / kg);
+        c.compliance[b][k] = 0.;
+        c.free[b][k] = p[k] + g / kg;
+      }
+    }
+  }
+}
+
+/// Contacts on the configuration u + dt v, one for each wheel.
+void find_contacts(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
+  const double dt = model.scheme.dt;
+#pragma omp simd
+  for (std::int32_t i = 0; i < model.unknowns; ++i) w.scaled[i] = s.u[i] + dt * s.v[i];
+  for (int i = 0; i < c.wheels; ++i) {
+    c.contact[i] = find_contact(model, model.wheelset[i / 2], i % 2, w.scaled);
+    c.hertz[i] = model.wheelset[i / 2].hertz;
+  }
+}
+
+/// Solves each line for itself and for the wheels that touch it, together where they can be.
+void solve_lines(const Model& model, Workspace& w, const Coupling& c) noexcept {
+  const std::ptrdiff_t stride = model.unknowns;
+  for (int i = 0; i < c.wheels; ++i) {
+    double* rhs = w.solved + (i + 1) * stride;
+    for (std::int32_t k = 0; k < model.unknowns; ++k) rhs[k] = 0.;
+    if (!c.contact[i].on_rail) continue;
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      spread(model.line[l], c.contact[i], 1., rhs + model.line[l].first);
+  }
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    double* x = w.solved + model.line[l].first;
+    const bool both = model.line[l].rail_factor[0] != 0. && model.line[l].rail_factor[1] != 0.;
+    if (c.wheels == 2 && both) {
+      solve_band<3>(model.line[l].step, x, stride);
+      continue;
+    }
+    solve_band<1>(model.line[l].step, x, stride);
+    for (int i = 0; i < c.wheels; ++i)
+      if (model.line[l].rail_factor[i % 2] != 0.)
+        solve_band<1>(model.line[l].step, x + (i + 1) * stride, stride);
+  }
+}
+
+/// W between all wheels: through the lines, the residual flexibility and the wheelsets.
+void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
+  const std::ptrdiff_t stride = model.unknowns;
+  for (int i = 0; i < c.wheels; ++i)
+    for (int j = 0; j < c.wheels; ++j) {
+      double sum = 0.;
+      if (c.contact[i].on_rail && c.contact[j].on_rail) {
+        for (std::int32_t l = 0; l < model.lines; ++l)
+          sum += rail_motion(model.line[l], c.contact[i],
+                             w.solved + (j + 1) * stride + model.line[l].first);
+        if (i / 2 == j / 2)
+          for (int k = 0; k < 6; ++k)
+            sum += c.contact[i].body_row[k] * c.compliance[i / 2][k] * c.contact[j].body_row[k];
+      }
+      c.W[i * c.wheels + j] = sum;
+    }
+  for (int i = 0; i < c.wheels; ++i) {
+    const double* table = model.wheelset[i / 2].residual[i % 2];
+    if (table == nullptr || !c.contact[i].on_rail) continue;
+    table += static_cast<std::ptrdiff_t>(c.contact[i].element) * (model.residual_points + 1);
+    c.W[i * c.wheels + i] += interpolate(table, model.residual_points, c.contact[i].xi);
+  }
+  for (int i = 0; i < c.wheels; ++i)  // symmetric to the last bit
+    for (int j = 0; j < i; ++j) c.W[i * c.wheels + j] = c.W[j * c.wheels + i];
+}
+
+/// Penetration that the track alone would leave: the located one, moved from where it was located.
+void track_penetration(const Model& model, const Workspace& w, Coupling& c) noexcept {
+  for (int i = 0; i < c.wheels; ++i) {
+    const WheelContact& at = c.contact[i];
+    c.track_free[i] = -1.;  // off the rail: far away
+    if (!at.on_rail) continue;
+    double d = at.penetration;
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      const LineModel& line = model.line[l];
+      d += rail_motion(line, at, w.solved + line.first) -
+           rail_motion(line, at, w.scaled + line.first);
+    }
+    const double* located = w.scaled + model.wheelset[i / 2].first;
+    for (int k = 0; k < 6; ++k) d += at.body_row[k] * located[k];
+    c.track_free[i] = d;
+  }
+}
+
+/// Coordinates of a wheelset under its wheel forces and multipliers.
+void move_body(const WheelsetModel& set, int b, const Coupling& c, const double* multiplier,
+               double* p) noexcept {
+  for (int k = 0; k < 6; ++k) {
+    double force = 0.;
+    for (int side = 0; side < 2; ++side)
+      force += c.contact[2 * b + side].body_row[k] * c.force[2 * b + side];
+    if (set.guide == Guide::augmented_lagrangian && k == kGuided[0]) force -= multiplier[0];
+    if (set.guide == Guide::augmented_lagrangian && k == kGuided[1]) force -= multiplier[1];
+    p[k] = c.free[b][k] + c.compliance[b][k] * force;
+  }
+}
+
+/// Contacts for given multipliers.
+PortResult contacts(const Model& model, const State& s, Coupling& c) noexcept {
+  double d_free[kMaxWheels];
+  for (int i = 0; i < c.wheels; ++i) {
+    const WheelsetModel& set = model.wheelset[i / 2];
+    d_free[i] = c.track_free[i];
+    if (!c.contact[i].on_rail) continue;
+    for (int k = 0; k < 6; ++k) {
+      double p = c.free[i / 2][k];
+      if (set.guide == Guide::augmented_lagrangian && (k == kGuided[0] || k == kGuided[1]))
+        p -= c.compliance[i / 2][k] * s.multiplier[2 * (i / 2) + (k == kGuided[1] ? 1 : 0)];
+      d_free[i] -= c.contact[i].body_row[k] * p;
+    }
+  }
+  return solve_ports(c.wheels, c.W, c.hertz, d_free, c.force, c.penetration);
+}
+
+/// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
+void solve_coupled(const Model& model, double time, State& s, Workspace& w, Coupling& c,
+                   CoupleResult& result) noexcept {
+  std::int32_t cap = 1;
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    if (model.wheelset[b].guide == Guide::augmented_lagrangian && model.wheelset[b].cap > cap)
+      cap = model.wheelset[b].cap;
+  bool settled = false, solved = false;
+  for (std::int32_t turn = 0; turn < cap && !settled; ++turn) {
+    const PortResult ports = contacts(model, s, c);
+    solved = ports.status == PortStatus::converged;
+    if (ports.iterations > result.iterations) result.iterations = ports.iterations;
+    settled = true;
+    result.violation = 0.;
+    for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+      const WheelsetModel& set = model.wheelset[b];
+      double* p = w.solved + set.first;
+      move_body(set, b, c, s.multiplier + 2 * b, p);
+      for (int i = 0; i < 2; ++i) {
+        const int k = kGuided[i];
+        const double miss = p[k] - target(set, k, time);
+        if (std::fabs(miss) > result.violation) result.violation = std::fabs(miss);
+        if (set.guide != Guide::augmented_lagrangian) continue;
+        s.multiplier[2 * b + i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
+        if (!(std::fabs(miss) <= set.tolerance)) settled = false;
+      }
+    }
+    if (turn + 1 > result.iterations) result.iterations = turn + 1;
+  }
+  if (!settled || !solved) result.status = result.status | Status::cap_reached;
+}
+
+}  // namespace
+
+CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspace& w) noexcept {
+  CoupleResult result{};
+  Coupling c;
+  c.wheels = 2 * model.wheelsets;
+  const double time = static_cast<double>(step) * model.scheme.dt;
+  find_contacts(model, state, w, c);
+  free_bodies(model, time, w, c);
+  solve_lines(model, w, c);
+  compliance(model, w, c);
+  track_penetration(model, w, c);
+  for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
+  solve_coupled(model, time, state, w, c, result);
+  for (int i = 0; i < c.wheels; ++i) {
+    state.wheel_force[i] = c.force[i];
+    result.gap[i] = -c.penetration[i];
+    const double* unit = w.solved + static_cast<std::ptrdiff_t>(i + 1) * model.unknowns;
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      const LineModel& line = model.line[l];
+      if (line.rail_factor[i % 2] == 0.) continue;
+#pragma omp simd
+      for (std::int32_t k = line.first; k < line.first + 8 * line.step.panels; ++k)
+        w.solved[k] -= c.force[i] * unit[k];
+    }
+    if (!c.contact[i].on_rail) result.status = result.status | Status::off_rail;
+    if (c.contact[i].cap_reached) result.status = result.status | Status::cap_reached;
+    if (c.force[i] <= 0.) result.status = result.status | Status::contact_lost;
+  }
+  for (int i = 0; i < c.wheels; ++i)
+    result.rail_z[i] = c.contact[i].on_rail ? axis_height(model, c.contact[i], w.solved) : 0.;
+  return result;
+}
+
+void project_guides(const Model& model, State& state) noexcept {
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& set = model.wheelset[b];
+    if (set.guide != Guide::augmented_lagrangian) continue;
+    for (const int k : kGuided) {
+      state.v[set.first + k] = k == 0 ? set.speed : 0.;
+      state.a[set.first + k] = 0.;
+      state.g[set.first + k] = 0.;
+    }
+  }
+}
+
+}  // namespace railstep

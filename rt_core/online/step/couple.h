@@ -1,0 +1,25 @@
+#pragma once
+#include "online/model/state.h"
+
+namespace railstep {
+
+/// What the coupled solve of a step met.
+struct CoupleResult {
+  Status status;
+  std::int32_t iterations;
+  double violation;           // of the guides, m or rad
+  double gap[kMaxWheels];     // m, negative in contact
+  double rail_z[kMaxWheels];  // m
+};
+
+/// Wheelsets, their guides, and their contacts with the rails: finds the contacts, solves the track
+/// for its own right-hand side (in workspace.solved[0]) and for each wheel, then wheel forces and
+/// guides together, and leaves the new displacements of track and wheelsets in solved[0].
+CoupleResult couple(const Model& model, std::int64_t step, State& state,
+                    Workspace& workspace) noexcept;
+
+/// After the scheme's correction: velocities and accelerations of guided coordinates are put onto
+/// the guide (augmented Lagrangian; the inertia is diagonal, so the projection is exact).
+void project_guides(const Model& model, State& state) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,169 @@
+#include "online/step/wheel.h"
+
+#include <cmath>
+
+#include "online/step/table.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr int kWindow = 3;  // elements around the wheel that the search sees
+constexpr int kWindowNodes = 2 * kWindow + 1;
+
+struct Window {
+  std::int32_t first;  // element
+  std::int32_t elements;
+  double nodes[9 * kWindowNodes];
+};
+
+/// Displacement of unknown k of a node of one rail, over all lines.
+double node_motion(const Model& model, int rail, std::int32_t node, int k,
+                   const double* u) noexcept {
+  double sum = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineModel& line = model.line[l];
+    const std::int32_t unknown = line.unknown_of[9 * node + k];
+    if (unknown < 0 || line.rail_factor[rail] == 0.) continue;
+    const double part = line.rail_factor[rail] * u[line.first + unknown];
+    sum += line.mirrored != 0 && rail == 1 && flips_in_mirror(k) ? -part : part;
+  }
+  return sum;
+}
+
+/// Deformed nodes of the three elements around x.
+void gather(const Model& model, int rail, double x, const double* u, Window& window) noexcept {
+  const double scaled = x / model.element_length;
+  std::int32_t middle = 0;
+  if (scaled >= model.elements) middle = model.elements - 1;
+  if (scaled > 0. && scaled < model.elements) middle = static_cast<std::int32_t>(scaled);
+  window.elements = model.elements < kWindow ? model.elements : kWindow;
+  window.first = middle - 1;
+  if (window.first > model.elements - window.elements)
+    window.first = model.elements - window.elements;
+  if (window.first < 0) window.first = 0;
+  for (std::int32_t i = 0; i <= 2 * window.elements; ++i) {
+    const std::int32_t node = 2 * window.first + i;
+    double* q = window.nodes + 9 * i;
+    for (int k = 0; k < 9; ++k) q[k] = node_motion(model, rail, node, k, u);
+    q[0] += .5 * model.element_length * node;
+    q[1] += model.rail_y[rail];
+    q[4] += 1.;
+    q[8] += 1.;
+  }
+}
+
+/// Sine and cosine by their series, good to 1e-9 up to half a radian: the wheelset's roll and yaw
+/// stay far below. The C library's differ between machines.
+double sine(double x) noexcept {
+  const double s = x * x;
+  return x * (1. - s / 6. * (1. - s / 20. * (1. - s / 42. * (1. - s / 72.))));
+}
+double cosine(double x) noexcept {
+  const double s = x * x;
+  return 1. - s / 2. * (1. - s / 12. * (1. - s / 30. * (1. - s / 56.)));
+}
+
+void cross(const double* a, const double* b, double* c) noexcept {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+double dot3(const double* a, const double* b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Interpolates [r, a, b] at a place of the window.
+void interpolate_nodes(const Window& window, RailPlace place, const double* shape,
+                       double* q) noexcept {
+  const double* n = window.nodes + 18 * place.element;
+  for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
+}
+
+double coefficient(const LineModel& line, const WheelContact& at, int k) noexcept {
+  const double lever = k < 3 ? 1. : k < 6 ? at.y : at.z;
+  const double factor = line.rail_factor[at.rail] * (lever * at.normal[k % 3]);
+  return line.mirrored != 0 && at.rail == 1 && flips_in_mirror(k) ? -factor : factor;
+}
+
+}  // namespace
+
+WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
+                          const double* displacement) noexcept {
+  const double* p = displacement + w.first;
+  const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
+  const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
+  const double axle[3] = {-sy * cr, cy * cr, sr};
+  Window window;
+  gather(model, side, centre[0], displacement, window);
+  WheelContact at{};
+  at.rail = side;
+  const double z_crown = model.head_z - model.crown_radius;
+  const double guess = centre[0] / model.element_length - window.first;
+  RailPlace start{static_cast<int>(guess), 0.};
+  start.xi = 2. * (guess - start.element) - 1.;
+  const WheelOnRail found =
+      locate_wheel({window.elements, window.nodes}, centre, axle, z_crown, start);
+  at.cap_reached = found.status == LocateStatus::cap_reached;
+  at.on_rail = found.status == LocateStatus::found || at.cap_reached;
+  if (std::fabs(std::fabs(found.along) - std::fabs(model.rail_y[side])) > w.tread_half_width)
+    at.on_rail = false;
+  if (!at.on_rail) return at;
+
+  at.element = window.first + found.place.element;
+  at.xi = found.place.xi;
+  at.shape[0] = -.5 * at.xi * (1. - at.xi);
+  at.shape[1] = 1. - at.xi * at.xi;
+  at.shape[2] = .5 * at.xi * (1. + at.xi);
+  for (int d = 0; d < 3; ++d) at.normal[d] = found.normal[d];
+  double q[9];
+  interpolate_nodes(window, found.place, at.shape, q);
+  // The crown's material point under the normal: a railhead that is squeezed carries it along.
+  const double n_a = dot3(at.normal, q + 3), n_b = dot3(at.normal, q + 6);
+  const double length = std::sqrt(n_a * n_a + n_b * n_b);
+  at.y = model.crown_radius * (n_a / length);
+  at.z = z_crown + model.crown_radius * (n_b / length);
+  if (!(std::fabs(at.y) <= model.head_half_width)) at.on_rail = false;
+  // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
+  const double arm[3] = {found.along * axle[0], found.along * axle[1], found.along * axle[2]};
+  double lever[3], gap = 0.;
+  cross(arm, at.normal, lever);
+  for (int d = 0; d < 3; ++d)
+    gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
+  at.penetration = w.radius - gap;
+  for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
+  at.body_row[3] = cy * lever[0] + sy * lever[1];
+  at.body_row[4] = 0.;  // the normal meets the axle: no torque about it
+  at.body_row[5] = lever[2];
+  return at;
+}
+
+double rail_motion(const LineModel& line, const WheelContact& at, const double* u) noexcept {
+  double sum = 0.;
+  if (line.rail_factor[at.rail] == 0.) return sum;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k) {
+      const std::int32_t unknown = line.unknown_of[9 * (2 * at.element + i) + k];
+      if (unknown >= 0) sum += at.shape[i] * coefficient(line, at, k) * u[unknown];
+    }
+  return sum;
+}
+
+void spread(const LineModel& line, const WheelContact& at, double force, double* rhs) noexcept {
+  if (line.rail_factor[at.rail] == 0.) return;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k) {
+      const std::int32_t unknown = line.unknown_of[9 * (2 * at.element + i) + k];
+      if (unknown >= 0) rhs[unknown] += force * (at.shape[i] * coefficient(line, at, k));
+    }
+}
+
+double axis_height(const Model& model, const WheelContact& at, const double* u) noexcept {
+  double sum = 0.;
+  for (int i = 0; i < 3; ++i)
+    sum += at.shape[i] * node_motion(model, at.rail, 2 * at.element + i, 2, u);
+  return sum;
+}
+
+}  // namespace railstep

@@ -1,0 +1,212 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "offline/pack/pack.h"
+#include "offline/pack/scheme.h"
+#include "offline/track/statics.h"
+#include "online/step/step.h"
+#include "sections.h"
+
+using namespace railstep;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+/// The paper's Table 3 with what reference.md adds: seats on the axis, free ends.
+Track paper_track() {
+  Track t;
+  t.section = section_f();
+  t.rail_spacing = 1.;
+  t.bays = 4;
+  t.bay_length = 1.6;
+  t.elements_per_bay = 1;
+  t.support.stiffness = {3e6, 1.4e9, 3e6};
+  t.support.damping = {3e4, 29e6, 3e4};
+  t.support.roll_stiffness = 1e6;
+  t.support.roll_damping = 1e3;
+  return t;
+}
+
+Wheelset paper_wheelset() {
+  Wheelset w;
+  w.mass = 100.;
+  w.inertia_roll = w.inertia_yaw = 8.3;
+  w.inertia_spin = 1.1;
+  w.weight = 981.;
+  w.radius = .148;
+  w.start = 3.2;
+  return w;
+}
+
+const Railhead kHead{.1007375, .3, .038};
+
+struct Run {
+  std::unique_ptr<PackedModel> packed;
+  std::vector<double> memory, scratch;
+  State state;
+  Workspace workspace;
+  Outputs outputs{};
+  Status seen = Status::ok;
+
+  Run(const Track& track, const Wheelset& wheelset, const PackOptions& options)
+      : packed(std::make_unique<PackedModel>(track, std::vector<MovingLoad>{},
+                                             std::vector<Wheelset>{wheelset}, kHead, options)),
+        memory(static_cast<std::size_t>(state_doubles(packed->model())), 0.),
+        scratch(static_cast<std::size_t>(workspace_doubles(packed->model())), 0.),
+        state(state_on(packed->model(), memory.data())),
+        workspace(workspace_on(packed->model(), scratch.data())) {}
+
+  const Model& model() const { return packed->model(); }
+  const double* body() const { return state.u + model().wheelset[0].first; }
+  double time() const { return static_cast<double>(state.steps) * model().scheme.dt; }
+  void step() {
+    scratch.assign(scratch.size(), std::numeric_limits<double>::quiet_NaN());
+    seen = seen | advance_frame(model(), state, workspace, outputs);
+  }
+  void until(double t) {
+    const auto steps = static_cast<std::int64_t>(std::llround(t / model().scheme.dt));
+    while (state.steps < steps) step();
+  }
+};
+
+PackOptions options(double dt) { return {.scheme = generalised_alpha(dt, .6)}; }
+
+/// A rail that does not give way: 800 t/m on seats a million times stiffer than the contact.
+Track rigid_track() {
+  Track t = paper_track();
+  t.section.area = 100.;
+  t.section.inertia_y = t.section.inertia_z = 10.;
+  t.section.torsion = 20.;
+  t.section.shear_factor_y = t.section.shear_factor_z = 1.;
+  t.section.shear_centre_z = 0.;
+  t.support.stiffness = {1e15, 1e15, 1e15};
+  t.support.damping = {};
+  t.support.roll_stiffness = 1e15;
+  t.support.roll_damping = 0.;
+  return t;
+}
+
+}  // namespace
+
+TEST_CASE("the paper's wheelset settles where statics say", "[wheelset]") {
+  Run run(paper_track(), paper_wheelset(), options(1e-4));
+  run.until(1.);
+  CHECK(run.seen == Status::ok);
+  // Frictionless wheels carry half the weight each, whatever the rails do.
+  for (int i = 0; i < 2; ++i) CHECK_THAT(run.outputs.wheel_force[i], WithinRel(490.5, 1e-9));
+  // Both rails under their wheel, on the head; the axis below it. Statics knows no contact.
+  const Statics statics(paper_track());
+  std::vector<PointForce> forces;
+  for (const int rail : {0, 1}) forces.push_back({{rail, 3.2, 0., kHead.top_z, 2}, -490.5});
+  const auto u = statics.solve(forces);
+  const double axis = statics.at(u, {0, 3.2, 0., 0., 2});
+  const double head = statics.at(u, {0, 3.2, 0., kHead.top_z, 2});
+  // Two routes to one equilibrium; what is left of the fall after 1 s is below 1e-8 of it.
+  CHECK_THAT(run.outputs.wheel_rail_z[0], WithinRel(axis, 1e-6));
+  CHECK_THAT(run.outputs.wheel_rail_z[1], WithinRel(axis, 1e-6));
+  // reference.md: Hertz approach 3.615e-6 m under 490.5 N; printed to 4 digits
+  CHECK_THAT(-run.outputs.wheel_gap[0], WithinAbs(3.615e-6, 1e-9));
+  const double residual =
+      490.5 * run.model().wheelset[0].residual[0][2 * (run.model().residual_points + 1)];
+  CHECK_THAT(run.body()[2], WithinAbs(head - residual + run.outputs.wheel_gap[0], 1e-10));
+}
+
+TEST_CASE("released from touching, the wheelset sinks as the reference says", "[wheelset]") {
+  // reference.md: lowest wheel position -7.67e-5 m at 25.5 ms: 3 digits. There the load acts on the
+  // axis; the head is lower by its squeeze (0.02e-5), the Hertz approach is in both.
+  Run run(paper_track(), paper_wheelset(), options(1e-4));
+  double lowest = 0., when = 0.;
+  while (run.time() < .1) {
+    run.step();
+    if (run.body()[2] < lowest) {
+      lowest = run.body()[2];
+      when = run.time();
+    }
+  }
+  CHECK_THAT(lowest, WithinRel(-7.67e-5, .01));
+  CHECK_THAT(when, WithinAbs(25.5e-3, .5e-3));
+}
+
+TEST_CASE("a lateral force meets nothing on cylinders without friction", "[wheelset]") {
+  // reference.md: y = 0.05 t^2 for 10 N on 100 kg
+  Wheelset w = paper_wheelset();
+  w.forces = {{1, {-1., 10., 1., 10.}}};
+  Run run(paper_track(), w, options(1e-4));
+  run.until(.2);
+  CHECK_THAT(run.body()[1], WithinRel(.05 * .2 * .2, 2e-3));
+}
+
+TEST_CASE("a wheel dropped on a rigid rail bounces as energy says", "[wheelset]") {
+  // hard-cases.md R1: one wheel of 600 kg at 0.1 m/s without weight: 82.13323 kN after
+  // 2.687653/2 ms, rebound -v. A wheelset of 1200 kg carries two of them; contact of .46 m on .3 m.
+  Wheelset w;
+  w.mass = 1200.;
+  w.inertia_roll = w.inertia_yaw = 700.;
+  w.inertia_spin = 100.;
+  w.start = 3.2;
+  const auto drop = [&](double dt) {
+    PackOptions o = options(dt);
+    o.residual_flexibility = false;
+    Run run(rigid_track(), w, o);
+    run.state.v[run.model().wheelset[0].first + 2] = -.1;
+    double peak = 0.;
+    while (run.time() < 4e-3) {
+      run.step();
+      peak = std::max(peak, run.outputs.wheel_force[1]);
+    }
+    CHECK(has(run.seen, Status::contact_lost));
+    return std::pair{peak, run.state.v[run.model().wheelset[0].first + 2]};
+  };
+  // H4: 1 % at 50 us, 1e-3 at 10 us
+  const auto [coarse, rebound_coarse] = drop(5e-5);
+  CHECK_THAT(coarse, WithinRel(82.13323e3, 1e-2));
+  const auto [fine, rebound] = drop(1e-5);
+  CHECK_THAT(fine, WithinRel(82.13323e3, 1e-3));
+  CHECK_THAT(rebound, WithinRel(.1, 2e-3));
+}
+
+TEST_CASE("the guide holds by either method, with the same motion", "[wheelset]") {
+  const auto run_to = [](Guide guide) {
+    Wheelset w = paper_wheelset();
+    w.start = 2.;
+    w.speed = 10.;
+    w.guide = guide;
+    w.alpha = w.beta = 200.;
+    Run run(paper_track(), w, options(1e-4));
+    run.state.v[run.model().wheelset[0].first] = 10.;
+    run.until(.2);
+    CHECK(run.outputs.constraint_violation < 1e-9);
+    CHECK_THAT(run.body()[0], WithinAbs(2., 1e-9));
+    return std::array{run.body()[2], run.outputs.wheel_force[0]};
+  };
+  const auto a = run_to(Guide::augmented_lagrangian), b = run_to(Guide::baumgarte);
+  CHECK_THAT(a[0], WithinRel(b[0], 1e-6));
+  CHECK_THAT(a[1], WithinRel(b[1], 1e-6));
+}
+
+TEST_CASE("a guide whose cap is too low says so", "[wheelset]") {
+  Wheelset w = paper_wheelset();
+  w.cap = 1;
+  w.speed = 10.;
+  w.start = 2.;
+  Run run(paper_track(), w, options(1e-4));  // starts at rest: the guide has work to do
+  run.step();
+  CHECK(has(run.seen, Status::cap_reached));
+  CHECK(std::isfinite(run.body()[0]));
+}
+
+TEST_CASE("a wheelset that runs off the rails falls, and is reported", "[wheelset]") {
+  Wheelset w = paper_wheelset();
+  w.start = 6.3;
+  w.speed = 10.;
+  Run run(paper_track(), w, options(1e-4));
+  run.state.v[run.model().wheelset[0].first] = 10.;
+  run.until(.05);
+  CHECK(has(run.seen, Status::off_rail));
+  CHECK(run.outputs.wheel_force[0] == 0.);
+  CHECK(run.body()[2] < -1e-3);
+}
