@@ -1,4 +1,5 @@
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -35,7 +36,8 @@ std::string text_of(const std::filesystem::path& file) {
 
 /// A folder of one test case's own, empty.
 std::filesystem::path fresh_folder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("railstep_run_" + name);
+  const auto folder = std::filesystem::temp_directory_path() /
+                      ("railstep_run_" + std::to_string(getpid()) + "_" + name);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
@@ -100,7 +102,7 @@ TEST_CASE("the moving-load scene's trace meets the converged row", "[run]") {
   }
 }
 
-TEST_CASE("--json has the contract's keys, and the same bits twice", "[run]") {
+TEST_CASE("the option --json has the contract's keys, and the same bits twice", "[run]") {
   const Ran first = railstep_program("run " + kMovingLoad + " --json");
   REQUIRE(first.code == 0);
   const auto json = nlohmann::json::parse(first.out);
@@ -122,7 +124,8 @@ TEST_CASE("--json has the contract's keys, and the same bits twice", "[run]") {
   CHECK(nlohmann::json::parse(other.out).at("state_hash") != hash);
 }
 
-TEST_CASE("--set, --step and --duration change the scene as if written in it", "[run]") {
+TEST_CASE("the options --set, --step and --duration change the scene as if written in it",
+          "[run]") {
   const auto folder = fresh_folder("set");
   const std::string trace = " --trace " + (folder / "t.csv").string();
   const std::string short_run = "run " + kMovingLoad + " --duration 0.05" + trace;

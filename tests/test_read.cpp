@@ -191,7 +191,7 @@ TEST_CASE("a file that cannot be read whole is refused by name", "[read]") {
              Contains("over.toml: is longer than 1048576 bytes"));
 }
 
-TEST_CASE("--set writes a key as if it stood in the file", "[read]") {
+TEST_CASE("the option --set writes a key as if it stood in the file", "[read]") {
   const std::string text =
       "[rail]\npoisson = 0.3\nv = [[1, 2], [3, 4]]\n[[load]]\nn = 1\n[[load]]\nn = 2\n";
   const Table root = parse(text, {"rail.poisson=0.25", "rail.v[1][0]=9", "load[1].n = 5",
@@ -212,7 +212,7 @@ TEST_CASE("--set writes a key as if it stood in the file", "[read]") {
         "--set rail.posson=0.2: [rail] unknown key 'posson'; did you mean 'poisson'?");
 }
 
-TEST_CASE("--set that cannot be applied names the option", "[read]") {
+TEST_CASE("an option --set that cannot be applied names itself", "[read]") {
   const std::string text = "a = [1, 2]\n[b]\nc = 1\n";
   const auto refusal = [&](const std::string& option) {
     return sentence([&] { parse(text, {option}); });
