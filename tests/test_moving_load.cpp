@@ -183,3 +183,12 @@ TEST_CASE("a state that is not finite is named") {
             Status::nonfinite_state));
   CHECK(run.outputs.first_bad_unknown >= 0);
 }
+
+TEST_CASE("long after the load has gone no subnormal rests in the state") {
+  MovingLoad load{.rail = 0, .start = 9., .speed = 30., .stop = 100., .force = -50e3};
+  Run run(peers_track(1), {load}, {generalised_alpha(1e-3, .6), 1000, true, 16});
+  for (int frame = 0; frame < 20; ++frame)
+    (void)advance_frame(run.packed->model(), run.state, run.workspace, run.outputs);
+  for (const double value : run.memory)
+    CHECK((value == 0. || std::abs(value) >= std::numeric_limits<double>::min()));
+}

@@ -75,3 +75,19 @@ TEST_CASE("a thousand frames take nothing from the heap", "[no_heap]") {
     CHECK(has(met, Status::off_rail));  // the way out past the rail's end was among the frames
   }
 }
+
+TEST_CASE("shipped scenes take nothing from the heap, contact included", "[no_heap]") {
+  for (const char* name : {"moving_load", "wheelset_on_track", "ballasted_track"}) {
+    const Scene scene =
+        read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/" + name + ".toml");
+    Simulation run(scene);
+    Outputs outputs{};
+    const Heap before;
+    for (int frame = 0; frame < 100; ++frame)
+      (void)advance_frame(run.model(), run.state, run.workspace, outputs);
+    const Heap after;
+    CAPTURE(name);
+    CHECK(after.news == before.news);
+    CHECK(after.bytes == before.bytes);
+  }
+}

@@ -8,8 +8,7 @@
 #include <stdexcept>
 
 #include "offline/pack/scheme.h"
-#include "offline/track/statics.h"
-#include "online/step/load.h"
+#include "offline/pack/start.h"
 
 namespace railstep {
 namespace {
@@ -19,15 +18,10 @@ void refuse_unstepped(const Scene& scene) {
   const auto refuse = [&](bool wanted, const char* what) {
     if (wanted) throw InputError(fmt::format("{}: run {}", scene.file.string(), what));
   };
-  refuse(!scene.wheelsets.empty(), "steps moving loads; accepted is a scene without [[wheelset]]");
-  refuse(scene.loads.empty(), "needs a [[load]] and the scene has none");
-  refuse(scene.track.gravity, "steps rails without weight; accepted is track.gravity = false");
+  refuse(scene.loads.empty() && scene.wheelsets.empty(),
+         "needs a [[load]] or a [[wheelset]] and the scene has neither");
   refuse(scene.condense.kind == Condensation::modal,
          "steps the full track; accepted is condense.kind = \"full\"");
-  refuse(!scene.sensors.empty(),
-         "traces what is under the loads; accepted is a scene without [[sensor]]");
-  refuse(scene.trace_supports,
-         "traces what is under the loads; accepted is output.supports = false");
   refuse(scene.step.steps % scene.step.steps_per_frame != 0,
          "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
 }
@@ -66,6 +60,44 @@ std::vector<MovingLoad> loads_of(const Scene& scene) {
   return loads;
 }
 
+constexpr double kGravity = 9.81;  // m/s2
+
+Wheelset wheelset_of(const WheelsetScene& w) {
+  Wheelset set;
+  set.mass = w.mass;
+  set.inertia_roll = w.inertia_roll;
+  set.inertia_spin = w.inertia_spin;
+  set.inertia_yaw = w.inertia_yaw;
+  set.weight = ((w.gravity ? w.mass : 0.) + w.carried_mass) * kGravity;
+  set.radius = w.radius;
+  set.tread_half_width = w.tread_half_width;
+  set.start = w.start;
+  set.speed = w.speed;
+  set.guide =
+      w.guide.method == GuideMethod::baumgarte ? Guide::baumgarte : Guide::augmented_lagrangian;
+  set.cap = w.guide.cap;
+  set.tolerance = w.guide.tolerance;
+  set.alpha = w.guide.alpha;
+  set.beta = w.guide.beta;
+  for (const BodyForceScene& force : w.forces)
+    set.forces.push_back({force.direction, packed_table(force.force)});
+  return set;
+}
+
+std::vector<Wheelset> wheelsets_of(const Scene& scene) {
+  std::vector<Wheelset> sets;
+  for (const WheelsetScene& w : scene.wheelsets) sets.push_back(wheelset_of(w));
+  return sets;
+}
+
+Railhead railhead_of(const Scene& scene) {
+  const Section section = section_of(scene);
+  Railhead head;
+  head.top_z = height_z(Height::head, section);
+  head.crown_radius = scene.rail.crown_radius;
+  return head;
+}
+
 PackOptions options_of(const Scene& scene) {
   const StepScene& step = scene.step;
   if (step.steps_per_frame > std::numeric_limits<int>::max())
@@ -76,7 +108,8 @@ PackOptions options_of(const Scene& scene) {
                         ? backward_euler(step.dt)
                         : generalised_alpha(step.dt, step.rho_inf),
           .steps_per_frame = static_cast<int>(step.steps_per_frame),
-          .residual_flexibility = scene.condense.residual_flexibility};
+          .residual_flexibility = scene.condense.residual_flexibility,
+          .gravity = scene.track.gravity ? kGravity : 0.};
 }
 
 Support support_of(const SupportScene& s, const Section& section) {
@@ -127,28 +160,18 @@ Track track_of(const Scene& scene) {
 
 Simulation::Simulation(const Scene& scene) try {
   refuse_unstepped(scene);
-  const Track track = track_of(scene);
-  packed_ = std::make_unique<PackedModel>(track, loads_of(scene), options_of(scene));
+  track_ = track_of(scene);
+  packed_ = std::make_unique<PackedModel>(track_, loads_of(scene), wheelsets_of(scene),
+                                          railhead_of(scene), options_of(scene));
   memory_.resize(static_cast<std::size_t>(state_doubles(model())), 0.);
   scratch_.resize(static_cast<std::size_t>(workspace_doubles(model())), 0.);
   state = state_on(model(), memory_.data());
   workspace = workspace_on(model(), scratch_.data());
-  if (scene.step.start == Start::equilibrium) start_in_equilibrium(track);
+  start_rolling(model(), state);
+  if (scene.step.start == Start::equilibrium)
+    start_in_equilibrium(track_, model(), scene.track.gravity ? kGravity : 0., state);
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
-}
-
-void Simulation::start_in_equilibrium(const Track& track) {
-  std::vector<PointForce> forces;
-  for (std::int32_t i = 0; i < model().loads; ++i) {
-    const LoadModel& load = model().load[i];
-    const PlacedLoad at = place(model(), load, 0);
-    if (at.on_rail) forces.push_back({{load.rail, at.x, 0., load.row[8], 2}, at.force});
-  }
-  const std::vector<Eigen::VectorXd> displacement = Statics(track).solve(forces);
-  for (std::size_t l = 0; l < displacement.size(); ++l)
-    for (Eigen::Index i = 0; i < displacement[l].size(); ++i)
-      state.u[model().line[l].first + i] = displacement[l][i];
 }
 
 }  // namespace railstep

@@ -24,13 +24,12 @@ class Simulation {
   explicit Simulation(const Scene& scene);
 
   const Model& model() const { return packed_->model(); }
+  const Track& track() const { return track_; }
   State state;
   Workspace workspace;
 
  private:
-  /// Displacements in static equilibrium under the loads as they stand at t = 0.
-  void start_in_equilibrium(const Track& track);
-
+  Track track_;
   std::unique_ptr<PackedModel> packed_;
   std::vector<double> memory_, scratch_;
 };

@@ -62,6 +62,8 @@ nlohmann::ordered_json to_json(const Simulation& run, const RunRecord& record) {
           {"final_time_s", static_cast<double>(run.state.steps) * model.scheme.dt},
           {"state_hash", fmt::format("{:016x}", state_hash(model, run.state))},
           {"status", status_names(record.status)},
+          {"max_constraint_violation", record.constraint_violation},
+          {"max_iterations", record.iterations},
           {"frame_us",
            {{"median", quantile(record.frame_us, .5)},
             {"p99", quantile(record.frame_us, .99)},
@@ -98,17 +100,19 @@ Exit run_scene(const RunOptions& o) {
   const Scene scene = scene_of(o);
   if (!o.report.empty()) need_gnuplot();
   Simulation run(scene);
+  const Sensors sensors(scene, run.track(), run.model());
   std::optional<Trace> trace;
-  if (!o.trace.empty()) trace.emplace(o.trace, trace_columns(scene));
+  if (!o.trace.empty()) trace.emplace(o.trace, trace_columns(scene, sensors));
   const std::int64_t frames = scene.step.steps / scene.step.steps_per_frame;
   RunRecord record;
   {
     Progress bar(frames);
-    record = simulate(run, frames, trace ? &*trace : nullptr, !o.report.empty(),
+    record = simulate(run, sensors, frames, trace ? &*trace : nullptr, !o.report.empty(),
                       [&bar](std::int64_t done) { bar(done); });
   }
   if (trace) trace->finish();
-  if (!o.report.empty()) write_file(o.report, run_report(scene, record));
+  if (!o.report.empty())
+    write_file(o.report, run_report(scene, trace_columns(scene, sensors), record));
   const nlohmann::ordered_json result = to_json(run, record);
   if (o.json)
     fmt::print("{}\n", result.dump(2));

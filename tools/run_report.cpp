@@ -56,25 +56,55 @@ std::string drawn(const std::string& script) {
   return svg.substr(start);
 }
 
-/// One curve per load; at most kPoints of them drawn, evenly thinned.
-std::string deflection_script(const Scene& scene, const RunRecord& record) {
+/// A plot over time of the trace's columns that end in one quantity.
+struct Plot {
+  const char* quantity;  // ".force_z_mean_n", say
+  const char* label;     // of the axis
+  double scale;
+};
+constexpr Plot kPlots[] = {{".deflection_z_m", "deflection under the load, mm", 1e3},
+                           {".rail_z_m", "rail under the wheel, mm", 1e3},
+                           {".force_z_mean_n", "wheel-rail force, mean of a frame, kN", 1e-3},
+                           {".dz_m", "vertical displacement at the sensors, mm", 1e3}};
+
+/// One curve a column; at most kPoints of them drawn, evenly thinned. Empty if nothing has it.
+std::string curves_script(const Plot& plot, const std::vector<std::string>& columns,
+                          const RunRecord& record) {
   constexpr std::size_t kPoints = 4000;
-  const std::size_t columns = 1 + 2 * scene.loads.size(), rows = record.rows.size() / columns;
-  const std::size_t every = rows / kPoints + 1;
-  std::string data, plots;
+  const std::string quantity = plot.quantity;
+  const std::size_t rows = record.rows.size() / columns.size(), every = rows / kPoints + 1;
+  std::string curves;
+  std::vector<std::size_t> chosen;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const std::size_t at = columns[c].rfind(quantity);
+    if (at == std::string::npos || at + quantity.size() != columns[c].size()) continue;
+    chosen.push_back(c);
+    curves += fmt::format("{} $rows using 1:({}*${}) with lines lw 1.5 title \"{}\"",
+                          curves.empty() ? "" : ",", plot.scale, 1 + chosen.size(),
+                          columns[c].substr(0, at));
+  }
+  if (chosen.empty()) return {};
+  std::string data;
   for (std::size_t r = 0; r < rows; r += every) {
-    for (std::size_t c = 0; c < columns; ++c)
-      data += fmt::format("{:.9g} ", record.rows[r * columns + c]);
+    data += fmt::format("{:.9g}", record.rows[r * columns.size()]);
+    for (const std::size_t c : chosen)
+      data += fmt::format(" {:.9g}", record.rows[r * columns.size() + c]);
     data += '\n';
   }
-  for (std::size_t i = 0; i < scene.loads.size(); ++i)
-    plots += fmt::format("{} $rows using 1:(1e3*${}) with lines lw 1.5 title \"{}\"",
-                         i == 0 ? "" : ",", 3 + 2 * i, scene.loads[i].name);
   return fmt::format(
-      "set terminal svg size 900,420 name 'deflection' noenhanced font 'sans,12'\n"
-      "set xlabel 'time, s'\nset ylabel 'deflection under the load, mm'\nset grid\n"
+      "set terminal svg size 900,420 name '{}' noenhanced font 'sans,12'\n"
+      "set xlabel 'time, s'\nset ylabel '{}'\nset grid\n"
       "$rows << EOD\n{}EOD\nplot{}\n",
-      data, plots);
+      quantity.substr(1), plot.label, data, curves);
+}
+
+std::string all_curves(const std::vector<std::string>& columns, const RunRecord& record) {
+  std::string html;
+  for (const Plot& plot : kPlots) {
+    const std::string script = curves_script(plot, columns, record);
+    if (!script.empty()) html += fmt::format("<h2>{}</h2>\n{}\n", plot.label, drawn(script));
+  }
+  return html;
 }
 
 /// Bins of a twentieth of a decade, both axes logarithmic: rare slow frames must show.
@@ -108,7 +138,8 @@ void need_gnuplot() {
     throw std::runtime_error("--report draws with gnuplot, which is not installed");
 }
 
-std::string run_report(const Scene& scene, const RunRecord& record) {
+std::string run_report(const Scene& scene, const std::vector<std::string>& columns,
+                       const RunRecord& record) {
   std::string status;
   for (const std::string& name : status_names(record.status))
     status += fmt::format("<p>{}: {}.</p>\n", name, status_sentence(name));
@@ -117,11 +148,11 @@ std::string run_report(const Scene& scene, const RunRecord& record) {
       "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}<table>\n"
       "<tr><th>frames</th><th>dt, s</th><th>frame median, us</th><th>p99, us</th><th>max, us</th>"
       "</tr>\n<tr><td>{3}</td><td>{4:.6g}</td><td>{5:.3g}</td><td>{6:.3g}</td><td>{7:.3g}</td>"
-      "</tr>\n</table>\n<h2>Deflection under the loads</h2>\n{8}\n<h2>Wall time of a frame</h2>\n"
+      "</tr>\n</table>\n{8}<h2>Wall time of a frame</h2>\n"
       "{9}\n</body>\n</html>\n",
       escaped(scene.file.stem().string()), kStyle, status, record.frame_us.size(), scene.step.dt,
       quantile(record.frame_us, .5), quantile(record.frame_us, .99), quantile(record.frame_us, 1.),
-      drawn(deflection_script(scene, record)), drawn(histogram_script(record)));
+      all_curves(columns, record), drawn(histogram_script(record)));
 }
 
 }  // namespace railstep

@@ -11,6 +11,7 @@ void need_gnuplot();
 /// One self-contained HTML page: deflection under every load over time, and a histogram of the
 /// frames' wall times, both logarithmic there. Needs a record that kept its rows.
 /// Throws std::runtime_error where gnuplot fails.
-std::string run_report(const Scene& scene, const RunRecord& record);
+std::string run_report(const Scene& scene, const std::vector<std::string>& columns,
+                       const RunRecord& record);
 
 }  // namespace railstep

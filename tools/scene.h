@@ -102,7 +102,7 @@ struct GuideScene {
   double alpha, beta;  // Baumgarte, 1/s
 };
 
-struct BodyForce {
+struct BodyForceScene {
   int direction;    // 0 x, 1 y, 2 z
   TimeTable force;  // N, on the centre
 };
@@ -117,7 +117,7 @@ struct WheelsetScene {
   double carried_mass;                                   // kg: weight without inertia
   bool gravity, may_leave_rail;
   GuideScene guide;
-  std::vector<BodyForce> forces;
+  std::vector<BodyForceScene> forces;
 };
 
 struct StepScene {

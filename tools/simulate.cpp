@@ -20,17 +20,26 @@ struct StatusText {
 };
 constexpr StatusText kStatus[] = {
     {Status::off_rail, "off_rail",
-     "a load is past the end of the rail and its force is 0: lengthen the track"},
+     "a load or wheel is off the rail and its force is 0: lengthen the track"},
+    {Status::contact_lost, "contact_lost", "a wheel stood free of its rail for a while"},
+    {Status::cap_reached, "cap_reached",
+     "a contact or guide solve ended at its cap: shorten step.dt_s or raise the guide's cap"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 
-void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
+void write_row(const Simulation& run, const Sensors& sensors, const Outputs& outputs,
+               std::vector<double>& row) {
   const Model& model = run.model();
   row.assign({static_cast<double>(run.state.steps) * model.scheme.dt});
   for (std::int32_t i = 0; i < model.loads; ++i) {
     row.push_back(outputs.load_x[i]);
     row.push_back(outputs.load_deflection[i]);
   }
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+    row.insert(row.end(),
+               {outputs.wheel_force[i], outputs.wheel_force_mean[i], outputs.wheel_force_peak[i],
+                outputs.wheel_impulse[i], outputs.wheel_gap[i], outputs.wheel_rail_z[i]});
+  sensors.read(run.state, row);
 }
 
 double timed_frame(Simulation& run, Outputs& outputs) {
@@ -43,29 +52,38 @@ double timed_frame(Simulation& run, Outputs& outputs) {
 
 }  // namespace
 
-std::vector<std::string> trace_columns(const Scene& scene) {
+std::vector<std::string> trace_columns(const Scene& scene, const Sensors& sensors) {
   std::vector<std::string> columns = {"time_s"};
   for (const LoadScene& load : scene.loads) {
     columns.push_back(load.name + ".x_m");
     columns.push_back(load.name + ".deflection_z_m");
   }
+  for (const WheelsetScene& wheelset : scene.wheelsets)
+    for (const std::string& wheel : wheelset.wheels)
+      for (const char* quantity :
+           {"force_z_n", "force_z_mean_n", "force_z_peak_n", "impulse_z_n_s", "gap_m", "rail_z_m"})
+        columns.push_back(wheel + "." + quantity);
+  columns.insert(columns.end(), sensors.columns().begin(), sensors.columns().end());
   return columns;
 }
 
-RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
-                   const std::function<void(std::int64_t)>& after) {
+RunRecord simulate(Simulation& run, const Sensors& sensors, std::int64_t frames, Trace* trace,
+                   bool keep_rows, const std::function<void(std::int64_t)>& after) {
   RunRecord record;
   Outputs outputs{};
   std::vector<double> row;
   const auto take = [&] {
     record.status = record.status | outputs.status;
     record.first_bad_unknown = outputs.first_bad_unknown;
+    record.iterations = std::max(record.iterations, outputs.iterations);
+    record.constraint_violation =
+        std::max(record.constraint_violation, outputs.constraint_violation);
     if (!trace && !keep_rows) return;
-    write_row(run, outputs, row);
+    write_row(run, sensors, outputs, row);
     if (trace) trace->row(row);
     if (keep_rows) record.rows.insert(record.rows.end(), row.begin(), row.end());
   };
-  publish(run.model(), run.state, outputs);
+  publish_start(run.model(), run.state, outputs);
   take();
   for (std::int64_t n = 0; n < frames && record.first_bad_unknown < 0; ++n) {
     record.frame_us.push_back(timed_frame(run, outputs));

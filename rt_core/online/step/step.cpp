@@ -1,7 +1,9 @@
 #include "online/step/step.h"
 
 #include "online/step/couple.h"
+#include "online/step/float_mode.h"
 #include "online/step/load.h"
+#include "online/step/wheel.h"
 
 namespace railstep {
 
@@ -102,6 +104,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
 
 Status advance_frame(const Model& model, State& state, Workspace& workspace,
                      Outputs& outputs) noexcept {
+  const FloatMode flushed_to_zero;
   start_frame(model, outputs);
   for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {
     predict(model, state, workspace);
@@ -129,6 +132,20 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
   }
   outputs.first_bad_unknown = first_bad(model, state);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
+}
+
+void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept {
+  start_frame(model, outputs);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    for (int side = 0; side < 2; ++side) {
+      const int i = 2 * b + side;
+      const WheelContact at = find_contact(model, model.wheelset[b], side, state.u);
+      outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
+          state.wheel_force[i];
+      outputs.wheel_gap[i] = -at.penetration;
+      outputs.wheel_rail_z[i] = at.on_rail ? axis_height(model, at, state.u) : 0.;
+    }
+  publish(model, state, outputs);
 }
 
 }  // namespace railstep

@@ -8,8 +8,11 @@ namespace railstep {
 [[nodiscard]] Status advance_frame(const Model& model, State& state, Workspace& workspace,
                                    Outputs& outputs) noexcept;
 
-/// Loads and health of a state as it stands; advance_frame() ends with it, and a trace starts with
-/// it on Outputs{}.
+/// Loads and health of a state as it stands, on what a frame has collected.
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept;
+
+/// Outputs of a state from which no step was made: the first row of a trace. Wheels carry the
+/// forces that the state starts with.
+void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept;
 
 }  // namespace railstep
