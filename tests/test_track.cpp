@@ -74,21 +74,6 @@ Track under_a_wheel(int elements_per_bay) {
   return t;
 }
 
-Track paper_track() {
-  Track t;
-  t.section = section_f();
-  t.rails = 2;
-  t.rail_spacing = 1.;
-  t.bays = 4;
-  t.bay_length = 1.6;
-  t.elements_per_bay = 1;
-  t.support.stiffness = {3e6, 1.4e9, 3e6};
-  t.support.damping = {3e4, 29e6, 3e4};
-  t.support.roll_stiffness = 1e6;
-  t.support.roll_damping = 1e3;
-  return t;
-}
-
 double frequency_of_lowest_thickness_mode(const Track& track) {
   for (const Line& line : assemble(track)) {
     if (line.unknown_of[0][8] < 0) continue;  // the vertical line carries b_z

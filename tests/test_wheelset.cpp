@@ -16,21 +16,6 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// The paper's Table 3 with what reference.md adds: seats on the axis, free ends.
-Track paper_track() {
-  Track t;
-  t.section = section_f();
-  t.rail_spacing = 1.;
-  t.bays = 4;
-  t.bay_length = 1.6;
-  t.elements_per_bay = 1;
-  t.support.stiffness = {3e6, 1.4e9, 3e6};
-  t.support.damping = {3e4, 29e6, 3e4};
-  t.support.roll_stiffness = 1e6;
-  t.support.roll_damping = 1e3;
-  return t;
-}
-
 Wheelset paper_wheelset() {
   Wheelset w;
   w.mass = 100.;

@@ -1,5 +1,6 @@
 #include "offline/pack/start.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
