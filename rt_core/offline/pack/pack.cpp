@@ -1,12 +1,10 @@
 #include "offline/pack/pack.h"
 
-#include <map>
 #include <stdexcept>
 #include <utility>
 
-#include "offline/condense/flexibility.h"
 #include "offline/contact/hertz.h"
-#include "offline/pack/band_factor.h"
+#include "offline/pack/start.h"
 
 namespace railstep {
 
@@ -19,57 +17,38 @@ const std::int32_t* PackedModel::keep(std::vector<std::int32_t> values) {
       ->data();
 }
 
-Diagonals PackedModel::keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded) {
-  std::map<std::int32_t, std::vector<double>> found;  // offset -> values by row
-  for (int j = 0; j < A.outerSize(); ++j)
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(A, j); entry; ++entry) {
-      auto& values = found[static_cast<std::int32_t>(j - entry.row())];
-      values.resize(static_cast<std::size_t>(padded), 0.);
-      values[static_cast<std::size_t>(entry.row())] = entry.value();
-    }
-  std::vector<std::int32_t> offsets;
-  std::vector<double> values;
-  for (const auto& [offset, diagonal] : found) {
-    offsets.push_back(offset);
-    values.insert(values.end(), diagonal.begin(), diagonal.end());
-  }
-  const int count = static_cast<int>(offsets.size());
-  return {padded, count, keep(std::move(offsets)), keep(std::move(values))};
+namespace {
+
+/// Whether a force on a rail, at a place that is no node, reaches a line.
+bool reaches(const Track& track, const Line& line, int rail, double y, double z, int direction) {
+  const double x = .37 * track.element_length();
+  return point_row(track, line, {rail, x, y, z, direction}).norm() > 0.;
 }
 
-void PackedModel::add_line(const Track& track, const Line& line) {
-  if (model_.lines == kMaxLines) throw std::invalid_argument("the track falls into too many lines");
-  const Scheme& s = model_.scheme;
-  BandFactor factor = factor_band(
-      Eigen::SparseMatrix<double>(line.stiffness + s.kv * line.damping + s.kg * line.mass));
-  const int padded = 8 * factor.panels;
-  LineModel& packed = model_.line[model_.lines++];
-  packed.first = model_.unknowns;
-  packed.step = {factor.panels, factor.left, keep(std::move(factor.forward)),
-                 keep(std::move(factor.inverse)), keep(std::move(factor.backward))};
-  packed.mass = keep_diagonals(line.mass, padded);
-  packed.damping = keep_diagonals(line.damping, padded);
-  std::vector<std::int32_t> unknowns;
-  for (const auto& node : line.unknown_of)
-    unknowns.insert(unknowns.end(), node.begin(), node.end());
-  packed.unknown_of = keep(std::move(unknowns));
-  for (int rail = 0; rail < 2; ++rail)
-    packed.rail_factor[rail] =
-        rail < track.rails ? line.rail_factor[static_cast<std::size_t>(rail)] : 0.;
-  packed.mirrored = line.mirrored ? 1 : 0;
-  model_.unknowns += padded;
+bool is_moved(const Track& track, const Line& line, const Traffic& traffic, double gravity) {
+  for (const MovingLoad& load : traffic.loads)
+    if (reaches(track, line, load.rail, 0., load.z, 2)) return true;
+  for (int direction = 0; direction < 3 && !traffic.wheelsets.empty(); ++direction)
+    for (int rail = 0; rail < track.rails; ++rail)
+      if (reaches(track, line, rail, .01, .1, direction)) return true;
+  return gravity != 0. && weight(track, line, gravity).norm() > 0.;
 }
 
-void PackedModel::add_load(const Track& track, const std::vector<Line>& lines,
-                           const MovingLoad& load, const PackOptions& options) {
+}  // namespace
+
+std::int32_t PackedModel::kind_of(int rail, double z) {
+  for (std::size_t i = 0; i < kinds_.size(); ++i)
+    if (kinds_[i].rail == rail && kinds_[i].z == z) return static_cast<std::int32_t>(i);
+  if (kinds_.size() == static_cast<std::size_t>(kMaxPortKinds))
+    throw std::invalid_argument("vertical forces act at more than 2 heights of a rail");
+  kinds_.push_back({rail, z});
+  return static_cast<std::int32_t>(kinds_.size()) - 1;
+}
+
+void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   if (model_.loads == kMaxLoads) throw std::invalid_argument("more than 32 loads");
   if (load.rail < 0 || load.rail >= track.rails)
     throw std::invalid_argument("a load stands on a rail that the track does not have");
-  for (int i = 0; i < model_.loads; ++i)
-    if (options.residual_flexibility && model_.load[i].rail == load.rail)
-      throw std::invalid_argument(
-          "residual flexibility acts under one load per rail; for several on one rail set "
-          "residual_flexibility = false");
   LoadModel& packed = model_.load[model_.loads++];
   packed.row[2] = 1.;
   packed.row[8] = load.z;
@@ -80,20 +59,13 @@ void PackedModel::add_load(const Track& track, const std::vector<Line>& lines,
   packed.force = load.force;
   packed.table_points = static_cast<std::int32_t>(load.table.size() / 2);
   packed.table = keep(load.table);
-  if (options.residual_flexibility)
-    packed.residual = keep(residual_flexibility(track, lines, {load.rail, 0., 0., load.z, 2},
-                                                options.residual_points));
+  packed.kind = kind_of(load.rail, load.z);
 }
 
-void PackedModel::add_wheelset(const Track& track, const std::vector<Line>& lines,
-                               const Wheelset& wheelset, const Railhead& head,
-                               const PackOptions& options) {
+void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
+                               const Railhead& head) {
   if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
   if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
-  if (options.residual_flexibility && (model_.wheelsets > 0 || model_.loads > 0))
-    throw std::invalid_argument(
-        "residual flexibility acts under one load or wheelset per rail; for several set "
-        "residual_flexibility = false");
   if (wheelset.forces.size() > static_cast<std::size_t>(kMaxBodyForces))
     throw std::invalid_argument("more than 4 forces on one wheelset");
   for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
@@ -124,40 +96,58 @@ void PackedModel::add_wheelset(const Track& track, const std::vector<Line>& line
   for (const Wheelset::Force& force : wheelset.forces)
     packed.force[packed.forces++] = {
         force.direction, static_cast<std::int32_t>(force.table.size() / 2), keep(force.table)};
-  if (!options.residual_flexibility) return;
-  for (int rail = 0; rail < 2; ++rail)
-    packed.residual[rail] = keep(
-        residual_flexibility(track, lines, {rail, 0., 0., head.top_z, 2}, options.residual_points));
+  for (int rail = 0; rail < 2; ++rail) packed.kind[rail] = kind_of(rail, head.top_z);
 }
 
-PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& loads,
-                         const PackOptions& options)
-    : PackedModel(track, loads, {}, {}, options) {}
+void PackedModel::set_start(std::vector<double> state) {
+  if (static_cast<std::int64_t>(state.size()) != state_doubles(model_))
+    throw std::invalid_argument("a start that is not a state of this model");
+  model_.start = keep(std::move(state));
+}
 
-PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& loads,
-                         const std::vector<Wheelset>& wheelsets, const Railhead& head,
-                         const PackOptions& options) {
+PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackOptions& options) {
   if (options.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
   model_.scheme = options.scheme;
   model_.steps_per_frame = options.steps_per_frame;
-  model_.residual_points = options.residual_points;
+  model_.steps = options.steps;
   model_.elements = track.elements();
   model_.element_length = track.element_length();
   model_.rail_y[0] = track.rails == 2 ? track.rail_spacing / 2. : 0.;
   model_.rail_y[1] = -model_.rail_y[0];
-  model_.head_z = head.top_z;
-  model_.crown_radius = head.crown_radius;
-  model_.head_half_width = head.half_width;
-  const std::vector<Line> lines = assemble(track);
-  for (const Line& line : lines) add_line(track, line);
-  for (const MovingLoad& load : loads) add_load(track, lines, load, options);
-  for (const Wheelset& wheelset : wheelsets) add_wheelset(track, lines, wheelset, head, options);
-  if (options.gravity == 0.) return;
-  std::vector<double> force(static_cast<std::size_t>(model_.unknowns), 0.);
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    const Eigen::VectorXd own = weight(track, lines[l], options.gravity);
-    for (Eigen::Index i = 0; i < own.size(); ++i)
-      force[static_cast<std::size_t>(model_.line[l].first + i)] = own[i];
+  model_.head_z = traffic.head.top_z;
+  model_.crown_radius = traffic.head.crown_radius;
+  model_.head_half_width = traffic.head.half_width;
+  model_.condensed = options.modal ? 1 : 0;
+  std::vector<Line> lines = assemble(track);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (is_moved(track, lines[i], traffic, options.gravity))
+      add_line(track, {std::move(lines[i]), i, {}, {}}, options);
+  if (lines_.empty()) throw std::invalid_argument("nothing moves the track");
+  model_.bodies = model_.unknowns;
+  for (const MovingLoad& load : traffic.loads) add_load(track, load);
+  for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, traffic.head);
+  if (options.gravity != 0.) add_weight(track, options.gravity);
+  add_probes(track, traffic.probes);
+  if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
+  set_start(start_released(*this));
+}
+
+void PackedModel::add_weight(const Track& track, double gravity) {
+  const auto n = static_cast<std::size_t>(model_.unknowns);
+  std::vector<double> force(n * static_cast<std::size_t>(1 + model_.condensed), 0.);
+  for (std::size_t l = 0; l < lines_.size(); ++l) {
+    const Eigen::VectorXd own = weight(track, lines_[l].line, gravity);
+    const auto first = static_cast<std::size_t>(model_.line[l].first);
+    if (model_.condensed == 0) {
+      std::copy(own.begin(), own.end(), force.begin() + static_cast<std::ptrdiff_t>(first));
+      continue;
+    }
+    const Eigen::VectorXcd modal =
+        lines_[l].modes.shape.transpose() * (lines_[l].basis.shapes.transpose() * own);
+    for (Eigen::Index k = 0; k < modal.size(); ++k) {
+      force[first + static_cast<std::size_t>(k)] = modal[k].real();
+      force[n + first + static_cast<std::size_t>(k)] = modal[k].imag();
+    }
   }
   model_.constant_force = keep(std::move(force));
 }

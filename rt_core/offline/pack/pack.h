@@ -1,9 +1,11 @@
 #pragma once
 #include <memory>
-#include <string>
+#include <optional>
 #include <vector>
 
-#include "offline/track/track.h"
+#include "offline/condense/flexibility.h"
+#include "offline/condense/modal.h"
+#include "offline/track/functional.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -43,37 +45,78 @@ struct Railhead {
   double half_width = .035;  // m; a contact beyond it is off the rail
 };
 
+/// A scalar that frames publish: rest + displacement * D(u) + velocity * D(v), with D a sum over
+/// the track or one coordinate of a wheelset.
+struct Probe {
+  double rest = 0.;
+  double displacement = 0., velocity = 0.;  // factors
+  Functional track = {};
+  int wheelset = -1, coordinate = 0;  // of a probe on a wheelset; 0 x, 1 y, 2 z
+};
+
+/// What acts on a track, and what is read from it.
+struct Traffic {
+  std::vector<MovingLoad> loads = {};
+  std::vector<Wheelset> wheelsets = {};
+  Railhead head = {};
+  std::vector<Probe> probes = {};
+};
+
 struct PackOptions {
-  Scheme scheme;
+  Scheme scheme;  // of banded lines and bodies; condensed lines are stepped exactly
   int steps_per_frame = 1;
   bool residual_flexibility = true;
   int residual_points = 16;  // intervals per element
   double gravity = 0.;       // m/s2 on rails and sleepers; 0: their weight is left off
+  std::optional<ModalLimit> modal = std::nullopt;  // of each line; none: full order
+  std::int64_t steps = 0;                          // of the scene's run
+};
+
+/// A line of the track as the model carries it.
+struct PackedLine {
+  Line line;
+  std::size_t index;  // among those of assemble(track)
+  Basis basis;        // of a condensed line
+  DampedModes modes;  // of a condensed line
 };
 
 /// A model with the memory its views look into. Not copied: the views would look into the original.
+///
+/// Lines that neither a load, a wheel nor the weight can move are left out. Lines with the same
+/// matrices (two rails that share nothing) share their factor or modes.
 class PackedModel {
  public:
-  PackedModel(const Track& track, const std::vector<MovingLoad>& loads, const PackOptions& options);
-  PackedModel(const Track& track, const std::vector<MovingLoad>& loads,
-              const std::vector<Wheelset>& wheelsets, const Railhead& head,
-              const PackOptions& options);
+  /// The start is set to rest, unloaded; set_start() gives another.
+  PackedModel(const Track& track, const Traffic& traffic, const PackOptions& options);
   PackedModel(const PackedModel&) = delete;
   PackedModel& operator=(const PackedModel&) = delete;
 
   const Model& model() const { return model_; }
+  const std::vector<PackedLine>& lines() const { return lines_; }
+  /// @param state  state_doubles() values, from start.h
+  void set_start(std::vector<double> state);
+  /// Largest |G_res| clipped because W would have become negative there, m/N: 0 if none was.
+  double clipped() const { return clipped_; }
 
  private:
   const double* keep(std::vector<double> values);
   const std::int32_t* keep(std::vector<std::int32_t> values);
   Diagonals keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded);
-  void add_line(const Track& track, const Line& line);
-  void add_load(const Track& track, const std::vector<Line>& lines, const MovingLoad& load,
-                const PackOptions& options);
-  void add_wheelset(const Track& track, const std::vector<Line>& lines, const Wheelset& wheelset,
-                    const Railhead& head, const PackOptions& options);
+  void add_line(const Track& track, PackedLine packed, const PackOptions& options);
+  void add_banded(const Line& line, LineModel& packed);
+  void add_condensed(const Track& track, PackedLine& own, LineModel& packed,
+                     const ModalLimit& limit);
+  void add_load(const Track& track, const MovingLoad& load);
+  void add_wheelset(const Track& track, const Wheelset& wheelset, const Railhead& head);
+  void add_weight(const Track& track, double gravity);
+  void add_probes(const Track& track, const std::vector<Probe>& probes);
+  void add_residual(const Track& track, const std::vector<Probe>& probes, int points);
+  std::int32_t kind_of(int rail, double z);
 
   Model model_{};
+  std::vector<PackedLine> lines_;
+  std::vector<Port> kinds_;
+  double clipped_ = 0.;
   std::vector<std::unique_ptr<std::vector<double>>> reals_;
   std::vector<std::unique_ptr<std::vector<std::int32_t>>> integers_;
 };

@@ -11,4 +11,9 @@ Scheme generalised_alpha(double dt, double rho_inf);
 /// Backward Euler: first order, L-stable.
 Scheme backward_euler(double dt);
 
+/// For condensed tracks: bodies move exactly under forces held over the step, and so do the lines.
+/// Contact forces follow the penetration at theta = 1 / (1 + rho_inf): rho_inf = 1 gives up no
+/// energy, 0 the most.
+Scheme held_force(double dt, double rho_inf);
+
 }  // namespace railstep

@@ -1,12 +1,15 @@
 #include "offline/pack/start.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include "offline/track/statics.h"
 #include "online/step/load.h"
+#include "online/step/residual.h"
+#include "online/step/step.h"
 #include "online/step/table.h"
 
 namespace railstep {
@@ -29,72 +32,103 @@ double wheel_load(const WheelsetModel& w) {
   return vertical / 2.;
 }
 
-double residual_at(const Model& model, const double* table, double x) {
-  if (table == nullptr) return 0.;
-  const double scaled = x / model.element_length;
-  const auto element = std::min(static_cast<std::int32_t>(scaled), model.elements - 1);
-  return interpolate(table + static_cast<std::ptrdiff_t>(element) * (model.residual_points + 1),
-                     model.residual_points, 2. * (scaled - element) - 1.);
-}
+/// Displacements of the track's lines, and of six coordinates of each wheelset.
+struct Pose {
+  std::vector<Eigen::VectorXd> lines;
+  std::vector<std::array<double, 6>> wheelsets;
+};
 
-/// Displacements of all unknowns in equilibrium, with everything that moves shifted by `time`.
-std::vector<double> equilibrium(const Statics& statics, const Model& model, double gravity,
-                                double time) {
+/// Equilibrium with everything that moves shifted by `time`.
+Pose equilibrium(const Statics& statics, const Model& model, double gravity, double time) {
   std::vector<PointForce> forces;
+  std::vector<RailForce> ports;  // the same for the residual flexibility
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const LoadModel& load = model.load[i];
     const PlacedLoad at = place(model, load, 0);
     const double x = at.x + load.speed * time;
-    if (at.on_rail && x >= 0. && x <= statics.track().length())
-      forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
+    if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
+    forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
+    ports.push_back(rail_force(model, load.kind, x, at.force));
   }
-  const auto wheel = [&](const WheelsetModel& w, int rail) {
-    return RailPoint{rail, w.start + w.speed * time, 0., model.head_z, 2};
-  };
+  const std::size_t loads = forces.size();
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    for (const int rail : {0, 1})
-      forces.push_back({wheel(model.wheelset[b], rail), -wheel_load(model.wheelset[b])});
-  const std::vector<Eigen::VectorXd> lines = statics.solve(forces, gravity);
-
-  std::vector<double> u(static_cast<std::size_t>(model.unknowns), 0.);
-  for (std::size_t l = 0; l < lines.size(); ++l)
-    for (Eigen::Index i = 0; i < lines[l].size(); ++i)
-      u[static_cast<std::size_t>(model.line[l].first + i)] = lines[l][i];
+    for (const int rail : {0, 1}) {
+      const WheelsetModel& w = model.wheelset[b];
+      const double x = w.start + w.speed * time;
+      forces.push_back({{rail, x, 0., model.head_z, 2}, -wheel_load(w)});
+      ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
+    }
+  Pose pose{statics.solve(forces, gravity), {}};
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
-    const WheelsetModel& w = model.wheelset[b];
-    const double force = wheel_load(w), x = w.start + w.speed * time;
     double height[2];
-    for (const int rail : {0, 1})
-      height[rail] =
-          statics.at(lines, wheel(w, rail)) - force * residual_at(model, w.residual[rail], x);
-    double* p = u.data() + w.first;
-    const double approach = std::pow(force / w.hertz, 2. / 3.);
-    p[2] = .5 * (height[0] + height[1]) - approach;
-    p[3] = (height[0] - height[1]) / (model.rail_y[0] - model.rail_y[1]);
+    for (const std::size_t rail : {0u, 1u}) {
+      const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
+      height[rail] = statics.at(pose.lines, forces[port].at) +
+                     residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
+                                           static_cast<int>(port));
+    }
+    const WheelsetModel& w = model.wheelset[b];
+    const double approach = std::pow(wheel_load(w) / w.hertz, 2. / 3.);
+    const double z = .5 * (height[0] + height[1]) - approach;
+    const double roll = (height[0] - height[1]) / (model.rail_y[0] - model.rail_y[1]);
+    pose.wheelsets.push_back({0., 0., z, roll, 0., 0.});
   }
-  return u;
+  return pose;
+}
+
+/// Puts displacements and velocities of a line into a state.
+void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
+         const Eigen::VectorXd& v, State& state) {
+  if (line.modal.count == 0) {
+    std::copy(u.begin(), u.end(), state.u + line.first);
+    std::copy(v.begin(), v.end(), state.v + line.first);
+    return;
+  }
+  const Eigen::MatrixXd projection = own.basis.shapes.transpose() * own.line.mass;
+  const Eigen::VectorXcd z = own.modes.from(projection * u, projection * v);
+  for (Eigen::Index k = 0; k < z.size(); ++k) {
+    state.u[line.first + k] = z[k].real();
+    state.v[line.first + k] = z[k].imag();
+  }
 }
 
 }  // namespace
 
-void start_rolling(const Model& model, State& state) {
+std::vector<double> start_released(const PackedModel& packed) {
+  const Model& model = packed.model();
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)), 0.);
+  State state = state_on(model, memory.data());
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     state.v[model.wheelset[b].first] = model.wheelset[b].speed;
+  if (model.condensed != 0) forces(model, 0, state.a, state.g);
+  return memory;
 }
 
-void start_in_equilibrium(const Track& track, const Model& model, double gravity, State& state) {
+std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
+                                         double gravity) {
+  const Model& model = packed.model();
+  std::vector<double> memory = start_released(packed);
+  State state = state_on(model, memory.data());
   const Statics statics(track);
-  const std::vector<double> u = equilibrium(statics, model, gravity, 0.);
+  const Pose at = equilibrium(statics, model, gravity, 0.);
   const double dt = 1e-6;  // s; the shape's change over it is far above rounding, and linear
-  const std::vector<double> later = equilibrium(statics, model, gravity, dt);
-  const std::vector<double> before = equilibrium(statics, model, gravity, -dt);
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    state.u[i] = u[i];
-    state.v[i] = (later[i] - before[i]) / (2. * dt);
+  const Pose later = equilibrium(statics, model, gravity, dt);
+  const Pose before = equilibrium(statics, model, gravity, -dt);
+  for (std::size_t l = 0; l < packed.lines().size(); ++l) {
+    const std::size_t i = packed.lines()[l].index;
+    put(packed.lines()[l], model.line[l], at.lines[i],
+        (later.lines[i] - before.lines[i]) / (2. * dt), state);
   }
-  start_rolling(model, state);
-  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const std::size_t set = static_cast<std::size_t>(b);
+    for (std::size_t k = 0; k < 6; ++k) {
+      state.u[model.wheelset[b].first + static_cast<int>(k)] = at.wheelsets[set][k];
+      state.v[model.wheelset[b].first + static_cast<int>(k)] +=
+          (later.wheelsets[set][k] - before.wheelsets[set][k]) / (2. * dt);
+    }
     for (int i = 0; i < 2; ++i) state.wheel_force[2 * b + i] = wheel_load(model.wheelset[b]);
+  }
+  return memory;
 }
 
 }  // namespace railstep

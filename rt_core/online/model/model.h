@@ -3,6 +3,7 @@
 
 #include "online/math/band.h"
 #include "online/math/diagonals.h"
+#include "online/math/modes.h"
 
 namespace railstep {
 
@@ -11,6 +12,7 @@ inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxWheels = 2 * kMaxWheelsets;
 inline constexpr int kMaxBodyForces = 4;
+inline constexpr int kMaxPortKinds = 4;  // rails and heights at which vertical forces act
 
 /// Coefficients of a one-step scheme with constant matrices, made offline. With g the true
 /// acceleration (M g + C v + K u = f at every step) and a the algorithmic one (Arnold and Bruls
@@ -20,14 +22,30 @@ inline constexpr int kMaxBodyForces = 4;
 struct Scheme {
   double dt;  // s
   double uv, ua, ug, va, vg, kv, kg, ag, a0, aa;
+  double theta;  // contact forces follow the penetration theta d1 + (1 - theta) d0; 1: at the end
 };
 
-/// One independent linear system of the track; views into the model's block.
+/// A condensed line: complex modes z' = rate z + q, with q = shape' f of the forces on it and
+/// displacement Re shape z (both without conjugation), stepped exactly:
+///   z1 = keep z0 + old_force q0 + new_force q1   for q linear in time,
+///   z1 = keep z0 + held_force q                  for q constant over the step.
+struct Modal {
+  std::int32_t count;  // of modes, padded with zeros to whole panels; 0: the line is banded
+  Complex rate;        // [count] 1/s
+  Complex keep;        // e^(rate dt)
+  Complex old_force, new_force, held_force;  // s
+  std::int32_t rows;
+  const double* shape;                       // [rows][2][count] real and imaginary parts, kg^-1/2
+};
+
+/// One independent linear system of the track; views into the model's block. Banded or condensed.
+/// The state of a condensed line is Re z in u, Im z in v, and in a, g those of the last q.
 struct LineModel {
-  std::int32_t first;              // of its unknowns among the state's
-  Band step;                       // factor of K + kv C + kg M
-  Diagonals mass, damping;         // padded to whole panels
-  const std::int32_t* unknown_of;  // [nodes][9], -1 where not carried
+  std::int32_t first, size;  // its unknowns among the state's, padded to whole panels
+  Band step;                 // factor of K + kv C + kg M
+  Diagonals mass, damping;   // padded to whole panels
+  Modal modal;
+  const std::int32_t* unknown_of;  // [nodes][9] unknown, or row of modal.shape; -1: not carried
   double rail_factor[2];           // weight of the line in left and right rail
   std::int32_t mirrored;           // right rail: y components change sign
 };
@@ -40,7 +58,7 @@ struct LoadModel {
   double force;               // N along z, up positive
   std::int32_t table_points;  // 0: constant
   const double* table;        // [table_points][2]  s, factor; linear between, constant outside
-  const double* residual;     // [elements][residual_points + 1]  m/N at equal xi, or null
+  std::int32_t kind;          // of port, for the residual flexibility
 };
 
 /// A force on a wheelset's centre over time.
@@ -68,7 +86,35 @@ struct WheelsetModel {
   double alpha, beta;  // of Baumgarte, 1/s
   std::int32_t forces;
   BodyForce force[kMaxBodyForces];
-  const double* residual[2];  // per rail [elements][residual_points + 1]  m/N, or null
+  std::int32_t kind[2];  // of port on left and right rail, for the residual flexibility
+};
+
+/// Residual flexibility between ports of two kinds: of the first in element e at point p, of the
+/// second in element e + shift at point q, -reach <= shift <= reach; zero beyond.
+struct PairModel {
+  std::int32_t points, reach;  // intervals per element, elements
+  const double* value;         // [elements][2 reach + 1][points + 1][points + 1] m/N, or null
+};
+
+/// What the model's unknowns miss of the static deflection under vertical forces, tabled over
+/// elements at equal steps of xi. Null pointers: not modelled.
+struct ResidualModel {
+  std::int32_t kinds;          // of ports
+  std::int32_t points;         // intervals per element
+  const double* under;         // [kinds][elements][points + 1] m/N, of the force's own point
+  const double* axis;          // the same of the rail's axis under it
+  PairModel pair[kMaxPortKinds][kMaxPortKinds];  // [force][displacement]
+};
+
+/// Scalars of the track that a frame publishes: rest + row * [u, v] + residual * port forces.
+struct ProbeModel {
+  std::int32_t count;
+  const std::int32_t* start;  // [count + 1] of each row among index and value
+  const std::int32_t* index;  // into u, then v, of the state: 0 to 2 unknowns
+  const double* value;        // per m or per m/s
+  const double* rest;         // [count]
+  const std::int32_t* table;  // [count] of its residual, -1: none
+  const double* residual;     // [tables][kinds][elements][points + 1] per N, or null
 };
 
 /// Everything a step needs; immutable, may be shared by threads.
@@ -76,14 +122,19 @@ struct Model {
   Scheme scheme;
   std::int32_t lines, loads, wheelsets, elements;
   std::int32_t unknowns;         // of all lines, padded, and 8 per wheelset
-  std::int32_t residual_points;  // intervals of a residual table per element
+  std::int32_t condensed;        // 1: all lines are condensed, else all are banded
+  std::int32_t bodies;           // first unknown behind the lines
   std::int32_t steps_per_frame;
   double element_length;         // m
   double rail_y[2];              // of the rails' axes, m
   double head_z;                 // of the railhead's top over the axis, m
   double crown_radius;           // m
   double head_half_width;        // m
-  const double* constant_force;  // [unknowns] N, or null: the track's weight
+  const double* constant_force;  // [1 + condensed][unknowns] N, or null: the track's weight
+  ResidualModel residual;
+  ProbeModel probe;
+  const double* start;  // [state_doubles] state at step 0
+  std::int64_t steps;   // of the scene's run
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];

@@ -16,6 +16,11 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
 
 }  // namespace
 
+void reset(const Model& model, State& state) noexcept {
+  state.steps = 0;
+  std::memcpy(state.u, model.start, sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
+}
+
 std::uint64_t state_hash(const Model& model, const State& state) noexcept {
   std::uint64_t hash = mix(0xcbf29ce484222325u, static_cast<std::uint64_t>(state.steps));
   const std::int64_t count = state_doubles(model);  // one block, from u on

@@ -6,7 +6,8 @@
 
 namespace railstep {
 
-/// All a replay needs, nothing else. The caller owns the memory: state_doubles() of it.
+/// All a replay needs, nothing else. The caller owns the memory: state_doubles() of it. What u, v,
+/// a and g hold of a condensed line stands at LineModel.
 struct State {
   std::int64_t steps;   // time = steps * dt, so it never drifts
   double* u;            // [unknowns] displacement: m; slopes 1
@@ -24,6 +25,8 @@ struct Workspace {
   double* scaled;  // [unknowns]
   double* solved;  // [1 + 2 wheelsets][unknowns] right-hand side of the track without wheels, then
                    // of a unit force at each wheel; after the solve, the displacements
+  double* imaginary;  // the same of condensed lines; solved is their real part
+  double* row;        // [2 wheelsets][2][unknowns] of condensed lines: shape under each wheel
 };
 
 /// What a frame publishes.
@@ -38,6 +41,7 @@ struct Outputs {
   double wheel_force_peak[kMaxWheels];  // N
   double wheel_impulse[kMaxWheels];     // N s
   double wheel_gap[kMaxWheels];         // m, negative in contact
+  double wheel_x[kMaxWheels];           // of the contact along the undeformed rail, m
   double wheel_rail_z[kMaxWheels];      // displacement of the rail's axis under it, m
   double constraint_violation;          // largest of the frame, m or rad
   std::int32_t iterations;              // largest of the frame, of contact and joint solves
@@ -47,7 +51,8 @@ inline std::int64_t state_doubles(const Model& model) noexcept {
   return 4LL * model.unknowns + 4LL * model.wheelsets;
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
-  return (4LL + 2LL * model.wheelsets) * model.unknowns;
+  const std::int64_t wheels = 2LL * model.wheelsets;
+  return (4 + wheels + model.condensed * (1 + 3 * wheels)) * model.unknowns;
 }
 
 /// Views over the caller's memory, which must be aligned to doubles.
@@ -62,9 +67,14 @@ inline State state_on(const Model& model, double* memory) noexcept {
           memory + 4 * n + 2 * model.wheelsets};
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
-  const std::int64_t n = model.unknowns;
-  return {memory, memory + n, memory + 2 * n, memory + 3 * n};
+  const std::int64_t n = model.unknowns, solved = (1 + 2LL * model.wheelsets) * n;
+  double* const condensed = memory + 3 * n + solved;
+  return {memory,         memory + n, memory + 2 * n,
+          memory + 3 * n, condensed,  condensed + model.condensed * solved};
 }
+
+/// Puts the model's start into a state: step 0.
+void reset(const Model& model, State& state) noexcept;
 
 /// FNV-1a over the step count and the bits of all fields: equal states have equal hashes.
 std::uint64_t state_hash(const Model& model, const State& state) noexcept;

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "online/contact/ports.h"
+#include "online/step/load.h"
+#include "online/step/residual.h"
 #include "online/step/table.h"
 #include "online/step/wheel.h"
 
@@ -20,6 +22,8 @@ constexpr double kPenalty = 1e3;
 struct Coupling {
   int wheels;
   WheelContact contact[kMaxWheels];
+  RailForce place[kMaxWheels];          // of the contacts
+  double loaded[kMaxWheels];            // residual displacement there by the loads, m
   double W[kMaxWheels * kMaxWheels];  // m/N
   double hertz[kMaxWheels];
   double track_free[kMaxWheels];        // penetration from the track and the frozen geometry
@@ -79,26 +83,44 @@ void free_bodies(const Model& model, double time, const Workspace& w, Coupling& 
   }
 }
 
-/// Contacts on the configuration u + dt v, one for each wheel.
+Configuration located_on(const State& s, const Workspace& w) noexcept {
+  return {w.scaled, {s.u, s.v}};
+}
+
+/// Contacts at the time whose penetration gives the force: on u + theta dt v of bodies and banded
+/// lines; condensed lines are seen as they stand (their fastest rates are far above 1/dt).
 void find_contacts(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
-  const double dt = model.scheme.dt;
+  const double ahead = model.scheme.theta * model.scheme.dt;
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.unknowns; ++i) w.scaled[i] = s.u[i] + dt * s.v[i];
+  for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
+    w.scaled[i] = s.u[i] + ahead * s.v[i];
   for (int i = 0; i < c.wheels; ++i) {
-    c.contact[i] = find_contact(model, model.wheelset[i / 2], i % 2, w.scaled);
+    c.contact[i] = find_contact(model, model.wheelset[i / 2], i % 2, located_on(s, w));
     c.hertz[i] = model.wheelset[i / 2].hertz;
+    c.place[i] = {model.wheelset[i / 2].kind[i % 2], c.contact[i].row.element, c.contact[i].xi, 0.};
   }
 }
 
-/// Solves each line for itself and for the wheels that touch it, together where they can be.
-void solve_lines(const Model& model, Workspace& w, const Coupling& c) noexcept {
+/// What the loads add to the rail under each wheel through the residual flexibility.
+void find_loaded(const Model& model, std::int64_t step, Coupling& c) noexcept {
+  for (int i = 0; i < c.wheels; ++i) c.loaded[i] = 0.;
+  for (std::int32_t l = 0; l < model.loads; ++l) {
+    const PlacedLoad load = place(model, model.load[l], step);
+    if (!load.on_rail) continue;
+    const RailForce at{model.load[l].kind, load.row.element, load.xi, load.force};
+    for (int i = 0; i < c.wheels; ++i)
+      c.loaded[i] += load.force * residual_between(model, at, c.place[i]);
+  }
+}
+
+/// Solves each banded line for itself and for the wheels that touch it, together where they can be.
+void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (int i = 0; i < c.wheels; ++i) {
     double* rhs = w.solved + (i + 1) * stride;
-    for (std::int32_t k = 0; k < model.unknowns; ++k) rhs[k] = 0.;
+    for (std::int32_t k = 0; k < model.bodies; ++k) rhs[k] = 0.;
     if (!c.contact[i].on_rail) continue;
-    for (std::int32_t l = 0; l < model.lines; ++l)
-      spread(model.line[l], c.contact[i], 1., rhs + model.line[l].first);
+    for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], c.contact[i].row, 1., rhs);
   }
   for (std::int32_t l = 0; l < model.lines; ++l) {
     double* x = w.solved + model.line[l].first;
@@ -114,46 +136,78 @@ void solve_lines(const Model& model, Workspace& w, const Coupling& c) noexcept {
   }
 }
 
-/// W between all wheels: through the lines, the residual flexibility and the wheelsets.
-void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
+Complex row_of(const Model& model, const Workspace& w, int wheel) noexcept {
+  const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(wheel) * model.unknowns;
+  return {re, re + model.unknowns};
+}
+
+/// What a unit force under each wheel, held over the step, makes of every condensed line.
+void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
+  for (int i = 0; i < c.wheels; ++i) {
+    double* re = w.row + 2 * i * stride;
+    double* im = re + stride;
+    for (std::int32_t k = 0; k < model.bodies; ++k) re[k] = im[k] = 0.;
+    for (std::int32_t l = 0; l < model.lines && c.contact[i].on_rail; ++l)
+      spread_modes(model.line[l], c.contact[i].row, 1., re, im);
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      const LineModel& line = model.line[l];
+      modes_multiply(line.modal.held_force, {re + line.first, im + line.first},
+                     w.solved + (i + 1) * stride + line.first,
+                     w.imaginary + (i + 1) * stride + line.first, line.size);
+    }
+  }
+}
+
+/// Displacement under wheel `i` of the track moved by unit forces at wheel `j`, at the step's end.
+double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
+                        int j) noexcept {
+  const double* unit = w.solved + static_cast<std::ptrdiff_t>(j + 1) * model.unknowns;
+  const double* imaginary = w.imaginary + static_cast<std::ptrdiff_t>(j + 1) * model.unknowns;
+  if (model.condensed != 0) return modes_dot(row_of(model, w, i), {unit, imaginary}, model.bodies);
+  double sum = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    sum += motion(model.line[l], c.contact[i].row, {unit, {}});
+  return sum;
+}
+
+/// W between all wheels: through the lines, the wheelsets and the residual flexibility.
+void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
   for (int i = 0; i < c.wheels; ++i)
-    for (int j = 0; j < c.wheels; ++j) {
+    for (int j = 0; j <= i; ++j) {
       double sum = 0.;
       if (c.contact[i].on_rail && c.contact[j].on_rail) {
-        for (std::int32_t l = 0; l < model.lines; ++l)
-          sum += rail_motion(model.line[l], c.contact[i],
-                             w.solved + (j + 1) * stride + model.line[l].first);
-        if (i / 2 == j / 2)
-          for (int k = 0; k < 6; ++k)
-            sum += c.contact[i].body_row[k] * c.compliance[i / 2][k] * c.contact[j].body_row[k];
+        sum = track_compliance(model, w, c, i, j);
+        for (int k = 0; k < 6 && i / 2 == j / 2; ++k)
+          sum += c.contact[i].body_row[k] * c.compliance[i / 2][k] * c.contact[j].body_row[k];
+        sum = model.scheme.theta * sum + (i == j ? residual_under(model, c.place[i])
+                                                 : residual_between(model, c.place[j], c.place[i]));
       }
-      c.W[i * c.wheels + j] = sum;
+      c.W[i * c.wheels + j] = c.W[j * c.wheels + i] = sum;
     }
-  for (int i = 0; i < c.wheels; ++i) {
-    const double* table = model.wheelset[i / 2].residual[i % 2];
-    if (table == nullptr || !c.contact[i].on_rail) continue;
-    table += static_cast<std::ptrdiff_t>(c.contact[i].element) * (model.residual_points + 1);
-    c.W[i * c.wheels + i] += interpolate(table, model.residual_points, c.contact[i].xi);
-  }
-  for (int i = 0; i < c.wheels; ++i)  // symmetric to the last bit
-    for (int j = 0; j < i; ++j) c.W[i * c.wheels + j] = c.W[j * c.wheels + i];
 }
 
 /// Penetration that the track alone would leave: the located one, moved from where it was located.
-void track_penetration(const Model& model, const Workspace& w, Coupling& c) noexcept {
+void track_penetration(const Model& model, const State& s, const Workspace& w,
+                       Coupling& c) noexcept {
+  const Configuration seen = located_on(s, w);
   for (int i = 0; i < c.wheels; ++i) {
     const WheelContact& at = c.contact[i];
     c.track_free[i] = -1.;  // off the rail: far away
     if (!at.on_rail) continue;
-    double d = at.penetration;
-    for (std::int32_t l = 0; l < model.lines; ++l) {
-      const LineModel& line = model.line[l];
-      d += rail_motion(line, at, w.solved + line.first) -
-           rail_motion(line, at, w.scaled + line.first);
+    double moved = 0.;
+    if (model.condensed != 0) {
+      moved = modes_dot(row_of(model, w, i), {w.solved, w.imaginary}, model.bodies) -
+              modes_dot(row_of(model, w, i), seen.modes, model.bodies);
+    } else {
+      for (std::int32_t l = 0; l < model.lines; ++l)
+        moved +=
+            motion(model.line[l], at.row, {w.solved, {}}) - motion(model.line[l], at.row, seen);
     }
-    const double* located = w.scaled + model.wheelset[i / 2].first;
-    for (int k = 0; k < 6; ++k) d += at.body_row[k] * located[k];
+    double d = at.penetration + model.scheme.theta * moved + c.loaded[i];
+    const std::int32_t first = model.wheelset[i / 2].first;
+    for (int k = 0; k < 6; ++k)
+      d += at.body_row[k] * (w.scaled[first + k] - (1. - model.scheme.theta) * s.u[first + k]);
     c.track_free[i] = d;
   }
 }
@@ -182,7 +236,7 @@ PortResult contacts(const Model& model, const State& s, Coupling& c) noexcept {
       double p = c.free[i / 2][k];
       if (set.guide == Guide::augmented_lagrangian && (k == kGuided[0] || k == kGuided[1]))
         p -= c.compliance[i / 2][k] * s.multiplier[2 * (i / 2) + (k == kGuided[1] ? 1 : 0)];
-      d_free[i] -= c.contact[i].body_row[k] * p;
+      d_free[i] -= model.scheme.theta * c.contact[i].body_row[k] * p;
     }
   }
   return solve_ports(c.wheels, c.W, c.hertz, d_free, c.force, c.penetration);
@@ -220,6 +274,44 @@ void solve_coupled(const Model& model, double time, State& s, Workspace& w, Coup
   if (!settled || !solved) result.status = result.status | Status::cap_reached;
 }
 
+/// Displacements of the track under the wheel forces: free, and what each force adds.
+void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
+  for (int i = 0; i < c.wheels; ++i) {
+    const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i + 1) * model.unknowns;
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      const LineModel& line = model.line[l];
+      if (line.rail_factor[i % 2] == 0.) continue;
+#pragma omp simd
+      for (std::int32_t k = line.first; k < line.first + line.size; ++k)
+        w.solved[k] -= c.force[i] * w.solved[unit + k];
+      if (model.condensed == 0) continue;
+#pragma omp simd
+      for (std::int32_t k = line.first; k < line.first + line.size; ++k)
+        w.imaginary[k] -= c.force[i] * w.imaginary[unit + k];
+    }
+  }
+}
+
+void publish_wheels(const Model& model, const Workspace& w, const Coupling& c, State& state,
+                    CoupleResult& result) noexcept {
+  for (int i = 0; i < c.wheels; ++i) {
+    const WheelContact& at = c.contact[i];
+    state.wheel_force[i] = c.force[i];
+    result.gap[i] = -c.penetration[i];
+    result.x[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+    result.rail_z[i] = 0.;
+    if (at.on_rail) {
+      result.rail_z[i] = axis_height(model, at, {w.solved, {w.solved, w.imaginary}}) + c.loaded[i] -
+                         c.force[i] * residual_axis(model, c.place[i]);
+      for (int j = 0; j < c.wheels; ++j)
+        if (j != i) result.rail_z[i] -= c.force[j] * residual_between(model, c.place[j], c.place[i]);
+    }
+    if (!at.on_rail) result.status = result.status | Status::off_rail;
+    if (at.cap_reached) result.status = result.status | Status::cap_reached;
+    if (c.force[i] <= 0.) result.status = result.status | Status::contact_lost;
+  }
+}
+
 }  // namespace
 
 CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspace& w) noexcept {
@@ -228,29 +320,18 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   c.wheels = 2 * model.wheelsets;
   const double time = static_cast<double>(step) * model.scheme.dt;
   find_contacts(model, state, w, c);
+  find_loaded(model, step, c);
   free_bodies(model, time, w, c);
-  solve_lines(model, w, c);
+  if (model.condensed != 0)
+    respond_modes(model, w, c);
+  else
+    solve_bands(model, w, c);
   compliance(model, w, c);
-  track_penetration(model, w, c);
+  track_penetration(model, state, w, c);
   for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
   solve_coupled(model, time, state, w, c, result);
-  for (int i = 0; i < c.wheels; ++i) {
-    state.wheel_force[i] = c.force[i];
-    result.gap[i] = -c.penetration[i];
-    const double* unit = w.solved + static_cast<std::ptrdiff_t>(i + 1) * model.unknowns;
-    for (std::int32_t l = 0; l < model.lines; ++l) {
-      const LineModel& line = model.line[l];
-      if (line.rail_factor[i % 2] == 0.) continue;
-#pragma omp simd
-      for (std::int32_t k = line.first; k < line.first + 8 * line.step.panels; ++k)
-        w.solved[k] -= c.force[i] * unit[k];
-    }
-    if (!c.contact[i].on_rail) result.status = result.status | Status::off_rail;
-    if (c.contact[i].cap_reached) result.status = result.status | Status::cap_reached;
-    if (c.force[i] <= 0.) result.status = result.status | Status::contact_lost;
-  }
-  for (int i = 0; i < c.wheels; ++i)
-    result.rail_z[i] = c.contact[i].on_rail ? axis_height(model, c.contact[i], w.solved) : 0.;
+  move_track(model, w, c);
+  publish_wheels(model, w, c, state, result);
   return result;
 }
 

@@ -9,6 +9,7 @@ struct CoupleResult {
   std::int32_t iterations;
   double violation;           // of the guides, m or rad
   double gap[kMaxWheels];     // m, negative in contact
+  double x[kMaxWheels];       // of the contact along the undeformed rail, m
   double rail_z[kMaxWheels];  // m
 };
 

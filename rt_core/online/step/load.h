@@ -1,5 +1,5 @@
 #pragma once
-#include "online/model/model.h"
+#include "online/step/line.h"
 
 namespace railstep {
 
@@ -7,20 +7,14 @@ namespace railstep {
 struct PlacedLoad {
   double x;      // m
   double force;  // N, 0 when taken off
-  std::int32_t element;
-  double shape[3];  // N1, N2, N3 at its place
   double xi;
   bool on_rail;
+  RailRow row;  // of the loaded point's vertical displacement
 };
 
 PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) noexcept;
 
-/// rhs += force * row, for the line's unknowns.
-void spread(const LineModel& line, const LoadModel& load, const PlacedLoad& at,
-            double* rhs) noexcept;
-
-/// Vertical displacement of the loaded point, m: the lines' motion and the residual flexibility.
-double deflection(const Model& model, const LoadModel& load, const PlacedLoad& at,
-                  const double* u) noexcept;
+/// Vertical displacement of the loaded point by the lines alone, m.
+double deflection(const Model& model, const PlacedLoad& placed, const Configuration& at) noexcept;
 
 }  // namespace railstep

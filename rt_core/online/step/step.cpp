@@ -3,60 +3,79 @@
 #include "online/step/couple.h"
 #include "online/step/float_mode.h"
 #include "online/step/load.h"
+#include "online/step/residual.h"
 #include "online/step/wheel.h"
 
 namespace railstep {
 
 namespace {
 
-/// u*, v*: where the scheme goes without this step's acceleration.
+Configuration standing(const State& s) noexcept { return {s.u, {s.u, s.v}}; }
+
+/// u*, v*: where the scheme goes without this step's acceleration, of bodies and banded lines.
 void predict(const Model& model, const State& s, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.unknowns; ++i) {
+  for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i) {
     w.u_star[i] = ((s.u[i] + c.uv * s.v[i]) + c.ua * s.a[i]) + c.ug * s.g[i];
     w.v_star[i] = (s.v[i] + c.va * s.a[i]) + c.vg * s.g[i];
   }
 }
 
-/// M kg u* + C (kv u* - v*) of every line into the right-hand side.
-void inertia(const Model& model, Workspace& w) noexcept {
+/// M kg u* + C (kv u* - v*) of every banded line onto the right-hand side.
+void add_inertia(const Model& model, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.unknowns; ++i) {
-    w.solved[i] = model.constant_force == nullptr ? 0. : model.constant_force[i];
-    w.scaled[i] = c.kg * w.u_star[i];
-  }
+  for (std::int32_t i = 0; i < model.bodies; ++i) w.scaled[i] = c.kg * w.u_star[i];
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const std::int32_t at = model.line[l].first;
     diagonals_multiply_add(model.line[l].mass, w.scaled + at, w.solved + at);
   }
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.unknowns; ++i) w.scaled[i] = c.kv * w.u_star[i] - w.v_star[i];
+  for (std::int32_t i = 0; i < model.bodies; ++i) w.scaled[i] = c.kv * w.u_star[i] - w.v_star[i];
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const std::int32_t at = model.line[l].first;
     diagonals_multiply_add(model.line[l].damping, w.scaled + at, w.solved + at);
   }
 }
 
-void add_loads(const Model& model, std::int64_t step, Workspace& w) noexcept {
-  for (std::int32_t i = 0; i < model.loads; ++i) {
-    const PlacedLoad at = place(model, model.load[i], step);
-    if (!at.on_rail) continue;
-    for (std::int32_t l = 0; l < model.lines; ++l)
-      spread(model.line[l], model.load[i], at, w.solved + model.line[l].first);
-  }
-}
-
-void solve(const Model& model, Workspace& w) noexcept {
+/// The track's displacements without wheels, for loads that stand on the right-hand side.
+void solve_bands(const Model& model, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l)
     solve_band<1>(model.line[l].step, w.solved + model.line[l].first, 0);
 }
 
+/// Modes without wheels at the step's end; the forces q1 in `solved` pass into the state.
+void advance_modes(const LineModel& line, State& s, Workspace& w) noexcept {
+  const Modal& m = line.modal;
+  const double *keep_re = m.keep.re, *keep_im = m.keep.im;
+  const double *old_re = m.old_force.re, *old_im = m.old_force.im;
+  const double *new_re = m.new_force.re, *new_im = m.new_force.im;
+  const double *u = s.u + line.first, *v = s.v + line.first;
+  double *a = s.a + line.first, *g = s.g + line.first;
+  double *re = w.solved + line.first, *im = w.imaginary + line.first;
+#pragma omp simd
+  for (std::int32_t k = 0; k < line.size; ++k) {
+    const double q_re = re[k], q_im = im[k];
+    re[k] = (((keep_re[k] * u[k] - keep_im[k] * v[k]) + (old_re[k] * a[k] - old_im[k] * g[k])) +
+             (new_re[k] * q_re - new_im[k] * q_im));
+    im[k] = (((keep_re[k] * v[k] + keep_im[k] * u[k]) + (old_re[k] * g[k] + old_im[k] * a[k])) +
+             (new_re[k] * q_im + new_im[k] * q_re));
+    a[k] = q_re;
+    g[k] = q_im;
+  }
+}
+
 void correct(const Model& model, State& s, const Workspace& w) noexcept {
   const Scheme c = model.scheme;
+  const std::int32_t first = model.condensed * model.bodies;
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.unknowns; ++i) {
+  for (std::int32_t i = 0; i < first; ++i) {
+    s.u[i] = w.solved[i];
+    s.v[i] = w.imaginary[i];
+  }
+#pragma omp simd
+  for (std::int32_t i = first; i < model.unknowns; ++i) {
     const double change = w.solved[i] - w.u_star[i];
     const double g = c.kg * change;
     s.u[i] = w.solved[i];
@@ -96,28 +115,52 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
     out.wheel_force_mean[i] = out.wheel_impulse[i] / (model.scheme.dt * model.steps_per_frame);
     if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
     out.wheel_gap[i] = met.gap[i];
+    out.wheel_x[i] = met.x[i];
     out.wheel_rail_z[i] = met.rail_z[i];
   }
 }
 
+void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
+  predict(model, state, w);
+  forces(model, state.steps + 1, w.solved, w.imaginary);
+  if (model.condensed != 0)
+    for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], state, w);
+  else
+    add_inertia(model, w);
+  if (model.wheelsets > 0)
+    collect(model, state, couple(model, state.steps + 1, state, w), outputs);
+  else if (model.condensed == 0)
+    solve_bands(model, w);
+  correct(model, state, w);
+  if (model.wheelsets > 0) project_guides(model, state);
+  ++state.steps;
+}
+
 }  // namespace
+
+void forces(const Model& model, std::int64_t step, double* re, double* im) noexcept {
+  const double* constant = model.constant_force;
+#pragma omp simd
+  for (std::int32_t i = 0; i < model.unknowns; ++i) re[i] = constant == nullptr ? 0. : constant[i];
+#pragma omp simd
+  for (std::int32_t i = 0; i < model.condensed * model.bodies; ++i)
+    im[i] = constant == nullptr ? 0. : constant[model.unknowns + i];
+  for (std::int32_t i = 0; i < model.loads; ++i) {
+    const PlacedLoad at = place(model, model.load[i], step);
+    for (std::int32_t l = 0; l < model.lines && at.on_rail; ++l)
+      if (model.condensed != 0)
+        spread_modes(model.line[l], at.row, at.force, re, im);
+      else
+        spread(model.line[l], at.row, at.force, re);
+  }
+}
 
 Status advance_frame(const Model& model, State& state, Workspace& workspace,
                      Outputs& outputs) noexcept {
   const FloatMode flushed_to_zero;
   start_frame(model, outputs);
-  for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {
-    predict(model, state, workspace);
-    inertia(model, workspace);
-    add_loads(model, state.steps + 1, workspace);
-    if (model.wheelsets > 0)
-      collect(model, state, couple(model, state.steps + 1, state, workspace), outputs);
-    else
-      solve(model, workspace);
-    correct(model, state, workspace);
-    if (model.wheelsets > 0) project_guides(model, state);
-    ++state.steps;
-  }
+  for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
+    make_step(model, state, workspace, outputs);
   publish(model, state, outputs);
   return outputs.status;
 }
@@ -127,9 +170,13 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     const PlacedLoad at = place(model, model.load[i], state.steps);
     outputs.load_x[i] = at.x;
     outputs.load_force[i] = at.force;
-    outputs.load_deflection[i] = at.on_rail ? deflection(model, model.load[i], at, state.u) : 0.;
+    outputs.load_deflection[i] = at.on_rail ? deflection(model, at, standing(state)) : 0.;
     if (!at.on_rail) outputs.status = outputs.status | Status::off_rail;
   }
+  RailForce force[kMaxLoads + kMaxWheels];
+  const int count = rail_forces(model, outputs, force);
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    outputs.load_deflection[i] += residual_displacement(model, force, count, i);
   outputs.first_bad_unknown = first_bad(model, state);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
 }
@@ -139,13 +186,23 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
-      const WheelContact at = find_contact(model, model.wheelset[b], side, state.u);
+      const WheelContact at = find_contact(model, model.wheelset[b], side, standing(state));
       outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
           state.wheel_force[i];
       outputs.wheel_gap[i] = -at.penetration;
-      outputs.wheel_rail_z[i] = at.on_rail ? axis_height(model, at, state.u) : 0.;
+      outputs.wheel_x[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+      outputs.wheel_rail_z[i] = at.on_rail ? axis_height(model, at, standing(state)) : 0.;
     }
   publish(model, state, outputs);
+  RailForce force[kMaxLoads + kMaxWheels];
+  const int count = rail_forces(model, outputs, force);
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
+    const RailForce& own = force[model.loads + i];
+    const double moved = residual_displacement(model, force, count, model.loads + i);
+    outputs.wheel_gap[i] -= moved;
+    outputs.wheel_rail_z[i] +=
+        moved + own.force * (residual_axis(model, own) - residual_under(model, own));
+  }
 }
 
 }  // namespace railstep

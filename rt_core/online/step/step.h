@@ -8,6 +8,10 @@ namespace railstep {
 [[nodiscard]] Status advance_frame(const Model& model, State& state, Workspace& workspace,
                                    Outputs& outputs) noexcept;
 
+/// Forces of loads and weight on the unknowns at a step, N; on modes of condensed lines, complex.
+/// @param re, im  [unknowns] overwritten; im of condensed models only
+void forces(const Model& model, std::int64_t step, double* re, double* im) noexcept;
+
 /// Loads and health of a state as it stands, on what a frame has collected.
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept;
 

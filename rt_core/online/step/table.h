@@ -17,20 +17,28 @@ inline double table_value(const double* table, std::int32_t points, double time)
   return row[1];
 }
 
-/// Cubic Lagrange interpolation of intervals + 1 equally spaced values over xi in [-1, 1], by the
-/// four points around it; intervals >= 3.
-inline double interpolate(const double* value, std::int32_t intervals, double xi) noexcept {
+/// Weights of the four points around a place, of intervals + 1 equally spaced ones over [-1, 1].
+struct Cubic {
+  std::int32_t first;
+  double weight[4];
+};
+
+/// Cubic Lagrange interpolation at xi; intervals >= 3.
+inline Cubic cubic(std::int32_t intervals, double xi) noexcept {
   const double at = .5 * (xi + 1.) * intervals;
   std::int32_t first = static_cast<std::int32_t>(at) - 1;
   if (first < 0) first = 0;
   if (first > intervals - 3) first = intervals - 3;
   const double t = at - first;  // 0..3
-  const double* f = value + first;
-  return -f[0] * (t - 1.) * (t - 2.) * (t - 3.) / 6. + f[1] * t * (t - 2.) * (t - 3.) / 2. -
-         f[2] * t * (t - 1.) * (t - 3.) / 2. + f[3] * t * (t - 1.) * (t - 2.) / 6.;
+  return {first,
+          {-(t - 1.) * (t - 2.) * (t - 3.) / 6., t * (t - 2.) * (t - 3.) / 2.,
+           -t * (t - 1.) * (t - 3.) / 2., t * (t - 1.) * (t - 2.) / 6.}};
 }
 
-/// y components of the mirrored right rail change sign: r_y, a_x, a_z, b_y.
-constexpr bool flips_in_mirror(int k) noexcept { return k == 1 || k == 3 || k == 5 || k == 7; }
+inline double interpolate(const double* value, std::int32_t intervals, double xi) noexcept {
+  const Cubic c = cubic(intervals, xi);
+  const double* f = value + c.first;
+  return (c.weight[0] * f[0] + c.weight[1] * f[1]) + (c.weight[2] * f[2] + c.weight[3] * f[3]);
+}
 
 }  // namespace railstep

@@ -2,13 +2,11 @@
 
 #include <cmath>
 
-#include "online/step/table.h"
-
 namespace railstep {
 
 namespace {
 
-constexpr int kWindow = 3;  // elements around the wheel that the search sees
+constexpr int kWindow = 2;  // elements that the search sees: the wheel's and the nearest other
 constexpr int kWindowNodes = 2 * kWindow + 1;
 
 struct Window {
@@ -17,35 +15,23 @@ struct Window {
   double nodes[9 * kWindowNodes];
 };
 
-/// Displacement of unknown k of a node of one rail, over all lines.
-double node_motion(const Model& model, int rail, std::int32_t node, int k,
-                   const double* u) noexcept {
-  double sum = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l) {
-    const LineModel& line = model.line[l];
-    const std::int32_t unknown = line.unknown_of[9 * node + k];
-    if (unknown < 0 || line.rail_factor[rail] == 0.) continue;
-    const double part = line.rail_factor[rail] * u[line.first + unknown];
-    sum += line.mirrored != 0 && rail == 1 && flips_in_mirror(k) ? -part : part;
-  }
-  return sum;
-}
-
-/// Deformed nodes of the three elements around x.
-void gather(const Model& model, int rail, double x, const double* u, Window& window) noexcept {
-  const double scaled = x / model.element_length;
-  std::int32_t middle = 0;
-  if (scaled >= model.elements) middle = model.elements - 1;
-  if (scaled > 0. && scaled < model.elements) middle = static_cast<std::int32_t>(scaled);
+/// Deformed nodes of the elements around x.
+void gather(const Model& model, std::int32_t rail, double x, const Configuration& at,
+            Window& window) noexcept {
+  const double scaled = x / model.element_length - .5;  // 1.2: right half of element 1
   window.elements = model.elements < kWindow ? model.elements : kWindow;
-  window.first = middle - 1;
-  if (window.first > model.elements - window.elements)
+  window.first = 0;
+  if (scaled > 0. && scaled < model.elements) window.first = static_cast<std::int32_t>(scaled);
+  if (scaled >= model.elements || window.first > model.elements - window.elements)
     window.first = model.elements - window.elements;
-  if (window.first < 0) window.first = 0;
   for (std::int32_t i = 0; i <= 2 * window.elements; ++i) {
     const std::int32_t node = 2 * window.first + i;
     double* q = window.nodes + 9 * i;
-    for (int k = 0; k < 9; ++k) q[k] = node_motion(model, rail, node, k, u);
+    for (int k = 0; k < 9; ++k) {
+      q[k] = 0.;
+      for (std::int32_t l = 0; l < model.lines; ++l)
+        q[k] += node_motion(model.line[l], rail, node, k, at);
+    }
     q[0] += .5 * model.element_length * node;
     q[1] += model.rail_y[rail];
     q[4] += 1.;
@@ -81,26 +67,30 @@ void interpolate_nodes(const Window& window, RailPlace place, const double* shap
   for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
 }
 
-double coefficient(const LineModel& line, const WheelContact& at, int k) noexcept {
-  const double lever = k < 3 ? 1. : k < 6 ? at.y : at.z;
-  const double factor = line.rail_factor[at.rail] * (lever * at.normal[k % 3]);
-  return line.mirrored != 0 && at.rail == 1 && flips_in_mirror(k) ? -factor : factor;
+/// Row of the material point (y, z) along the normal.
+void fill_row(const double* shape, WheelContact& at) noexcept {
+  const double lever[3] = {1., at.y, at.z};
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k)
+      at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * at.normal[k % 3]);
 }
 
 }  // namespace
 
 WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
-                          const double* displacement) noexcept {
-  const double* p = displacement + w.first;
+                          const Configuration& seen) noexcept {
+  const double* p = seen.u + w.first;
   const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
   const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
   const double axle[3] = {-sy * cr, cy * cr, sr};
   Window window;
-  gather(model, side, centre[0], displacement, window);
+  gather(model, side, centre[0], seen, window);
   WheelContact at{};
-  at.rail = side;
+  at.row.rail = side;
   const double z_crown = model.head_z - model.crown_radius;
-  const double guess = centre[0] / model.element_length - window.first;
+  double guess = centre[0] / model.element_length - window.first;
+  if (!(guess > 0.)) guess = 0.;
+  if (guess > window.elements) guess = window.elements;
   RailPlace start{static_cast<int>(guess), 0.};
   start.xi = 2. * (guess - start.element) - 1.;
   const WheelOnRail found =
@@ -111,20 +101,20 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
     at.on_rail = false;
   if (!at.on_rail) return at;
 
-  at.element = window.first + found.place.element;
+  at.row.element = window.first + found.place.element;
   at.xi = found.place.xi;
-  at.shape[0] = -.5 * at.xi * (1. - at.xi);
-  at.shape[1] = 1. - at.xi * at.xi;
-  at.shape[2] = .5 * at.xi * (1. + at.xi);
+  double shape[3];
+  shape_functions(at.xi, shape);
   for (int d = 0; d < 3; ++d) at.normal[d] = found.normal[d];
   double q[9];
-  interpolate_nodes(window, found.place, at.shape, q);
+  interpolate_nodes(window, found.place, shape, q);
   // The crown's material point under the normal: a railhead that is squeezed carries it along.
   const double n_a = dot3(at.normal, q + 3), n_b = dot3(at.normal, q + 6);
   const double length = std::sqrt(n_a * n_a + n_b * n_b);
   at.y = model.crown_radius * (n_a / length);
   at.z = z_crown + model.crown_radius * (n_b / length);
   if (!(std::fabs(at.y) <= model.head_half_width)) at.on_rail = false;
+  fill_row(shape, at);
   // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
   const double arm[3] = {found.along * axle[0], found.along * axle[1], found.along * axle[2]};
   double lever[3], gap = 0.;
@@ -139,30 +129,14 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   return at;
 }
 
-double rail_motion(const LineModel& line, const WheelContact& at, const double* u) noexcept {
-  double sum = 0.;
-  if (line.rail_factor[at.rail] == 0.) return sum;
+double axis_height(const Model& model, const WheelContact& wheel,
+                   const Configuration& at) noexcept {
+  double shape[3], sum = 0.;
+  shape_functions(wheel.xi, shape);
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k) {
-      const std::int32_t unknown = line.unknown_of[9 * (2 * at.element + i) + k];
-      if (unknown >= 0) sum += at.shape[i] * coefficient(line, at, k) * u[unknown];
-    }
-  return sum;
-}
-
-void spread(const LineModel& line, const WheelContact& at, double force, double* rhs) noexcept {
-  if (line.rail_factor[at.rail] == 0.) return;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k) {
-      const std::int32_t unknown = line.unknown_of[9 * (2 * at.element + i) + k];
-      if (unknown >= 0) rhs[unknown] += force * (at.shape[i] * coefficient(line, at, k));
-    }
-}
-
-double axis_height(const Model& model, const WheelContact& at, const double* u) noexcept {
-  double sum = 0.;
-  for (int i = 0; i < 3; ++i)
-    sum += at.shape[i] * node_motion(model, at.rail, 2 * at.element + i, 2, u);
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      sum +=
+          shape[i] * node_motion(model.line[l], wheel.row.rail, 2 * wheel.row.element + i, 2, at);
   return sum;
 }
 

@@ -1,0 +1,98 @@
+#include "offline/condense/modal.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "offline/track/statics.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Eigenvalues to keep, one of each conjugate pair, slowest first.
+std::vector<Eigen::Index> kept(const Eigen::VectorXcd& rates) {
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < rates.size(); ++i)
+    if (rates[i].imag() >= 0.) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::abs(rates[a]) < std::abs(rates[b]);
+  });
+  return order;
+}
+
+void check_complete(const DampedModes& modes) {
+  const Eigen::MatrixXd position = (modes.shape * modes.shape.transpose()).real();
+  const Eigen::MatrixXd velocity =
+      (modes.shape * modes.rate.asDiagonal() * modes.shape.transpose()).real();
+  const auto n = velocity.rows();
+  const double slowest = std::abs(modes.rate[0]);
+  const double error = std::max((velocity - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(),
+                                slowest * position.cwiseAbs().maxCoeff());
+  if (!(error < 1e-7))
+    throw std::invalid_argument(
+        "the damping brings modes so near to critical that they share one shape (completeness is "
+        "missed by " +
+        std::to_string(error) + "); change the number of modes or step the full track");
+}
+
+}  // namespace
+
+Basis modal_basis(const Line& line, const ModalLimit& limit) {
+  if (line.unknowns() > kMostModalUnknowns)
+    throw std::invalid_argument("modes of a line of " + std::to_string(line.unknowns()) +
+                                " unknowns; accepted are " + std::to_string(kMostModalUnknowns) +
+                                ": step the full track or cut it shorter");
+  const Modes all = modes(line);
+  if (all.frequency[0] < 1e-3)
+    throw std::invalid_argument(
+        "a condensed track is held in every direction in which it is moved: "
+        "this one has a free rigid mode");
+  Eigen::Index count = std::min<Eigen::Index>(limit.most, all.frequency.size());
+  while (count > 1 && all.frequency[count - 1] > limit.highest_hz) --count;
+  return {2. * kPi * all.frequency.head(count), all.shape.leftCols(count)};
+}
+
+DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping) {
+  const auto m = basis.omega.size();
+  DampedModes result;
+  result.damping = basis.shapes.transpose() * (damping * basis.shapes);
+  // First-order form over (omega y, y'), whose blocks are of one size.
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * m, 2 * m);
+  A.topRightCorner(m, m).diagonal() = basis.omega;
+  A.bottomLeftCorner(m, m).diagonal() = -basis.omega;
+  A.bottomRightCorner(m, m) = -result.damping;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  if (solver.info() != Eigen::Success)
+    throw std::invalid_argument("the damped modes of a line were not found");
+  const std::vector<Eigen::Index> order = kept(solver.eigenvalues());
+  const auto count = static_cast<Eigen::Index>(order.size());
+  result.rate.resize(count);
+  result.shape.resize(m, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::complex<double> rate = solver.eigenvalues()[order[static_cast<std::size_t>(i)]];
+    Eigen::VectorXcd x = solver.eigenvectors()
+                             .col(order[static_cast<std::size_t>(i)])
+                             .head(m)
+                             .cwiseQuotient(basis.omega.cast<std::complex<double>>());
+    const std::complex<double> norm = (x.transpose() * (2. * rate * x + result.damping * x))(0, 0);
+    result.rate[i] = rate;
+    result.shape.col(i) = x * std::sqrt((rate.imag() > 0. ? 2. : 1.) / norm);
+  }
+  check_complete(result);
+  return result;
+}
+
+Eigen::VectorXcd DampedModes::from(const Eigen::VectorXd& y,
+                                   const Eigen::VectorXd& velocity) const {
+  const Eigen::VectorXd momentum = damping * y + velocity;
+  return rate.cwiseProduct(shape.transpose() * y) + shape.transpose() * momentum;
+}
+
+}  // namespace railstep

@@ -1,0 +1,42 @@
+#pragma once
+#include <complex>
+
+#include "offline/condense/basis.h"
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// How many modes a condensed line keeps: the lower of both counts.
+struct ModalLimit {
+  int most;           // modes
+  double highest_hz;  // Hz
+};
+
+/// The lowest undamped modes of a line, at least one.
+/// Throws std::invalid_argument on a free rigid mode (below 1e-3 Hz), which has no static answer,
+/// and on lines of more than kMostModalUnknowns.
+Basis modal_basis(const Line& line, const ModalLimit& limit);
+
+/// A dense solution takes some n^3 10 flops and n^2 16 bytes.
+inline constexpr int kMostModalUnknowns = 4000;
+
+/// Damped modes of y'' + D y' + Omega^2 y = f: y = Re shape z with z' = rate z + shape' f (plain
+/// transpose), y' = Re shape (rate z).
+///
+/// One of each conjugate pair is kept, with shape' (2 rate + D) shape = 2; overdamped modes come
+/// one by one with 1 instead of 2 (their shape may be imaginary). Then Re sum shape shape' = 0 and
+/// Re sum rate shape shape' = I, which is checked.
+struct DampedModes {
+  Eigen::VectorXcd rate;    // [modes] 1/s, slowest first
+  Eigen::MatrixXcd shape;   // [kept][modes]
+  Eigen::MatrixXd damping;  // [kept][kept] D, 1/s
+
+  /// The z of given y and y'.
+  Eigen::VectorXcd from(const Eigen::VectorXd& y, const Eigen::VectorXd& velocity) const;
+};
+
+/// Throws std::invalid_argument where the check above misses by more than 1e-7: two modes at
+/// critical damping have one shape.
+DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping);
+
+}  // namespace railstep

@@ -1,0 +1,153 @@
+#include <cmath>
+#include <complex>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "offline/pack/band_factor.h"
+#include "offline/pack/pack.h"
+
+namespace railstep {
+
+namespace {
+
+bool same(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double>& b) {
+  return a.rows() == b.rows() && (a - b).norm() == 0.;
+}
+
+bool same_but_for_the_rail(const Line& a, const Line& b) {
+  return same(a.stiffness, b.stiffness) && same(a.mass, b.mass) && same(a.damping, b.damping) &&
+         a.unknown_of == b.unknown_of && a.mirrored == b.mirrored;
+}
+
+/// Real, then imaginary parts, padded with zeros.
+std::vector<double> parts(const Eigen::VectorXcd& values, std::size_t padded) {
+  std::vector<double> result(2 * padded, 0.);
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    result[static_cast<std::size_t>(k)] = values[k].real();
+    result[padded + static_cast<std::size_t>(k)] = values[k].imag();
+  }
+  return result;
+}
+
+/// (e^w - 1) / w and (e^w - 1 - w) / w^2, by their series where the difference would cancel.
+std::pair<std::complex<double>, std::complex<double>> held_and_rising(std::complex<double> w) {
+  if (std::abs(w) > .5) {
+    const std::complex<double> first = (std::exp(w) - 1.) / w;
+    return {first, (first - 1.) / w};
+  }
+  std::complex<double> term = 1., first = 0., second = 0.;
+  for (int n = 1; n < 20; ++n) {
+    first += term / static_cast<double>(n);
+    second += term / static_cast<double>(n * (n + 1));
+    term *= w / static_cast<double>(n);
+  }
+  return {first, second};
+}
+
+}  // namespace
+
+Diagonals PackedModel::keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded) {
+  std::map<std::int32_t, std::vector<double>> found;  // offset -> values by row
+  for (int j = 0; j < A.outerSize(); ++j)
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(A, j); entry; ++entry) {
+      auto& values = found[static_cast<std::int32_t>(j - entry.row())];
+      values.resize(static_cast<std::size_t>(padded), 0.);
+      values[static_cast<std::size_t>(entry.row())] = entry.value();
+    }
+  std::vector<std::int32_t> offsets;
+  std::vector<double> values;
+  for (const auto& [offset, diagonal] : found) {
+    offsets.push_back(offset);
+    values.insert(values.end(), diagonal.begin(), diagonal.end());
+  }
+  const int count = static_cast<int>(offsets.size());
+  return {padded, count, keep(std::move(offsets)), keep(std::move(values))};
+}
+
+void PackedModel::add_banded(const Line& line, LineModel& packed) {
+  const Scheme& s = model_.scheme;
+  BandFactor factor = factor_band(
+      Eigen::SparseMatrix<double>(line.stiffness + s.kv * line.damping + s.kg * line.mass));
+  packed.size = 8 * factor.panels;
+  packed.step = {factor.panels, factor.left, keep(std::move(factor.forward)),
+                 keep(std::move(factor.inverse)), keep(std::move(factor.backward))};
+  packed.mass = keep_diagonals(line.mass, packed.size);
+  packed.damping = keep_diagonals(line.damping, packed.size);
+  std::vector<std::int32_t> unknowns;
+  for (const auto& node : line.unknown_of)
+    unknowns.insert(unknowns.end(), node.begin(), node.end());
+  packed.unknown_of = keep(std::move(unknowns));
+}
+
+void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& packed,
+                                const ModalLimit& limit) {
+  own.basis = modal_basis(own.line, limit);
+  own.modes = damped_modes(own.basis, own.line.damping);
+  const auto modes = own.modes.rate.size();
+  const auto padded = static_cast<std::size_t>((modes + 7) / 8 * 8);
+  const double dt = model_.scheme.dt;
+  Eigen::VectorXcd held(modes), rising(modes), keep_rate(modes);
+  for (Eigen::Index k = 0; k < modes; ++k) {
+    const std::complex<double> w = own.modes.rate[k] * dt;
+    const auto [first, second] = held_and_rising(w);
+    held[k] = dt * first;
+    rising[k] = dt * second;
+    keep_rate[k] = std::exp(w);
+  }
+  const auto complex = [&](const Eigen::VectorXcd& values) {
+    const double* re = keep(parts(values, padded));
+    return Complex{re, re + padded};
+  };
+  packed.size = static_cast<std::int32_t>(padded);
+  packed.modal = {packed.size,
+                  complex(own.modes.rate),
+                  complex(keep_rate),
+                  complex(held - rising),
+                  complex(rising),
+                  complex(held),
+                  nullptr};
+  std::vector<double> shape;
+  std::vector<std::int32_t> rows;
+  std::int32_t count = 0;
+  for (int node = 0; node < track.nodes(); ++node)
+    for (std::size_t k = 0; k < 9; ++k) {
+      const int unknown = own.line.unknown_of[static_cast<std::size_t>(node)][k];
+      // The section's own strain (a_y, b_z) follows at once: it is in the residual flexibility.
+      rows.push_back(unknown < 0 || k == 4 || k == 8 ? -1 : count++);
+      if (rows.back() < 0) continue;
+      const Eigen::VectorXcd row =
+          own.modes.shape.transpose() * own.basis.shapes.row(unknown).transpose();
+      const std::vector<double> values = parts(row, padded);
+      shape.insert(shape.end(), values.begin(), values.end());
+    }
+  packed.modal.rows = count;
+  packed.modal.shape = keep(std::move(shape));
+  packed.unknown_of = keep(std::move(rows));
+}
+
+void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions& options) {
+  if (model_.lines == kMaxLines) throw std::invalid_argument("the track falls into too many lines");
+  LineModel packed{};
+  std::size_t twin = 0;
+  while (twin < lines_.size() && !same_but_for_the_rail(lines_[twin].line, own.line)) ++twin;
+  if (twin < lines_.size()) {
+    packed = model_.line[twin];
+    own.basis = lines_[twin].basis;
+    own.modes = lines_[twin].modes;
+  } else if (options.modal) {
+    add_condensed(track, own, packed, *options.modal);
+  } else {
+    add_banded(own.line, packed);
+  }
+  packed.first = model_.unknowns;
+  for (int rail = 0; rail < 2; ++rail)
+    packed.rail_factor[rail] =
+        rail < track.rails ? own.line.rail_factor[static_cast<std::size_t>(rail)] : 0.;
+  packed.mirrored = own.line.mirrored ? 1 : 0;
+  model_.unknowns += packed.size;
+  model_.line[model_.lines++] = packed;
+  lines_.push_back(std::move(own));
+}
+
+}  // namespace railstep

@@ -1,0 +1,70 @@
+#include "online/step/line.h"
+
+namespace railstep {
+
+namespace {
+
+/// y components of the mirrored right rail change sign: r_y, a_x, a_z, b_y.
+constexpr bool flips_in_mirror(int k) noexcept { return k == 1 || k == 3 || k == 5 || k == 7; }
+
+double weight_of(const LineModel& line, std::int32_t rail, int k) noexcept {
+  const double factor = line.rail_factor[rail];
+  return line.mirrored != 0 && rail == 1 && flips_in_mirror(k) ? -factor : factor;
+}
+
+Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
+  const double* re = modal.shape + 2 * static_cast<std::ptrdiff_t>(row) * modal.count;
+  return {re, re + modal.count};
+}
+
+/// Displacement of an unknown, as the line numbers it.
+double value(const LineModel& line, std::int32_t unknown, const Configuration& at) noexcept {
+  if (line.modal.count == 0) return at.u[line.first + unknown];
+  return modes_dot(shape_of(line.modal, unknown),
+                   {at.modes.re + line.first, at.modes.im + line.first}, line.modal.count);
+}
+
+/// Calls visit(unknown, weight) for what a line carries of a row.
+template <typename Visit>
+void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcept {
+  if (line.rail_factor[row.rail] == 0.) return;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k) {
+      const std::int32_t unknown = line.unknown_of[9 * (2 * row.element + i) + k];
+      if (unknown < 0 || row.coefficient[i][k] == 0.) continue;
+      visit(unknown, weight_of(line, row.rail, k) * row.coefficient[i][k]);
+    }
+}
+
+}  // namespace
+
+double node_motion(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
+                   const Configuration& at) noexcept {
+  const std::int32_t unknown = line.unknown_of[9 * node + k];
+  if (unknown < 0 || line.rail_factor[rail] == 0.) return 0.;
+  return weight_of(line, rail, k) * value(line, unknown, at);
+}
+
+double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept {
+  double sum = 0.;
+  for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
+    sum += weight * value(line, unknown, at);
+  });
+  return sum;
+}
+
+void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept {
+  for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
+    rhs[line.first + unknown] += force * weight;
+  });
+}
+
+void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,
+                  double* im) noexcept {
+  for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
+    modes_add(force * weight, shape_of(line.modal, unknown), re + line.first, im + line.first,
+              line.modal.count);
+  });
+}
+
+}  // namespace railstep

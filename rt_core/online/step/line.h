@@ -1,0 +1,41 @@
+#pragma once
+#include "online/model/model.h"
+
+namespace railstep {
+
+/// Displacement of a material point of one rail in one direction, over the nodes of its element:
+/// sum coefficient[i][k] q_k(node 2 element + i), q = [r, a, b] in the rail's own axes.
+struct RailRow {
+  std::int32_t rail, element;
+  double coefficient[3][9];
+};
+
+/// Displacements at which to look: u [unknowns] of banded lines and bodies, modes of condensed
+/// lines.
+struct Configuration {
+  const double* u;
+  Complex modes;
+};
+
+/// What a line adds to the displacement of one of a rail's nodal unknowns.
+double node_motion(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
+                   const Configuration& at) noexcept;
+
+/// What a line adds to a row's displacement.
+double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept;
+
+/// rhs += force * row of a banded line; rhs [unknowns] of all lines.
+void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept;
+
+/// shape += force * row of a condensed line: [unknowns] of all lines, complex.
+void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,
+                  double* im) noexcept;
+
+/// Shape functions -xi(1-xi)/2, 1-xi^2, xi(1+xi)/2.
+inline void shape_functions(double xi, double* shape) noexcept {
+  shape[0] = -.5 * xi * (1. - xi);
+  shape[1] = 1. - xi * xi;
+  shape[2] = .5 * xi * (1. + xi);
+}
+
+}  // namespace railstep

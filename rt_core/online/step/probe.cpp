@@ -1,0 +1,24 @@
+#include "online/step/probe.h"
+
+#include "online/step/float_mode.h"
+#include "online/step/residual.h"
+
+namespace railstep {
+
+void read_probes(const Model& model, const State& state, const Outputs& outputs,
+                 double* value) noexcept {
+  const FloatMode flushed_to_zero;
+  RailForce forces[kMaxLoads + kMaxWheels];
+  const int count = rail_forces(model, outputs, forces);
+  const ProbeModel& probe = model.probe;
+  for (std::int32_t i = 0; i < probe.count; ++i) {
+    double sum = 0.;
+    for (std::int32_t k = probe.start[i]; k < probe.start[i + 1]; ++k) {
+      const std::int32_t at = probe.index[k];
+      sum += probe.value[k] * (at < model.unknowns ? state.u[at] : state.v[at - model.unknowns]);
+    }
+    value[i] = probe.rest[i] + (sum + residual_of_probe(model, i, forces, count));
+  }
+}
+
+}  // namespace railstep

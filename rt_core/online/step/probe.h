@@ -1,0 +1,11 @@
+#pragma once
+#include "online/model/state.h"
+
+namespace railstep {
+
+/// Values of the model's probes on a state and the outputs that its frame published.
+/// @param value  [model.probe.count]
+void read_probes(const Model& model, const State& state, const Outputs& outputs,
+                 double* value) noexcept;
+
+}  // namespace railstep

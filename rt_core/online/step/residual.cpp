@@ -1,0 +1,86 @@
+#include "online/step/residual.h"
+
+#include "online/step/table.h"
+
+namespace railstep {
+
+namespace {
+
+/// Entry of a table [kinds][elements][points + 1] under a force.
+double look_up(const Model& model, const double* table, const RailForce& at) noexcept {
+  if (table == nullptr) return 0.;
+  const std::int32_t points = model.residual.points;
+  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(at.kind) * model.elements + at.element;
+  return interpolate(table + row * (points + 1), points, at.xi);
+}
+
+}  // namespace
+
+RailForce rail_force(const Model& model, std::int32_t kind, double x, double force) noexcept {
+  const double scaled = x / model.element_length;
+  std::int32_t element = 0;
+  if (scaled >= model.elements) element = model.elements - 1;
+  if (scaled > 0. && scaled < model.elements) element = static_cast<std::int32_t>(scaled);
+  double xi = 2. * (scaled - element) - 1.;
+  if (!(xi > -1.)) xi = -1.;
+  if (xi > 1.) xi = 1.;
+  return {kind, element, xi, force};
+}
+
+int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) noexcept {
+  int count = 0;
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    forces[count++] =
+        rail_force(model, model.load[i].kind, outputs.load_x[i], outputs.load_force[i]);
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+    forces[count++] = rail_force(model, model.wheelset[i / 2].kind[i % 2], outputs.wheel_x[i],
+                                 -outputs.wheel_force[i]);
+  return count;
+}
+
+double residual_under(const Model& model, const RailForce& at) noexcept {
+  return look_up(model, model.residual.under, at);
+}
+
+double residual_axis(const Model& model, const RailForce& at) noexcept {
+  return look_up(model, model.residual.axis, at);
+}
+
+double residual_between(const Model& model, const RailForce& force, const RailForce& at) noexcept {
+  const PairModel& pair = model.residual.pair[force.kind][at.kind];
+  const std::int32_t shift = at.element - force.element;
+  if (pair.value == nullptr || shift > pair.reach || shift < -pair.reach) return 0.;
+  const std::int32_t points = pair.points;
+  const double* block =
+      pair.value + (static_cast<std::ptrdiff_t>(force.element) * (2 * pair.reach + 1) +
+                    (shift + pair.reach)) *
+                       static_cast<std::ptrdiff_t>((points + 1) * (points + 1));
+  const Cubic along = cubic(points, force.xi);
+  double sum = 0.;
+  for (int i = 0; i < 4; ++i)
+    sum += along.weight[i] * interpolate(block + (along.first + i) * (points + 1), points, at.xi);
+  return sum;
+}
+
+double residual_displacement(const Model& model, const RailForce* forces, int count,
+                             int at) noexcept {
+  double sum = 0.;
+  for (int i = 0; i < count; ++i)
+    sum += forces[i].force * (i == at ? residual_under(model, forces[i])
+                                      : residual_between(model, forces[i], forces[at]));
+  return sum;
+}
+
+double residual_of_probe(const Model& model, std::int32_t probe, const RailForce* forces,
+                         int count) noexcept {
+  const std::int32_t table = model.probe.table[probe];
+  if (model.probe.residual == nullptr || table < 0) return 0.;
+  const double* values = model.probe.residual + static_cast<std::ptrdiff_t>(table) *
+                                                    model.residual.kinds * model.elements *
+                                                    (model.residual.points + 1);
+  double sum = 0.;
+  for (int i = 0; i < count; ++i) sum += forces[i].force * look_up(model, values, forces[i]);
+  return sum;
+}
+
+}  // namespace railstep
