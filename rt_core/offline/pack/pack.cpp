@@ -60,13 +60,13 @@ void PackedModel::add_line(const Track& track, const Line& line) {
   model_.unknowns += padded;
 }
 
-void PackedModel::add_load(const Track& track, const std::vector<Line>& lines,
-                           const MovingLoad& load, const PackOptions& options) {
+void PackedModel::add_load(const Track& track, const ResidualFlexibility* residual,
+                           const MovingLoad& load) {
   if (model_.loads == kMaxLoads) throw std::invalid_argument("more than 32 loads");
   if (load.rail < 0 || load.rail >= track.rails)
     throw std::invalid_argument("a load stands on a rail that the track does not have");
   for (int i = 0; i < model_.loads; ++i)
-    if (options.residual_flexibility && model_.load[i].rail == load.rail)
+    if (residual != nullptr && model_.load[i].rail == load.rail)
       throw std::invalid_argument(
           "residual flexibility acts under one load per rail; for several on one rail set "
           "residual_flexibility = false");
@@ -80,17 +80,14 @@ void PackedModel::add_load(const Track& track, const std::vector<Line>& lines,
   packed.force = load.force;
   packed.table_points = static_cast<std::int32_t>(load.table.size() / 2);
   packed.table = keep(load.table);
-  if (options.residual_flexibility)
-    packed.residual = keep(residual_flexibility(track, lines, {load.rail, 0., 0., load.z, 2},
-                                                options.residual_points));
+  if (residual != nullptr) packed.residual = keep(residual->under({load.rail, load.z}));
 }
 
-void PackedModel::add_wheelset(const Track& track, const std::vector<Line>& lines,
-                               const Wheelset& wheelset, const Railhead& head,
-                               const PackOptions& options) {
+void PackedModel::add_wheelset(const Track& track, const ResidualFlexibility* residual,
+                               const Wheelset& wheelset, const Railhead& head) {
   if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
   if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
-  if (options.residual_flexibility && (model_.wheelsets > 0 || model_.loads > 0))
+  if (residual != nullptr && (model_.wheelsets > 0 || model_.loads > 0))
     throw std::invalid_argument(
         "residual flexibility acts under one load or wheelset per rail; for several set "
         "residual_flexibility = false");
@@ -124,10 +121,9 @@ void PackedModel::add_wheelset(const Track& track, const std::vector<Line>& line
   for (const Wheelset::Force& force : wheelset.forces)
     packed.force[packed.forces++] = {
         force.direction, static_cast<std::int32_t>(force.table.size() / 2), keep(force.table)};
-  if (!options.residual_flexibility) return;
+  if (residual == nullptr) return;
   for (int rail = 0; rail < 2; ++rail)
-    packed.residual[rail] = keep(
-        residual_flexibility(track, lines, {rail, 0., 0., head.top_z, 2}, options.residual_points));
+    packed.residual[rail] = keep(residual->under({rail, head.top_z}));
 }
 
 PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& loads,
@@ -150,8 +146,12 @@ PackedModel::PackedModel(const Track& track, const std::vector<MovingLoad>& load
   model_.head_half_width = head.half_width;
   const std::vector<Line> lines = assemble(track);
   for (const Line& line : lines) add_line(track, line);
-  for (const MovingLoad& load : loads) add_load(track, lines, load, options);
-  for (const Wheelset& wheelset : wheelsets) add_wheelset(track, lines, wheelset, head, options);
+  std::unique_ptr<ResidualFlexibility> residual;
+  if (options.residual_flexibility && loads.size() + wheelsets.size() > 0)
+    residual = std::make_unique<ResidualFlexibility>(track, lines, std::vector<Basis>{},
+                                                     options.residual_points);
+  for (const MovingLoad& load : loads) add_load(track, residual.get(), load);
+  for (const Wheelset& wheelset : wheelsets) add_wheelset(track, residual.get(), wheelset, head);
   if (options.gravity == 0.) return;
   std::vector<double> force(static_cast<std::size_t>(model_.unknowns), 0.);
   for (std::size_t l = 0; l < lines.size(); ++l) {

@@ -8,6 +8,8 @@
 
 namespace railstep {
 
+class ResidualFlexibility;
+
 /// A force that runs along a rail, as a scene gives it.
 struct MovingLoad {
   int rail = 0;
@@ -68,10 +70,10 @@ class PackedModel {
   const std::int32_t* keep(std::vector<std::int32_t> values);
   Diagonals keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded);
   void add_line(const Track& track, const Line& line);
-  void add_load(const Track& track, const std::vector<Line>& lines, const MovingLoad& load,
-                const PackOptions& options);
-  void add_wheelset(const Track& track, const std::vector<Line>& lines, const Wheelset& wheelset,
-                    const Railhead& head, const PackOptions& options);
+  /// @param residual null where PackOptions leave it out
+  void add_load(const Track& track, const ResidualFlexibility* residual, const MovingLoad& load);
+  void add_wheelset(const Track& track, const ResidualFlexibility* residual,
+                    const Wheelset& wheelset, const Railhead& head);
 
   Model model_{};
   std::vector<std::unique_ptr<std::vector<double>>> reals_;
