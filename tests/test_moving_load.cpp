@@ -107,7 +107,7 @@ TEST_CASE("residual flexibility makes the static deflection that of a refined me
       }
     }
     const double z = full ? .1 : 0.;
-    const auto table = residual_flexibility(coarse, assemble(coarse), {0, 0., 0., z, 2}, 16);
+    const auto table = ResidualFlexibility(coarse, assemble(coarse), {}, 16).under({0, z});
     const Statics model(coarse), exact(fine);
     double largest = 0.;
     for (const int e : {0, 5, 8, 15})

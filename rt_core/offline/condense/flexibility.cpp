@@ -1,171 +1,184 @@
 #include "offline/condense/flexibility.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace railstep {
 
 namespace {
 
-using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+/// Elements beyond which G_res counts as nothing, as a part of the largest G_exact(x, x).
+constexpr double kNegligible = 1e-4;
 
-/// An element seen from its two end nodes: stiffness between them, and for the loaded point at each
-/// sampled place its displacement under unit end displacements and its flexibility with ends held.
-struct Condensed {
-  Eigen::MatrixXd stiffness;  // [2d][2d]
-  Eigen::MatrixXd shapes;     // [places][2d]
-  Eigen::VectorXd held;       // [places], m/N
-};
+std::vector<double> to_vector(const Eigen::VectorXd& values) {
+  return {values.data(), values.data() + values.size()};
+}
 
-/// Unknowns of a node that a line carries, from the first node that carries any.
-std::vector<int> carried(const Line& line) {
-  for (const auto& node : line.unknown_of) {
-    std::vector<int> found;
-    for (int k = 0; k < 9; ++k)
-      if (node[static_cast<std::size_t>(k)] >= 0) found.push_back(k);
-    if (!found.empty()) return found;
+std::size_t place_in(const PairTable& table, int e, int p, int e2, int q) {
+  const auto n = static_cast<std::size_t>(table.points + 1);
+  const auto block = static_cast<std::size_t>(e * (2 * table.reach + 1) + e2 - e + table.reach);
+  return (block * n + static_cast<std::size_t>(p)) * n + static_cast<std::size_t>(q);
+}
+
+/// Takes from the strip of element e what lies within the table's reach.
+void keep(const Eigen::MatrixXd& strip, int e, int elements, PairTable& table) {
+  const int n = table.points + 1;
+  for (int e2 = std::max(0, e - table.reach); e2 <= std::min(elements - 1, e + table.reach); ++e2)
+    for (int p = 0; p < n; ++p)
+      for (int q = 0; q < n; ++q) table.value[place_in(table, e, p, e2, q)] = strip(p, e2 * n + q);
+}
+
+void check_functional(const Track& track, const Functional& functional) {
+  const auto check = [&](int rail, int direction) {
+    if (rail < 0 || rail >= track.rails || direction < 0 || direction > 2)
+      throw std::out_of_range("a functional names a rail or a direction that the track lacks");
+  };
+  for (const Functional::OnRail& point : functional.rail) {
+    check(point.at.rail, point.at.direction);
+    (void)element_at(track, point.at.x);
   }
-  return {};
-}
-
-/// Stiffness of `parts` elements in a row over d unknowns per node, nodes in order.
-Eigen::MatrixXd chain_stiffness(const Track& track, const std::vector<int>& unknowns, int parts) {
-  const Matrix27 K = element_matrices(track.section, track.material, track.element_length() / parts,
-                                      track.law, track.axial_points)
-                         .stiffness;
-  const int d = static_cast<int>(unknowns.size());
-  Eigen::MatrixXd chain = Eigen::MatrixXd::Zero((2 * parts + 1) * d, (2 * parts + 1) * d);
-  for (int part = 0; part < parts; ++part)
-    for (int j = 0; j < 3 * d; ++j)
-      for (int i = 0; i < 3 * d; ++i)
-        chain(2 * part * d + i, 2 * part * d + j) +=
-            K(9 * (i / d) + unknowns[static_cast<std::size_t>(i % d)],
-              9 * (j / d) + unknowns[static_cast<std::size_t>(j % d)]);
-  return chain;
-}
-
-/// Condenses a chain to its end nodes; `rows` [places][all unknowns] give the loaded point.
-Condensed condense(const Eigen::MatrixXd& chain, const Eigen::MatrixXd& rows, int d) {
-  const auto n = chain.rows();
-  std::vector<int> ends, inner;
-  for (int i = 0; i < n; ++i) (i < d || i >= n - d ? ends : inner).push_back(i);
-  const Eigen::MatrixXd inner_K = chain(inner, inner), mixed = chain(inner, ends);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(inner_K);
-  const Eigen::MatrixXd follow = -factor.solve(mixed);  // [inner][2d]
-  const Eigen::MatrixXd inner_rows = rows(Eigen::all, inner);
-  Condensed result{chain(ends, ends) + mixed.transpose() * follow,
-                   rows(Eigen::all, ends) + inner_rows * follow, Eigen::VectorXd(rows.rows())};
-  for (int p = 0; p < rows.rows(); ++p) {
-    const Eigen::VectorXd row = inner_rows.row(p).transpose();
-    result.held[p] = row.dot(factor.solve(row));
-  }
-  return result;
-}
-
-/// Rows of the loaded point at `points` + 1 equal places over a chain of `parts` elements.
-Eigen::MatrixXd place_rows(const std::vector<int>& unknowns, const RailPoint& at, int parts,
-                           int points) {
-  const int d = static_cast<int>(unknowns.size());
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(points + 1, (2 * parts + 1) * d);
-  for (int p = 0; p <= points; ++p) {
-    const double place = static_cast<double>(p) * parts / points;
-    const int part = std::min(static_cast<int>(place), parts - 1);
-    const Vector27 local = point_row(2. * (place - part) - 1., at.y, at.z, 2);
-    for (int i = 0; i < 3 * d; ++i)
-      rows(p, 2 * part * d + i) = local[9 * (i / d) + unknowns[static_cast<std::size_t>(i % d)]];
-  }
-  return rows;
-}
-
-/// Unknowns of the end nodes of an element in the line, -1 where clamped.
-std::vector<int> end_unknowns(const Line& line, const std::vector<int>& unknowns, int element) {
-  std::vector<int> result;
-  for (const int node : {2 * element, 2 * element + 2})
-    for (const int k : unknowns)
-      result.push_back(
-          line.unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)]);
-  return result;
-}
-
-/// The line's stiffness with every element's end-node stiffness changed by `change`.
-Eigen::SparseMatrix<double> with_change(const Track& track, const Line& line,
-                                        const std::vector<int>& unknowns,
-                                        const Eigen::MatrixXd& change) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int e = 0; e < track.elements(); ++e) {
-    const std::vector<int> place = end_unknowns(line, unknowns, e);
-    for (std::size_t j = 0; j < place.size(); ++j)
-      for (std::size_t i = 0; i < place.size(); ++i)
-        if (place[i] >= 0 && place[j] >= 0)
-          entries.emplace_back(place[i], place[j],
-                               change(static_cast<int>(i), static_cast<int>(j)));
-  }
-  Eigen::SparseMatrix<double> result(line.unknowns(), line.unknowns());
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result + line.stiffness;
-}
-
-/// Flexibility between the end unknowns of one element in the whole line.
-Eigen::MatrixXd end_flexibility(const Factor& factor, int n, const std::vector<int>& place) {
-  const auto size = static_cast<Eigen::Index>(place.size());
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(size, size);
-  for (Eigen::Index j = 0; j < size; ++j) {
-    if (place[static_cast<std::size_t>(j)] < 0) continue;
-    Eigen::VectorXd unit = Eigen::VectorXd::Zero(n);
-    unit[place[static_cast<std::size_t>(j)]] = 1.;
-    const Eigen::VectorXd column = factor.solve(unit);
-    for (Eigen::Index i = 0; i < size; ++i)
-      if (place[static_cast<std::size_t>(i)] >= 0)
-        G(i, j) = column[place[static_cast<std::size_t>(i)]];
-  }
-  return G;
-}
-
-double total(const Condensed& element, const Eigen::MatrixXd& ends, int p) {
-  return element.shapes.row(p).dot(ends * element.shapes.row(p).transpose()) + element.held[p];
-}
-
-void factor_held(const Eigen::SparseMatrix<double>& K, Factor& factor) {
-  factor.compute(K);
-  if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() <= 0.)
-    throw std::invalid_argument(
-        "residual flexibility needs a track that is held: it has a free rigid mode");
-}
-
-void add_line(const Track& track, const Line& line, const RailPoint& at, int points,
-              std::vector<double>& table) {
-  const std::vector<int> unknowns = carried(line);
-  const int d = static_cast<int>(unknowns.size());
-  const double factor = line.rail_factor[static_cast<std::size_t>(at.rail)];
-  const Eigen::MatrixXd model_rows = place_rows(unknowns, at, 1, points);
-  if (factor == 0. || model_rows.isZero(0.)) return;  // this line does not feel the force
-  const Condensed model = condense(chain_stiffness(track, unknowns, 1), model_rows, d);
-  const Condensed exact = condense(chain_stiffness(track, unknowns, points),
-                                   place_rows(unknowns, at, points, points), d);
-  Factor model_K, exact_K;
-  factor_held(line.stiffness, model_K);
-  factor_held(with_change(track, line, unknowns, exact.stiffness - model.stiffness), exact_K);
-  for (int e = 0; e < track.elements(); ++e) {
-    const std::vector<int> place = end_unknowns(line, unknowns, e);
-    const Eigen::MatrixXd G_exact = end_flexibility(exact_K, line.unknowns(), place);
-    const Eigen::MatrixXd G_model = end_flexibility(model_K, line.unknowns(), place);
-    for (int p = 0; p <= points; ++p)
-      table[static_cast<std::size_t>(e * (points + 1) + p)] +=
-          factor * factor * (total(exact, G_exact, p) - total(model, G_model, p));
+  for (const Functional::OnSleeper& at : functional.sleeper) {
+    check(at.rail, at.direction);
+    if (!track.sleeper || at.seat < 0 || at.seat > track.bays)
+      throw std::out_of_range("a functional names a sleeper that the track lacks");
   }
 }
 
 }  // namespace
 
-std::vector<double> residual_flexibility(const Track& track, const std::vector<Line>& lines,
-                                         const RailPoint& point, int points) {
+struct ResidualFlexibility::Pair {
+  const Line* line;
+  std::vector<int> carried;
+  std::unique_ptr<LineFlexibility> exact, model;
+};
+
+ResidualFlexibility::~ResidualFlexibility() = default;
+
+ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
+                                         const std::vector<Basis>& bases, int points)
+    : track_(track), lines_(lines), bases_(bases), points_(points) {
   if (points < 3) throw std::invalid_argument("residual flexibility needs 3 intervals or more");
-  if (point.y != 0.)
-    throw std::invalid_argument("residual flexibility is tabled for forces over the rail's middle");
-  std::vector<double> table(static_cast<std::size_t>(track.elements() * (points + 1)), 0.);
-  for (const Line& line : lines) add_line(track, line, point, points, table);
+  if (!bases.empty() && bases.size() != lines.size())
+    throw std::invalid_argument("residual flexibility needs one basis per line, or none");
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const Line& line = lines_[i];
+    const std::vector<int> carried = carried_unknowns(line);
+    // Others no vertical force on y = 0 moves.
+    if (std::none_of(carried.begin(), carried.end(), [](int k) { return k == 2 || k == 8; }))
+      continue;
+    Pair pair{&line, carried, std::make_unique<DividedLine>(track_, line, points), nullptr};
+    if (bases_.empty())
+      pair.model = std::make_unique<DividedLine>(track_, line, 1);
+    else
+      pair.model = std::make_unique<ReducedLine>(track_, line, bases_[i]);
+    pairs_.push_back(std::move(pair));
+  }
+}
+
+/// Weight of the port in the line, 0 if it does not move the line.
+double ResidualFlexibility::weight(const Pair& pair, Port port) const {
+  if (port.rail < 0 || port.rail >= track_.rails)
+    throw std::invalid_argument("residual flexibility is asked on a rail that the track lacks");
+  const auto carries = [&](int k) {
+    return std::find(pair.carried.begin(), pair.carried.end(), k) != pair.carried.end();
+  };
+  const bool moved = carries(2) || (carries(8) && port.z != 0.);
+  return moved ? pair.line->rail_factor[static_cast<std::size_t>(port.rail)] : 0.;
+}
+
+std::vector<double> ResidualFlexibility::under(Port port) const { return under(port, port.z); }
+
+std::vector<double> ResidualFlexibility::under(Port port, double z) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  for (const Pair& pair : pairs_) {
+    const double w = weight(pair, port) * weight(pair, {port.rail, z});
+    if (w == 0.) continue;
+    sum += w * (pair.exact->under(port.z, z, points_) - pair.model->under(port.z, z, points_));
+  }
+  return to_vector(sum);
+}
+
+std::vector<double> ResidualFlexibility::exact_under(Port port) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  for (const Pair& pair : pairs_) {
+    const double w = weight(pair, port);
+    if (w != 0.) sum += w * w * pair.exact->under(port.z, port.z, points_);
+  }
+  return to_vector(sum);
+}
+
+std::vector<double> ResidualFlexibility::from(Port port, const Functional& functional) const {
+  check_functional(track_, functional);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  for (const Pair& pair : pairs_) {
+    const double w = weight(pair, port);
+    if (w == 0.) continue;
+    sum += w * (pair.exact->from(port.z, functional, points_) -
+                pair.model->from(port.z, functional, points_));
+  }
+  return to_vector(sum);
+}
+
+double PairTable::at(int e, int p, int e2, int q) const {
+  if (std::abs(e2 - e) > reach) return 0.;
+  return value[place_in(*this, e, p, e2, q)];
+}
+
+/// Sum over the lines that both ports move.
+LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points) const {
+  struct Part {
+    double weight;
+    LineFlexibility::Strip exact, model;
+  };
+  std::vector<Part> parts;
+  for (const Pair& pair : pairs_) {
+    const double w = weight(pair, a) * weight(pair, b);
+    if (w != 0.)
+      parts.push_back(
+          {w, pair.exact->between(a.z, b.z, points), pair.model->between(a.z, b.z, points)});
+  }
+  const Eigen::Index rows = points + 1, columns = track_.elements() * (points + 1);
+  return [parts, rows, columns](int element) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows, columns);
+    for (const Part& part : parts) sum += part.weight * (part.exact(element) - part.model(element));
+    return sum;
+  };
+}
+
+double ResidualFlexibility::largest_exact(Port port) const {
+  const std::vector<double> exact = exact_under(port);
+  return *std::max_element(exact.begin(), exact.end());
+}
+
+PairTable ResidualFlexibility::between(Port a, Port b, int points) const {
+  if (points < 1 || points_ % points != 0)
+    throw std::invalid_argument("a table between ports takes a divisor of the points of the track");
+  const LineFlexibility::Strip strip = strips(a, b, points);
+  const int elements = track_.elements(), n = points + 1;
+  // Two passes over the strips: the whole table would be elements^2 blocks.
+  std::vector<double> largest(static_cast<std::size_t>(elements), 0.);  // by distance in elements
+  for (int e = 0; e < elements; ++e) {
+    const Eigen::MatrixXd row = strip(e);
+    for (int e2 = 0; e2 < elements; ++e2) {
+      double& there = largest[static_cast<std::size_t>(std::abs(e2 - e))];
+      there = std::max(there, row.middleCols(e2 * n, n).cwiseAbs().maxCoeff());
+    }
+  }
+  const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
+  PairTable table{points, elements - 1, {}};
+  while (table.reach > 0 && largest[static_cast<std::size_t>(table.reach)] < limit) --table.reach;
+  table.value.assign(
+      static_cast<std::size_t>(elements * (2 * table.reach + 1)) * static_cast<std::size_t>(n * n),
+      0.);
+  for (int e = 0; e < elements; ++e) keep(strip(e), e, elements, table);
   return table;
+}
+
+double most_negative(const std::vector<double>& table) {
+  double lowest = 0.;
+  for (const double value : table) lowest = std::min(lowest, value);
+  return lowest;
 }
 
 }  // namespace railstep

@@ -1,23 +1,82 @@
 #pragma once
+#include <memory>
 #include <vector>
 
+#include "offline/condense/basis.h"
+#include "offline/condense/line_flexibility.h"
 #include "offline/track/track.h"
 
 namespace railstep {
 
-/// Residual flexibility G_exact(x, x) - G_model(x, x) of a rail under a vertical force on it: what
-/// the quadratic element misses between its end nodes.
+/// Residual flexibility between two ports, by element of the first and, within `reach` elements of
+/// it, of the second.
+struct PairTable {
+  int points;                 // intervals per element
+  int reach;                  // elements
+  std::vector<double> value;  // [e][e2 - e + reach][p][q], m/N; 0 where e2 is off the rail
+
+  /// Of the first port at place p of element e and the second at place q of element e2, both on
+  /// the rail; 0 beyond the reach.
+  double at(int e, int p, int e2, int q) const;
+};
+
+/// Residual flexibility G_res(a, b) = G_exact(a, b) - G_model(a, b) of a track: what a model of it
+/// misses statically, between ports and from ports to all else.
 ///
 /// Exact is the same track with every element divided into `points` elements, taken at their ends,
 /// where the element is exact: each divided element is condensed to its two end nodes, its static
-/// shapes and its inner flexibility with the ends held, so that the cost grows with the track's
-/// nodes only. Zero at the end nodes (to the exactness of the element there) and never negative
-/// between them.
-/// @param point  rail, and y, z over the section, m, from the axis; x and direction are not read
-/// @param points intervals per element, >= 3; the table is read by cubic interpolation
-/// @returns [elements][points + 1] m/N, at equal steps of x
-/// Throws std::invalid_argument if the track has a free rigid mode.
-std::vector<double> residual_flexibility(const Track& track, const std::vector<Line>& lines,
-                                         const RailPoint& point, int points);
+/// shapes and its inner flexibility with the ends held. The model is the track as it stands, or its
+/// lines in the coordinates of a basis; there a port leaves out the section's own strain (a_y,
+/// b_z), so that the squeeze of the head is in G_res. G_exact has a slope jump of
+/// -1/(k_z G A) at equal places, G_res carries it.
+///
+/// All queries skip lines that the port does not move. They throw std::invalid_argument on a rail
+/// that the track does not have, and on a free rigid mode of a line that the port moves.
+class ResidualFlexibility {
+ public:
+  /// @param lines  of the track, as assemble() gives them
+  /// @param bases  one per line, or none for the track as it stands
+  /// @param points intervals per element, >= 3; tables are read by cubic interpolation
+  /// Throws std::invalid_argument on fewer points and on bases that are not the lines'.
+  ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
+                      const std::vector<Basis>& bases, int points);
+  ~ResidualFlexibility();
+  ResidualFlexibility(const ResidualFlexibility&) = delete;
+  ResidualFlexibility& operator=(const ResidualFlexibility&) = delete;
+
+  /// G_res(x, x); [elements][points + 1], m/N, at equal steps of x. Never negative but by rounding
+  /// where the model is a projection of the track and its ports are whole; a port without the
+  /// section's strain keeps that. See most_negative().
+  std::vector<double> under(Port port) const;
+  /// The same of the rail's point at height z over the axis, straight above or below the port.
+  std::vector<double> under(Port port, double z) const;
+  /// G_exact(x, x); [elements][points + 1], m/N.
+  std::vector<double> exact_under(Port port) const;
+
+  /// G_res of all places of two ports of one or two rails; between(b, a) is its transpose. `reach`
+  /// is the smallest number of elements beyond which all of it stays below 1e-4 of the largest
+  /// G_exact(x, x) of the ports.
+  /// @param points intervals per element, a divisor of the constructor's
+  PairTable between(Port a, Port b, int points) const;
+
+  /// What the model misses of the functional under a unit force of the port at each place;
+  /// [elements][points + 1], m/N. Throws std::out_of_range if the functional is off the track.
+  std::vector<double> from(Port port, const Functional& functional) const;
+
+ private:
+  struct Pair;  // exact and model of one line
+  double weight(const Pair& pair, Port port) const;
+  LineFlexibility::Strip strips(Port a, Port b, int points) const;
+  double largest_exact(Port port) const;
+
+  Track track_;
+  std::vector<Line> lines_;
+  std::vector<Basis> bases_;
+  int points_;
+  std::vector<Pair> pairs_;
+};
+
+/// The lowest value of a table below 0, or 0, m/N.
+double most_negative(const std::vector<double>& table);
 
 }  // namespace railstep

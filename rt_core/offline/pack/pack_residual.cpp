@@ -88,7 +88,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
   std::vector<double> under, axis;
   for (const Port& port : kinds_) {
     append(under, residual.under(port));
-    append(axis, residual.under(port, {port.rail, 0.}));
+    append(axis, residual.under(port, 0.));
   }
   // What a port cannot do is push the rail up under itself: W must stay positive.
   for (double& value : under) {

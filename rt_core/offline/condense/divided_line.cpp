@@ -1,0 +1,151 @@
+#include <stdexcept>
+
+#include "offline/condense/line_flexibility.h"
+
+namespace railstep {
+
+namespace {
+
+/// Unknowns of the end nodes of an element in the line, -1 where clamped.
+std::vector<int> end_unknowns(const Line& line, const std::vector<int>& carried, int element) {
+  std::vector<int> result;
+  for (const int node : {2 * element, 2 * element + 2})
+    for (const int k : carried)
+      result.push_back(
+          line.unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)]);
+  return result;
+}
+
+/// Rows of `from` at the given unknowns, 0 where clamped.
+Eigen::MatrixXd gather(const Eigen::MatrixXd& from, const std::vector<int>& unknowns) {
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(unknowns.size()), from.cols());
+  for (Eigen::Index i = 0; i < result.rows(); ++i) {
+    const int unknown = unknowns[static_cast<std::size_t>(i)];
+    if (unknown < 0)
+      result.row(i).setZero();
+    else
+      result.row(i) = from.row(unknown);
+  }
+  return result;
+}
+
+/// The line's stiffness with every element's end-node stiffness changed by `change`.
+Eigen::SparseMatrix<double> with_change(const Track& track, const Line& line,
+                                        const std::vector<int>& carried,
+                                        const Eigen::MatrixXd& change) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int e = 0; e < track.elements(); ++e) {
+    const std::vector<int> place = end_unknowns(line, carried, e);
+    for (std::size_t j = 0; j < place.size(); ++j)
+      for (std::size_t i = 0; i < place.size(); ++i)
+        if (place[i] >= 0 && place[j] >= 0)
+          entries.emplace_back(place[i], place[j],
+                               change(static_cast<int>(i), static_cast<int>(j)));
+  }
+  Eigen::SparseMatrix<double> result(line.unknowns(), line.unknowns());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result + line.stiffness;
+}
+
+}  // namespace
+
+DividedLine::DividedLine(const Track& track, const Line& line, int parts)
+    : track_(track), line_(line), element_(track, carried_unknowns(line), parts) {
+  if (parts == 1) {
+    factor_.compute(line.stiffness);
+    return;
+  }
+  const Superelement whole(track, element_.carried(), 1);
+  factor_.compute(
+      with_change(track, line, element_.carried(), element_.stiffness() - whole.stiffness()));
+}
+
+void DividedLine::refuse_free_modes() const {
+  if (factor_.info() != Eigen::Success || factor_.vectorD().minCoeff() <= 0.)
+    throw std::invalid_argument(
+        "residual flexibility needs a track that is held: it has a free rigid mode");
+}
+
+Superelement::Rows DividedLine::port_rows(double z, int points) const {
+  const int parts = element_.parts();
+  Eigen::MatrixXd rows(points + 1, (2 * parts + 1) * static_cast<int>(element_.carried().size()));
+  for (int p = 0; p <= points; ++p)
+    rows.row(p) = element_.row(static_cast<double>(p) * parts / points, 0., z, 2).transpose();
+  return element_.condense(rows);
+}
+
+/// Displacements of the line under unit forces on the end unknowns of an element; [unknowns][2d].
+Eigen::MatrixXd DividedLine::end_columns(int element) const {
+  const std::vector<int> place = end_unknowns(line_, element_.carried(), element);
+  Eigen::MatrixXd unit =
+      Eigen::MatrixXd::Zero(line_.unknowns(), static_cast<Eigen::Index>(place.size()));
+  for (std::size_t j = 0; j < place.size(); ++j)
+    if (place[j] >= 0) unit(place[j], static_cast<Eigen::Index>(j)) = 1.;
+  return factor_.solve(unit);
+}
+
+Eigen::VectorXd DividedLine::under(double a_z, double b_z, int points) const {
+  refuse_free_modes();
+  const Superelement::Rows a = port_rows(a_z, points), b = port_rows(b_z, points);
+  const Eigen::VectorXd held = element_.held(a, b).diagonal();
+  Eigen::VectorXd result(track_.elements() * (points + 1));
+  for (int e = 0; e < track_.elements(); ++e) {
+    const Eigen::MatrixXd ends = gather(end_columns(e), end_unknowns(line_, element_.carried(), e));
+    for (int p = 0; p <= points; ++p)
+      result[e * (points + 1) + p] =
+          a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
+  }
+  return result;
+}
+
+LineFlexibility::Strip DividedLine::between(double a_z, double b_z, int points) const {
+  refuse_free_modes();
+  const Superelement::Rows a = port_rows(a_z, points), b = port_rows(b_z, points);
+  return [this, a, b, points, held = element_.held(a, b)](int element) {
+    const Eigen::MatrixXd moved = end_columns(element) * a.ends.transpose();  // [unknowns][points]
+    Eigen::MatrixXd strip(points + 1, track_.elements() * (points + 1));
+    for (int e = 0; e < track_.elements(); ++e) {
+      const Eigen::MatrixXd ends = gather(moved, end_unknowns(line_, element_.carried(), e));
+      strip.middleCols(e * (points + 1), points + 1) = (b.ends * ends).transpose();
+    }
+    strip.middleCols(element * (points + 1), points + 1) += held;
+    return strip;
+  };
+}
+
+/// A point of the functional over the divided element that holds it, weighted by its factor and
+/// its rail's part in the line.
+Superelement::Rows DividedLine::rail_row(const Functional::OnRail& point, int element) const {
+  const RailPoint& at = point.at;
+  const double place = at.x / track_.element_length() - element;
+  Eigen::VectorXd row = element_.row(place * element_.parts(), at.y, at.z, at.direction);
+  const std::vector<int>& carried = element_.carried();
+  for (Eigen::Index i = 0; i < row.size(); ++i) {
+    const int k = carried[static_cast<std::size_t>(i) % carried.size()];
+    if (flips_in_mirror(line_, at.rail, k)) row[i] = -row[i];
+  }
+  row *= point.factor * line_.rail_factor[static_cast<std::size_t>(at.rail)];
+  return element_.condense(row.transpose());
+}
+
+Eigen::VectorXd DividedLine::from(double z, const Functional& functional, int points) const {
+  refuse_free_modes();
+  const Superelement::Rows port = port_rows(z, points);
+  Eigen::VectorXd load = sleeper_load(line_, functional);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(track_.elements() * (points + 1));
+  for (const Functional::OnRail& point : functional.rail) {
+    const int element = element_at(track_, point.at.x);
+    const Superelement::Rows row = rail_row(point, element);
+    const std::vector<int> ends = end_unknowns(line_, element_.carried(), element);
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      if (ends[i] >= 0) load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));
+    result.segment(element * (points + 1), points + 1) += element_.held(port, row).col(0);
+  }
+  const Eigen::VectorXd moved = factor_.solve(load);
+  for (int e = 0; e < track_.elements(); ++e)
+    result.segment(e * (points + 1), points + 1) +=
+        port.ends * gather(moved, end_unknowns(line_, element_.carried(), e)).col(0);
+  return result;
+}
+
+}  // namespace railstep

@@ -1,0 +1,47 @@
+#include <stdexcept>
+
+#include "offline/condense/line_flexibility.h"
+
+namespace railstep {
+
+ReducedLine::ReducedLine(const Track& track, const Line& line, const Basis& basis)
+    : track_(track), line_(line), basis_(basis) {
+  if (basis.shapes.rows() != line.unknowns() || basis.shapes.cols() != basis.omega.size())
+    throw std::invalid_argument("a basis has one row per unknown of its line, one omega per shape");
+  if (basis.omega.size() > 0 && !(basis.omega.minCoeff() > 0.))
+    throw std::invalid_argument("a basis for residual flexibility has no free rigid mode");
+}
+
+Eigen::MatrixXd ReducedLine::scaled_shapes(int points) const {
+  const Eigen::MatrixXd scaled = basis_.shapes * basis_.omega.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(track_.elements() * (points + 1), basis_.omega.size());
+  for (int e = 0; e < track_.elements(); ++e)
+    for (int p = 0; p <= points; ++p) {
+      const auto n = shape(2. * p / points - 1.);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int height = line_.unknown_of[2 * static_cast<std::size_t>(e) + i][2];
+        if (height >= 0) result.row(e * (points + 1) + p) += n[i] * scaled.row(height);
+      }
+    }
+  return result;
+}
+
+Eigen::VectorXd ReducedLine::under(double, double, int points) const {
+  return scaled_shapes(points).rowwise().squaredNorm();
+}
+
+LineFlexibility::Strip ReducedLine::between(double, double, int points) const {
+  return [points, shapes = scaled_shapes(points)](int element) -> Eigen::MatrixXd {
+    return shapes.middleRows(element * (points + 1), points + 1) * shapes.transpose();
+  };
+}
+
+Eigen::VectorXd ReducedLine::from(double, const Functional& functional, int points) const {
+  Eigen::VectorXd load = sleeper_load(line_, functional);
+  for (const Functional::OnRail& point : functional.rail)
+    load += point.factor * point_row(track_, line_, point.at);
+  return scaled_shapes(points) * (basis_.shapes.transpose() * load).cwiseQuotient(basis_.omega);
+}
+
+}  // namespace railstep
