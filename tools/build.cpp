@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
+#include "sense.h"
 
 namespace railstep {
 namespace {
@@ -20,8 +22,6 @@ void refuse_unstepped(const Scene& scene) {
   };
   refuse(scene.loads.empty() && scene.wheelsets.empty(),
          "needs a [[load]] or a [[wheelset]] and the scene has neither");
-  refuse(scene.condense.kind == Condensation::modal,
-         "steps the full track; accepted is condense.kind = \"full\"");
   refuse(scene.step.steps % scene.step.steps_per_frame != 0,
          "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
 }
@@ -98,18 +98,31 @@ Railhead railhead_of(const Scene& scene) {
   return head;
 }
 
+Scheme scheme_of(const Scene& scene) {
+  const StepScene& step = scene.step;
+  if (scene.condense.kind == Condensation::modal) return held_force(step.dt, step.rho_inf);
+  return step.scheme == TimeScheme::backward_euler ? backward_euler(step.dt)
+                                                   : generalised_alpha(step.dt, step.rho_inf);
+}
+
 PackOptions options_of(const Scene& scene) {
   const StepScene& step = scene.step;
   if (step.steps_per_frame > std::numeric_limits<int>::max())
     throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
                                  scene.file.string(), step.steps_per_frame,
                                  std::numeric_limits<int>::max()));
-  return {.scheme = step.scheme == TimeScheme::backward_euler
-                        ? backward_euler(step.dt)
-                        : generalised_alpha(step.dt, step.rho_inf),
-          .steps_per_frame = static_cast<int>(step.steps_per_frame),
-          .residual_flexibility = scene.condense.residual_flexibility,
-          .gravity = scene.track.gravity ? kGravity : 0.};
+  PackOptions options{.scheme = scheme_of(scene),
+                      .steps_per_frame = static_cast<int>(step.steps_per_frame),
+                      .residual_flexibility = scene.condense.residual_flexibility,
+                      .gravity = scene.track.gravity ? kGravity : 0.,
+                      .steps = step.steps};
+  if (scene.condense.kind == Condensation::modal) {
+    const double modes =
+        scene.condense.modes_per_bay.value_or(1000.) * static_cast<double>(scene.track.bays);
+    options.modal = {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
+                     scene.condense.highest_hz.value_or(std::numeric_limits<double>::infinity())};
+  }
+  return options;
 }
 
 Support support_of(const SupportScene& s, const Section& section) {
@@ -158,18 +171,37 @@ Track track_of(const Scene& scene) {
   return track;
 }
 
-Simulation::Simulation(const Scene& scene) try {
+namespace {
+
+/// The trace's columns in the order in which a frame's outputs are written.
+std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) {
+  std::vector<std::string> columns = {"time_s"};
+  for (const LoadScene& load : scene.loads) {
+    columns.push_back(load.name + ".x_m");
+    columns.push_back(load.name + ".deflection_z_m");
+  }
+  for (const WheelsetScene& wheelset : scene.wheelsets)
+    for (const std::string& wheel : wheelset.wheels)
+      for (const char* quantity :
+           {"force_z_n", "force_z_mean_n", "force_z_peak_n", "impulse_z_n_s", "gap_m", "rail_z_m"})
+        columns.push_back(wheel + "." + quantity);
+  columns.insert(columns.end(), sensors.columns.begin(), sensors.columns.end());
+  return columns;
+}
+
+}  // namespace
+
+Built::Built(const Scene& scene) try {
   refuse_unstepped(scene);
-  track_ = track_of(scene);
-  packed_ = std::make_unique<PackedModel>(track_, loads_of(scene), wheelsets_of(scene),
-                                          railhead_of(scene), options_of(scene));
-  memory_.resize(static_cast<std::size_t>(state_doubles(model())), 0.);
-  scratch_.resize(static_cast<std::size_t>(workspace_doubles(model())), 0.);
-  state = state_on(model(), memory_.data());
-  workspace = workspace_on(model(), scratch_.data());
-  start_rolling(model(), state);
+  track = track_of(scene);
+  const Railhead head = railhead_of(scene);
+  Sensors sensors = sensors_of(scene, track, head);
+  columns = columns_of(scene, sensors);
+  packed = std::make_unique<PackedModel>(
+      track, Traffic{loads_of(scene), wheelsets_of(scene), head, std::move(sensors.probes)},
+      options_of(scene));
   if (scene.step.start == Start::equilibrium)
-    start_in_equilibrium(track_, model(), scene.track.gravity ? kGravity : 0., state);
+    packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }

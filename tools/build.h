@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "offline/pack/pack.h"
@@ -16,22 +17,14 @@ Section section_of(const Scene& scene);
 /// The track of a scene, about the section's centroid. Throws InputError.
 Track track_of(const Scene& scene);
 
-/// A scene made ready to step: its model, the state at its start, and scratch.
-class Simulation {
- public:
-  /// Throws InputError, in one sentence, for what makes no model (a free rigid mode, say) and for
-  /// what `railstep run` does not step.
-  explicit Simulation(const Scene& scene);
-
-  const Model& model() const { return packed_->model(); }
-  const Track& track() const { return track_; }
-  State state;
-  Workspace workspace;
-
- private:
-  Track track_;
-  std::unique_ptr<PackedModel> packed_;
-  std::vector<double> memory_, scratch_;
+/// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
+/// and support. Throws InputError, in one sentence, for what makes no model (a free rigid mode,
+/// say) and for what `railstep run` does not step.
+struct Built {
+  explicit Built(const Scene& scene);
+  Track track;
+  std::vector<std::string> columns;
+  std::unique_ptr<PackedModel> packed;
 };
 
 }  // namespace railstep

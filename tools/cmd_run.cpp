@@ -100,19 +100,17 @@ Exit run_scene(const RunOptions& o) {
   const Scene scene = scene_of(o);
   if (!o.report.empty()) need_gnuplot();
   Simulation run(scene);
-  const Sensors sensors(scene, run.track(), run.model());
   std::optional<Trace> trace;
-  if (!o.trace.empty()) trace.emplace(o.trace, trace_columns(scene, sensors));
-  const std::int64_t frames = scene.step.steps / scene.step.steps_per_frame;
+  if (!o.trace.empty()) trace.emplace(o.trace, run.columns());
+  const std::int64_t frames = run.model().steps / run.model().steps_per_frame;
   RunRecord record;
   {
     Progress bar(frames);
-    record = simulate(run, sensors, frames, trace ? &*trace : nullptr, !o.report.empty(),
+    record = simulate(run, frames, trace ? &*trace : nullptr, !o.report.empty(),
                       [&bar](std::int64_t done) { bar(done); });
   }
   if (trace) trace->finish();
-  if (!o.report.empty())
-    write_file(o.report, run_report(scene, trace_columns(scene, sensors), record));
+  if (!o.report.empty()) write_file(o.report, run_report(scene, run.columns(), record));
   const nlohmann::ordered_json result = to_json(run, record);
   if (o.json)
     fmt::print("{}\n", result.dump(2));

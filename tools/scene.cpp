@@ -117,8 +117,7 @@ CondenseScene read_condense(const Table& root) {
   const std::optional<Table> t = root.table_if("condense");
   if (!t) return c;
   c.kind = t->choice("kind", {"full", "modal"}, 0) == 0 ? Condensation::full : Condensation::modal;
-  if (t->has("modes_per_bay"))
-    c.modes_per_bay = static_cast<int>(t->integer("modes_per_bay", 1, 1000));
+  if (t->has("modes_per_bay")) c.modes_per_bay = t->number("modes_per_bay", between(0.0, 1000.0));
   if (t->has("highest_hz")) c.highest_hz = t->number("highest_hz", above_upto(0.0, 1e6));
   if (c.modes_per_bay && c.highest_hz)
     t->refuse("highest_hz", "highest_hz is given beside modes_per_bay; one of them is accepted");

@@ -9,6 +9,7 @@
 
 #include "offline/section/section.h"
 #include "offline/track/track.h"
+#include "online/model/model.h"
 
 namespace railstep {
 
@@ -131,7 +132,7 @@ struct StepScene {
 
 struct CondenseScene {
   Condensation kind;
-  std::optional<int> modes_per_bay;
+  std::optional<double> modes_per_bay;
   std::optional<double> highest_hz;
   bool residual_flexibility;
 };
@@ -168,8 +169,6 @@ struct Scene {
   bool trace_supports;
   [[nodiscard]] double duration() const { return static_cast<double>(step.steps) * step.dt; }
 };
-
-inline constexpr std::int64_t kMostElements = 100'000;
 
 /// Reads and checks a scene; nothing of its size is allocated. Throws InputError.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});

@@ -2,111 +2,105 @@
 
 #include <fmt/core.h>
 
+#include <array>
+
 #include "build.h"
 
 namespace railstep {
 namespace {
 
-double product(const std::vector<std::pair<int, double>>& row, const double* values) {
-  double sum = 0.;
-  for (const auto& [unknown, coefficient] : row) sum += coefficient * values[unknown];
-  return sum;
+/// One direction of a sensor: where it rests and what moves it.
+struct Direction {
+  double rest;
+  Functional track;
+  int wheelset = -1;
+};
+using Point = std::array<Direction, 3>;
+
+Point point_of(const RailSensor& sensor, const Track& track, double z) {
+  const int rail = sensor.rail == Side::right ? 1 : 0;
+  const double y = track.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track.rail_spacing;
+  const std::array<double, 3> rest = {sensor.position, y, z};
+  Point point;
+  for (int d = 0; d < 3; ++d)
+    point[static_cast<std::size_t>(d)] = {rest[static_cast<std::size_t>(d)],
+                                          {.rail = {{{rail, sensor.position, 0., z, d}, 1.}}}};
+  return point;
+}
+
+/// An end of a sleeper, or its centre: the mean of its ends.
+Point point_of(const SleeperSensor& sensor, const Track& track, double z) {
+  const int seat = static_cast<int>(sensor.sleeper);
+  std::array<double, 3> rest = {seat * track.bay_length, 0., z};
+  if (sensor.rail) rest[1] = (*sensor.rail == Side::right ? -.5 : .5) * track.rail_spacing;
+  Point point;
+  for (int d = 0; d < 3; ++d) {
+    Direction& direction = point[static_cast<std::size_t>(d)];
+    direction.rest = rest[static_cast<std::size_t>(d)];
+    for (int rail = 0; rail < track.rails; ++rail) {
+      if (sensor.rail && rail != (*sensor.rail == Side::right ? 1 : 0)) continue;
+      direction.track.sleeper.push_back({rail, seat, d, sensor.rail ? 1. : 1. / track.rails});
+    }
+  }
+  return point;
+}
+
+Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Railhead& head) {
+  const WheelsetScene& w = scene.wheelsets[sensor.wheelset];
+  Point point;
+  point[0].rest = w.start;
+  point[2].rest = head.top_z + w.radius;
+  for (Direction& direction : point) direction.wheelset = static_cast<int>(sensor.wheelset);
+  return point;
+}
+
+double height_over_axis(Height at, const Section& section) {
+  const double foot = -section.area.centroid_height;
+  return at == Height::axis ? 0. : at == Height::foot ? foot : foot + section.height;
+}
+
+void add_point(const std::string& name, const Point& point, Sensors& sensors) {
+  static const char* const axes[3] = {"x", "y", "z"};
+  const auto add = [&](const std::string& quantity, std::size_t d, Probe probe) {
+    probe.track = point[d].track;
+    probe.wheelset = point[d].wheelset;
+    probe.coordinate = static_cast<int>(d);
+    sensors.columns.push_back(name + "." + quantity);
+    sensors.probes.push_back(std::move(probe));
+  };
+  for (std::size_t d = 0; d < 3; ++d)
+    add(fmt::format("{}_m", axes[d]), d, {.rest = point[d].rest, .displacement = 1.});
+  for (std::size_t d = 0; d < 3; ++d) add(fmt::format("d{}_m", axes[d]), d, {.displacement = 1.});
+  add("vz_m_per_s", 2, {.velocity = 1.});
+}
+
+/// Force of a seat on its rail, up positive: its spring and damper on the gap between foot and
+/// sleeper.
+void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
+  const double x = seat * track.bay_length;
+  Probe probe{.displacement = -track.support.stiffness[2], .velocity = -track.support.damping[2]};
+  probe.track.rail = {{{rail, x, 0., track.support.height_z, 2}, 1.}};
+  if (track.sleeper) probe.track.sleeper = {{rail, seat, 2, -1.}};
+  sensors.columns.push_back(fmt::format("support_{}{}.force_z_n", rail == 0 ? "" : "right_", seat));
+  sensors.probes.push_back(std::move(probe));
 }
 
 }  // namespace
 
-Sensors::Row Sensors::rail_row(const RailPoint& point) const {
-  Row row;
-  for (std::size_t l = 0; l < lines_.size(); ++l) {
-    const Eigen::SparseVector<double> part = point_row(track_, lines_[l], point);
-    for (Eigen::SparseVector<double>::InnerIterator entry(part); entry; ++entry)
-      row.emplace_back(model_.line[l].first + static_cast<int>(entry.index()), entry.value());
-  }
-  return row;
-}
-
-Sensors::Row Sensors::sleeper_row(int rail, int seat, int direction) const {
-  Row row;
-  for (std::size_t l = 0; l < lines_.size(); ++l) {
-    const int unknown = lines_[l].sleeper_unknown_of[static_cast<std::size_t>(seat)]
-                                                    [static_cast<std::size_t>(direction)];
-    const double factor = lines_[l].rail_factor[static_cast<std::size_t>(rail)];
-    const bool flips = lines_[l].mirrored && rail == 1 && direction == 1;
-    if (unknown >= 0 && factor != 0.)
-      row.emplace_back(model_.line[l].first + unknown, flips ? -factor : factor);
-  }
-  return row;
-}
-
-Sensors::Point Sensors::point_of(const RailSensor& sensor, double z) const {
-  const int rail = sensor.rail == Side::right ? 1 : 0;
-  Point point{{sensor.position, model_.rail_y[rail], z}, {}};
-  for (int d = 0; d < 3; ++d)
-    point.direction[static_cast<std::size_t>(d)] = rail_row({rail, sensor.position, 0., z, d});
-  return point;
-}
-
-Sensors::Point Sensors::point_of(const SleeperSensor& sensor, double z) const {
-  const int seat = static_cast<int>(sensor.sleeper);
-  Point point{{seat * track_.bay_length, 0., z}, {}};
-  if (sensor.rail) point.rest[1] = model_.rail_y[*sensor.rail == Side::right ? 1 : 0];
-  for (int d = 0; d < 3; ++d) {
-    Row& row = point.direction[static_cast<std::size_t>(d)];
-    if (sensor.rail) {
-      row = sleeper_row(*sensor.rail == Side::right ? 1 : 0, seat, d);
-      continue;
-    }
-    for (int rail = 0; rail < track_.rails; ++rail)  // the centre: the mean of its ends
-      for (const auto& [unknown, coefficient] : sleeper_row(rail, seat, d))
-        row.emplace_back(unknown, coefficient / track_.rails);
-  }
-  return point;
-}
-
-Sensors::Sensors(const Scene& scene, const Track& track, const Model& model)
-    : track_(track), model_(model), lines_(assemble(track)) {
+Sensors sensors_of(const Scene& scene, const Track& track, const Railhead& head) {
   const Section section = section_of(scene);
-  const double foot = -section.area.centroid_height;
+  Sensors sensors;
   for (const SensorScene& sensor : scene.sensors) {
-    for (const char* quantity : {"x_m", "y_m", "z_m", "dx_m", "dy_m", "dz_m", "vz_m_per_s"})
-      columns_.push_back(sensor.name + "." + quantity);
-    if (const auto* rail = std::get_if<RailSensor>(&sensor.on)) {
-      const double z = rail->at == Height::axis   ? 0.
-                       : rail->at == Height::foot ? foot
-                                                  : foot + section.height;
-      points_.push_back(point_of(*rail, z));
-    } else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on)) {
-      points_.push_back(point_of(*sleeper, foot));
-    } else {
-      const WheelsetModel& w = model.wheelset[std::get<WheelsetSensor>(sensor.on).wheelset];
-      Point point{{w.start, 0., w.rest_z}, {}};
-      for (int d = 0; d < 3; ++d)
-        point.direction[static_cast<std::size_t>(d)] = {{w.first + d, 1.}};
-      points_.push_back(point);
-    }
+    if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
+      add_point(sensor.name, point_of(*rail, track, height_over_axis(rail->at, section)), sensors);
+    else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
+      add_point(sensor.name, point_of(*sleeper, track, -section.area.centroid_height), sensors);
+    else
+      add_point(sensor.name, point_of(std::get<WheelsetSensor>(sensor.on), scene, head), sensors);
   }
-  if (!scene.trace_supports) return;
-  for (int rail = 0; rail < track.rails; ++rail)
-    for (int seat = 0; seat <= track.bays; ++seat) {
-      columns_.push_back(fmt::format("support_{}{}.force_z_n", rail == 0 ? "" : "right_", seat));
-      Row gap = rail_row({rail, seat * track.bay_length, 0., track.support.height_z, 2});
-      for (const auto& [unknown, coefficient] : sleeper_row(rail, seat, 2))
-        gap.emplace_back(unknown, -coefficient);
-      supports_.push_back(std::move(gap));
-    }
-}
-
-void Sensors::read(const State& state, std::vector<double>& row) const {
-  for (const Point& point : points_) {
-    std::array<double, 3> moved;
-    for (std::size_t d = 0; d < 3; ++d) moved[d] = product(point.direction[d], state.u);
-    for (std::size_t d = 0; d < 3; ++d) row.push_back(point.rest[d] + moved[d]);
-    row.insert(row.end(), moved.begin(), moved.end());
-    row.push_back(product(point.direction[2], state.v));
-  }
-  for (const Row& gap : supports_)
-    row.push_back(-track_.support.stiffness[2] * product(gap, state.u) -
-                  track_.support.damping[2] * product(gap, state.v));
+  for (int rail = 0; rail < track.rails && scene.trace_supports; ++rail)
+    for (int seat = 0; seat <= track.bays; ++seat) add_support(rail, seat, track, sensors);
+  return sensors;
 }
 
 }  // namespace railstep

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "online/step/probe.h"
 #include "online/step/step.h"
 
 namespace railstep {
@@ -27,8 +28,7 @@ constexpr StatusText kStatus[] = {
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 
-void write_row(const Simulation& run, const Sensors& sensors, const Outputs& outputs,
-               std::vector<double>& row) {
+void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
   const Model& model = run.model();
   row.assign({static_cast<double>(run.state.steps) * model.scheme.dt});
   for (std::int32_t i = 0; i < model.loads; ++i) {
@@ -39,7 +39,9 @@ void write_row(const Simulation& run, const Sensors& sensors, const Outputs& out
     row.insert(row.end(),
                {outputs.wheel_force[i], outputs.wheel_force_mean[i], outputs.wheel_force_peak[i],
                 outputs.wheel_impulse[i], outputs.wheel_gap[i], outputs.wheel_rail_z[i]});
-  sensors.read(run.state, row);
+  const std::size_t probes = row.size();
+  row.resize(probes + static_cast<std::size_t>(model.probe.count));
+  read_probes(model, run.state, outputs, row.data() + probes);
 }
 
 double timed_frame(Simulation& run, Outputs& outputs) {
@@ -52,23 +54,8 @@ double timed_frame(Simulation& run, Outputs& outputs) {
 
 }  // namespace
 
-std::vector<std::string> trace_columns(const Scene& scene, const Sensors& sensors) {
-  std::vector<std::string> columns = {"time_s"};
-  for (const LoadScene& load : scene.loads) {
-    columns.push_back(load.name + ".x_m");
-    columns.push_back(load.name + ".deflection_z_m");
-  }
-  for (const WheelsetScene& wheelset : scene.wheelsets)
-    for (const std::string& wheel : wheelset.wheels)
-      for (const char* quantity :
-           {"force_z_n", "force_z_mean_n", "force_z_peak_n", "impulse_z_n_s", "gap_m", "rail_z_m"})
-        columns.push_back(wheel + "." + quantity);
-  columns.insert(columns.end(), sensors.columns().begin(), sensors.columns().end());
-  return columns;
-}
-
-RunRecord simulate(Simulation& run, const Sensors& sensors, std::int64_t frames, Trace* trace,
-                   bool keep_rows, const std::function<void(std::int64_t)>& after) {
+RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
+                   const std::function<void(std::int64_t)>& after) {
   RunRecord record;
   Outputs outputs{};
   std::vector<double> row;
@@ -79,7 +66,7 @@ RunRecord simulate(Simulation& run, const Sensors& sensors, std::int64_t frames,
     record.constraint_violation =
         std::max(record.constraint_violation, outputs.constraint_violation);
     if (!trace && !keep_rows) return;
-    write_row(run, sensors, outputs, row);
+    write_row(run, outputs, row);
     if (trace) trace->row(row);
     if (keep_rows) record.rows.insert(record.rows.end(), row.begin(), row.end());
   };
@@ -112,13 +99,15 @@ std::string unknown_place(const Model& model, std::int32_t unknown) {
       "vertical slope b_x", "roll b_y",         "b_z"};
   for (std::int32_t l = model.lines - 1; l >= 0; --l) {
     const LineModel& line = model.line[l];
-    if (unknown < line.first) continue;
+    if (unknown < line.first || unknown >= line.first + line.size) continue;
+    if (model.condensed != 0)
+      return fmt::format("mode {} of the track's line {}", unknown - line.first, l);
     for (std::int32_t i = 0; i < 9 * (2 * model.elements + 1); ++i)
       if (line.unknown_of[i] == unknown - line.first)
         return fmt::format("{} of rail node {}", names[i % 9], i / 9);
     break;
   }
-  return "a sleeper's motion";
+  return unknown < model.bodies ? "a sleeper's motion" : "a wheelset's coordinate";
 }
 
 double quantile(std::vector<double> values, double q) {

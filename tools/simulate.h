@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "build.h"
-#include "sense.h"
+#include "simulation.h"
 #include "trace.h"
 
 namespace railstep {
@@ -20,15 +19,12 @@ struct RunRecord {
   std::vector<double> rows;             // the trace, row after row; only when asked for
 };
 
-/// Columns of a trace: time_s, then those of every load, wheel, sensor and support.
-std::vector<std::string> trace_columns(const Scene& scene, const Sensors& sensors);
-
 /// Steps `frames` frames from the state as it stands; stops early when the state is not finite.
 /// @param trace     gets a row for the state at the start and one a frame; may be null
 /// @param keep_rows also keep the rows in the record
 /// @param after     called after every frame with the number of frames done; may be empty
-RunRecord simulate(Simulation& run, const Sensors& sensors, std::int64_t frames, Trace* trace,
-                   bool keep_rows, const std::function<void(std::int64_t)>& after = {});
+RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
+                   const std::function<void(std::int64_t)>& after = {});
 
 /// Names of the bits that are set, as in the JSON; empty when all is well.
 std::vector<std::string> status_names(Status status);

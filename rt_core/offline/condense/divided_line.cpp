@@ -92,8 +92,7 @@ Eigen::VectorXd DividedLine::under(double a_z, double b_z, int points) const {
   for (int e = 0; e < track_.elements(); ++e) {
     const Eigen::MatrixXd ends = gather(end_columns(e), end_unknowns(line_, element_.carried(), e));
     for (int p = 0; p <= points; ++p)
-      result[e * (points + 1) + p] =
-          a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
+      result[e * (points + 1) + p] = a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
   }
   return result;
 }

@@ -1,6 +1,7 @@
 #include "offline/condense/modal.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -42,6 +43,44 @@ void check_complete(const DampedModes& modes) {
         std::to_string(error) + "); change the number of modes or step the full track");
 }
 
+/// Columns of a matrix that hold anything.
+Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A) {
+  std::vector<Eigen::VectorXd> found;
+  for (int j = 0; j < A.outerSize(); ++j)
+    if (A.col(j).norm() > 0.) found.emplace_back(A.col(j));
+  Eigen::MatrixXd result(A.rows(), static_cast<Eigen::Index>(found.size()));
+  for (std::size_t j = 0; j < found.size(); ++j)
+    result.col(static_cast<Eigen::Index>(j)) = found[j];
+  return result;
+}
+
+/// What the static shapes of the dampers add to shapes that are kept; orthonormal over the mass.
+Eigen::MatrixXd damper_shapes(const Line& line, const Eigen::MatrixXd& kept) {
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
+  Eigen::MatrixXd shapes = factor.solve(filled_columns(line.damping));
+  if (shapes.cols() == 0) return shapes;
+  const auto norms = [&]() -> Eigen::VectorXd {
+    return shapes.cwiseProduct(line.mass * shapes).colwise().sum().cwiseSqrt().transpose();
+  };
+  for (int twice = 0; twice < 2; ++twice) {
+    const Eigen::VectorXd before = norms();
+    shapes -= kept * (kept.transpose() * (line.mass * shapes));
+    const Eigen::VectorXd after = norms();
+    for (Eigen::Index j = 0; j < shapes.cols(); ++j)  // what is left of a kept shape is rounding
+      shapes.col(j) *= after[j] > 1e-8 * before[j] ? 1. / after[j] : 0.;
+  }
+  // The columns of C have the rank of its dampers; what is left of the others is rounding.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(shapes.transpose() *
+                                                            (line.mass * shapes));
+  const double largest = gram.eigenvalues().maxCoeff();
+  Eigen::Index first = largest > 0. ? 0 : shapes.cols();
+  while (first < shapes.cols() && gram.eigenvalues()[first] < 1e-10 * largest) ++first;
+  const Eigen::Index rank = shapes.cols() - first;
+  Eigen::MatrixXd result = shapes * gram.eigenvectors().rightCols(rank);
+  result *= gram.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+  return result;
+}
+
 }  // namespace
 
 Basis modal_basis(const Line& line, const ModalLimit& limit) {
@@ -52,11 +91,19 @@ Basis modal_basis(const Line& line, const ModalLimit& limit) {
   const Modes all = modes(line);
   if (all.frequency[0] < 1e-3)
     throw std::invalid_argument(
-        "a condensed track is held in every direction in which it is moved: "
-        "this one has a free rigid mode");
+        "a condensed track is held in every direction in which it is moved: this one has a free "
+        "rigid mode");
   Eigen::Index count = std::min<Eigen::Index>(limit.most, all.frequency.size());
-  while (count > 1 && all.frequency[count - 1] > limit.highest_hz) --count;
-  return {2. * kPi * all.frequency.head(count), all.shape.leftCols(count)};
+  while (count > 0 && all.frequency[count - 1] > limit.highest_hz) --count;
+  const Eigen::MatrixXd kept = all.shape.leftCols(count);
+  const Eigen::MatrixXd added = damper_shapes(line, kept);
+  Eigen::MatrixXd both(line.unknowns(), kept.cols() + added.cols());
+  both << kept, added;
+  if (both.cols() == 0)
+    throw std::invalid_argument("a condensed line without dampers keeps one mode or more");
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      both.transpose() * (line.stiffness * both), both.transpose() * (line.mass * both));
+  return {solver.eigenvalues().cwiseSqrt(), both * solver.eigenvectors()};
 }
 
 DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping) {

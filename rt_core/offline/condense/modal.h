@@ -6,13 +6,16 @@
 
 namespace railstep {
 
-/// How many modes a condensed line keeps: the lower of both counts.
+/// How many undamped modes a condensed line keeps: the lower of both counts.
 struct ModalLimit {
-  int most;           // modes
+  int most;           // modes, 0 or more
   double highest_hz;  // Hz
 };
 
-/// The lowest undamped modes of a line, at least one.
+/// The lowest undamped modes of a line, and the static shape K^-1 b of every damper row b of it,
+/// made orthogonal: a damper is strained by what modes leave out, and without those shapes it would
+/// be blind to it (11 to 27 % of the deflection under a load with dampers of 29e6 N s/m). A
+/// Galerkin basis: no energy is made, whatever it leaves out.
 /// Throws std::invalid_argument on a free rigid mode (below 1e-3 Hz), which has no static answer,
 /// and on lines of more than kMostModalUnknowns.
 Basis modal_basis(const Line& line, const ModalLimit& limit);

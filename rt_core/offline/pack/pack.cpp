@@ -62,8 +62,7 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.kind = kind_of(load.rail, load.z);
 }
 
-void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
-                               const Railhead& head) {
+void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset, const Railhead& head) {
   if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
   if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
   if (wheelset.forces.size() > static_cast<std::size_t>(kMaxBodyForces))

@@ -106,6 +106,7 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
                   complex(held - rising),
                   complex(rising),
                   complex(held),
+                  0,
                   nullptr};
   std::vector<double> shape;
   std::vector<std::int32_t> rows;
@@ -141,6 +142,7 @@ void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions
     add_banded(own.line, packed);
   }
   packed.first = model_.unknowns;
+  packed.twin = static_cast<std::int32_t>(twin);
   for (int rail = 0; rail < 2; ++rail)
     packed.rail_factor[rail] =
         rail < track.rails ? own.line.rail_factor[static_cast<std::size_t>(rail)] : 0.;

@@ -70,6 +70,7 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
   }
   model_.probe.count = static_cast<std::int32_t>(probes.size());
   model_.probe.table = keep(std::vector<std::int32_t>(probes.size(), -1));
+  model_.probe.entries = start.back();
   model_.probe.start = keep(std::move(start));
   model_.probe.index = keep(std::move(index));
   model_.probe.value = keep(std::move(value));
@@ -119,6 +120,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
     if (table.back() >= 0) append(values, rows);
   }
   if (tables == 0) return;
+  model_.probe.tables = tables;
   model_.probe.table = keep(std::move(table));
   model_.probe.residual = keep(std::move(values));
 }

@@ -32,14 +32,55 @@ double wheel_load(const WheelsetModel& w) {
   return vertical / 2.;
 }
 
-/// Displacements of the track's lines, and of six coordinates of each wheelset.
+/// A point as ports see it: those of condensed lines leave out the section's own strain.
+RailPoint seen(const Model& model, RailPoint at) {
+  if (model.condensed != 0) at.z = 0.;
+  return at;
+}
+
+/// Static displacements of each line of the model: its unknowns, or its coordinates if condensed.
+std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
+                                          const std::vector<PointForce>& forces, double gravity) {
+  std::vector<Eigen::VectorXd> lines;
+  if (packed.model().condensed == 0) {
+    const std::vector<Eigen::VectorXd> all = statics.solve(forces, gravity);
+    for (const PackedLine& own : packed.lines()) lines.push_back(all[own.index]);
+    return lines;
+  }
+  for (const PackedLine& own : packed.lines()) {
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
+    if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
+    for (const PointForce& f : forces)
+      load += f.force * point_row(statics.track(), own.line, seen(packed.model(), f.at));
+    lines.push_back((own.basis.shapes.transpose() * load)
+                        .cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
+  }
+  return lines;
+}
+
+/// Height of a rail's point as the model's lines have it, m; the rest is residual.
+double height_of(const Track& track, const PackedModel& packed,
+                 const std::vector<Eigen::VectorXd>& lines, const RailPoint& at) {
+  double sum = 0.;
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    const Eigen::SparseVector<double> row = point_row(track, own.line, seen(packed.model(), at));
+    sum += packed.model().condensed == 0
+               ? row.dot(lines[l])
+               : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(lines[l]);
+  }
+  return sum;
+}
+
+/// Displacements of the model's lines, and of six coordinates of each wheelset.
 struct Pose {
   std::vector<Eigen::VectorXd> lines;
   std::vector<std::array<double, 6>> wheelsets;
 };
 
 /// Equilibrium with everything that moves shifted by `time`.
-Pose equilibrium(const Statics& statics, const Model& model, double gravity, double time) {
+Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
+  const Model& model = packed.model();
   std::vector<PointForce> forces;
   std::vector<RailForce> ports;  // the same for the residual flexibility
   for (std::int32_t i = 0; i < model.loads; ++i) {
@@ -58,12 +99,12 @@ Pose equilibrium(const Statics& statics, const Model& model, double gravity, dou
       forces.push_back({{rail, x, 0., model.head_z, 2}, -wheel_load(w)});
       ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
     }
-  Pose pose{statics.solve(forces, gravity), {}};
+  Pose pose{static_lines(packed, statics, forces, gravity), {}};
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     double height[2];
     for (const std::size_t rail : {0u, 1u}) {
       const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
-      height[rail] = statics.at(pose.lines, forces[port].at) +
+      height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
                      residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
                                            static_cast<int>(port));
     }
@@ -84,8 +125,7 @@ void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
     std::copy(v.begin(), v.end(), state.v + line.first);
     return;
   }
-  const Eigen::MatrixXd projection = own.basis.shapes.transpose() * own.line.mass;
-  const Eigen::VectorXcd z = own.modes.from(projection * u, projection * v);
+  const Eigen::VectorXcd z = own.modes.from(u, v);
   for (Eigen::Index k = 0; k < z.size(); ++k) {
     state.u[line.first + k] = z[k].real();
     state.v[line.first + k] = z[k].imag();
@@ -110,14 +150,13 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());
   const Statics statics(track);
-  const Pose at = equilibrium(statics, model, gravity, 0.);
+  const Pose at = equilibrium(statics, packed, gravity, 0.);
   const double dt = 1e-6;  // s; the shape's change over it is far above rounding, and linear
-  const Pose later = equilibrium(statics, model, gravity, dt);
-  const Pose before = equilibrium(statics, model, gravity, -dt);
+  const Pose later = equilibrium(statics, packed, gravity, dt);
+  const Pose before = equilibrium(statics, packed, gravity, -dt);
   for (std::size_t l = 0; l < packed.lines().size(); ++l) {
-    const std::size_t i = packed.lines()[l].index;
-    put(packed.lines()[l], model.line[l], at.lines[i],
-        (later.lines[i] - before.lines[i]) / (2. * dt), state);
+    put(packed.lines()[l], model.line[l], at.lines[l],
+        (later.lines[l] - before.lines[l]) / (2. * dt), state);
   }
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const std::size_t set = static_cast<std::size_t>(b);

@@ -14,6 +14,14 @@ inline constexpr int kMaxWheels = 2 * kMaxWheelsets;
 inline constexpr int kMaxBodyForces = 4;
 inline constexpr int kMaxPortKinds = 4;  // rails and heights at which vertical forces act
 
+// What a model may not exceed; a block that claims more is refused.
+inline constexpr std::int64_t kMostElements = 100'000;
+inline constexpr std::int64_t kMostUnknowns = 1 << 26;
+inline constexpr std::int64_t kMostRows = 1 << 22;  // of tables, probes and shapes
+inline constexpr std::int64_t kMostEntries = 1 << 28;
+inline constexpr std::int64_t kMostPairPoints = 64;
+inline constexpr std::int64_t kMostGuideTurns = 1000;
+
 /// Coefficients of a one-step scheme with constant matrices, made offline. With g the true
 /// acceleration (M g + C v + K u = f at every step) and a the algorithmic one (Arnold and Bruls
 /// 2007):
@@ -35,13 +43,14 @@ struct Modal {
   Complex keep;        // e^(rate dt)
   Complex old_force, new_force, held_force;  // s
   std::int32_t rows;
-  const double* shape;                       // [rows][2][count] real and imaginary parts, kg^-1/2
+  const double* shape;  // [rows][2][count] real and imaginary parts, kg^-1/2
 };
 
 /// One independent linear system of the track; views into the model's block. Banded or condensed.
 /// The state of a condensed line is Re z in u, Im z in v, and in a, g those of the last q.
 struct LineModel {
   std::int32_t first, size;  // its unknowns among the state's, padded to whole panels
+  std::int32_t twin;         // the first line that shares its matrices or modes; itself if none
   Band step;                 // factor of K + kv C + kg M
   Diagonals mass, damping;   // padded to whole panels
   Modal modal;
@@ -99,10 +108,10 @@ struct PairModel {
 /// What the model's unknowns miss of the static deflection under vertical forces, tabled over
 /// elements at equal steps of xi. Null pointers: not modelled.
 struct ResidualModel {
-  std::int32_t kinds;          // of ports
-  std::int32_t points;         // intervals per element
-  const double* under;         // [kinds][elements][points + 1] m/N, of the force's own point
-  const double* axis;          // the same of the rail's axis under it
+  std::int32_t kinds;   // of ports
+  std::int32_t points;  // intervals per element
+  const double* under;  // [kinds][elements][points + 1] m/N, of the force's own point
+  const double* axis;   // the same of the rail's axis under it
   PairModel pair[kMaxPortKinds][kMaxPortKinds];  // [force][displacement]
 };
 
@@ -110,20 +119,22 @@ struct ResidualModel {
 struct ProbeModel {
   std::int32_t count;
   const std::int32_t* start;  // [count + 1] of each row among index and value
-  const std::int32_t* index;  // into u, then v, of the state: 0 to 2 unknowns
-  const double* value;        // per m or per m/s
+  std::int32_t entries;
+  const std::int32_t* index;  // [entries] into u, then v, of the state: 0 to 2 unknowns
+  const double* value;        // [entries] per m or per m/s
   const double* rest;         // [count]
   const std::int32_t* table;  // [count] of its residual, -1: none
-  const double* residual;     // [tables][kinds][elements][points + 1] per N, or null
+  std::int32_t tables;
+  const double* residual;  // [tables][kinds][elements][points + 1] per N, or null
 };
 
 /// Everything a step needs; immutable, may be shared by threads.
 struct Model {
   Scheme scheme;
   std::int32_t lines, loads, wheelsets, elements;
-  std::int32_t unknowns;         // of all lines, padded, and 8 per wheelset
-  std::int32_t condensed;        // 1: all lines are condensed, else all are banded
-  std::int32_t bodies;           // first unknown behind the lines
+  std::int32_t unknowns;   // of all lines, padded, and 8 per wheelset
+  std::int32_t condensed;  // 1: all lines are condensed, else all are banded
+  std::int32_t bodies;     // first unknown behind the lines
   std::int32_t steps_per_frame;
   double element_length;         // m
   double rail_y[2];              // of the rails' axes, m

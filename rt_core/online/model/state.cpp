@@ -18,7 +18,8 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
 
 void reset(const Model& model, State& state) noexcept {
   state.steps = 0;
-  std::memcpy(state.u, model.start, sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
+  std::memcpy(state.u, model.start,
+              sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
 }
 
 std::uint64_t state_hash(const Model& model, const State& state) noexcept {

@@ -22,8 +22,8 @@ constexpr double kPenalty = 1e3;
 struct Coupling {
   int wheels;
   WheelContact contact[kMaxWheels];
-  RailForce place[kMaxWheels];          // of the contacts
-  double loaded[kMaxWheels];            // residual displacement there by the loads, m
+  RailForce place[kMaxWheels];        // of the contacts
+  double loaded[kMaxWheels];          // residual displacement there by the loads, m
   double W[kMaxWheels * kMaxWheels];  // m/N
   double hertz[kMaxWheels];
   double track_free[kMaxWheels];        // penetration from the track and the frozen geometry
@@ -87,10 +87,11 @@ Configuration located_on(const State& s, const Workspace& w) noexcept {
   return {w.scaled, {s.u, s.v}};
 }
 
-/// Contacts at the time whose penetration gives the force: on u + theta dt v of bodies and banded
-/// lines; condensed lines are seen as they stand (their fastest rates are far above 1/dt).
+/// Contacts where the forces of the step act: on u + dt v of bodies and banded lines at its end; in
+/// the middle of it where forces are held, with condensed lines as they stand (their fastest rates
+/// are far above 1/dt).
 void find_contacts(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
-  const double ahead = model.scheme.theta * model.scheme.dt;
+  const double ahead = (model.condensed != 0 ? .5 : 1.) * model.scheme.dt;
 #pragma omp simd
   for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
@@ -304,7 +305,8 @@ void publish_wheels(const Model& model, const Workspace& w, const Coupling& c, S
       result.rail_z[i] = axis_height(model, at, {w.solved, {w.solved, w.imaginary}}) + c.loaded[i] -
                          c.force[i] * residual_axis(model, c.place[i]);
       for (int j = 0; j < c.wheels; ++j)
-        if (j != i) result.rail_z[i] -= c.force[j] * residual_between(model, c.place[j], c.place[i]);
+        if (j != i)
+          result.rail_z[i] -= c.force[j] * residual_between(model, c.place[j], c.place[i]);
     }
     if (!at.on_rail) result.status = result.status | Status::off_rail;
     if (at.cap_reached) result.status = result.status | Status::cap_reached;

@@ -52,9 +52,9 @@ double residual_between(const Model& model, const RailForce& force, const RailFo
   if (pair.value == nullptr || shift > pair.reach || shift < -pair.reach) return 0.;
   const std::int32_t points = pair.points;
   const double* block =
-      pair.value + (static_cast<std::ptrdiff_t>(force.element) * (2 * pair.reach + 1) +
-                    (shift + pair.reach)) *
-                       static_cast<std::ptrdiff_t>((points + 1) * (points + 1));
+      pair.value +
+      (static_cast<std::ptrdiff_t>(force.element) * (2 * pair.reach + 1) + (shift + pair.reach)) *
+          static_cast<std::ptrdiff_t>((points + 1) * (points + 1));
   const Cubic along = cubic(points, force.xi);
   double sum = 0.;
   for (int i = 0; i < 4; ++i)

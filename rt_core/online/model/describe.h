@@ -1,0 +1,166 @@
+#pragma once
+#include <initializer_list>
+
+#include "online/model/state.h"
+
+namespace railstep {
+
+// The order of a model's numbers in a block, for the one who writes and the one who reads. An
+// Archive has
+//   count(int32&, most)          0 to most
+//   integer(int32 or int64&)     any
+//   real(double&)                any
+//   reals(const double*&, n)     n of them, or none and a null pointer
+//   integers(const int32*&, n)   n of them
+// and describe() may be read only where the counts have passed.
+
+template <typename Archive>
+void describe(Archive& a, Scheme& s) {
+  for (double* x :
+       {&s.dt, &s.uv, &s.ua, &s.ug, &s.va, &s.vg, &s.kv, &s.kg, &s.ag, &s.a0, &s.aa, &s.theta})
+    a.real(*x);
+}
+
+template <typename Archive>
+void describe(Archive& a, Diagonals& d, int n) {
+  d.n = n;
+  a.count(d.count, 4 * n);
+  a.integers(d.offset, d.count);
+  a.reals(d.value, static_cast<std::int64_t>(d.count) * n);
+}
+
+template <typename Archive>
+void describe(Archive& a, Band& band, int size) {
+  band.panels = size / kLanes;
+  a.count(band.left, size);
+  const std::int64_t panel = std::int64_t{kLanes} * band.left;
+  a.reals(band.forward, band.panels * panel);
+  a.reals(band.inverse, std::int64_t{band.panels} * kLanes * kLanes);
+  a.reals(band.backward, band.panels * panel);
+}
+
+template <typename Archive>
+void describe(Archive& a, Modal& m, int size) {
+  m.count = size;
+  for (Complex* c : {&m.rate, &m.keep, &m.old_force, &m.new_force, &m.held_force}) {
+    a.reals(c->re, size);
+    a.reals(c->im, size);
+  }
+  a.count(m.rows, kMostRows);
+  a.reals(m.shape, std::int64_t{2} * m.rows * size);
+}
+
+/// Line `at`; one with a twin has its matrices or modes.
+template <typename Archive>
+void describe(Archive& a, Model& m, std::int32_t at) {
+  LineModel& line = m.line[at];
+  a.count(line.first, kMostUnknowns);
+  a.real(line.rail_factor[0]);
+  a.real(line.rail_factor[1]);
+  a.count(line.mirrored, 1);
+  a.count(line.twin, at);
+  if (line.twin < at) {
+    const LineModel& twin = m.line[line.twin];
+    line.size = twin.size;
+    line.step = twin.step;
+    line.mass = twin.mass;
+    line.damping = twin.damping;
+    line.modal = twin.modal;
+    line.unknown_of = twin.unknown_of;
+    return;
+  }
+  a.count(line.size, kMostUnknowns);
+  a.integers(line.unknown_of, 9 * (std::int64_t{2} * m.elements + 1));
+  if (m.condensed != 0) return describe(a, line.modal, line.size);
+  describe(a, line.step, line.size);
+  describe(a, line.mass, line.size);
+  describe(a, line.damping, line.size);
+}
+
+template <typename Archive>
+void describe(Archive& a, LoadModel& l) {
+  for (double& x : l.row) a.real(x);
+  a.count(l.rail, 1);
+  for (double* x : {&l.start, &l.speed, &l.stop, &l.force}) a.real(*x);
+  a.count(l.table_points, kMostRows);
+  a.reals(l.table, std::int64_t{2} * l.table_points);
+  a.count(l.kind, kMaxPortKinds - 1);
+}
+
+template <typename Archive>
+void describe(Archive& a, WheelsetModel& w) {
+  a.count(w.first, kMostUnknowns);
+  for (double& x : w.mass) a.real(x);
+  for (double* x : {&w.weight, &w.radius, &w.tread_half_width, &w.start, &w.speed, &w.rest_z,
+                    &w.hertz, &w.tolerance, &w.alpha, &w.beta})
+    a.real(*x);
+  std::int32_t guide = static_cast<std::int32_t>(w.guide);
+  a.count(guide, 1);
+  w.guide = static_cast<Guide>(guide);
+  a.count(w.cap, kMostGuideTurns);
+  a.count(w.forces, kMaxBodyForces);
+  for (std::int32_t i = 0; i < w.forces; ++i) {
+    BodyForce& f = w.force[i];
+    a.count(f.direction, 2);
+    a.count(f.points, kMostRows);
+    a.reals(f.table, std::int64_t{2} * f.points);
+  }
+  for (std::int32_t& kind : w.kind) a.count(kind, kMaxPortKinds - 1);
+}
+
+template <typename Archive>
+void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
+  a.count(r.kinds, kMaxPortKinds);
+  a.count(r.points, kMostRows);
+  const std::int64_t table = std::int64_t{r.kinds} * elements * (r.points + 1);
+  a.reals(r.under, table);
+  a.reals(r.axis, table);
+  for (std::int32_t i = 0; i < r.kinds; ++i)
+    for (std::int32_t j = 0; j < r.kinds; ++j) {
+      PairModel& pair = r.pair[i][j];
+      a.count(pair.points, kMostPairPoints);
+      a.count(pair.reach, elements);
+      const std::int64_t block = std::int64_t{pair.points + 1} * (pair.points + 1);
+      a.reals(pair.value, std::int64_t{elements} * (2 * pair.reach + 1) * block);
+    }
+}
+
+template <typename Archive>
+void describe(Archive& a, ProbeModel& p, const Model& m) {
+  a.count(p.count, kMostRows);
+  a.integers(p.start, p.count + 1);
+  a.count(p.entries, kMostEntries);
+  a.integers(p.index, p.entries);
+  a.reals(p.value, p.entries);
+  a.reals(p.rest, p.count);
+  a.integers(p.table, p.count);
+  a.count(p.tables, kMostRows);
+  const std::int64_t table = std::int64_t{m.residual.kinds} * m.elements * (m.residual.points + 1);
+  a.reals(p.residual, p.tables * table);
+}
+
+template <typename Archive>
+void describe(Archive& a, Model& m) {
+  describe(a, m.scheme);
+  a.count(m.lines, kMaxLines);
+  a.count(m.loads, kMaxLoads);
+  a.count(m.wheelsets, kMaxWheelsets);
+  a.count(m.elements, kMostElements);
+  a.count(m.unknowns, kMostUnknowns);
+  a.count(m.condensed, 1);
+  a.count(m.bodies, m.unknowns);
+  a.count(m.steps_per_frame, kMostRows);
+  a.integer(m.steps);
+  for (double* x : {&m.element_length, &m.rail_y[0], &m.rail_y[1], &m.head_z, &m.crown_radius,
+                    &m.head_half_width})
+    a.real(*x);
+  a.reals(m.constant_force, std::int64_t{1 + m.condensed} * m.unknowns);
+  for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
+  for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);
+  for (std::int32_t i = 0; i < m.wheelsets; ++i) describe(a, m.wheelset[i]);
+  describe(a, m.residual, m.elements);
+  describe(a, m.probe, m);
+  a.reals(m.start, state_doubles(m));
+}
+
+}  // namespace railstep

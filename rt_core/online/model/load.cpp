@@ -1,0 +1,171 @@
+#include "online/model/load.h"
+
+#include <cstring>
+
+#include "online/math/sha256.h"
+#include "online/model/describe.h"
+
+namespace railstep {
+
+namespace {
+
+/// Reads a block in order; after the first thing that does not fit, all counts are 0.
+class Reader {
+ public:
+  Reader(const unsigned char* at, std::size_t left) noexcept : at_(at), left_(left) {}
+
+  bool good() const noexcept { return good_ && left_ == 0; }
+
+  void count(std::int32_t& value, std::int64_t most) noexcept {
+    const std::int64_t found = word();
+    if (found < 0 || found > most) good_ = false;
+    value = good_ ? static_cast<std::int32_t>(found) : 0;
+  }
+  void integer(std::int64_t& value) noexcept { value = word(); }
+  void real(double& value) noexcept {
+    const std::int64_t found = word();
+    std::memcpy(&value, &found, sizeof value);
+  }
+  void reals(const double*& values, std::int64_t n) noexcept { array(values, n, true); }
+  void integers(const std::int32_t*& values, std::int64_t n) noexcept { array(values, n, false); }
+
+ private:
+  std::int64_t word() noexcept {
+    std::int64_t value = 0;
+    if (left_ < sizeof value) good_ = false;
+    if (!good_) return 0;
+    std::memcpy(&value, at_, sizeof value);
+    at_ += sizeof value;
+    left_ -= sizeof value;
+    return value;
+  }
+
+  template <typename T>
+  void array(const T*& values, std::int64_t n, bool may_be_none) noexcept {
+    values = nullptr;
+    const std::int64_t found = word();
+    if (found == 0 && (may_be_none || n == 0)) return;
+    if (found != n || n < 0 || static_cast<std::uint64_t>(n) > left_ / sizeof(T)) good_ = false;
+    if (!good_) return;
+    values = reinterpret_cast<const T*>(at_);
+    const std::size_t bytes = (static_cast<std::size_t>(n) * sizeof(T) + 7) / 8 * 8;
+    if (bytes > left_) {
+      good_ = false;
+      return;
+    }
+    at_ += bytes;
+    left_ -= bytes;
+  }
+
+  const unsigned char* at_;
+  std::size_t left_;
+  bool good_ = true;
+};
+
+bool within(const std::int32_t* values, std::int64_t n, std::int64_t least,
+            std::int64_t most) noexcept {
+  for (std::int64_t i = 0; i < n; ++i)
+    if (values[i] < least || values[i] > most) return false;
+  return true;
+}
+
+bool line_holds(const Model& m, const LineModel& line) noexcept {
+  if (line.size % kLanes != 0 || line.first + line.size > m.bodies) return false;
+  const std::int64_t most = (m.condensed != 0 ? line.modal.rows : line.size) - 1;
+  if (!within(line.unknown_of, 9 * (std::int64_t{2} * m.elements + 1), -1, most)) return false;
+  if (m.condensed != 0)
+    return line.size == 0 ||
+           (line.modal.rate.re && line.modal.rate.im && line.modal.keep.re && line.modal.keep.im &&
+            line.modal.old_force.re && line.modal.old_force.im && line.modal.new_force.re &&
+            line.modal.new_force.im && line.modal.held_force.re && line.modal.held_force.im &&
+            (line.modal.rows == 0 || line.modal.shape));
+  const auto diagonals_hold = [&](const Diagonals& d) noexcept {
+    return within(d.offset, d.count, -line.size, line.size) && (d.count == 0 || d.value);
+  };
+  return line.step.left % kLanes == 0 && line.step.inverse &&
+         (line.step.left == 0 || (line.step.forward && line.step.backward)) &&
+         diagonals_hold(line.mass) && diagonals_hold(line.damping);
+}
+
+bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
+  if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
+  for (std::int32_t i = 0; i < w.forces; ++i)
+    if (w.force[i].points < 1 || w.force[i].table == nullptr) return false;
+  return true;
+}
+
+bool residual_holds(const Model& m) noexcept {
+  const ResidualModel& r = m.residual;
+  const bool tables = r.under != nullptr || r.axis != nullptr || m.probe.residual != nullptr;
+  if (tables && r.points < 3) return false;
+  for (std::int32_t i = 0; i < m.loads && tables; ++i)
+    if (m.load[i].kind >= r.kinds) return false;
+  for (std::int32_t i = 0; i < m.wheelsets && tables; ++i)
+    if (m.wheelset[i].kind[0] >= r.kinds || m.wheelset[i].kind[1] >= r.kinds) return false;
+  for (std::int32_t i = 0; i < r.kinds; ++i)
+    for (std::int32_t j = 0; j < r.kinds; ++j)
+      if (r.pair[i][j].value != nullptr && r.pair[i][j].points < 3) return false;
+  return true;
+}
+
+bool probes_hold(const Model& m) noexcept {
+  const ProbeModel& p = m.probe;
+  if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
+  for (std::int32_t i = 0; i < p.count; ++i)
+    if (p.start[i] > p.start[i + 1]) return false;
+  return within(p.index, p.entries, 0, std::int64_t{2} * m.unknowns - 1) &&
+         within(p.table, p.count, -1, p.tables - 1) && (p.count == 0 || p.rest) &&
+         (p.entries == 0 || p.value);
+}
+
+/// What a step takes for granted beyond the counts.
+bool holds(const Model& m) noexcept {
+  if (m.lines < 1 || m.elements < 1 || m.steps_per_frame < 1 || m.start == nullptr) return false;
+  if (!(m.element_length > 0.) || m.bodies % kLanes != 0 || m.steps < 0) return false;
+  for (std::int32_t i = 0; i < m.lines; ++i)
+    if (!line_holds(m, m.line[i])) return false;
+  for (std::int32_t i = 0; i < m.loads; ++i)
+    if (m.load[i].table_points > 0 && m.load[i].table == nullptr) return false;
+  for (std::int32_t i = 0; i < m.wheelsets; ++i)
+    if (!wheelset_holds(m, m.wheelset[i])) return false;
+  return residual_holds(m) && probes_hold(m);
+}
+
+bool same_bytes(const unsigned char* a, const void* b, int n) noexcept {
+  int different = 0;
+  for (int i = 0; i < n; ++i) different |= a[i] ^ static_cast<const unsigned char*>(b)[i];
+  return different == 0;
+}
+
+std::int64_t word_at(const unsigned char* at) noexcept {
+  std::int64_t value = 0;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+}  // namespace
+
+LoadResult load_model(const void* block, std::size_t bytes, Model& model) noexcept {
+  const auto* at = static_cast<const unsigned char*>(block);
+  const auto refused = [](LoadStatus status) { return LoadResult{status, nullptr, 0}; };
+  if (reinterpret_cast<std::uintptr_t>(block) % 8 != 0) return refused(LoadStatus::misaligned);
+  if (bytes < kBlockHeader || !same_bytes(at, "railstep", 8))
+    return refused(LoadStatus::not_a_model);
+  if (word_at(at + 8) != kBlockFormat) return refused(LoadStatus::other_version);
+  if (word_at(at + 16) != static_cast<std::int64_t>(bytes)) return refused(LoadStatus::wrong_size);
+  unsigned char sum[32];
+  sha256(at + 56, bytes - 56, sum);
+  if (!same_bytes(sum, at + 24, 32)) return refused(LoadStatus::wrong_sum);
+  const std::int64_t text = word_at(at + 56),
+                     room = static_cast<std::int64_t>(bytes - kBlockHeader);
+  if (text < 0 || text > room || (text + 7) / 8 * 8 > room) return refused(LoadStatus::bad_content);
+  const std::size_t skipped = kBlockHeader + static_cast<std::size_t>((text + 7) / 8 * 8);
+  Reader reader(at + skipped, bytes - skipped);
+  model = Model{};
+  describe(reader, model);
+  if (!reader.good() || !holds(model)) return refused(LoadStatus::bad_content);
+  return {LoadStatus::ok, reinterpret_cast<const char*>(at + kBlockHeader),
+          static_cast<std::size_t>(text)};
+}
+
+}  // namespace railstep

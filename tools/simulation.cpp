@@ -1,0 +1,91 @@
+#include "simulation.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "build.h"
+#include "offline/pack/artefact.h"
+#include "online/model/load.h"
+
+namespace railstep {
+namespace {
+
+const char* sentence(LoadStatus status) {
+  switch (status) {
+    case LoadStatus::ok:
+    case LoadStatus::misaligned:
+      break;
+    case LoadStatus::not_a_model:
+      return "is not a model; accepted is what `railstep condense` wrote";
+    case LoadStatus::other_version:
+      return "is a model of another format; write it anew with `railstep condense`";
+    case LoadStatus::wrong_size:
+      return "is a model that was cut short or run on; write it anew with `railstep condense`";
+    case LoadStatus::wrong_sum:
+      return "is a model whose content does not match its SHA-256; write it anew with `railstep "
+             "condense`";
+    case LoadStatus::bad_content:
+      return "is a model with a number out of range; write it anew with `railstep condense`";
+  }
+  return "cannot be placed in memory";
+}
+
+std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(fmt::format("{}: cannot be opened", file.string()));
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  const auto* at = reinterpret_cast<const std::byte*>(text.data());
+  return {at, at + text.size()};
+}
+
+std::vector<std::string> lines_of(const char* text, std::size_t bytes) {
+  std::vector<std::string> lines(1);
+  for (std::size_t i = 0; i < bytes; ++i)
+    if (text[i] == '\n')
+      lines.emplace_back();
+    else
+      lines.back() += text[i];
+  return lines;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scene& scene) {
+  const Built built(scene);
+  block_ = to_block(built.packed->model(), fmt::format("{}", fmt::join(built.columns, "\n")));
+  load(scene.file.string());
+}
+
+Simulation::Simulation(const std::filesystem::path& artefact) : block_(read_bytes(artefact)) {
+  load(artefact.string());
+}
+
+void Simulation::load(const std::string& name) {
+  const LoadResult result = load_model(block_.data(), block_.size(), model_);
+  if (result.status != LoadStatus::ok)
+    throw InputError(fmt::format("{} {}", name, sentence(result.status)));
+  columns_ = lines_of(result.text, result.text_bytes);
+  const std::size_t expected = 1 + 2 * static_cast<std::size_t>(model_.loads) +
+                               12 * static_cast<std::size_t>(model_.wheelsets) +
+                               static_cast<std::size_t>(model_.probe.count);
+  if (columns_.size() != expected)
+    throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));
+  memory_.resize(static_cast<std::size_t>(state_doubles(model_)));
+  scratch_.resize(static_cast<std::size_t>(workspace_doubles(model_)));
+  state = state_on(model_, memory_.data());
+  workspace = workspace_on(model_, scratch_.data());
+  reset(model_, state);
+}
+
+bool is_artefact(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  char start[8] = {};
+  in.read(start, sizeof start);
+  return in && std::string(start, sizeof start) == "railstep";
+}
+
+}  // namespace railstep

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "online/model/state.h"
+#include "scene.h"
+
+namespace railstep {
+
+/// A model in its block, the state at its start, and scratch: ready to step.
+class Simulation {
+ public:
+  /// Of a scene, condensed where it says so. Throws InputError.
+  explicit Simulation(const Scene& scene);
+  /// Of a block that `railstep condense` wrote. Throws InputError.
+  explicit Simulation(const std::filesystem::path& artefact);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  const Model& model() const { return model_; }
+  const std::vector<std::byte>& block() const { return block_; }
+  /// Of a trace: time_s, then those of every load, wheel, sensor and support.
+  const std::vector<std::string>& columns() const { return columns_; }
+
+  State state;
+  Workspace workspace;
+
+ private:
+  void load(const std::string& name);
+
+  std::vector<std::byte> block_;
+  Model model_{};
+  std::vector<std::string> columns_;
+  std::vector<double> memory_, scratch_;
+};
+
+/// Whether a file begins as a block does.
+bool is_artefact(const std::filesystem::path& file);
+
+}  // namespace railstep
