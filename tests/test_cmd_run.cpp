@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "build.h"
 #include "offline/track/statics.h"
 #include "online/step/step.h"
 #include "simulate.h"
@@ -228,8 +229,7 @@ TEST_CASE("from equilibrium a load that stands still moves nothing", "[run]") {
                     "load[1].speed_m_per_s=0", "load[0].start_m=4.8", "load[1].start_m=4.5",
                     "track.unknowns=\"full\"", "support.stiffness_roll_n_m_per_rad=1e6"});
   Simulation run(scene);
-  const Sensors sensors(scene, run.track(), run.model());
-  const RunRecord record = simulate(run, sensors, 50, nullptr, true);
+  const RunRecord record = simulate(run, 50, nullptr, true);
   // reference.md, "Static, 50 kN": 567.05 um over a seat, 574.34 um at mid-bay, printed to 0.01 um
   CHECK_THAT(record.rows[2], WithinAbs(-567.05e-6, 1e-8));
   CHECK_THAT(record.rows[4], WithinAbs(-574.34e-6, 1e-8));
@@ -241,8 +241,7 @@ TEST_CASE("from equilibrium a load that stands still moves nothing", "[run]") {
 TEST_CASE("a table's force is zero before its first row", "[run]") {
   const Scene scene = read_scene(kMovingLoad, {"load[0].table=[[0.01, 1.0], [0.02, 0.5]]"});
   Simulation run(scene);
-  const Sensors sensors(scene, run.track(), run.model());
-  const RunRecord record = simulate(run, sensors, 30, nullptr, true);
+  const RunRecord record = simulate(run, 30, nullptr, true);
   CHECK(record.rows[5 * 9 + 2] == 0.);  // at 9 ms
   CHECK(record.rows[5 * 10 + 2] < 0.);  // the row itself counts
   CHECK(record.rows[5 * 9 + 4] < 0.);   // the other load has no table
@@ -253,9 +252,8 @@ TEST_CASE("a state that stops being finite ends the run, names its place and kee
   const auto file = fresh_folder("nonfinite") / "t.csv";
   const Scene scene = read_scene(kMovingLoad);
   Simulation run(scene);
-  const Sensors sensors(scene, run.track(), run.model());
-  Trace trace(file, trace_columns(scene, sensors));
-  const RunRecord record = simulate(run, sensors, 100, &trace, false, [&](std::int64_t done) {
+  Trace trace(file, run.columns());
+  const RunRecord record = simulate(run, 100, &trace, false, [&](std::int64_t done) {
     if (done == 10)
       run.state.u[run.model().line[1].first + 7] = std::numeric_limits<double>::infinity();
   });
@@ -331,8 +329,7 @@ TEST_CASE("the wheelset of the paper stands still, then drifts sideways", "[run]
   const auto rows = rows_of(text_of(file));
   const Scene scene = read_scene(kScenes + "wheelset_on_track.toml");
   const Simulation run(scene);
-  const Sensors sensors(scene, run.track(), run.model());
-  const auto names = trace_columns(scene, sensors);
+  const auto names = run.columns();
   const auto at = [&](std::size_t row, const std::string& column) {
     const auto place = std::find(names.begin(), names.end(), column);
     REQUIRE(place != names.end());

@@ -4,10 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "offline/pack/pack.h"
+#include "model_run.h"
 #include "offline/pack/scheme.h"
 #include "offline/track/statics.h"
-#include "online/step/step.h"
 #include "sections.h"
 
 using namespace railstep;
@@ -29,34 +28,9 @@ Wheelset paper_wheelset() {
 
 const Railhead kHead{.1007375, .3, .038};
 
-struct Run {
-  std::unique_ptr<PackedModel> packed;
-  std::vector<double> memory, scratch;
-  State state;
-  Workspace workspace;
-  Outputs outputs{};
-  Status seen = Status::ok;
-
-  Run(const Track& track, const Wheelset& wheelset, const PackOptions& options)
-      : packed(std::make_unique<PackedModel>(track, std::vector<MovingLoad>{},
-                                             std::vector<Wheelset>{wheelset}, kHead, options)),
-        memory(static_cast<std::size_t>(state_doubles(packed->model())), 0.),
-        scratch(static_cast<std::size_t>(workspace_doubles(packed->model())), 0.),
-        state(state_on(packed->model(), memory.data())),
-        workspace(workspace_on(packed->model(), scratch.data())) {}
-
-  const Model& model() const { return packed->model(); }
-  const double* body() const { return state.u + model().wheelset[0].first; }
-  double time() const { return static_cast<double>(state.steps) * model().scheme.dt; }
-  void step() {
-    scratch.assign(scratch.size(), std::numeric_limits<double>::quiet_NaN());
-    seen = seen | advance_frame(model(), state, workspace, outputs);
-  }
-  void until(double t) {
-    const auto steps = static_cast<std::int64_t>(std::llround(t / model().scheme.dt));
-    while (state.steps < steps) step();
-  }
-};
+ModelRun wheelset_run(const Track& track, const Wheelset& wheelset, const PackOptions& options) {
+  return {track, {.wheelsets = {wheelset}, .head = kHead}, options};
+}
 
 PackOptions options(double dt) { return {.scheme = generalised_alpha(dt, .6)}; }
 
@@ -78,7 +52,7 @@ Track rigid_track() {
 }  // namespace
 
 TEST_CASE("the paper's wheelset settles where statics say", "[wheelset]") {
-  Run run(paper_track(), paper_wheelset(), options(1e-4));
+  ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
   run.until(1.);
   CHECK(run.seen == Status::ok);
   // Frictionless wheels carry half the weight each, whatever the rails do.
@@ -95,15 +69,14 @@ TEST_CASE("the paper's wheelset settles where statics say", "[wheelset]") {
   CHECK_THAT(run.outputs.wheel_rail_z[1], WithinRel(axis, 1e-6));
   // reference.md: Hertz approach 3.615e-6 m under 490.5 N; printed to 4 digits
   CHECK_THAT(-run.outputs.wheel_gap[0], WithinAbs(3.615e-6, 1e-9));
-  const double residual =
-      490.5 * run.model().wheelset[0].residual[0][2 * (run.model().residual_points + 1)];
+  const double residual = 490.5 * run.model().residual.under[2 * (run.model().residual.points + 1)];
   CHECK_THAT(run.body()[2], WithinAbs(head - residual + run.outputs.wheel_gap[0], 1e-10));
 }
 
 TEST_CASE("released from touching, the wheelset sinks as the reference says", "[wheelset]") {
   // reference.md: lowest wheel position -7.67e-5 m at 25.5 ms: 3 digits. There the load acts on the
   // axis; the head is lower by its squeeze (0.02e-5), the Hertz approach is in both.
-  Run run(paper_track(), paper_wheelset(), options(1e-4));
+  ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
   double lowest = 0., when = 0.;
   while (run.time() < .1) {
     run.step();
@@ -120,7 +93,7 @@ TEST_CASE("a lateral force meets nothing on cylinders without friction", "[wheel
   // reference.md: y = 0.05 t^2 for 10 N on 100 kg
   Wheelset w = paper_wheelset();
   w.forces = {{1, {-1., 10., 1., 10.}}};
-  Run run(paper_track(), w, options(1e-4));
+  ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
   run.until(.2);
   CHECK_THAT(run.body()[1], WithinRel(.05 * .2 * .2, 2e-3));
 }
@@ -136,7 +109,7 @@ TEST_CASE("a wheel dropped on a rigid rail bounces as energy says", "[wheelset]"
   const auto drop = [&](double dt) {
     PackOptions o = options(dt);
     o.residual_flexibility = false;
-    Run run(rigid_track(), w, o);
+    ModelRun run = wheelset_run(rigid_track(), w, o);
     run.state.v[run.model().wheelset[0].first + 2] = -.1;
     double peak = 0.;
     while (run.time() < 4e-3) {
@@ -161,7 +134,7 @@ TEST_CASE("the guide holds by either method, with the same motion", "[wheelset]"
     w.speed = 10.;
     w.guide = guide;
     w.alpha = w.beta = 200.;
-    Run run(paper_track(), w, options(1e-4));
+    ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
     run.state.v[run.model().wheelset[0].first] = 10.;
     run.until(.2);
     CHECK(run.outputs.constraint_violation < 1e-9);
@@ -178,7 +151,8 @@ TEST_CASE("a guide whose cap is too low says so", "[wheelset]") {
   w.cap = 1;
   w.speed = 10.;
   w.start = 2.;
-  Run run(paper_track(), w, options(1e-4));  // starts at rest: the guide has work to do
+  ModelRun run =
+      wheelset_run(paper_track(), w, options(1e-4));  // starts at rest: the guide has work to do
   run.step();
   CHECK(has(run.seen, Status::cap_reached));
   CHECK(std::isfinite(run.body()[0]));
@@ -188,7 +162,7 @@ TEST_CASE("a wheelset that runs off the rails falls, and is reported", "[wheelse
   Wheelset w = paper_wheelset();
   w.start = 6.3;
   w.speed = 10.;
-  Run run(paper_track(), w, options(1e-4));
+  ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
   run.state.v[run.model().wheelset[0].first] = 10.;
   run.until(.05);
   CHECK(has(run.seen, Status::off_rail));
