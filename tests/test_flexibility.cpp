@@ -342,7 +342,8 @@ TEST_CASE("the reach is where the residual becomes negligible", "[flexibility]")
 TEST_CASE("the lowest value of a table is reported, not changed", "[flexibility]") {
   CHECK(most_negative({1., 0., 2.}) == 0.);
   CHECK(most_negative({1., -3., -2.}) == -3.);
-  // Two Gauss points see 5/6 of the energy of a squeeze at one end node: the element is too soft.
+  // Two Gauss points see 5/6 of the energy of a squeeze at one end node: the element is too soft
+  // there, by some 1e-11 m/N; rounding is 2e-15.
   const Track soft = sleeper_track(2);
   const ResidualFlexibility at_head(soft, assemble(soft), {}, kPoints);
   CHECK(most_negative(at_head.under({0, kHead})) < -1e-12);

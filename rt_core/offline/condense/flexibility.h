@@ -46,7 +46,7 @@ class ResidualFlexibility {
 
   /// G_res(x, x); [elements][points + 1], m/N, at equal steps of x. On the axis never below 0 but
   /// by rounding. Above it the element's two Gauss points make it softer than the rail to the
-  /// squeeze of the section, by some 1e-3 of G_exact at its end nodes: there it is below 0
+  /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0
   /// (most_negative() says by how much), and nothing is clipped here.
   std::vector<double> under(Port port) const;
   /// G_exact(x, x); [elements][points + 1], m/N.
