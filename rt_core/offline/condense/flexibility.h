@@ -52,9 +52,11 @@ class ResidualFlexibility {
   /// G_exact(x, x); [elements][points + 1], m/N.
   std::vector<double> exact_under(Port port) const;
 
-  /// G_res of all places of two ports of one or two rails; between(b, a) is its transpose. `reach`
-  /// is the smallest number of elements beyond which all of it stays below 1e-4 of the largest
-  /// G_exact(x, x) of the ports.
+  /// G_res of all places of two ports of one or two rails; between(b, a) is its transpose.
+  /// `reach` is the smallest number of elements beyond which all of it stays below 1e-4 of the
+  /// largest G_exact(x, x) of the ports. It is not 0 for the track as it stands: an element reads a
+  /// force inside it quadratically, and so moves others wrongly (5e-3 of G_exact next to it with
+  /// one element of 0.6 m per bay, 1e-3 with two).
   /// @param points intervals per element, a divisor of the constructor's
   PairTable between(Port a, Port b, int points) const;
 
