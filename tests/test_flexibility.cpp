@@ -42,9 +42,9 @@ TEST_CASE("between ports, model and residual make the fine track's flexibility",
           }
       }
     CAPTURE(static_cast<int>(kind), elements_per_bay, b.rail, b.z, table.reach, missing / largest);
-    CHECK(inside < kRounding * largest);
-    CHECK(beyond < 1e-4 * largest);                         // what the reach promises
-    if (b.rail == a.rail) CHECK(missing > 1e-3 * largest);  // there is something to add
+    CHECK(inside / largest < kRounding);
+    CHECK(beyond / largest < 1e-4);                         // what the reach promises
+    if (b.rail == a.rail) CHECK(missing / largest > 1e-3);  // there is something to add
   }
 }
 
@@ -90,7 +90,7 @@ TEST_CASE("from a port to rail points, sleepers and pads, model and residual mak
         size = std::max(size, std::abs(want));
       }
     CAPTURE(c.name, static_cast<int>(kind), size, missing / size);
-    CHECK(error < kRounding * 2e-8);  // of the rail's own flexibility, m/N
+    CHECK(error / 2e-8 < kRounding);  // of the rail's own flexibility, m/N
     CHECK(missing > 10. * error);     // the table is not noise
     CHECK(size > 1e-12);              // m/N: nor is the functional
   }
@@ -141,7 +141,7 @@ TEST_CASE("residual flexibility is symmetric in its ports", "[flexibility]") {
       for (int p = 0; p <= 4; ++p)
         for (int q = 0; q <= 4; ++q)
           error = std::max(error, std::abs(ab.at(e, p, e2, q) - ba.at(e2, q, e, p)));
-  CHECK(error < kRounding * 2e-8);
+  CHECK(error / 2e-8 < kRounding);
 }
 
 TEST_CASE("on the diagonal the pairs are what a single port gives", "[flexibility]") {
