@@ -52,16 +52,24 @@ Eigen::SparseMatrix<double> with_change(const Track& track, const Line& line,
 DividedLine::DividedLine(const Track& track, const Line& line, int parts)
     : track_(track), line_(line), element_(track, carried_unknowns(line), parts) {
   if (parts == 1) {
-    factor_.compute(line.stiffness);
+    factor(line.stiffness);
     return;
   }
   const Superelement whole(track, element_.carried(), 1);
-  factor_.compute(
-      with_change(track, line, element_.carried(), element_.stiffness() - whole.stiffness()));
+  factor(with_change(track, line, element_.carried(), element_.stiffness() - whole.stiffness()));
+}
+
+/// Held is what Statics takes for held: all pivots above 1e-12 of their diagonal.
+void DividedLine::factor(const Eigen::SparseMatrix<double>& stiffness) {
+  factor_.compute(stiffness);
+  held_ = factor_.info() == Eigen::Success;
+  if (!held_) return;
+  const Eigen::VectorXd diagonal = factor_.permutationP() * Eigen::VectorXd(stiffness.diagonal());
+  held_ = (factor_.vectorD().array() > 1e-12 * diagonal.array()).all();
 }
 
 void DividedLine::refuse_free_modes() const {
-  if (factor_.info() != Eigen::Success || factor_.vectorD().minCoeff() <= 0.)
+  if (!held_)
     throw std::invalid_argument(
         "residual flexibility needs a track that is held: it has a free rigid mode");
 }

@@ -44,18 +44,21 @@ class ResidualFlexibility {
   ResidualFlexibility(const ResidualFlexibility&) = delete;
   ResidualFlexibility& operator=(const ResidualFlexibility&) = delete;
 
-  /// G_res(x, x); [elements][points + 1], m/N, at equal steps of x. Never negative but by rounding
-  /// where the model is a projection of the track and its ports are whole; a port without the
-  /// section's strain keeps that. See most_negative().
+  /// G_res(x, x); [elements][points + 1], m/N, at equal steps of x. On the axis never below 0 but
+  /// by rounding. Above it the element's two Gauss points make it softer than the rail to the
+  /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0
+  /// (most_negative() says by how much), and nothing is clipped here.
   std::vector<double> under(Port port) const;
   /// The same of the rail's point at height z over the axis, straight above or below the port.
   std::vector<double> under(Port port, double z) const;
   /// G_exact(x, x); [elements][points + 1], m/N.
   std::vector<double> exact_under(Port port) const;
 
-  /// G_res of all places of two ports of one or two rails; between(b, a) is its transpose. `reach`
-  /// is the smallest number of elements beyond which all of it stays below 1e-4 of the largest
-  /// G_exact(x, x) of the ports.
+  /// G_res of all places of two ports of one or two rails; between(b, a) is its transpose.
+  /// `reach` is the smallest number of elements beyond which all of it stays below 1e-4 of the
+  /// largest G_exact(x, x) of the ports. It is not 0 for the track as it stands: an element reads a
+  /// force inside it quadratically, and so moves others wrongly (5e-3 of G_exact next to it with
+  /// one element of 0.6 m per bay, 1e-3 with two).
   /// @param points intervals per element, a divisor of the constructor's
   PairTable between(Port a, Port b, int points) const;
 

@@ -47,12 +47,14 @@ class DividedLine : public LineFlexibility {
   Superelement::Rows port_rows(double z, int points) const;
   Superelement::Rows rail_row(const Functional::OnRail& point, int element) const;
   Eigen::MatrixXd end_columns(int element) const;
+  void factor(const Eigen::SparseMatrix<double>& stiffness);
   void refuse_free_modes() const;
 
   const Track& track_;
   const Line& line_;
   Superelement element_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  bool held_ = false;  // no free rigid mode
 };
 
 /// The line in the coordinates of a basis. A port leaves out the section's own strain (b_z at its
