@@ -1,6 +1,7 @@
 #include "build.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
 #include "sense.h"
@@ -204,6 +206,10 @@ Built::Built(const Scene& scene) try {
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+}
+
+std::vector<std::byte> block_of(const Built& built) {
+  return to_block(built.packed->model(), fmt::format("{}", fmt::join(built.columns, "\n")));
 }
 
 }  // namespace railstep

@@ -27,4 +27,7 @@ struct Built {
   std::unique_ptr<PackedModel> packed;
 };
 
+/// The model and its columns in one block.
+std::vector<std::byte> block_of(const Built& built);
+
 }  // namespace railstep

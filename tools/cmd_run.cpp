@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,7 +18,8 @@ namespace railstep {
 namespace {
 
 struct RunOptions {
-  std::string scene, trace, report;
+  std::string input, trace, report;  // input: a scene or a model
+  std::string model;                 // full, condensed; empty: as the scene says
   std::vector<std::string> overrides;
   std::optional<double> step, duration;  // s
   bool json = false;
@@ -48,12 +51,36 @@ class Progress {
 };
 
 Scene scene_of(const RunOptions& o) {
-  if (!o.trace.empty() && o.trace == o.report)
-    throw InputError(fmt::format("--trace and --report both name {}", o.trace));
   std::vector<std::string> overrides = o.overrides;
+  if (o.model == "full") overrides.emplace_back("condense.kind=\"full\"");
+  if (o.model == "condensed") overrides.emplace_back("condense.kind=\"modal\"");
   if (o.step) overrides.push_back(fmt::format("step.dt_s={}", *o.step));
   if (o.duration) overrides.push_back(fmt::format("step.duration_s={}", *o.duration));
-  return read_scene(o.scene, overrides);
+  return read_scene(o.input, overrides);
+}
+
+/// A model file is what it is: only how long it runs can be chosen.
+void refuse_changes(const RunOptions& o) {
+  const auto refuse = [&](bool given, const char* option) {
+    if (given)
+      throw InputError(fmt::format("{} changes a scene, and {} is a model; condense the scene anew",
+                                   option, o.input));
+  };
+  refuse(!o.overrides.empty(), "--set");
+  refuse(o.step.has_value(), "--step");
+  refuse(!o.model.empty(), "--model");
+}
+
+/// Frames of the run; a model file may be given another duration.
+std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
+  const double frame = model.scheme.dt * model.steps_per_frame;
+  if (!artefact || !o.duration) return model.steps / model.steps_per_frame;
+  const double frames = *o.duration / frame;
+  if (!(frames >= .5) || !(frames < 1e15) || std::abs(frames - std::round(frames)) > 1e-6)
+    throw InputError(
+        fmt::format("--duration {:g}: accepted is a whole number of the model's frames of {:g} s",
+                    *o.duration, frame));
+  return std::llround(frames);
 }
 
 nlohmann::ordered_json to_json(const Simulation& run, const RunRecord& record) {
@@ -96,35 +123,43 @@ Exit verdict(const Simulation& run, const RunRecord& record) {
   return has(record.status, Status::nonfinite_state) ? Exit::not_reached : Exit::done;
 }
 
-Exit run_scene(const RunOptions& o) {
-  const Scene scene = scene_of(o);
+Exit run(const RunOptions& o) {
+  if (!o.trace.empty() && o.trace == o.report)
+    throw InputError(fmt::format("--trace and --report both name {}", o.trace));
+  const bool artefact = is_artefact(o.input);
+  if (artefact) refuse_changes(o);
+  const auto simulation = artefact ? std::make_unique<Simulation>(std::filesystem::path(o.input))
+                                   : std::make_unique<Simulation>(scene_of(o));
+  const std::int64_t frames = frames_of(o, artefact, simulation->model());
   if (!o.report.empty()) need_gnuplot();
-  Simulation run(scene);
   std::optional<Trace> trace;
-  if (!o.trace.empty()) trace.emplace(o.trace, run.columns());
-  const std::int64_t frames = run.model().steps / run.model().steps_per_frame;
+  if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
   RunRecord record;
   {
     Progress bar(frames);
-    record = simulate(run, frames, trace ? &*trace : nullptr, !o.report.empty(),
+    record = simulate(*simulation, frames, trace ? &*trace : nullptr, !o.report.empty(),
                       [&bar](std::int64_t done) { bar(done); });
   }
   if (trace) trace->finish();
-  if (!o.report.empty()) write_file(o.report, run_report(scene, run.columns(), record));
-  const nlohmann::ordered_json result = to_json(run, record);
+  if (!o.report.empty())
+    write_file(o.report,
+               run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
+  const nlohmann::ordered_json result = to_json(*simulation, record);
   if (o.json)
     fmt::print("{}\n", result.dump(2));
   else
     print_table(result);
-  return verdict(run, record);
+  return verdict(*simulation, record);
 }
 
 }  // namespace
 
 Command add_run(CLI::App& app) {
   auto o = std::make_shared<RunOptions>();
-  CLI::App* sub = app.add_subcommand("run", "Simulate a scene in fixed steps");
-  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
+  CLI::App* sub = app.add_subcommand("run", "Simulate a scene, or a model of `railstep condense`");
+  sub->add_option("SCENE", o->input, "scene file (TOML) or model file")->required();
+  sub->add_option("--model", o->model, "full or condensed, instead of the scene's")
+      ->check(CLI::IsMember({"full", "condensed"}));
   sub->add_option("--step", o->step, "time step, s, instead of the scene's");
   sub->add_option("--duration", o->duration, "simulated time, s, instead of the scene's");
   sub->add_option("--trace", o->trace, "write a row a frame (CSV)");
@@ -134,7 +169,7 @@ Command add_run(CLI::App& app) {
       ->allow_extra_args(false);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep run config/scenes/moving_load.toml --trace moving_load.csv");
-  return {sub, [o] { return run_scene(*o); }};
+  return {sub, [o] { return run(*o); }};
 }
 
 }  // namespace railstep

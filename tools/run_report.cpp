@@ -107,6 +107,28 @@ std::string all_curves(const std::vector<std::string>& columns, const RunRecord&
   return html;
 }
 
+/// The rail's axis along the track, a curve a kept time; empty if the rail is not there.
+std::string shapes_script(int rail, const RunRecord& record) {
+  std::string blocks, curves;
+  int count = 0;
+  for (const RailSnapshot& shape : record.shapes) {
+    if (shape.rail != rail) continue;
+    const double spacing = shape.length / static_cast<double>(shape.z.size() - 1);
+    blocks += fmt::format("$shape{} << EOD\n", count);
+    for (std::size_t i = 0; i < shape.z.size(); ++i)
+      blocks += fmt::format("{:.6g} {:.9g}\n", spacing * static_cast<double>(i), 1e3 * shape.z[i]);
+    blocks += "EOD\n";
+    curves += fmt::format("{} $shape{} with lines lw 1.5 title \"{:.6g} s\"", count == 0 ? "" : ",",
+                          count, shape.time);
+    ++count;
+  }
+  if (count == 0) return {};
+  return fmt::format(
+      "set terminal svg size 900,420 name 'rail{}' noenhanced font 'sans,12'\n"
+      "set xlabel 'x, m'\nset ylabel 'height over rest, mm'\nset grid\n{}plot{}\n",
+      rail, blocks, curves);
+}
+
 /// Bins of a twentieth of a decade, both axes logarithmic: rare slow frames must show.
 std::string histogram_script(const RunRecord& record) {
   std::map<int, int> count;
@@ -138,21 +160,27 @@ void need_gnuplot() {
     throw std::runtime_error("--report draws with gnuplot, which is not installed");
 }
 
-std::string run_report(const Scene& scene, const std::vector<std::string>& columns,
-                       const RunRecord& record) {
+std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record) {
   std::string status;
   for (const std::string& name : status_names(record.status))
     status += fmt::format("<p>{}: {}.</p>\n", name, status_sentence(name));
+  std::string shapes;
+  for (const int rail : {0, 1}) {
+    const std::string script = shapes_script(rail, record);
+    if (!script.empty())
+      shapes += fmt::format("<h2>{} rail, its axis along the track</h2>\n{}\n",
+                            rail == 0 ? "Left" : "Right", drawn(script));
+  }
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}</title>\n"
       "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}<table>\n"
       "<tr><th>frames</th><th>dt, s</th><th>frame median, us</th><th>p99, us</th><th>max, us</th>"
       "</tr>\n<tr><td>{3}</td><td>{4:.6g}</td><td>{5:.3g}</td><td>{6:.3g}</td><td>{7:.3g}</td>"
-      "</tr>\n</table>\n{8}<h2>Wall time of a frame</h2>\n"
-      "{9}\n</body>\n</html>\n",
-      escaped(scene.file.stem().string()), kStyle, status, record.frame_us.size(), scene.step.dt,
+      "</tr>\n</table>\n{8}{9}<h2>Wall time of a frame</h2>\n"
+      "{10}\n</body>\n</html>\n",
+      escaped(title), kStyle, status, record.frame_us.size(), run.model().scheme.dt,
       quantile(record.frame_us, .5), quantile(record.frame_us, .99), quantile(record.frame_us, 1.),
-      all_curves(columns, record), drawn(histogram_script(record)));
+      all_curves(run.columns(), record), shapes, drawn(histogram_script(record)));
 }
 
 }  // namespace railstep

@@ -8,10 +8,9 @@ namespace railstep {
 /// Throws std::runtime_error, in one sentence, where gnuplot cannot be run.
 void need_gnuplot();
 
-/// One self-contained HTML page: deflection under every load over time, and a histogram of the
-/// frames' wall times, both logarithmic there. Needs a record that kept its rows.
-/// Throws std::runtime_error where gnuplot fails.
-std::string run_report(const Scene& scene, const std::vector<std::string>& columns,
-                       const RunRecord& record);
+/// One self-contained HTML page: rails under loads and wheels, wheel-rail forces and sensors over
+/// time, the deformed rails at a few times, and a histogram of the frames' wall times. Needs a
+/// record that kept its rows. Throws std::runtime_error where gnuplot fails.
+std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record);
 
 }  // namespace railstep

@@ -121,8 +121,7 @@ CondenseScene read_condense(const Table& root) {
   if (t->has("highest_hz")) c.highest_hz = t->number("highest_hz", above_upto(0.0, 1e6));
   if (c.modes_per_bay && c.highest_hz)
     t->refuse("highest_hz", "highest_hz is given beside modes_per_bay; one of them is accepted");
-  if (c.kind == Condensation::modal && !c.modes_per_bay && !c.highest_hz)
-    t->refuse("kind", "kind = \"modal\" needs modes_per_bay or highest_hz");
+  if (c.kind == Condensation::modal && !c.modes_per_bay && !c.highest_hz) c.modes_per_bay = 1.0;
   c.residual_flexibility = t->boolean("residual_flexibility", true);
   return c;
 }

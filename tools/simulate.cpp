@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "online/step/line.h"
 #include "online/step/probe.h"
 #include "online/step/step.h"
 
@@ -44,6 +45,24 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
   read_probes(model, run.state, outputs, row.data() + probes);
 }
 
+/// Axes of the rails that the model's lines carry.
+void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
+  const Model& model = run.model();
+  const Configuration at{run.state.u, {run.state.u, run.state.v}};
+  for (const int rail : {0, 1}) {
+    RailSnapshot shape{static_cast<double>(run.state.steps) * model.scheme.dt, rail,
+                       model.elements * model.element_length,
+                       std::vector<double>(2 * static_cast<std::size_t>(model.elements) + 1, 0.)};
+    bool carried = false;
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      carried = carried || model.line[l].rail_factor[rail] != 0.;
+      for (std::size_t node = 0; node < shape.z.size(); ++node)
+        shape.z[node] += node_motion(model.line[l], rail, static_cast<std::int32_t>(node), 2, at);
+    }
+    if (carried) shapes.push_back(std::move(shape));
+  }
+}
+
 double timed_frame(Simulation& run, Outputs& outputs) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -75,6 +94,10 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
   for (std::int64_t n = 0; n < frames && record.first_bad_unknown < 0; ++n) {
     record.frame_us.push_back(timed_frame(run, outputs));
     take();
+    // at 1/8, 3/8, 5/8 and 7/8 of the run
+    if (keep_rows && (2 * kShapes * (n + 1)) / frames != (2 * kShapes * n) / frames &&
+        (2 * kShapes * (n + 1)) / frames % 2 == 1)
+      keep_shapes(run, record.shapes);
     if (after) after(n + 1);
   }
   return record;

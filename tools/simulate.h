@@ -9,6 +9,16 @@
 
 namespace railstep {
 
+inline constexpr int kShapes = 4;  // times at which a run keeps the rails' shapes
+
+/// A rail's axis at one time, at all nodes of the track.
+struct RailSnapshot {
+  double time;            // s
+  int rail;               // 0 left, 1 right
+  double length;          // m
+  std::vector<double> z;  // [nodes] displacement by the lines alone, m
+};
+
 /// What a run of whole frames met and took.
 struct RunRecord {
   Status status = Status::ok;           // of all frames together
@@ -17,6 +27,7 @@ struct RunRecord {
   int iterations = 0;                   // largest of a step
   std::vector<double> frame_us;         // [frames] wall time of the steps alone, us
   std::vector<double> rows;             // the trace, row after row; only when asked for
+  std::vector<RailSnapshot> shapes;     // at kShapes times; only when asked for
 };
 
 /// Steps `frames` frames from the state as it stands; stops early when the state is not finite.

@@ -1,13 +1,11 @@
 #include "simulation.h"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <fstream>
 #include <iterator>
 
 #include "build.h"
-#include "offline/pack/artefact.h"
 #include "online/model/load.h"
 
 namespace railstep {
@@ -55,8 +53,7 @@ std::vector<std::string> lines_of(const char* text, std::size_t bytes) {
 }  // namespace
 
 Simulation::Simulation(const Scene& scene) {
-  const Built built(scene);
-  block_ = to_block(built.packed->model(), fmt::format("{}", fmt::join(built.columns, "\n")));
+  block_ = block_of(Built(scene));
   load(scene.file.string());
 }
 

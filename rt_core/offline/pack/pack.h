@@ -93,6 +93,8 @@ class PackedModel {
 
   const Model& model() const { return model_; }
   const std::vector<PackedLine>& lines() const { return lines_; }
+  /// Where vertical forces act, by kind of port.
+  const std::vector<Port>& kinds() const { return kinds_; }
   /// @param state  state_doubles() values, from start.h
   void set_start(std::vector<double> state);
   /// Largest |G_res| clipped because W would have become negative there, m/N: 0 if none was.

@@ -1,0 +1,69 @@
+#include "offline/pack/cost.h"
+
+#include "online/contact/locate.h"
+#include "online/contact/ports.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr std::int64_t kElementRow = 27;  // unknowns of an element's nodes
+constexpr std::int64_t kSeenNodes = 5;    // of the two elements that a wheel looks at
+
+std::int64_t solve(const Band& band) {
+  return std::int64_t{band.panels} * (32 * std::int64_t{band.left} + 128);
+}
+
+/// Rows of the basis that a point of a rail touches, at most: what a line carries of three nodes.
+std::int64_t carried(const Model& model, const LineModel& line) {
+  std::int64_t most = 0;
+  for (std::int32_t node = 0; node < 2 * model.elements + 1; ++node) {
+    std::int64_t here = 0;
+    for (int k = 0; k < 9; ++k) here += line.unknown_of[9 * node + k] >= 0 ? 1 : 0;
+    most = here > most ? here : most;
+  }
+  return most;
+}
+
+std::int64_t banded(const Model& model, const LineModel& line, std::int64_t wheels) {
+  const std::int64_t n = line.size;
+  const std::int64_t products = 2 * n * (line.mass.count + std::int64_t{line.damping.count});
+  const std::int64_t vectors = (22 + 2 * wheels) * n;  // predict, correct, forces of wheels
+  const std::int64_t rows = 2 * kElementRow * (model.loads + wheels * (wheels + 3));
+  return products + vectors + rows + (1 + wheels) * solve(line.step);
+}
+
+std::int64_t condensed(const Model& model, const LineModel& line, std::int64_t wheels) {
+  const std::int64_t n = line.size, k = carried(model, line);
+  const std::int64_t loads = model.loads * 3 * k * 4 * n;
+  const std::int64_t seen = wheels * kSeenNodes * k * 4 * n;  // nodes where contact is looked for
+  const std::int64_t rows = wheels * 3 * k * 4 * n, responses = wheels * 6 * n;
+  const std::int64_t products = (wheels * (wheels + 1) / 2 + 2 * wheels) * 4 * n;
+  const std::int64_t moved = wheels * 4 * n, heights = wheels * 3 * 4 * n;
+  return 22 * n + loads + seen + rows + responses + products + moved + heights;
+}
+
+/// Locating, the capped solve of all ports and the guides' turns.
+std::int64_t contact(const Model& model, std::int64_t wheels) {
+  if (wheels == 0) return 0;
+  std::int64_t turns = 1;
+  for (std::int32_t i = 0; i < model.wheelsets; ++i)
+    if (model.wheelset[i].guide == Guide::augmented_lagrangian && model.wheelset[i].cap > turns)
+      turns = model.wheelset[i].cap;
+  const std::int64_t newton = wheels * wheels * wheels / 3 + 12 * wheels * wheels + 40 * wheels;
+  const std::int64_t locate = wheels * kLocateSteps * 300;
+  return locate + turns * (kPortSweeps * newton + 60 * wheels);
+}
+
+}  // namespace
+
+std::int64_t flops_per_frame(const Model& model) {
+  const std::int64_t wheels = 2 * std::int64_t{model.wheelsets};
+  std::int64_t step = contact(model, wheels);
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    step += model.condensed != 0 ? condensed(model, model.line[l], wheels)
+                                 : banded(model, model.line[l], wheels);
+  return step * model.steps_per_frame;
+}
+
+}  // namespace railstep
