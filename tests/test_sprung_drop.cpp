@@ -144,17 +144,37 @@ TEST_CASE("contact rebounds from a rigid rail as printed, wherever in a step it 
   CHECK_THAT(largest(100), WithinAbs(1., 5e-5));
 }
 
-TEST_CASE("contact on a rail without dampers makes no energy", "[contact]") {
-  // H4: dE <= 0, exactly, at any step that sees the contact, and after it; the wheel falls again
-  // and meets the rail while that still swings.
-  const double dt = GENERATE(1e-3, 2e-4, 1e-4, 5e-5, 1e-5);
-  const double start = .5 * 2. * kWheel * kFall * kFall;
-  CAPTURE(dt);
-  const int more = static_cast<int>(5e-3 / dt);
-  Drop mass(one_mass(3e7, 0.), kMiddle, dt), track(sprung_track(0.), kSeat, dt);
-  const Impact on_mass = impact(mass, more), on_track = impact(track, more);
-  CHECK(on_mass.most_energy <= start);
-  CHECK(on_track.most_energy <= start);
+TEST_CASE("contact on a rail without dampers makes no energy, wherever in a step it begins",
+          "[contact]") {
+  // H4: dE <= 0 on R2 and R3 at 50 and 10 us, exactly and at every step; on R3 also in the middle
+  // of one long element, where the residual flexibility holds energy of its own.
+  const double dt = GENERATE(5e-5, 1e-5);
+  Track one_element = sprung_track(0.);
+  one_element.elements_per_bay = 1;
+  for (int phase = 0; phase < 8; ++phase) {
+    const Fall fall{.above = kFall * dt * phase / 8.};
+    CAPTURE(dt, phase);
+    Drop mass(one_mass(3e7, 0.), kMiddle, dt, fall), seat(sprung_track(0.), kSeat, dt, fall);
+    Drop middle(one_element, kSeat + .3, dt, fall);
+    CHECK(middle.model().wheelset[0].residual[0] != nullptr);
+    for (Drop* drop : {&mass, &seat, &middle}) {
+      const double start = drop->energy();
+      CHECK(impact(*drop, 20).most_energy <= start);
+    }
+  }
+}
+
+TEST_CASE("contact on a rigid rail makes no more energy than printed", "[contact]") {
+  // Generalised-alpha is no discrete gradient: hard-cases.md section 1 prints its rebound as 1.0000
+  // where a contact has many steps, so that half of the last digit is 1e-4 of the energy. H4's
+  // steps.
+  const double dt = GENERATE(5e-5, 1e-5);
+  for (int phase = 0; phase < 16; ++phase) {
+    Drop drop(one_mass(1e18, 0.), kMiddle, dt, {.above = kFall * dt * phase / 16.});
+    const double start = drop.energy();
+    CAPTURE(dt, phase);
+    CHECK(impact(drop, 5).last < (1. + 1e-4) * start);
+  }
 }
 
 TEST_CASE("what the dampers take closes the balance of energy with the step's order", "[contact]") {
