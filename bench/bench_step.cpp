@@ -45,6 +45,7 @@ class MovingLoadRun {
   MovingLoadRun(const Track& track, double dt, int steps_per_frame)
       : frames_(static_cast<int>(std::lround((track.length() - kBay) / (kSpeed * kStep)))) {
     std::vector<MovingLoad> loads;
+    loads.reserve(static_cast<std::size_t>(track.rails));
     for (int rail = 0; rail < track.rails; ++rail)
       loads.push_back({.rail = rail,
                        .start = .5 * kBay,
@@ -70,8 +71,8 @@ class MovingLoadRun {
   /// Deflections under the first load from rest, one a frame.
   std::vector<double> deflections() {
     restart();
-    std::vector<double> z;
-    for (int i = 0; i < std::min(frames_, kCompared); ++i) z.push_back(frame());
+    std::vector<double> z(static_cast<std::size_t>(std::min(frames_, kCompared)));
+    for (double& deflection : z) deflection = frame();
     restart();
     return z;
   }

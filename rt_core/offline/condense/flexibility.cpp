@@ -82,9 +82,7 @@ Eigen::MatrixXd place_rows(const std::vector<int>& unknowns, const RailPoint& at
 std::vector<int> end_unknowns(const Line& line, const std::vector<int>& unknowns, int element) {
   std::vector<int> result;
   for (const int node : {2 * element, 2 * element + 2})
-    for (const int k : unknowns)
-      result.push_back(
-          line.unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)]);
+    for (const int k : unknowns) result.push_back(line.unknown(node, k));
   return result;
 }
 
@@ -150,8 +148,9 @@ void add_line(const Track& track, const Line& line, const RailPoint& at, int poi
     const std::vector<int> place = end_unknowns(line, unknowns, e);
     const Eigen::MatrixXd G_exact = end_flexibility(exact_K, line.unknowns(), place);
     const Eigen::MatrixXd G_model = end_flexibility(model_K, line.unknowns(), place);
+    const std::size_t first = static_cast<std::size_t>(e) * static_cast<std::size_t>(points + 1);
     for (int p = 0; p <= points; ++p)
-      table[static_cast<std::size_t>(e * (points + 1) + p)] +=
+      table[first + static_cast<std::size_t>(p)] +=
           factor * factor * (total(exact, G_exact, p) - total(model, G_model, p));
   }
 }
