@@ -125,9 +125,8 @@ TEST_CASE("the dense panel product is the product of its rows in order", "[dense
     panel_multiply<1>(A.data(), x.data() + r * n, 0, z.data(), 0, panels, n);
     for (int i = 0; i < panels * kLanes; ++i) {
       double sum = 0.0;
-      for (int k = 0; k < n; ++k)
-        sum += A[static_cast<std::size_t>((i / kLanes * n + k) * kLanes + i % kLanes)] *
-               x[static_cast<std::size_t>(r * n + k)];
+      const double *row = A.data() + i / kLanes * n * kLanes + i % kLanes, *in = x.data() + r * n;
+      for (int k = 0; k < n; ++k) sum += row[k * kLanes] * in[k];
       CHECK(y[static_cast<std::size_t>(r * panels * kLanes + i)] == sum);
       CHECK(z[static_cast<std::size_t>(i)] == sum);
     }

@@ -37,8 +37,8 @@ std::string text_of(const std::filesystem::path& file) {
 
 /// A folder of one test case's own, empty.
 std::filesystem::path fresh_folder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() /
-                      ("railstep_run_" + std::to_string(getpid()) + "_" + name);
+  auto folder = std::filesystem::temp_directory_path() /
+                ("railstep_run_" + std::to_string(getpid()) + "_" + name);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

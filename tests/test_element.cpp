@@ -78,7 +78,7 @@ TEST_CASE("the stiffness is symmetric with six zero modes; one axial point has m
     // Rank against the mass matrix, which scales positions and slopes alike.
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
         Eigen::MatrixXd(e.stiffness), Eigen::MatrixXd(e.mass));
-    const Eigen::VectorXd values = solver.eigenvalues();
+    const Eigen::VectorXd& values = solver.eigenvalues();
     CHECK(values[0] > -1e-10 * values[26]);
     return (values.array() < 1e-10 * values[26]).count();
   };

@@ -260,8 +260,8 @@ TEST_CASE("the axle's nearest crown point is that of golden section and of the s
 
 TEST_CASE("an axle over a kink stands on the border", "[locate]") {
   Rail rail = arc(2, 0.0);
-  for (int i : {0, 1, 3, 4})
-    rail.nodes[static_cast<std::size_t>(9 * i + 2)] = -0.05 * std::abs(i - 2);
+  for (const std::size_t i : {0u, 1u, 3u, 4u})
+    rail.nodes[9 * i + 2] = -0.05 * std::abs(static_cast<double>(i) - 2.0);
   for (double x : {0.59, 0.6, 0.605}) {
     const Axle axle = axle_over(x, 0.5);
     for (RailPlace start :

@@ -91,10 +91,11 @@ TEST_CASE("residual flexibility makes the static deflection that of a refined me
     const auto table = ResidualFlexibility(coarse, assemble(coarse), {}, 16).under({0, z});
     const Statics model(coarse), exact(fine);
     double largest = 0.;
-    for (const int e : {0, 5, 8, 15})
-      for (int p = 0; p <= 16; ++p) {
-        const RailPoint at{0, .6 * (e + p / 16.), 0., z, 2};
-        const double sum = model.flexibility(at, at) + table[static_cast<std::size_t>(17 * e + p)];
+    for (const std::size_t e : {0u, 5u, 8u, 15u})
+      for (std::size_t p = 0; p <= 16; ++p) {
+        const double x = .6 * (static_cast<double>(e) + static_cast<double>(p) / 16.);
+        const RailPoint at{0, x, 0., z, 2};
+        const double sum = model.flexibility(at, at) + table[17 * e + p];
         const double want = exact.flexibility(at, at);
         largest = std::max(largest, std::abs(sum / want - 1.));
       }

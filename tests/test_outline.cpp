@@ -23,6 +23,7 @@ constexpr double kRoundOff = 1e-14;
 /// Rows numbered from 1.
 std::vector<OutlineRow> rows(const std::vector<std::array<double, 3>>& values) {
   std::vector<OutlineRow> list;
+  list.reserve(values.size());
   for (const auto& [y, z, r] : values)
     list.push_back({{y, z}, r, static_cast<int>(list.size()) + 1});
   return list;

@@ -40,10 +40,9 @@ Case random_case(int n, double softest, std::mt19937& random) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       double sum = 0.0;
-      for (int k = 0; k < columns; ++k)
-        sum += B[static_cast<std::size_t>(i * columns + k)] *
-               B[static_cast<std::size_t>(j * columns + k)];
-      c.W[static_cast<std::size_t>(i * n + j)] = compliance * sum / columns + (i == j ? own : 0.0);
+      const double *left = B.data() + i * columns, *right = B.data() + j * columns;
+      for (int k = 0; k < columns; ++k) sum += left[k] * right[k];
+      c.W.data()[i * n + j] = compliance * sum / columns + (i == j ? own : 0.0);
     }
   for (int i = 0; i < n; ++i) {
     c.C.push_back(log_uniform(1e9, 1e12, random));

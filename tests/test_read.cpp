@@ -34,7 +34,7 @@ std::string parse_sentence(const std::string& text) {
 }
 
 std::filesystem::path folder() {
-  const auto made =
+  auto made =
       std::filesystem::temp_directory_path() / ("railstep_test_read_" + std::to_string(getpid()));
   std::filesystem::create_directories(made);
   return made;

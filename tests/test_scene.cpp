@@ -227,7 +227,7 @@ TEST_CASE("tables that need each other are asked for", "[scene]") {
   CHECK_THAT(with("moving_load", {"ballast.stiffness_z_n_per_m=5e7"}), Contains("no [sleeper]"));
   CHECK_THAT(with("ballasted_track", {"track.rails=1"}), Contains("a wheelset needs two rails"));
   CHECK_THAT(with("moving_load", {"track.rails=1"}), Contains("rail = \"right\""));
-  CHECK_THAT(with("moving_load", {"condense.kind=\"modal\""}), Contains("needs modes_per_bay"));
+  CHECK(with("moving_load", {"condense.kind=\"modal\""}) == "accepted");
   CHECK_THAT(with("moving_load", {"condense.modes_per_bay=2", "condense.highest_hz=900"}),
              Contains("one of them is accepted"));
   CHECK(with("moving_load", {"condense.kind=\"modal\"", "condense.modes_per_bay=2"}) == "accepted");

@@ -43,6 +43,7 @@ FitTargets parse_targets(const std::string& text) {
       {"centroid_height_m", &t.area.centroid_height},
       {"height_m", &t.height}};
   std::vector<std::string> names;
+  names.reserve(keys.size());
   for (const auto& [name, value] : keys) names.push_back(name);
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::size_t equals = part.find('=');
@@ -86,7 +87,8 @@ SaintVenant outline_shear(const Outline& outline, double uneven) {
 }
 
 FitResult fit_profile(Profile profile) {
-  FitResult r{.name = profile.name, .source = profile.source, .profile = std::move(profile)};
+  FitResult r{.name = profile.name, .source = profile.source};
+  r.profile = std::move(profile);
   const Outline& outline = r.profile->outline;
   r.fit = fit_section(outline);
   r.asymmetry = asymmetry(polygon(outline, kChordTolerance));

@@ -83,7 +83,7 @@ void check_keys(const Document& document, const toml::table& table, const std::s
                     ? fmt::format("unknown key '{}'; no key is accepted here", shown_word)
                     : fmt::format("unknown key '{}'; did you mean '{}'?", shown_word, near));
     }
-    const std::string below = name.empty() ? word : name + "." + word;
+    const std::string below = name.empty() ? word : fmt::format("{}.{}", name, word);
     if (const toml::table* sub = value.as_table()) check_keys(document, *sub, below);
     if (const toml::array* array = value.as_array())
       for (std::size_t i = 0; i < array->size(); ++i)

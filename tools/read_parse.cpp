@@ -97,7 +97,7 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 std::string place(const toml::source_region& source, const std::filesystem::path& file) {
-  const std::string name = source.path ? *source.path : file.string();
+  std::string name = source.path ? *source.path : file.string();
   if (name.starts_with("--set")) return name;
   if (!source.begin) return name;
   return fmt::format("{}:{}:{}", name, source.begin.line, source.begin.column);

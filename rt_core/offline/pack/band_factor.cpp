@@ -136,19 +136,18 @@ BandFactor factor_band(const Eigen::SparseMatrix<double>& A) {
   for (int p = 0; p < out.panels; ++p) {
     for (int k = 0; k < kLanes; ++k)
       for (int l = 0; l < kLanes; ++l)
-        out.inverse[static_cast<std::size_t>(p * kBlock + at(k, l))] =
+        out.inverse[static_cast<std::size_t>(p) * kBlock + static_cast<std::size_t>(at(k, l))] =
             band(p, p)[static_cast<std::size_t>(at(l, k))];
     for (int q = std::max(0, p - band.wide); q < p; ++q) {
       const Block& L = band(p, q);
       for (int row = 0; row < kLanes; ++row)
         for (int column = 0; column < kLanes; ++column) {
           const double value = L[static_cast<std::size_t>(at(row, column))];
-          const auto left = static_cast<std::size_t>((q - p + band.wide) * kLanes + column);
-          const auto right = static_cast<std::size_t>((p - q - 1) * kLanes + row);
-          out.forward[static_cast<std::size_t>(p) * panel + left * kLanes +
-                      static_cast<std::size_t>(row)] = value;
-          out.backward[static_cast<std::size_t>(q) * panel + right * kLanes +
-                       static_cast<std::size_t>(column)] = value;
+          const int left = at(q - p + band.wide, column), right = at(p - q - 1, row);
+          out.forward[static_cast<std::size_t>(p) * panel +
+                      static_cast<std::size_t>(at(left, row))] = value;
+          out.backward[static_cast<std::size_t>(q) * panel +
+                       static_cast<std::size_t>(at(right, column))] = value;
         }
     }
   }

@@ -66,9 +66,7 @@ void add_elements(const Track& track, Assembly& part) {
   for (int e = 0; e < track.elements(); ++e) {
     std::array<int, 27> place;
     for (int i = 0; i < 27; ++i)
-      place[static_cast<std::size_t>(i)] =
-          part.line
-              .unknown_of[static_cast<std::size_t>(2 * e + i / 9)][static_cast<std::size_t>(i % 9)];
+      place[static_cast<std::size_t>(i)] = part.line.unknown(2 * e + i / 9, i % 9);
     for (int j = 0; j < 27; ++j)
       for (int i = 0; i < 27; ++i) {
         const int row = place[static_cast<std::size_t>(i)],
@@ -91,8 +89,8 @@ void push(Row& row, int unknown, double coefficient) {
 /// along x: s with m/2, a with 2I/g^2.
 void add_seat(const Track& track, Assembly& part, int seat) {
   const Support& support = track.support;
-  const auto& node =
-      part.line.unknown_of[static_cast<std::size_t>(seat * 2 * track.elements_per_bay)];
+  const int border = seat * 2 * track.elements_per_bay;
+  const auto& node = part.line.unknown_of[static_cast<std::size_t>(border)];
   const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(seat)];
   const bool antisymmetric = part.mirror == Mirror::antisymmetric;
   const double g = track.rail_spacing, z = support.height_z;
@@ -235,8 +233,7 @@ Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
   Eigen::SparseVector<double> row(line.unknowns());
   for (int i = 0; i < 27; ++i) {
     const int k = i % 9;
-    const int unknown =
-        line.unknown_of[static_cast<std::size_t>(2 * element + i / 9)][static_cast<std::size_t>(k)];
+    const int unknown = line.unknown(2 * element + i / 9, k);
     if (unknown < 0 || local[i] == 0. || factor == 0.) continue;
     // The mirrored right rail: its y components (r_y, a_x, a_z, b_y) change sign.
     const bool flips = line.mirrored && point.rail == 1 && (k == 1 || k == 3 || k == 5 || k == 7);
@@ -253,8 +250,7 @@ Eigen::VectorXd weight(const Track& track, const Line& line, double gravity) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(line.unknowns());
   for (int e = 0; e < track.elements(); ++e)
     for (int i = 0; i < 27; ++i) {
-      const int unknown =
-          line.unknown_of[static_cast<std::size_t>(2 * e + i / 9)][static_cast<std::size_t>(i % 9)];
+      const int unknown = line.unknown(2 * e + i / 9, i % 9);
       if (unknown >= 0) force[unknown] -= both * line_weight * element.line_load[i];
     }
   if (track.sleeper)

@@ -35,7 +35,7 @@ void refuse_free_modes(const Line& line,
 
 }  // namespace
 
-Statics::Statics(Track track) : track_(std::move(track)), lines_(assemble(track_)) {
+Statics::Statics(const Track& track) : track_(track), lines_(assemble(track_)) {
   factors_ = std::vector<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(lines_.size());
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     factors_[i].compute(lines_[i].stiffness);

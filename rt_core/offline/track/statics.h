@@ -17,7 +17,7 @@ class Statics {
  public:
   /// Throws std::invalid_argument when a line has a free rigid mode (a pivot below 1e-12 of the
   /// largest after scaling by the diagonal), naming where it moves most.
-  explicit Statics(Track track);
+  explicit Statics(const Track& track);
 
   /// Displacements of each line's unknowns under the forces, and the track's weight if asked.
   std::vector<Eigen::VectorXd> solve(const std::vector<PointForce>& forces,

@@ -75,6 +75,10 @@ struct Line {
   bool mirrored;                                         // right rail: lateral unknowns change sign
 
   int unknowns() const { return static_cast<int>(stiffness.rows()); }
+  /// Number of coordinate k = 0..8 of a node among the line's unknowns, -1 where not carried.
+  int unknown(int node, int k) const {
+    return unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)];
+  }
 };
 
 /// Assembles the track and splits it into independent lines, each numbered along x.
