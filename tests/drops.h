@@ -8,6 +8,7 @@
 
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
+#include "online/step/residual.h"
 #include "online/step/step.h"
 #include "sections.h"
 
@@ -46,7 +47,7 @@ struct Drop {
     w.start = x;
     const bool residual = on.bays > 1;
     packed = std::make_unique<PackedModel>(
-        track, std::vector<MovingLoad>{}, std::vector<Wheelset>{w}, Railhead{},
+        track, Traffic{.wheelsets = {w}},
         PackOptions{.scheme = generalised_alpha(dt, .6), .residual_flexibility = residual});
     memory.assign(static_cast<std::size_t>(state_doubles(model())), 0.);
     scratch.assign(static_cast<std::size_t>(workspace_doubles(model())), 0.);
@@ -100,13 +101,7 @@ struct Drop {
     for (int i = 0; i < 2; ++i) {
       const double d = std::max(0., -outputs.wheel_gap[i]), f = outputs.wheel_force[i];
       sum += .4 * w.hertz * d * d * std::sqrt(d);
-      if (w.residual[i] == nullptr) continue;
-      const int elements = track.elements(), per = model().residual_points + 1;
-      const double scaled = w.start / model().element_length;
-      const int element = std::min(static_cast<int>(scaled), elements - 1);
-      const double at = (scaled - element) * (per - 1);  // the drops stand on a tabled place
-      REQUIRE(at == std::floor(at));
-      sum += .5 * f * f * w.residual[i][element * per + static_cast<int>(at)];
+      sum += .5 * f * f * residual_under(model(), rail_force(model(), w.kind[i], w.start, f));
     }
     return sum;
   }

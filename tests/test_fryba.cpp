@@ -49,7 +49,7 @@ struct Crossing {
       : track(on) {
     const MovingLoad load{.speed = speed, .stop = on.length(), .force = -force};
     packed = std::make_unique<PackedModel>(
-        on, std::vector<MovingLoad>{load},
+        on, Traffic{.loads = {load}},
         PackOptions{.scheme = generalised_alpha(dt, .6), .residual_flexibility = residual});
     memory.assign(static_cast<std::size_t>(state_doubles(model())), 0.);
     scratch.assign(static_cast<std::size_t>(workspace_doubles(model())), 0.);

@@ -50,8 +50,8 @@ struct Run {
     w.speed = speed;
     w.guide = guide;
     w.alpha = w.beta = 200.;
-    packed = std::make_unique<PackedModel>(track, std::vector<MovingLoad>{},
-                                           std::vector<Wheelset>{w}, Railhead{.1007375, .3, .038},
+    packed = std::make_unique<PackedModel>(track,
+                                           Traffic{.wheelsets = {w}, .head = {.1007375, .3, .038}},
                                            PackOptions{.scheme = generalised_alpha(5e-5, .6)});
     memory.assign(static_cast<std::size_t>(state_doubles(model())), 0.);
     scratch.assign(static_cast<std::size_t>(workspace_doubles(model())), 0.);

@@ -56,7 +56,8 @@ Track refined(Track track, int times) {
 
 double static_error(const Track& track, const PackedModel& packed) {
   const int points = packed.model().residual.points > 0 ? packed.model().residual.points : 16;
-  const Statics exact(refined(track, 2 * points));  // exact at its end nodes, half-way of the tables
+  const Statics exact(
+      refined(track, 2 * points));  // exact at its end nodes, half-way of the tables
   double largest = 0., error = 0.;
   for (std::size_t kind = 0; kind < packed.kinds().size(); ++kind) {
     const Port& port = packed.kinds()[kind];
