@@ -15,8 +15,6 @@ namespace railstep {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Eigenvalues to keep, one of each conjugate pair, slowest first.
 std::vector<Eigen::Index> kept(const Eigen::VectorXcd& rates) {
   std::vector<Eigen::Index> order;
