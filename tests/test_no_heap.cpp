@@ -49,7 +49,7 @@ struct Heap {
 
 TEST_CASE("the account sees one allocation, so it could fail", "[no_heap]") {
   const Heap before;
-  double* volatile by_new = new double[3];
+  double* volatile by_new = new double[3];  // volatile: a compiler may leave out an unused pair
   const Heap after_new;
   CHECK(after_new.news == before.news + 1);
   delete[] by_new;
