@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "build.h"
 #include "online/step/step.h"
+#include "simulation.h"
 
 using namespace railstep;
 

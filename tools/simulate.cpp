@@ -26,6 +26,9 @@ constexpr StatusText kStatus[] = {
     {Status::contact_lost, "contact_lost", "a wheel stood free of its rail for a while"},
     {Status::cap_reached, "cap_reached",
      "a contact or guide solve ended at its cap: shorten step.dt_s or raise the guide's cap"},
+    {Status::contact_unresolved, "contact_unresolved",
+     "a wheel struck its rail for fewer than 10 steps: its peak force is not right, shorten "
+     "step.dt_s"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 
