@@ -296,15 +296,19 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
 
 /// Whether a wheel that closes now on its rail will have left it within 10 steps. A mass m that
 /// meets a Hertz contact C at speed v stays for T = 2.9433 (5 m / 4 C)^0.4 v^-0.2 (Goldsmith,
-/// Impact, 1960), here with the rail taken as rigid: one that gives way holds the wheel for longer.
+/// Impact, 1960), here with the rail taken as rigid (one that gives way holds the wheel for longer)
+/// and the smaller of the masses that the wheel has alone and together with the set's other one.
 bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int wheel) noexcept {
   const WheelsetModel& set = model.wheelset[wheel / 2];
-  const double* row = c.contact[wheel].body_row;
-  double speed = 0., inverse_mass = 0.;
+  const double *row = c.contact[wheel].body_row, *other = c.contact[wheel ^ 1].body_row;
+  double speed = 0., alone = 0., together = 0.;
   for (int k = 0; k < 6; ++k) {
     speed -= row[k] * s.v[set.first + k];
-    if (k != kGuided[0] && k != kGuided[1]) inverse_mass += row[k] * row[k] / set.mass[k];
+    if (k == kGuided[0] || k == kGuided[1]) continue;
+    alone += row[k] * row[k] / set.mass[k];
+    together += row[k] * (row[k] + other[k]) / set.mass[k];
   }
+  const double inverse_mass = alone > together ? alone : together;
   const double depth = 1.25 / (inverse_mass * set.hertz), steps = 10. * model.scheme.dt / 2.9433;
   return speed > 0. && depth * depth < steps * steps * steps * steps * steps * speed;
 }
