@@ -56,9 +56,10 @@ double energy(const ModelRun& run) {
     sum += .5 * w.mass[k] * v * v;
   }
   sum += w.weight * run.state.u[w.first + 2];
-  for (int side = 0; side < 2; ++side) {
-    const Configuration standing{run.state.u, {run.state.u, run.state.v}};
-    const double d = std::max(0., find_contact(model, w, side, standing).penetration);
+  WheelContact sides[2];
+  find_contacts(model, w, {run.state.u, {run.state.u, run.state.v}}, sides);
+  for (const WheelContact& side : sides) {
+    const double d = std::max(0., side.penetration);
     sum += .4 * w.hertz * d * d * std::sqrt(d);
   }
   return sum;
