@@ -108,37 +108,47 @@ void EnergyAccount::add_contacts(const Standing& now) {
                (after.residual - before.residual);
   for (int i = 0; i < after.wheels; ++i) {
     if (!before.contact[i].on_rail || !after.contact[i].on_rail) continue;
-    const double f1 = now.state.wheel_force[i], f0 = last_.state.wheel_force[i];
-    const double force = model_.condensed != 0 ? f1 : .5 * (f0 + f1);
-    sum += force * (after.approach[i] - before.approach[i]);
+    sum += wheel_force(now, i) * (after.approach[i] - before.approach[i]);
   }
   flow_.loss += sum;
 }
 
-/// Force along x on a wheelset but for its guide, at a step's end, N.
-/// @param seen  contacts from which the step saw its forces
-double EnergyAccount::push(const Standing& at, const StandingContacts& seen, std::int32_t b) const {
-  double sum = table_force(model_, model_.wheelset[b], 0, at.state.steps);
-  for (int i = 2 * b; i < 2 * b + 2; ++i)
-    sum += .5 * (seen.contact[i].body_row[0] + at.contacts.contact[i].body_row[0]) *
-           at.state.wheel_force[i];
+/// Force of the scheme on a wheel over the step, N.
+double EnergyAccount::wheel_force(const Standing& now, int wheel) const {
+  const double f1 = now.state.wheel_force[wheel];
+  return model_.condensed != 0 ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
+}
+
+/// What the way along x alone changes of the approach of a wheel: the mean of going before and of
+/// going after all else moved, m.
+double EnergyAccount::passage(const Standing& now, int wheel) const {
+  const WheelsetModel& w = model_.wheelset[wheel / 2];
+  double sum = 0.;
+  for (const Standing* at : {static_cast<const Standing*>(&last_), &now}) {
+    const Standing& other = at == &now ? last_ : now;
+    std::vector<double> u(at->state.u, at->state.u + model_.unknowns);
+    u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
+    const WheelContact moved =
+        find_contact(model_, w, wheel % 2, {u.data(), {at->state.u, at->state.v}});
+    if (!moved.on_rail || !at->contacts.contact[wheel].on_rail) return 0.;
+    const double change = at->contacts.approach[wheel] - moved.penetration;
+    sum += .5 * (at == &now ? change : -change);
+  }
   return sum;
 }
 
 double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
   const WheelsetModel& w = model_.wheelset[b];
   const int x = w.first;
-  const bool held_force = model_.condensed != 0;
-  const double others = held_force
-                            ? push(now, last_.contacts, b)
-                            : .5 * (push(last_, last_.contacts, b) + push(now, now.contacts, b));
-  const double moved = now.state.u[x] - last_.state.u[x];
-  if (is_held(w, 0))
-    return .5 * w.mass[0] * (now.state.v[x] - last_.state.v[x]) *
-               (now.state.v[x] + last_.state.v[x]) -
-           others * moved;
-  const double g = held_force ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
-  return (w.mass[0] * g - others) * moved;
+  const double f0 = table_force(model_, w, 0, last_.state.steps);
+  const double f1 = table_force(model_, w, 0, now.state.steps);
+  const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
+  const bool held = model_.condensed != 0;
+  double sum = -(held ? f1 : .5 * (f0 + f1)) * du;
+  for (int i = 2 * b; i < 2 * b + 2; ++i) sum += wheel_force(now, i) * passage(now, i);
+  if (is_held(w, 0)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
+  const double g = held ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
+  return sum + w.mass[0] * g * du;
 }
 
 double EnergyAccount::body_loss(const Standing& now, const WheelsetModel& w, int k) const {

@@ -85,7 +85,8 @@ class EnergyAccount {
   void add_loads(const Standing& now);
   void add_contacts(const Standing& now);
   void add_wheelset(const Standing& now, std::int32_t b);
-  double push(const Standing& at, const StandingContacts& seen, std::int32_t b) const;
+  double wheel_force(const Standing& now, int wheel) const;
+  double passage(const Standing& now, int wheel) const;
   double guide_work(const Standing& now, std::int32_t b) const;
   double body_loss(const Standing& now, const WheelsetModel& w, int k) const;
   void add_start(const Standing& now);
