@@ -198,7 +198,10 @@ Command add_run(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
-  sub->footer("Example: railstep run config/scenes/moving_load.toml --trace moving_load.csv");
+  sub->footer(
+      "The energies come from a second pass over the run; of a model file, which has no matrices,\n"
+      "they are null.\n\nExample: railstep run config/scenes/moving_load.toml --trace "
+      "moving_load.csv");
   return {sub, [o] { return run(*o); }};
 }
 
