@@ -148,6 +148,26 @@ TEST_CASE("the guide holds by either method, with the same motion", "[wheelset]"
   CHECK_THAT(a[1], WithinRel(b[1], 1e-6));
 }
 
+TEST_CASE("a blow that the step cannot follow is said", "[wheelset]") {
+  // hard-cases.md R1: 600 kg a wheel at 0.1 m/s is in contact for 2.69 ms: 26.9 steps of 0.1 ms
+  const auto met = [](double dt, double above) {
+    Wheelset w = paper_wheelset();
+    w.mass = 1200.;
+    w.weight = 0.;
+    w.inertia_roll = w.inertia_yaw = 1e9;
+    w.radius = .46;
+    ModelRun run = wheelset_run(rigid_track(), w, options(dt));
+    run.state.u[run.model().wheelset[0].first + 2] = above;
+    run.state.v[run.model().wheelset[0].first + 2] = -.1;
+    run.until(5e-3);
+    return has(run.seen, Status::contact_unresolved);
+  };
+  CHECK_FALSE(met(1e-4, 1e-5));
+  CHECK_FALSE(met(2.5e-4, 1e-5));  // 10.8 steps
+  CHECK(met(3e-4, 1e-5));          // 9 steps
+  CHECK(met(1e-3, 1e-5));
+}
+
 TEST_CASE("a guide whose cap is too low says so", "[wheelset]") {
   Wheelset w = paper_wheelset();
   w.cap = 1;

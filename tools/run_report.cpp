@@ -93,7 +93,7 @@ std::string curves_script(const Plot& plot, const std::vector<std::string>& colu
   }
   return fmt::format(
       "set terminal svg size 900,420 name '{}' noenhanced font 'sans,12'\n"
-      "set xlabel 'time, s'\nset ylabel '{}'\nset grid\n"
+      "set xlabel 'time, s'\nset ylabel '{}'\nset grid\nset key outside top right horizontal\n"
       "$rows << EOD\n{}EOD\nplot{}\n",
       quantity.substr(1), plot.label, data, curves);
 }
@@ -125,7 +125,8 @@ std::string shapes_script(int rail, const RunRecord& record) {
   if (count == 0) return {};
   return fmt::format(
       "set terminal svg size 900,420 name 'rail{}' noenhanced font 'sans,12'\n"
-      "set xlabel 'x, m'\nset ylabel 'height over rest, mm'\nset grid\n{}plot{}\n",
+      "set xlabel 'x, m'\nset ylabel 'height over rest, mm'\nset grid\nset key outside top right "
+      "horizontal\n{}plot{}\n",
       rail, blocks, curves);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 /// One direction of a sensor: where it rests and what moves it.
 struct Direction {
-  double rest;
+  double rest = 0.;
   Functional track;
   int wheelset = -1;
 };

@@ -27,6 +27,9 @@ constexpr StatusText kStatus[] = {
     {Status::contact_lost, "contact_lost", "a wheel stood free of its rail for a while"},
     {Status::cap_reached, "cap_reached",
      "a contact or guide solve ended at its cap: shorten step.dt_s or raise the guide's cap"},
+    {Status::contact_unresolved, "contact_unresolved",
+     "a wheel struck its rail for fewer than 10 steps: its peak force is not right, shorten "
+     "step.dt_s"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 
@@ -55,10 +58,12 @@ void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
                        model.elements * model.element_length,
                        std::vector<double>(2 * static_cast<std::size_t>(model.elements) + 1, 0.)};
     bool carried = false;
-    for (std::int32_t l = 0; l < model.lines; ++l) {
+    for (std::int32_t l = 0; l < model.lines; ++l)
       carried = carried || model.line[l].rail_factor[rail] != 0.;
-      for (std::size_t node = 0; node < shape.z.size(); ++node)
-        shape.z[node] += node_motion(model.line[l], rail, static_cast<std::int32_t>(node), 2, at);
+    for (std::size_t node = 0; node < shape.z.size(); ++node) {
+      const auto element = static_cast<std::int32_t>(node == 0 ? 0 : (node - 1) / 2);
+      const double xi = static_cast<double>(node) - 2. * element - 1.;
+      shape.z[node] = axis_height(model, rail, element, xi, at);
     }
     if (carried) shapes.push_back(std::move(shape));
   }

@@ -28,7 +28,8 @@ inline constexpr int kMostModalUnknowns = 4000;
 ///
 /// One of each conjugate pair is kept, with shape' (2 rate + D) shape = 2; overdamped modes come
 /// one by one with 1 instead of 2 (their shape may be imaginary). Then Re sum shape shape' = 0 and
-/// Re sum rate shape shape' = I, which is checked.
+/// Re sum rate shape shape' = I, which is checked. Where slow real rates cluster, as those of
+/// strong dampers on alike seats, the shapes are made to add up to it.
 struct DampedModes {
   Eigen::VectorXcd rate;    // [modes] 1/s, slowest first
   Eigen::MatrixXcd shape;   // [kept][modes]

@@ -43,6 +43,23 @@ std::int64_t condensed(const Model& model, const LineModel& line, std::int64_t w
   return 22 * n + loads + seen + rows + responses + products + moved + heights;
 }
 
+// Of a table at one place: weights of a cubic, four products with their sum, and the force times
+// it.
+constexpr std::int64_t kCubic = 32, kLookUp = kCubic + 9;
+constexpr std::int64_t kPairLookUp = kCubic + 4 * (kLookUp + 2) + 2;
+
+/// Residual flexibility between all wheels and from loads to wheels: in W, in the penetration, in
+/// what is published.
+std::int64_t residual_step(const Model& model, std::int64_t wheels) {
+  const std::int64_t pairs = wheels * (wheels + 1) / 2 + wheels * model.loads + wheels * wheels;
+  return pairs * kPairLookUp + 2 * wheels * kLookUp;
+}
+
+/// And to every load, once a frame.
+std::int64_t residual_frame(const Model& model, std::int64_t wheels) {
+  return model.loads * (model.loads + wheels) * kPairLookUp;
+}
+
 /// Locating, the capped solve of all ports and the guides' turns.
 std::int64_t contact(const Model& model, std::int64_t wheels) {
   if (wheels == 0) return 0;
@@ -59,11 +76,11 @@ std::int64_t contact(const Model& model, std::int64_t wheels) {
 
 std::int64_t flops_per_frame(const Model& model) {
   const std::int64_t wheels = 2 * std::int64_t{model.wheelsets};
-  std::int64_t step = contact(model, wheels);
+  std::int64_t step = contact(model, wheels) + residual_step(model, wheels);
   for (std::int32_t l = 0; l < model.lines; ++l)
     step += model.condensed != 0 ? condensed(model, model.line[l], wheels)
                                  : banded(model, model.line[l], wheels);
-  return step * model.steps_per_frame;
+  return step * model.steps_per_frame + residual_frame(model, wheels);
 }
 
 }  // namespace railstep

@@ -110,8 +110,10 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     }
     const WheelsetModel& w = model.wheelset[b];
     const double approach = std::pow(wheel_load(w) / w.hertz, 2. / 3.);
-    const double z = .5 * (height[0] + height[1]) - approach;
     const double roll = (height[0] - height[1]) / (model.rail_y[0] - model.rail_y[1]);
+    // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
+    const double lifted = .5 * roll * roll * (w.radius + model.crown_radius);
+    const double z = .5 * (height[0] + height[1]) - approach + lifted;
     pose.wheelsets.push_back({0., 0., z, roll, 0., 0.});
   }
   return pose;

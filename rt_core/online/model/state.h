@@ -41,10 +41,11 @@ struct Outputs {
   double wheel_force_peak[kMaxWheels];  // N
   double wheel_impulse[kMaxWheels];     // N s
   double wheel_gap[kMaxWheels];         // m, negative in contact
-  double wheel_x[kMaxWheels];           // of the contact along the undeformed rail, m
-  double wheel_rail_z[kMaxWheels];      // displacement of the rail's axis under it, m
-  double constraint_violation;          // largest of the frame, m or rad
-  std::int32_t iterations;              // largest of the frame, of contact and joint solves
+  bool wheel_on_rail[kMaxWheels];
+  double wheel_x[kMaxWheels];       // of the contact along the undeformed rail, m
+  double wheel_rail_z[kMaxWheels];  // displacement of the rail's axis under it, m
+  double constraint_violation;      // largest of the frame, m or rad
+  std::int32_t iterations;          // largest of the frame, of contact and joint solves
 };
 
 inline std::int64_t state_doubles(const Model& model) noexcept {

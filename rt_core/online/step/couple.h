@@ -7,10 +7,10 @@ namespace railstep {
 struct CoupleResult {
   Status status;
   std::int32_t iterations;
-  double violation;           // of the guides, m or rad
-  double gap[kMaxWheels];     // m, negative in contact
-  double x[kMaxWheels];       // of the contact along the undeformed rail, m
-  double rail_z[kMaxWheels];  // m
+  double violation;        // of the guides, m or rad
+  double gap[kMaxWheels];  // m, negative in contact
+  double x[kMaxWheels];    // of the contact along the undeformed rail, m
+  bool on_rail[kMaxWheels];
 };
 
 /// Wheelsets, their guides, and their contacts with the rails: finds the contacts, solves the track

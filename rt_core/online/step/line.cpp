@@ -4,14 +4,6 @@ namespace railstep {
 
 namespace {
 
-/// y components of the mirrored right rail change sign: r_y, a_x, a_z, b_y.
-constexpr bool flips_in_mirror(int k) noexcept { return k == 1 || k == 3 || k == 5 || k == 7; }
-
-double weight_of(const LineModel& line, std::int32_t rail, int k) noexcept {
-  const double factor = line.rail_factor[rail];
-  return line.mirrored != 0 && rail == 1 && flips_in_mirror(k) ? -factor : factor;
-}
-
 Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
   const double* re = modal.shape + 2 * static_cast<std::ptrdiff_t>(row) * modal.count;
   return {re, re + modal.count};
@@ -38,11 +30,21 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
 
 }  // namespace
 
-double node_motion(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
+double nodal_value(const LineModel& line, std::int32_t node, int k,
                    const Configuration& at) noexcept {
   const std::int32_t unknown = line.unknown_of[9 * node + k];
-  if (unknown < 0 || line.rail_factor[rail] == 0.) return 0.;
-  return weight_of(line, rail, k) * value(line, unknown, at);
+  return unknown < 0 ? 0. : value(line, unknown, at);
+}
+
+double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
+                   const Configuration& at) noexcept {
+  double shape[3], sum = 0.;
+  shape_functions(xi, shape);
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    for (int i = 0; i < 3; ++i)
+      sum += shape[i] * weight_of(model.line[l], rail, 2) *
+             nodal_value(model.line[l], 2 * element + i, 2, at);
+  return sum;
 }
 
 double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept {

@@ -17,8 +17,20 @@ struct Configuration {
   Complex modes;
 };
 
-/// What a line adds to the displacement of one of a rail's nodal unknowns.
-double node_motion(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
+/// What one of a node's unknowns is on a line, before its weight in a rail; 0 if not carried.
+double nodal_value(const LineModel& line, std::int32_t node, int k,
+                   const Configuration& at) noexcept;
+
+/// The weight of a line's unknown k in a rail: y components of the mirrored right rail (r_y, a_x,
+/// a_z, b_y) change sign.
+inline double weight_of(const LineModel& line, std::int32_t rail, int k) noexcept {
+  const bool flips = k == 1 || k == 3 || k == 5 || k == 7;
+  return line.mirrored != 0 && rail == 1 && flips ? -line.rail_factor[rail]
+                                                  : line.rail_factor[rail];
+}
+
+/// Vertical displacement of a rail's axis by the lines alone, m.
+double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
                    const Configuration& at) noexcept;
 
 /// What a line adds to a row's displacement.

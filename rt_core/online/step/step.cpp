@@ -116,7 +116,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
     if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
     out.wheel_gap[i] = met.gap[i];
     out.wheel_x[i] = met.x[i];
-    out.wheel_rail_z[i] = met.rail_z[i];
+    out.wheel_on_rail[i] = met.on_rail[i];
   }
 }
 
@@ -177,32 +177,38 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < model.loads; ++i)
     outputs.load_deflection[i] += residual_displacement(model, force, count, i);
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
+    const RailForce& own = force[model.loads + i];
+    outputs.wheel_rail_z[i] = 0.;
+    if (!outputs.wheel_on_rail[i]) continue;
+    outputs.wheel_rail_z[i] = axis_height(model, i % 2, own.element, own.xi, standing(state)) +
+                              residual_displacement(model, force, count, model.loads + i) +
+                              own.force * (residual_axis(model, own) - residual_under(model, own));
+  }
   outputs.first_bad_unknown = first_bad(model, state);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
 }
 
 void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept {
   start_frame(model, outputs);
-  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    WheelContact sides[2];
+    find_contacts(model, model.wheelset[b], standing(state), sides);
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
-      const WheelContact at = find_contact(model, model.wheelset[b], side, standing(state));
+      const WheelContact& at = sides[side];
       outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
           state.wheel_force[i];
       outputs.wheel_gap[i] = -at.penetration;
+      outputs.wheel_on_rail[i] = at.on_rail;
       outputs.wheel_x[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
-      outputs.wheel_rail_z[i] = at.on_rail ? axis_height(model, at, standing(state)) : 0.;
     }
+  }
   publish(model, state, outputs);
   RailForce force[kMaxLoads + kMaxWheels];
   const int count = rail_forces(model, outputs, force);
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
-    const RailForce& own = force[model.loads + i];
-    const double moved = residual_displacement(model, force, count, model.loads + i);
-    outputs.wheel_gap[i] -= moved;
-    outputs.wheel_rail_z[i] +=
-        moved + own.force * (residual_axis(model, own) - residual_under(model, own));
-  }
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+    outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
 }
 
 }  // namespace railstep

@@ -15,24 +15,31 @@ struct Window {
   double nodes[9 * kWindowNodes];
 };
 
-/// Deformed nodes of the elements around x.
-void gather(const Model& model, std::int32_t rail, double x, const Configuration& at,
-            Window& window) noexcept {
+/// Displacements of the nodes around x, both rails together: what a line moves of one it moves of
+/// the other, up to sign and weight.
+void gather(const Model& model, double x, const Configuration& at, Window* sides) noexcept {
   const double scaled = x / model.element_length - .5;  // 1.2: right half of element 1
+  Window window{};
   window.elements = model.elements < kWindow ? model.elements : kWindow;
-  window.first = 0;
   if (scaled > 0. && scaled < model.elements) window.first = static_cast<std::int32_t>(scaled);
   if (scaled >= model.elements || window.first > model.elements - window.elements)
     window.first = model.elements - window.elements;
+  sides[0] = sides[1] = window;
+  for (std::int32_t i = 0; i <= 2 * window.elements; ++i)
+    for (int k = 0; k < 9; ++k)
+      for (std::int32_t l = 0; l < model.lines; ++l) {
+        const LineModel& line = model.line[l];
+        const double value = nodal_value(line, 2 * window.first + i, k, at);
+        for (int rail = 0; rail < 2; ++rail)
+          sides[rail].nodes[9 * i + k] += weight_of(line, rail, k) * value;
+      }
+}
+
+/// From displacements to places: rest added.
+void add_rest(const Model& model, int rail, Window& window) noexcept {
   for (std::int32_t i = 0; i <= 2 * window.elements; ++i) {
-    const std::int32_t node = 2 * window.first + i;
     double* q = window.nodes + 9 * i;
-    for (int k = 0; k < 9; ++k) {
-      q[k] = 0.;
-      for (std::int32_t l = 0; l < model.lines; ++l)
-        q[k] += node_motion(model.line[l], rail, node, k, at);
-    }
-    q[0] += .5 * model.element_length * node;
+    q[0] += .5 * model.element_length * (2 * window.first + i);
     q[1] += model.rail_y[rail];
     q[4] += 1.;
     q[8] += 1.;
@@ -75,16 +82,13 @@ void fill_row(const double* shape, WheelContact& at) noexcept {
       at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * at.normal[k % 3]);
 }
 
-}  // namespace
-
-WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
-                          const Configuration& seen) noexcept {
-  const double* p = seen.u + w.first;
+/// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
+/// then the material point of the railhead under the normal.
+WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, const double* p,
+                          const Window& window) noexcept {
   const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
   const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
   const double axle[3] = {-sy * cr, cy * cr, sr};
-  Window window;
-  gather(model, side, centre[0], seen, window);
   WheelContact at{};
   at.row.rail = side;
   const double z_crown = model.head_z - model.crown_radius;
@@ -129,15 +133,17 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   return at;
 }
 
-double axis_height(const Model& model, const WheelContact& wheel,
-                   const Configuration& at) noexcept {
-  double shape[3], sum = 0.;
-  shape_functions(wheel.xi, shape);
-  for (int i = 0; i < 3; ++i)
-    for (std::int32_t l = 0; l < model.lines; ++l)
-      sum +=
-          shape[i] * node_motion(model.line[l], wheel.row.rail, 2 * wheel.row.element + i, 2, at);
-  return sum;
+}  // namespace
+
+void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
+                   WheelContact* sides) noexcept {
+  const double* p = at.u + wheelset.first;
+  Window windows[2];
+  gather(model, wheelset.start + p[0], at, windows);
+  for (int side = 0; side < 2; ++side) {
+    add_rest(model, side, windows[side]);
+    sides[side] = find_contact(model, wheelset, side, p, windows[side]);
+  }
 }
 
 }  // namespace railstep

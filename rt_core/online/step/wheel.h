@@ -18,13 +18,10 @@ struct WheelContact {
   double body_row[6];  // d(gap)/d(coordinates) of the wheelset
 };
 
-/// Finds the contact of wheel `side` (0 left, 1 right) of a wheelset: closest approach of its axle
-/// and the crown's centre curve, then the material point of the railhead under the normal.
-/// @param at  displacements of track and bodies at which to look
-WheelContact find_contact(const Model& model, const WheelsetModel& wheelset, int side,
-                          const Configuration& at) noexcept;
-
-/// Vertical displacement of the rail's axis under the wheel, by the lines alone, m.
-double axis_height(const Model& model, const WheelContact& wheel, const Configuration& at) noexcept;
+/// Finds the contacts of a wheelset's left and right wheel.
+/// @param at     displacements of track and bodies at which to look
+/// @param sides  [2] left, right
+void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
+                   WheelContact* sides) noexcept;
 
 }  // namespace railstep

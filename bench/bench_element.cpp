@@ -1,0 +1,57 @@
+// Mass and stiffness of one element, with the error that a cantilever of two of them makes.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "offline/element/matrices.h"
+#include "offline/track/statics.h"
+
+namespace railstep {
+namespace {
+
+/// 60E1's constants, rounded; centroid on the axis, shear centre where the load acts.
+BeamSection section() {
+  return {.area = 76.7e-4,
+          .inertia_y = 30.38e-6,
+          .inertia_z = 5.123e-6,
+          .torsion = 2.2e-6,
+          .shear_factor_y = .45,
+          .shear_factor_z = .4};
+}
+
+/// Tip of a 2 m cantilever under an end load against Timoshenko's P L^3 / 3 E I + P L / k G A.
+double tip_error(int axial_points) {
+  Track track;
+  track.section = section();
+  track.unknowns = Unknowns::vertical;
+  track.rails = 1;
+  track.bay_length = 4.;
+  track.elements_per_bay = 4;
+  track.ends = RailEnds::clamped;
+  track.axial_points = axial_points;
+  // Half of a clamped beam under a force in its middle: L = 2 m, half the force, no turn at the
+  // end.
+  const Statics statics(track);
+  const double got = statics.flexibility({0, 2., 0., 0., 2}, {0, 2., 0., 0., 2});
+  const BeamSection s = section();
+  const Material m{};
+  const double G = m.young / (2. * (1. + m.poisson));
+  const double want =
+      std::pow(4., 3) / (192. * m.young * s.inertia_y) + 4. / (4. * s.shear_factor_z * G * s.area);
+  return std::abs(got / want - 1.);
+}
+
+void matrices(benchmark::State& run) {
+  const int points = static_cast<int>(run.range(0));
+  for (auto _ : run)
+    benchmark::DoNotOptimize(
+        element_matrices(section(), Material{}, .6, ElasticLaw::corrected, points));
+  run.counters["error"] = tip_error(points);
+}
+
+BENCHMARK(matrices)->ArgName("axial_points")->Arg(2)->Arg(3);
+
+}  // namespace
+}  // namespace railstep
+
+BENCHMARK_MAIN();

@@ -1,0 +1,280 @@
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "artefact.h"
+#include "build.h"
+#include "offline/pack/cost.h"
+
+using namespace railstep;
+
+namespace {
+
+const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
+
+/// Small models of both kinds, with loads that have tables, wheelsets, probes and pair tables.
+std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
+  Track track = wheels ? paper_track() : peers_pair(1);
+  track.bays = 2;
+  Traffic traffic;
+  for (const double x : {.2, .5})
+    traffic.loads.push_back(
+        {.start = x, .speed = 10., .stop = 1., .force = -50e3, .table = {0., 0., .01, 1.}});
+  if (wheels) {
+    Wheelset w;
+    w.mass = 100.;
+    w.inertia_roll = w.inertia_yaw = 8.3;
+    w.inertia_spin = 1.1;
+    w.weight = 981.;
+    w.radius = .148;
+    w.start = 1.2;
+    w.forces = {{1, {0., 10., .01, 0.}}};
+    traffic.wheelsets = {w};
+    traffic.head = {.1007375, .3, .038};
+    traffic.probes = {{.displacement = 1., .wheelset = 0, .coordinate = 2}};
+  }
+  traffic.probes.push_back({.rest = .1,
+                            .displacement = 1.,
+                            .velocity = .01,
+                            .track = {.rail = {{{0, .4, 0., 0., 2}, 1.}}}});
+  PackOptions options = modal ? condensed(track, 3, 1e-4) : full_order(1e-4);
+  options.residual_points = 4;
+  options.steps_per_frame = 2;
+  options.steps = 40;
+  return std::make_unique<PackedModel>(track, traffic, options);
+}
+
+const std::string kText = "time_s\nsome.column_m";
+
+Block small_block(bool modal, bool wheels) {
+  return to_block(small_model(modal, wheels)->model(), kText);
+}
+
+/// Any word of a block's content, or the next one behind it that may be a count.
+std::size_t some_word(const Block& block, std::mt19937_64& random) {
+  const std::size_t words = (block.size() - kSummedFrom) / 8;
+  std::size_t at = kSummedFrom + 8 * static_cast<std::size_t>(random() % words);
+  if (random() % 2 == 0) return at;
+  while (at + 16 <= block.size() && (word_of(block, at) < 1 || word_of(block, at) > 100'000))
+    at += 8;
+  return at;
+}
+
+std::int64_t some_value(std::int64_t old, std::mt19937_64& random) {
+  const auto bits = [](double x) {
+    std::int64_t word = 0;
+    std::memcpy(&word, &x, sizeof word);
+    return word;
+  };
+  switch (random() % 10) {
+    case 0:
+      return static_cast<std::int64_t>(random());
+    case 1:
+      return old ^ (std::int64_t{1} << (random() % 63));
+    case 2:
+      return static_cast<std::int64_t>(random() % 64);
+    case 3:
+      return old + 1;
+    case 4:
+      return old - 1;
+    case 5:
+      return -1;
+    case 6:
+      return std::numeric_limits<std::int64_t>::max();
+    case 7:
+      return bits(std::numeric_limits<double>::quiet_NaN());
+    case 8:
+      return bits(1e300);
+    default:
+      return bits(-std::numeric_limits<double>::infinity());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a model that was written and read steps to the same bits", "[artefact]") {
+  for (const char* name : {"moving_load", "wheelset_on_track", "ballasted_track"})
+    for (const char* kind : {"full", "modal"}) {
+      std::vector<std::string> overrides = {std::string("condense.kind=\"") + kind + "\""};
+      if (std::string(name) == "ballasted_track") {
+        overrides.insert(overrides.end(), {"track.bays=16", "sensor[0].sleeper=8",
+                                           "sensor[1].position_m=4.8", "step.duration_s=0.1"});
+      }
+      const Built built(read_scene(kScenes + name + ".toml", overrides));
+      const Block block = block_of(built);
+      Model model;
+      REQUIRE(read(block, model).status == LoadStatus::ok);
+      LoadedRun written(built.packed->model()), found(model);
+      CHECK(written.probes == found.probes);
+      CHECK(written.frames(40) == found.frames(40));
+      CAPTURE(name, kind);
+      CHECK(state_hash(model, written.state) == state_hash(model, found.state));
+      CHECK(written.probes == found.probes);
+      CHECK(std::memcmp(&written.outputs, &found.outputs, sizeof(Outputs)) == 0);
+      // What was read is written as it was, and the scene built anew gives the same bytes; in
+      // another heap, so that nothing is left unset.
+      const LoadResult back = read(block, model);
+      const bool same = to_block(model, std::string(back.text, back.text_bytes)) == block;
+      CHECK(same);
+      const bool again = block_of(Built(read_scene(kScenes + name + ".toml", overrides))) == block;
+      CHECK(again);
+    }
+}
+
+TEST_CASE("a block's text comes back, and its sum is named", "[artefact]") {
+  const Block block = small_block(true, true);
+  Model model;
+  const LoadResult result = read(block, model);
+  REQUIRE(result.status == LoadStatus::ok);
+  CHECK(std::string(result.text, result.text_bytes) == kText);
+  CHECK(model.steps == 40);
+  CHECK(model.steps_per_frame == 2);
+  const std::string sum = sum_of(block);
+  REQUIRE(sum.size() == 64);
+  CHECK(std::stoi(sum.substr(0, 2), nullptr, 16) == std::to_integer<int>(block[kSumAt]));
+  CHECK(std::stoi(sum.substr(62), nullptr, 16) == std::to_integer<int>(block[kSumAt + 31]));
+}
+
+TEST_CASE("a block that starts between words is not placed", "[artefact]") {
+  const Block block = small_block(true, false);
+  std::vector<std::int64_t> room(block.size() / 8 + 1);
+  Model model;
+  for (std::size_t shift = 0; shift < 8; ++shift) {
+    auto* at = reinterpret_cast<std::byte*>(room.data()) + shift;
+    std::memcpy(at, block.data(), block.size());
+    CHECK(load_model(at, block.size(), model).status ==
+          (shift == 0 ? LoadStatus::ok : LoadStatus::misaligned));
+  }
+}
+
+TEST_CASE("one flipped bit in a header is refused as what it is", "[artefact]") {
+  const Block good = small_block(true, false);
+  const auto expected = [](std::size_t byte) {
+    if (byte < 8) return LoadStatus::not_a_model;
+    if (byte < 16) return LoadStatus::other_version;
+    return byte < 24 ? LoadStatus::wrong_size : LoadStatus::wrong_sum;
+  };
+  for (std::size_t byte = 0; byte < kModelFrom; ++byte)
+    for (int bit = 0; bit < 8; ++bit) {
+      Block bad = good;
+      bad[byte] ^= std::byte{1} << bit;
+      CAPTURE(byte, bit);
+      CHECK(status_of(bad) == expected(byte));
+    }
+  for (std::size_t byte = kModelFrom; byte < good.size(); byte += 61) {
+    Block bad = good;
+    bad[byte] ^= std::byte{16};
+    CAPTURE(byte);
+    CHECK(status_of(bad) == LoadStatus::wrong_sum);
+  }
+}
+
+TEST_CASE("a block cut short or run on is refused, signed anew or not", "[artefact]") {
+  const Block good = small_block(true, true);
+  for (std::size_t size = 0; size < good.size(); size += size < 256 ? 1 : 241) {
+    Block cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
+    CAPTURE(size);
+    CHECK(status_of(cut) == (size < kModelFrom ? LoadStatus::not_a_model : LoadStatus::wrong_size));
+    if (size < kModelFrom) continue;
+    sign(cut);
+    CHECK(status_of(cut) == LoadStatus::bad_content);
+  }
+  for (const std::size_t more : {1u, 8u, 4096u}) {
+    Block longer = good;
+    longer.resize(good.size() + more);
+    CHECK(status_of(longer) == LoadStatus::wrong_size);
+    sign(longer);
+    CHECK(status_of(longer) == LoadStatus::bad_content);
+  }
+}
+
+TEST_CASE("numbers out of range are refused though the sum is right", "[artefact]") {
+  const Block good = small_block(true, true);
+  const std::size_t counts = kModelFrom + (kText.size() + 7) / 8 * 8 + 12 * 8;  // behind the scheme
+  Model model;
+  REQUIRE(read(good, model).status == LoadStatus::ok);
+  REQUIRE(word_of(good, counts) == model.lines);
+  // lines, loads, wheelsets, elements, unknowns, condensed, bodies, steps_per_frame, steps
+  for (std::size_t i = 0; i < 9; ++i)
+    for (const std::int64_t value : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(),
+                                     word_of(good, counts + 8 * i) + 1}) {
+      if (value > 0 && i >= 7) continue;  // more steps are a run like another
+      Block bad = good;
+      put_word(bad, counts + 8 * i, value);
+      sign(bad);
+      CAPTURE(i, value);
+      CHECK(status_of(bad) == LoadStatus::bad_content);
+    }
+  for (const std::int64_t length : {std::int64_t{-1}, std::int64_t{1} << 40}) {  // of the text
+    Block bad = good;
+    put_word(bad, kSummedFrom, length);
+    sign(bad);
+    CHECK(status_of(bad) == LoadStatus::bad_content);
+  }
+}
+
+TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact][fuzz]") {
+  std::mt19937_64 random(20240607);
+  for (const bool modal : {false, true})
+    for (const bool wheels : {false, true}) {
+      const Block good = small_block(modal, wheels);
+      int loaded = 0, refused = 0;
+      for (int round = 0; round < 1500; ++round) {
+        Block bad = good;
+        for (std::uint64_t i = 0, n = 1 + random() % 4; i < n; ++i) {
+          const std::size_t at = some_word(bad, random);
+          put_word(bad, at, some_value(word_of(bad, at), random));
+        }
+        sign(bad);
+        Model model;
+        if (read(bad, model).status != LoadStatus::ok) {
+          ++refused;
+          continue;
+        }
+        ++loaded;
+        model.steps_per_frame = std::min(model.steps_per_frame, 4);  // time alone
+        LoadedRun run(model);
+        (void)run.frames(3);
+        CHECK(run.state.steps == 3 * model.steps_per_frame);
+      }
+      CHECK(loaded > 100);
+      CHECK(refused > 100);
+    }
+}
+
+TEST_CASE("the flops of a frame are no fewer than those counted by hand", "[artefact]") {
+  const auto model_of = [](int loads, bool modal, bool residual) {
+    Track track = peers_pair(1);
+    track.rails = 1;
+    Traffic traffic;
+    for (int i = 0; i < loads; ++i)
+      traffic.loads.push_back({.start = .3 + .25 * i, .stop = 9.6, .force = -1e3});
+    PackOptions options = modal ? condensed(track, 1, 1e-3) : full_order(1e-3);
+    options.residual_flexibility = residual;
+    return std::make_unique<PackedModel>(track, traffic, options);
+  };
+  // Of a mode: a complex number times keep, old_force and new_force, and two sums: 3 6 + 4. A load
+  // adds 3 nodes of a complex row to the forces, and reads as many: 4 each.
+  const auto one = model_of(1, true, false);
+  const std::int64_t n = one->model().line[0].size;
+  REQUIRE(n == 40);  // 33 modes, padded
+  CHECK(flops_per_frame(one->model()) >= n * (22 + 3 * 4 + 3 * 4));
+  CHECK(flops_per_frame(one->model()) <= 3 * n * (22 + 3 * 4 + 3 * 4));
+  // Every pair of loads reads a table of 4 x 4 points: 4 + 1 cubics of 4 products and 3 sums, and
+  // the weights of 4 + 1 of them, each 4 products of three differences.
+  const auto many = model_of(32, true, true);
+  const std::int64_t pairs = 32 * 31 * (5 * 7 + 5 * 4 * 5);
+  CHECK(flops_per_frame(many->model()) >= n * (22 + 32 * 24) + pairs);
+  // Banded: 22 of predicting and correcting an unknown, products with M and C by diagonals, and per
+  // panel of 8 rows a product with `left` columns forth and back, and one with an 8 x 8 block.
+  const auto band = model_of(1, false, false);
+  const LineModel& line = band->model().line[0];
+  const std::int64_t solve = line.step.panels * (2 * 2 * 8 * std::int64_t{line.step.left} + 2 * 64);
+  const std::int64_t products =
+      2 * (line.mass.count + line.damping.count) * std::int64_t{line.size};
+  CHECK(flops_per_frame(band->model()) >= 22 * line.size + products + solve);
+  CHECK(flops_per_frame(band->model()) <= 2 * (22 * line.size + products + solve));
+}

@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "program.h"
+#include "simulate.h"
+
+using namespace railstep;
+using Catch::Contains;
+
+namespace {
+
+using Json = nlohmann::json;
+const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
+const std::string kMovingLoad = kScenes + "moving_load.toml";
+const std::string kCondensed = " --set 'condense={kind=\"modal\", modes_per_bay=1}'";
+
+/// The scene condensed into a file of the folder; the JSON of it.
+Json condense(const std::string& words, const std::filesystem::path& file) {
+  const Ran ran = railstep_program("condense " + words + " --json --out " + file.string());
+  CAPTURE(words, ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(ran.err.empty());
+  return Json::parse(ran.out);
+}
+
+/// Exit 2, one sentence, nothing on stdout.
+void check_refused(const Ran& ran, const std::string& said) {
+  CAPTURE(ran.out, ran.err);
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.err, Contains(said));
+  CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
+  CHECK(ran.out.empty());
+}
+
+}  // namespace
+
+TEST_CASE("a model runs to the bits of its scene, full and condensed", "[condense]") {
+  const auto folder = fresh_folder("same_bits");
+  for (const char* name : {"moving_load", "wheelset_on_track", "ballasted_track"})
+    for (const bool modal : {false, true}) {
+      std::string scene = kScenes + name + ".toml --set step.duration_s=0.05";
+      scene += modal ? kCondensed : " --set 'condense={kind=\"full\"}'";
+      const auto file = folder / "made.model";
+      const Json made = condense(scene, file);
+      const Ran of_scene =
+          railstep_program("run --json " + scene + " --trace " + (folder / "scene.csv").string());
+      const Ran of_model = railstep_program("run --json " + file.string() + " --trace " +
+                                            (folder / "model.csv").string());
+      CAPTURE(name, modal, of_scene.err, of_model.err);
+      REQUIRE(of_scene.code == 0);
+      REQUIRE(of_model.code == 0);
+      const Json a = Json::parse(of_scene.out), b = Json::parse(of_model.out);
+      for (const char* key : {"steps", "final_time_s", "state_hash", "status", "steps_per_frame",
+                              "max_iterations", "max_constraint_violation"})
+        CHECK(a.at(key) == b.at(key));
+      CHECK(text_of(folder / "scene.csv") == text_of(folder / "model.csv"));
+      CHECK(made.at("bytes") == std::filesystem::file_size(file));
+    }
+}
+
+TEST_CASE("the option --json has the contract's keys with their meaning", "[condense]") {
+  const auto folder = fresh_folder("keys");
+  const Json made = condense(kMovingLoad + kCondensed, folder / "a.model");
+  for (const char* key :
+       {"full_unknowns", "kept_unknowns", "bytes", "state_bytes", "workspace_bytes",
+        "flops_per_frame", "sha256", "static_error", "receptance_error", "transient_error"})
+    CHECK(made.contains(key));
+  CHECK(made.at("full_unknowns") == 2 * 33 * 2);        // rails, nodes, r_z and b_x
+  CHECK(made.at("kept_unknowns") == 2 * (16 + 17));     // rails, modes and seat dampers
+  CHECK(made.at("state_bytes") == 4 * 2 * 40 * 8);      // u v a g, rails, 33 modes padded, double
+  CHECK(made.at("workspace_bytes") == 5 * 2 * 40 * 8);  // u* v* scaled, solved in two parts
+  const double static_error = made.at("static_error"), transient = made.at("transient_error");
+  // tables of 16 intervals, whose cubics leave (1/16)^4 of a bay's own modulation
+  CHECK(static_error > 0.);
+  CHECK(static_error < 1e-4);
+  CHECK(transient < 1e-3 + 2e-3);  // of the model, and of a reference of 2 elements per bay
+  CHECK(made.at("receptance_error") > static_error);
+  const std::string sum = made.at("sha256");
+  CHECK(sum.find_first_not_of("0123456789abcdef") == std::string::npos);
+  // the same scene gives the same bytes, another one others
+  CHECK(condense(kMovingLoad + kCondensed, folder / "b.model").at("sha256") == sum);
+  CHECK(text_of(folder / "a.model") == text_of(folder / "b.model"));
+  const Json other =
+      condense(kMovingLoad + kCondensed + " --set 'load[0].force_z_n=-49e3'", folder / "c.model");
+  CHECK(other.at("sha256") != sum);
+  const Ran table =
+      railstep_program("condense " + kMovingLoad + " --out " + (folder / "d.model").string());
+  CHECK(table.code == 0);
+  CHECK_THAT(table.out, Contains("132 of 132 unknowns"));
+}
+
+TEST_CASE("what is no model is refused in one sentence and nothing is written", "[condense]") {
+  const auto folder = fresh_folder("no_model");
+  const auto file = folder / "x.model";
+  condense(kMovingLoad + kCondensed, file);
+  const std::string good = text_of(file);
+  std::string flipped = good, newer = good;
+  flipped[good.size() / 2] ^= 4;
+  newer[8] ^= 3;
+  const struct {
+    std::string bytes, said;
+  } cases[] = {
+      {good.substr(0, good.size() - 8), "cut short or run on"},
+      {good + "more", "cut short or run on"},
+      {good.substr(0, 100), "cut short or run on"},
+      {good.substr(0, 20), "is not a model"},
+      {flipped, "does not match its SHA-256"},
+      {newer, "of another format"},
+      {"", "x.model"},
+      {"railstep", "is not a model"},
+      {"railstep is a word, and this is a text of more than sixty-four bytes in all", "format"},
+      {std::string("\0\1\2\3", 4), "x.model"},
+  };
+  for (const auto& c : cases) {
+    std::ofstream(file, std::ios::binary) << c.bytes;
+    CAPTURE(c.said);
+    check_refused(
+        railstep_program("run " + file.string() + " --trace " + (folder / "t.csv").string()),
+        c.said);
+    CHECK(entries(folder) == 1);
+  }
+}
+
+TEST_CASE("a model is what it is: only its duration can be chosen", "[condense]") {
+  const auto folder = fresh_folder("changes");
+  const std::string file = (folder / "x.model").string();
+  condense(kMovingLoad + kCondensed + " --set step.frame_s=5e-3", file);
+  const std::string trace = " --trace " + (folder / "t.csv").string();
+  check_refused(railstep_program("run " + file + " --set step.dt_s=1e-4" + trace), "--set");
+  check_refused(railstep_program("run " + file + " --step 1e-4" + trace), "--step");
+  check_refused(railstep_program("run " + file + " --model full" + trace), "--model");
+  for (const char* duration : {"0.0125", "0", "-0.01", "nan", "1e300"})
+    check_refused(railstep_program("run " + file + " --duration " + duration + trace),
+                  "--duration");
+  CHECK(entries(folder) == 1);
+  const Ran longer = railstep_program("run --json " + file + " --duration 0.01");
+  REQUIRE(longer.code == 0);
+  CHECK(Json::parse(longer.out).at("steps") == 10);
+}
+
+TEST_CASE("condense refuses in one sentence and writes nothing", "[condense]") {
+  const auto folder = fresh_folder("refused");
+  const std::string out = " --out " + (folder / "x.model").string();
+  const auto refused = [&](const std::string& words, const std::string& said) {
+    CAPTURE(words);
+    check_refused(railstep_program("condense " + words + out), said);
+    CHECK(entries(folder) == 0);
+  };
+  refused(kScenes + "no_such_scene.toml", "no_such_scene.toml");
+  refused(kMovingLoad + kCondensed + " --set support.stiffness_z_n_per_m=0", "free rigid mode");
+  refused(kMovingLoad + kCondensed + " --set track.bays=1001 --set condense.modes_per_bay=2",
+          "4000");
+  refused(kMovingLoad + " --set 'condense={kind=\"modal\", modes_per_bay=-1}'", "modes_per_bay");
+  refused(kMovingLoad + " --set 'condense={kind=\"moddal\"}'", "modal");
+  CHECK(railstep_program("condense " + kMovingLoad).code == 2);  // no --out
+  const Ran unwritable = railstep_program("condense " + kMovingLoad + " --out " +
+                                          (folder / "no_folder/x.model").string());
+  CHECK(unwritable.code == 1);
+  CHECK_THAT(unwritable.err, Contains("no_folder/x.model: cannot be written"));
+  CHECK(entries(folder) == 0);
+}

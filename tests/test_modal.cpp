@@ -1,0 +1,239 @@
+#include <Eigen/SparseCholesky>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "condensed.h"
+#include "offline/condense/modal.h"
+#include "offline/track/statics.h"
+#include "sections.h"
+
+using namespace railstep;
+using Catch::Matchers::Contains;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+using Value = std::complex<double>;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+/// Lines of the tracks under test; those without stiffness along x are left out.
+std::vector<Line> lines_under_test() {
+  std::vector<Line> all;
+  for (const Track& track : {peers_pair(1), s1_track(8, 2), paper_track()})
+    for (Line& line : assemble(track)) all.push_back(std::move(line));
+  return all;
+}
+
+Basis basis_of(const Line& line, int modes) { return modal_basis(line, {modes, kUnlimited}); }
+
+/// What is left of shapes outside the span of a basis, over their size; norms over the mass.
+double outside(const Line& line, const Basis& basis, const Eigen::VectorXd& shape) {
+  const Eigen::VectorXd within = basis.shapes * (basis.shapes.transpose() * (line.mass * shape));
+  const Eigen::VectorXd left = shape - within;
+  return std::sqrt(left.dot(line.mass * left) / shape.dot(line.mass * shape));
+}
+
+/// Largest relative residual of (rate^2 + rate D + Omega^2) shape = 0.
+double residual(const Basis& basis, const DampedModes& modes) {
+  const Eigen::MatrixXcd D = modes.damping.cast<Value>();
+  const Eigen::VectorXd stiffness = basis.omega.cwiseAbs2();
+  double largest = 0.;
+  for (Eigen::Index k = 0; k < modes.rate.size(); ++k) {
+    const Value rate = modes.rate[k];
+    const Eigen::VectorXcd x = modes.shape.col(k);
+    const Eigen::VectorXcd inertia = rate * rate * x, damper = rate * (D * x),
+                           spring = stiffness.cast<Value>().cwiseProduct(x);
+    largest = std::max(largest, (inertia + damper + spring).norm() /
+                                    (inertia.norm() + damper.norm() + spring.norm()));
+  }
+  return largest;
+}
+
+/// What Re sum shape shape' = 0 and Re sum rate shape shape' = I are missed by.
+double incompleteness(const DampedModes& modes) {
+  const Eigen::MatrixXd position = (modes.shape * modes.shape.transpose()).real();
+  const Eigen::MatrixXd velocity =
+      (modes.shape * modes.rate.asDiagonal() * modes.shape.transpose()).real();
+  const auto identity = Eigen::MatrixXd::Identity(velocity.rows(), velocity.cols());
+  return std::max((velocity - identity).cwiseAbs().maxCoeff(),
+                  std::abs(modes.rate[0]) * position.cwiseAbs().maxCoeff());
+}
+
+/// One coordinate y'' + c y' + omega^2 y.
+DampedModes one_coordinate(double omega, double c) {
+  Eigen::SparseMatrix<double> damping(1, 1);
+  damping.insert(0, 0) = c;
+  return damped_modes({Eigen::VectorXd::Constant(1, omega), Eigen::MatrixXd::Identity(1, 1)},
+                      damping);
+}
+
+}  // namespace
+
+TEST_CASE("the basis is orthonormal over the mass and makes the stiffness diagonal", "[modal]") {
+  for (const Line& line : lines_under_test()) {
+    const Basis basis = basis_of(line, 8);
+    const auto m = basis.omega.size();
+    CHECK(basis.omega.minCoeff() > 0.);
+    CHECK(std::is_sorted(basis.omega.begin(), basis.omega.end()));
+    const Eigen::MatrixXd mass = basis.shapes.transpose() * (line.mass * basis.shapes);
+    const Eigen::MatrixXd stiffness = basis.shapes.transpose() * (line.stiffness * basis.shapes);
+    const Eigen::MatrixXd square = basis.omega.cwiseAbs2().asDiagonal();
+    // sums of some hundred terms of size 1, with room 1e4 for the shapes' own cancellation
+    CHECK((mass - Eigen::MatrixXd::Identity(m, m)).cwiseAbs().maxCoeff() < 1e-10);
+    // the same over the largest of the basis
+    CHECK((stiffness - square).cwiseAbs().maxCoeff() < 1e-10 * square.maxCoeff());
+  }
+}
+
+TEST_CASE("the basis spans the lowest modes and what every damper needs", "[modal]") {
+  for (const Line& line : lines_under_test()) {
+    const Basis basis = basis_of(line, 8);
+    const Modes all = modes(line);
+    for (Eigen::Index k = 0; k < 8; ++k)
+      CHECK(outside(line, basis, all.shape.col(k)) < 1e-7);  // rounding, as a root of 1e-14
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
+    const Basis bare{2. * M_PI * all.frequency.head(8), all.shape.leftCols(8)};
+    double most_by_modes = 0.;
+    for (int j = 0; j < line.damping.outerSize(); ++j) {
+      if (line.damping.col(j).norm() == 0.) continue;
+      const Eigen::VectorXd shape = factor.solve(Eigen::VectorXd(line.damping.col(j)));
+      most_by_modes = std::max(most_by_modes, outside(line, bare, shape));
+      // directions below 1e-10 of the largest Gram eigenvalue are dropped: 1e-5 of a shape
+      CHECK(outside(line, basis, shape) < 1e-5);
+    }
+    if (line.damping.norm() > 0.) CHECK(most_by_modes > 1e-3);  // or nothing was asked for
+  }
+}
+
+TEST_CASE("one shape is added per damper", "[modal]") {
+  // 17 seats of one rail of 16 bays; with sleepers a pad and the ballast at each
+  CHECK(basis_of(assemble(peers_pair(1))[0], 16).omega.size() == 16 + 17);
+  Track sleepers = s1_track(16, 1);
+  sleepers.unknowns = Unknowns::vertical;
+  sleepers.support.damping = {0., 0., 20e3};  // on the foot a damper along x would meet slopes
+  CHECK(basis_of(assemble(sleepers)[0], 16).omega.size() == 16 + 34);
+}
+
+TEST_CASE("damped modes are complete and solve their equation", "[modal]") {
+  bool overdamped = false;
+  for (const Line& line : lines_under_test()) {
+    const Basis basis = basis_of(line, 8);
+    const DampedModes modes = damped_modes(basis, line.damping);
+    // the eigen solver is backward stable: some hundred eps times the spread of the rates, 1e4
+    CHECK(residual(basis, modes) < 1e-9);
+    CHECK(incompleteness(modes) < 1e-9);
+    CHECK(modes.rate.real().maxCoeff() <= 1e-9 * modes.rate.cwiseAbs().maxCoeff());
+    for (const Value rate : modes.rate) overdamped = overdamped || rate.imag() == 0.;
+  }
+  CHECK(overdamped);  // dampers of 29e6 N s/m are among them
+}
+
+TEST_CASE("modes of a line without dampers do not decay", "[modal]") {
+  Track track = peers_pair(1);
+  track.support.damping = {};
+  const Line line = assemble(track)[0];
+  const Basis basis = basis_of(line, 16);
+  CHECK(basis.omega.size() == 16);
+  const DampedModes modes = damped_modes(basis, line.damping);
+  REQUIRE(modes.rate.size() == 16);
+  for (Eigen::Index k = 0; k < 16; ++k) {
+    // backward error of a skew matrix: eps times its norm, with room for its size
+    CHECK(std::abs(modes.rate[k].real()) < 1e-12 * basis.omega[15]);
+    CHECK_THAT(modes.rate[k].imag(), WithinAbs(basis.omega[k], 1e-12 * basis.omega[15]));
+  }
+}
+
+TEST_CASE("one coordinate has its textbook rates and shapes", "[modal]") {
+  const double omega = 300.;
+  const DampedModes under = one_coordinate(omega, 2. * .3 * omega);
+  REQUIRE(under.rate.size() == 1);
+  CHECK_THAT(under.rate[0].real(), WithinRel(-.3 * omega, 1e-12));
+  CHECK_THAT(under.rate[0].imag(), WithinRel(std::sqrt(1. - .09) * omega, 1e-12));
+  const DampedModes over = one_coordinate(omega, 2. * 1.25 * omega);
+  REQUIRE(over.rate.size() == 2);  // omega (1.25 -+ .75)
+  CHECK_THAT(over.rate[0].real(), WithinRel(-.5 * omega, 1e-12));
+  CHECK_THAT(over.rate[1].real(), WithinRel(-2. * omega, 1e-12));
+}
+
+TEST_CASE("displacement and velocity come back from their modes", "[modal]") {
+  for (const Line& line : lines_under_test()) {
+    const DampedModes modes = damped_modes(basis_of(line, 8), line.damping);
+    const auto m = modes.shape.rows();
+    Eigen::VectorXd y(m), velocity(m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      y[i] = std::sin(1. + 3. * static_cast<double>(i));
+      velocity[i] = 100. * std::cos(2. + 5. * static_cast<double>(i));
+    }
+    const Eigen::VectorXcd z = modes.from(y, velocity);
+    const Eigen::VectorXd back = (modes.shape * z).real(),
+                          rate = (modes.shape * modes.rate.cwiseProduct(z)).real();
+    // y = [Re sum rate shape shape'] y + [Re sum shape shape'] (D y + y'), y' alike with terms D
+    // y': completeness of 1e-9 counts by these terms
+    const double terms = (modes.damping * y + velocity).norm();
+    CHECK((back - y).norm() < 1e-9 * (y.norm() + terms / std::abs(modes.rate[0])));
+    CHECK((rate - velocity).norm() < 1e-9 * modes.damping.norm() * (y.norm() + velocity.norm()));
+  }
+}
+
+TEST_CASE("slow real roots that cluster are told apart by what they must add up to", "[modal]") {
+  // Dampers of 29e6 N s/m on 60 alike seats: 61 roots near -k/c = -48.3 1/s. The eigen solver's
+  // vectors of the cluster are no longer orthogonal, and completeness is missed by 1e-5 and more.
+  Track track = peers_pair(2);
+  track.bays = 60;
+  track.support.stiffness[2] = 1.4e9;
+  track.support.damping[2] = 29e6;
+  const Line line = assemble(track)[0];
+  const Basis basis = basis_of(line, 60);
+  REQUIRE(basis.omega.size() == 60 + 61);
+  const DampedModes modes = damped_modes(basis, line.damping);
+  CHECK(incompleteness(modes) < 1e-9);
+  // a mix of shapes whose rates agree to 1e-8 leaves a residual of 1e-8 times the mix
+  CHECK(residual(basis, modes) < 1e-9);
+}
+
+TEST_CASE("near critical damping the answer is right or it is refused", "[modal]") {
+  CHECK_THROWS_WITH(one_coordinate(300., 600.), Contains("critical"));
+  const double omega = 300., t = 2. / omega;
+  int accepted = 0;
+  for (const double off : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, -1e-2, -1e-5, -1e-9}) {
+    DampedModes modes;
+    try {
+      modes = one_coordinate(omega, 2. * omega * (1. + off));
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    ++accepted;
+    const Eigen::VectorXcd z = modes.from(Eigen::VectorXd::Ones(1), Eigen::VectorXd::Zero(1));
+    double y = 0.;
+    for (Eigen::Index k = 0; k < z.size(); ++k)
+      y += (modes.shape(0, k) * std::exp(modes.rate[k] * t) * z[k]).real();
+    // critical: y = (1 + omega t) e^(-omega t), off by (omega t)^3/3 e^(-omega t) = .36 per unit of
+    // `off`; a missed completeness of 1e-7 counts as much
+    CHECK_THAT(y, WithinAbs(3. * std::exp(-2.), std::abs(off) + 1e-6));
+  }
+  CHECK(accepted >= 4);  // 1e-2, 1e-4 and their negatives leave 14 and 12 digits
+}
+
+TEST_CASE("what has no modes to keep is refused in a sentence", "[modal]") {
+  Track free = peers_pair(1);
+  free.support.stiffness[2] = 0.;
+  CHECK_THROWS_WITH(basis_of(assemble(free)[0], 8), Contains("free rigid mode"));
+  Track long_track = peers_pair(1);
+  long_track.bays = 1000;  // 2001 nodes of 2 unknowns
+  CHECK_THROWS_WITH(basis_of(assemble(long_track)[0], 8),
+                    Contains("4002 unknowns") && Contains("4000"));
+  Track undamped = peers_pair(1);
+  undamped.support.damping = {};
+  CHECK_THROWS_WITH(basis_of(assemble(undamped)[0], 0), Contains("keeps one mode or more"));
+  // with dampers their shapes alone are a basis, and a limit in Hz counts like one in modes
+  CHECK(basis_of(assemble(peers_pair(1))[0], 0).omega.size() == 17);
+  const Line line = assemble(undamped)[0];
+  const Modes all = modes(line);
+  const Basis cut = modal_basis(line, {1000, .5 * (all.frequency[4] + all.frequency[5])});
+  CHECK(cut.omega.size() == 5);
+}
