@@ -224,7 +224,7 @@ TEST_CASE("a wheelset at 30 m/s on ballast balances, full or condensed, guided e
   const std::vector<std::string> extra =
       GENERATE(std::vector<std::string>{}, std::vector<std::string>{kBaumgarte},
                std::vector<std::string>{"track.gravity=true"}, std::vector<std::string>{kPushed});
-  std::vector<std::string> changes = {kind, "track.bays=24"};
+  std::vector<std::string> changes = {kind, "track.bays=24", "step.duration_s=0.05"};
   changes.insert(changes.end(), extra.begin(), extra.end());
   SceneRun run("ballasted_track.toml", changes);
   run.until(.04);  // two seats
@@ -239,7 +239,7 @@ TEST_CASE("a condensed track's balance falls with the step", "[energy]") {
   // The contact's loss, theta = 1/1.6 off the middle, is of first order.
   std::vector<double> error;
   for (const char* dt : {"step.dt_s=1e-4", "step.dt_s=5e-5", "step.dt_s=2.5e-5"}) {
-    SceneRun run("ballasted_track.toml", {kModal, dt, "track.bays=24"});
+    SceneRun run("ballasted_track.toml", {kModal, dt, "track.bays=24", "step.duration_s=0.05"});
     run.until(.02);
     error.push_back(run.energy.balance_error());
   }
@@ -249,8 +249,9 @@ TEST_CASE("a condensed track's balance falls with the step", "[energy]") {
 }
 
 TEST_CASE("every term of the balance counts: without one of them it does not close", "[energy]") {
-  SceneRun run("ballasted_track.toml", {GENERATE(kFull, kModal), "track.bays=24",
-                                        "step.start=\"released\"", "track.gravity=true", kPushed});
+  SceneRun run("ballasted_track.toml",
+               {GENERATE(kFull, kModal), "track.bays=24", "step.duration_s=0.05",
+                "step.start=\"released\"", "track.gravity=true", kPushed});
   run.until(.0425);  // between two nodes, where the residual flexibility is large
   const EnergyFlow& flow = run.energy.flow();
   const StoredEnergy& stored = run.energy.stored();

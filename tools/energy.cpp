@@ -119,20 +119,23 @@ double EnergyAccount::wheel_force(const Standing& now, int wheel) const {
   return model_.condensed != 0 ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
 }
 
-/// What the way along x alone changes of the approach of a wheel: the mean of going before and of
-/// going after all else moved, m.
-double EnergyAccount::passage(const Standing& now, int wheel) const {
-  const WheelsetModel& w = model_.wheelset[wheel / 2];
+/// Work of a wheelset's wheels by what its way along x alone changes of their approach: the mean of
+/// going before and of going after all else moved, J.
+double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
+  const WheelsetModel& w = model_.wheelset[b];
   double sum = 0.;
-  for (const Standing* at : {static_cast<const Standing*>(&last_), &now}) {
-    const Standing& other = at == &now ? last_ : now;
-    std::vector<double> u(at->state.u, at->state.u + model_.unknowns);
+  for (const bool later : {false, true}) {
+    const Standing &at = later ? now : last_, &other = later ? last_ : now;
+    std::vector<double> u(at.state.u, at.state.u + model_.unknowns);
     u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
-    const WheelContact moved =
-        find_contact(model_, w, wheel % 2, {u.data(), {at->state.u, at->state.v}});
-    if (!moved.on_rail || !at->contacts.contact[wheel].on_rail) return 0.;
-    const double change = at->contacts.approach[wheel] - moved.penetration;
-    sum += .5 * (at == &now ? change : -change);
+    WheelContact moved[2];
+    find_contacts(model_, w, {u.data(), {at.state.u, at.state.v}}, moved);
+    for (int side = 0; side < 2; ++side) {
+      const int i = 2 * b + side;
+      if (!moved[side].on_rail || !at.contacts.contact[i].on_rail) continue;
+      const double change = moved[side].penetration - at.contacts.approach[i];
+      sum += .5 * wheel_force(now, i) * (later ? -change : change);
+    }
   }
   return sum;
 }
@@ -144,8 +147,7 @@ double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
   const double f1 = table_force(model_, w, 0, now.state.steps);
   const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
   const bool held = model_.condensed != 0;
-  double sum = -(held ? f1 : .5 * (f0 + f1)) * du;
-  for (int i = 2 * b; i < 2 * b + 2; ++i) sum += wheel_force(now, i) * passage(now, i);
+  const double sum = passage_work(now, b) - (held ? f1 : .5 * (f0 + f1)) * du;
   if (is_held(w, 0)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
   const double g = held ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
   return sum + w.mass[0] * g * du;

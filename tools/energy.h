@@ -32,12 +32,15 @@ struct EnergyFlow {
 /// The balance of energy of a run, step by step.
 ///
 /// imbalance = change of stored energy - work + dissipation by dampers. Work is force times the
-/// displacement of the material point under it, with means over a step: (F0 row0 + F1 row1)/2 du of
-/// loads and tables; of condensed lines, too. What moves loads and wheels along supplies what their
-/// change of place does to the residual energy (residual_work). A guide's force on its wheelset is
-/// minus its multiplier (augmented Lagrangian; and the projection of the velocity does
-/// m (v^2 - v_scheme^2)/2), or m g - F (Baumgarte, F the other forces along x); yaw does not move.
-/// Gyroscopic forces do no work while yaw is held.
+/// displacement of the material point under it, with means over a step: (F0 row0 + F1 row1)/2 du.
+/// What moves loads and wheels along supplies what their change of place does to the residual
+/// energy (residual_work). A guide's work is what its wheelset's motion along x takes, from the
+/// acceleration of the state by either method:
+///   m g dx - F dx, or d(m v^2 / 2) - F dx where the velocity is projected (augmented Lagrangian),
+/// F the other forces along x. Of these a contact does f da, a the approach, by the way along x
+/// alone; the multiplier would do as well but for its round-off, penalty times that of x, and the
+/// step's own normal but for a railhead that is squeezed, which it leaves by up to 1e-4 rad, and
+/// for the elements' borders. Yaw does not move; gyroscopic forces do no work while it is held.
 ///
 /// The loss is what the scheme itself takes out (below 0: puts in), in closed form:
 /// - of banded lines see LineEnergy::loss; of wheelsets the same without C, and 0 where forces are
@@ -86,7 +89,7 @@ class EnergyAccount {
   void add_contacts(const Standing& now);
   void add_wheelset(const Standing& now, std::int32_t b);
   double wheel_force(const Standing& now, int wheel) const;
-  double passage(const Standing& now, int wheel) const;
+  double passage_work(const Standing& now, std::int32_t b) const;
   double guide_work(const Standing& now, std::int32_t b) const;
   double body_loss(const Standing& now, const WheelsetModel& w, int k) const;
   void add_start(const Standing& now);

@@ -51,8 +51,9 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
   c.wheels = 2 * model.wheelsets;
   const Configuration at{state.u, {state.u, state.v}};
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    find_contacts(model, model.wheelset[b], at, c.contact + 2 * b);
   for (int i = 0; i < c.wheels; ++i) {
-    c.contact[i] = find_contact(model, model.wheelset[i / 2], i % 2, at);
     c.approach[i] = c.contact[i].on_rail ? c.contact[i].penetration : 0.;
   }
   RailForce port[kMaxLoads + kMaxWheels];
