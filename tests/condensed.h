@@ -1,8 +1,10 @@
 #pragma once
 #include <limits>
+#include <memory>
 
 #include "model_run.h"
 #include "offline/pack/scheme.h"
+#include "offline/pack/start.h"
 #include "sections.h"
 
 namespace railstep {
@@ -49,6 +51,27 @@ inline PackOptions condensed(const Track& track, double modes_per_bay, double dt
 
 inline PackOptions full_order(double dt, double rho_inf = .6) {
   return {.scheme = generalised_alpha(dt, rho_inf)};
+}
+
+inline const Railhead kHead{.1007375, .3, .038};  // of section F
+
+/// The paper's, on section F.
+inline Wheelset paper_wheelset(double start) {
+  Wheelset w;
+  w.mass = 100.;
+  w.inertia_roll = w.inertia_yaw = 8.3;
+  w.inertia_spin = 1.1;
+  w.weight = 981.;
+  w.radius = .148;
+  w.start = start;
+  return w;
+}
+
+inline ModelRun in_equilibrium(const Track& track, const Traffic& traffic,
+                               const PackOptions& options) {
+  auto packed = std::make_unique<PackedModel>(track, traffic, options);
+  packed->set_start(start_in_equilibrium(track, *packed, options.gravity));
+  return ModelRun(std::move(packed));
 }
 
 }  // namespace railstep

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "condensed.h"
-#include "offline/pack/start.h"
 #include "offline/track/statics.h"
 #include "online/step/probe.h"
 
@@ -54,9 +53,7 @@ ModelRun s1_run(int elements_per_bay, PackOptions options) {
   traffic.probes = {{.displacement = 1., .track = sleeper},
                     {.displacement = -200e6, .velocity = -20e3, .track = pad}};
   options.steps_per_frame = static_cast<int>(std::lround(1e-3 / options.scheme.dt));
-  auto packed = std::make_unique<PackedModel>(track, traffic, options);
-  packed->set_start(start_in_equilibrium(track, *packed, 0.));
-  return ModelRun(std::move(packed));
+  return in_equilibrium(track, traffic, options);
 }
 
 /// Frames of 1 ms: rail_z and mean force of the left wheel, sleeper, pad force.
@@ -118,14 +115,7 @@ TEST_CASE("condensed: a wheelset on a ballasted track moves as on one refined in
 
 TEST_CASE("condensed: the paper's wheelset settles to the reactions of full order", "[condensed]") {
   const auto settled = [](const PackOptions& options) {
-    Wheelset w;
-    w.mass = 100.;
-    w.inertia_roll = w.inertia_yaw = 8.3;
-    w.inertia_spin = 1.1;
-    w.weight = 981.;
-    w.radius = .148;
-    w.start = 3.2;
-    Traffic traffic{.wheelsets = {w}, .head = {.1007375, .3, .038}};
+    Traffic traffic{.wheelsets = {paper_wheelset(3.2)}, .head = kHead};
     for (int seat = 0; seat < 5; ++seat)
       traffic.probes.push_back({.displacement = -3e6,
                                 .velocity = -3e4,

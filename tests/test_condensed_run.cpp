@@ -6,9 +6,6 @@
 #include <vector>
 
 #include "condensed.h"
-#include "offline/pack/start.h"
-#include "offline/track/statics.h"
-#include "online/step/probe.h"
 #include "online/step/wheel.h"
 
 using namespace railstep;
@@ -16,25 +13,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-const Railhead kHead{.1007375, .3, .038};
-
-Wheelset paper_wheelset(double start) {
-  Wheelset w;
-  w.mass = 100.;
-  w.inertia_roll = w.inertia_yaw = 8.3;
-  w.inertia_spin = 1.1;
-  w.weight = 981.;
-  w.radius = .148;
-  w.start = start;
-  return w;
-}
-
-ModelRun in_equilibrium(const Track& track, const Traffic& traffic, const PackOptions& options) {
-  auto packed = std::make_unique<PackedModel>(track, traffic, options);
-  packed->set_start(start_in_equilibrium(track, *packed, options.gravity));
-  return ModelRun(std::move(packed));
-}
 
 /// Kinetic and strain energy of lines and wheelset, of contact and weight, J; no residual.
 double energy(const ModelRun& run) {
@@ -56,9 +34,10 @@ double energy(const ModelRun& run) {
     sum += .5 * w.mass[k] * v * v;
   }
   sum += w.weight * run.state.u[w.first + 2];
-  for (int side = 0; side < 2; ++side) {
-    const Configuration standing{run.state.u, {run.state.u, run.state.v}};
-    const double d = std::max(0., find_contact(model, w, side, standing).penetration);
+  WheelContact sides[2];
+  find_contacts(model, w, {run.state.u, {run.state.u, run.state.v}}, sides);
+  for (const WheelContact& side : sides) {
+    const double d = std::max(0., side.penetration);
     sum += .4 * w.hertz * d * d * std::sqrt(d);
   }
   return sum;
@@ -96,110 +75,6 @@ Kicked kicked(double theta, int steps) {
 }
 
 }  // namespace
-
-TEST_CASE("condensed: from static equilibrium nothing moves", "[condensed]") {
-  // Three loads on each rail, two of them in one element, and a wheelset beside them; the rails'
-  // weight acts. Alike on both rails: a wheelset that rolls would slide down its own slope.
-  const Track track = paper_track();
-  Traffic traffic{.wheelsets = {paper_wheelset(2.9)}, .head = kHead};
-  for (const int rail : {0, 1})
-    for (const double x : {2., 3.1, 3.4})
-      traffic.loads.push_back(
-          {.rail = rail, .start = x, .stop = 7., .force = -20e3, .z = kHead.top_z});
-  PackOptions options = condensed(track, 2., 1e-4);
-  options.gravity = 9.81;
-  ModelRun run = in_equilibrium(track, traffic, options);
-  publish_start(run.model(), run.state, run.outputs);
-  const Outputs start = run.outputs;
-  CHECK(start.load_deflection[1] < -1e-3);
-  const double z = run.body()[2], roll = run.body()[3];
-  double most = 0.;
-  for (int i = 0; i < 1000; ++i) {
-    run.step();
-    for (int l = 0; l < 6; ++l)
-      most = std::max(most, std::abs(run.outputs.load_deflection[l] - start.load_deflection[l]));
-    for (int w = 0; w < 2; ++w)
-      most = std::max(most, std::abs(run.outputs.wheel_rail_z[w] - start.wheel_rail_z[w]));
-    most = std::max({most, std::abs(run.body()[2] - z), .5 * std::abs(run.body()[3] - roll)});
-  }
-  CHECK(run.seen == Status::ok);
-  CAPTURE(most);
-  CHECK(most < 1e-9);  // m; deflections of 1e-2 times a condition of K of 1e7
-  for (int w = 0; w < 2; ++w) CHECK_THAT(run.outputs.wheel_force[w], WithinRel(490.5, 1e-6));
-}
-
-TEST_CASE("a wheelset on unequal rails starts with its own weight on both wheels", "[start]") {
-  // 20 kN beside the left wheel roll the wheelset by 2.8e-3 rad, on either kind of track.
-  Traffic traffic{.wheelsets = {paper_wheelset(2.9)}, .head = kHead};
-  traffic.loads = {{.start = 3.1, .stop = 7., .force = -20e3}};
-  for (const PackOptions& options : {condensed(paper_track(), 2., 1e-4), full_order(1e-4)}) {
-    ModelRun run = in_equilibrium(paper_track(), traffic, options);
-    CHECK(run.body()[3] < -2e-3);
-    for (int i = 0; i < 20; ++i) {
-      run.step();
-      // Both contacts shift along the axle by 2.8e-3 of .448 m, on arms of .5 m: the balance is off
-      // by 2.5e-3. Started so it swings as far beyond, and the rail rings with it: four times that.
-      for (int wheel = 0; wheel < 2; ++wheel)
-        CHECK_THAT(run.outputs.wheel_force[wheel], WithinRel(490.5, 1e-2));
-    }
-    CHECK(run.seen == Status::ok);
-  }
-}
-
-TEST_CASE("condensed: forces on one rail see each other as on the fine track", "[condensed]") {
-  Track coarse = s1_track(8, 2), fine = s1_track(8, 16);
-  const double top = .091, places[2] = {2.25, 2.4}, set = 2.85;
-  const auto deflections = [&](bool swapped) {
-    Wheelset w = paper_wheelset(set);
-    w.weight = 50e3;
-    Traffic traffic{.wheelsets = {w}, .head = {top, .3, .036}};
-    for (const int i : {swapped ? 1 : 0, swapped ? 0 : 1})
-      traffic.loads.push_back({.start = places[i], .stop = 9., .force = -50e3, .z = top});
-    ModelRun run = in_equilibrium(coarse, traffic, condensed(coarse, 1., 1e-4));
-    publish_start(run.model(), run.state, run.outputs);
-    return std::vector<double>{run.outputs.load_deflection[swapped ? 1 : 0],
-                               run.outputs.load_deflection[swapped ? 0 : 1],
-                               run.outputs.wheel_rail_z[0], run.outputs.wheel_rail_z[1]};
-  };
-  const Statics statics(fine);
-  std::vector<PointForce> forces;
-  for (const double x : places) forces.push_back({{0, x, 0., top, 2}, -50e3});
-  for (const int rail : {0, 1}) forces.push_back({{rail, set, 0., top, 2}, -25e3});
-  const auto u = statics.solve(forces);
-  const std::vector<double> want = {
-      statics.at(u, {0, places[0], 0., top, 2}), statics.at(u, {0, places[1], 0., top, 2}),
-      statics.at(u, {0, set, 0., 0., 2}), statics.at(u, {1, set, 0., 0., 2})};
-  const auto got = deflections(false), other = deflections(true);
-  for (std::size_t i = 0; i < 4; ++i) {
-    CAPTURE(i, got[i] / want[i] - 1.);
-    // tables between ports: 4 intervals an element, whose cubics meet the kink under a force with
-    // some 0.1 of an interval times the slope's jump 1/(k G A): 3e-11 of 2e-8 m/N
-    CHECK_THAT(got[i], WithinRel(want[i], 2e-3));
-    CHECK_THAT(other[i], WithinRel(got[i], 1e-9));  // the order of the sums alone
-  }
-}
-
-TEST_CASE("condensed: started in motion a load meets no transient", "[condensed]") {
-  const Track track = peers_pair(1);
-  const MovingLoad load{.start = 4., .speed = 10., .stop = 9.3, .force = -50e3};
-  ModelRun moving = in_equilibrium(track, {.loads = {load}}, condensed(track, 1., 1e-4)),
-           still(track, {.loads = {load}}, condensed(track, 1., 1e-4));
-  const Statics statics(peers_pair(8));
-  double error = 0., released = 0.;
-  for (int i = 1; i <= 200; ++i) {
-    moving.step();
-    still.step();
-    const RailPoint at{0, moving.outputs.load_x[0], 0., 0., 2};
-    const double want = -50e3 * statics.flexibility(at, at);
-    error = std::max(error, std::abs(moving.outputs.load_deflection[0] / want - 1.));
-    released = std::max(released, std::abs(still.outputs.load_deflection[0] / want - 1.));
-  }
-  CAPTURE(error);
-  // (v / critical)^2 of 10 m/s against some 500 m/s, and the dampers' lag c v k' / k: 3e4 10 / 3e7
-  // of the static shape's slope, 1 per m: both below 1e-2
-  CHECK(error < 1e-2);
-  CHECK(released > .5);
-}
 
 TEST_CASE("condensed: under a constant standing load the step does not matter", "[condensed]") {
   const Track track = peers_pair(1);

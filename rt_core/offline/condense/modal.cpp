@@ -123,14 +123,14 @@ Basis modal_basis(const Line& line, const ModalLimit& limit) {
     throw std::invalid_argument("modes of a line of " + std::to_string(line.unknowns()) +
                                 " unknowns; accepted are " + std::to_string(kMostModalUnknowns) +
                                 ": step the full track or cut it shorter");
-  const Modes all = modes(line);
-  if (all.frequency[0] < 1e-3)
+  int count = std::min(limit.most, line.unknowns());
+  if (std::isfinite(limit.highest_hz)) count = std::min(count, modes_below(line, limit.highest_hz));
+  const Modes lowest = lowest_modes(line, std::max(count, 1));
+  if (lowest.frequency[0] < 1e-3)
     throw std::invalid_argument(
         "a condensed track is held in every direction in which it is moved: this one has a free "
         "rigid mode");
-  Eigen::Index count = std::min<Eigen::Index>(limit.most, all.frequency.size());
-  while (count > 0 && all.frequency[count - 1] > limit.highest_hz) --count;
-  const Eigen::MatrixXd kept = all.shape.leftCols(count);
+  const Eigen::MatrixXd kept = lowest.shape.leftCols(count);
   const Eigen::MatrixXd added = damper_shapes(line, kept);
   Eigen::MatrixXd both(line.unknowns(), kept.cols() + added.cols());
   both << kept, added;

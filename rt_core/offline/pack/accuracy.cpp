@@ -16,35 +16,54 @@ namespace {
 using Value = std::complex<double>;
 constexpr double kPi = 3.14159265358979323846;
 
-/// Vertical receptance of a rail's point, m/N: displacement there under a unit force e^(i omega t).
-Value receptance(const Track& track, const Line& line, const RailPoint& at, double omega) {
-  const Eigen::SparseVector<double> row = point_row(track, line, at);
-  if (row.norm() == 0.) return 0.;
+/// Vertical receptances of rails' points, m/N: displacement there under a unit force e^(i omega t).
+void add_receptances(const Track& track, const Line& line, const std::vector<RailPoint>& points,
+                     double omega, std::vector<Value>& sums) {
+  std::vector<Eigen::SparseVector<double>> rows;
+  double moved = 0.;
+  for (const RailPoint& at : points) {
+    rows.push_back(point_row(track, line, at));
+    moved += rows.back().norm();
+  }
+  if (moved == 0.) return;
   const Eigen::SparseMatrix<Value> dynamic = line.stiffness.cast<Value>() +
                                              Value(0., omega) * line.damping.cast<Value>() -
                                              Value(omega * omega) * line.mass.cast<Value>();
   const Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor(dynamic);
-  const Eigen::VectorXcd load = Eigen::VectorXd(row).cast<Value>();
-  return (load.transpose() * factor.solve(load))(0, 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::VectorXcd load = Eigen::VectorXd(rows[i]).cast<Value>();
+    sums[i] += (load.transpose() * factor.solve(load))(0, 0);
+  }
 }
 
-Value receptance(const PackedLine& own, const Eigen::VectorXd& row, double omega) {
-  const Eigen::VectorXcd modal = (own.basis.shapes.transpose() * row).cast<Value>();
+void add_receptances(const Track& track, const PackedLine& own,
+                     const std::vector<RailPoint>& points, double omega, std::vector<Value>& sums) {
   Eigen::MatrixXcd dynamic = Value(0., omega) * own.modes.damping.cast<Value>();
   dynamic.diagonal().array() += (own.basis.omega.array().square() - omega * omega).cast<Value>();
-  return (modal.transpose() * dynamic.partialPivLu().solve(modal))(0, 0);
+  const Eigen::PartialPivLU<Eigen::MatrixXcd> factor(dynamic);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    RailPoint at = points[i];
+    at.z = 0.;  // ports leave out the section's own strain
+    const Eigen::VectorXd row(point_row(track, own.line, at));
+    const Eigen::VectorXcd modal = (own.basis.shapes.transpose() * row).cast<Value>();
+    sums[i] += (modal.transpose() * factor.solve(modal))(0, 0);
+  }
 }
 
-/// Of the model as it is stepped: lines and residual flexibility.
-Value receptance(const Track& track, const PackedModel& packed, const Port& port, std::int32_t kind,
-                 double x, double omega) {
-  const bool condensed = packed.model().condensed != 0;
-  const RailPoint at{port.rail, x, 0., condensed ? 0. : port.z, 2};
-  Value sum = residual_under(packed.model(), rail_force(packed.model(), kind, x, 1.));
+/// Of the model as it is stepped, lines and residual flexibility, at points of ports of `kinds`.
+std::vector<Value> receptances(const Track& track, const PackedModel& packed,
+                               const std::vector<RailPoint>& points,
+                               const std::vector<std::int32_t>& kinds, double omega) {
+  std::vector<Value> sums;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    sums.emplace_back(
+        residual_under(packed.model(), rail_force(packed.model(), kinds[i], points[i].x, 1.)));
   for (const PackedLine& own : packed.lines())
-    sum += condensed ? receptance(own, Eigen::VectorXd(point_row(track, own.line, at)), omega)
-                     : receptance(track, own.line, at, omega);
-  return sum;
+    if (packed.model().condensed != 0)
+      add_receptances(track, own, points, omega, sums);
+    else
+      add_receptances(track, own.line, points, omega, sums);
+  return sums;
 }
 
 Track refined(Track track, int times) {
@@ -52,23 +71,40 @@ Track refined(Track track, int times) {
   return track;
 }
 
+/// Every kind of port at every place.
+struct Asked {
+  std::vector<RailPoint> points;
+  std::vector<std::int32_t> kinds;
+
+  Asked(const PackedModel& packed, const std::vector<double>& places) {
+    for (std::size_t kind = 0; kind < packed.kinds().size(); ++kind)
+      for (const double x : places) {
+        const Port& port = packed.kinds()[kind];
+        points.push_back({port.rail, x, 0., port.z, 2});
+        kinds.push_back(static_cast<std::int32_t>(kind));
+      }
+  }
+};
+
 }  // namespace
 
 double static_error(const Track& track, const PackedModel& packed) {
   const int points = packed.model().residual.points > 0 ? packed.model().residual.points : 16;
   const Statics exact(
       refined(track, 2 * points));  // exact at its end nodes, half-way of the tables
+  std::vector<double> places;
+  for (const int bay : {0, track.bays / 2, track.bays - 1})
+    for (int element = 0; element < track.elements_per_bay; ++element)
+      for (const int p : {1, points / 2, points - 2})
+        places.push_back(bay * track.bay_length +
+                         (element + (2 * p + 1.) / (2. * points)) * track.element_length());
+  const Asked asked(packed, places);
+  const std::vector<Value> got = receptances(track, packed, asked.points, asked.kinds, 0.);
   double largest = 0., error = 0.;
-  for (std::size_t kind = 0; kind < packed.kinds().size(); ++kind) {
-    const Port& port = packed.kinds()[kind];
-    for (int element = 0; element < track.elements(); ++element) {
-      const double x = (element + 13. / (2. * points)) * track.element_length();
-      const RailPoint at{port.rail, x, 0., port.z, 2};
-      const double want = exact.flexibility(at, at);
-      const Value got = receptance(track, packed, port, static_cast<std::int32_t>(kind), x, 0.);
-      largest = std::max(largest, want);
-      error = std::max(error, std::abs(got - want));
-    }
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    const double want = exact.flexibility(asked.points[i], asked.points[i]);
+    largest = std::max(largest, want);
+    error = std::max(error, std::abs(got[i] - want));
   }
   return largest > 0. ? error / largest : 0.;
 }
@@ -77,23 +113,20 @@ double receptance_error(const Track& track, const PackedModel& packed) {
   const Track fine = refined(track, 2);
   const std::vector<Line> lines = assemble(fine);
   const int bay = track.bays / 2;
+  const Asked asked(packed, {(bay + .5) * track.bay_length, bay * track.bay_length});
   double largest = 0., error = 0.;
-  for (std::size_t kind = 0; kind < packed.kinds().size(); ++kind)
-    for (const double x : {(bay + .5) * track.bay_length, bay * track.bay_length}) {
-      const Port& port = packed.kinds()[kind];
-      for (int i = 0; i < kReceptancePoints; ++i) {
-        const double part = i / (kReceptancePoints - 1.);
-        const double omega =
-            2. * kPi * kReceptanceFrom * std::pow(kReceptanceTo / kReceptanceFrom, part);
-        Value want = 0.;
-        for (const Line& line : lines)
-          want += receptance(fine, line, {port.rail, x, 0., port.z, 2}, omega);
-        const Value got =
-            receptance(track, packed, port, static_cast<std::int32_t>(kind), x, omega);
-        largest = std::max(largest, std::abs(want));
-        error = std::max(error, std::abs(got - want));
-      }
+  for (int i = 0; i < kReceptancePoints; ++i) {
+    const double part = i / (kReceptancePoints - 1.);
+    const double omega =
+        2. * kPi * kReceptanceFrom * std::pow(kReceptanceTo / kReceptanceFrom, part);
+    std::vector<Value> want(asked.points.size(), 0.);
+    for (const Line& line : lines) add_receptances(fine, line, asked.points, omega, want);
+    const std::vector<Value> got = receptances(track, packed, asked.points, asked.kinds, omega);
+    for (std::size_t k = 0; k < want.size(); ++k) {
+      largest = std::max(largest, std::abs(want[k]));
+      error = std::max(error, std::abs(got[k] - want[k]));
     }
+  }
   return largest > 0. ? error / largest : 0.;
 }
 

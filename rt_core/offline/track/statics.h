@@ -47,4 +47,12 @@ struct Modes {
 /// All modes by a dense solution; for lines of up to some thousand unknowns.
 Modes modes(const Line& line);
 
+/// The lowest modes, at most `count` of them, by shift-invert Lanczos; that none is left out is
+/// checked by the signs of the pivots of K - omega^2 M, and a dense solution takes over where one
+/// is.
+Modes lowest_modes(const Line& line, int count);
+
+/// How many modes of a held line lie below a frequency, Hz: by the same count.
+int modes_below(const Line& line, double frequency);
+
 }  // namespace railstep
