@@ -116,6 +116,12 @@ TEST_CASE("the option --json has the contract's keys, and the same bits twice", 
   CHECK(us.at("median") > 0.);
   CHECK(us.at("median") <= us.at("p99"));
   CHECK(us.at("p99") <= us.at("max"));
+  // a load that appears suddenly, at a step of 1 ms: the scheme takes 7 % of its energy
+  CHECK(json.at("energy_balance_error") > 0.);
+  CHECK(json.at("energy_balance_error") < .1);
+  CHECK_THAT(json.at("numerical_loss").get<double>(),
+             WithinRel(json.at("energy_balance_error").get<double>(), 1e-6));
+  CHECK(json.at("allocations") == 0);
   const std::string hash = json.at("state_hash");
   CHECK(hash.size() == 16);
   CHECK(hash.find_first_not_of("0123456789abcdef") == std::string::npos);
@@ -124,6 +130,20 @@ TEST_CASE("the option --json has the contract's keys, and the same bits twice", 
   const Ran other =
       railstep_program("run --json " + kMovingLoad + " --set 'load[0].force_z_n=-49e3'");
   CHECK(nlohmann::json::parse(other.out).at("state_hash") != hash);
+}
+
+TEST_CASE("a model file has no matrices, so its energies are null", "[run]") {
+  const auto file = fresh_folder("energies") / "m.bin";
+  REQUIRE(railstep_program("condense " + kMovingLoad + " --out " + file.string()).code == 0);
+  const Ran ran = railstep_program("run " + file.string() + " --json");
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  const auto json = nlohmann::json::parse(ran.out);
+  CHECK(json.at("energy_balance_error").is_null());
+  CHECK(json.at("numerical_loss").is_null());
+  CHECK(json.at("allocations") == 0);
+  const Ran table = railstep_program("run " + file.string());
+  CHECK_THAT(table.out, Contains("energy balance") && Contains("not known"));
 }
 
 TEST_CASE("the options --set, --step and --duration change the scene as if written in it",

@@ -3,13 +3,16 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "energy.h"
 #include "run_report.h"
 #include "simulate.h"
 #include "write.h"
@@ -83,19 +86,37 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
   return std::llround(frames);
 }
 
-nlohmann::ordered_json to_json(const Simulation& run, const RunRecord& record) {
+/// The energies of what was run, from a second pass over it; none of a model file, which has no
+/// matrices, and of a run that did not stay finite.
+std::optional<EnergyBalance> balance_of_run(const Simulation& run, const RunRecord& record,
+                                            std::int64_t frames, Progress& bar) {
+  if (run.packed() == nullptr || record.first_bad_unknown >= 0) return std::nullopt;
+  const EnergyBalance found = balance_of(*run.packed(), run.model(), frames,
+                                         [&bar, frames](std::int64_t done) { bar(frames + done); });
+  if (found.hash != state_hash(run.model(), run.state))
+    throw std::runtime_error("a second run of the same model ended in another state");
+  return found;
+}
+
+/// What is not known is NaN, which JSON writes as null.
+nlohmann::ordered_json to_json(const Simulation& run, const RunRecord& record,
+                               const std::optional<EnergyBalance>& energy) {
   const Model& model = run.model();
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
   return {{"steps", run.state.steps},
           {"final_time_s", static_cast<double>(run.state.steps) * model.scheme.dt},
           {"state_hash", fmt::format("{:016x}", state_hash(model, run.state))},
           {"status", status_names(record.status)},
           {"max_constraint_violation", record.constraint_violation},
           {"max_iterations", record.iterations},
+          {"energy_balance_error", energy ? energy->error : unknown},
+          {"numerical_loss", energy ? energy->numerical_loss : unknown},
           {"frame_us",
            {{"median", quantile(record.frame_us, .5)},
             {"p99", quantile(record.frame_us, .99)},
             {"max", quantile(record.frame_us, 1.)}}},
-          {"steps_per_frame", model.steps_per_frame}};
+          {"steps_per_frame", model.steps_per_frame},
+          {"allocations", record.allocations}};
 }
 
 void print_table(const nlohmann::ordered_json& result) {
@@ -106,6 +127,13 @@ void print_table(const nlohmann::ordered_json& result) {
   fmt::print("steps per frame  {}\nframe, us        median {:.3g}, p99 {:.3g}, max {:.3g}\n",
              result["steps_per_frame"].get<int>(), us["median"].get<double>(),
              us["p99"].get<double>(), us["max"].get<double>());
+  fmt::print("allocations      {}\n", result["allocations"].get<std::int64_t>());
+  const double error = result["energy_balance_error"].get<double>();
+  if (std::isnan(error))
+    fmt::print("energy balance   not known\n");
+  else
+    fmt::print("energy balance   off by {:.2e}, numerical loss {:.2e}\n", error,
+               result["numerical_loss"].get<double>());
 }
 
 /// Says in words what the run met.
@@ -135,16 +163,18 @@ Exit run(const RunOptions& o) {
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
   RunRecord record;
+  std::optional<EnergyBalance> energy;
   {
-    Progress bar(frames);
+    Progress bar(simulation->packed() == nullptr ? frames : 2 * frames);
     record = simulate(*simulation, frames, trace ? &*trace : nullptr, !o.report.empty(),
                       [&bar](std::int64_t done) { bar(done); });
+    energy = balance_of_run(*simulation, record, frames, bar);
   }
   if (trace) trace->finish();
   if (!o.report.empty())
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
-  const nlohmann::ordered_json result = to_json(*simulation, record);
+  const nlohmann::ordered_json result = to_json(*simulation, record, energy);
   if (o.json)
     fmt::print("{}\n", result.dump(2));
   else
@@ -168,7 +198,10 @@ Command add_run(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
-  sub->footer("Example: railstep run config/scenes/moving_load.toml --trace moving_load.csv");
+  sub->footer(
+      "The energies come from a second pass over the run; of a model file, which has no matrices,\n"
+      "they are null.\n\nExample: railstep run config/scenes/moving_load.toml --trace "
+      "moving_load.csv");
   return {sub, [o] { return run(*o); }};
 }
 

@@ -34,7 +34,8 @@ struct ProfileFile {
 struct SectionFile {
   std::filesystem::path path;  // what `railstep fit --out` wrote
 };
-using RailShape = std::variant<ProfileFile, SectionFile, Section, RectangleSizes, RectangleSize>;
+using SectionSource =
+    std::variant<ProfileFile, SectionFile, Section, RectangleSizes, RectangleSize>;
 
 /// Which rails there are and how they are cut up. x runs from 0 to length().
 struct TrackScene {
@@ -51,7 +52,7 @@ struct TrackScene {
 };
 
 struct RailScene {
-  RailShape shape;
+  SectionSource shape;
   double young, poisson, density;  // Pa, 1, kg/m3
   ElasticLaw element;
   std::optional<double> shear_factor_y, shear_factor_z;  // replace the section's

@@ -37,7 +37,7 @@ RectangleSizes read_rectangles(const Table& t) {
 }
 
 /// Exactly one of the five ways to give a section.
-RailShape read_shape(const Table& rail) {
+SectionSource read_shape(const Table& rail) {
   const char* const ways[] = {"profile", "section", "constants", "rectangles", "rectangle"};
   std::string found;
   for (const char* way : ways) {

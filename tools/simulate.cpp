@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "heap_count.h"
 #include "online/step/line.h"
 #include "online/step/probe.h"
 #include "online/step/step.h"
@@ -68,12 +69,15 @@ void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
   }
 }
 
-double timed_frame(Simulation& run, Outputs& outputs) {
+double timed_frame(Simulation& run, Outputs& outputs, std::int64_t& allocations) {
   using Clock = std::chrono::steady_clock;
+  const std::int64_t before = heap_calls();
   const Clock::time_point start = Clock::now();
   // the status stands in the outputs too
   static_cast<void>(advance_frame(run.model(), run.state, run.workspace, outputs));
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  const Clock::time_point end = Clock::now();
+  allocations += heap_calls() - before;
+  return std::chrono::duration<double, std::micro>(end - start).count();
 }
 
 }  // namespace
@@ -97,7 +101,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
   publish_start(run.model(), run.state, outputs);
   take();
   for (std::int64_t n = 0; n < frames && record.first_bad_unknown < 0; ++n) {
-    record.frame_us.push_back(timed_frame(run, outputs));
+    record.frame_us.push_back(timed_frame(run, outputs, record.allocations));
     take();
     // at 1/8, 3/8, 5/8 and 7/8 of the run
     if (keep_rows && (2 * kShapes * (n + 1)) / frames != (2 * kShapes * n) / frames &&

@@ -26,6 +26,7 @@ struct RunRecord {
   double constraint_violation = 0.;     // largest, m or rad
   int iterations = 0;                   // largest of a step
   std::vector<double> frame_us;         // [frames] wall time of the steps alone, us
+  std::int64_t allocations = 0;         // calls of new within the frames, see heap_count.h
   std::vector<double> rows;             // the trace, row after row; only when asked for
   std::vector<RailSnapshot> shapes;     // at kShapes times; only when asked for
 };

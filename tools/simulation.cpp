@@ -5,7 +5,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "build.h"
 #include "online/model/load.h"
 
 namespace railstep {
@@ -52,8 +51,8 @@ std::vector<std::string> lines_of(const char* text, std::size_t bytes) {
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene) {
-  block_ = block_of(Built(scene));
+Simulation::Simulation(const Scene& scene)
+    : built_(std::make_unique<Built>(scene)), block_(block_of(*built_)) {
   load(scene.file.string());
 }
 

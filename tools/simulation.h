@@ -1,9 +1,11 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "build.h"
 #include "online/model/state.h"
 #include "scene.h"
 
@@ -21,6 +23,8 @@ class Simulation {
 
   const Model& model() const { return model_; }
   const std::vector<std::byte>& block() const { return block_; }
+  /// What the block was made of, matrices and all; null for a model file, which carries none.
+  const PackedModel* packed() const { return built_ ? built_->packed.get() : nullptr; }
   /// Of a trace: time_s, then those of every load, wheel, sensor and support.
   const std::vector<std::string>& columns() const { return columns_; }
 
@@ -30,6 +34,7 @@ class Simulation {
  private:
   void load(const std::string& name);
 
+  std::unique_ptr<Built> built_;
   std::vector<std::byte> block_;
   Model model_{};
   std::vector<std::string> columns_;

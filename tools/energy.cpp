@@ -1,0 +1,252 @@
+#include "energy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "online/step/step.h"
+#include "online/step/table.h"
+
+namespace railstep {
+namespace {
+
+/// Force of a wheelset's tables in one direction at a step, N.
+double table_force(const Model& model, const WheelsetModel& w, int direction, std::int64_t step) {
+  const double time = static_cast<double>(step) * model.scheme.dt;
+  double sum = 0.;
+  for (std::int32_t i = 0; i < w.forces; ++i)
+    if (w.force[i].direction == direction)
+      sum += table_value(w.force[i].table, w.force[i].points, time);
+  return sum;
+}
+
+bool is_held(const WheelsetModel& w, int k) {
+  return w.guide == Guide::augmented_lagrangian && (k == 0 || k == 5);
+}
+
+}  // namespace
+
+EnergyAccount::EnergyAccount(const PackedModel& packed, const Model& model, const State& start)
+    : model_(model) {
+  for (std::size_t l = 0; l < packed.lines().size(); ++l)
+    lines_.emplace_back(packed.lines()[l], model, model.line[l]);
+  last_ = stand(start);
+  stored_ = start_ = stored(last_);
+  note();
+}
+
+EnergyAccount::Standing EnergyAccount::stand(const State& state) const {
+  Standing at;
+  const auto doubles = static_cast<std::size_t>(state_doubles(model_));
+  at.memory.assign(state.u, state.u + doubles);  // the fields stand in one row from u on
+  at.state = state_on(model_, at.memory.data());
+  at.state.steps = state.steps;
+  for (const LineEnergy& line : lines_) at.lines.push_back(line.motion(at.state));
+  at.contacts = standing_contacts(model_, at.state);
+  return at;
+}
+
+StoredEnergy EnergyAccount::stored(const Standing& at) const {
+  StoredEnergy sum;
+  for (const LineMotion& line : at.lines) {
+    sum.kinetic += line.kinetic;
+    sum.strain += line.strain;
+  }
+  for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
+    const WheelsetModel& w = model_.wheelset[b];
+    const double* v = at.state.v + w.first;
+    for (int k = 0; k < 6; ++k) sum.kinetic += .5 * w.mass[k] * v[k] * v[k];
+    sum.forward += .5 * w.mass[0] * w.speed * (2. * v[0] - w.speed);
+  }
+  sum.hertz = at.contacts.hertz;
+  sum.residual = at.contacts.residual;
+  return sum;
+}
+
+void EnergyAccount::follow(const State& state) {
+  Standing now = stand(state);
+  stored_ = stored(now);
+  add_lines(now);
+  add_loads(now);
+  if (model_.wheelsets > 0) add_contacts(now);
+  for (std::int32_t b = 0; b < model_.wheelsets; ++b) add_wheelset(now, b);
+  if (first_ && model_.condensed == 0) add_start(now);
+  last_ = std::move(now);  // its views stay: a vector's memory moves with it
+  first_ = false;
+  note();
+}
+
+void EnergyAccount::add_lines(const Standing& now) {
+  for (std::size_t l = 0; l < lines_.size(); ++l) {
+    const LineMotion &before = last_.lines[l], &after = now.lines[l];
+    flow_.dissipated += .5 * model_.scheme.dt * (before.power + after.power);
+    flow_.weight += lines_[l].constant_work(before, after);
+    flow_.loss += lines_[l].loss(before, after, model_.scheme.dt);
+  }
+}
+
+void EnergyAccount::add_loads(const Standing& now) {
+  const auto n = static_cast<std::size_t>(model_.unknowns);
+  std::vector<double> u(n), v(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    u[i] = now.state.u[i] - last_.state.u[i];
+    v[i] = now.state.v[i] - last_.state.v[i];
+  }
+  const Configuration moved{u.data(), {u.data(), v.data()}};
+  for (std::int32_t i = 0; i < model_.loads; ++i)
+    for (const Standing* at : {static_cast<const Standing*>(&last_), &now}) {
+      const PlacedLoad& load = at->contacts.load[i];
+      if (load.on_rail) flow_.loads += .5 * load.force * deflection(model_, load, moved);
+    }
+  flow_.carriers += residual_work(last_.contacts, now.contacts);
+}
+
+void EnergyAccount::add_contacts(const Standing& now) {
+  const StandingContacts &before = last_.contacts, &after = now.contacts;
+  double sum = residual_work(before, after) - (after.hertz - before.hertz) -
+               (after.residual - before.residual);
+  for (int i = 0; i < after.wheels; ++i) {
+    if (!before.contact[i].on_rail || !after.contact[i].on_rail) continue;
+    sum += wheel_force(now, i) * (after.approach[i] - before.approach[i]);
+  }
+  flow_.loss += sum;
+}
+
+/// Force of the scheme on a wheel over the step, N.
+double EnergyAccount::wheel_force(const Standing& now, int wheel) const {
+  const double f1 = now.state.wheel_force[wheel];
+  return model_.condensed != 0 ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
+}
+
+/// Work of a wheelset's wheels by what its way along x alone changes of their approach: the mean of
+/// going before and of going after all else moved, J.
+double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
+  const WheelsetModel& w = model_.wheelset[b];
+  double sum = 0.;
+  for (const bool later : {false, true}) {
+    const Standing &at = later ? now : last_, &other = later ? last_ : now;
+    std::vector<double> u(at.state.u, at.state.u + model_.unknowns);
+    u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
+    WheelContact moved[2];
+    find_contacts(model_, w, {u.data(), {at.state.u, at.state.v}}, moved);
+    for (int side = 0; side < 2; ++side) {
+      const int i = 2 * b + side;
+      if (!moved[side].on_rail || !at.contacts.contact[i].on_rail) continue;
+      const double change = moved[side].penetration - at.contacts.approach[i];
+      sum += .5 * wheel_force(now, i) * (later ? -change : change);
+    }
+  }
+  return sum;
+}
+
+double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
+  const WheelsetModel& w = model_.wheelset[b];
+  const int x = w.first;
+  const double f0 = table_force(model_, w, 0, last_.state.steps);
+  const double f1 = table_force(model_, w, 0, now.state.steps);
+  const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
+  const bool held = model_.condensed != 0;
+  const double sum = passage_work(now, b) - (held ? f1 : .5 * (f0 + f1)) * du;
+  if (is_held(w, 0)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
+  const double g = held ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
+  return sum + w.mass[0] * g * du;
+}
+
+double EnergyAccount::body_loss(const Standing& now, const WheelsetModel& w, int k) const {
+  const int i = w.first + k;
+  const double dt = model_.scheme.dt, du = now.state.u[i] - last_.state.u[i];
+  if (model_.condensed != 0) {
+    if (k > 2) return 0.;
+    const double f0 = table_force(model_, w, k, last_.state.steps);
+    return .5 * (f0 - table_force(model_, w, k, now.state.steps)) * du;
+  }
+  if (is_held(w, k)) return 0.;
+  const double v = .5 * (last_.state.v[i] + now.state.v[i]);
+  const double g = .5 * (last_.state.g[i] + now.state.g[i]);
+  return w.mass[k] * ((du - dt * v) * g - v * (now.state.v[i] - last_.state.v[i] - dt * g));
+}
+
+void EnergyAccount::add_wheelset(const Standing& now, std::int32_t b) {
+  const WheelsetModel& w = model_.wheelset[b];
+  const auto moved = [&](int k) { return now.state.u[w.first + k] - last_.state.u[w.first + k]; };
+  flow_.weight -= w.weight * moved(2);
+  for (int k = 0; k < 3; ++k)
+    flow_.forces +=
+        .5 * moved(k) *
+        (table_force(model_, w, k, last_.state.steps) + table_force(model_, w, k, now.state.steps));
+  for (int k = 0; k < 6; ++k) flow_.loss += body_loss(now, w, k);
+  flow_.guides += guide_work(now, b);
+}
+
+/// What the state at the start leaves out of balance, on the first step's way.
+void EnergyAccount::add_start(const Standing& now) {
+  const State& s = last_.state;
+  std::vector<double> f(static_cast<std::size_t>(model_.unknowns));
+  forces(model_, s.steps, f.data(), nullptr);
+  for (int i = 0; i < 2 * model_.wheelsets; ++i)
+    for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
+      spread(model_.line[l], last_.contacts.contact[i].row, -s.wheel_force[i], f.data());
+  for (std::size_t l = 0; l < lines_.size(); ++l)
+    flow_.loss +=
+        .5 * lines_[l].unbalanced(last_.lines[l], f.data()).dot(now.lines[l].u - last_.lines[l].u);
+  for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
+    const WheelsetModel& w = model_.wheelset[b];
+    for (int k = 1; k < 5; ++k) {  // x and yaw are guided
+      const int at = w.first + k;
+      double force = -w.mass[k] * s.g[at] - (k == 2 ? w.weight : 0.);
+      if (k < 3) force += table_force(model_, w, k, s.steps);
+      for (int i = 2 * b; i < 2 * b + 2; ++i)
+        force += last_.contacts.contact[i].body_row[k] * s.wheel_force[i];
+      flow_.loss += .5 * force * (now.state.u[at] - s.u[at]);
+    }
+  }
+}
+
+void EnergyAccount::note() {
+  const double sizes[] = {std::abs(stored_.total() - stored_.forward),
+                          std::abs(flow_.loads),
+                          std::abs(flow_.weight),
+                          std::abs(flow_.forces),
+                          std::abs(flow_.guides),
+                          std::abs(flow_.carriers),
+                          flow_.dissipated};
+  turned_over_ = std::max(turned_over_, *std::max_element(std::begin(sizes), std::end(sizes)));
+  largest_ = std::max(largest_, std::abs(imbalance()));
+  if (std::abs(flow_.loss) > std::abs(largest_loss_)) largest_loss_ = flow_.loss;
+}
+
+double EnergyAccount::imbalance() const {
+  return stored_.total() - start_.total() - flow_.work() + flow_.dissipated;
+}
+
+double EnergyAccount::balance_error() const {
+  return turned_over_ > 0. ? largest_ / turned_over_ : 0.;
+}
+
+double EnergyAccount::numerical_loss() const {
+  return turned_over_ > 0. ? largest_loss_ / turned_over_ : 0.;
+}
+
+EnergyBalance balance_of(const PackedModel& packed, const Model& model, std::int64_t frames,
+                         const std::function<void(std::int64_t)>& after) {
+  Model single = model;
+  single.steps_per_frame = 1;
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(single)));
+  std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(single)));
+  State state = state_on(single, memory.data());
+  Workspace workspace = workspace_on(single, scratch.data());
+  Outputs outputs{};
+  reset(single, state);
+  EnergyAccount account(packed, single, state);
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {
+      static_cast<void>(advance_frame(single, state, workspace, outputs));  // the run told of it
+      account.follow(state);
+    }
+    if (after) after(frame + 1);
+  }
+  return {account.balance_error(), account.numerical_loss(), state_hash(single, state)};
+}
+
+}  // namespace railstep

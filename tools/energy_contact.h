@@ -1,0 +1,33 @@
+#pragma once
+#include "online/step/load.h"
+#include "online/step/residual.h"
+#include "online/step/wheel.h"
+
+namespace railstep {
+
+/// Contacts and residual flexibility in a state as it stands, whatever its step held frozen. With a
+/// the approach of wheels and rails by lines and bodies, G the residual flexibility between all
+/// ports and F their vertical forces (loads P, wheels -f): w = G F, and d = a + w, f = C d^1.5 on
+/// wheels.
+struct StandingContacts {
+  int loads, wheels;
+  PlacedLoad load[kMaxLoads];
+  WheelContact contact[kMaxWheels];
+  double approach[kMaxWheels];           // a, m; negative is a gap
+  double force[kMaxLoads + kMaxWheels];  // F: of loads, then wheels, N
+  double moved[kMaxLoads + kMaxWheels];  // w, m
+  double hertz;                          // sum 2/5 C d^2.5, J
+  double residual;                       // F' G F / 2, J
+};
+
+StandingContacts standing_contacts(const Model& model, const State& state);
+
+/// Work of the loads on what they move by G, and of whatever carries loads and wheels along, J. The
+/// change of place alone changes the energy by F' dG F / 2 under loads, and takes as much from
+/// where d = a + w under wheels:
+///   sum over loads of Fbar dw - (F0' w1 - F1' w0) / 2,
+/// where the second term is -F0' dG F1 / 2 by the symmetry of G. Without wheels it is the change of
+/// the residual energy.
+double residual_work(const StandingContacts& before, const StandingContacts& after);
+
+}  // namespace railstep
