@@ -97,7 +97,7 @@ class PackedModel {
   const std::vector<Port>& kinds() const { return kinds_; }
   /// @param state  state_doubles() values, from start.h
   void set_start(std::vector<double> state);
-  /// Largest |G_res| clipped because W would have become negative there, m/N: 0 if none was.
+  /// The most by which G_res was raised under a wheel so that W stays positive, m/N.
   double clipped() const { return clipped_; }
 
  private:
@@ -113,6 +113,7 @@ class PackedModel {
   void add_weight(const Track& track, double gravity);
   void add_probes(const Track& track, const std::vector<Probe>& probes);
   void add_residual(const Track& track, const std::vector<Probe>& probes, int points);
+  void clip(int points, std::vector<double>& under);
   std::int32_t kind_of(int rail, double z);
 
   Model model_{};

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "offline/pack/pack.h"
+#include "online/step/line.h"
 
 namespace railstep {
 
@@ -25,6 +27,45 @@ bool all_zero(const std::vector<double>& values) {
 
 void append(std::vector<double>& to, const std::vector<double>& values, double factor = 1.) {
   for (const double v : values) to.push_back(factor * v);
+}
+
+/// What the model's lines give way within a step under a force of a port, m/N, at the places of its
+/// table: theta row S^-1 row', or of condensed lines theta Re row held_force row.
+std::vector<double> step_compliance(const Model& model, const Port& port, int points) {
+  const auto n = static_cast<std::size_t>(model.unknowns);
+  std::vector<double> re(n), im(n), table;
+  for (std::int32_t element = 0; element < model.elements; ++element)
+    for (int p = 0; p <= points; ++p) {
+      RailRow row{port.rail, element, {}};
+      double shape[3];
+      shape_functions(2. * p / points - 1., shape);
+      for (int i = 0; i < 3; ++i) {
+        row.coefficient[i][2] = shape[i];
+        row.coefficient[i][8] = port.z * shape[i];  // not carried by condensed lines
+      }
+      std::fill(re.begin(), re.end(), 0.);
+      std::fill(im.begin(), im.end(), 0.);
+      double sum = 0.;
+      for (std::int32_t l = 0; l < model.lines; ++l) {
+        const LineModel& line = model.line[l];
+        if (model.condensed != 0) {
+          spread_modes(line, row, 1., re.data(), im.data());
+          for (std::int32_t k = 0; k < line.size; ++k) {
+            const std::complex<double> c(re[static_cast<std::size_t>(line.first + k)],
+                                         im[static_cast<std::size_t>(line.first + k)]);
+            sum += (std::complex<double>(line.modal.held_force.re[k], line.modal.held_force.im[k]) *
+                    c * c)
+                       .real();
+          }
+        } else {
+          spread(line, row, 1., re.data());
+          solve_band<1>(line.step, re.data() + line.first, 0);
+          sum += motion(line, row, {re.data(), {}});
+        }
+      }
+      table.push_back(model.scheme.theta * sum);
+    }
+  return table;
 }
 
 }  // namespace
@@ -77,6 +118,22 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
   model_.probe.rest = keep(std::move(rest));
 }
 
+/// A contact needs a rail that gives way under it: where wheels stand, G_res takes no more than
+/// half of what the lines give way within a step.
+void PackedModel::clip(int points, std::vector<double>& under) {
+  const std::size_t places = under.size() / kinds_.size();
+  for (std::int32_t wheel = 0; wheel < 2 * model_.wheelsets; ++wheel) {
+    const auto kind = static_cast<std::size_t>(model_.wheelset[wheel / 2].kind[wheel % 2]);
+    const std::vector<double> lines = step_compliance(model_, kinds_[kind], points);
+    for (std::size_t i = 0; i < places; ++i) {
+      double& value = under[kind * places + i];
+      const double lowest = -.5 * lines[i];
+      clipped_ = std::max(clipped_, lowest - value);
+      value = std::max(value, lowest);
+    }
+  }
+}
+
 void PackedModel::add_residual(const Track& track, const std::vector<Probe>& probes, int points) {
   if (kinds_.empty()) return;
   std::vector<Line> lines;
@@ -91,11 +148,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
     append(under, residual.under(port));
     append(axis, residual.under(port, 0.));
   }
-  // What a port cannot do is push the rail up under itself: W must stay positive.
-  for (double& value : under) {
-    clipped_ = std::max(clipped_, -value);
-    value = std::max(value, 0.);
-  }
+  clip(points, under);
   model_.residual.kinds = static_cast<std::int32_t>(kinds_.size());
   model_.residual.points = points;
   model_.residual.under = keep(std::move(under));
