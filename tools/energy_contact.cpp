@@ -18,9 +18,13 @@ int ports_of(const Model& model, StandingContacts& c, RailForce* port) {
   return c.loads + c.wheels;
 }
 
-/// Forces of the wheels by d + W f = d_free, W = G between wheels.
+/// Turns after which a negative residual no longer matters: each leaves |G| dP/dd of it, 1e-2.
+constexpr int kTurns = 10;
+
+/// Forces of the wheels by d + W f = d_free, W = G between wheels. Where G is below 0, which it may
+/// be by itself, it acts through the force of the turn before.
 void press(const Model& model, StandingContacts& c, RailForce* port, int ports) {
-  double W[kMaxWheels * kMaxWheels], hertz[kMaxWheels], free[kMaxWheels];
+  double W[kMaxWheels * kMaxWheels], hertz[kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
   for (int i = 0; i < c.wheels; ++i) {
     const bool on_rail = c.contact[i].on_rail;
@@ -34,8 +38,15 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
                             : i == j                          ? residual_under(model, at)
                                                               : residual_between(model, other, at);
     }
+    double& own = W[i * c.wheels + i];
+    negative[i] = std::min(own, 0.);
+    own = std::max(own, 0.);
   }
-  static_cast<void>(solve_ports(c.wheels, W, hertz, free, force, d));  // as good as it gets
+  for (int turn = 0; turn < kTurns; ++turn) {
+    double shifted[kMaxWheels];
+    for (int i = 0; i < c.wheels; ++i) shifted[i] = free[i] - negative[i] * force[i];
+    static_cast<void>(solve_ports(c.wheels, W, hertz, shifted, force, d));  // as good as it gets
+  }
   for (int i = 0; i < c.wheels; ++i) {
     port[c.loads + i].force = -force[i];
     const double depth = std::max(d[i], 0.);
