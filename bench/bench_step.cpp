@@ -163,11 +163,18 @@ void step_condensed(benchmark::State& run) {
   compare(run, scene, fine_step, Unknowns::vertical);
 }
 
-BENCHMARK(step_vertical)->ArgName("elements")->Arg(4)->Arg(16)->Arg(64)->Arg(256);
-BENCHMARK(step_full)->ArgName("elements")->Arg(4)->Arg(16)->Arg(64)->Arg(256);
+constexpr int kTimed = 100'000;  // steps
+
+BENCHMARK(step_vertical)
+    ->ArgName("elements")
+    ->RangeMultiplier(4)
+    ->Range(4, 256)
+    ->Iterations(kTimed);
+BENCHMARK(step_full)->ArgName("elements")->RangeMultiplier(4)->Range(4, 256)->Iterations(kTimed);
 BENCHMARK(step_condensed)
     ->ArgNames({"bays", "modes_per_100_bays"})
-    ->ArgsProduct({{4, 16, 64, 256}, {25, 50, 100}});
+    ->ArgsProduct({{4, 16, 64, 256}, {25, 50, 100}})
+    ->Iterations(kTimed);
 
 }  // namespace
 }  // namespace railstep

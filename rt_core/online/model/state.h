@@ -15,7 +15,8 @@ struct State {
   double* a;            // [unknowns] the scheme's acceleration
   double* g;            // [unknowns] true acceleration
   double* wheel_force;  // [2 wheelsets] N, of the last step: where the contact solve starts
-  double* multiplier;   // [2 wheelsets] guide forces: N along x, N m about z
+  double* multiplier;   // [2 wheelsets] of the guide along x, N, and about z, N m; the
+                        // force on the wheelset is its negative
 };
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
@@ -40,7 +41,7 @@ struct Outputs {
   double wheel_force_mean[kMaxWheels];  // N, over the frame's steps
   double wheel_force_peak[kMaxWheels];  // N
   double wheel_impulse[kMaxWheels];     // N s
-  double wheel_gap[kMaxWheels];         // m, negative in contact
+  double wheel_gap[kMaxWheels];         // m, negative in contact; where the force was taken
   bool wheel_on_rail[kMaxWheels];
   double wheel_x[kMaxWheels];       // of the contact along the undeformed rail, m
   double wheel_rail_z[kMaxWheels];  // displacement of the rail's axis under it, m
