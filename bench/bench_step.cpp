@@ -76,6 +76,7 @@ class MovingLoadRun {
   std::vector<double> deflections() {
     restart();
     std::vector<double> z;
+    z.reserve(static_cast<std::size_t>(kCompared));
     for (int i = 0; i < std::min(frames_, kCompared); ++i) z.push_back(frame());
     restart();
     return z;

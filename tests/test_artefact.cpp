@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
@@ -113,7 +114,13 @@ TEST_CASE("a model that was written and read steps to the same bits", "[artefact
       CAPTURE(name, kind);
       CHECK(state_hash(model, written.state) == state_hash(model, found.state));
       CHECK(written.probes == found.probes);
-      CHECK(std::memcmp(&written.outputs, &found.outputs, sizeof(Outputs)) == 0);
+      CHECK(std::equal(written.outputs.load_deflection, written.outputs.load_deflection + kMaxLoads,
+                       found.outputs.load_deflection));
+      for (int i = 0; i < 2 * model.wheelsets; ++i) {
+        CHECK(written.outputs.wheel_force_peak[i] == found.outputs.wheel_force_peak[i]);
+        CHECK(written.outputs.wheel_gap[i] == found.outputs.wheel_gap[i]);
+        CHECK(written.outputs.wheel_rail_z[i] == found.outputs.wheel_rail_z[i]);
+      }
       // What was read is written as it was, and the scene built anew gives the same bytes; in
       // another heap, so that nothing is left unset.
       const LoadResult back = read(block, model);

@@ -132,9 +132,11 @@ TEST_CASE("a model is what it is: only its duration can be chosen", "[condense]"
   check_refused(railstep_program("run " + file + " --set step.dt_s=1e-4" + trace), "--set");
   check_refused(railstep_program("run " + file + " --step 1e-4" + trace), "--step");
   check_refused(railstep_program("run " + file + " --model full" + trace), "--model");
-  for (const char* duration : {"0.0125", "0", "-0.01", "nan", "1e300"})
-    check_refused(railstep_program("run " + file + " --duration " + duration + trace),
-                  "--duration");
+  for (const char* duration : {"0.0125", "0", "-0.01", "nan", "1e300"}) {
+    std::string words = "run " + file + " --duration ";
+    words += duration;
+    check_refused(railstep_program(words + trace), "--duration");
+  }
   CHECK(entries(folder) == 1);
   const Ran longer = railstep_program("run --json " + file + " --duration 0.01");
   REQUIRE(longer.code == 0);

@@ -345,7 +345,7 @@ TEST_CASE("the wheelset of the paper stands still, then drifts sideways", "[run]
   const auto rows = rows_of(text_of(file));
   const Scene scene = read_scene(kScenes + "wheelset_on_track.toml");
   const Simulation run(scene);
-  const auto names = run.columns();
+  const auto& names = run.columns();
   const auto at = [&](std::size_t row, const std::string& column) {
     const auto place = std::find(names.begin(), names.end(), column);
     REQUIRE(place != names.end());

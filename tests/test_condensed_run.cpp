@@ -9,7 +9,6 @@
 #include "online/step/wheel.h"
 
 using namespace railstep;
-using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {

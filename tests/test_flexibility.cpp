@@ -84,7 +84,8 @@ TEST_CASE("from a port to rail points, sleepers and pads, model and residual mak
         const double want =
             exact(fine, c.functional, fine.solve({{{port.rail, x, 0., port.z, 2}, 1.}}));
         const double kept = model(c.functional, port.rail, x, port.z);
-        const double added = table[static_cast<std::size_t>(e * (kPoints + 1) + p)];
+        const double added =
+            table[static_cast<std::size_t>(e) * (kPoints + 1) + static_cast<std::size_t>(p)];
         error = std::max(error, std::abs(kept + added - want));
         missing = std::max(missing, std::abs(kept - want));
         size = std::max(size, std::abs(want));

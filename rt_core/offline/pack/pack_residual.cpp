@@ -51,8 +51,9 @@ std::vector<double> step_compliance(const Model& model, const Port& port, int po
         if (model.condensed != 0) {
           spread_modes(line, row, 1., re.data(), im.data());
           for (std::int32_t k = 0; k < line.size; ++k) {
-            const std::complex<double> c(re[static_cast<std::size_t>(line.first + k)],
-                                         im[static_cast<std::size_t>(line.first + k)]);
+            const std::int32_t at = line.first + k;
+            const std::complex<double> c(re[static_cast<std::size_t>(at)],
+                                         im[static_cast<std::size_t>(at)]);
             sum += (std::complex<double>(line.modal.held_force.re[k], line.modal.held_force.im[k]) *
                     c * c)
                        .real();
