@@ -18,8 +18,8 @@ std::vector<double> to_vector(const Eigen::VectorXd& values) {
 std::size_t place_in(const PairTable& table, int e, int p, int e2, int q) {
   const auto n = static_cast<std::size_t>(table.points) + 1;
   const auto blocks = 2 * static_cast<std::size_t>(table.reach) + 1;
-  const auto shift = static_cast<std::size_t>(e2 - e + table.reach);
-  const std::size_t block = static_cast<std::size_t>(e) * blocks + shift;
+  const int shift = e2 - e + table.reach;
+  const std::size_t block = static_cast<std::size_t>(e) * blocks + static_cast<std::size_t>(shift);
   return (block * n + static_cast<std::size_t>(p)) * n + static_cast<std::size_t>(q);
 }
 
