@@ -1,0 +1,167 @@
+#include "offline/track/damped.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "offline/track/krylov.h"
+#include "offline/track/rigid.h"
+#include "offline/track/statics.h"
+
+namespace railstep {
+
+using Complex = std::complex<double>;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kSwings = 1e-6;                   // Im rate/|rate| of what is not overdamped
+constexpr double kConverged = 1e-10;               // of a Ritz value
+constexpr double kGood = 1e-10, kAccepted = 1e-8;  // residual: sought, and demanded
+constexpr int kMostUnknowns = 100'000;             // of a damped line: 400 vectors of it are 1.3 GB
+constexpr double kBeyond = 10.;         // of the highest undamped rate: over what dampers can raise
+constexpr int kFirst = 40, kMore = 40;  // vectors of the Krylov space
+
+/// The root nearest to `rate` of shape' Q(rate) shape = 0, plain transpose: as Q is symmetric, it
+/// errs by the square of what the shape does.
+Complex improved(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
+  const auto product = [&](const Eigen::SparseMatrix<double>& A) -> Complex {
+    return (shape.transpose() * (A.cast<Complex>() * shape))(0, 0);
+  };
+  const Complex m = product(line.mass), c = product(line.damping), k = product(line.stiffness);
+  const Complex root = std::sqrt(c * c - 4. * m * k);
+  if (!(std::abs(m * rate * rate) > 1e-8 * std::abs(k))) return rate;
+  const Complex a = (-c + root) / (2. * m), b = (-c - root) / (2. * m);
+  return std::abs(a - rate) < std::abs(b - rate) ? a : b;
+}
+
+/// One step of inverse iteration: Q(rate) next = Q'(rate) shape.
+Eigen::VectorXcd inverse_step(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
+  const Eigen::SparseLU<Eigen::SparseMatrix<Complex>> factor(dynamic_stiffness(line, rate));
+  if (factor.info() != Eigen::Success) return shape;  // an exact rate
+  const Eigen::VectorXcd force =
+      2. * rate * (line.mass.cast<Complex>() * shape) + line.damping.cast<Complex>() * shape;
+  const Eigen::VectorXcd next = factor.solve(force);
+  return next.allFinite() && next.norm() > 0. ? Eigen::VectorXcd(next / next.norm()) : shape;
+}
+
+void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
+  rate = improved(line, rate, shape);
+  for (int turn = 0; turn < 3 && residual(line, rate, shape) > kGood; ++turn) {
+    shape = inverse_step(line, rate, shape);
+    rate = improved(line, rate, shape);
+  }
+  if (!(residual(line, rate, shape) <= kAccepted))
+    throw std::runtime_error("a damped mode near " + std::to_string(std::abs(rate) / (2. * kPi)) +
+                             " Hz does not converge");
+}
+
+/// The swinging Ritz pairs with |rate| <= radius, none where some are not yet sharp.
+std::optional<std::vector<Krylov::Ritz>> sharp(const Line& line, const Krylov& space, Complex shift,
+                                               double radius) {
+  // The quarter disc of that radius lies within this distance of its middle.
+  std::vector<Krylov::Ritz> all = space.within(1.01 * std::abs(shift)), found;
+  for (Krylov::Ritz& r : all) {
+    const double size = std::abs(r.rate);
+    if (!(size <= radius) || r.rate.imag() < kSwings * size) continue;
+    if (is_rigid(line.stiffness, r.shape)) continue;
+    if (!space.complete() && !(r.error <= kConverged)) return std::nullopt;
+    found.push_back(std::move(r));
+  }
+  std::sort(found.begin(), found.end(), [](const Krylov::Ritz& a, const Krylov::Ritz& b) {
+    return std::abs(a.rate) < std::abs(b.rate);
+  });
+  return found;
+}
+
+/// The highest undamped rate of a small line, 1/s. A mode that swings has |rate|^2 = shape* K
+/// shape/(shape* M shape), never over its square where all unknowns carry mass.
+double highest_rate(const Line& line) {
+  const Modes all = modes(line);
+  return all.frequency.size() == 0 ? 0. : 2. * kPi * all.frequency.maxCoeff();
+}
+
+struct Search {
+  std::vector<Krylov::Ritz> found;
+  bool complete;  // the space held every rate, those beyond the radius too
+};
+
+/// All swinging modes with |rate| <= radius. The Krylov space grows until it knows them sharply and
+/// a further growth adds none: members of a cluster come out one after the other.
+Search search(const Line& line, double radius, Eigen::Index most) {
+  const Complex shift(-.5 * radius, .5 * radius);
+  Krylov space(line, shift);
+  std::optional<std::size_t> before;
+  for (Eigen::Index size = kFirst; size <= most; size += std::max<Eigen::Index>(kMore, size / 4)) {
+    space.grow(size);
+    auto found = sharp(line, space, shift, radius);
+    if (found && (space.complete() || before == found->size()))
+      return {std::move(*found), space.complete()};
+    before = found ? std::optional(found->size()) : std::nullopt;
+  }
+  throw std::runtime_error("the damped modes up to " + std::to_string(radius / (2. * kPi)) +
+                           " Hz were not all found; ask for fewer of them");
+}
+
+}  // namespace
+
+double residual(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
+  const Eigen::VectorXcd inertia = rate * rate * (line.mass.cast<Complex>() * shape);
+  const Eigen::VectorXcd damping = rate * (line.damping.cast<Complex>() * shape);
+  const Eigen::VectorXcd elastic = line.stiffness.cast<Complex>() * shape;
+  return (inertia + damping + elastic).norm() / (inertia.norm() + damping.norm() + elastic.norm());
+}
+
+Oscillations oscillations(const Line& line, int count) {
+  if (line.unknowns() > kMostUnknowns)
+    throw std::runtime_error("damped modes of a line of " + std::to_string(line.unknowns()) +
+                             " unknowns; accepted are " + std::to_string(kMostUnknowns));
+  const Modes undamped = lowest_modes(line, count);
+  const auto known = undamped.frequency.size();
+  double radius = 2. * kPi * std::max(known > 0 ? 1.1 * undamped.frequency[known - 1] : 0., 1.);
+  Search result{{}, false};
+  const Eigen::Index most = std::max(600, 6 * count + 200);
+  // Dampers may raise rates (what they hold still stiffens) and take low modes out of the list.
+  for (;; radius *= 1.5) {
+    result = search(line, radius, most);
+    if (result.found.size() >= static_cast<std::size_t>(count)) break;
+    if (result.complete && radius > kBeyond * highest_rate(line)) break;
+  }
+  Oscillations modes;
+  const auto kept = std::min<Eigen::Index>(count, static_cast<Eigen::Index>(result.found.size()));
+  modes.rate.resize(kept);
+  modes.shape.resize(line.unknowns(), kept);
+  for (Eigen::Index i = 0; i < kept; ++i) {
+    Krylov::Ritz& r = result.found[static_cast<std::size_t>(i)];
+    refine(line, r.rate, r.shape);
+    modes.rate[i] = r.rate;
+    modes.shape.col(i) = r.shape;
+  }
+  return modes;
+}
+
+NaturalModes natural_modes(const Track& track, int count) {
+  std::vector<std::pair<double, double>> all;  // frequency, ratio
+  for (const Line& line : assemble(track)) {
+    const Modes undamped = lowest_modes(line, count);
+    const bool damped = line.damping.norm() > 0.;
+    for (const double frequency : undamped.frequency)
+      if (!damped || frequency == 0.) all.emplace_back(frequency, 0.);
+    if (!damped) continue;
+    for (const Complex rate : oscillations(line, count).rate)
+      all.emplace_back(std::abs(rate) / (2. * kPi), -rate.real() / std::abs(rate));
+  }
+  std::stable_sort(all.begin(), all.end());
+  all.resize(std::min(all.size(), static_cast<std::size_t>(count)));
+  NaturalModes result;
+  for (const auto& [frequency, ratio] : all) {
+    result.frequency.push_back(frequency);
+    result.damping_ratio.push_back(ratio);
+  }
+  return result;
+}
+
+}  // namespace railstep
