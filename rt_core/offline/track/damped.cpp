@@ -22,8 +22,8 @@ constexpr double kSwings = 1e-6;                   // Im rate/|rate| of what is 
 constexpr double kConverged = 1e-10;               // of a Ritz value
 constexpr double kGood = 1e-10, kAccepted = 1e-8;  // residual: sought, and demanded
 constexpr int kMostUnknowns = 100'000;             // of a damped line: 400 vectors of it are 1.3 GB
-constexpr double kBeyond = 10.;         // of the highest undamped rate: over what dampers can raise
-constexpr int kFirst = 40, kMore = 40;  // vectors of the Krylov space
+constexpr double kBeyond = 10.;  // of the highest undamped rate: over what dampers can raise
+constexpr int kFirst = 60, kMore = 40, kMost = 800;  // vectors of the Krylov space
 
 /// The root nearest to `rate` of shape' Q(rate) shape = 0, plain transpose: as Q is symmetric, it
 /// errs by the square of what the shape does.
@@ -91,19 +91,20 @@ struct Search {
 
 /// All swinging modes with |rate| <= radius. The Krylov space grows until it knows them sharply and
 /// a further growth adds none: members of a cluster come out one after the other.
-Search search(const Line& line, double radius, Eigen::Index most) {
+Search search(const Line& line, double radius) {
   const Complex shift(-.5 * radius, .5 * radius);
   Krylov space(line, shift);
   std::optional<std::size_t> before;
-  for (Eigen::Index size = kFirst; size <= most; size += std::max<Eigen::Index>(kMore, size / 4)) {
+  for (Eigen::Index size = kFirst; size <= kMost; size += std::max<Eigen::Index>(kMore, size / 4)) {
     space.grow(size);
     auto found = sharp(line, space, shift, radius);
     if (found && (space.complete() || before == found->size()))
       return {std::move(*found), space.complete()};
     before = found ? std::optional(found->size()) : std::nullopt;
   }
-  throw std::runtime_error("the damped modes up to " + std::to_string(radius / (2. * kPi)) +
-                           " Hz were not all found; ask for fewer of them");
+  throw std::runtime_error(
+      "the damped modes up to " + std::to_string(radius / (2. * kPi)) +
+      " Hz lie too close to be told apart; ask for fewer of them or shorten the track");
 }
 
 }  // namespace
@@ -115,26 +116,16 @@ double residual(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
   return (inertia + damping + elastic).norm() / (inertia.norm() + damping.norm() + elastic.norm());
 }
 
-Oscillations oscillations(const Line& line, int count) {
+Oscillations oscillations(const Line& line, double radius) {
   if (line.unknowns() > kMostUnknowns)
     throw std::runtime_error("damped modes of a line of " + std::to_string(line.unknowns()) +
                              " unknowns; accepted are " + std::to_string(kMostUnknowns));
-  const Modes undamped = lowest_modes(line, count);
-  const auto known = undamped.frequency.size();
-  double radius = 2. * kPi * std::max(known > 0 ? 1.1 * undamped.frequency[known - 1] : 0., 1.);
-  Search result{{}, false};
-  const Eigen::Index most = std::max(600, 6 * count + 200);
-  // Dampers may raise rates (what they hold still stiffens) and take low modes out of the list.
-  for (;; radius *= 1.5) {
-    result = search(line, radius, most);
-    if (result.found.size() >= static_cast<std::size_t>(count)) break;
-    if (result.complete && radius > kBeyond * highest_rate(line)) break;
-  }
+  Search result = search(line, radius);
   Oscillations modes;
-  const auto kept = std::min<Eigen::Index>(count, static_cast<Eigen::Index>(result.found.size()));
-  modes.rate.resize(kept);
-  modes.shape.resize(line.unknowns(), kept);
-  for (Eigen::Index i = 0; i < kept; ++i) {
+  modes.all = result.complete && radius > kBeyond * highest_rate(line);
+  modes.rate.resize(static_cast<Eigen::Index>(result.found.size()));
+  modes.shape.resize(line.unknowns(), modes.rate.size());
+  for (Eigen::Index i = 0; i < modes.rate.size(); ++i) {
     Krylov::Ritz& r = result.found[static_cast<std::size_t>(i)];
     refine(line, r.rate, r.shape);
     modes.rate[i] = r.rate;
@@ -143,21 +134,54 @@ Oscillations oscillations(const Line& line, int count) {
   return modes;
 }
 
-NaturalModes natural_modes(const Track& track, int count) {
-  std::vector<std::pair<double, double>> all;  // frequency, ratio
-  for (const Line& line : assemble(track)) {
-    const Modes undamped = lowest_modes(line, count);
-    const bool damped = line.damping.norm() > 0.;
-    for (const double frequency : undamped.frequency)
-      if (!damped || frequency == 0.) all.emplace_back(frequency, 0.);
-    if (!damped) continue;
-    for (const Complex rate : oscillations(line, count).rate)
-      all.emplace_back(std::abs(rate) / (2. * kPi), -rate.real() / std::abs(rate));
+namespace {
+
+using Listed = std::pair<double, double>;  // frequency, ratio
+
+/// The lowest `count`, sorted.
+void keep_lowest(std::vector<Listed>& modes, int count) {
+  std::stable_sort(modes.begin(), modes.end());
+  modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));
+}
+
+/// The damped modes up to a frequency, Hz; whether these are all there are.
+bool add_damped(const std::vector<Line>& damped, double frequency, std::vector<Listed>& to) {
+  bool all = true;
+  for (const Line& line : damped) {
+    const Oscillations found = oscillations(line, 2. * kPi * frequency);
+    for (const Complex rate : found.rate)
+      to.emplace_back(std::abs(rate) / (2. * kPi), -rate.real() / std::abs(rate));
+    all = all && found.all;
   }
-  std::stable_sort(all.begin(), all.end());
-  all.resize(std::min(all.size(), static_cast<std::size_t>(count)));
+  return all;
+}
+
+}  // namespace
+
+NaturalModes natural_modes(const Track& track, int count) {
+  std::vector<Listed> sure, undamped;  // of lines without dampers and rigid; of all without theirs
+  std::vector<Line> damped;
+  for (const Line& line : assemble(track)) {
+    const bool has_dampers = line.damping.norm() > 0.;
+    for (const double frequency : lowest_modes(line, count).frequency) {
+      undamped.emplace_back(frequency, 0.);
+      if (!has_dampers || frequency == 0.) sure.emplace_back(frequency, 0.);
+    }
+    if (has_dampers) damped.push_back(line);
+  }
+  keep_lowest(undamped, count);
+  std::vector<Listed> found = sure;
+  // Dampers may raise rates (what they hold still stiffens) and take low modes out of the list.
+  double reach = undamped.empty() ? 1. : std::max(1.05 * undamped.back().first, 1.);
+  for (bool all = damped.empty(); !all; reach *= 1.3) {
+    found = sure;
+    all = add_damped(damped, reach, found);
+    keep_lowest(found, count);
+    all = all || (static_cast<int>(found.size()) == count && found.back().first <= reach);
+  }
+  keep_lowest(found, count);
   NaturalModes result;
-  for (const auto& [frequency, ratio] : all) {
+  for (const auto& [frequency, ratio] : found) {
     result.frequency.push_back(frequency);
     result.damping_ratio.push_back(ratio);
   }

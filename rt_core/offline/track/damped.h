@@ -11,16 +11,17 @@ namespace railstep {
 struct Oscillations {
   Eigen::VectorXcd rate;   // [modes] 1/s, by |rate|, lowest first
   Eigen::MatrixXcd shape;  // [unknowns][modes], each of Euclidean norm 1
+  bool all = false;        // there are none beyond what was asked for
 };
 
 /// |Q(rate) shape| / (|rate^2 M shape| + |rate C shape| + |K shape|): what is left of the forces.
 double residual(const Line& line, std::complex<double> rate, const Eigen::VectorXcd& shape);
 
-/// The lowest of them by |rate|, at most `count`: every rate of the quarter disc that holds them is
-/// found by Arnoldi's method about its middle, then checked: residual() is at most 1e-8, by inverse
-/// iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out.
+/// Those with |rate| <= radius, 1/s: every rate of that quarter disc is found by Arnoldi's method
+/// about its middle, until more vectors bring no more of them, then checked: residual() is at most
+/// 1e-8, by inverse iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out.
 /// Throws std::runtime_error where they were not all found.
-Oscillations oscillations(const Line& line, int count);
+Oscillations oscillations(const Line& line, double radius);
 
 /// Natural modes of a whole track, lowest frequency first.
 struct NaturalModes {
