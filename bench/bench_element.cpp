@@ -28,7 +28,7 @@ double tip_error(int axial_points) {
   track.bay_length = 4.;
   track.elements_per_bay = 4;
   track.ends = {RailEnd::clamped, RailEnd::clamped};
-  track.axial_points = axial_points;
+  track.rule.axial_points = axial_points;
   // Half of a clamped beam under a force in its middle: L = 2 m, half the force, no turn at the
   // end.
   const Statics statics(track);
@@ -45,7 +45,7 @@ void matrices(benchmark::State& run) {
   const int points = static_cast<int>(run.range(0));
   for (auto _ : run)
     benchmark::DoNotOptimize(
-        element_matrices(section(), Material{}, .6, ElasticLaw::corrected, points));
+        element_matrices(section(), beam_law(section(), {}, {.axial_points = points}), .6));
   run.counters["error"] = tip_error(points);
 }
 

@@ -49,9 +49,10 @@ TEST_CASE("rigid motion strains nothing and carries the whole mass and inertia")
   const double L = .6, pi2 = L * L / 3.;
   const Material steel;
   const BeamSection s = section_f();
-  for (const ElasticLaw law : {ElasticLaw::corrected, ElasticLaw::paper})
+  for (const Shear shear : {Shear::twist, Shear::factors, Shear::published})
     for (const int points : {2, 3, 5}) {
-      const ElementMatrices e = element_matrices(s, steel, L, law, points);
+      const ElementRule rule{.axial_points = points, .shear = shear};
+      const ElementMatrices e = element_matrices(s, beam_law(s, steel, rule), L);
       const double scale = e.stiffness.cwiseAbs().maxCoeff();
       for (int axis = 0; axis < 3; ++axis) {
         // 27 products of rounding error eps each: 1e-14 of the largest entry is ample
@@ -72,8 +73,9 @@ TEST_CASE("rigid motion strains nothing and carries the whole mass and inertia")
 }
 
 TEST_CASE("the stiffness is symmetric with six zero modes; one axial point has more") {
-  const auto zero_modes = [](int points, ElasticLaw law) {
-    const ElementMatrices e = element_matrices(section_f(), Material{}, .6, law, points);
+  const auto zero_modes = [](int points, Shear shear) {
+    const ElementRule rule{.axial_points = points, .shear = shear};
+    const ElementMatrices e = element_matrices(section_f(), beam_law(section_f(), {}, rule), .6);
     CHECK((e.stiffness - e.stiffness.transpose()).norm() == 0.);
     // Rank against the mass matrix, which scales positions and slopes alike.
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
@@ -82,15 +84,15 @@ TEST_CASE("the stiffness is symmetric with six zero modes; one axial point has m
     CHECK(values[0] > -1e-10 * values[26]);
     return (values.array() < 1e-10 * values[26]).count();
   };
-  for (const ElasticLaw law : {ElasticLaw::corrected, ElasticLaw::paper})
-    for (const int points : {2, 3, 4, 5}) CHECK(zero_modes(points, law) == 6);
-  CHECK(zero_modes(1, ElasticLaw::corrected) > 6);
+  for (const Shear shear : {Shear::twist, Shear::published})
+    for (const int points : {2, 3, 4, 5}) CHECK(zero_modes(points, shear) == 6);
+  CHECK(zero_modes(1, Shear::twist) > 6);
 }
 
 TEST_CASE("Poisson's coupling makes the stretched section contract by nu") {
   const BeamSection s = section_f();
   const Material steel;
-  const ElementMatrices e = element_matrices(s, steel, 1.);
+  const ElementMatrices e = element_matrices(s, beam_law(s, steel), 1.);
   Vector27 u = Vector27::Zero();
   for (int i = 0; i < 3; ++i) {
     u[9 * i] = .5 * i * 1e-3;  // e = 1e-3
@@ -105,6 +107,7 @@ TEST_CASE("Poisson's coupling makes the stretched section contract by nu") {
 }
 
 TEST_CASE("the element refuses a number of axial points it does not have") {
-  CHECK_THROWS_WITH(element_matrices(section_f(), Material{}, 1., ElasticLaw::corrected, 6),
-                    Catch::Contains("accepted 1 to 5"));
+  CHECK_THROWS_WITH(
+      element_matrices(section_f(), beam_law(section_f(), {}, {.axial_points = 6}), 1.),
+      Catch::Contains("accepted 1 to 5"));
 }

@@ -67,7 +67,7 @@ TEST_CASE("moving load: without residual flexibility the element's own rows come
   const double two[5] = {-5.83608e-4, -5.64767e-4, -5.66946e-4, -5.64658e-4, -5.83236e-4};
   const double three[5] = {-5.76017e-4, -5.62059e-4, -5.58991e-4, -5.61946e-4, -5.75650e-4};
   Track locking = peers_track(1);
-  locking.axial_points = 3;
+  locking.rule.axial_points = 3;
   ModelRun run_two = peers_run(peers_track(1), 1e-4, false),
            run_three = peers_run(locking, 1e-4, false);
   for (int i = 0; i < 5; ++i) {

@@ -160,8 +160,8 @@ Track track_of(const Scene& scene) {
       .shear_factor_z = section.shear.shear_factor_z,
       .shear_centre_z = section.shear.shear_centre_height - section.area.centroid_height};
   track.material = {scene.rail.young, scene.rail.poisson, scene.rail.density};
-  track.law = scene.rail.element;
-  track.axial_points = scene.track.axial_points;
+  track.rule.shear = scene.rail.element;
+  track.rule.axial_points = scene.track.axial_points;
   track.unknowns = scene.track.unknowns;
   track.rails = scene.track.rails;
   track.bays = static_cast<int>(scene.track.bays);  // read_scene keeps it under kMostElements

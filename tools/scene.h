@@ -54,7 +54,7 @@ struct TrackScene {
 struct RailScene {
   SectionSource shape;
   double young, poisson, density;  // Pa, 1, kg/m3
-  ElasticLaw element;
+  Shear element;
   std::optional<double> shear_factor_y, shear_factor_z;  // replace the section's
   double crown_radius;                                   // m
 };

@@ -9,9 +9,8 @@ namespace {
 
 /// Stiffness of `parts` elements in a row over the carried unknowns, nodes in order.
 Eigen::MatrixXd chain_stiffness(const Track& track, const std::vector<int>& carried, int parts) {
-  const Matrix27 K = element_matrices(track.section, track.material, track.element_length() / parts,
-                                      track.law, track.axial_points)
-                         .stiffness;
+  const Matrix27 K =
+      element_matrices(track.section, track.law(), track.element_length() / parts).stiffness;
   const int d = static_cast<int>(carried.size());
   Eigen::MatrixXd chain = Eigen::MatrixXd::Zero((2 * parts + 1) * d, (2 * parts + 1) * d);
   for (int part = 0; part < parts; ++part)

@@ -8,17 +8,6 @@
 #include "offline/section/outline_checks.h"
 
 namespace railstep {
-namespace {
-
-constexpr double kRounding = 1e-8;  // m
-
-/// Centre, half angle and bisector of an arc.
-struct Arc {
-  Point centre;
-  double radius;   // > 0
-  double half;     // half of its angle
-  Point outwards;  // unit, from the centre through the arc's middle
-};
 
 Arc arc_of(const Segment& s) {
   const double dy = s.to[0] - s.from[0], dz = s.to[1] - s.from[1];
@@ -36,6 +25,10 @@ Arc arc_of(const Segment& s) {
       std::asin(sine),
       out};
 }
+
+namespace {
+
+constexpr double kRounding = 1e-8;  // m
 
 /// Moments about the origin: area, first and second moments.
 struct Moments {

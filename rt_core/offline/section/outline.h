@@ -23,6 +23,17 @@ struct Segment {
   int number;      // of its end point's row
 };
 
+/// Centre, half angle and bisector of an arc.
+struct Arc {
+  Point centre;
+  double radius;   // > 0
+  double half;     // half of its angle
+  Point outwards;  // unit, from the centre through the arc's middle
+};
+
+/// The arc of a segment that is not straight.
+Arc arc_of(const Segment& segment);
+
 /// A closed outline, counter-clockwise (steel on the left), lowest point at z = 0, and centred so
 /// that the centroid lies at y = 0.
 struct Outline {

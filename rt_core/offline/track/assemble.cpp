@@ -72,8 +72,8 @@ void number(const Track& track, Assembly& part) {
 }
 
 void add_elements(const Track& track, Assembly& part) {
-  const ElementMatrices element = element_matrices(
-      track.section, track.material, track.element_length(), track.law, track.axial_points);
+  const ElementMatrices element =
+      element_matrices(track.section, track.law(), track.element_length());
   for (int e = 0; e < track.elements(); ++e) {
     std::array<int, 27> place;
     for (int i = 0; i < 27; ++i)
@@ -254,8 +254,8 @@ Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
 }
 
 Eigen::VectorXd weight(const Track& track, const Line& line, double gravity) {
-  const ElementMatrices element = element_matrices(
-      track.section, track.material, track.element_length(), track.law, track.axial_points);
+  const ElementMatrices element =
+      element_matrices(track.section, track.law(), track.element_length());
   const double line_weight = track.material.density * track.section.area * gravity;
   const double both = line.rail_factor[0] + (track.rails == 2 ? line.rail_factor[1] : 0.);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(line.unknowns());

@@ -42,8 +42,9 @@ struct Sleeper {
 struct Track {
   BeamSection section;
   Material material;
-  ElasticLaw law = ElasticLaw::corrected;
-  int axial_points = 2;
+  ElementRule rule;
+  double axis_z = 0.;       // of the reference line, where the nodes are, above the centroid, m
+  double axial_force = 0.;  // of the rails at rest, N, tension positive
   Unknowns unknowns = Unknowns::full;
   int rails = 2;
   int bays = 1;
@@ -58,6 +59,7 @@ struct Track {
   int nodes() const { return 2 * elements() + 1; }
   double element_length() const { return bay_length / elements_per_bay; }
   double length() const { return bays * bay_length; }
+  BeamLaw law() const { return beam_law(section, material, rule, axis_z, axial_force); }
 };
 
 /// A material point of one rail.

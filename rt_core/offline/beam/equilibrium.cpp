@@ -1,0 +1,157 @@
+#include "offline/beam/equilibrium.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseLU>
+#include <cmath>
+#include <limits>
+
+namespace railstep {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Sparse = Eigen::SparseMatrix<double>;
+
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0., -v[2], v[1], v[2], 0., -v[0], -v[1], v[0], 0.;
+  return m;
+}
+
+/// A moment on a slope s turns it: force (M x s)/(s's).
+Vector3d turning_force(const Vector3d& moment, const Vector3d& slope) {
+  return moment.cross(slope) / slope.squaredNorm();
+}
+
+Matrix3d turning_slope(const Vector3d& moment, const Vector3d& slope) {
+  const double s2 = slope.squaredNorm();
+  return cross_matrix(moment) / s2 - 2. / (s2 * s2) * moment.cross(slope) * slope.transpose();
+}
+
+/// How much of a moment each slope of a node carries: about a the slope b turns, about b the slope
+/// a, about the normal each turns by half. Frozen in the tangent, as sections stay nearly square.
+struct MomentShare {
+  Vector3d on_a, on_b;
+};
+
+MomentShare shared(const Vector3d& moment, const Vector3d& a, const Vector3d& b) {
+  const Vector3d normal = a.cross(b).normalized(), u = a.normalized(), v = normal.cross(u);
+  const Vector3d along = .5 * moment.dot(normal) * normal;
+  return {moment.dot(v) * v + along, moment.dot(u) * u + along};
+}
+
+/// What is asked of the free unknowns: load minus internal force.
+class Balance {
+ public:
+  Balance(const Structure& structure, const StructureLoad& load)
+      : structure_(structure), load_(load), scale_(Eigen::VectorXd::Ones(structure.unknowns())) {
+    for (int i = 0; i < 9 * structure.nodes(); ++i)
+      if (i % 9 >= 3) scale_[i] = 1. / structure.slope_length;
+  }
+
+  Eigen::VectorXd external(const Eigen::VectorXd& q) const {
+    Eigen::VectorXd force = load_.force;
+    for (const auto& [node, moment] : load_.moments) {
+      const Vector3d a = q.segment<3>(9 * node + 3), b = q.segment<3>(9 * node + 6);
+      const MomentShare share = shared(moment, a, b);
+      force.segment<3>(9 * node + 3) += turning_force(share.on_a, a);
+      force.segment<3>(9 * node + 6) += turning_force(share.on_b, b);
+    }
+    return force;
+  }
+
+  Eigen::VectorXd residual(const Eigen::VectorXd& q, double factor) const {
+    return free_part(structure_, factor * external(q) - internal_force(structure_, q));
+  }
+
+  Sparse stiffness(const Eigen::VectorXd& q, double factor) const {
+    Sparse K = tangent(structure_, q);
+    for (const auto& [node, moment] : load_.moments) {
+      const int at[2] = {9 * node + 3, 9 * node + 6};
+      const Vector3d a = q.segment<3>(at[0]), b = q.segment<3>(at[1]);
+      const MomentShare share = shared(moment, a, b);
+      const Matrix3d slopes[2] = {turning_slope(share.on_a, a), turning_slope(share.on_b, b)};
+      for (int s = 0; s < 2; ++s)
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) K.coeffRef(at[s] + i, at[s] + j) -= factor * slopes[s](i, j);
+    }
+    return free_part(structure_, K);
+  }
+
+  /// Norm with forces on slopes over slope_length.
+  double size(const Eigen::VectorXd& free_force) const {
+    return free_force.cwiseProduct(free_part(structure_, scale_)).norm();
+  }
+
+  /// True where round-off of the positions alone explains the residual.
+  bool rounded(const Eigen::VectorXd& residual, const Sparse& K, const Eigen::VectorXd& q) const {
+    const Eigen::VectorXd free_q = free_part(structure_, q);
+    const Eigen::VectorXd noise = K.cwiseAbs() * free_q.cwiseAbs();
+    const double eps = std::numeric_limits<double>::epsilon();
+    return (residual.cwiseAbs() - 8. * eps * noise).maxCoeff() <= 0.;
+  }
+
+ private:
+  const Structure& structure_;
+  const StructureLoad& load_;
+  Eigen::VectorXd scale_;
+};
+
+void move(const Structure& s, const Eigen::VectorXd& step, Eigen::VectorXd& q) {
+  int k = 0;
+  for (int i = 0; i < s.unknowns(); ++i)
+    if (!s.held[static_cast<std::size_t>(i)]) q[i] += step[k++];
+}
+
+/// One load step from `result.q`. True where it converged; then q is the new equilibrium.
+bool newton(const Structure& structure, const Balance& balance, double factor, double load_size,
+            const NewtonOptions& options, Equilibrium& result) {
+  Eigen::VectorXd q = result.q;
+  Eigen::SparseLU<Sparse> solver;
+  for (int iteration = 0; iteration <= options.most_iterations; ++iteration) {
+    const Eigen::VectorXd residual = balance.residual(q, factor);
+    const double size = balance.size(residual) / load_size;
+    result.history.push_back({factor, iteration, size});
+    if (!std::isfinite(size)) return false;
+    const Sparse K = balance.stiffness(q, factor);
+    if (size <= options.tolerance || balance.rounded(residual, K, q)) {
+      result.q = q;
+      result.residual = size;
+      return true;
+    }
+    if (iteration == options.most_iterations) return false;
+    solver.compute(K);
+    if (solver.info() != Eigen::Success) return false;
+    move(structure, solver.solve(residual), q);
+    ++result.iterations;
+  }
+  return false;
+}
+
+}  // namespace
+
+Equilibrium equilibrium(const Structure& structure, const StructureLoad& load,
+                        const NewtonOptions& options, const Eigen::VectorXd* start) {
+  const Balance balance(structure, load);
+  Equilibrium result{false, start ? *start : structure.rest, 0., 0, 0, {}};
+  const double applied = balance.size(free_part(structure, balance.external(result.q)));
+  const double load_size = applied > 0. ? applied : 1.;
+  double reached = 0., step = 1.;
+  const double least = std::ldexp(1., -options.most_halvings);
+  while (reached < 1.) {
+    const double target = std::min(1., reached + step);
+    if (newton(structure, balance, target, load_size, options, result)) {
+      reached = target;
+      ++result.load_steps;
+      step *= 2.;
+    } else if (step > least) {
+      step /= 2.;
+    } else {
+      return result;
+    }
+  }
+  result.converged = true;
+  return result;
+}
+
+}  // namespace railstep

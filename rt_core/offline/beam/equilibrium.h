@@ -1,0 +1,51 @@
+#pragma once
+#include <vector>
+
+#include "offline/beam/structure.h"
+
+namespace railstep {
+
+/// Forces on a structure: those that keep their direction, and moments on nodes about fixed axes.
+struct StructureLoad {
+  Eigen::VectorXd force;  // [unknowns], N, and N m on slopes
+  struct Moment {
+    int node;
+    Eigen::Vector3d moment;  // N m
+  };
+  std::vector<Moment> moments = {};
+};
+
+struct NewtonOptions {
+  double tolerance = 1e-10;  // of the residual over the load
+  int most_iterations = 30;  // of one load step
+  int most_halvings = 10;    // of a load step that does not converge
+};
+
+/// One Newton iteration, for the history of a solution that was not found.
+struct NewtonStep {
+  double load_factor;  // 0 to 1
+  int iteration;       // from 0
+  double residual;     // over the whole load
+};
+
+struct Equilibrium {
+  bool converged;
+  Eigen::VectorXd q;  // of the last load that was reached
+  double residual;    // of q, over the load
+  int iterations;     // in all
+  int load_steps;     // that converged
+  std::vector<NewtonStep> history;
+};
+
+/// Equilibrium by Newton's method with the analytic tangent. The load goes on in one step; a step
+/// that does not converge is halved, one that does is followed by one of twice its size.
+///
+/// Sizes are compared with forces on slopes divided by `slope_length`. A step has converged when
+/// the residual is below the tolerance times the load, or when no entry of it is above what
+/// round-off leaves, 8 eps |K| |q|: on slender beams (length over height 1e4) that is 1e-6 of the
+/// load, and no iteration gets below.
+/// @param start  where to begin, in place of the shape at rest
+Equilibrium equilibrium(const Structure& structure, const StructureLoad& load,
+                        const NewtonOptions& options = {}, const Eigen::VectorXd* start = nullptr);
+
+}  // namespace railstep
