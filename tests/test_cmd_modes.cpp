@@ -228,6 +228,13 @@ TEST_CASE("at the critical force the track is refused with both numbers", "[mode
   check_refused(three_metres("vertical", -1.01 * 8.703979e6), "8791019 N");
   check_refused(three_metres("vertical", -1.01 * 8.703979e6), "buckles at 870");
   modes_of(three_metres("vertical", -.999 * 8.703979e6));
+  // Every command refuses it: a long rail on springs buckles below 2 sqrt(k EI) = 40 MN.
+  for (const std::string& words : {"run " + shipped("moving_load"),
+                                   "condense " + shipped("moving_load") + " --out no_model"}) {
+    const Ran ran = railstep_program(words + " --set rail.axial_force_n=-4e7");
+    CHECK(ran.code == 2);
+    CHECK_THAT(ran.err, Catch::Contains("4e+07 N") && Catch::Contains("buckles at"));
+  }
   // A warm rail between pins: alpha E A dT.
   const std::string rail = three_metres("vertical", 0.);
   const double per_kelvin = 1.15e-5 * 210e9 * 8.7e-3;
