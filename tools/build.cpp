@@ -12,6 +12,7 @@
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
+#include "offline/track/buckling.h"
 #include "sense.h"
 
 namespace railstep {
@@ -24,7 +25,8 @@ void refuse_unstepped(const Scene& scene) {
   };
   refuse(scene.loads.empty() && scene.wheelsets.empty(),
          "needs a [[load]] or a [[wheelset]] and the scene has neither");
-  refuse(scene.step.steps % scene.step.steps_per_frame != 0,
+  refuse(!scene.step, "and condense need a [step] and the scene has none");
+  refuse(scene.step->steps % scene.step->steps_per_frame != 0,
          "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
 }
 
@@ -101,14 +103,14 @@ Railhead railhead_of(const Scene& scene) {
 }
 
 Scheme scheme_of(const Scene& scene) {
-  const StepScene& step = scene.step;
+  const StepScene& step = *scene.step;
   if (scene.condense.kind == Condensation::modal) return held_force(step.dt, step.rho_inf);
   return step.scheme == TimeScheme::backward_euler ? backward_euler(step.dt)
                                                    : generalised_alpha(step.dt, step.rho_inf);
 }
 
 PackOptions options_of(const Scene& scene) {
-  const StepScene& step = scene.step;
+  const StepScene& step = *scene.step;
   if (step.steps_per_frame > std::numeric_limits<int>::max())
     throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
                                  scene.file.string(), step.steps_per_frame,
@@ -147,7 +149,7 @@ Sleeper sleeper_of(const SleeperScene& s) {
 
 }  // namespace
 
-Track track_of(const Scene& scene) {
+Track track_of(const Scene& scene) try {
   const Section section = section_of(scene);
   Track track;
   track.section = {
@@ -170,7 +172,12 @@ Track track_of(const Scene& scene) {
   track.ends = scene.track.ends;
   if (scene.support) track.support = support_of(*scene.support, section);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
+  const double heat = scene.rail.expansion * scene.rail.temperature_rise;  // strain it would make
+  track.axial_force = scene.rail.axial_force - scene.rail.young * track.section.area * heat;
+  refuse_buckled(track);
   return track;
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }
 
 namespace {
@@ -204,7 +211,7 @@ Built::Built(const Scene& scene) try {
   packed = std::make_unique<PackedModel>(
       track, Traffic{loads_of(scene), wheelsets_of(scene), head, std::move(sensors.probes)},
       options_of(scene));
-  if (scene.step.start == Start::equilibrium)
+  if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));

@@ -14,7 +14,8 @@ namespace railstep {
 /// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
 Section section_of(const Scene& scene);
 
-/// The track of a scene, about the section's centroid. Throws InputError.
+/// The track of a scene, about the section's centroid. Throws InputError, for rails under so much
+/// compression that they buckle too.
 Track track_of(const Scene& scene);
 
 /// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
