@@ -90,7 +90,7 @@ std::vector<NamedRule> study_rules() {
                               {2, 5}, {3, 1}, {3, 2}, {3, 4}, {4, 2}};
   for (const auto& [axial, coupling] : pairs)
     all.push_back({"coupling-points",
-                   fmt::format("D0 at {}, Dv at {}", axial, coupling),
+                   fmt::format("D0 at {} and Dv at {}", axial, coupling),
                    {.element = {.axial_points = axial, .coupling_points = coupling}}});
   for (const int points : {1, 2, 3})
     all.push_back(
@@ -103,13 +103,13 @@ std::vector<NamedRule> study_rules() {
     all.push_back(
         {"reference-line", fmt::format("reference line at {}", name), {.reference_height = up}});
     all.push_back({"reference-line",
-                   fmt::format("reference line at {}, Dv there", name),
+                   fmt::format("reference line and Dv at {}", name),
                    {.element = {.coupling = Coupling::axis}, .reference_height = up}});
   }
   all.push_back({"coupling", "D not split", {.element = {.coupling = Coupling::section}}});
   all.push_back({"shear", "torsion not split", {.element = {.shear = Shear::factors}}});
   all.push_back({"shear", "2E13 at shear centre", {.element = {.shear = Shear::offset}}});
-  all.push_back({"shear", "no factors, no split", {.element = {.shear = Shear::published}}});
+  all.push_back({"shear", "neither factors nor split", {.element = {.shear = Shear::published}}});
   return all;
 }
 

@@ -98,7 +98,7 @@ std::string to_csv(const std::vector<StudyRow>& rows) {
     for (const auto& [key, value] : cells.items()) {
       if (key != "family") line += ',';
       if (value.is_string())
-        line += '"' + value.get<std::string>() + '"';
+        line += value.get<std::string>();  // none holds a comma
       else if (value.is_number_float())
         line += fmt::format("{:.17g}", value.get<double>());
       else if (!value.is_null())
