@@ -81,7 +81,8 @@ Structure study_cantilever(const BeamLaw& law, int elements, Motion motion) {
   return s;
 }
 
-double between_nodes(int elements) { return study::kLength / elements * (elements / 2 + .25); }
+double between_nodes(int elements) { const int before = elements / 2;  // the element that begins at mid-length
+  return study::kLength / elements * (before + .25); }
 
 Compliance vertical_compliance(const BeamLaw& law, int elements) {
   const Structure s = study_cantilever(law, elements, Motion::vertical);
