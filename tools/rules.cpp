@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
-#include <map>
 
 namespace railstep {
 namespace {
@@ -13,6 +13,7 @@ namespace {
 constexpr int kElements[] = {1, 2, 4, 8, 16};
 constexpr double kPoissons[] = {0., .3, .45, .49, .499};
 constexpr int kReferenceElements = 64;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Floating-point operations of beam_force() at one point whose stiffness has this many entries.
 int point_flops(int entries) {
@@ -48,17 +49,23 @@ double best_time(int calls, const Call& call) {
   return best;
 }
 
-/// The large deflection that all rules are compared with, of one Poisson's ratio.
-double large_reference(const Material& material) {
-  return large_deflection(study_law({}, material), kReferenceElements);
+constexpr double kLargePoisson = .3;
+
+/// Deflection and turn that all rules are compared with where displacements are large.
+struct LargeReference {
+  double deflection, turn;
+};
+LargeReference large_reference() {
+  const BeamLaw law = study_law({}, {.poisson = kLargePoisson});
+  return {large_deflection(law, kReferenceElements), large_turn(law, kReferenceElements)};
 }
 
-bool bends_far(const NamedRule& rule) {
-  return rule.family == "default" || rule.family == "axial" || rule.family == "section";
+bool of_section(const NamedRule& rule) {
+  return rule.family == "default" || rule.family == "section";
 }
 
 /// The rows of one rule, material and mesh.
-void add_rows(StudyRow row, const Material& material, double reference,
+void add_rows(StudyRow row, const Material& material, const LargeReference& large,
               std::vector<StudyRow>& rows) {
   const BeamLaw law = study_law(row.rule.rule, material);
   const ElementModes modes = element_modes(law, study::kLength / row.elements);
@@ -75,8 +82,13 @@ void add_rows(StudyRow row, const Material& material, double reference,
   const double tip = study::kLength, between = between_nodes(row.elements);
   add("tip node", tip, found.tip / exact_compliance(material, tip) - 1.);
   add("between nodes", between, found.between / exact_compliance(material, between) - 1.);
-  if (bends_far(row.rule))
-    add("large bending", tip, large_deflection(law, row.elements) / reference - 1.);
+  if (row.poisson != kLargePoisson) return;
+  if (of_section(row.rule) || row.rule.family == "axial")
+    add("large bending", tip, large_deflection(law, row.elements) / large.deflection - 1.);
+  if (of_section(row.rule)) {
+    const bool singular = std::isnan(row.twist_error);
+    add("large twist", tip, singular ? kNone : large_turn(law, row.elements) / large.turn - 1.);
+  }
 }
 
 }  // namespace
@@ -129,18 +141,14 @@ RuleCost rule_cost(const StudyRule& rule) {
 }
 
 std::vector<StudyRow> study_rows(const std::vector<NamedRule>& rules) {
-  std::map<double, double> references;
+  const LargeReference large = large_reference();
   std::vector<StudyRow> rows;
   for (const NamedRule& rule : rules) {
     const RuleCost cost = rule_cost(rule.rule);
-    for (const double poisson : kPoissons) {
-      const Material material{.poisson = poisson};
-      if (bends_far(rule) && references.count(poisson) == 0)
-        references[poisson] = large_reference(material);
+    for (const double poisson : kPoissons)
       for (const int elements : kElements)
-        add_rows({.rule = rule, .poisson = poisson, .elements = elements, .cost = cost}, material,
-                 references[poisson], rows);
-    }
+        add_rows({.rule = rule, .poisson = poisson, .elements = elements, .cost = cost},
+                 {.poisson = poisson}, large, rows);
   }
   return rows;
 }

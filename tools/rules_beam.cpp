@@ -81,8 +81,10 @@ Structure study_cantilever(const BeamLaw& law, int elements, Motion motion) {
   return s;
 }
 
-double between_nodes(int elements) { const int before = elements / 2;  // the element that begins at mid-length
-  return study::kLength / elements * (before + .25); }
+double between_nodes(int elements) {
+  const int before = elements / 2;  // the element that begins at mid-length
+  return study::kLength / elements * (before + .25);
+}
 
 Compliance vertical_compliance(const BeamLaw& law, int elements) {
   const Structure s = study_cantilever(law, elements, Motion::vertical);
@@ -117,6 +119,18 @@ double large_deflection(const BeamLaw& law, int elements) {
                        (study::kLength * study::kLength);
   const Equilibrium found = equilibrium(s, {.force = -force * tip});
   return found.converged ? -tip.dot(found.q - s.rest) : kNone;
+}
+
+double large_turn(const BeamLaw& law, int elements) {
+  Structure s = study_cantilever(law, elements, Motion::lateral);
+  for (std::size_t i = 9; i < s.held.size(); ++i) s.held[i] = false;
+  const double torque = study::kLargeTwist * law.material.shear_modulus() * law.torsion;
+  const StructureLoad load{.force = Eigen::VectorXd::Zero(s.unknowns()),
+                           .moments = {{2 * elements, {torque, 0., 0.}}}};
+  const Equilibrium found = equilibrium(s, load);
+  if (!found.converged) return kNone;
+  const Eigen::VectorXd slopes = found.q.tail(6);  // a, b
+  return .5 * (std::atan2(slopes[2], slopes[1]) + std::atan2(-slopes[4], slopes[5]));
 }
 
 ElementModes element_modes(const BeamLaw& law, double length) {

@@ -14,8 +14,9 @@ struct StudyRule {
 /// The cantilever under study: section F (three rectangles, 136RE), clamped in all nine unknowns of
 /// its first node. Shear factors and J are the same for every Poisson's ratio: Cowper's at 0.3.
 namespace study {
-inline constexpr double kLength = 2.;     // m
-inline constexpr double kLargeLoad = 4.;  // F L^2 / (E Iy) of the large bending
+inline constexpr double kLength = 2.;      // m
+inline constexpr double kLargeLoad = 4.;   // F L^2 / (E Iy) of the large bending
+inline constexpr double kLargeTwist = .5;  // T / (G J) of the large twist, rad/m
 inline constexpr Rectangles<double> kRectangles = {{.1380985536, .02522171327, .07720505094},
                                                    {.020996636, .13308941227, .03165145173}};
 inline constexpr double kCentroidHeight = .085;  // above the foot, m
@@ -57,6 +58,10 @@ double exact_twist(const Material& material);
 /// Deflection (m, down positive) of the tip's centroid under F = kLargeLoad E Iy / L^2 which stays
 /// vertical. NaN where Newton's method finds none.
 double large_deflection(const BeamLaw& law, int elements);
+
+/// Turn of the tip (rad) under T = kLargeTwist G J about x, mean of its two slopes'. NaN where
+/// Newton's method finds none.
+double large_turn(const BeamLaw& law, int elements);
 
 /// Modes of one element, of its stiffness scaled by its mass.
 struct ElementModes {
