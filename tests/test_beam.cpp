@@ -19,8 +19,7 @@ BeamSection with_moments(BeamSection section, const SectionMoments& m) {
   return section;
 }
 
-const Rectangles<double> kSectionF = {{.1380985536, .02522171327, .07720505094},
-                                      {.020996636, .13308941227, .03165145173}};
+const Rectangles<double> kSectionF = section_f_rectangles();
 
 /// Nodes on an arc of radius R in the plane of x and z (bent up) or x and y, sections normal to it.
 Vector27 arc_nodes(double length, double R, bool vertical) {
