@@ -65,7 +65,10 @@ inline Structure straight_chain(const BeamLaw& law, double length, int elements)
 }
 
 inline void hold(Structure& s, int node, std::initializer_list<int> unknowns) {
-  for (const int i : unknowns) s.held[static_cast<std::size_t>(9 * node + i)] = true;
+  for (const int i : unknowns) {
+    const int unknown = 9 * node + i;
+    s.held[static_cast<std::size_t>(unknown)] = true;
+  }
 }
 
 /// All nine unknowns of a node.
