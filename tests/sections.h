@@ -15,10 +15,9 @@ inline BeamSection section_f() {
           .shear_centre_z = -.0391};
 }
 
-/// Its rectangles, to their printed 1e-11 m.
-inline Rectangles<double> section_f_rectangles() {
-  return {{.1380985536, .02522171327, .07720505094}, {.020996636, .13308941227, .03165145173}};
-}
+/// Its rectangles, m.
+inline const Rectangles<double> kSectionF = {{.1380985536, .02522171327, .07720505094},
+                                             {.020996636, .13308941227, .03165145173}};
 
 /// Rectangle of the peers' moving-load scene, 231.9 mm high and 37.5 mm wide, k = .8497 for both
 /// directions, J by the series of Saint-Venant.

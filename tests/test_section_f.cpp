@@ -17,7 +17,7 @@ struct RailCantilever {
   BeamSection section = section_f();
   Structure clamped(int elements, Coupling coupling = Coupling::centroid) {
     section.shear_factor_z = .472;
-    section.moments = moments(section_f_rectangles());
+    section.moments = moments(kSectionF);
     Structure s = straight_chain(beam_law(section, {.poisson = poisson}, {.coupling = coupling}),
                                  2., elements);
     clamp(s, 0);
@@ -64,7 +64,7 @@ TEST_CASE("section F's cantilever bends as the reference says", "[section]") {
   BeamSection section = section_f();
   section.shear_factor_y = 1.;
   section.shear_factor_z = .472;
-  section.moments = moments(section_f_rectangles());
+  section.moments = moments(kSectionF);
   const auto clamped = [&](Shear shear) {
     Structure s = straight_chain(beam_law(section, {}, {.shear = shear}), 2., 40);
     clamp(s, 0);
@@ -92,7 +92,7 @@ TEST_CASE("section F's bar twists by TL/GJ", "[section]") {
   // has G (Iy + Iz) in place of GJ: 5.69e-4.
   const auto twist = [](Shear shear) {
     BeamSection section = section_f();
-    section.moments = moments(section_f_rectangles());
+    section.moments = moments(kSectionF);
     Structure s = straight_chain(beam_law(section, {}, {.shear = shear}), 2., 10);
     clamp(s, 0);
     const Eigen::VectorXd q = solved(s, end_moment(s, {1e3, 0., 0.}));

@@ -83,8 +83,8 @@ RailScene read_rail(const Table& rail) {
   // Beyond these a material makes work out of nothing; at 0.5 it cannot be compressed at all.
   r.poisson = rail.number("poisson", {-1.0, 0.5, false, false}, 0.3);
   r.density = rail.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
-  r.element = rail.choice("element", {"corrected", "paper"}, 0) == 0 ? Shear::twist
-                                                                     : Shear::published;
+  r.element =
+      rail.choice("element", {"corrected", "paper"}, 0) == 0 ? Shear::twist : Shear::published;
   r.shear_factor_y = read_override(rail, "shear_factor_y");
   r.shear_factor_z = read_override(rail, "shear_factor_z");
   r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), 0.3);
