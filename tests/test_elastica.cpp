@@ -86,11 +86,11 @@ TEST_CASE("a rod rigid in shear and stretch is the elastica", "[elastica]") {
 }
 
 TEST_CASE("a slender cantilever bends into the elastica", "[elastica]") {
-  // Length over height 1000. What is not the elastica's: shear, F L/(k G A) = alpha EI/(k G A L^2),
-  // 2.6e-7 alpha, and effects of the material law of that size (next test): together below 1e-6
+  // Length over height 500. What is not the elastica's: shear, F L/(k G A) = alpha EI/(k G A L^2),
+  // 1.0e-6 alpha, and effects of the material law of that size (next test): together below 4e-6
   // alpha. What the mesh leaves is less than what its last halving changed.
   for (const double poisson : {0., .3}) {
-    const Slender beam(1e-3, poisson);
+    const Slender beam(2e-3, poisson);
     const std::vector<Vector3d> coarse = ends(beam.clamped(16), kAlphas);
     const std::vector<Vector3d> middle = ends(beam.clamped(32), kAlphas);
     const std::vector<Vector3d> fine = ends(beam.clamped(64), kAlphas);
@@ -99,7 +99,7 @@ TEST_CASE("a slender cantilever bends into the elastica", "[elastica]") {
       const Vector3d exact(1. - at.shortening, 0., at.deflection);
       const double change = (fine[i] - middle[i]).norm(), error = (fine[i] - exact).norm();
       CAPTURE(poisson, kAlphas[i], change, error);
-      CHECK(error < change + 1e-6 * kAlphas[i]);
+      CHECK(error < change + 4e-6 * kAlphas[i]);
       // At least second order; fourth where an element is no longer than about 15 heights.
       CHECK(change < (middle[i] - coarse[i]).norm() / 4.);
     }
