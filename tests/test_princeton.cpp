@@ -1,6 +1,6 @@
 // The Princeton beam: a thin aluminium strip under an end force at an angle to its sides, in
 // bending about both axes and torsion. Data, and displacements by ANSYS, as in Exudyn's model
-// ANCFBeamTest.py after Obrezkov and others, Nonlinear Dyn. 109 (2022), 31-546.
+// ANCFBeamTest.py after Obrezkov and others, Nonlinear Dyn. 109 (2022).
 #include <catch2/catch.hpp>
 #include <cmath>
 
