@@ -12,7 +12,7 @@
 
 namespace railstep {
 
-inline constexpr double kSpinUpEnd = 20., kSample = .1;  // s
+inline constexpr double kSpinUpEnd = 20., kSample = .2;  // s
 
 /// One spin-up, seen from the hub.
 struct SpinUpRun {
