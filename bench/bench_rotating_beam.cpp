@@ -67,7 +67,7 @@ void arguments(benchmark::internal::Benchmark* b, int parts) {
 }
 
 BENCHMARK(ancf)->Apply([](auto* b) { arguments(b, 8); }) -> ArgsProduct({{40}, {40}, {2, 4, 8}})
-    -> ArgsProduct({{40}, {5}, {4, 8}}) -> ArgsProduct({{40}, {10}, {2, 4}});
+    -> ArgsProduct({{40}, {5}, {4, 8}}) -> ArgsProduct({{40}, {10, 20}, {2, 4}});
 BENCHMARK(linearised)->Apply([](auto* b) { arguments(b, 8); });
 BENCHMARK(frame_unstiffened)->Apply([](auto* b) { arguments(b, 3); });
 BENCHMARK(frame)->Apply([](auto* b) { arguments(b, 3); }) -> ArgsProduct({{40}, {40}, {1, 2, 3, 6}})
