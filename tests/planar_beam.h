@@ -9,6 +9,8 @@
 
 namespace railstep {
 
+inline std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
+
 /// A straight beam along x from the origin that stays in the x-z plane, 5 unknowns per node: r_x,
 /// r_z, the section's b_x, b_z, and its width a_y.
 struct PlanarBeam {
@@ -29,11 +31,11 @@ inline PlanarBeam planar_beam(const BeamSection& section, const Material& materi
   s.laws = {beam_element(law, straight_nodes(part))};
   const int nodes = 2 * elements + 1;
   s.rest = Eigen::VectorXd::Zero(9 * nodes);
-  s.held.assign(static_cast<std::size_t>(9 * nodes), false);
+  s.held.assign(index_of(9 * nodes), false);
   for (int n = 0; n < nodes; ++n) {
     s.rest[9 * n] = .5 * part * n;
     s.rest[9 * n + 4] = s.rest[9 * n + 8] = 1.;
-    for (const int out : {1, 3, 5, 7}) s.held[static_cast<std::size_t>(9 * n + out)] = true;
+    for (const int out : {1, 3, 5, 7}) s.held[index_of(9 * n + out)] = true;
   }
   const Matrix27 element = element_matrices(section, law, part).mass;
   std::vector<Eigen::Triplet<double>> entries;
@@ -49,9 +51,9 @@ inline PlanarBeam planar_beam(const BeamSection& section, const Material& materi
 
 /// Holds the first node's position and, where clamped, its section.
 inline PlanarBeam hubbed(PlanarBeam b, bool clamped) {
-  for (const int i : {0, 2}) b.structure.held[static_cast<std::size_t>(i)] = true;
+  for (const int i : {0, 2}) b.structure.held[index_of(i)] = true;
   if (clamped)
-    for (const int i : {4, 6, 8}) b.structure.held[static_cast<std::size_t>(i)] = true;
+    for (const int i : {4, 6, 8}) b.structure.held[index_of(i)] = true;
   return b;
 }
 
@@ -75,7 +77,7 @@ inline PlanarBeam spin_up_beam(int elements) {
 inline std::vector<int> free_list(const Structure& s) {
   std::vector<int> free;
   for (int i = 0; i < s.unknowns(); ++i)
-    if (!s.held[static_cast<std::size_t>(i)]) free.push_back(i);
+    if (!s.held[index_of(i)]) free.push_back(i);
   return free;
 }
 

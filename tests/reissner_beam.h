@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "offline/element/shape.h"
@@ -25,7 +26,8 @@ class ReissnerBody : public MovingBody {
     law_ = {m.young * s.area, s.shear_factor_z * m.shear_modulus() * s.area, m.young * s.inertia_y};
     density_ = {m.density * s.area, m.density * s.area, m.density * s.inertia_y};
     const int n = 3 * (2 * elements + 1);
-    for (int i = 3; i < n; ++i) free_.push_back(i);
+    free_.resize(index_of(n - 3));
+    std::iota(free_.begin(), free_.end(), 3);
     mass_ = Eigen::MatrixXd::Zero(n, n);
     for (int e = 0; e < elements; ++e)
       for (const GaussPoint& g : gauss(3))

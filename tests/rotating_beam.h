@@ -114,15 +114,14 @@ class AncfBody : public MovingBody {
   }
 
   void find_places() {
-    std::vector<int> number(static_cast<std::size_t>(beam_.structure.unknowns()), -1);
-    for (std::size_t i = 0; i < free_.size(); ++i)
-      number[static_cast<std::size_t>(free_[i])] = static_cast<int>(i);
+    std::vector<int> number(index_of(beam_.structure.unknowns()), -1);
+    for (std::size_t i = 0; i < free_.size(); ++i) number[index_of(free_[i])] = static_cast<int>(i);
     const double* first = system_.valuePtr();
     for (const Structure::Element& e : beam_.structure.elements)
       for (int i = 0; i < 27; ++i)
         for (int j = 0; j < 27; ++j) {
-          const int row = number[static_cast<std::size_t>(9 * e.node[0] + i)];
-          const int column = number[static_cast<std::size_t>(9 * e.node[0] + j)];
+          const int row = number[index_of(9 * e.node[0] + i)];
+          const int column = number[index_of(9 * e.node[0] + j)];
           if (row >= 0 && column >= 0)
             places_.push_back({&e, i, j, &system_.coeffRef(row, column) - first});
         }

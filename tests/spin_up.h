@@ -2,6 +2,7 @@
 #include <cmath>
 #include <ctime>
 #include <functional>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -74,8 +75,8 @@ inline SpinUpRun spin_up_frame(const SpinUp& hub, int bending, int axial, bool s
                                double step) {
   const PlanarBeam b = hubbed(spin_up_beam(8), true);
   const Eigen::MatrixXd modes = planar_modes(b, bending, axial);
-  std::vector<int> free;
-  for (int i = 0; i < bending + axial; ++i) free.push_back(3 + i);
+  std::vector<int> free(index_of(bending + axial));
+  std::iota(free.begin(), free.end(), 3);
   FloatingBody body(floating_frame(b.structure, b.mass, modes, stiffening), free, drive_frame(hub));
   const FramePoint end = frame_point(b.structure, modes, 16, stiffening);
   return spin_up(body, at_rest(Eigen::VectorXd::Zero(3 + bending + axial)), hub, step,
