@@ -27,7 +27,7 @@ double tip_error(int axial_points) {
   track.rails = 1;
   track.bay_length = 4.;
   track.elements_per_bay = 4;
-  track.ends = RailEnds::clamped;
+  track.ends = {RailEnd::clamped, RailEnd::clamped};
   track.rule.axial_points = axial_points;
   // Half of a clamped beam under a force in its middle: L = 2 m, half the force, no turn at the
   // end.

@@ -16,7 +16,7 @@ inline constexpr double kRounding = 1e-7;
 inline constexpr double kHead = .1, kFoot = -.085;  // m over the axis
 
 /// Two rails on sleepers that move in all directions, so that rails are coupled by roll and shift.
-inline Track sleeper_track(int elements_per_bay, RailEnds ends = RailEnds::free) {
+inline Track sleeper_track(int elements_per_bay, RailEnds ends = {}) {
   Track t;
   t.section = section_f();
   t.bays = 6;

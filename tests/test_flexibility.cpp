@@ -11,7 +11,8 @@ using Catch::Matchers::WithinRel;
 TEST_CASE("between ports, model and residual make the fine track's flexibility", "[flexibility]") {
   const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
   const auto [elements_per_bay, ends] =
-      GENERATE(std::pair{1, RailEnds::free}, std::pair{2, RailEnds::clamped});
+      GENERATE(std::pair{1, RailEnds{}}, std::pair{2, RailEnds{RailEnd::clamped, RailEnd::clamped}},
+               std::pair{2, RailEnds{RailEnd::pinned, RailEnd::free}});
   const Track coarse = sleeper_track(elements_per_bay, ends);
   const Statics fine(sleeper_track(kPoints * elements_per_bay, ends));
   const std::vector<Line> lines = assemble(coarse);

@@ -24,7 +24,8 @@ void refuse_unstepped(const Scene& scene) {
   };
   refuse(scene.loads.empty() && scene.wheelsets.empty(),
          "needs a [[load]] or a [[wheelset]] and the scene has neither");
-  refuse(scene.step.steps % scene.step.steps_per_frame != 0,
+  refuse(!scene.step, "and condense need a [step] and the scene has none");
+  refuse(scene.step->steps % scene.step->steps_per_frame != 0,
          "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
 }
 
@@ -101,14 +102,14 @@ Railhead railhead_of(const Scene& scene) {
 }
 
 Scheme scheme_of(const Scene& scene) {
-  const StepScene& step = scene.step;
+  const StepScene& step = *scene.step;
   if (scene.condense.kind == Condensation::modal) return held_force(step.dt, step.rho_inf);
   return step.scheme == TimeScheme::backward_euler ? backward_euler(step.dt)
                                                    : generalised_alpha(step.dt, step.rho_inf);
 }
 
 PackOptions options_of(const Scene& scene) {
-  const StepScene& step = scene.step;
+  const StepScene& step = *scene.step;
   if (step.steps_per_frame > std::numeric_limits<int>::max())
     throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
                                  scene.file.string(), step.steps_per_frame,
@@ -204,7 +205,7 @@ Built::Built(const Scene& scene) try {
   packed = std::make_unique<PackedModel>(
       track, Traffic{loads_of(scene), wheelsets_of(scene), head, std::move(sensors.probes)},
       options_of(scene));
-  if (scene.step.start == Start::equilibrium)
+  if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));

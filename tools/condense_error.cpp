@@ -27,20 +27,21 @@ std::vector<double> rows_of(const Scene& scene, std::int64_t frames) {
 }  // namespace
 
 TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides) {
-  const double frame = scene.step.dt * static_cast<double>(scene.step.steps_per_frame);
+  const StepScene& step = *scene.step;  // there, or no model would be
+  const double frame = step.dt * static_cast<double>(step.steps_per_frame);
   const double most = std::min(kWindow, scene.duration());
   const auto frames = std::max<std::int64_t>(1, std::llround(std::floor(most / frame + 1e-9)));
   std::vector<std::string> finer = overrides;
   finer.push_back("condense.kind=\"full\"");
   finer.push_back(fmt::format("track.elements_per_bay={}", 2 * scene.track.elements_per_bay));
   finer.push_back(fmt::format("step.frame_s={:.17g}", frame));
-  finer.push_back(fmt::format("step.dt_s={:.17g}", .5 * scene.step.dt));
+  finer.push_back(fmt::format("step.dt_s={:.17g}", .5 * step.dt));
   const Simulation columns(scene);
   const std::vector<double> got = rows_of(scene, frames);
   const std::vector<double> want = rows_of(read_scene(scene.file, finer), frames);
   const std::size_t width = columns.columns().size(), rows = got.size() / width;
   if (got.size() != want.size()) throw std::runtime_error("the reference run ended early");
-  const std::size_t first = scene.step.start == Start::released ? rows / 5 : 0;
+  const std::size_t first = step.start == Start::released ? rows / 5 : 0;
   TransientError result{static_cast<double>(frames) * frame, 0.};
   for (std::size_t c = 0; c < width; ++c) {
     if (!is_compared(columns.columns()[c])) continue;

@@ -139,6 +139,16 @@ struct Table::Entry {
     refuse(at, fmt::format("{} is out of range; accepted is {}{}", found, accepted.text(),
                            millimetres ? " (metres; was it given in millimetres?)" : ""));
   }
+  [[nodiscard]] std::size_t choice(const toml::node& at, Names names) const {
+    const std::string found = fmt::format("{} = {}", key, shown(at));
+    const auto* value = at.as_string();
+    if (!value)
+      refuse(at, fmt::format("{} is {}; one of {} is accepted", found, kind(at), listed(names)));
+    const auto* name = std::find(names.begin(), names.end(), value->get());
+    if (name == names.end())
+      refuse(at, fmt::format("{} is unknown; accepted are {}", found, listed(names)));
+    return static_cast<std::size_t>(name - names.begin());
+  }
   [[nodiscard]] const toml::array& array(std::size_t least, std::size_t most) const {
     const toml::array* found = node->as_array();
     if (!found) refuse_kind("an array");
@@ -218,21 +228,25 @@ std::string Table::string(std::string_view key, std::string_view otherwise) cons
   return has(key) ? string(key) : std::string(otherwise);
 }
 
-std::size_t Table::choice(std::string_view key,
-                          std::initializer_list<std::string_view> names) const {
+std::size_t Table::choice(std::string_view key, Names names) const {
   const Entry entry = need(key);
-  const auto* value = entry.node->as_string();
-  if (!value) entry.refuse_kind(fmt::format("one of {}", listed(names)));
-  const auto* found = std::find(names.begin(), names.end(), value->get());
-  if (found == names.end())
-    entry.refuse(*entry.node, fmt::format("{} = {} is unknown; accepted are {}", key,
-                                          shown(*entry.node), listed(names)));
-  return static_cast<std::size_t>(found - names.begin());
+  return entry.choice(*entry.node, names);
 }
 
-std::size_t Table::choice(std::string_view key, std::initializer_list<std::string_view> names,
-                          std::size_t otherwise) const {
+std::size_t Table::choice(std::string_view key, Names names, std::size_t otherwise) const {
   return has(key) ? choice(key, names) : otherwise;
+}
+
+std::vector<std::size_t> Table::choices(std::string_view key, Names names, std::size_t count,
+                                        std::size_t otherwise) const {
+  if (!has(key)) return std::vector<std::size_t>(count, otherwise);
+  const Entry entry = need(key);
+  if (!entry.node->is_array())
+    return std::vector<std::size_t>(count, entry.choice(*entry.node, names));
+  std::vector<std::size_t> chosen;
+  for (const toml::node& node : entry.array(count, count))
+    chosen.push_back(entry.choice(node, names));
+  return chosen;
 }
 
 std::filesystem::path Table::path(std::string_view key) const {

@@ -54,11 +54,12 @@ class Table {
   [[nodiscard]] std::string string(std::string_view key) const;
   [[nodiscard]] std::string string(std::string_view key, std::string_view otherwise) const;
   /// One of `names`; returns its index.
-  [[nodiscard]] std::size_t choice(std::string_view key,
-                                   std::initializer_list<std::string_view> names) const;
-  [[nodiscard]] std::size_t choice(std::string_view key,
-                                   std::initializer_list<std::string_view> names,
-                                   std::size_t otherwise) const;
+  using Names = std::initializer_list<std::string_view>;
+  [[nodiscard]] std::size_t choice(std::string_view key, Names names) const;
+  [[nodiscard]] std::size_t choice(std::string_view key, Names names, std::size_t otherwise) const;
+  /// `count` of them: one name stands for all, an array has one each.
+  [[nodiscard]] std::vector<std::size_t> choices(std::string_view key, Names names,
+                                                 std::size_t count, std::size_t otherwise) const;
   /// A path, relative to the folder of the file it stands in (from --set too).
   [[nodiscard]] std::filesystem::path path(std::string_view key) const;
   /// An array of `least` to `most` numbers.

@@ -11,6 +11,13 @@
 namespace railstep {
 namespace {
 
+/// One word for both ends, or a pair [x = 0, x = length].
+RailEnds read_ends(const Table& t) {
+  constexpr RailEnd kEnds[] = {RailEnd::free, RailEnd::pinned, RailEnd::clamped};
+  const auto ends = t.choices("ends", {"free", "pinned", "clamped"}, 2, 0);
+  return {kEnds[ends[0]], kEnds[ends[1]]};
+}
+
 TrackScene read_track(const Table& t) {
   TrackScene track;
   track.unknowns =
@@ -20,7 +27,7 @@ TrackScene read_track(const Table& t) {
   track.bay = t.number("bay_m", between(0.05, 5.0));
   track.elements_per_bay = static_cast<int>(t.integer("elements_per_bay", 1, 1000, 2));
   track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
-  track.ends = t.choice("ends", {"free", "clamped"}, 0) == 0 ? RailEnds::free : RailEnds::clamped;
+  track.ends = read_ends(t);
   track.gravity = t.boolean("gravity", false);
   track.axial_points = static_cast<int>(t.integer("axial_points", 1, 5, 2));
   return track;
@@ -49,9 +56,10 @@ Spring read_spring(const Table& t, const std::string& axis, bool required = fals
   return {t.number(stiffness, k, 0.0), t.number(damping, c, 0.0)};
 }
 
-std::optional<SupportScene> read_support(const Table& root, const TrackScene& track) {
-  if (track.ends == RailEnds::clamped && !root.has("support")) return std::nullopt;
-  const Table t = root.table("support");
+std::optional<SupportScene> read_support(const Table& root) {
+  const std::optional<Table> given = root.table_if("support");
+  if (!given) return std::nullopt;
+  const Table& t = *given;
   SupportScene s;
   s.x = read_spring(t, "x");
   s.y = read_spring(t, "y");
@@ -148,9 +156,9 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.track = read_track(root.table("track"));
   check_size(root.table("track"), scene.track);
   scene.rail = read_rail(root.table("rail"));
-  scene.support = read_support(root, scene.track);
+  scene.support = read_support(root);
   scene.sleeper = read_sleeper(root, scene);
-  scene.step = read_step(root.table("step"));
+  if (const std::optional<Table> step = root.table_if("step")) scene.step = read_step(*step);
   scene.condense = read_condense(root);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene);

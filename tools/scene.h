@@ -160,15 +160,18 @@ struct Scene {
   std::filesystem::path file;
   TrackScene track;
   RailScene rail;
-  std::optional<SupportScene> support;  // none only between clamped ends
+  std::optional<SupportScene> support;  // none: only the ends hold the rails, or nothing
   std::optional<SleeperScene> sleeper;
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
-  StepScene step;
+  std::optional<StepScene> step;  // none: the scene is not run
   CondenseScene condense;
   std::vector<SensorScene> sensors;
   bool trace_supports;
-  [[nodiscard]] double duration() const { return static_cast<double>(step.steps) * step.dt; }
+  /// Of the run, s; 0 without one.
+  [[nodiscard]] double duration() const {
+    return step ? static_cast<double>(step->steps) * step->dt : 0.0;
+  }
 };
 
 /// Reads and checks a scene; nothing of its size is allocated. Throws InputError.

@@ -77,7 +77,7 @@ LoadScene read_load(const Table& t, const Scene& scene) {
   load.rail = read_side(t, scene);
   load.may_leave_rail = t.boolean("may_leave_rail", false);
   load.start = t.number("start_m", load.may_leave_rail ? between(-1e6, 1e6) : between(0.0, length));
-  load.speed = t.number("speed_m_per_s", kSpeed);
+  load.speed = t.number("speed_m_per_s", kSpeed, 0.0);
   load.force_z = t.number("force_z_n", kForce);
   load.at = t.choice("at", {"axis", "head"}, 0) == 0 ? Height::axis : Height::head;
   if (t.has("table")) load.factor = read_time_table(t, "table", between(-1e6, 1e6));

@@ -6,7 +6,7 @@ namespace railstep {
 
 namespace {
 
-/// Unknowns of the end nodes of an element in the line, -1 where clamped.
+/// Unknowns of the end nodes of an element in the line, -1 where held.
 std::vector<int> end_unknowns(const Line& line, const std::vector<int>& carried, int element) {
   std::vector<int> result;
   for (const int node : {2 * element, 2 * element + 2})
@@ -16,7 +16,7 @@ std::vector<int> end_unknowns(const Line& line, const std::vector<int>& carried,
   return result;
 }
 
-/// Rows of `from` at the given unknowns, 0 where clamped.
+/// Rows of `from` at the given unknowns, 0 where held.
 Eigen::MatrixXd gather(const Eigen::MatrixXd& from, const std::vector<int>& unknowns) {
   Eigen::MatrixXd result(static_cast<Eigen::Index>(unknowns.size()), from.cols());
   for (Eigen::Index i = 0; i < result.rows(); ++i) {

@@ -6,13 +6,10 @@
 namespace railstep {
 
 std::vector<int> carried_unknowns(const Line& line) {
-  for (const auto& node : line.unknown_of) {
-    std::vector<int> found;
-    for (int k = 0; k < 9; ++k)
-      if (node[static_cast<std::size_t>(k)] >= 0) found.push_back(k);
-    if (!found.empty()) return found;
-  }
-  return {};
+  std::vector<int> found;
+  for (int k = 0; k < 9; ++k)
+    if (line.unknown(1, k) >= 0) found.push_back(k);
+  return found;
 }
 
 int element_at(const Track& track, double x) {

@@ -77,7 +77,7 @@ class ReducedLine : public LineFlexibility {
   const Basis& basis_;
 };
 
-/// Unknowns of a node that a line carries, from the first node that carries any.
+/// Unknowns of a node that a line carries, from an inner one: ends may hold some of theirs.
 std::vector<int> carried_unknowns(const Line& line);
 
 /// Element that holds a place of the rail. Throws std::out_of_range off the rail.

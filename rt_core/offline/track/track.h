@@ -11,7 +11,13 @@ namespace railstep {
 /// Which unknowns a node carries: all nine, or [r_z, b_x] for vertical bending alone.
 enum class Unknowns { full, vertical };
 
-enum class RailEnds { free, clamped };
+/// What holds a rail's end node. Pinned: its position (all three), so that the rail carries axial
+/// force, and its roll (a_z and b_y); the slopes a_x and b_x of bending stay free. Clamped: all
+/// nine.
+enum class RailEnd { free, pinned, clamped };
+
+/// The ends of every rail, at x = 0 and at x = length.
+using RailEnds = std::array<RailEnd, 2>;
 
 /// Spring-dampers between one rail and what carries it, at each bay border.
 struct Support {
@@ -45,7 +51,7 @@ struct Track {
   double bay_length = .6;  // m
   int elements_per_bay = 2;
   double rail_spacing = 1.5;  // m
-  RailEnds ends = RailEnds::free;
+  RailEnds ends = {RailEnd::free, RailEnd::free};
   Support support;
   std::optional<Sleeper> sleeper;
 
