@@ -18,5 +18,6 @@ struct Command {
 Command add_fit(CLI::App& app);
 Command add_condense(CLI::App& app);
 Command add_run(CLI::App& app);
+Command add_static(CLI::App& app);
 
 }  // namespace railstep

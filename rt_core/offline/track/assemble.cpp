@@ -37,18 +37,6 @@ std::vector<int> carried(Unknowns unknowns) {
   return {0, 1, 2, 3, 4, 5, 6, 7, 8};
 }
 
-/// Whether an end holds unknown k of its node.
-bool holds(RailEnd end, int k) {
-  const bool position = k < 3, roll = k == 5 || k == 7;  // a_z, b_y
-  return end == RailEnd::clamped || (end == RailEnd::pinned && (position || roll));
-}
-
-/// What holds a node: its end, if it is one.
-RailEnd end_at(const Track& track, int node) {
-  if (node == 0) return track.ends[0];
-  return node == track.nodes() - 1 ? track.ends[1] : RailEnd::free;
-}
-
 /// Numbers nodes along x; a seat's sleeper follows its node so that the band stays narrow.
 void number(const Track& track, Assembly& part) {
   const int nodes = track.nodes(), per_bay = 2 * track.elements_per_bay;
@@ -57,7 +45,7 @@ void number(const Track& track, Assembly& part) {
   part.line.sleeper_unknown_of.assign(static_cast<std::size_t>(track.bays) + 1, {-1, -1, -1});
   for (int node = 0; node < nodes; ++node) {
     for (const int k : carried(track.unknowns))
-      if (!holds(end_at(track, node), k))
+      if (!holds(track, node, k))
         part.line.unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)] =
             part.count++;
     if (!track.sleeper || node % per_bay != 0) continue;
@@ -218,6 +206,14 @@ void check(const Track& track) {
 }
 
 }  // namespace
+
+bool holds(const Track& track, int node, int k) {
+  const bool position = k < 3, roll = k == 5 || k == 7;  // a_z, b_y
+  const RailEnd end = node == 0                   ? track.ends[0]
+                      : node == track.nodes() - 1 ? track.ends[1]
+                                                  : RailEnd::free;
+  return end == RailEnd::clamped || (end == RailEnd::pinned && (position || roll));
+}
 
 std::vector<Line> assemble(const Track& track) {
   check(track);

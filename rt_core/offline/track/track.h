@@ -62,6 +62,9 @@ struct Track {
   BeamLaw law() const { return beam_law(section, material, rule, axis_z, axial_force); }
 };
 
+/// Whether the ends of a rail hold unknown k = 0..8 of its node.
+bool holds(const Track& track, int node, int k);
+
 /// A material point of one rail.
 struct RailPoint {
   int rail;       // 0 left (+y), 1 right
