@@ -1,6 +1,6 @@
 #include <Eigen/SparseCholesky>
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 
 #include "fine_track.h"
 #include "offline/beam/equilibrium.h"
@@ -49,8 +49,8 @@ Eigen::MatrixXd plain_of_lines(const Track& track, const TrackStructure& rails,
                 sign(k == 1 || k == 3 || k == 5 || k == 7);
       for (int seat = 0; seat < static_cast<int>(line.sleeper_unknown_of.size()); ++seat)
         for (int d = 0; d < 3; ++d) {
-          const int u = line.sleeper_unknown_of[static_cast<std::size_t>(seat)]
-                                               [static_cast<std::size_t>(d)];
+          const int u =
+              line.sleeper_unknown_of[static_cast<std::size_t>(seat)][static_cast<std::size_t>(d)];
           if (u < 0 || factor == 0.) continue;
           const Functional end{.sleeper = {{rail, seat, d, 1.}}};
           const Eigen::SparseVector<double> row = rails.row(end);
@@ -100,8 +100,7 @@ TEST_CASE("statics of structure and of lines agree, springs included", "[statics
   const std::vector<PointForce> forces = {{{0, x, .01, .1, 2}, -50e3}, {{1, x, 0., .1, 1}, 10e3}};
   Eigen::VectorXd f = rails.weight();
   for (const PointForce& force : forces) f += force.force * rails.row(force.at);
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(
-      free_part(s, tangent(s, s.rest)));
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(free_part(s, tangent(s, s.rest)));
   const Eigen::VectorXd moved = factor.solve(free_part(s, f));
   const auto displacements = statics.solve(forces, 9.81);
   for (const RailPoint& point : {RailPoint{0, x, 0., .1, 2}, RailPoint{1, x, 0., -.085, 1},

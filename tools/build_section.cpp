@@ -34,9 +34,9 @@ RailSection from(const RectangleSizes& r, const RailScene& rail) {
 RailSection from(const RectangleSize& r, const RailScene& rail) {
   const double w = r.width, h = r.height;
   const Polygon outline = {{-.5 * w, 0.}, {.5 * w, 0.}, {.5 * w, h}, {-.5 * w, h}};
-  return {solved({w * h, .5 * h, w * h * h * h / 12., h * w * w * w / 12.}, outline, h,
-                 rail.poisson),
-          rectangle_moments(h, w, rail.section_points == 0 ? 3 : rail.section_points)};
+  return {
+      solved({w * h, .5 * h, w * h * h * h / 12., h * w * w * w / 12.}, outline, h, rail.poisson),
+      rectangle_moments(h, w, rail.section_points == 0 ? 3 : rail.section_points)};
 }
 
 RailSection from(const Section& given, const RailScene&) { return {given, std::nullopt}; }

@@ -50,9 +50,9 @@ void print_history(const StaticSolution& solution) {
 std::string to_csv(const StaticSolution& solution) {
   std::string text = "rail,x_m,y_m,z_m,dx_m,dy_m,dz_m\n";
   for (const StaticPoint& p : solution.axis)
-    text += fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", p.name, p.rest[0],
-                        p.rest[1], p.rest[2], p.displacement[0], p.displacement[1],
-                        p.displacement[2]);
+    text +=
+        fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", p.name, p.rest[0],
+                    p.rest[1], p.rest[2], p.displacement[0], p.displacement[1], p.displacement[2]);
   return text;
 }
 

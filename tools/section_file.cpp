@@ -79,9 +79,8 @@ std::optional<Rectangles<double>> read_dimensions(const std::filesystem::path& f
   const std::optional<Table> t = read_toml(file).table_if("dimensions");
   if (!t) return std::nullopt;
   const auto size = [&t](const char* key) { return t->number(key, above_upto(0.0, 1.0)); };
-  return Rectangles<double>{
-      {size("foot_width_m"), size("web_width_m"), size("head_width_m")},
-      {size("foot_height_m"), size("web_height_m"), size("head_height_m")}};
+  return Rectangles<double>{{size("foot_width_m"), size("web_width_m"), size("head_width_m")},
+                            {size("foot_height_m"), size("web_height_m"), size("head_height_m")}};
 }
 
 }  // namespace railstep

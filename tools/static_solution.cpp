@@ -41,21 +41,18 @@ void add_force(Problem& problem, int rail, double x, Height at, double newton) {
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
   for (const BodyForceScene& force : w.forces)
     if (force.force.at(0.) != 0.)
-      throw InputError(fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
-                                   "forces that are 0 at t = 0",
-                                   scene.file.string(), w.name));
+      throw InputError(
+          fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
+                      "forces that are 0 at t = 0",
+                      scene.file.string(), w.name));
   const double weight = ((w.gravity ? w.mass : 0.) + w.carried_mass) * kGravity;
   for (const int rail : {0, 1}) add_force(problem, rail, w.start, Height::head, -.5 * weight);
 }
 
 Problem problem_of(const Scene& scene) {
   const RailSection rail = rail_section_of(scene);
-  Problem problem{track_of(scene, rail),
-                  rail.section,
-                  {},
-                  scene.track.gravity ? kGravity : 0.,
-                  .5 * rail.section.height,
-                  scene.statics};
+  Problem problem{track_of(scene, rail),    rail.section, {}, scene.track.gravity ? kGravity : 0.,
+                  .5 * rail.section.height, scene.statics};
   for (const LoadScene& load : scene.loads)
     add_force(problem, load.rail == Side::right ? 1 : 0, load.start, load.at,
               load.force_z * (load.factor ? load.factor->at(0.) : 1.));
@@ -141,14 +138,15 @@ StaticSolution solve_nonlinear(const Problem& problem, const Asked& asked) {
   StructureLoad load{rails.weight(problem.gravity)};
   for (const PointForce& force : problem.forces) load.force += force.force * rails.row(force.at);
   const Equilibrium found = equilibrium(structure, load, problem.newton);
-  StaticSolution solution{found.converged, found.iterations, found.load_steps, found.residual,
-                          found.history,   {},               {}};
+  StaticSolution solution{
+      found.converged, found.iterations, found.load_steps, found.residual, found.history, {}, {}};
   if (!found.converged) {
     solution.residual = found.history.back().residual;
     return solution;
   }
   const Eigen::VectorXd u = found.q - structure.rest;
-  answer(asked, [&](const Functional& f) { return rails.row(f).dot(u); }, solution);
+  answer(
+      asked, [&](const Functional& f) { return rails.row(f).dot(u); }, solution);
   return solution;
 }
 
@@ -194,7 +192,8 @@ StaticSolution solve_timoshenko(const Problem& problem, const Asked& asked) {
   const Eigen::VectorXd u = beam.solve(problem.forces, problem.gravity);
   const double residual = beam.residual(u, problem.forces, problem.gravity, problem.slope_length);
   StaticSolution solution{true, 1, 1, residual, {}, {}, {}};
-  answer(asked, [&](const Functional& f) { return beam.at(u, f.rail[0].at); }, solution);
+  answer(
+      asked, [&](const Functional& f) { return beam.at(u, f.rail[0].at); }, solution);
   return solution;
 }
 

@@ -109,9 +109,12 @@ void add_seat(const Track& track, Assembly& part, int seat) {
   Row roll;
   push(roll, node[5], .5);
   push(roll, node[7], -.5);
-  if (antisymmetric && !roll.empty()) push(roll, sleeper[2], -2. / g);
-  if (!roll.empty()) part.add(part.stiffness, roll, support.roll_stiffness);
-  if (!roll.empty()) part.add(part.damping, roll, support.roll_damping);
+  // Rails without roll unknowns leave the sleeper's roll alone; a rail whose end is held does not.
+  if (track.unknowns == Unknowns::full) {
+    if (antisymmetric) push(roll, sleeper[2], -2. / g);
+    part.add(part.stiffness, roll, support.roll_stiffness);
+    part.add(part.damping, roll, support.roll_damping);
+  }
   if (!track.sleeper) return;
   for (std::size_t d = 0; d < 3; ++d) {
     if (sleeper[d] < 0) continue;
