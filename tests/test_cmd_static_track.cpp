@@ -102,6 +102,17 @@ TEST_CASE("the shape of the neutral axis", "[static]") {
   std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("the far end of a rail is on it, whatever its bays round to", "[static]") {
+  // 7 x 0.6 m over elements of 0.6 m is 7 + 1e-15 in doubles.
+  for (const char* model : {"linearised", "nonlinear", "timoshenko"})
+    CHECK(railstep_program(
+              "static " + shipped("cantilever_rail") +
+              "--set track.bays=7 --set track.bay_m=0.6 --set 'sensor[0].position_m=4.2' "
+              "--model " +
+              model)
+              .code == 0);
+}
+
 TEST_CASE("no equilibrium is exit 1, with the history", "[static]") {
   const auto folder = fresh_folder("shape");
   const std::string file = (folder / "axis.csv").string();

@@ -73,7 +73,10 @@ TEST_CASE("at rest a track's nonlinear tangent is the stiffness of its lines", "
   const Structure& s = rails.structure();
   Eigen::MatrixXd K(tangent(s, s.rest));
   for (int i = 0; i < s.unknowns(); ++i)
-    if (s.held[static_cast<std::size_t>(i)]) K.row(i).setZero(), K.col(i).setZero();
+    if (s.held[static_cast<std::size_t>(i)]) {
+      K.row(i).setZero();
+      K.col(i).setZero();
+    }
   const Eigen::MatrixXd T = plain_of_lines(track, rails, lines);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(T.cols(), T.cols());
   Eigen::VectorXd weights(T.cols());

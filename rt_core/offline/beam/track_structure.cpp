@@ -1,6 +1,5 @@
 #include "offline/beam/track_structure.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -113,11 +112,8 @@ void TrackStructure::add_ballast(int seat) {
 }
 
 Sparse TrackStructure::row(const RailPoint& point) const {
-  const double along = point.x / track_.element_length();
-  if (!(along >= 0.) || !(along <= track_.elements()))
-    throw std::out_of_range("point off the rail");
-  const int element = std::min(static_cast<int>(along), track_.elements() - 1);
-  const Vector27 local = point_row(2. * (along - element) - 1., point.y, point.z, point.direction);
+  const auto [element, xi] = place_on(track_, point.x);
+  const Vector27 local = point_row(xi, point.y, point.z, point.direction);
   Sparse row(structure_.unknowns());
   for (int i = 0; i < 27; ++i)
     if (local[i] != 0.) row.coeffRef(place(point.rail, 2 * element + i / 9, i % 9)) += local[i];

@@ -218,6 +218,14 @@ bool holds(const Track& track, int node, int k) {
   return end == RailEnd::clamped || (end == RailEnd::pinned && (position || roll));
 }
 
+ElementPlace place_on(const Track& track, double x) {
+  const double place = x / track.element_length();
+  if (!(place >= 0.) || !(place <= track.elements() * (1. + 1e-12)))
+    throw std::out_of_range("point off the rail");
+  const int element = std::min(static_cast<int>(place), track.elements() - 1);
+  return {element, 2. * (place - element) - 1.};
+}
+
 std::vector<Line> assemble(const Track& track) {
   check(track);
   std::vector<Line> lines;
@@ -235,10 +243,8 @@ std::vector<Line> assemble(const Track& track) {
 
 Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
                                       const RailPoint& point) {
-  const double place = point.x / track.element_length();
-  if (!(place >= 0.) || !(place <= track.elements())) throw std::out_of_range("point off the rail");
-  const int element = std::min(static_cast<int>(place), track.elements() - 1);
-  const Vector27 local = point_row(2. * (place - element) - 1., point.y, point.z, point.direction);
+  const auto [element, xi] = place_on(track, point.x);
+  const Vector27 local = point_row(xi, point.y, point.z, point.direction);
   const double factor = line.rail_factor[static_cast<std::size_t>(point.rail)];
   Eigen::SparseVector<double> row(line.unknowns());
   for (int i = 0; i < 27; ++i) {

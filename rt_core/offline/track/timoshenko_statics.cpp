@@ -82,7 +82,10 @@ Eigen::SparseVector<double> TimoshenkoStatics::row(const RailPoint& point) const
     if (number_[first + k] >= 0 && factor != 0.) row.coeffRef(number_[first + k]) += factor;
   };
   add(static_cast<std::size_t>(point.direction), 1.);
-  if (point.direction == 0) add(4, point.z), add(5, -point.y);
+  if (point.direction == 0) {
+    add(4, point.z);
+    add(5, -point.y);
+  }
   if (point.direction == 1) add(3, -point.z);
   if (point.direction == 2) add(3, point.y);
   return row;
