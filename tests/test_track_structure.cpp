@@ -14,12 +14,21 @@ namespace {
 const Rectangles<double> kSectionF = {{.1380985536, .02522171327, .07720505094},
                                       {.020996636, .13308941227, .03165145173}};
 
-/// The sleeper track with pads of two halves that can rock, nodes off the centroid and pinned ends.
+/// The sleeper track with pads of two halves that can rock, nodes off the centroid and ends
+/// that are held.
 Track awkward_track() {
   Track t = sleeper_track(1, {RailEnd::pinned, RailEnd::clamped});
   t.support.half_spread = .05;
   t.section.moments = moments(kSectionF);
   t.axis_z = .03;
+  return t;
+}
+
+/// The same with rails under pressure between clamps.
+Track pressed_track() {
+  Track t = awkward_track();
+  t.ends = {RailEnd::clamped, RailEnd::clamped};
+  t.axial_force = -4e5;
   return t;
 }
 
@@ -66,8 +75,8 @@ Eigen::MatrixXd plain_of_lines(const Track& track, const TrackStructure& rails,
 }  // namespace
 
 TEST_CASE("at rest a track's nonlinear tangent is the stiffness of its lines", "[statics]") {
-  const Track track =
-      GENERATE(paper_track(), sleeper_track(2), awkward_track(), single_rail_on_sleepers());
+  const Track track = GENERATE(paper_track(), sleeper_track(2), awkward_track(), pressed_track(),
+                               single_rail_on_sleepers());
   const std::vector<Line> lines = assemble(track);
   const TrackStructure rails(track);
   const Structure& s = rails.structure();
@@ -115,7 +124,7 @@ TEST_CASE("statics of structure and of lines agree, springs included", "[statics
 }
 
 TEST_CASE("a small load moves the nonlinear track as the linear one", "[statics]") {
-  const Track track = awkward_track();
+  const Track track = GENERATE(awkward_track(), pressed_track());
   const Statics statics(track);
   const TrackStructure rails(track);
   const RailPoint under{0, 1.38, 0., .1, 2};
@@ -133,6 +142,10 @@ TEST_CASE("a small load moves the nonlinear track as the linear one", "[statics]
   CHECK_THAT((moved(5e4) / 5e4 - flexibility) / half, WithinRel(-1., .04));
 }
 
-TEST_CASE("a nonlinear track of vertical unknowns is refused", "[statics]") {
+TEST_CASE("what is no nonlinear track is refused", "[statics]") {
   CHECK_THROWS_WITH(TrackStructure(peers_track(1)), Catch::Contains("all unknowns"));
+  Track loose = sleeper_track(1, {RailEnd::clamped, RailEnd::free}), tilting = awkward_track();
+  loose.axial_force = tilting.axial_force = 1e5;
+  CHECK_THROWS_WITH(TrackStructure(loose), Catch::Contains("both ends held"));
+  CHECK_THROWS_WITH(TrackStructure(tilting), Catch::Contains("both ends held"));
 }

@@ -25,6 +25,12 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
     throw std::invalid_argument("a nonlinear rail moves in space: it needs all unknowns");
   if (track.bays < 1 || track.elements_per_bay < 1)
     throw std::invalid_argument("a track needs one bay and one element");
+  // A pin off the centroid does not hold the moment of a force through it.
+  const auto held = [&](RailEnd end) {
+    return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);
+  };
+  if (track.axial_force != 0. && !(held(track.ends[0]) && held(track.ends[1])))
+    throw std::invalid_argument("a nonlinear rail under axial force wants both ends held");
   const int rail_unknowns = 9 * track.nodes() * track.rails;
   const int unknowns = track.sleeper ? number_sleepers(rail_unknowns) : rail_unknowns;
   structure_.rest = Eigen::VectorXd::Zero(unknowns);

@@ -15,7 +15,8 @@ namespace railstep {
 class TrackStructure {
  public:
   /// Throws std::invalid_argument as assemble() does, and where the track's unknowns are not
-  /// Unknowns::full: a rail that shortens as it bends moves along x too.
+  /// Unknowns::full: a rail that shortens as it bends moves along x too. An axial force wants ends
+  /// that hold it, or the rail would not be in equilibrium at rest.
   explicit TrackStructure(const Track& track);
 
   const Structure& structure() const { return structure_; }
