@@ -20,5 +20,6 @@ Command add_condense(CLI::App& app);
 Command add_modes(CLI::App& app);
 Command add_run(CLI::App& app);
 Command add_static(CLI::App& app);
+Command add_rules(CLI::App& app);
 
 }  // namespace railstep
