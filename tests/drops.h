@@ -14,16 +14,16 @@
 
 namespace railstep {
 
-inline constexpr double kGravity = 9.81;       // on the wheels alone
+inline constexpr double kDropGravity = 9.81;   // on the wheels alone
 inline constexpr double kWheel = 600.;         // kg, on each rail
 inline constexpr double kFall = .1;            // m/s, down
 inline constexpr double kHertz = 9.412508e10;  // hard-cases.md: r .46 m on a crown of .3 m
 
 /// How the wheels come down.
 struct Fall {
-  double gravity = kGravity;  // m/s2
-  double above = 0.;          // of the rails at the start, m
-  double mass = kWheel;       // kg on each rail
+  double gravity = kDropGravity;  // m/s2
+  double above = 0.;              // of the rails at the start, m
+  double mass = kWheel;           // kg on each rail
 };
 
 /// Two wheels, one on each rail, that fall on them with kFall.

@@ -21,7 +21,7 @@ struct TwoMasses {
   }
   static std::array<double, 4> rate(const std::array<double, 4>& y) {
     const double f = force(y);
-    return {y[1], kGravity - f / kWheel, y[3], (f - 3e7 * y[2] - 3e4 * y[3]) / 150.};
+    return {y[1], kDropGravity - f / kWheel, y[3], (f - 3e7 * y[2] - 3e4 * y[3]) / 150.};
   }
   void step(double h) {
     const auto moved = [&](const std::array<double, 4>& k, double part) {

@@ -26,6 +26,11 @@ void refuse_unstepped(const Scene& scene) {
   refuse(scene.loads.empty() && scene.wheelsets.empty(),
          "needs a [[load]] or a [[wheelset]] and the scene has neither");
   refuse(!scene.step, "and condense need a [step] and the scene has none");
+  refuse(scene.track.model != RailModel::linearised,
+         "and condense step the linearised rail; accepted is track.model = \"linearised\"");
+  refuse(scene.track.reference_line != ReferenceLine::centroid,
+         "and condense have the nodes on the centroid; accepted is track.reference_line = "
+         "\"centroid\"");
   refuse(scene.step->steps % scene.step->steps_per_frame != 0,
          "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
 }
@@ -40,12 +45,6 @@ std::vector<double> packed_table(const TimeTable& table) {
     rows.push_back(table.value[i]);
   }
   return rows;
-}
-
-/// Height over the axis, m.
-double height_z(Height at, const Section& section) {
-  if (at == Height::axis) return 0.;
-  return (at == Height::head ? section.height : 0.) - section.area.centroid_height;
 }
 
 std::vector<MovingLoad> loads_of(const Scene& scene) {
@@ -63,8 +62,6 @@ std::vector<MovingLoad> loads_of(const Scene& scene) {
   }
   return loads;
 }
-
-constexpr double kGravity = 9.81;  // m/s2
 
 Wheelset wheelset_of(const WheelsetScene& w) {
   Wheelset set;
@@ -129,12 +126,12 @@ PackOptions options_of(const Scene& scene) {
   return options;
 }
 
-Support support_of(const SupportScene& s, const Section& section) {
+Support support_of(const SupportScene& s, const Section& section, double axis_z) {
   return {.stiffness = {s.x.stiffness, s.y.stiffness, s.z.stiffness},
           .damping = {s.x.damping, s.y.damping, s.z.damping},
           .roll_stiffness = s.roll.stiffness,
           .roll_damping = s.roll.damping,
-          .height_z = height_z(s.at, section),
+          .height_z = height_z(s.at, section, axis_z),
           .half_spread = s.half_spread};
 }
 
@@ -149,8 +146,10 @@ Sleeper sleeper_of(const SleeperScene& s) {
 
 }  // namespace
 
-Track track_of(const Scene& scene) try {
-  const Section section = section_of(scene);
+Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scene)); }
+
+Track track_of(const Scene& scene, const RailSection& rail) try {
+  const Section& section = rail.section;
   Track track;
   track.section = {
       .area = section.area.area,
@@ -161,8 +160,11 @@ Track track_of(const Scene& scene) try {
       .shear_factor_z = section.shear.shear_factor_z,
       .shear_centre_z = section.shear.shear_centre_height - section.area.centroid_height};
   track.material = {scene.rail.young, scene.rail.poisson, scene.rail.density};
-  track.rule.shear = scene.rail.element;
-  track.rule.axial_points = scene.track.axial_points;
+  // Without third and fourth moments, which it does not need, a linear element keeps its bits.
+  if (scene.track.model == RailModel::nonlinear || scene.rail.section_points > 0)
+    track.section.moments = rail.moments;
+  track.rule = scene.rail.rule;
+  track.axis_z = axis_z_of(scene, section);
   track.unknowns = scene.track.unknowns;
   track.rails = scene.track.rails;
   track.bays = static_cast<int>(scene.track.bays);  // read_scene keeps it under kMostElements
@@ -170,7 +172,7 @@ Track track_of(const Scene& scene) try {
   track.elements_per_bay = scene.track.elements_per_bay;
   track.rail_spacing = scene.track.rail_spacing;
   track.ends = scene.track.ends;
-  if (scene.support) track.support = support_of(*scene.support, section);
+  if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
   const double heat = scene.rail.expansion * scene.rail.temperature_rise;  // strain it would make
   track.axial_force = scene.rail.axial_force - scene.rail.young * track.section.area * heat;

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,33 @@
 
 namespace railstep {
 
+inline constexpr double kGravity = 9.81;  // m/s2
+
+/// A rail's section, and its moments to degree 4 about the centroid as the scene's rule integrates
+/// them, where the scene gives its shape.
+struct RailSection {
+  Section section;
+  std::optional<SectionMoments> moments;
+};
+
 /// The section that a scene names, whichever way it does; shear factors given in [rail] replace the
 /// section's. Those of rectangles are at the scene's Poisson ratio, those of a profile or a section
 /// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
+/// Throws InputError too where the rail's model or rule wants moments and the scene gives none.
+RailSection rail_section_of(const Scene& scene);
 Section section_of(const Scene& scene);
 
-/// The track of a scene, about the section's centroid. Throws InputError, for rails under so much
-/// compression that they buckle too.
+/// Height over the reference line, m, of a place on the section.
+/// @param axis_z  of that line above the centroid, m
+double height_z(Height at, const Section& section, double axis_z = 0.);
+
+/// Height of the scene's reference line above the centroid, m.
+double axis_z_of(const Scene& scene, const Section& section);
+
+/// The track of a scene. Throws InputError, for rails under so much compression that they buckle
+/// too.
 Track track_of(const Scene& scene);
+Track track_of(const Scene& scene, const RailSection& rail);
 
 /// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
 /// and support. Throws InputError, in one sentence, for what makes no model (a free rigid mode,

@@ -5,6 +5,7 @@
 #include "build.h"
 #include "offline/section/rectangles.h"
 #include "offline/section/saint_venant.h"
+#include "profile.h"
 #include "section_file.h"
 
 namespace railstep {
@@ -17,37 +18,84 @@ Section solved(const AreaProperties<double>& area, const Polygon& polygon, doubl
   return {area, saint_venant(polygon, poisson), height};
 }
 
-Section from(const RectangleSizes& r, double poisson) {
+/// Moments of rectangles as the rule integrates them.
+SectionMoments integrated(const Rectangles<double>& shape, int points) {
+  return points == 0 ? moments(shape) : moments(shape, points);
+}
+
+RailSection from(const RectangleSizes& r, const RailScene& rail) {
   const Rectangles<double> shape{{r.foot_width, r.web_width, r.head_width},
                                  {r.foot_height, r.web_height, r.head_height}};
-  return solved(properties(shape), polygon(shape), r.foot_height + r.web_height + r.head_height,
-                poisson);
+  const double height = r.foot_height + r.web_height + r.head_height;
+  return {solved(properties(shape), polygon(shape), height, rail.poisson),
+          integrated(shape, rail.section_points)};
 }
 
-Section from(const RectangleSize& r, double poisson) {
+RailSection from(const RectangleSize& r, const RailScene& rail) {
   const double w = r.width, h = r.height;
   const Polygon outline = {{-.5 * w, 0.}, {.5 * w, 0.}, {.5 * w, h}, {-.5 * w, h}};
-  return solved({w * h, .5 * h, w * h * h * h / 12., h * w * w * w / 12.}, outline, h, poisson);
+  return {
+      solved({w * h, .5 * h, w * h * h * h / 12., h * w * w * w / 12.}, outline, h, rail.poisson),
+      rectangle_moments(h, w, rail.section_points == 0 ? 3 : rail.section_points)};
 }
 
-Section from(const Section& given, double) { return given; }
+RailSection from(const Section& given, const RailScene&) { return {given, std::nullopt}; }
 
 /// As the file has them: its shear factors are those at kFitPoisson, like a profile's.
-Section from(const SectionFile& file, double) { return read_section(file.path); }
+RailSection from(const SectionFile& file, const RailScene& rail) {
+  const std::optional<Rectangles<double>> shape = read_dimensions(file.path);
+  RailSection result{read_section(file.path), std::nullopt};
+  if (shape) result.moments = integrated(*shape, rail.section_points);
+  return result;
+}
 
-Section from(const ProfileFile& file, double) { return read_profile_section(file.path); }
+RailSection from(const ProfileFile& file, const RailScene& rail) {
+  const Outline outline = read_profile(file.path).outline;
+  if (file.exact)
+    return {{properties(outline), outline_shear(outline, 0.), outline.height}, moments(outline)};
+  const SectionFit fit = fit_section(outline);
+  return {fitted_section(fit, outline.height), integrated(fit.section, rail.section_points)};
+}
 
 }  // namespace
 
-Section section_of(const Scene& scene) try {
+RailSection rail_section_of(const Scene& scene) try {
   const RailScene& rail = scene.rail;
-  Section section =
-      std::visit([&](const auto& shape) { return from(shape, rail.poisson); }, rail.shape);
-  section.shear.shear_factor_y = rail.shear_factor_y.value_or(section.shear.shear_factor_y);
-  section.shear.shear_factor_z = rail.shear_factor_z.value_or(section.shear.shear_factor_z);
-  return section;
+  RailSection found = std::visit([&](const auto& shape) { return from(shape, rail); }, rail.shape);
+  SaintVenant& shear = found.section.shear;
+  shear.shear_factor_y = rail.shear_factor_y.value_or(shear.shear_factor_y);
+  shear.shear_factor_z = rail.shear_factor_z.value_or(shear.shear_factor_z);
+  const bool needed = scene.track.model == RailModel::nonlinear || rail.section_points > 0;
+  if (needed && !found.moments)
+    throw InputError(fmt::format(
+        "{}: [rail] gives a section's constants, but {} wants its shape, of which moments of third "
+        "and fourth degree are taken; accepted are profile, rectangles and rectangle",
+        scene.file.string(),
+        rail.section_points > 0 ? "rule.section_points" : "track.model = \"nonlinear\""));
+  return found;
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: [rail] {}", scene.file.string(), error.what()));
+}
+
+Section section_of(const Scene& scene) { return rail_section_of(scene).section; }
+
+double height_z(Height at, const Section& section, double axis_z) {
+  if (at == Height::axis) return -axis_z;
+  return (at == Height::head ? section.height : 0.) - section.area.centroid_height - axis_z;
+}
+
+double axis_z_of(const Scene& scene, const Section& section) {
+  switch (scene.track.reference_line) {
+    case ReferenceLine::mid_height:
+      return .5 * section.height - section.area.centroid_height;
+    case ReferenceLine::foot:
+      return height_z(Height::foot, section);
+    case ReferenceLine::head:
+      return height_z(Height::head, section);
+    case ReferenceLine::centroid:
+      break;
+  }
+  return 0.;
 }
 
 }  // namespace railstep

@@ -7,16 +7,12 @@
 
 #include "command.h"
 #include "fit_report.h"
-#include "offline/section/outline_mirror.h"
-#include "offline/section/saint_venant.h"
 #include "section_file.h"
 #include "write.h"
 
 namespace railstep {
 namespace {
 
-constexpr double kChordTolerance = 1e-5;  // m, of the outline in the Saint-Venant solution
-constexpr double kMostAsymmetry = 0.05;  // of the area; beyond, a shear centre off the axis is felt
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct FitOptions {
@@ -69,21 +65,6 @@ FitTargets parse_targets(const std::string& text) {
         fmt::format("--target: centroid_height_m = {:.6g} is not below height_m = {:.6g}",
                     t.area.centroid_height, t.height));
   return t;
-}
-
-/// Mean of both halves, each mirrored; NaN where the outline is too lopsided for that.
-SaintVenant outline_shear(const Outline& outline, double uneven) {
-  const std::vector<Point> points = polygon(outline, 0.5 * kChordTolerance);
-  if (uneven > kMostAsymmetry) return {kNone, kNone, kNone, kNone};
-  const SaintVenant right =
-      saint_venant(mirrored_side(points, 1, 0.5 * kChordTolerance), kFitPoisson);
-  if (uneven < 1e-6) return right;
-  const SaintVenant left =
-      saint_venant(mirrored_side(points, -1, 0.5 * kChordTolerance), kFitPoisson);
-  const auto mean = [](double a, double b) { return 0.5 * (a + b); };
-  return {mean(right.torsion, left.torsion), mean(right.shear_factor_y, left.shear_factor_y),
-          mean(right.shear_factor_z, left.shear_factor_z),
-          mean(right.shear_centre_height, left.shear_centre_height)};
 }
 
 FitResult fit_profile(Profile profile) {

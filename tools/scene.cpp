@@ -29,7 +29,17 @@ TrackScene read_track(const Table& t) {
   track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
   track.ends = read_ends(t);
   track.gravity = t.boolean("gravity", false);
-  track.axial_points = static_cast<int>(t.integer("axial_points", 1, 5, 2));
+  constexpr RailModel kModels[] = {RailModel::linearised, RailModel::nonlinear,
+                                   RailModel::timoshenko};
+  track.model = kModels[t.choice("model", {"linearised", "nonlinear", "timoshenko"}, 0)];
+  if (track.model == RailModel::nonlinear && track.unknowns == Unknowns::vertical)
+    t.refuse("model",
+             "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
+             "unknowns = \"full\"");
+  constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,
+                                      ReferenceLine::foot, ReferenceLine::head};
+  track.reference_line =
+      kLines[t.choice("reference_line", {"centroid", "mid-height", "foot", "head"}, 0)];
   return track;
 }
 
@@ -144,6 +154,16 @@ CondenseScene read_condense(const Table& root) {
   return c;
 }
 
+NewtonOptions read_statics(const Table& root) {
+  NewtonOptions s;
+  const std::optional<Table> t = root.table_if("static");
+  if (!t) return s;
+  s.tolerance = t->number("tolerance", between(1e-14, 1e-2), s.tolerance);
+  s.most_iterations = static_cast<int>(t->integer("most_iterations", 1, 1000, s.most_iterations));
+  s.most_halvings = static_cast<int>(t->integer("most_load_halvings", 0, 30, s.most_halvings));
+  return s;
+}
+
 }  // namespace
 
 double TimeTable::at(double t) const {
@@ -171,6 +191,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.sleeper = read_sleeper(root, scene);
   if (const std::optional<Table> step = root.table_if("step")) scene.step = read_step(*step);
   scene.condense = read_condense(root);
+  scene.statics = read_statics(root);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene);
   scene.sensors = read_sensors(root, scene);

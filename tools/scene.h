@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "offline/beam/equilibrium.h"
 #include "offline/section/section.h"
 #include "offline/track/track.h"
 #include "online/model/model.h"
@@ -19,6 +20,8 @@ enum class TimeScheme { generalised_alpha, backward_euler };
 enum class Start { equilibrium, released };
 enum class GuideMethod { augmented_lagrangian, baumgarte };
 enum class Condensation { full, modal };
+enum class RailModel { linearised, nonlinear, timoshenko };
+enum class ReferenceLine { centroid, mid_height, foot, head };  // where the rails' nodes are
 
 /// Three stacked rectangles from the foot up, m.
 struct RectangleSizes {
@@ -29,7 +32,8 @@ struct RectangleSize {
   double height, width;
 };
 struct ProfileFile {
-  std::filesystem::path path;  // an outline to be fitted with three rectangles
+  std::filesystem::path path;  // an outline to be fitted with three rectangles,
+  bool exact = false;          // or taken as it is
 };
 struct SectionFile {
   std::filesystem::path path;  // what `railstep fit --out` wrote
@@ -46,15 +50,17 @@ struct TrackScene {
   int elements_per_bay;
   double rail_spacing;  // between the rails' centres, m
   RailEnds ends;
-  bool gravity;      // on the rails
-  int axial_points;  // Gauss points along an element
+  bool gravity;  // on the rails
+  RailModel model;
+  ReferenceLine reference_line;
   [[nodiscard]] double length() const { return static_cast<double>(bays) * bay; }
 };
 
 struct RailScene {
   SectionSource shape;
   double young, poisson, density;  // Pa, 1, kg/m3
-  Shear element;
+  ElementRule rule;
+  int section_points;  // Gauss points per rectangle and direction; 0: exact moments
   std::optional<double> shear_factor_y, shear_factor_z;  // replace the section's
   double crown_radius;                                   // m
   double axial_force;       // N, tension positive, beside what the temperature makes
@@ -169,6 +175,7 @@ struct Scene {
   std::vector<WheelsetScene> wheelsets;
   std::optional<StepScene> step;  // none: the scene is not run
   CondenseScene condense;
+  NewtonOptions statics;
   std::vector<SensorScene> sensors;
   bool trace_supports;
   /// Of the run, s; 0 without one.

@@ -48,7 +48,10 @@ SectionSource read_shape(const Table& rail) {
                                    way, found));
     found = way;
   }
-  if (found == "profile") return ProfileFile{rail.path("profile")};
+  if (found != "profile" && rail.has("outline"))
+    rail.refuse("outline", "outline says how a profile is taken; accepted beside profile");
+  if (found == "profile")
+    return ProfileFile{rail.path("profile"), rail.choice("outline", {"fitted", "exact"}, 0) == 1};
   if (found == "section") return SectionFile{rail.path("section")};
   if (found == "constants") return read_constants(rail.table("constants"));
   if (found == "rectangles") return read_rectangles(rail.table("rectangles"));
@@ -74,6 +77,29 @@ std::optional<double> read_override(const Table& rail, std::string_view key) {
   return std::nullopt;
 }
 
+/// How the element's energy is integrated.
+ElementRule read_rule(const Table& t) {
+  constexpr Coupling kCouplings[] = {Coupling::centroid, Coupling::axis, Coupling::section};
+  constexpr Shear kShears[] = {Shear::twist, Shear::factors, Shear::offset, Shear::published};
+  ElementRule rule;
+  rule.axial_points = static_cast<int>(t.integer("axial_points", 1, 5, rule.axial_points));
+  rule.coupling_points = static_cast<int>(t.integer("coupling_points", 1, 5, rule.axial_points));
+  rule.coupling = kCouplings[t.choice("coupling", {"centroid", "axis", "section"}, 0)];
+  rule.shear = kShears[t.choice("shear", {"twist", "factors", "offset", "published"}, 0)];
+  return rule;
+}
+
+/// Points per rectangle want rectangles.
+int read_section_points(const Table& t, const SectionSource& shape) {
+  const int points = static_cast<int>(t.integer("section_points", 0, 3, 0));
+  const auto* profile = std::get_if<ProfileFile>(&shape);
+  if (points > 0 && (std::holds_alternative<Section>(shape) || (profile && profile->exact)))
+    t.refuse("section_points", fmt::format("section_points = {}, but the section is not given by "
+                                           "rectangles; accepted is 0",
+                                           points));
+  return points;
+}
+
 }  // namespace
 
 RailScene read_rail(const Table& rail) {
@@ -83,8 +109,11 @@ RailScene read_rail(const Table& rail) {
   // Beyond these a material makes work out of nothing; at 0.5 it cannot be compressed at all.
   r.poisson = rail.number("poisson", {-1.0, 0.5, false, false}, 0.3);
   r.density = rail.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
-  r.element =
-      rail.choice("element", {"corrected", "paper"}, 0) == 0 ? Shear::twist : Shear::published;
+  r.section_points = 0;
+  if (const std::optional<Table> rule = rail.table_if("rule")) {
+    r.rule = read_rule(*rule);
+    r.section_points = read_section_points(*rule, r.shape);
+  }
   r.shear_factor_y = read_override(rail, "shear_factor_y");
   r.shear_factor_z = read_override(rail, "shear_factor_z");
   r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), 0.3);

@@ -1,11 +1,18 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 
 #include "section_fit.h"
 
 namespace railstep {
 
 inline constexpr double kFitPoisson = 0.3;  // of steel, in Cowper's shear factors
+
+inline constexpr double kChordTolerance = 1e-5;  // m, of the outline in the Saint-Venant solution
+
+/// Constants of an outline itself: the mean of both halves, each mirrored; NaN where it is too
+/// lopsided for that. @param uneven  its asymmetry()
+SaintVenant outline_shear(const Outline& outline, double uneven);
 
 /// All properties of the three rectangles; `height` of the profile, m.
 Section fitted_section(const SectionFit& fit, double height);
@@ -17,5 +24,8 @@ Section read_profile_section(const std::filesystem::path& file);
 /// Reads a section file, as `railstep fit --out` writes it: what a scene's `section` names. Only
 /// its table [section] is used; the others say where it came from. Throws InputError.
 Section read_section(const std::filesystem::path& file);
+
+/// The three rectangles of a section file, where it has [dimensions]. Throws InputError.
+std::optional<Rectangles<double>> read_dimensions(const std::filesystem::path& file);
 
 }  // namespace railstep

@@ -54,11 +54,6 @@ Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Railhead&
   return point;
 }
 
-double height_over_axis(Height at, const Section& section) {
-  const double foot = -section.area.centroid_height;
-  return at == Height::axis ? 0. : at == Height::foot ? foot : foot + section.height;
-}
-
 void add_point(const std::string& name, const Point& point, Sensors& sensors) {
   static const char* const axes[3] = {"x", "y", "z"};
   const auto add = [&](const std::string& quantity, std::size_t d, Probe probe) {
@@ -92,7 +87,7 @@ Sensors sensors_of(const Scene& scene, const Track& track, const Railhead& head)
   Sensors sensors;
   for (const SensorScene& sensor : scene.sensors) {
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
-      add_point(sensor.name, point_of(*rail, track, height_over_axis(rail->at, section)), sensors);
+      add_point(sensor.name, point_of(*rail, track, height_z(rail->at, section)), sensors);
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
       add_point(sensor.name, point_of(*sleeper, track, -section.area.centroid_height), sensors);
     else

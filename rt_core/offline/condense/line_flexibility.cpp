@@ -1,8 +1,5 @@
 #include "offline/condense/line_flexibility.h"
 
-#include <algorithm>
-#include <stdexcept>
-
 namespace railstep {
 
 std::vector<int> carried_unknowns(const Line& line) {
@@ -12,11 +9,7 @@ std::vector<int> carried_unknowns(const Line& line) {
   return found;
 }
 
-int element_at(const Track& track, double x) {
-  const double place = x / track.element_length();
-  if (!(place >= 0.) || !(place <= track.elements())) throw std::out_of_range("point off the rail");
-  return std::min(static_cast<int>(place), track.elements() - 1);
-}
+int element_at(const Track& track, double x) { return place_on(track, x).element; }
 
 bool flips_in_mirror(const Line& line, int rail, int k) {
   return line.mirrored && rail == 1 && (k == 1 || k == 3 || k == 5 || k == 7);

@@ -80,6 +80,12 @@ void add_arc(SectionMoments& m, const Segment& s) {
     }
 }
 
+void check_points(int points) {
+  if (points < 1 || points > 3)
+    throw std::invalid_argument("points per rectangle: " + std::to_string(points) +
+                                "; accepted 1 to 3");
+}
+
 }  // namespace
 
 SectionMoments raised(const SectionMoments& moments, double up) {
@@ -96,9 +102,7 @@ SectionMoments raised(const SectionMoments& moments, double up) {
 }
 
 SectionMoments moments(const Rectangles<double>& section, int points) {
-  if (points < 1 || points > 3)
-    throw std::invalid_argument("points per rectangle: " + std::to_string(points) +
-                                "; accepted 1 to 3");
+  check_points(points);
   SectionMoments m;
   double bottom = 0.;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -111,9 +115,10 @@ SectionMoments moments(const Rectangles<double>& section, int points) {
 
 SectionMoments moments(const Rectangles<double>& section) { return moments(section, 3); }
 
-SectionMoments rectangle_moments(double height, double width) {
+SectionMoments rectangle_moments(double height, double width, int points) {
+  check_points(points);
   SectionMoments m;
-  add_rectangle(m, width, -.5 * height, height, 3);
+  add_rectangle(m, width, -.5 * height, height, points);
   clear_odd(m);
   for (int i = 0; i <= kN; i += 2)
     for (int j = 1; i + j <= kN; j += 2) at(m, i, j) = 0.;

@@ -26,8 +26,8 @@ SectionMoments moments(const Rectangles<double>& section);
 /// What `points` x `points` Gauss points (1 to 3) in each rectangle make of them. Three are exact.
 SectionMoments moments(const Rectangles<double>& section, int points);
 
-/// Exact moments of one rectangle about its centroid.
-SectionMoments rectangle_moments(double height, double width);
+/// Moments of one rectangle about its centroid, by `points` x `points` Gauss points; 3 are exact.
+SectionMoments rectangle_moments(double height, double width, int points = 3);
 
 /// Moments of an outline about its centroid, by Green's theorem with Gauss points along each
 /// segment: exact for straight ones, to round-off for arcs. Odd powers of y are 0: the outline is

@@ -37,18 +37,6 @@ std::vector<int> carried(Unknowns unknowns) {
   return {0, 1, 2, 3, 4, 5, 6, 7, 8};
 }
 
-/// Whether an end holds unknown k of its node.
-bool holds(RailEnd end, int k) {
-  const bool position = k < 3, roll = k == 5 || k == 7;  // a_z, b_y
-  return end == RailEnd::clamped || (end == RailEnd::pinned && (position || roll));
-}
-
-/// What holds a node: its end, if it is one.
-RailEnd end_at(const Track& track, int node) {
-  if (node == 0) return track.ends[0];
-  return node == track.nodes() - 1 ? track.ends[1] : RailEnd::free;
-}
-
 /// Numbers nodes along x; a seat's sleeper follows its node so that the band stays narrow.
 void number(const Track& track, Assembly& part) {
   const int nodes = track.nodes(), per_bay = 2 * track.elements_per_bay;
@@ -57,7 +45,7 @@ void number(const Track& track, Assembly& part) {
   part.line.sleeper_unknown_of.assign(static_cast<std::size_t>(track.bays) + 1, {-1, -1, -1});
   for (int node = 0; node < nodes; ++node) {
     for (const int k : carried(track.unknowns))
-      if (!holds(end_at(track, node), k))
+      if (!holds(track, node, k))
         part.line.unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)] =
             part.count++;
     if (!track.sleeper || node % per_bay != 0) continue;
@@ -121,9 +109,12 @@ void add_seat(const Track& track, Assembly& part, int seat) {
   Row roll;
   push(roll, node[5], .5);
   push(roll, node[7], -.5);
-  if (antisymmetric && !roll.empty()) push(roll, sleeper[2], -2. / g);
-  if (!roll.empty()) part.add(part.stiffness, roll, support.roll_stiffness);
-  if (!roll.empty()) part.add(part.damping, roll, support.roll_damping);
+  // Rails without roll unknowns leave the sleeper's roll alone; a rail whose end is held does not.
+  if (track.unknowns == Unknowns::full) {
+    if (antisymmetric) push(roll, sleeper[2], -2. / g);
+    part.add(part.stiffness, roll, support.roll_stiffness);
+    part.add(part.damping, roll, support.roll_damping);
+  }
   if (!track.sleeper) return;
   for (std::size_t d = 0; d < 3; ++d) {
     if (sleeper[d] < 0) continue;
@@ -219,6 +210,22 @@ void check(const Track& track) {
 
 }  // namespace
 
+bool holds(const Track& track, int node, int k) {
+  const bool position = k < 3, roll = k == 5 || k == 7;  // a_z, b_y
+  const RailEnd end = node == 0                   ? track.ends[0]
+                      : node == track.nodes() - 1 ? track.ends[1]
+                                                  : RailEnd::free;
+  return end == RailEnd::clamped || (end == RailEnd::pinned && (position || roll));
+}
+
+ElementPlace place_on(const Track& track, double x) {
+  const double place = x / track.element_length();
+  if (!(place >= 0.) || !(place <= track.elements() * (1. + 1e-12)))
+    throw std::out_of_range("point off the rail");
+  const int element = std::min(static_cast<int>(place), track.elements() - 1);
+  return {element, 2. * (place - element) - 1.};
+}
+
 std::vector<Line> assemble(const Track& track) {
   check(track);
   std::vector<Line> lines;
@@ -236,10 +243,8 @@ std::vector<Line> assemble(const Track& track) {
 
 Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
                                       const RailPoint& point) {
-  const double place = point.x / track.element_length();
-  if (!(place >= 0.) || !(place <= track.elements())) throw std::out_of_range("point off the rail");
-  const int element = std::min(static_cast<int>(place), track.elements() - 1);
-  const Vector27 local = point_row(2. * (place - element) - 1., point.y, point.z, point.direction);
+  const auto [element, xi] = place_on(track, point.x);
+  const Vector27 local = point_row(xi, point.y, point.z, point.direction);
   const double factor = line.rail_factor[static_cast<std::size_t>(point.rail)];
   Eigen::SparseVector<double> row(line.unknowns());
   for (int i = 0; i < 27; ++i) {

@@ -62,6 +62,19 @@ struct Track {
   BeamLaw law() const { return beam_law(section, material, rule, axis_z, axial_force); }
 };
 
+/// Whether the ends of a rail hold unknown k = 0..8 of its node.
+bool holds(const Track& track, int node, int k);
+
+/// An element and the natural coordinate in it.
+struct ElementPlace {
+  int element;
+  double xi;
+};
+
+/// Where a place along the rail lies, x in m. Round-off of bay lengths (1e-12) beyond the far end
+/// is forgiven. Throws std::out_of_range off the rail.
+ElementPlace place_on(const Track& track, double x);
+
 /// A material point of one rail.
 struct RailPoint {
   int rail;       // 0 left (+y), 1 right

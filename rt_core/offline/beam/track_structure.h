@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "offline/beam/structure.h"
+#include "offline/track/functional.h"
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// A track as a nonlinear structure in plain coordinates: positions and slopes of the left rail's
+/// nodes, then of the right rail's, then the displacements of the sleepers' ends. Springs act
+/// between material points of rail and sleeper (or ground) and keep their directions, as the
+/// supports of assemble() do: at rest the tangent is the stiffness of its lines.
+class TrackStructure {
+ public:
+  /// Throws std::invalid_argument as assemble() does, and where the track's unknowns are not
+  /// Unknowns::full: a rail that shortens as it bends moves along x too. An axial force wants ends
+  /// that hold it, or the rail would not be in equilibrium at rest.
+  explicit TrackStructure(const Track& track);
+
+  const Structure& structure() const { return structure_; }
+  /// Coefficients of the displacement of a material point, or of a weighted sum of them, over the
+  /// changes of the unknowns from rest. Transposed, they spread a unit force.
+  /// Throws std::out_of_range off the rail.
+  Eigen::SparseVector<double> row(const RailPoint& point) const;
+  Eigen::SparseVector<double> row(const Functional& functional) const;
+  /// Nodal forces of the rails' and sleepers' own weight. @param gravity m/s2, > 0 down
+  Eigen::VectorXd weight(double gravity = 9.81) const;
+
+ private:
+  Track track_;
+  Structure structure_;
+  /// [seats] of each rail; x, y, z of the sleeper's end under it, -1 where held. One y for both.
+  std::array<std::vector<std::array<int, 3>>, 2> sleeper_;
+
+  int place(int rail, int node, int k) const { return 9 * (rail * track_.nodes() + node) + k; }
+  int number_sleepers(int first);
+  void lay_rails();
+  void add_seat(int rail, int seat);
+  void add_ballast(int seat);
+};
+
+}  // namespace railstep
