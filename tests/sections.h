@@ -1,4 +1,5 @@
 #pragma once
+#include "offline/section/rectangles.h"
 #include "offline/track/track.h"
 
 namespace railstep {
@@ -13,6 +14,10 @@ inline BeamSection section_f() {
           .shear_factor_z = .4721,
           .shear_centre_z = -.0391};
 }
+
+/// Its rectangles, m.
+inline const Rectangles<double> kSectionF = {{.1380985536, .02522171327, .07720505094},
+                                             {.020996636, .13308941227, .03165145173}};
 
 /// Rectangle of the peers' moving-load scene, 231.9 mm high and 37.5 mm wide, k = .8497 for both
 /// directions, J by the series of Saint-Venant.

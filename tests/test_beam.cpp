@@ -5,6 +5,7 @@
 
 #include "offline/element/matrices.h"
 #include "offline/section/moments.h"
+#include "rest_shapes.h"
 #include "sections.h"
 
 using namespace railstep;
@@ -17,23 +18,6 @@ namespace {
 BeamSection with_moments(BeamSection section, const SectionMoments& m) {
   section.moments = m;
   return section;
-}
-
-const Rectangles<double> kSectionF = {{.1380985536, .02522171327, .07720505094},
-                                      {.020996636, .13308941227, .03165145173}};
-
-/// Nodes on an arc of radius R in the plane of x and z (bent up) or x and y, sections normal to it.
-Vector27 arc_nodes(double length, double R, bool vertical) {
-  Vector27 q;
-  for (int i = 0; i < 3; ++i) {
-    const double t = .5 * i * length / R, s = R * std::sin(t), c = R * (1. - std::cos(t));
-    const Vector3d across = vertical ? Vector3d(-std::sin(t), 0., std::cos(t))
-                                     : Vector3d(-std::sin(t), std::cos(t), 0.);
-    q.segment<3>(9 * i) = vertical ? Vector3d(s, 0., c) : Vector3d(s, c, 0.);
-    q.segment<3>(9 * i + 3) = vertical ? Vector3d::UnitY() : across;
-    q.segment<3>(9 * i + 6) = vertical ? across : Vector3d::UnitZ();
-  }
-  return q;
 }
 
 /// Twisted by `turn` over the length, about x.

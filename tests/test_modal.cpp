@@ -106,7 +106,8 @@ TEST_CASE("the basis spans the lowest modes and what every damper needs", "[moda
       // directions below 1e-10 of the largest Gram eigenvalue are dropped: 1e-5 of a shape
       CHECK(outside(line, basis, shape) < 1e-5);
     }
-    if (line.damping.norm() > 0.) CHECK(most_by_modes > 1e-3);  // or nothing was asked for
+    // ten times what the basis may miss, or nothing was asked for
+    if (line.damping.norm() > 0.) CHECK(most_by_modes > 1e-4);
   }
 }
 

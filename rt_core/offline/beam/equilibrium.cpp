@@ -114,7 +114,9 @@ bool newton(const Structure& structure, const Balance& balance, double factor, d
     result.history.push_back({factor, iteration, size});
     if (!std::isfinite(size)) return false;
     const Sparse K = balance.stiffness(q, factor);
-    if (size <= options.tolerance || balance.rounded(residual, K, q)) {
+    // A load may be below what round-off of the first shape leaves: it moves the shape all the
+    // same.
+    if (size <= options.tolerance || (iteration > 0 && balance.rounded(residual, K, q))) {
       result.q = q;
       result.residual = size;
       return true;

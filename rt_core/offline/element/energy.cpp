@@ -217,7 +217,7 @@ void check_curvature(const RestPoint& p, const SectionMoments& m) {
   const auto reach = [&](double fourth) { return 1.5 * std::pow(fourth / m.area(), .25); };
   const double bent = std::abs((inverse * p.a_slope)[0]) * reach(m.of[4][0]) +
                       std::abs((inverse * p.b_slope)[0]) * reach(m.of[0][4]);
-  if (bent > .5)
+  if (!(bent <= .5))
     throw std::invalid_argument("an element at rest is curved too sharply: half its section is " +
                                 std::to_string(bent) + " of the radius; accepted is up to 0.5");
 }

@@ -37,7 +37,10 @@ Vector27 straight_nodes(double length);
 /// lever; with it there (Shear::offset) one element under an end load is not Timoshenko's beam.
 ///
 /// On a curved element strains are not polynomials over the section; they and their squares are
-/// cut at degree 4, which errs by the fourth power of (half height / radius).
+/// cut at degree 4. With h half the height and R the radius of curvature, bending errs by 0.4
+/// (h/R)^4 for a rectangle, by 0.2 (h/R)^3 for a rail about its centroid (3e-4 at h/R = 0.1) and by
+/// 13 (h/R)^3 about its foot; energies of finite strain lose a term of first order, 2e-6 of them at
+/// h/R = 0.003 and strains of 0.1. A curve of 100 m errs by 1e-8.
 /// @param rest  nodes at rest, as the unknowns
 /// @throws std::invalid_argument on a rule out of its range, nodes that make no section (slopes of
 ///         one direction, no length) and a curvature radius under twice the section's reach
