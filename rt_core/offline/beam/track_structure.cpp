@@ -114,14 +114,13 @@ void TrackStructure::add_ballast(int seat) {
 
 Sparse TrackStructure::row(const RailPoint& point) const {
   const double along = point.x / track_.element_length();
-  if (!(along >= 0.) || !(along <= track_.elements())) throw std::out_of_range("point off the rail");
+  if (!(along >= 0.) || !(along <= track_.elements()))
+    throw std::out_of_range("point off the rail");
   const int element = std::min(static_cast<int>(along), track_.elements() - 1);
-  const Vector27 local =
-      point_row(2. * (along - element) - 1., point.y, point.z, point.direction);
+  const Vector27 local = point_row(2. * (along - element) - 1., point.y, point.z, point.direction);
   Sparse row(structure_.unknowns());
   for (int i = 0; i < 27; ++i)
-    if (local[i] != 0.)
-      row.coeffRef(place(point.rail, 2 * element + i / 9, i % 9)) += local[i];
+    if (local[i] != 0.) row.coeffRef(place(point.rail, 2 * element + i / 9, i % 9)) += local[i];
   return row;
 }
 
@@ -133,6 +132,15 @@ Sparse TrackStructure::row(const Functional& functional) const {
     if (unknown >= 0) sum.coeffRef(unknown) += term.factor;
   }
   return sum;
+}
+
+TrackState TrackStructure::state(const Eigen::VectorXd& q) const {
+  const Eigen::VectorXd change = q - structure_.rest;
+  TrackState state{change.head(9 * track_.nodes()), Eigen::VectorXd(3 * sleeper_[0].size())};
+  Eigen::Index i = 0;
+  for (const auto& unknowns : sleeper_[0])
+    for (const int unknown : unknowns) state.sleeper[i++] = unknown >= 0 ? change[unknown] : 0.;
+  return state;
 }
 
 Eigen::VectorXd TrackStructure::weight(double gravity) const {

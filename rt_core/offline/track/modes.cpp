@@ -1,13 +1,17 @@
 #include <Spectra/MatOp/SparseSymMatProd.h>
-#include <Spectra/MatOp/SymShiftInvert.h>
 #include <Spectra/SymGEigsShiftSolver.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
+#include "offline/track/massless.h"
+#include "offline/track/rigid.h"
 #include "offline/track/statics.h"
 
 namespace railstep {
@@ -15,6 +19,7 @@ namespace railstep {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr int kMostDenseUnknowns = 4000;  // a dense solution takes some n^3 10 flops
 
 /// Eigenvalues ascending; those that rounding of the largest one makes are rigid modes.
 Modes of_squares(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes, double rounding) {
@@ -29,57 +34,124 @@ Modes of_squares(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes, 
 }
 
 /// Eigenvalues of K - square M below zero, by Sylvester's law from the pivots of its factor.
-int below(const Line& line, double square) {
+int below(const MassiveLine& line, double square) {
   const Eigen::SparseMatrix<double> shifted = line.stiffness - square * line.mass;
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(shifted);
   if (factor.info() != Eigen::Success) return -1;
   return static_cast<int>((factor.vectorD().array() < 0.).count());
 }
 
+/// (K - shift M)^-1 with the rigid modes R sent from eigenvalue 0 up to `far`, out of the way:
+/// Lanczos from one vector would meet only one of those that share an eigenvalue. On them it is
+/// 1/(-shift), so that R (1/(-shift) - 1/(far - shift)) R' is taken off.
+class Inverse {
+ public:
+  using Scalar = double;
+  Inverse(const MassiveLine& line, Eigen::MatrixXd rigid, double far)
+      : line_(line), rigid_(std::move(rigid)), far_(far) {}
+  Eigen::Index rows() const { return line_.stiffness.rows(); }
+  Eigen::Index cols() const { return rows(); }
+  void set_shift(double shift) {
+    lost_ = 1. / -shift - 1. / (far_ - shift);
+    factor_.compute(Eigen::SparseMatrix<double>(line_.stiffness - shift * line_.mass));
+    if (factor_.info() != Eigen::Success)
+      throw std::invalid_argument("a line's stiffness cannot be factored");
+  }
+  void perform_op(const double* in, double* out) const {
+    const Eigen::Map<const Eigen::VectorXd> x(in, rows());
+    Eigen::Map<Eigen::VectorXd> y(out, rows());
+    y = factor_.solve(x);
+    if (rigid_.cols() > 0) y -= lost_ * (rigid_ * (rigid_.transpose() * x));
+  }
+
+ private:
+  const MassiveLine& line_;
+  Eigen::MatrixXd rigid_;
+  double far_, lost_ = 0.;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+};
+
+/// What is left of the forces of undamped modes, over their size; the largest.
+double largest_residual(const MassiveLine& line, const Eigen::VectorXd& squares,
+                        const Eigen::MatrixXd& shapes) {
+  const Eigen::MatrixXd elastic = line.stiffness * shapes;
+  const Eigen::MatrixXd inertia = line.mass * shapes * squares.asDiagonal();
+  const Eigen::VectorXd left = (elastic - inertia).colwise().norm();
+  const Eigen::VectorXd size = elastic.colwise().norm() + inertia.colwise().norm();
+  return left.cwiseQuotient(size).maxCoeff();
+}
+
+/// Lanczos for `count` modes above the rigid ones, ascending; none where it does not converge or
+/// where the pivots show that it left one out. @param room dimension of the Krylov space
+std::optional<Modes> lanczos(const MassiveLine& line, const Eigen::MatrixXd& rigid, int count,
+                             int room) {
+  const Eigen::Index held = rigid.cols();
+  const double highest = Eigen::VectorXd(line.stiffness.diagonal())
+                             .cwiseQuotient(Eigen::VectorXd(line.mass.diagonal()))
+                             .maxCoeff();
+  Inverse inverse(line, rigid, highest);
+  Spectra::SparseSymMatProd<double> product(line.mass);
+  const double shift = -std::pow(2. * kPi, 2);  // -(1 Hz)^2: a free line can be factored too
+  Spectra::SymGEigsShiftSolver<Inverse, Spectra::SparseSymMatProd<double>,
+                               Spectra::GEigsMode::ShiftInvert>
+      solver(inverse, product, count, room, shift);
+  solver.init();
+  solver.compute(Spectra::SortRule::LargestMagn, 300, 1e-12);
+  if (solver.info() != Spectra::CompInfo::Successful) return std::nullopt;
+  Eigen::VectorXd squares = solver.eigenvalues();
+  Eigen::MatrixXd shapes = solver.eigenvectors();
+  // Rounding leaves some 1e-16 of the forces in single elements: 1e-7 in long waves.
+  if (!(largest_residual(line, squares, shapes) < 1e-5)) return std::nullopt;
+  if (squares[0] > squares[count - 1]) {
+    squares.reverseInPlace();
+    shapes = shapes.rowwise().reverse().eval();
+  }
+  const double last = squares[count - 1], gap = 1e-9 * std::abs(last);
+  const auto found = (squares.array() < last - gap).count() + held;
+  if (below(line, last - gap) != static_cast<int>(found)) return std::nullopt;
+  Eigen::VectorXd all_squares(held + count);
+  Eigen::MatrixXd all_shapes(shapes.rows(), held + count);
+  all_squares << Eigen::VectorXd::Zero(held), squares;
+  all_shapes << rigid, shapes;
+  return of_squares(all_squares, line.follow * all_shapes, 0.);
+}
+
 }  // namespace
 
 Modes modes(const Line& line) {
-  const Eigen::MatrixXd K(line.stiffness), M(line.mass);
+  const MassiveLine massive = without_massless(line);
+  if (massive.mass.rows() == 0) return {Eigen::VectorXd(0), Eigen::MatrixXd(line.unknowns(), 0)};
+  const Eigen::MatrixXd K(massive.stiffness), M(massive.mass);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
   if (solver.info() != Eigen::Success)
-    throw std::invalid_argument("the modes of a line were not found: is a mass zero or negative?");
-  return of_squares(solver.eigenvalues(), solver.eigenvectors(),
+    throw std::invalid_argument("the modes of a line were not found: is a mass negative?");
+  return of_squares(solver.eigenvalues(), massive.follow * solver.eigenvectors(),
                     1e-12 * solver.eigenvalues()[K.rows() - 1]);
 }
 
 Modes lowest_modes(const Line& line, int count) {
-  const int n = line.unknowns();
-  const auto dense = [&] {
-    const Modes all = modes(line);
+  const MassiveLine massive = without_massless(line);
+  const int n = static_cast<int>(massive.mass.rows());
+  const auto first = [count](const Modes& all) {
     const Eigen::Index kept = std::min<Eigen::Index>(count, all.frequency.size());
     return Modes{all.frequency.head(kept), all.shape.leftCols(kept)};
   };
-  if (count < 1 || 4 * count > n) return dense();
-  using Invert = Spectra::SymShiftInvert<double, Eigen::Sparse, Eigen::Sparse>;
-  using Product = Spectra::SparseSymMatProd<double>;
-  Invert invert(line.stiffness, line.mass);
-  Product product(line.mass);
-  const double shift = -std::pow(2. * kPi, 2);  // -(1 Hz)^2: a free line can be factored too
-  Spectra::SymGEigsShiftSolver<Invert, Product, Spectra::GEigsMode::ShiftInvert> solver(
-      invert, product, count, std::min(n, 2 * count + 20), shift);
-  solver.init();
-  solver.compute(Spectra::SortRule::LargestMagn, 300, 1e-12);
-  if (solver.info() != Spectra::CompInfo::Successful) return dense();
-  const Eigen::VectorXd squares = solver.eigenvalues().reverse();
-  const double gap = 1e-9 * std::abs(squares[count - 1]);
-  const double first = squares.minCoeff(), last = squares.maxCoeff();
-  const auto found = static_cast<int>((squares.array() < last - gap).count());
-  if (below(line, last - gap) != found) return dense();
-  const bool ascending = squares[0] == first;
-  const Eigen::MatrixXd shapes = solver.eigenvectors();
-  return ascending ? of_squares(squares, shapes.rowwise().reverse(), 1e-12 * last)
-                   : of_squares(squares.reverse(), shapes, 1e-12 * last);
+  if (count < 1 || 4 * count > n) return first(modes(line));
+  const Eigen::MatrixXd rigid = rigid_modes(massive.stiffness, massive.mass);
+  const int sought = std::max(1, count - static_cast<int>(rigid.cols()));
+  for (const int room : {2 * sought + 20, 5 * sought + 60})
+    if (const auto found = lanczos(massive, rigid, sought, std::min(n, room))) return first(*found);
+  if (n > kMostDenseUnknowns)
+    throw std::runtime_error("the lowest " + std::to_string(count) + " modes of a line of " +
+                             std::to_string(n) + " unknowns were not all found");
+  return first(modes(line));
 }
 
 int modes_below(const Line& line, double frequency) {
+  const MassiveLine massive = without_massless(line);
   const double square = std::pow(2. * kPi * frequency, 2);
-  const int count = below(line, square);
-  return count >= 0 ? count : below(line, square * (1. + 1e-9));
+  const int count = below(massive, square);
+  return count >= 0 ? count : below(massive, square * (1. + 1e-9));
 }
 
 }  // namespace railstep

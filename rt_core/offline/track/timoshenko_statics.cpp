@@ -60,7 +60,7 @@ int TimoshenkoStatics::number_unknowns() {
   int count = 0;
   for (std::size_t node = 0; node < x_.size(); ++node)
     for (int k = 0; k < 6; ++k) {
-      const RailEnd end = node == 0                ? track_.ends[0]
+      const RailEnd end = node == 0               ? track_.ends[0]
                           : node + 1 == x_.size() ? track_.ends[1]
                                                   : RailEnd::free;
       const bool carried = track_.unknowns == Unknowns::full || k == 2 || k == 4;
@@ -120,8 +120,7 @@ void TimoshenkoStatics::assemble(int unknowns) {
 void TimoshenkoStatics::factorise() {
   factor_.compute(stiffness_);
   const Eigen::VectorXd pivots = factor_.vectorD();
-  const Eigen::VectorXd diagonal =
-      factor_.permutationP() * Eigen::VectorXd(stiffness_.diagonal());
+  const Eigen::VectorXd diagonal = factor_.permutationP() * Eigen::VectorXd(stiffness_.diagonal());
   // Pivots of a long beam fall with the cube of elements per length; round-off leaves 1e-15.
   if (factor_.info() != Eigen::Success || !((pivots.array() > 1e-12 * diagonal.array()).all()))
     throw std::invalid_argument("the track has a free rigid mode: ends and pads do not hold it");

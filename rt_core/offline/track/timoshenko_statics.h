@@ -6,8 +6,8 @@
 
 namespace railstep {
 
-/// Statics of one rail as a chain of exact Timoshenko elements on the centroid, between its ends and
-/// on pads that stand on the ground: an independent check of the linear ANCF rail.
+/// Statics of one rail as a chain of exact Timoshenko elements on the centroid, between its ends
+/// and on pads that stand on the ground: an independent check of the linear ANCF rail.
 class TimoshenkoStatics {
  public:
   /// @param places  m along the rail, where nodes are needed beside the track's element borders:

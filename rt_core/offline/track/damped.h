@@ -1,0 +1,38 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// Damped modes of a line that swing: (rate^2 M + rate C + K) shape = 0 with Im rate > 0.
+struct Oscillations {
+  Eigen::VectorXcd rate;   // [modes] 1/s, by |rate|, lowest first
+  Eigen::MatrixXcd shape;  // [unknowns][modes], each of Euclidean norm 1
+  bool all = false;        // there are none beyond what was asked for
+};
+
+/// |Q(rate) shape| / (|rate^2 M shape| + |rate C shape| + |K shape|): what is left of the forces.
+double residual(const Line& line, std::complex<double> rate, const Eigen::VectorXcd& shape);
+
+/// Those with |rate| <= radius, 1/s: every rate of that quarter disc is found by Arnoldi's method
+/// about its middle, until more vectors bring no more of them, then checked: residual() is at most
+/// 1e-8, by inverse iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out.
+/// Throws std::runtime_error where they were not all found.
+Oscillations oscillations(const Line& line, double radius);
+
+/// Natural modes of a whole track, lowest frequency first.
+struct NaturalModes {
+  std::vector<double> frequency;      // |rate|/(2 pi), Hz; free rigid modes first, as 0
+  std::vector<double> damping_ratio;  // -Re rate/|rate|; 0 where undamped and of rigid modes
+};
+
+/// The lowest `count` modes of all lines of a track together, or as many as there are. Motions that
+/// do not swing (over their critical damping) are no modes of this list.
+/// Throws std::invalid_argument on what makes no track, std::runtime_error where a line is too long
+/// or modes were not all found.
+NaturalModes natural_modes(const Track& track, int count);
+
+}  // namespace railstep
