@@ -170,3 +170,78 @@ TEST_CASE("a scene without [step] is no run", "[modes]") {
     CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
   }
 }
+
+namespace {
+
+/// A pinned rail of section F, 3 m, with this axial force.
+std::string three_metres(const std::string& unknowns, double force) {
+  return shipped("pinned_bay") + " --set track.bay_m=3 --set 'track.unknowns=\"" + unknowns +
+         "\"' --set track.elements_per_bay=40 --set rail.axial_force_n=" + std::to_string(force);
+}
+
+/// P/(4 m L^2) of three_metres, 1/s2; reference.md, section F: A = 8700 mm2.
+double unit_of(double compression) { return compression / (4. * 7850. * 8.7e-3 * 9.); }
+
+}  // namespace
+
+TEST_CASE("compression lowers each mode between pins by the same law", "[modes][preload]") {
+  // hard-cases.md, R7: f_10 59.49949 Hz, P_cr 8.703979 MN, 18.81539 and 5.94995 Hz at .9 and .99 of
+  // it. k_z = .472 against its own: 1e-4 of the share of shear (2 %); the last two 1e-4 and 1e-3.
+  const Listed bent = modes_of(three_metres("vertical", 0.) + " --count 4");
+  CHECK_THAT(bent.hz[0], WithinRel(59.49949, 1e-5));
+  CHECK_THAT(modes_of(three_metres("vertical", -.9 * 8.703979e6) + " --count 1").hz[0],
+             WithinRel(18.81539, 1e-4));
+  CHECK_THAT(modes_of(three_metres("vertical", -.99 * 8.703979e6) + " --count 1").hz[0],
+             WithinRel(5.94995, 1e-3));
+  for (const double part : {-.5, .9, .99}) {
+    const double unit = unit_of(part * 8.703979e6);
+    const Listed pressed = modes_of(three_metres("vertical", -part * 8.703979e6) + " --count 4");
+    for (std::size_t n = 1; n <= 4; ++n)  // H13: the law to 1e-3
+      CHECK_THAT(pressed.hz[n - 1], WithinRel(std::sqrt(std::pow(bent.hz[n - 1], 2) -
+                                                        static_cast<double>(n * n) * unit),
+                                              1e-3));
+  }
+}
+
+TEST_CASE("in space each mode between pins has its number of half waves", "[modes][preload]") {
+  // (f_0^2 - f^2)/(P/(4 m L^2)) = n^2, to H13's 1e-3, for vertical and lateral bending and torsion
+  // alike; the 17 lowest keep their order and hold n = 1 to 4 of all three.
+  const Listed free = modes_of(three_metres("full", 0.) + " --count 17");
+  const double critical = 4. * 7850. * 8.7e-3 * 9. * free.hz[0] * free.hz[0];
+  for (const double part : {.9, .99}) {
+    const double P = part * critical;
+    const Listed pressed = modes_of(three_metres("full", -P) + " --count 17");
+    std::vector<int> times(10, 0);
+    for (std::size_t i = 0; i < 17; ++i) {
+      const double square = (std::pow(free.hz[i], 2) - std::pow(pressed.hz[i], 2)) / unit_of(P);
+      const double n = std::round(std::sqrt(square));
+      CAPTURE(part, i, free.hz[i], square);
+      CHECK_THAT(square, WithinRel(n * n, 1e-3));
+      ++times.at(static_cast<std::size_t>(n));
+    }
+    for (const std::size_t n : {1UL, 2UL, 3UL, 4UL}) CHECK(times[n] == 3);
+  }
+  check_refused(three_metres("full", -1.01 * critical), "buckles at 1356");
+}
+
+TEST_CASE("at the critical force the track is refused with both numbers", "[modes][preload]") {
+  check_refused(three_metres("vertical", -1.01 * 8.703979e6), "8791019 N");
+  check_refused(three_metres("vertical", -1.01 * 8.703979e6), "buckles at 870");
+  modes_of(three_metres("vertical", -.999 * 8.703979e6));
+  // Every command refuses it: a long rail on springs buckles below 2 sqrt(k EI) = 40 MN.
+  for (const std::string& words : {"run " + shipped("moving_load"),
+                                   "condense " + shipped("moving_load") + " --out no_model"}) {
+    const Ran ran = railstep_program(words + " --set rail.axial_force_n=-4e7");
+    CHECK(ran.code == 2);
+    CHECK_THAT(ran.err, Catch::Contains("4e+07 N") && Catch::Contains("buckles at"));
+  }
+  // A warm rail between pins: alpha E A dT.
+  const std::string rail = three_metres("vertical", 0.);
+  const double per_kelvin = 1.15e-5 * 210e9 * 8.7e-3;
+  const Listed warm = modes_of(rail + " --set rail.temperature_rise_k=40 --count 1");
+  const Listed pressed = modes_of(three_metres("vertical", -40. * per_kelvin) + " --count 1");
+  CHECK_THAT(warm.hz[0], WithinRel(pressed.hz[0], 1e-9));  // to_string writes 1e-6 N
+  CHECK(warm.hz[0] < 58.);
+  check_refused(rail + " --set rail.temperature_rise_k=40 --set 'track.ends=[\"pinned\",\"free\"]'",
+                "free end");
+}

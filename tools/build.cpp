@@ -12,6 +12,7 @@
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
+#include "offline/track/buckling.h"
 #include "sense.h"
 
 namespace railstep {
@@ -147,7 +148,7 @@ Sleeper sleeper_of(const SleeperScene& s) {
 
 Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scene)); }
 
-Track track_of(const Scene& scene, const RailSection& rail) {
+Track track_of(const Scene& scene, const RailSection& rail) try {
   const Section& section = rail.section;
   Track track;
   track.section = {
@@ -173,7 +174,12 @@ Track track_of(const Scene& scene, const RailSection& rail) {
   track.ends = scene.track.ends;
   if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
+  const double heat = scene.rail.expansion * scene.rail.temperature_rise;  // strain it would make
+  track.axial_force = scene.rail.axial_force - scene.rail.young * track.section.area * heat;
+  refuse_buckled(track);
   return track;
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }
 
 namespace {

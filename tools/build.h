@@ -33,7 +33,8 @@ double height_z(Height at, const Section& section, double axis_z = 0.);
 /// Height of the scene's reference line above the centroid, m.
 double axis_z_of(const Scene& scene, const Section& section);
 
-/// The track of a scene. Throws InputError.
+/// The track of a scene. Throws InputError, for rails under so much compression that they buckle
+/// too.
 Track track_of(const Scene& scene);
 Track track_of(const Scene& scene, const RailSection& rail);
 

@@ -65,6 +65,16 @@ Spring read_spring(const Table& t, const std::string& axis, bool required = fals
   return {t.number(stiffness, k, 0.0), t.number(damping, c, 0.0)};
 }
 
+/// Heat makes force only in a rail that cannot grow.
+void check_held(const Table& rail, const Scene& scene) {
+  const auto& ends = scene.track.ends;
+  if (scene.rail.temperature_rise != 0.0 && (ends[0] == RailEnd::free || ends[1] == RailEnd::free))
+    rail.refuse("temperature_rise_k",
+                fmt::format("temperature_rise_k = {:.15g}, but a free end lets the rail grow; "
+                            "accepted is 0, or track.ends that are pinned or clamped",
+                            scene.rail.temperature_rise));
+}
+
 std::optional<SupportScene> read_support(const Table& root) {
   const std::optional<Table> given = root.table_if("support");
   if (!given) return std::nullopt;
@@ -175,6 +185,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.track = read_track(root.table("track"));
   check_size(root.table("track"), scene.track);
   scene.rail = read_rail(root.table("rail"));
+  check_held(root.table("rail"), scene);
   scene.support = read_support(root);
   scene.sleeper = read_sleeper(root, scene);
   if (const std::optional<Table> step = root.table_if("step")) scene.step = read_step(*step);

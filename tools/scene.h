@@ -63,6 +63,9 @@ struct RailScene {
   int section_points;  // Gauss points per rectangle and direction; 0: exact moments
   std::optional<double> shear_factor_y, shear_factor_z;  // replace the section's
   double crown_radius;                                   // m
+  double axial_force;       // N, tension positive, beside what the temperature makes
+  double temperature_rise;  // K, over that without force
+  double expansion;         // 1/K
 };
 
 /// A spring and a damper in parallel.

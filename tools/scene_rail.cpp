@@ -117,6 +117,9 @@ RailScene read_rail(const Table& rail) {
   r.shear_factor_y = read_override(rail, "shear_factor_y");
   r.shear_factor_z = read_override(rail, "shear_factor_z");
   r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), 0.3);
+  r.axial_force = rail.number("axial_force_n", between(-1e10, 1e10), 0.0);
+  r.temperature_rise = rail.number("temperature_rise_k", between(-300.0, 300.0), 0.0);
+  r.expansion = rail.number("expansion_per_k", between(0.0, 1e-3), 1.15e-5);
   return r;
 }
 
