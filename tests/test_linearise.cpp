@@ -1,10 +1,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "offline/beam/equilibrium.h"
 #include "offline/beam/linearise.h"
 #include "offline/beam/track_structure.h"
 #include "offline/track/statics.h"
+#include "program.h"
 #include "sections.h"
 
 using namespace railstep;
@@ -107,4 +109,28 @@ TEST_CASE("a track that nothing holds finds no equilibrium", "[linearise]") {
   Track loose = pinned_bar(2);
   loose.ends = {RailEnd::free, RailEnd::free};
   CHECK_THROWS_WITH(linearised_under_weight(loose, 9.81), Catch::Contains("no equilibrium"));
+}
+
+TEST_CASE("a scene linearised at its weight answers with the nonlinear sag", "[linearise]") {
+  const std::string scene = RAILSTEP_SOURCE "/config/scenes/cantilever_rail.toml";
+  const std::string words = " --json --set track.gravity=true --set 'load[0].force_z_n=0'";
+  const auto tip = [&](const std::string& more) {
+    const Ran ran = railstep_program("static " + scene + words + more);
+    REQUIRE(ran.code == 0);
+    const auto result = nlohmann::json::parse(ran.out);
+    return result["points"][0]["displacement_m"].get<std::vector<double>>();
+  };
+  const auto nonlinear = tip("");
+  const auto linear = tip(" --model linearised --set track.linearised_at='\"weight\"'");
+  const auto at_rest = tip(" --model linearised");
+  // The nonlinear solution leaves 1e-10 of the load; the tip is short by less than 1e-8 of its sag.
+  CHECK_THAT(linear[2], WithinRel(nonlinear[2], 1e-9));
+  CHECK_THAT(linear[0], WithinRel(nonlinear[0], 1e-8));
+  CHECK(nonlinear[0] < 0.);
+  CHECK(std::abs(at_rest[0]) < 1e-6 * std::abs(nonlinear[0]));
+  const Ran refused = railstep_program("modes " RAILSTEP_SOURCE
+                                       "/config/scenes/pinned_bay.toml "
+                                       "--set track.linearised_at='\"weight\"'");
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.err, Catch::Contains("linearised_at"));
 }

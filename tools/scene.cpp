@@ -33,8 +33,14 @@ TrackScene read_track(const Table& t) {
                                    RailModel::timoshenko};
   track.model = kModels[t.choice("model", {"linearised", "nonlinear", "timoshenko"}, 0)];
   if (track.model == RailModel::nonlinear && track.unknowns == Unknowns::vertical)
-    t.refuse("model", "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
-                      "unknowns = \"full\"");
+    t.refuse("model",
+             "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
+             "unknowns = \"full\"");
+  track.linearised_under_weight = t.choice("linearised_at", {"rest", "weight"}, 0) == 1;
+  if (track.linearised_under_weight && track.unknowns == Unknowns::vertical)
+    t.refuse("linearised_at",
+             "linearised_at = \"weight\" couples sag and stretch; accepted with "
+             "unknowns = \"full\"");
   constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,
                                       ReferenceLine::foot, ReferenceLine::head};
   track.reference_line =
