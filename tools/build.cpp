@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
@@ -161,7 +162,8 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
       .shear_centre_z = section.shear.shear_centre_height - section.area.centroid_height};
   track.material = {scene.rail.young, scene.rail.poisson, scene.rail.density};
   // Without third and fourth moments, which it does not need, a linear element keeps its bits.
-  if (scene.track.model == RailModel::nonlinear || scene.rail.section_points > 0)
+  if (scene.track.model == RailModel::nonlinear || scene.track.linearised_under_weight ||
+      scene.rail.section_points > 0)
     track.section.moments = rail.moments;
   track.rule = scene.rail.rule;
   track.axis_z = axis_z_of(scene, section);
@@ -177,7 +179,8 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   const double heat = scene.rail.expansion * scene.rail.temperature_rise;  // strain it would make
   track.axial_force = scene.rail.axial_force - scene.rail.young * track.section.area * heat;
   refuse_buckled(track);
-  return track;
+  if (!scene.track.linearised_under_weight) return track;
+  return linearised_under_weight(track, scene.track.gravity ? kGravity : 0.);
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }

@@ -65,13 +65,15 @@ RailSection rail_section_of(const Scene& scene) try {
   SaintVenant& shear = found.section.shear;
   shear.shear_factor_y = rail.shear_factor_y.value_or(shear.shear_factor_y);
   shear.shear_factor_z = rail.shear_factor_z.value_or(shear.shear_factor_z);
-  const bool needed = scene.track.model == RailModel::nonlinear || rail.section_points > 0;
+  const bool nonlinear =
+      scene.track.model == RailModel::nonlinear || scene.track.linearised_under_weight;
+  const bool needed = nonlinear || rail.section_points > 0;
   if (needed && !found.moments)
     throw InputError(fmt::format(
         "{}: [rail] gives a section's constants, but {} wants its shape, of which moments of third "
         "and fourth degree are taken; accepted are profile, rectangles and rectangle",
         scene.file.string(),
-        rail.section_points > 0 ? "rule.section_points" : "track.model = \"nonlinear\""));
+        rail.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
   return found;
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: [rail] {}", scene.file.string(), error.what()));

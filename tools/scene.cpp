@@ -36,6 +36,11 @@ TrackScene read_track(const Table& t) {
     t.refuse("model",
              "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
              "unknowns = \"full\"");
+  track.linearised_under_weight = t.choice("linearised_at", {"rest", "weight"}, 0) == 1;
+  if (track.linearised_under_weight && track.unknowns == Unknowns::vertical)
+    t.refuse("linearised_at",
+             "linearised_at = \"weight\" couples sag and stretch; accepted with "
+             "unknowns = \"full\"");
   constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,
                                       ReferenceLine::foot, ReferenceLine::head};
   track.reference_line =

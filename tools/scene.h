@@ -52,6 +52,7 @@ struct TrackScene {
   RailEnds ends;
   bool gravity;  // on the rails
   RailModel model;
+  bool linearised_under_weight;  // the stiffness is taken where weight and preload leave the track
   ReferenceLine reference_line;
   [[nodiscard]] double length() const { return static_cast<double>(bays) * bay; }
 };

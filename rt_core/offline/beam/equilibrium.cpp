@@ -85,8 +85,10 @@ class Balance {
 
   /// True where round-off of the positions alone explains the residual.
   bool rounded(const Eigen::VectorXd& residual, const Sparse& K, const Eigen::VectorXd& q) const {
-    const Eigen::VectorXd free_q = free_part(structure_, q);
-    const Eigen::VectorXd noise = K.cwiseAbs() * free_q.cwiseAbs();
+    // Far from where the structure lies, noise would excuse anything: a loose one flies away.
+    const double extent = 2. * structure_.rest.cwiseAbs().maxCoeff();
+    const Eigen::VectorXd free_q = free_part(structure_, q).cwiseAbs().cwiseMin(extent);
+    const Eigen::VectorXd noise = K.cwiseAbs() * free_q;
     const double eps = std::numeric_limits<double>::epsilon();
     return (residual.cwiseAbs() - 8. * eps * noise).maxCoeff() <= 0.;
   }

@@ -136,6 +136,15 @@ Sparse TrackStructure::row(const Functional& functional) const {
   return sum;
 }
 
+TrackState TrackStructure::state(const Eigen::VectorXd& q) const {
+  const Eigen::VectorXd change = q - structure_.rest;
+  TrackState state{change.head(9 * track_.nodes()), Eigen::VectorXd(3 * sleeper_[0].size())};
+  Eigen::Index i = 0;
+  for (const auto& unknowns : sleeper_[0])
+    for (const int unknown : unknowns) state.sleeper[i++] = unknown >= 0 ? change[unknown] : 0.;
+  return state;
+}
+
 Eigen::VectorXd TrackStructure::weight(double gravity) const {
   const ElementMatrices element =
       element_matrices(track_.section, track_.law(), track_.element_length());

@@ -59,10 +59,20 @@ void number(const Track& track, Assembly& part) {
   }
 }
 
+/// K_r of Eq. 24 of one element where the track stands.
+Matrix27 stiffness_at(const Track& track, const TrackState& state, int element) {
+  const Vector27 rest = straight_nodes(track.element_length());
+  const Vector27 q = rest + state.rail.segment<27>(18 * element);
+  Matrix27 K;
+  Vector27 force;
+  beam_tangent(beam_element(track.law(), rest), q.data(), force.data(), K.data());
+  return K;
+}
+
 void add_elements(const Track& track, Assembly& part) {
-  const ElementMatrices element =
-      element_matrices(track.section, track.law(), track.element_length());
+  ElementMatrices element = element_matrices(track.section, track.law(), track.element_length());
   for (int e = 0; e < track.elements(); ++e) {
+    if (track.state) element.stiffness = stiffness_at(track, *track.state, e);
     std::array<int, 27> place;
     for (int i = 0; i < 27; ++i)
       place[static_cast<std::size_t>(i)] = part.line.unknown(2 * e + i / 9, i % 9);
@@ -258,11 +268,32 @@ Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
   return row;
 }
 
+namespace {
+
+/// The track's state over the unknowns of one line.
+Eigen::VectorXd state_of(const Line& line, const TrackState& state, double both) {
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(line.unknowns());
+  const auto take = [&](const auto& unknowns, const Eigen::VectorXd& values) {
+    Eigen::Index i = 0;
+    for (const auto& place : unknowns)
+      for (const int unknown : place) {
+        if (unknown >= 0) u[unknown] = both * values[i];
+        ++i;
+      }
+  };
+  take(line.unknown_of, state.rail);
+  if (state.sleeper.size() > 0) take(line.sleeper_unknown_of, state.sleeper);
+  return u;
+}
+
+}  // namespace
+
 Eigen::VectorXd weight(const Track& track, const Line& line, double gravity) {
+  const double both = line.rail_factor[0] + (track.rails == 2 ? line.rail_factor[1] : 0.);
+  if (track.state) return line.stiffness * state_of(line, *track.state, both);
   const ElementMatrices element =
       element_matrices(track.section, track.law(), track.element_length());
   const double line_weight = track.material.density * track.section.area * gravity;
-  const double both = line.rail_factor[0] + (track.rails == 2 ? line.rail_factor[1] : 0.);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(line.unknowns());
   for (int e = 0; e < track.elements(); ++e)
     for (int i = 0; i < 27; ++i) {

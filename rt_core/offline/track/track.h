@@ -38,6 +38,12 @@ struct Sleeper {
   std::array<double, 3> ballast_damping{};    // x, y, z per end, N s/m
 };
 
+/// Where a track stands at a static equilibrium; all of its rails alike.
+struct TrackState {
+  Eigen::VectorXd rail;     // [9 nodes] change of a rail's unknowns from rest
+  Eigen::VectorXd sleeper;  // [3 seats] displacement of the sleepers' ends, m; empty without
+};
+
 /// A straight track of one rail, or of two alike ones, with uniform supports.
 struct Track {
   BeamSection section;
@@ -54,6 +60,9 @@ struct Track {
   RailEnds ends = {RailEnd::free, RailEnd::free};
   Support support;
   std::optional<Sleeper> sleeper;
+  /// Where the stiffness is taken (q_s of Eq. 24); none: at rest. linearised_under_weight() makes
+  /// one.
+  std::optional<TrackState> state;
 
   int elements() const { return bays * elements_per_bay; }
   int nodes() const { return 2 * elements() + 1; }
@@ -110,7 +119,9 @@ std::vector<Line> assemble(const Track& track);
 /// it spreads a unit force at that point. Throws std::out_of_range off the rail.
 Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point);
 
-/// Nodal forces of the rails' and sleepers' own weight on one line. @param gravity m/s2, > 0 down
+/// Nodal forces of the rails' and sleepers' own weight on one line. @param gravity m/s2, > 0 down.
+/// Of a track with a state, which is that under its weight: K_r q_s, the constant part of Eq. 24,
+/// f_s of which the weight balances; the linear answer to it is the state.
 Eigen::VectorXd weight(const Track& track, const Line& line, double gravity = 9.81);
 
 }  // namespace railstep

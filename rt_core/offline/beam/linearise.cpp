@@ -1,0 +1,24 @@
+#include "offline/beam/linearise.h"
+
+#include <stdexcept>
+
+#include "offline/beam/equilibrium.h"
+#include "offline/beam/track_structure.h"
+
+namespace railstep {
+
+Linearised linearised(const Structure& structure, const Eigen::VectorXd& q_s) {
+  return {internal_force(structure, q_s), tangent(structure, q_s)};
+}
+
+Track linearised_under_weight(Track track, double gravity) {
+  track.state.reset();
+  const TrackStructure rails(track);
+  const Equilibrium found = equilibrium(rails.structure(), {rails.weight(gravity)});
+  if (!found.converged)
+    throw std::invalid_argument("the track finds no equilibrium under its own weight and preload");
+  track.state = rails.state(found.q);
+  return track;
+}
+
+}  // namespace railstep

@@ -1,0 +1,20 @@
+#pragma once
+#include "offline/beam/structure.h"
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// Eq. 24: dU/dq near a configuration q_s, f_s + K_r (q - q_s).
+struct Linearised {
+  Eigen::VectorXd force;                  // f_s, [unknowns]
+  Eigen::SparseMatrix<double> stiffness;  // K_r, both triangles
+};
+Linearised linearised(const Structure& structure, const Eigen::VectorXd& q_s);
+
+/// The track with its stiffness taken where it stands under its own weight and the preload of its
+/// rails, by the nonlinear element, rather than at rest.
+/// Throws std::invalid_argument where no such equilibrium is found (a free rigid mode, a buckled
+/// rail), and as TrackStructure does.
+Track linearised_under_weight(Track track, double gravity);
+
+}  // namespace railstep
