@@ -47,30 +47,53 @@ template <int N>
   gather(beam.per_length, even, odd, force, force + 9, force + 18);
 }
 
-/// A block of nodes m, n and fields f, g and its mirror image; of one on the diagonal the upper
-/// triangle counts.
-void set_block(const double* block, int row, int column, double* tangent) noexcept {
-  for (int i = 0; i < 3; ++i)
-    for (int j = row == column ? i : 0; j < 3; ++j) {
-      const double entry = block[3 * i + j];
-      tangent[kBeamUnknowns * (row + i) + column + j] = entry;
-      tangent[kBeamUnknowns * (column + j) + row + i] = entry;
-    }
+/// A row of [3][3], a fourth column of 0 beside it, as one or two T.
+constexpr int kRow = 4 / kWide;
+template <class T>
+[[gnu::always_inline]] inline void set_row(double x, double y, double z, T* row) noexcept {
+  if constexpr (kRow == 1) {
+    row[0] = T{x, y, z, 0.};
+  } else {
+    row[0] = T{x, y};
+    row[1] = T{z, 0.};
+  }
 }
 
-template <int kPair>
-[[gnu::always_inline]] inline void set_fields(const Coefficients& k, const double* even,
-                                              const double* odd, double* tangent) noexcept {
-  constexpr int f = kFieldPair[kPair].row, g = kFieldPair[kPair].column;
-  double blocks[3][3][9 + kWide];
-  for (int c = 0; c < 9; c += kWide) {
-    const NodePairs<Wide> K = node_pairs<kPair, Wide>(k, even, odd, c);
-    for (int m = 0; m < 3; ++m)
-      for (int n = 0; n < 3; ++n) __builtin_memcpy(blocks[m][n] + c, &K.of[m][n], sizeof(Wide));
+/// Rows of the sum and the difference of the lanes of [3][3] blocks, and of the transposes.
+/// @param even, odd  [kMatrices][3][kRow]
+[[gnu::always_inline]] inline void matrix_rows(const Two* K, Wide* even, Wide* odd) noexcept {
+  const auto set = [=](int row, const Two& x, const Two& y, const Two& z) {
+    Wide plus[kRow], minus[kRow];
+    set_row(x[0], y[0], z[0], plus);
+    set_row(x[1], y[1], z[1], minus);
+    for (int part = 0; part < kRow; ++part) {
+      even[kRow * row + part] = plus[part] + minus[part];
+      odd[kRow * row + part] = plus[part] - minus[part];
+    }
+  };
+  for (int i = 0; i < 3 * kProducts; ++i) set(i, K[3 * i], K[3 * i + 1], K[3 * i + 2]);
+  for (int k = kProducts; k < kMatrices; ++k) {
+    const Two* of = K + 9 * kTransposeOf[k - kProducts];
+    for (int i = 0; i < 3; ++i) set(3 * k + i, of[i], of[i + 3], of[i + 6]);
   }
-  for (int m = 0; m < 3; ++m)
-    for (int n = f == g ? m : 0; n < 3; ++n)
-      set_block(blocks[m][n], 9 * m + 3 * f, 9 * n + 3 * g, tangent);
+}
+
+/// The blocks of two fields, row by row. A row of four doubles spills one into the next column,
+/// which is set later: fields come in the order r, a, b, and b's rows end after three.
+template <int kPair>
+[[gnu::always_inline]] inline void set_fields(const Coefficients& k, const Wide* even,
+                                              const Wide* odd, double* tangent) noexcept {
+  constexpr int f = kFieldPair[kPair].row, g = kFieldPair[kPair].column;
+  for (int i = 0; i < 3; ++i)
+    unrolled<kRow>([&](auto part) __attribute__((always_inline)) {
+      constexpr int columns = g < 2 || part < kRow - 1 ? kWide : kWide - 1;
+      double* at = tangent + kBeamUnknowns * (3 * f + i) + 3 * g + kWide * part;
+      const NodePairs<Wide> K = node_pairs<kPair, 3 * kRow>(k, even, odd, kRow * i + part);
+      for (int m = 0; m < 3; ++m)
+        for (int n = 0; n < 3; ++n)
+          __builtin_memcpy(at + kBeamUnknowns * 9 * m + 9 * n, &K.of[m][n],
+                           columns * sizeof(double));
+    });
 }
 
 /// Elements `first` and on as lanes; after the last one, the last again.
@@ -142,6 +165,13 @@ void group_point(const StraightBeam& beam, const Wide* even, const Wide* odd, bo
   vector_tangent(beam, stress, V, K);
 }
 
+/// Adds the transposes that the upper triangle needs.
+[[gnu::always_inline]] inline void add_transposes(Wide* matrices) noexcept {
+  for (int k = kProducts; k < kUpperMatrices; ++k)
+    for (int c = 0; c < 9; ++c)
+      matrices[9 * k + c] = matrices[9 * kTransposeOf[k - kProducts] + 3 * (c % 3) + c / 3];
+}
+
 /// @param out  the group's tangents, from the first of these lanes on
 template <int kPair>
 void set_lane_fields(const Coefficients& k, const Wide* even, const Wide* odd,
@@ -153,7 +183,7 @@ void set_lane_fields(const Coefficients& k, const Wide* even, const Wide* odd,
   };
   for (int c = 0; c < 9; ++c) {
     const int i = c / 3, j = c % 3, row = 3 * f + i, column = 3 * g + j;
-    const NodePairs<Wide> K = node_pairs<kPair, Wide>(k, even, odd, c);
+    const NodePairs<Wide> K = node_pairs<kPair, 9>(k, even, odd, c);
     for (int m = 0; m < 3; ++m)
       for (int n = f == g ? m : 0; n < 3; ++n) {
         if (f == g && m == n && i > j) continue;
@@ -166,7 +196,7 @@ void set_lane_fields(const Coefficients& k, const Wide* even, const Wide* odd,
 void group_tangents(const StraightBeam& beam, const Group& group, const double* q, double* force,
                     double* out) noexcept {
   Wide even[kComponents], odd[kComponents], F[2][kComponents], nodes[kBeamUnknowns];
-  Wide K[2][9 * kMatrices];
+  Wide K[2][9 * kUpperMatrices];
   lane_vectors(beam, group, q, even, odd);
   for (int point = 0; point < 2; ++point)
     group_point(beam, even, odd, point == 0, F[point], K[point]);
@@ -177,7 +207,7 @@ void group_tangents(const StraightBeam& beam, const Group& group, const double* 
   sum_difference<kEntries>(K[0], K[1]);
   for (Wide* part : K) add_transposes(part);
   const Coefficients k = coefficients(beam.per_length);
-  unrolled<kFieldPairs>([&](auto pair) { set_lane_fields<pair>(k, K[0], K[1], out); });
+  unrolled<kUpperPairs>([&](auto pair) { set_lane_fields<pair>(k, K[0], K[1], out); });
 }
 
 }  // namespace
@@ -199,13 +229,18 @@ void straight_tangent(const StraightBeam& beam, const double* q, double* force,
   nodal_force(beam, stress, V, force);
   vector_tangent(beam, stress, V, K);
 
-  // Behind the matrices what the last of them reads in vain.
-  double even[9 * kMatrices + kWide] = {}, odd[9 * kMatrices + kWide] = {};
-  even_odd<kEntries>(K, even, odd);
-  add_transposes(even);
-  add_transposes(odd);
+  Wide even[3 * kRow * kMatrices], odd[3 * kRow * kMatrices];
+  matrix_rows(K, even, odd);
   const Coefficients k = coefficients(beam.per_length);
-  unrolled<kFieldPairs>([&](auto pair) { set_fields<pair>(k, even, odd, tangent); });
+  set_fields<0>(k, even, odd, tangent);  // columns of r
+  set_fields<6>(k, even, odd, tangent);
+  set_fields<7>(k, even, odd, tangent);
+  set_fields<1>(k, even, odd, tangent);  // of a
+  set_fields<3>(k, even, odd, tangent);
+  set_fields<8>(k, even, odd, tangent);
+  set_fields<2>(k, even, odd, tangent);  // of b
+  set_fields<4>(k, even, odd, tangent);
+  set_fields<5>(k, even, odd, tangent);
 }
 
 void straight_forces(const StraightBeam& beam, int n, const double* q, double* force) noexcept {

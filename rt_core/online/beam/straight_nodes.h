@@ -66,6 +66,11 @@ constexpr Coefficients coefficients(double h) noexcept {
 template <class T>
 struct NodePairs {
   T of[3][3];
+
+  [[gnu::always_inline]] void operator+=(const NodePairs& other) noexcept {
+    for (int m = 0; m < 3; ++m)
+      for (int n = 0; n < 3; ++n) of[m][n] += other.of[m][n];
+  }
 };
 
 /// Slopes of both nodes; symmetric in m and n.
@@ -83,22 +88,24 @@ template <class T>
 
 /// Slope of node m, value of node n; or, of the transposed block, value of m and slope of n.
 template <bool kTransposed, class T>
-[[gnu::always_inline]] inline void add_mixed(const Coefficients& k, const T& even, const T& odd,
-                                             NodePairs<T>& K) noexcept {
-  const auto at = [&](int m, int n) __attribute__((always_inline))->T& {
+[[gnu::always_inline]] inline NodePairs<T> mixed(const Coefficients& k, const T& even,
+                                                 const T& odd) noexcept {
+  NodePairs<T> K;
+  const auto at = [&K](int m, int n) __attribute__((always_inline))->T& {
     return kTransposed ? K.of[n][m] : K.of[m][n];
   };
   const T half = k.even[0] * even, two = k.even[1] * even, sixth = k.even[2] * even;
   const T o5 = k.odd[0] * odd, o4 = k.odd[1] * odd, o1 = k.odd[2] * odd, o2 = k.odd[3] * odd;
-  at(0, 0) += o5 - half;
-  at(0, 1) += o4 - two;
-  at(0, 2) += sixth - o1;
-  at(1, 0) += two - o2;
-  at(1, 1) -= k.odd[4] * odd;
-  at(1, 2) -= two + o2;
-  at(2, 0) -= sixth + o1;
-  at(2, 1) += two + o4;
-  at(2, 2) += half + o5;
+  at(0, 0) = o5 - half;
+  at(0, 1) = o4 - two;
+  at(0, 2) = sixth - o1;
+  at(1, 0) = two - o2;
+  at(1, 1) = -(k.odd[4] * odd);
+  at(1, 2) = -(two + o2);
+  at(2, 0) = -(sixth + o1);
+  at(2, 1) = two + o4;
+  at(2, 2) = half + o5;
+  return K;
 }
 
 /// Values of both nodes; symmetric in m and n.
@@ -118,47 +125,43 @@ template <class T>
   K.of[2][0] -= ends;
 }
 
-/// Blocks of V's tangent in the order of kProductOf, and after them the transposes of a'a, b'a,
-/// b'b.
-inline constexpr int kMatrices = kProducts + 3;
+/// Matrices of a tangent: the blocks of V in the order of kProductOf, then transposes of some. The
+/// first three of these are all that the fields' upper triangle needs.
+inline constexpr int kTransposeOf[] = {8, 10, 11, 1, 2, 4, 6, 7, 9, 13};
+inline constexpr int kUpperMatrices = kProducts + 3, kMatrices = kProducts + 10;
 
-/// Which of them make the block of two nodal fields (r, a, b); -1 where there is none.
+/// Which of them make the block of two nodal fields r, a, b; -1 where there is none.
 struct FieldPair {
   int row, column;  // fields
   int slopes, mixed, transposed, values;
 };
-inline constexpr int kFieldPairs = 6;
-inline constexpr FieldPair kFieldPair[kFieldPairs] = {{0, 0, 0, -1, -1, -1}, {0, 1, 1, 6, -1, -1},
-                                                      {0, 2, 2, 7, -1, -1},  {1, 1, 3, 8, 15, 12},
-                                                      {1, 2, 4, 9, 16, 13},  {2, 2, 5, 11, 17, 14}};
+/// The upper triangle first.
+inline constexpr int kUpperPairs = 6, kFieldPairs = 9;
+inline constexpr FieldPair kFieldPair[kFieldPairs] = {
+    {0, 0, 0, -1, -1, -1},  {0, 1, 1, 6, -1, -1},   {0, 2, 2, 7, -1, -1},
+    {1, 1, 3, 8, 15, 12},   {1, 2, 4, 9, 16, 13},   {2, 2, 5, 11, 17, 14},
+    {1, 0, 18, -1, 21, -1}, {2, 0, 19, -1, 22, -1}, {2, 1, 20, 10, 23, 24}};
 
-/// Entry c of a field pair, or the entries from c on that fill a T.
-/// @param even, odd  [kMatrices][9], of T, or of double where a T takes entries
-template <int kPair, class T, class Source>
-[[gnu::always_inline]] inline NodePairs<T> node_pairs(const Coefficients& k, const Source* even,
-                                                      const Source* odd, int c) noexcept {
+/// One entry, or row, c of a field pair; a block and its mirror image have the same bits.
+/// @param even, odd  [kMatrices][kStride]
+template <int kPair, int kStride, class T>
+[[gnu::always_inline]] inline NodePairs<T> node_pairs(const Coefficients& k, const T* even,
+                                                      const T* odd, int c) noexcept {
   constexpr FieldPair p = kFieldPair[kPair];
-  const auto load = [c](const Source* matrices, int matrix) __attribute__((always_inline)) {
-    T entries;
-    __builtin_memcpy(&entries, matrices + 9 * matrix + c, sizeof entries);
-    return entries;
-  };
+  const auto at = [c](int matrix) __attribute__((always_inline)) { return matrix * kStride + c; };
   NodePairs<T> K;
-  set_slopes(k, load(even, p.slopes), load(odd, p.slopes), K);
-  if constexpr (p.mixed >= 0) add_mixed<false>(k, load(even, p.mixed), load(odd, p.mixed), K);
-  if constexpr (p.transposed >= 0)
-    add_mixed<true>(k, load(even, p.transposed), load(odd, p.transposed), K);
-  if constexpr (p.values >= 0) add_values(load(even, p.values), load(odd, p.values), K);
+  set_slopes(k, even[at(p.slopes)], odd[at(p.slopes)], K);
+  if constexpr (p.mixed >= 0 && p.transposed >= 0) {
+    NodePairs<T> both = mixed<false>(k, even[at(p.mixed)], odd[at(p.mixed)]);
+    both += mixed<true>(k, even[at(p.transposed)], odd[at(p.transposed)]);
+    K += both;
+  } else if constexpr (p.mixed >= 0) {
+    K += mixed<false>(k, even[at(p.mixed)], odd[at(p.mixed)]);
+  } else if constexpr (p.transposed >= 0) {
+    K += mixed<true>(k, even[at(p.transposed)], odd[at(p.transposed)]);
+  }
+  if constexpr (p.values >= 0) add_values(even[at(p.values)], odd[at(p.values)], K);
   return K;
-}
-
-/// The transposes behind the matrices of V's tangent.
-template <class T>
-[[gnu::always_inline]] inline void add_transposes(T* matrices) noexcept {
-  constexpr int of[3] = {8, 10, 11};  // a'a, b'a, b'b
-  for (int k = 0; k < 3; ++k)
-    for (int c = 0; c < 9; ++c)
-      matrices[9 * (kProducts + k) + c] = matrices[9 * of[k] + 3 * (c % 3) + c / 3];
 }
 
 }  // namespace railstep::straight
