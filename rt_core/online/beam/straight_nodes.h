@@ -14,12 +14,10 @@ template <class T>
 [[gnu::always_inline]] inline void split(double h, const T* n1, const T* n2, const T* n3, T* even,
                                          T* odd) noexcept {
   const double bend = 2. * kG * h;
-#pragma omp simd
   for (int c = 0; c < 9; ++c) {
     even[c] = h * (n3[c] - n1[c]);
     odd[c] = bend * ((n3[c] + n1[c]) - 2. * n2[c]);
   }
-#pragma omp simd
   for (int c = 3; c < 9; ++c) {
     even[6 + c] = (1. / 6.) * (n3[c] + n1[c]) + (2. / 3.) * n2[c];
     odd[6 + c] = (.5 * kG) * (n3[c] - n1[c]);
@@ -31,14 +29,12 @@ template <class T>
 [[gnu::always_inline]] inline void gather(double h, const T* even, const T* odd, T* n1, T* n2,
                                           T* n3) noexcept {
   const double bend = 2. * kG * h;
-#pragma omp simd
   for (int c = 0; c < 9; ++c) {
     const T stretch = h * even[c], turn = bend * odd[c];
     n1[c] = turn - stretch;
     n2[c] = -2. * turn;
     n3[c] = turn + stretch;
   }
-#pragma omp simd
   for (int c = 3; c < 9; ++c) {
     const T mean = (1. / 6.) * even[6 + c], tilt = (.5 * kG) * odd[6 + c];
     n1[c] += mean - tilt;
