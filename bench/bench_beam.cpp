@@ -58,12 +58,13 @@ struct Row {
         force(q.size()),
         tangent(static_cast<std::size_t>(straight_groups(kElements) * kStraightGroup)) {
     for (std::size_t i = 0; i < q.size(); ++i) {
+      const std::size_t node = i / 9;
       q[i] = .01 * std::sin(7. * static_cast<double>(i * i));
-      if (i % 9 == 0) q[i] += .5 * kLength * static_cast<double>(i / 9);
+      if (i % 9 == 0) q[i] += .5 * kLength * static_cast<double>(node);
       if (i % 9 == 4 || i % 9 == 8) q[i] += 1.;
     }
   }
-  const double* element(int e) const { return &q[static_cast<std::size_t>(18 * e)]; }
+  const double* element(int e) const { return q.data() + 18 * e; }
 };
 
 struct Differences {
@@ -162,7 +163,7 @@ void measure(benchmark::State& run, int calls, int elements, const Call& call) {
     return std::chrono::duration<double, std::micro>(d).count();
   };
   Yardstick yardstick;
-  double best = INFINITY, best_yardstick = INFINITY;
+  double best = 1e9, best_yardstick = 1e9;
   std::vector<double> ratios;
   for (auto _ : run) {
     const auto start = Clock::now();

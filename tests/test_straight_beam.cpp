@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "offline/beam/equilibrium.h"
@@ -81,11 +82,10 @@ struct OneByOne {
       : force(q.size()), tangent(static_cast<std::size_t>(n) * 729) {
     for (int e = 0; e < n; ++e) {
       double own[27];
-      straight_tangent(beam, &q[static_cast<std::size_t>(18 * e)], own,
-                       &tangent[static_cast<std::size_t>(729 * e)]);
+      straight_tangent(beam, q.data() + 18 * e, own, tangent.data() + 729 * e);
       for (int c = 0; c < 27; ++c) {
-        double& at = force[static_cast<std::size_t>(18 * e + c)];
-        at = e > 0 && c < 9 ? at + own[c] : own[c];
+        double* at = force.data() + 18 * e + c;
+        *at = e > 0 && c < 9 ? *at + own[c] : own[c];
       }
     }
   }
@@ -147,7 +147,9 @@ TEST_CASE("a batch of straight elements has the bits of its elements", "[straigh
     const std::vector<double> q = shaken_nodes(n, 100 + static_cast<unsigned>(n), .3);
     const OneByOne want(beam, n, q);
     // NaN where nothing has been written yet, and a canary behind.
-    const auto filled = [](std::size_t size) { return std::vector<double>(size + 1, NAN); };
+    const auto filled = [](std::size_t size) {
+      return std::vector<double>(size + 1, std::numeric_limits<double>::quiet_NaN());
+    };
     std::vector<double> force = filled(q.size()), same = filled(q.size()),
                         tangent = filled(static_cast<std::size_t>(straight_groups(n)) *
                                          static_cast<std::size_t>(kStraightGroup));
