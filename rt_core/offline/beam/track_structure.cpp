@@ -23,6 +23,8 @@ Sparse row_of(int unknowns, const std::vector<std::pair<int, double>>& entries) 
 TrackStructure::TrackStructure(const Track& track) : track_(track) {
   if (track.unknowns != Unknowns::full)
     throw std::invalid_argument("a nonlinear rail moves in space: it needs all unknowns");
+  if (!track.section.moments)
+    throw std::invalid_argument("a nonlinear rail wants its section's moments to degree 4");
   if (track.bays < 1 || track.elements_per_bay < 1)
     throw std::invalid_argument("a track needs one bay and one element");
   // A pin off the centroid does not hold the moment of a force through it.

@@ -224,6 +224,24 @@ void check_curvature(const RestPoint& p, const SectionMoments& m) {
 
 enum class Part { both, uncoupled, coupling };
 
+/// What a point adds of a part of the energy; `weight` holds that of its Gauss point.
+void add_energy(BeamPoint& point, const BeamLaw& law, const RestPoint& p, double weight,
+                Part part) {
+  for (int k = 0; k < kProducts; ++k) {
+    const int i = kProductOf[k][0], j = kProductOf[k][1];
+    point.rest[k] = (i == j ? .5 : 1.) * p.vector(i).dot(p.vector(j));
+  }
+  const Metric over = metric(p);
+  check_curvature(p, law.moments);
+  const std::array<StrainRow, 6> rows = strain_rows(over);
+  const Sum sum{law.moments, over.determinant, weight, point.stiffness};
+  if (part != Part::coupling) add_uncoupled(sum, law, rows);
+  if (part != Part::coupling) add_preload(point, law, rows[kE11], over.determinant, weight);
+  if (part != Part::uncoupled) add_coupling(sum, law, rows);
+  for (int i = 0; i < kProducts; ++i)  // what round-off made of a symmetric form
+    for (int j = 0; j < i; ++j) point.stiffness[i][j] = point.stiffness[j][i];
+}
+
 BeamPoint beam_point(const BeamLaw& law, const Vector27& rest, double length, const GaussPoint& g,
                      Part part) {
   BeamPoint point{};
@@ -232,21 +250,7 @@ BeamPoint beam_point(const BeamLaw& law, const Vector27& rest, double length, co
     point.value[i] = value[i];
     point.slope[i] = slope[i] / (length / 2.);
   }
-  const RestPoint p = rest_point(point, rest);
-  for (int k = 0; k < kProducts; ++k) {
-    const int i = kProductOf[k][0], j = kProductOf[k][1];
-    point.rest[k] = (i == j ? .5 : 1.) * p.vector(i).dot(p.vector(j));
-  }
-  const Metric over = metric(p);
-  check_curvature(p, law.moments);
-  const std::array<StrainRow, 6> rows = strain_rows(over);
-  const double weight = g.weight * length / 2.;
-  const Sum sum{law.moments, over.determinant, weight, point.stiffness};
-  if (part != Part::coupling) add_uncoupled(sum, law, rows);
-  if (part != Part::coupling) add_preload(point, law, rows[kE11], over.determinant, weight);
-  if (part != Part::uncoupled) add_coupling(sum, law, rows);
-  for (int i = 0; i < kProducts; ++i)  // what round-off made of a symmetric form
-    for (int j = 0; j < i; ++j) point.stiffness[i][j] = point.stiffness[j][i];
+  add_energy(point, law, rest_point(point, rest), g.weight * length / 2., part);
   return point;
 }
 
@@ -259,6 +263,14 @@ Vector27 straight_nodes(double length) {
     q[9 * i + 4] = q[9 * i + 8] = 1.;
   }
   return q;
+}
+
+BeamPoint straight_point(const BeamLaw& law, double weight) {
+  BeamPoint point{};
+  const Vector3d none = Vector3d::Zero();
+  add_energy(point, law, {Vector3d::UnitX(), none, none, Vector3d::UnitY(), Vector3d::UnitZ()},
+             weight, Part::both);
+  return point;
 }
 
 Beam beam_element(const BeamLaw& law, const Vector27& rest) {

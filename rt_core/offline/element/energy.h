@@ -46,4 +46,9 @@ Vector27 straight_nodes(double length);
 ///         one direction, no length) and a curvature radius under twice the section's reach
 Beam beam_element(const BeamLaw& law, const Vector27& rest);
 
+/// Rest, preload and stiffness at a point of a straight axis along x with unit slopes, free of the
+/// round-off of shape functions; values and slopes are left 0.
+/// @param weight  of the Gauss point times det J, m
+BeamPoint straight_point(const BeamLaw& law, double weight);
+
 }  // namespace railstep
