@@ -26,6 +26,7 @@ nlohmann::ordered_json to_json(const StaticSolution& solution) {
           {"iterations", solution.iterations},
           {"residual", solution.residual},
           {"load_steps", solution.load_steps},
+          {"stable", solution.stable},
           {"converged", solution.converged}};
 }
 
@@ -36,11 +37,14 @@ void print_table(const StaticSolution& solution) {
                p.displacement[1], p.displacement[2]);
   fmt::print("iterations {}, load steps {}, residual {:.2e} of the load\n", solution.iterations,
              solution.load_steps, solution.residual);
+  if (!solution.stable) fmt::print("unstable: the rails buckle out of this shape\n");
 }
 
-void print_history(const StaticSolution& solution) {
-  fmt::print(stderr, "no equilibrium was found\n{:>12} {:>9} {:>12}\n", "load factor", "iteration",
-             "residual");
+void print_history(const std::string& scene, const StaticSolution& solution) {
+  fmt::print(stderr,
+             "{}: no equilibrium was found within static.most_iterations and "
+             "static.most_load_halvings\n{:>12} {:>9} {:>12}\n",
+             scene, "load factor", "iteration", "residual");
   for (const NewtonStep& step : solution.history)
     fmt::print(stderr, "{:>12.6g} {:>9} {:>12.3e}\n", step.load_factor, step.iteration,
                step.residual);
@@ -60,7 +64,7 @@ Exit run_static(const StaticOptions& o) {
   std::vector<std::string> overrides = o.overrides;
   if (!o.model.empty()) overrides.push_back(fmt::format("track.model=\"{}\"", o.model));
   const StaticSolution solution = solve_static(read_scene(o.scene, overrides));
-  if (!solution.converged) print_history(solution);
+  if (!solution.converged) print_history(o.scene, solution);
   if (o.json)
     fmt::print("{}\n", to_json(solution).dump(2));
   else if (solution.converged)

@@ -1,5 +1,9 @@
 #include <fmt/core.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
 #include <vector>
 
 #include "command.h"
@@ -15,7 +19,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)
-      if (command.parser->parsed()) return static_cast<int>(command.run());
+      if (command.parser->parsed()) {
+        const Exit exit = command.run();
+        if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(exit);
+        throw std::runtime_error(fmt::format("standard output: {}", std::strerror(errno)));
+      }
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : static_cast<int>(Exit::bad_input);  // CLI11's own codes start at 100

@@ -45,6 +45,10 @@ TrackScene read_track(const Table& t) {
                                       ReferenceLine::foot, ReferenceLine::head};
   track.reference_line =
       kLines[t.choice("reference_line", {"centroid", "mid-height", "foot", "head"}, 0)];
+  if (track.reference_line != ReferenceLine::centroid && track.unknowns == Unknowns::vertical)
+    t.refuse("reference_line",
+             "off the centroid nodes move along x as the rail bends; accepted is reference_line = "
+             "\"centroid\", or unknowns = \"full\"");
   return track;
 }
 
@@ -110,8 +114,13 @@ std::optional<SleeperScene> read_sleeper(const Table& root, const Scene& scene) 
   s.ballast_z = read_spring(*ballast, "z", true);
   for (auto [axis, spring] : {std::pair("x", &s.ballast_x), std::pair("y", &s.ballast_y)})
     if (ballast->has(fmt::format("stiffness_{}_n_per_m", axis)) ||
-        ballast->has(fmt::format("damping_{}_n_s_per_m", axis)))
+        ballast->has(fmt::format("damping_{}_n_s_per_m", axis))) {
       *spring = read_spring(*ballast, axis, true);
+      if ((*spring)->stiffness == 0.0)
+        ballast->refuse(fmt::format("stiffness_{}_n_per_m", axis),
+                        "0 would leave the sleeper free; accepted is above 0, or neither stiffness "
+                        "nor damping: then it is held");
+    }
   return s;
 }
 

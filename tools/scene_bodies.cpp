@@ -158,7 +158,7 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
   switch (t.choice("on", {"rail", "sleeper", "wheelset"})) {
     case 0: {
       RailSensor rail{read_side(t, scene), 0.0, Height::axis};
-      rail.position = t.number("position_m", between(0.0, scene.track.length()));
+      rail.position = t.number("position_m", between(0.0, (1.0 + 1e-12) * scene.track.length()));
       const Height heights[] = {Height::axis, Height::head, Height::foot};
       rail.at = heights[t.choice("at", {"axis", "head", "foot"}, 0)];
       sensor.on = rail;

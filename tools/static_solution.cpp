@@ -138,12 +138,19 @@ StaticSolution solve_nonlinear(const Problem& problem, const Asked& asked) {
   StructureLoad load{rails.weight(problem.gravity)};
   for (const PointForce& force : problem.forces) load.force += force.force * rails.row(force.at);
   const Equilibrium found = equilibrium(structure, load, problem.newton);
-  StaticSolution solution{
-      found.converged, found.iterations, found.load_steps, found.residual, found.history, {}, {}};
+  StaticSolution solution{found.converged,
+                          found.iterations,
+                          found.load_steps,
+                          found.residual,
+                          found.history,
+                          {},
+                          {},
+                          true};
   if (!found.converged) {
     solution.residual = found.history.back().residual;
     return solution;
   }
+  solution.stable = is_stable(structure, found.q);
   const Eigen::VectorXd u = found.q - structure.rest;
   answer(
       asked, [&](const Functional& f) { return rails.row(f).dot(u); }, solution);
@@ -172,7 +179,7 @@ double linear_residual(const Problem& problem, const Statics& statics,
 StaticSolution solve_linearised(const Problem& problem, const Asked& asked) {
   const Statics statics(problem.track);
   const std::vector<Eigen::VectorXd> u = statics.solve(problem.forces, problem.gravity);
-  StaticSolution solution{true, 1, 1, linear_residual(problem, statics, u), {}, {}, {}};
+  StaticSolution solution{true, 1, 1, linear_residual(problem, statics, u), {}, {}, {}, true};
   const auto displacement = [&](const Functional& f) {
     double sum = 0.;
     for (std::size_t i = 0; i < u.size(); ++i)
@@ -191,7 +198,7 @@ StaticSolution solve_timoshenko(const Problem& problem, const Asked& asked) {
   const TimoshenkoStatics beam(problem.track, x);
   const Eigen::VectorXd u = beam.solve(problem.forces, problem.gravity);
   const double residual = beam.residual(u, problem.forces, problem.gravity, problem.slope_length);
-  StaticSolution solution{true, 1, 1, residual, {}, {}, {}};
+  StaticSolution solution{true, 1, 1, residual, {}, {}, {}, true};
   answer(
       asked, [&](const Functional& f) { return beam.at(u, f.rail[0].at); }, solution);
   return solution;

@@ -23,6 +23,7 @@ struct StaticSolution {
   std::vector<NewtonStep> history;
   std::vector<StaticPoint> points;  // rail and sleeper sensors; none where nothing converged
   std::vector<StaticPoint> axis;    // quarters of every element, rail after rail
+  bool stable = true;  // of a nonlinear rail: no pivot of its tangent there is negative
 };
 
 /// Statics of a scene under its loads at t = 0, the weight of rails and sleepers where

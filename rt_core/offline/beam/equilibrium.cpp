@@ -1,6 +1,7 @@
 #include "offline/beam/equilibrium.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Sparse = Eigen::SparseMatrix<double>;
+
+constexpr double kRounded = 8., kIdle = 34.;  // roundings in a force; see equilibrium()
 
 Matrix3d cross_matrix(const Vector3d& v) {
   Matrix3d m;
@@ -83,14 +86,12 @@ class Balance {
     return free_force.cwiseProduct(free_part(structure_, scale_)).norm();
   }
 
-  /// True where round-off of the positions alone explains the residual.
-  bool rounded(const Eigen::VectorXd& residual, const Sparse& K, const Eigen::VectorXd& q) const {
-    // Far from where the structure lies, noise would excuse anything: a loose one flies away.
+  /// What a rounding of the positions makes of each internal force. Far from where the structure
+  /// lies it would excuse anything: a loose one flies away.
+  Eigen::VectorXd noise(const Sparse& K, const Eigen::VectorXd& q) const {
     const double extent = 2. * structure_.rest.cwiseAbs().maxCoeff();
     const Eigen::VectorXd free_q = free_part(structure_, q).cwiseAbs().cwiseMin(extent);
-    const Eigen::VectorXd noise = K.cwiseAbs() * free_q;
-    const double eps = std::numeric_limits<double>::epsilon();
-    return (residual.cwiseAbs() - 8. * eps * noise).maxCoeff() <= 0.;
+    return std::numeric_limits<double>::epsilon() * (K.cwiseAbs() * free_q);
   }
 
  private:
@@ -110,15 +111,22 @@ bool newton(const Structure& structure, const Balance& balance, double factor, d
             const NewtonOptions& options, Equilibrium& result) {
   Eigen::VectorXd q = result.q;
   Eigen::SparseLU<Sparse> solver;
+  double previous = std::numeric_limits<double>::infinity();
+  int idle = 0;  // iterations in a row that did not halve the residual
   for (int iteration = 0; iteration <= options.most_iterations; ++iteration) {
     const Eigen::VectorXd residual = balance.residual(q, factor);
     const double size = balance.size(residual) / load_size;
     result.history.push_back({factor, iteration, size});
     if (!std::isfinite(size)) return false;
     const Sparse K = balance.stiffness(q, factor);
+    idle = size > .5 * previous ? idle + 1 : 0;
+    previous = size;
     // A load may be below what round-off of the first shape leaves: it moves the shape all the
     // same.
-    if (size <= options.tolerance || (iteration > 0 && balance.rounded(residual, K, q))) {
+    const Eigen::VectorXd noise = balance.noise(K, q);
+    const bool in_all = (residual.cwiseAbs() - kRounded * noise).maxCoeff() <= 0.;
+    const bool in_vain = idle >= 2 && size * load_size <= kIdle * balance.size(noise);
+    if (size <= options.tolerance || (iteration > 0 && (in_all || in_vain))) {
       result.q = q;
       result.residual = size;
       return true;
@@ -149,13 +157,18 @@ Equilibrium equilibrium(const Structure& structure, const StructureLoad& load,
       ++result.load_steps;
       step *= 2.;
     } else if (step > least) {
-      step /= 2.;
+      step = (target - reached) / 2.;  // the last step may have been cut at the whole load
     } else {
       return result;
     }
   }
   result.converged = true;
   return result;
+}
+
+bool is_stable(const Structure& structure, const Eigen::VectorXd& q) {
+  const Eigen::SimplicialLDLT<Sparse> factor(free_part(structure, tangent(structure, q)));
+  return factor.info() == Eigen::Success && (factor.vectorD().array() > 0.).all();
 }
 
 }  // namespace railstep

@@ -42,11 +42,18 @@ struct Equilibrium {
 ///
 /// Sizes are compared with forces on slopes divided by `slope_length`. A step has converged when
 /// the residual is below the tolerance times the load, or when no entry of it is above what
-/// round-off leaves, 8 eps |K| |q|. Along the axis of a slender beam (length over height 1e4) that
-/// may be a thousand times a small load across it, and no iteration gets below; the deflection is
-/// right to 1e-7 all the same. Slender beams that bend far take hundreds of iterations.
+/// round-off leaves, 8 eps |K| |q|, or when two iterations did not halve it and its norm is below
+/// that of 34 eps |K| |q|: between a position and a nodal force lie some 34 roundings. Along the
+/// axis of a slender beam (length over height 1e4) that may be a thousand times a small load across
+/// it, and no iteration gets below; the deflection of 4 elements is right to 1e-7 all the same, of
+/// 32 to 1e-5. Slender beams that bend far take hundreds of iterations. An equilibrium need not be
+/// stable: is_stable() tells.
 /// @param start  where to begin, in place of the shape at rest
 Equilibrium equilibrium(const Structure& structure, const StructureLoad& load,
                         const NewtonOptions& options = {}, const Eigen::VectorXd* start = nullptr);
+
+/// Whether the tangent at q is positive definite over the free unknowns (no pivot is negative):
+/// else the structure buckles out of this shape. Moments that turn with it are left out.
+bool is_stable(const Structure& structure, const Eigen::VectorXd& q);
 
 }  // namespace railstep

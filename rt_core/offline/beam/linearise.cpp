@@ -4,6 +4,7 @@
 
 #include "offline/beam/equilibrium.h"
 #include "offline/beam/track_structure.h"
+#include "offline/track/statics.h"
 
 namespace railstep {
 
@@ -13,11 +14,15 @@ Linearised linearised(const Structure& structure, const Eigen::VectorXd& q_s) {
 
 Track linearised_under_weight(Track track, double gravity) {
   track.state.reset();
+  const Statics held(track);  // refuses a free rigid mode by its name
   const TrackStructure rails(track);
   const Equilibrium found = equilibrium(rails.structure(), {rails.weight(gravity)});
   if (!found.converged)
     throw std::invalid_argument("the track finds no equilibrium under its own weight and preload");
+  if (!is_stable(rails.structure(), found.q))
+    throw std::invalid_argument("the track buckles under its own weight and preload");
   track.state = rails.state(found.q);
+  track.state->gravity = gravity;
   return track;
 }
 

@@ -32,7 +32,9 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);
   };
   if (track.axial_force != 0. && !(held(track.ends[0]) && held(track.ends[1])))
-    throw std::invalid_argument("a nonlinear rail under axial force wants both ends held");
+    throw std::invalid_argument(
+        "a nonlinear rail under axial force wants both ends held, "
+        "clamped where the reference line is off the centroid");
   const int rail_unknowns = 9 * track.nodes() * track.rails;
   const int unknowns = track.sleeper ? number_sleepers(rail_unknowns) : rail_unknowns;
   structure_.rest = Eigen::VectorXd::Zero(unknowns);
@@ -141,9 +143,13 @@ Sparse TrackStructure::row(const Functional& functional) const {
 TrackState TrackStructure::state(const Eigen::VectorXd& q) const {
   const Eigen::VectorXd change = q - structure_.rest;
   TrackState state{change.head(9 * track_.nodes()), Eigen::VectorXd(3 * sleeper_[0].size())};
+  for (int node = 0; node < track_.nodes(); ++node)
+    for (const int sideways : {1, 3, 5, 7}) state.rail[9 * node + sideways] = 0.;
   Eigen::Index i = 0;
   for (const auto& unknowns : sleeper_[0])
-    for (const int unknown : unknowns) state.sleeper[i++] = unknown >= 0 ? change[unknown] : 0.;
+    for (const std::size_t d : {0UL, 1UL, 2UL}) {
+      state.sleeper[i++] = unknowns[d] >= 0 && d != 1 ? change[unknowns[d]] : 0.;
+    }
   return state;
 }
 

@@ -25,7 +25,9 @@ class TrackStructure {
   /// Throws std::out_of_range off the rail.
   Eigen::SparseVector<double> row(const RailPoint& point) const;
   Eigen::SparseVector<double> row(const Functional& functional) const;
-  /// Where the left rail and the sleepers' left ends stand.
+  /// Where the left rail and the sleepers' left ends stand, in their upright plane: sections that
+  /// are symmetric sag straight down, and what round-off makes beside it would tie vertical to
+  /// lateral motion.
   TrackState state(const Eigen::VectorXd& q) const;
   /// Nodal forces of the rails' and sleepers' own weight. @param gravity m/s2, > 0 down
   Eigen::VectorXd weight(double gravity = 9.81) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "offline/beam/linearise.h"
 #include "offline/track/statics.h"
 #include "online/step/residual.h"
 
@@ -68,7 +69,7 @@ std::vector<Value> receptances(const Track& track, const PackedModel& packed,
 
 Track refined(Track track, int times) {
   track.elements_per_bay *= times;
-  return track;
+  return track.state ? linearised_under_weight(track, track.state->gravity) : track;
 }
 
 /// Every kind of port at every place.

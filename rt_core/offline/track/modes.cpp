@@ -21,11 +21,15 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostDenseUnknowns = 4000;  // a dense solution takes some n^3 10 flops
 
-/// Eigenvalues ascending; those that rounding of the largest one makes are rigid modes.
-Modes of_squares(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes, double rounding) {
+/// The first `rigid` of ascending eigenvalues are 0; a further one below it is no frequency.
+Modes of_squares(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes,
+                 Eigen::Index rigid) {
   Modes result{Eigen::VectorXd(squares.size()), shapes};
   for (Eigen::Index i = 0; i < squares.size(); ++i) {
-    result.frequency[i] = squares[i] < rounding ? 0. : std::sqrt(squares[i]) / (2. * kPi);
+    if (i >= rigid && squares[i] < 0.)
+      throw std::invalid_argument(
+          "the track's stiffness is not positive: a mode would grow without bound");
+    result.frequency[i] = i < rigid ? 0. : std::sqrt(squares[i]) / (2. * kPi);
     Eigen::Index largest = 0;
     result.shape.col(i).cwiseAbs().maxCoeff(&largest);
     if (result.shape(largest, i) < 0.) result.shape.col(i) *= -1.;
@@ -113,7 +117,7 @@ std::optional<Modes> lanczos(const MassiveLine& line, const Eigen::MatrixXd& rig
   Eigen::MatrixXd all_shapes(shapes.rows(), held + count);
   all_squares << Eigen::VectorXd::Zero(held), squares;
   all_shapes << rigid, shapes;
-  return of_squares(all_squares, line.follow * all_shapes, 0.);
+  return of_squares(all_squares, line.follow * all_shapes, held);
 }
 
 }  // namespace
@@ -125,8 +129,9 @@ Modes modes(const Line& line) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
   if (solver.info() != Eigen::Success)
     throw std::invalid_argument("the modes of a line were not found: is a mass negative?");
-  return of_squares(solver.eigenvalues(), massive.follow * solver.eigenvectors(),
-                    1e-12 * solver.eigenvalues()[K.rows() - 1]);
+  Eigen::Index rigid = 0;
+  while (rigid < K.rows() && is_rigid(massive.stiffness, solver.eigenvectors().col(rigid))) ++rigid;
+  return of_squares(solver.eigenvalues(), massive.follow * solver.eigenvectors(), rigid);
 }
 
 Modes lowest_modes(const Line& line, int count) {

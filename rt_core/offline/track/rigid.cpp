@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 
@@ -32,7 +33,7 @@ Eigen::MatrixXd ritz(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMa
 bool is_rigid(const Eigen::SparseMatrix<double>& stiffness, const Eigen::VectorXcd& shape) {
   const Eigen::VectorXd size = shape.cwiseAbs();
   const double strain = shape.dot(stiffness.cast<std::complex<double>>() * shape).real();
-  return strain <= kRounding * size.dot(stiffness.cwiseAbs() * size);
+  return std::abs(strain) <= kRounding * size.dot(stiffness.cwiseAbs() * size);
 }
 
 Eigen::MatrixXd start_block(Eigen::Index rows, Eigen::Index columns) {

@@ -38,10 +38,11 @@ struct Sleeper {
   std::array<double, 3> ballast_damping{};    // x, y, z per end, N s/m
 };
 
-/// Where a track stands at a static equilibrium; all of its rails alike.
+/// Where a track stands under its own weight; all of its rails alike, and none moves sideways.
 struct TrackState {
   Eigen::VectorXd rail;     // [9 nodes] change of a rail's unknowns from rest
   Eigen::VectorXd sleeper;  // [3 seats] displacement of the sleepers' ends, m; empty without
+  double gravity = 0.;      // of that weight, m/s2
 };
 
 /// A straight track of one rail, or of two alike ones, with uniform supports.
