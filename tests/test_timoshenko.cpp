@@ -7,7 +7,6 @@
 #include "sections.h"
 
 using namespace railstep;
-using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
