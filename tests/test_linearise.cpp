@@ -50,10 +50,8 @@ TEST_CASE("a force near a configuration is f_s + K_r (q - q_s)", "[linearise]") 
   Eigen::VectorXd bent = s.rest;
   for (int i = 0; i < bent.size(); ++i) bent[i] += 1e-2 * std::sin(1.7 * i);
   const Linearised at = linearised(s, bent);
-  const Eigen::VectorXd step = Eigen::VectorXd::Constant(bent.size(), 1.).unaryExpr([](double) {
-    static int i = 0;
-    return std::cos(2.3 * i++);
-  });
+  Eigen::VectorXd step(bent.size());
+  for (int i = 0; i < step.size(); ++i) step[i] = std::cos(2.3 * i);
   const auto left_over = [&](double size) {
     const Eigen::VectorXd force = internal_force(s, bent + size * step);
     return (force - at.force - size * (at.stiffness * step)).norm();

@@ -46,17 +46,6 @@ std::vector<Structure::Element> chain(int elements, int first_node, int law) {
   return all;
 }
 
-double energy(const Structure& s, const Eigen::VectorXd& q) {
-  double sum = 0.;
-  for (const Structure::Element& e : s.elements)
-    sum += beam_energy(s.laws[index(e.law)], gathered(e, q).data());
-  for (const Structure::Spring& spring : s.springs) {
-    const double d = spring.row.dot(q - s.rest);
-    sum += .5 * spring.stiffness * d * d;
-  }
-  return sum;
-}
-
 Eigen::VectorXd internal_force(const Structure& s, const Eigen::VectorXd& q) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(s.unknowns());
   Vector27 local;

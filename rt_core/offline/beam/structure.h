@@ -35,9 +35,6 @@ struct Structure {
 /// Nodes of a chain of `elements` alike elements in a row, n of the first being 2 n.
 std::vector<Structure::Element> chain(int elements, int first_node = 0, int law = 0);
 
-/// Strain energy, J.
-double energy(const Structure& structure, const Eigen::VectorXd& q);
-
 /// dU/dq, [unknowns].
 Eigen::VectorXd internal_force(const Structure& structure, const Eigen::VectorXd& q);
 

@@ -19,7 +19,8 @@ double residual(const Line& line, std::complex<double> rate, const Eigen::Vector
 
 /// Those with |rate| <= radius, 1/s: every rate of that quarter disc is found by Arnoldi's method
 /// about its middle, until more vectors bring no more of them, then checked: residual() is at most
-/// 1e-8, by inverse iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out.
+/// 1e-8, or what rounding of K x leaves of modes far below the highest (f under 1e-4 of it), by
+/// inverse iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out.
 /// Throws std::runtime_error where they were not all found.
 Oscillations oscillations(const Line& line, double radius);
 
