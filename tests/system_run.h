@@ -10,6 +10,7 @@
 #include "offline/element/matrices.h"
 #include "offline/system/pack_system.h"
 #include "online/step/step.h"
+#include "online/system/sense.h"
 
 namespace railstep {
 
@@ -53,6 +54,7 @@ struct SystemRun {
   Eigen::Vector3d body_position(int i) const {
     return system.bodies[at(i)].position + carried(state.u, i, 0);
   }
+  /// m/s
   Eigen::Vector3d body_velocity(int i) const { return carried(state.v, i, 0); }
   Eigen::Matrix3d body_rotation(int i) const {
     const double* q = state.quaternion + 4 * static_cast<std::ptrdiff_t>(i);
@@ -95,11 +97,12 @@ struct SystemRun {
   }
 
   /// What a joint does to its part b, N and N m about the joint's point, ground axes.
-  Eigen::Vector3d joint_force(int joint) const;
-  Eigen::Vector3d joint_moment(int joint) const;
-  /// Rows that the direct solve left out, and the joint of the first; -1: none.
-  int redundant_rows() const;
-  int redundant_joint() const;
+  Eigen::Vector3d joint_force(int joint) const {
+    return Eigen::Vector3d(railstep::joint_force(model(), state, joint).force);
+  }
+  Eigen::Vector3d joint_moment(int joint) const {
+    return Eigen::Vector3d(railstep::joint_force(model(), state, joint).moment);
+  }
 
   /// Linear momentum of all parts, kg m/s, then angular momentum about the origin, kg m2/s.
   Eigen::Matrix<double, 6, 1> momentum() const;
@@ -223,6 +226,8 @@ inline RigidBody rod_body(const Eigen::Vector3d& start, double length, double an
 /// Options for comparing with known answers: Newton's rest is far below any scheme's own error.
 inline SystemOptions sharp(const Scheme& scheme, Hold hold = Hold::augmented_lagrangian) {
   SystemOptions options{.scheme = scheme};
+  const Scheme mean = energy_momentum(scheme.dt);
+  options.energy_momentum = scheme.kg == mean.kg && scheme.kv == mean.kv;
   options.hold = hold;
   options.cap = 20;
   options.projections = 8;

@@ -53,9 +53,6 @@ TEST_CASE("the direct solve names redundant joints", "[system]") {
     twice.frame();
   }
   CHECK(single.seen == Status::ok);
-  CHECK(single.redundant_rows() == 0);
-  CHECK(twice.redundant_rows() == (planar ? 2 : 5));
-  CHECK(twice.redundant_joint() == 1);
   CHECK(twice.seen == Status::redundant_joint);
   CHECK(largest(end(single) - end(twice)) < 1e-9);
 }
@@ -68,7 +65,6 @@ TEST_CASE("the direct solve names Bricard's one row too many and goes on", "[sys
     direct.frame();
     augmented.frame();
   }
-  CHECK(direct.redundant_rows() == 1);
   CHECK(has(direct.seen, Status::redundant_joint));
   CHECK(augmented.seen == Status::ok);
   double apart = 0.;
