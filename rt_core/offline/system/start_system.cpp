@@ -172,7 +172,8 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
   MatrixXd G = at.gradients(0, joints) * is_free.asDiagonal();
   const MatrixXd X = mobility * G.transpose();
   const MatrixXd W = G * X;
-  const auto held = W.completeOrthogonalDecomposition();
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
+  if (joints > 0) held.compute(W);
 
   VectorXd rates(joints);
   for (std::int32_t r = 0; r < joints; ++r) rates[r] = at.jet(r).v;
