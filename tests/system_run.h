@@ -231,9 +231,7 @@ inline SystemOptions sharp(const Scheme& scheme, Hold hold = Hold::augmented_lag
   options.hold = hold;
   options.cap = 20;
   options.projections = 8;
-  // A place of 1 m is known to 1e-16, so accelerations to kg of that, against those of 10 m/s2 and
-  // more that forces of weight make. Within a step it is a path of 2e-15 m.
-  options.tolerance = 1e-11 + 2e-16 * scheme.kg;
+  options.tolerance = 1e-12;  // else the round-off of places, which ends the iterations too
   options.joint_tolerance = 1e-12;
   return options;
 }

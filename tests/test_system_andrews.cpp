@@ -171,23 +171,16 @@ TEST_CASE("Andrews' squeezer ends where it is published to", "[system]") {
   CHECK(largest(twice - right) < 1e-8 + .2 * largest(twice - more));
 }
 
-TEST_CASE("Andrews' squeezer by each scheme and hold", "[system]") {
+TEST_CASE("Andrews' squeezer by each way to hold its joints", "[system]") {
   const Pose7 right = pose(places(kEnd));
-  struct Case {
-    Hold hold;
-    Scheme (*scheme)(double);
-    double order;
-  };
-  const auto damped = [](double h) { return generalised_alpha(h, .9); };
-  const Case cases[] = {{Hold::augmented_lagrangian, damped, 2.},
-                        {Hold::baumgarte, damped, 2.},
-                        {Hold::gear_gupta_leimkuhler, damped, 2.},
-                        {Hold::direct, damped, 2.}};
-  for (const Case& c : cases) {
-    const double coarse = largest(at_end(c.scheme(1e-5), c.hold) - right);
-    const double fine = largest(at_end(c.scheme(5e-6), c.hold) - right);
-    INFO("hold " << static_cast<int>(c.hold) << ": " << coarse << " " << fine);
-    CHECK_THAT(order(coarse, fine), WithinAbs(c.order, .2));
+  for (const Hold hold : {Hold::augmented_lagrangian, Hold::baumgarte, Hold::gear_gupta_leimkuhler,
+                          Hold::direct}) {
+    const double coarse = largest(at_end(generalised_alpha(1e-5, .9), hold) - right);
+    const double fine = largest(at_end(generalised_alpha(5e-6, .9), hold) - right);
+    INFO("hold " << static_cast<int>(hold) << ": " << coarse << " " << fine);
+    // Baumgarte's rate goes with the step and adds an error of higher order.
+    CHECK(order(coarse, fine) > 1.8);
+    CHECK(fine < 1e-4);  // a quarter of w^3 T h^2 / 12 (above), halved for its mean
   }
 }
 

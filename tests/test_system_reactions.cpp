@@ -88,11 +88,11 @@ TEST_CASE("a swinging pendulum pulls m g cos + m l w^2 on its hinge", "[system]"
       s.planar = planar;
       s.bodies = {rod_body(Vector3d::Zero(), 1., 0., m, .05)};
       s.joints = {hinge(ground(), body(0), Vector3d::Zero(), planar)};
-      SystemRun r(s, sharp(generalised_alpha(h, .9), hold));
+      SystemRun r(s, sharp(generalised_alpha(h, .6), hold));
       double most = 0.;
       while (r.time() < .8 - .5 * h) {
         r.frame();
-        if (r.time() < .1) continue;  // the scheme's own acceleration swings in from its start
+        if (r.time() < .1) continue;  // .6^100: what swings in from the start is over
         const Vector3d along = r.body_rotation(0).col(0), across(-along.z(), 0., along.x());
         const double sine = -along.z(), cosine = along.x();
         const double w2 = 2. * m * kGravity * l * sine / inertia;
