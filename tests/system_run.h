@@ -35,7 +35,21 @@ struct SystemRun {
         state(state_on(model(), memory.data())),
         workspace(workspace_on(model(), scratch.data())) {
     reset(model(), state);
+    for (const FlexibleBeam& b : system.beams) {
+      const BeamLaw law = beam_law(b.section, b.material, b.rule, b.axis_z);
+      const double part = b.length / b.elements;
+      own_beams.push_back(
+          {element_matrices(b.section, law, part).mass, beam_element(law, straight_nodes(part))});
+    }
   }
+
+  /// An element of each beam, by itself. Its mass couples alike components only, so it is the same
+  /// in all axes.
+  struct OwnBeam {
+    Matrix27 mass;
+    Beam element;
+  };
+  std::vector<OwnBeam> own_beams;
 
   const Model& model() const { return packed->model(); }
   double time() const { return static_cast<double>(state.steps) * model().scheme.dt; }
@@ -128,9 +142,6 @@ struct SystemRun {
       for (int k = 0; k < 5; ++k) result[9 * n + kPlace[k]] = from[5 * n + k];
     return result;
   }
-  BeamLaw law(const FlexibleBeam& b) const {
-    return beam_law(b.section, b.material, b.rule, b.axis_z);
-  }
   /// M times nodal values of a beam.
   Eigen::VectorXd by_mass(int i, const Eigen::VectorXd& v) const;
   Eigen::VectorXd all_along_x(int i) const {
@@ -141,11 +152,9 @@ struct SystemRun {
 };
 
 inline Eigen::VectorXd SystemRun::by_mass(int i, const Eigen::VectorXd& v) const {
-  // The mass matrix couples alike components only, so it is the same in every axes.
-  const FlexibleBeam& b = system.beams[at(i)];
-  const Matrix27 mass = element_matrices(b.section, law(b), b.length / b.elements).mass;
   Eigen::VectorXd p = Eigen::VectorXd::Zero(v.size());
-  for (int e = 0; e < b.elements; ++e) p.segment<27>(18 * e) += mass * v.segment<27>(18 * e);
+  for (int e = 0; e < system.beams[at(i)].elements; ++e)
+    p.segment<27>(18 * e) += own_beams[at(i)].mass * v.segment<27>(18 * e);
   return p;
 }
 
@@ -187,9 +196,7 @@ inline double SystemRun::energy() const {
   }
   for (int i = 0; i < static_cast<int>(system.beams.size()); ++i) {
     const FlexibleBeam& b = system.beams[at(i)];
-    const double part = b.length / b.elements;
-    const Beam element = beam_element(law(b), straight_nodes(part));
-    const Matrix27 mass = element_matrices(b.section, law(b), part).mass;
+    const auto& [mass, element] = own_beams[at(i)];
     const Eigen::VectorXd q = beam_nodes(i), v = beam_speeds(i);
     for (int e = 0; e < b.elements; ++e) {
       const Vector27 own = q.segment<27>(18 * e), speed = v.segment<27>(18 * e);
