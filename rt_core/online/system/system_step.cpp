@@ -153,6 +153,15 @@ bool is_renewed(const SystemModel& s, const SystemTangent& t, std::int32_t done,
          *t.age > static_cast<double>(s.keep_steps);
 }
 
+/// Rows that hang on others where the matrix was made.
+void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& result) noexcept {
+  const auto rank = static_cast<std::int32_t>(*t.rank);
+  result.redundant_rows = s.joint_rows - rank;
+  if (result.redundant_rows > 0) result.status = result.status | Status::redundant_joint;
+  for (std::int32_t i = 0; i < result.redundant_rows && i < kMostNamedRows; ++i)
+    result.redundant_row[i] = t.order[rank + i];
+}
+
 }  // namespace
 
 SystemResult solve_system(const Model& model, State& state, Workspace& workspace) noexcept {
@@ -160,7 +169,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
   const SystemStart start = start_of(model, state, workspace);
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
-  SystemResult result{Status::ok, 0, 0., 0.};
+  SystemResult result{};
   guess(model, state, workspace, w);
   read_ports(model, workspace.solved, w.free_ports);
   place_start(model, start, w);
@@ -196,8 +205,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     result.iterations = done + 1;
   }
   leave(model, w, state, workspace);
-  if (static_cast<std::int32_t>(*w.tangent.rank) < s.joint_rows)
-    result.status = result.status | Status::redundant_joint;
+  name_redundant(s, w.tangent, result);
   return result;
 }
 
