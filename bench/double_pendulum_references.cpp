@@ -27,7 +27,7 @@ class References {
   }
 
   /// Runs, writes and compares with the first that was run.
-  PendulumRun add(const std::string& name, const std::function<PendulumRun()>& run) {
+  void add(const std::string& name, const std::function<PendulumRun()>& run) {
     const std::clock_t begin = std::clock();
     const PendulumRun found = run();
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -38,7 +38,6 @@ class References {
     std::printf("%-24s %11.3e %11.3e %11.3e %11.3e %10.1e %8.2f\n", name.c_str(), early[0],
                 early[1], late[0], late[1], found.energy_change, seconds);
     std::fflush(stdout);
-    return found;
   }
 
  private:

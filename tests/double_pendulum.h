@@ -68,6 +68,9 @@ inline constexpr double kPendulumKnown = 1e-7;
 /// every 50 ms to 1 s, is RAILSTEP_SOURCE "/tests/data/double_pendulum.csv".
 /// @throws std::runtime_error where the file is not there or not as expected
 inline PendulumPath read_pendulum_path(const std::string& file) {
+  const auto refuse = [&file](const char* why, const std::string& text) {
+    throw std::runtime_error(std::string(file).append(why).append(text));
+  };
   std::ifstream in(file);
   PendulumPath path;
   std::string line;
@@ -75,7 +78,7 @@ inline PendulumPath read_pendulum_path(const std::string& file) {
   while (std::getline(in, line)) {
     if (line.starts_with('#')) continue;
     if (!titled) {
-      if (line != kPathColumns) throw std::runtime_error(file + ": unknown columns " + line);
+      if (line != kPathColumns) refuse(": unknown columns ", line);
       titled = true;
       continue;
     }
@@ -85,11 +88,11 @@ inline PendulumPath read_pendulum_path(const std::string& file) {
     char comma = 0;
     row >> time;
     for (double& value : at) row >> comma >> value;
-    if (!row) throw std::runtime_error(file + ": not a row of five numbers: " + line);
+    if (!row) refuse(": not a row of five numbers: ", line);
     if (path.at.size() == 1) path.step = time;
     path.at.push_back(at);
   }
-  if (path.at.size() < 2) throw std::runtime_error(file + ": no path of the double pendulum");
+  if (path.at.size() < 2) refuse(": no path of the double pendulum", "");
   return path;
 }
 

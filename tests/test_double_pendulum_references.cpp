@@ -92,8 +92,8 @@ TEST_CASE("IDA and extrapolation follow the same pendulum", "[pendulum][ida]") {
   const double tolerance = 1e-8;
   const AncfPendulum model(kScene, 4);
   IdaPendulum ida(model, tolerance);
-  const PendulumRun by_ida = ida.run(.4), by_extrapolation = followed(model, .4);
-  const Vector2d gap = apart(by_ida.path, by_extrapolation.path, .4);
+  const PendulumRun by_ida = ida.run(.3), by_extrapolation = followed(model, .3);
+  const Vector2d gap = apart(by_ida.path, by_extrapolation.path, .3);
   INFO("B " << gap[0] << ", C " << gap[1] << " m; energy " << by_ida.energy_change << " and "
             << by_extrapolation.energy_change << " J; " << ida.count().steps << " steps");
   // Steps are held by stability, not by accuracy, so errors stay below the tolerance of q; that of
@@ -132,6 +132,7 @@ TEST_CASE("meshes of the double pendulum converge to the stored one", "[pendulum
   // Quadratic elements with the axial stretch and shear at two points: order 2 at the least.
   CHECK(error[1] < error[0] / 4.);
   CHECK(error[2] < error[1] / 4.);
+  CHECK(error[2] > 10. * kPendulumKnown);  // so that none of this is the stored path's own error
 }
 
 TEST_CASE("rigid links are off by what the links bend", "[pendulum]") {
@@ -150,7 +151,7 @@ TEST_CASE("stiff links swing like rigid ones, by the modulus", "[pendulum]") {
   double gap[2];
   for (const int k : {0, 1}) {
     const DoublePendulum scene = stiffer(k == 0 ? 4. : 16.);
-    gap[k] = apart(ancf(scene, 2, .4).path, swing(RigidPendulum(scene), .4, 1).path, .4)[1];
+    gap[k] = apart(ancf(scene, 2, .3).path, swing(RigidPendulum(scene), .3, 1).path, .3)[1];
   }
   // Deflections go with 1/E. The next term is the share of tension in bending (below), .38 at E:
   // a tenth of the ratio at 4 E.
