@@ -186,10 +186,8 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
 std::int32_t part_forces(const Model& model, const SystemStart& start, bool renew,
                          SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
-  for (std::int32_t b = 0; b < s.bodies; ++b) {
-    body_inertia(model, s.body[b], start, w);
-    for (std::int32_t k = 0; k < s.body[b].unknowns; ++k) w.elastic[s.body[b].first + k] = 0.;
-  }
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.inertia[i] = w.elastic[i] = 0.;  // padding too
+  for (std::int32_t b = 0; b < s.bodies; ++b) body_inertia(model, s.body[b], start, w);
   std::int32_t lost = 0;
   double* factor = w.tangent.factor;
   for (std::int32_t b = 0; b < s.beams; ++b) {
@@ -197,7 +195,6 @@ std::int32_t part_forces(const Model& model, const SystemStart& start, bool rene
     beam_elastic(model, beam, renew, w);
     if (renew)
       lost += beam_factor(beam, model.scheme.kg, s.mean != 0 ? .5 : 1., w.tangents, factor);
-    for (std::int32_t i = 0; i < beam.unknowns; ++i) w.inertia[beam.first + i] = 0.;
     beam_inertia(beam, w.g + beam.first, w.inertia + beam.first);
     factor += beam_factor_doubles(beam);
   }
