@@ -1,5 +1,5 @@
-// The paper's double pendulum: time per step of 1 ms and error of C up to 1 s from one run, over the
-// schemes, in space and in its plane; and a single flexible pendulum from 4 to 64 elements.
+// The paper's double pendulum: time per step of 1 ms and error of C up to 1 s from one run, over
+// the schemes, in space and in its plane; and a single flexible pendulum from 4 to 64 elements.
 #include <benchmark/benchmark.h>
 
 #include "../tests/pendulum_core.h"
