@@ -1,0 +1,171 @@
+#include "online/beam/chain.h"
+#include "online/beam/chain_sweep.h"
+
+namespace railstep {
+
+namespace {
+
+using namespace chained;
+
+/// Rows of an end node in the factor.
+template <int W>
+struct EndRows {
+  const double* of;
+  [[gnu::always_inline]] double operator()(int k, int j) const noexcept {
+    return of[kChainRow<W> * k + j];
+  }
+};
+/// Rows of the mid node of one element.
+template <int W>
+struct MidRow {
+  const double* of;  // its lane
+  [[gnu::always_inline]] double operator()(int k, int j) const noexcept {
+    return of[Layout<W>::mid(k, j)];
+  }
+};
+/// Rows of the mid nodes of kWide elements.
+template <int W>
+struct MidLanes {
+  const double* of;  // the first lane
+  [[gnu::always_inline]] Wide operator()(int k, int j) const noexcept {
+    return load(of + Layout<W>::mid(k, j));
+  }
+};
+
+/// A right-hand side, or kWide of four side by side.
+[[gnu::always_inline]] inline void get(const double* from, double& x) noexcept { x = *from; }
+[[gnu::always_inline]] inline void get(const double* from, Wide& x) noexcept { x = load(from); }
+[[gnu::always_inline]] inline void put(const double& x, double* to) noexcept { *to = x; }
+[[gnu::always_inline]] inline void put(const Wide& x, double* to) noexcept { store(x, to); }
+
+/// Unknowns of a node one after the other, `kStep` doubles apart.
+template <int W, int kStep, class T>
+struct Node {
+  T of[W];
+  [[gnu::always_inline]] explicit Node(const double* x) noexcept {
+    unrolled<W>([&](auto i) __attribute__((always_inline)) { get(x + kStep * i, of[i]); });
+  }
+  [[gnu::always_inline]] void set(double* x) const noexcept {
+    unrolled<W>([&](auto i) __attribute__((always_inline)) { put(of[i], x + kStep * i); });
+  }
+};
+
+/// A node's y, and what it takes of kOthers nodes.
+/// @param others  of the node's columns from W on, W each
+template <int W, int kStep, class T, int kOthers, class Entry>
+[[gnu::always_inline]] inline void forward(const Entry& entry, double* x,
+                                           double* const (&others)[kOthers]) noexcept {
+  Node<W, kStep, T> y(x);
+  substitute<W>(entry, y.of);
+  for (int other = 0; other < kOthers; ++other)
+    for (int i = 0; i < W; ++i) {
+      T unknown;
+      get(others[other] + kStep * i, unknown);
+      put(less_taken<W>(entry, W * (other + 1) + i, y.of, unknown), others[other] + kStep * i);
+    }
+  scale<W>(entry, y.of);
+  y.set(x);
+}
+
+template <int W, int kStep, class T, int kOthers, class Entry>
+[[gnu::always_inline]] inline void backward(const Entry& entry, double* x,
+                                            const double* const (&others)[kOthers]) noexcept {
+  Node<W, kStep, T> y(x);
+  for (int other = 0; other < kOthers; ++other)
+    for (int i = 0; i < W; ++i) {
+      T unknown;
+      get(others[other] + kStep * i, unknown);
+      take_back<W>(entry, W * (other + 1) + i, unknown, y.of);
+    }
+  substitute_back<W>(entry, y.of);
+  y.set(x);
+}
+
+/// The sides of x that T holds, through end nodes, and through the mid nodes of a group.
+template <int W, int kStep, class T>
+struct Sweep {
+  using At = Layout<W>;
+  static constexpr long kNodeStep = long{W} * kStep;
+  const double* factor;
+  const double* nodes;
+  double* x;
+
+  EndRows<W> end(int e) const noexcept { return {nodes + e * At::kNode}; }
+  MidRow<W> mid(int e) const noexcept {
+    return {factor + e / kStraightLanes * At::kMids + e % kStraightLanes};
+  }
+  double* node(int n) const noexcept { return x + n * kNodeStep; }
+
+  void end_forward(int e) const noexcept {
+    double* const next[] = {node(2 * e + 2)};
+    forward<W, kStep, T>(end(e), node(2 * e), next);
+  }
+  void end_backward(int e) const noexcept {
+    const double* const next[] = {node(2 * e + 2)};
+    backward<W, kStep, T>(end(e), node(2 * e), next);
+  }
+  void last(int e) const noexcept {
+    Node<W, kStep, T> y(node(2 * e));
+    substitute<W>(end(e), y.of);
+    scale<W>(end(e), y.of);
+    substitute_back<W>(end(e), y.of);
+    y.set(node(2 * e));
+  }
+  void mids_forward(int first, int count) const noexcept {
+    for (int e = first; e < first + count; ++e) {
+      double* const ends[] = {node(2 * e), node(2 * e + 2)};
+      forward<W, kStep, T>(mid(e), node(2 * e + 1), ends);
+    }
+  }
+  void mids_backward(int first, int count) const noexcept {
+    for (int e = first; e < first + count; ++e) {
+      const double* const ends[] = {node(2 * e), node(2 * e + 2)};
+      backward<W, kStep, T>(mid(e), node(2 * e + 1), ends);
+    }
+  }
+};
+
+/// Mid nodes of a group, then its end nodes, group after group; and back.
+template <int W, class Sweep>
+void sweep(int elements, const Sweep& of) noexcept {
+  const int groups = straight_groups(elements);
+  const auto count = [elements](int first) {
+    return elements - first < kStraightLanes ? elements - first : kStraightLanes;
+  };
+  for (int group = 0; group < groups; ++group) {
+    const int first = kStraightLanes * group;
+    of.mids_forward(first, count(first));
+    for (int e = first; e < first + count(first); ++e) of.end_forward(e);
+  }
+  of.last(elements);
+  for (int group = groups - 1; group >= 0; --group) {
+    const int first = kStraightLanes * group;
+    for (int e = first + count(first) - 1; e >= first; --e) of.end_backward(e);
+    of.mids_backward(first, count(first));
+  }
+}
+
+}  // namespace
+
+template <int W>
+void chain_solve(const Chain& chain, const double* factor, double* x) noexcept {
+  for (int h = 0; h < chain.held_count; ++h)
+    for (int s = 0; s < kChainSides; ++s) x[long{kChainSides} * chain.held[h] + s] = 0.;
+  const double* nodes = factor + Layout<W>::nodes(chain.elements);
+  for (int side = 0; side < kChainSides; side += kWide)
+    sweep<W>(chain.elements, Sweep<W, kChainSides, Wide>{factor, nodes, x + side});
+}
+
+template <int W>
+void chain_solve_one(const Chain& chain, const double* factor, double* x) noexcept {
+  for (int h = 0; h < chain.held_count; ++h) x[chain.held[h]] = 0.;
+  const double* nodes = factor + Layout<W>::nodes(chain.elements);
+  sweep<W>(chain.elements, Sweep<W, 1, double>{factor, nodes, x});
+}
+
+template void chain_solve<9>(const Chain&, const double*, double*) noexcept;
+template void chain_solve<5>(const Chain&, const double*, double*) noexcept;
+template void chain_solve_one<9>(const Chain&, const double*, double*) noexcept;
+template void chain_solve_one<5>(const Chain&, const double*, double*) noexcept;
+
+}  // namespace railstep
