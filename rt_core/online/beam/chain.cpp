@@ -103,7 +103,7 @@ int chain_factor(const Chain& chain, double mass_factor, double k_factor, double
   hold_all<W>(chain, tangents);
 
   double* nodes = factor + At::nodes(chain.elements);
-  for (long i = 0; i < At::kNode; ++i) nodes[i] = 0.;
+  EndNodes<W> ends(nodes, inverse_k);
   int bad = 0;
   for (int group = 0; group < groups; ++group) {
     const int first = kStraightLanes * group, left = chain.elements - first;
@@ -111,10 +111,9 @@ int chain_factor(const Chain& chain, double mass_factor, double k_factor, double
     double* S = tangents + group * At::kTangents;
     bad += condense_group<W>(count, inverse_k, S, factor + group * At::kMids);
     add_condensed<W>(first, count, S, nodes);
-    for (int e = first; e < first + count; ++e)
-      bad += eliminate_node<W>(inverse_k, nodes + e * At::kNode, nodes + (e + 1) * At::kNode);
+    for (int e = first; e < first + count; ++e) bad += ends.eliminate(e);
   }
-  return bad + eliminate_last_node<W>(inverse_k, nodes + chain.elements * At::kNode);
+  return bad + ends.eliminate_last(chain.elements);
 }
 
 template void chain_inertia<9>(const Chain&, const double*, double*) noexcept;

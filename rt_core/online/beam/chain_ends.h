@@ -18,8 +18,9 @@ inline constexpr int kRowVectors = kChainRow<W> / kWide;
 template <class At>
 [[gnu::always_inline]] inline void turned(const double* S, int column, int columns, const At& at,
                                           Wide* of_lane) noexcept {
-  for (int c = 0; c < kWide; ++c)
+  unrolled<kWide>([&](auto c) __attribute__((always_inline)) {
     of_lane[c] = column + c < columns ? load(S + at(column + c)) : Wide{};
+  });
   transpose(of_lane);
 }
 
@@ -30,7 +31,6 @@ template <class At>
 template <int W>
 void add_condensed(int first, int count, const double* S, double* nodes) noexcept {
   using At = Layout<W>;
-  Wide of_lane[kWide];
   for (int lane = 0; lane < count; lane += kWide) {
     double* node = nodes + (first + lane) * At::kNode;
     const int lanes = count - lane < kWide ? count - lane : kWide;
@@ -38,35 +38,56 @@ void add_condensed(int first, int count, const double* S, double* nodes) noexcep
       constexpr int diagonal = i / kWide;
       unrolled<kOwnVectors<W> - diagonal>([&](auto v) __attribute__((always_inline)) {
         constexpr int column = kWide * (diagonal + v);
+        Wide of_lane[kWide];
         const auto last = [=](int j) { return At::tangent(kLastLast, i, j); };
         turned(S + lane, column, W, last, of_lane);
-        for (int l = 0; l < lanes; ++l)
-          store(of_lane[l], node + (l + 1) * At::kNode + At::kRow * i + column);
+        unrolled<kWide>([&](auto l) __attribute__((always_inline)) {
+          if (l < lanes) store(of_lane[l], node + (l + 1) * At::kNode + At::kRow * i + column);
+        });
       });
     });
     unrolled<W>([&](auto i) __attribute__((always_inline)) {
       constexpr int diagonal = i / kWide;
       unrolled<kRowVectors<W> - diagonal>([&](auto v) __attribute__((always_inline)) {
         constexpr int column = kWide * (diagonal + v);
+        Wide of_lane[kWide];
         const auto both = [=](int j) {
           return j < W ? At::tangent(kFirstFirst, i, j) : At::tangent(kFirstLast, i, j - W);
         };
         turned(S + lane, column, 2 * W, both, of_lane);
-        for (int l = 0; l < lanes; ++l) {
+        unrolled<kWide>([&](auto l) __attribute__((always_inline)) {
           double* to = node + l * At::kNode + At::kRow * i + column;
-          store(diagonal + v < kOwnVectors<W> ? load(to) + of_lane[l] : of_lane[l], to);
-        }
+          if (l < lanes)
+            store(diagonal + v < kOwnVectors<W> ? load(to) + of_lane[l] : of_lane[l], to);
+        });
       });
     });
   }
 }
 
-/// A node's rows become those of L, kVectors of each: all of the row, or of the last node its own.
-/// @param D    D L', [W][kChainRow<W> + kWide], overwritten
+/// D L' of a node, a row of padding behind so that its next node's columns can be read as vectors.
+template <int W>
+struct EndRows {
+  double of[W][kChainRow<W> + 4];
+};
+
+/// Row `kRow` of a node less `factor` times a row of D L', `from` its first number.
+template <int kVectors>
+[[gnu::always_inline]] inline void take(double factor, const double* from, Wide* sum) noexcept {
+  unrolled<kVectors>([&](auto v) __attribute__((always_inline)) {
+    sum[v] -= factor * load(from + kWide * v);
+  });
+}
+
+/// Rows of a node become those of L, kVectors of each: all of the row, or of the last node its own.
+/// Each row loses first what the node before takes, then what the rows above take, so that the
+/// wait for a row's pivot is filled with the work of the rows below.
+/// @param before  D L' of the node before, whose rows of L are kNode doubles before; with kBefore
+/// @param D       D L' of this node, overwritten
 /// @returns how many pivots are not above 0
-template <int W, int kVectors, int kStride>
-[[gnu::always_inline]] inline int factor_rows(double inverse_k, double* node,
-                                              double (*D)[kStride]) noexcept {
+template <int W, int kVectors, bool kBefore>
+int eliminate_node(double inverse_k, const EndRows<W>& before, double* node,
+                   EndRows<W>& D) noexcept {
   constexpr int row = kChainRow<W>;
   int bad = 0;
   unrolled<W>([&](auto k) __attribute__((always_inline)) {
@@ -74,16 +95,18 @@ template <int W, int kVectors, int kStride>
     double* L = node + row * k + kWide * from;
     Wide sum[vectors];
     unrolled<vectors>([&](auto v) __attribute__((always_inline)) { sum[v] = load(L + kWide * v); });
-    unrolled<k>([&](auto i) __attribute__((always_inline)) {
-      const double factor = node[row * i + k];
-      unrolled<vectors>([&](auto v) __attribute__((always_inline)) {
-        sum[v] -= factor * load(D[i] + kWide * (from + v));
+    if constexpr (kBefore)
+      unrolled<W>([&](auto i) __attribute__((always_inline)) {
+        const double factor = node[row * i + W + k - Layout<W>::kNode];
+        take<kOwnVectors<W> - from>(factor, before.of[i] + W + kWide * from, sum);
       });
+    unrolled<k>([&](auto i) __attribute__((always_inline)) {
+      take<vectors>(node[row * i + k], D.of[i] + kWide * from, sum);
     });
     const double pivot = sum[0][k % kWide], inverse = 1. / pivot;
     bad += pivot > 0. ? 0 : 1;
     unrolled<vectors>([&](auto v) __attribute__((always_inline)) {
-      store(sum[v], D[k] + kWide * (from + v));
+      store(sum[v], D.of[k] + kWide * (from + v));
       store(sum[v] * inverse, L + kWide * v);
     });
     node[row * k + k] = inverse * inverse_k;
@@ -91,48 +114,33 @@ template <int W, int kVectors, int kStride>
   return bad;
 }
 
-/// kRows rows of the next node, from `first` on, less what a node takes.
-template <int W, int kFirst, int kRows, int kStride>
-[[gnu::always_inline]] inline void take_rows(const double* node, const double (*D)[kStride],
-                                             double* next) noexcept {
-  constexpr int row = kChainRow<W>, from = kFirst / kWide, vectors = kOwnVectors<W> - from;
-  Wide sum[kRows * vectors];
-  double* to = next + row * kFirst + kWide * from;
-  const auto each = [](const auto& entry) __attribute__((always_inline)) {
-    unrolled<kRows * vectors>([&](auto c) __attribute__((always_inline)) {
-      constexpr int i = c / vectors, v = c % vectors;
-      entry(c, std::integral_constant<int, i>{}, std::integral_constant<int, v>{});
-    });
-  };
-  each([&](auto c, auto i, auto v)
-           __attribute__((always_inline)) { sum[c] = load(to + row * i + kWide * v); });
-  for (int k = 0; k < W; ++k)
-    each([&](auto c, auto i, auto v) __attribute__((always_inline)) {
-      sum[c] -= node[row * k + W + kFirst + i] * load(D[k] + W + kWide * (from + v));
-    });
-  each([&](auto c, auto i, auto v)
-           __attribute__((always_inline)) { store(sum[c], to + row * i + kWide * v); });
-}
-
-/// Eliminates a node: its rows become those of L, the next node's lose what it takes.
-/// @returns how many pivots are not above 0
+/// The end nodes as they come, each with D L' of the one before.
 template <int W>
-int eliminate_node(double inverse_k, double* node, double* next) noexcept {
-  // The next node's columns as vectors reach beyond the row's padding.
-  double D[W][kChainRow<W> + 4];
-  for (int k = 0; k < W; ++k)
-    for (int c = kChainRow<W>; c < kChainRow<W> + 4; ++c) D[k][c] = 0.;
-  const int bad = factor_rows<W, kRowVectors<W>>(inverse_k, node, D);
-  unrolled<(W + 2) / 3>([&](auto part) __attribute__((always_inline)) {
-    take_rows<W, 3 * part, (W - 3 * part < 3 ? W - 3 * part : 3)>(node, D, next);
-  });
-  return bad;
-}
+class EndNodes {
+ public:
+  EndNodes(double* nodes, double inverse_k) noexcept : nodes_(nodes), inverse_k_(inverse_k) {
+    for (long i = 0; i < Layout<W>::kNode; ++i) nodes[i] = 0.;
+    for (EndRows<W>& D : rows_)
+      for (double(&row)[kChainRow<W> + 4] : D.of)
+        for (int c = kChainRow<W>; c < kChainRow<W> + 4; ++c) row[c] = 0.;
+  }
+  /// @returns how many pivots are not above 0
+  int eliminate(int node) noexcept {
+    double* at = nodes_ + node * Layout<W>::kNode;
+    const EndRows<W>& before = rows_[(node + 1) % 2];
+    return node == 0
+               ? eliminate_node<W, kRowVectors<W>, false>(inverse_k_, before, at, rows_[0])
+               : eliminate_node<W, kRowVectors<W>, true>(inverse_k_, before, at, rows_[node % 2]);
+  }
+  int eliminate_last(int node) noexcept {
+    return eliminate_node<W, kOwnVectors<W>, true>(
+        inverse_k_, rows_[(node + 1) % 2], nodes_ + node * Layout<W>::kNode, rows_[node % 2]);
+  }
 
-template <int W>
-int eliminate_last_node(double inverse_k, double* node) noexcept {
-  double D[W][kChainRow<W> + 4];
-  return factor_rows<W, kOwnVectors<W>>(inverse_k, node, D);
-}
+ private:
+  double* nodes_;
+  double inverse_k_;
+  EndRows<W> rows_[2];
+};
 
 }  // namespace railstep::chained

@@ -4,71 +4,83 @@
 namespace railstep::chained {
 
 // The mid nodes of four elements, one in each lane: their pivots, their rows of L, and what is left
-// to the elements' end nodes. Every entry is S less its terms in the order of the rows above;
-// blocks and columns are taken in numbers that fit the processor's 16 vectors.
+// to the elements' end nodes. D L' takes the place of S, so that all of a group stays in a cache of
+// 32 KiB. Every entry is S less its terms in the order of the rows above; columns are taken in
+// numbers that fit the processor's 16 vectors.
 
-/// Rows of the mid node in kWide lanes: D L' in its own columns and in those of the two end nodes.
+/// kWide of a group's lanes.
 template <int W>
-struct MidRows {
+struct MidLanes {
   using At = Layout<W>;
-  Wide own[W][W], ends[W][2 * W];
+  double* S;    // the group's blocks of S / k_factor, from the first of these lanes
+  double* mid;  // the group's part of the factor, likewise
 
-  /// Pivots, and L' of the own columns. 1 / D is stored over k_factor.
-  /// @param S    the group's blocks of S / k_factor, from the first of these lanes
-  /// @param mid  the group's part of the factor, likewise
+  /// Column c of the two end nodes' 2W in row k of the mid node.
+  [[gnu::always_inline]] double* end(int k, int c) const noexcept {
+    return S + (c < W ? At::tangent(kFirstMid, c, k) : At::tangent(kMidLast, k, c - W));
+  }
+
+  /// Row after row, so that the wait for a row's pivot is filled with the ends of the one above.
+  /// 1 / D is stored over k_factor.
   /// @param bad  counts the lanes' pivots that are not above 0
-  [[gnu::always_inline]] void set_own(const double* S, double inverse_k, double* mid,
-                                      int* bad) noexcept {
+  [[gnu::always_inline]] void eliminate(double inverse_k, int* bad) const noexcept {
+    constexpr int columns = W % 3 == 0 ? 6 : 5;
     unrolled<W>([&](auto k) __attribute__((always_inline)) {
-      Wide row[W];
-      unrolled<W - k>([&](auto c) __attribute__((always_inline)) {
-        row[k + c] = load(S + At::tangent(kMidMid, k, k + c));
-      });
-      unrolled<k>([&](auto i) __attribute__((always_inline)) {
-        const Wide factor = load(mid + At::mid(i, k));
-        unrolled<W - k>([&](auto c) __attribute__((always_inline)) {
-          row[k + c] -= factor * own[i][k + c];
-        });
-      });
-      const Wide inverse = 1. / row[k];
-      for (int lane = 0; lane < kWide; ++lane) bad[lane] += row[k][lane] > 0. ? 0 : 1;
+      const Wide pivot = own_row<k>(), inverse = 1. / pivot;
+      for (int lane = 0; lane < kWide; ++lane) bad[lane] += pivot[lane] > 0. ? 0 : 1;
       store(inverse * inverse_k, mid + At::mid(k, k));
-      pivot[k] = inverse;
       unrolled<W - 1 - k>([&](auto c) __attribute__((always_inline)) {
         constexpr int j = k + 1 + c;
-        own[k][j] = row[j];
-        store(row[j] * inverse, mid + At::mid(k, j));
+        store(load(S + At::tangent(kMidMid, k, j)) * inverse, mid + At::mid(k, j));
+      });
+      unrolled<2 * W / columns>([&](auto part) __attribute__((always_inline)) {
+        end_columns<k, columns * part, columns>(inverse);
       });
     });
   }
 
-  /// kCount columns of the end nodes from `first` on.
-  template <int kCount>
-  [[gnu::always_inline]] void set_columns(const double* S, int first, double* mid) noexcept {
-    unrolled<W>([&](auto k) __attribute__((always_inline)) {
-      Wide row[kCount];
+  /// Row k of D L' in the mid node's own columns.
+  /// @returns D
+  template <int k>
+  [[gnu::always_inline]] Wide own_row() const noexcept {
+    Wide row[W - k];
+    unrolled<W - k>([&](auto c) __attribute__((always_inline)) {
+      row[c] = load(S + At::tangent(kMidMid, k, k + c));
+    });
+    unrolled<k>([&](auto i) __attribute__((always_inline)) {
+      const Wide factor = load(mid + At::mid(i, k));
+      unrolled<W - k>([&](auto c) __attribute__((always_inline)) {
+        row[c] -= factor * load(S + At::tangent(kMidMid, i, k + c));
+      });
+    });
+    unrolled<W - 1 - k>([&](auto c) __attribute__((always_inline)) {
+      store(row[c + 1], S + At::tangent(kMidMid, k, k + c + 1));
+    });
+    return row[0];
+  }
+
+  template <int k, int kFirst, int kCount>
+  [[gnu::always_inline]] void end_columns(const Wide& inverse) const noexcept {
+    Wide row[kCount];
+    unrolled<kCount>([&](auto c)
+                         __attribute__((always_inline)) { row[c] = load(end(k, kFirst + c)); });
+    unrolled<k>([&](auto i) __attribute__((always_inline)) {
+      const Wide factor = load(mid + At::mid(i, k));
       unrolled<kCount>([&](auto c) __attribute__((always_inline)) {
-        row[c] = load(S + (first < W ? At::tangent(kFirstMid, first + c, k)
-                                     : At::tangent(kMidLast, k, first + c - W)));
+        row[c] -= factor * load(end(i, kFirst + c));
       });
-      unrolled<k>([&](auto i) __attribute__((always_inline)) {
-        const Wide factor = load(mid + At::mid(i, k));
-        unrolled<kCount>([&](auto c) __attribute__((always_inline)) {
-          row[c] -= factor * ends[i][first + c];
-        });
-      });
-      unrolled<kCount>([&](auto c) __attribute__((always_inline)) {
-        ends[k][first + c] = row[c];
-        store(row[c] * pivot[k], mid + At::mid(k, W + first + c));
-      });
+    });
+    unrolled<kCount>([&](auto c) __attribute__((always_inline)) {
+      store(row[c], end(k, kFirst + c));
+      store(row[c] * inverse, mid + At::mid(k, W + kFirst + c));
     });
   }
 
-  /// A block of S of the end nodes less what the mid node takes.
+  /// A part of a block of S of the end nodes less what the mid node takes.
   /// @param left, right  its first row and column among the ends' 2W
+  /// @param part         in S
   template <int kRows, int kColumns>
-  [[gnu::always_inline]] void condense(const double* mid, int left, int right,
-                                       double* block) const noexcept {
+  [[gnu::always_inline]] void condense(int left, int right, double* part) const noexcept {
     Wide sum[kRows * kColumns];
     const auto each = [](const auto& entry) __attribute__((always_inline)) {
       unrolled<kRows * kColumns>([&](auto c) __attribute__((always_inline)) {
@@ -77,49 +89,44 @@ struct MidRows {
       });
     };
     each([&](auto c, auto i, auto j) __attribute__((always_inline)) {
-      sum[c] = load(block + (W * i + j) * kStraightLanes);
+      sum[c] = load(part + (W * i + j) * kStraightLanes);
     });
     for (int k = 0; k < W; ++k)
       each([&](auto c, auto i, auto j) __attribute__((always_inline)) {
-        sum[c] -= ends[k][left + i] * load(mid + At::mid(k, W + right + j));
+        sum[c] -= load(end(k, left + i)) * load(mid + At::mid(k, W + right + j));
       });
     each([&](auto c, auto i, auto j) __attribute__((always_inline)) {
-      store(sum[c], block + (W * i + j) * kStraightLanes);
+      store(sum[c], part + (W * i + j) * kStraightLanes);
     });
   }
 
- private:
-  Wide pivot[W];  // 1 / D
-};
-
-/// A block of W: in parts of 3; above the diagonal's parts alone if it is symmetric.
-template <int W>
-void condense_block(const MidRows<W>& rows, const double* mid, int pair, double* S) noexcept {
-  constexpr int parts = (W + 2) / 3;
-  const int left = pair == kLastLast ? W : 0, right = pair == kFirstFirst ? 0 : W;
-  unrolled<parts>([&](auto a) __attribute__((always_inline)) {
-    unrolled<parts>([&](auto b) __attribute__((always_inline)) {
-      constexpr int i = 3 * a, j = 3 * b;
-      if (pair == kFirstLast || a <= b)
-        rows.template condense<(W - i < 3 ? W - i : 3), (W - j < 3 ? W - j : 3)>(
-            mid, left + i, right + j, S + Layout<W>::tangent(pair, i, j));
+  /// A block of S of the end nodes, in parts of 3 x 3, a symmetric one above its diagonal.
+  template <int kPair>
+  void condense_block() const noexcept {
+    constexpr int parts = (W + 2) / 3;
+    constexpr int left = kPair == kLastLast ? W : 0, right = kPair == kFirstFirst ? 0 : W;
+    unrolled<parts>([&](auto a) __attribute__((always_inline)) {
+      unrolled<parts>([&](auto b) __attribute__((always_inline)) {
+        constexpr int i = 3 * a, j = 3 * b;
+        if constexpr (kPair == kFirstLast || a <= b)
+          condense<(W - i < 3 ? W - i : 3), (W - j < 3 ? W - j : 3)>(left + i, right + j,
+                                                                     S + At::tangent(kPair, i, j));
+      });
     });
-  });
-}
+  }
+};
 
 /// Mid nodes of a group out of S.
 /// @returns how many pivots of the first `count` lanes are not above 0
 template <int W>
 int condense_group(int count, double inverse_k, double* S, double* factor) noexcept {
-  constexpr int columns = W % 2 == 0 ? W / 2 : (W % 3 == 0 ? W / 3 : W);
   int bad[kStraightLanes] = {};
   for (int lane = 0; lane < kStraightLanes; lane += kWide) {
-    MidRows<W> rows;
-    rows.set_own(S + lane, inverse_k, factor + lane, bad + lane);
-    for (int first = 0; first < 2 * W; first += columns)
-      rows.template set_columns<columns>(S + lane, first, factor + lane);
-    for (const int pair : {kFirstFirst, kFirstLast, kLastLast})
-      condense_block<W>(rows, factor + lane, pair, S + lane);
+    const MidLanes<W> lanes{S + lane, factor + lane};
+    lanes.eliminate(inverse_k, bad + lane);
+    lanes.template condense_block<kFirstFirst>();
+    lanes.template condense_block<kFirstLast>();
+    lanes.template condense_block<kLastLast>();
   }
   int all = 0;
   for (int lane = 0; lane < count; ++lane) all += bad[lane];

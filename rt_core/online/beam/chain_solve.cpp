@@ -9,7 +9,7 @@ using namespace chained;
 
 /// Rows of an end node in the factor.
 template <int W>
-struct EndRows {
+struct EndRow {
   const double* of;
   [[gnu::always_inline]] double operator()(int k, int j) const noexcept {
     return of[kChainRow<W> * k + j];
@@ -25,7 +25,7 @@ struct MidRow {
 };
 /// Rows of the mid nodes of kWide elements.
 template <int W>
-struct MidLanes {
+struct MidRowLanes {
   const double* of;  // the first lane
   [[gnu::always_inline]] Wide operator()(int k, int j) const noexcept {
     return load(of + Layout<W>::mid(k, j));
@@ -90,7 +90,7 @@ struct Sweep {
   const double* nodes;
   double* x;
 
-  EndRows<W> end(int e) const noexcept { return {nodes + e * At::kNode}; }
+  EndRow<W> end(int e) const noexcept { return {nodes + e * At::kNode}; }
   MidRow<W> mid(int e) const noexcept {
     return {factor + e / kStraightLanes * At::kMids + e % kStraightLanes};
   }
@@ -121,6 +121,58 @@ struct Sweep {
     for (int e = first; e < first + count; ++e) {
       const double* const ends[] = {node(2 * e), node(2 * e + 2)};
       backward<W, kStep, T>(mid(e), node(2 * e + 1), ends);
+    }
+  }
+};
+
+/// One right-hand side: the mid nodes of kWide elements side by side, and what they take of their
+/// last nodes before what they take of their first ones, as one element after the other would.
+template <int W>
+struct SweepOne : Sweep<W, 1, double> {
+  using At = Layout<W>;
+  static constexpr long kElement = 2 * W;  // doubles of x from one element to the next
+
+  /// kWide elements; lanes from `count` on repeat the last of these and are not written.
+  struct Lanes {
+    double* x;  // the first one's first node
+    int count;
+    [[gnu::always_inline]] Wide get(int unknown) const noexcept {
+      Wide lanes;
+      for (int l = 0; l < kWide; ++l)
+        lanes[l] = x[kElement * (l < count ? l : count - 1) + unknown];
+      return lanes;
+    }
+    [[gnu::always_inline]] void put(const Wide& lanes, int unknown) const noexcept {
+      for (int l = 0; l < kWide; ++l)
+        if (l < count) x[kElement * l + unknown] = lanes[l];
+    }
+  };
+  MidRowLanes<W> rows(int first) const noexcept { return {this->mid(first).of}; }
+
+  void mids_forward(int first, int all) const noexcept {
+    for (int e = first; e < first + all; e += kWide) {
+      const Lanes lanes{this->node(2 * e), first + all - e};
+      const MidRowLanes<W> entry = rows(e);
+      Wide y[W];
+      unrolled<W>([&](auto i) __attribute__((always_inline)) { y[i] = lanes.get(W + i); });
+      substitute<W>(entry, y);
+      for (int i = 0; i < W; ++i)
+        lanes.put(less_taken<W>(entry, 2 * W + i, y, lanes.get(2 * W + i)), 2 * W + i);
+      for (int i = 0; i < W; ++i) lanes.put(less_taken<W>(entry, W + i, y, lanes.get(i)), i);
+      scale<W>(entry, y);
+      unrolled<W>([&](auto i) __attribute__((always_inline)) { lanes.put(y[i], W + i); });
+    }
+  }
+  void mids_backward(int first, int all) const noexcept {
+    for (int e = first; e < first + all; e += kWide) {
+      const Lanes lanes{this->node(2 * e), first + all - e};
+      const MidRowLanes<W> entry = rows(e);
+      Wide y[W];
+      unrolled<W>([&](auto i) __attribute__((always_inline)) { y[i] = lanes.get(W + i); });
+      for (int i = 0; i < W; ++i) take_back<W>(entry, W + i, lanes.get(i), y);
+      for (int i = 0; i < W; ++i) take_back<W>(entry, 2 * W + i, lanes.get(2 * W + i), y);
+      substitute_back<W>(entry, y);
+      unrolled<W>([&](auto i) __attribute__((always_inline)) { lanes.put(y[i], W + i); });
     }
   }
 };
@@ -160,7 +212,7 @@ template <int W>
 void chain_solve_one(const Chain& chain, const double* factor, double* x) noexcept {
   for (int h = 0; h < chain.held_count; ++h) x[chain.held[h]] = 0.;
   const double* nodes = factor + Layout<W>::nodes(chain.elements);
-  sweep<W>(chain.elements, Sweep<W, 1, double>{factor, nodes, x});
+  sweep<W>(chain.elements, SweepOne<W>{{factor, nodes, x}});
 }
 
 template void chain_solve<9>(const Chain&, const double*, double*) noexcept;
