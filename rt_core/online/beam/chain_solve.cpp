@@ -50,13 +50,12 @@ struct Node {
   }
 };
 
-/// A node's y, and what it takes of kOthers nodes.
+/// What a node's y takes of kOthers nodes; then y := D^-1 y.
 /// @param others  of the node's columns from W on, W each
 template <int W, int kStep, class T, int kOthers, class Entry>
-[[gnu::always_inline]] inline void forward(const Entry& entry, double* x,
-                                           double* const (&others)[kOthers]) noexcept {
+[[gnu::always_inline]] inline void take_of_others(const Entry& entry, double* x,
+                                                  double* const (&others)[kOthers]) noexcept {
   Node<W, kStep, T> y(x);
-  substitute<W>(entry, y.of);
   for (int other = 0; other < kOthers; ++other)
     for (int i = 0; i < W; ++i) {
       T unknown;
@@ -67,9 +66,10 @@ template <int W, int kStep, class T, int kOthers, class Entry>
   y.set(x);
 }
 
+/// A node's y less what the solution of kOthers nodes takes.
 template <int W, int kStep, class T, int kOthers, class Entry>
-[[gnu::always_inline]] inline void backward(const Entry& entry, double* x,
-                                            const double* const (&others)[kOthers]) noexcept {
+[[gnu::always_inline]] inline void take_from_others(
+    const Entry& entry, double* x, const double* const (&others)[kOthers]) noexcept {
   Node<W, kStep, T> y(x);
   for (int other = 0; other < kOthers; ++other)
     for (int i = 0; i < W; ++i) {
@@ -77,7 +77,6 @@ template <int W, int kStep, class T, int kOthers, class Entry>
       get(others[other] + kStep * i, unknown);
       take_back<W>(entry, W * (other + 1) + i, unknown, y.of);
     }
-  substitute_back<W>(entry, y.of);
   y.set(x);
 }
 
@@ -98,11 +97,17 @@ struct Sweep {
 
   void end_forward(int e) const noexcept {
     double* const next[] = {node(2 * e + 2)};
-    forward<W, kStep, T>(end(e), node(2 * e), next);
+    Node<W, kStep, T> y(node(2 * e));
+    substitute<W>(end(e), y.of);
+    y.set(node(2 * e));
+    take_of_others<W, kStep, T>(end(e), node(2 * e), next);
   }
   void end_backward(int e) const noexcept {
     const double* const next[] = {node(2 * e + 2)};
-    backward<W, kStep, T>(end(e), node(2 * e), next);
+    take_from_others<W, kStep, T>(end(e), node(2 * e), next);
+    Node<W, kStep, T> y(node(2 * e));
+    substitute_back<W>(end(e), y.of);
+    y.set(node(2 * e));
   }
   void last(int e) const noexcept {
     Node<W, kStep, T> y(node(2 * e));
@@ -111,16 +116,27 @@ struct Sweep {
     substitute_back<W>(end(e), y.of);
     y.set(node(2 * e));
   }
+  // The steps of all mid nodes that wait for each other's results first, then those that do not.
   void mids_forward(int first, int count) const noexcept {
     for (int e = first; e < first + count; ++e) {
+      Node<W, kStep, T> y(node(2 * e + 1));
+      substitute<W>(mid(e), y.of);
+      y.set(node(2 * e + 1));
+    }
+    for (int e = first; e < first + count; ++e) {
       double* const ends[] = {node(2 * e), node(2 * e + 2)};
-      forward<W, kStep, T>(mid(e), node(2 * e + 1), ends);
+      take_of_others<W, kStep, T>(mid(e), node(2 * e + 1), ends);
     }
   }
   void mids_backward(int first, int count) const noexcept {
     for (int e = first; e < first + count; ++e) {
       const double* const ends[] = {node(2 * e), node(2 * e + 2)};
-      backward<W, kStep, T>(mid(e), node(2 * e + 1), ends);
+      take_from_others<W, kStep, T>(mid(e), node(2 * e + 1), ends);
+    }
+    for (int e = first; e < first + count; ++e) {
+      Node<W, kStep, T> y(node(2 * e + 1));
+      substitute_back<W>(mid(e), y.of);
+      y.set(node(2 * e + 1));
     }
   }
 };

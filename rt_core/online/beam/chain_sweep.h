@@ -35,13 +35,13 @@ template <int W, class T, class Entry>
   unrolled<W>([&](auto k) __attribute__((always_inline)) { y[k] -= entry(k, column) * unknown; });
 }
 
-/// y := L'^-1 y of a node.
+/// y := L'^-1 y of a node; what is known last is taken last, so that little waits for it.
 template <int W, class T, class Entry>
 [[gnu::always_inline]] inline void substitute_back(const Entry& entry, T* y) noexcept {
   unrolled<W>([&](auto up) __attribute__((always_inline)) {
     constexpr int k = W - 1 - up;
     unrolled<up>([&](auto c) __attribute__((always_inline)) {
-      constexpr int j = k + 1 + c;
+      constexpr int j = W - 1 - c;
       y[k] -= entry(k, j) * y[j];
     });
   });

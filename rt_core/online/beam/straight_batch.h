@@ -163,12 +163,14 @@ void set_lane_fields(const Coefficients& k, const Wide* even, const Wide* odd,
       return matrix_first<Kind>(matrix) + c;
     };
     const NodePairs<Wide> K = node_pairs<kPair>(k, even, odd, entry);
-    for (int m = 0; m < 3; ++m)
-      for (int n = f == g ? m : 0; n < 3; ++n) {
-        if (f == g && m == n && i > j) continue;
-        if (m <= n) set(m, n, row, column, K.of[m][n]);
-        if (m >= n && (f != g || i != j)) set(n, m, column, row, K.of[m][n]);
-      }
+    unrolled<9>([&](auto nodes) __attribute__((always_inline)) {
+      constexpr int m = nodes / 3, n = nodes % 3;
+      if constexpr (f == g && n < m) return;
+      if (f == g && m == n && i > j) return;
+      if constexpr (m <= n) set(m, n, row, column, K.of[m][n]);
+      if constexpr (m >= n)
+        if (f != g || i != j) set(n, m, column, row, K.of[m][n]);
+    });
   }
 }
 
