@@ -39,12 +39,13 @@ struct Beams {
     for (int i = 0; i < W; ++i) held[i] = i;
     const auto mass = chain_mass(rectangle(), law);
     std::copy(mass.begin(), mass.end(), chain.mass);
-    const auto size = static_cast<std::size_t>(W * chain_nodes(n));
+    const std::size_t size = std::size_t{W} * static_cast<std::size_t>(chain_nodes(n));
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t unknown = spatial(i % W);
       const double rest = unknown == 4 || unknown == 8 ? 1. : 0.;
       q.push_back(1e-5 * std::sin(7. * static_cast<double>(i * i)) + rest);
-      if (unknown == 0) q.back() += .5 * kLength * static_cast<double>(i / W);
+      const std::size_t node = i / W;
+      if (unknown == 0) q.back() += .5 * kLength * static_cast<double>(node);
       d.push_back(1e-5 * std::sin(5. * static_cast<double>(i * i)));
       x.insert(x.end(), kChainSides, std::cos(3. * static_cast<double>(i * i)));
     }

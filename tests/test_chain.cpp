@@ -154,6 +154,7 @@ void check_solution(Case<W> c, double k_factor) {
 template <int W>
 std::vector<std::int32_t> held_somewhere(int n) {
   std::vector<std::int32_t> held;
+  held.reserve(2 * W);
   for (int i = 0; i < W; ++i) held.push_back(i);
   for (int i = 0; i < (W == 9 ? 3 : 2); ++i) held.push_back(2 * n * W + i);
   held.push_back(W + 1);
@@ -245,8 +246,7 @@ TEST_CASE("the chain's bits are the same everywhere", "[chain]") {
       chain_solve<W>(chain, factor.data(), x.data());
       chain_inertia<W>(chain, x.data(), force.data());
       const double count = bad;
-      bits = hash(hash(hash(bits, x.data(), x.size()), force.data(),
-                       static_cast<std::size_t>(W * chain_nodes(n))),
+      bits = hash(hash(hash(bits, x.data(), x.size()), force.data(), x.size() / kChainSides),
                   &count, 1);
     }
   };
