@@ -1,0 +1,133 @@
+#include "offline/system/pack_system.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <stdexcept>
+
+#include "offline/system/parts.h"
+#include "offline/system/start_system.h"
+#include "offline/system/track_ports.h"
+
+namespace railstep {
+
+struct PackedSystem::Memory {
+  SystemParts parts;
+  std::unique_ptr<PackedModel> track;
+  TrackPorts ports;
+  WidenedTrack widened;
+  std::vector<double> start;
+};
+
+PackedSystem::~PackedSystem() = default;
+
+namespace {
+
+void check(const System& system, const SystemOptions& o) {
+  if (!system.gravity.allFinite()) throw std::invalid_argument("gravity is finite");
+  if (o.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
+  if (o.cap < 1 || o.projections < 0 || o.keep_steps < 1)
+    throw std::invalid_argument("caps: 1 iteration or more, projections 0 or more, kept 1 or more");
+  if (!(o.penalty >= 0.) || !(o.tolerance > 0.) || !(o.joint_tolerance > 0.))
+    throw std::invalid_argument("tolerances are above zero, and the penalty is not below it");
+  if (!(o.alpha >= 0.) || !(o.beta >= 0.))
+    throw std::invalid_argument("Baumgarte's alpha and beta are not negative");
+  const bool by_mean = o.hold == Hold::augmented_lagrangian || o.hold == Hold::direct;
+  if (o.energy_momentum && !by_mean)
+    throw std::invalid_argument(
+        "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
+}
+
+}  // namespace
+
+PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
+    : memory_(std::make_unique<Memory>()) {
+  model_.scheme = options.scheme;
+  model_.steps_per_frame = options.steps_per_frame;
+  model_.steps = options.steps;
+  build(system, options, nullptr);
+}
+
+PackedSystem::PackedSystem(const System& system, const SystemOptions& options, const Track& track,
+                           const Traffic& traffic, const PackOptions& track_options)
+    : memory_(std::make_unique<Memory>()) {
+  if (!traffic.wheelsets.empty())
+    throw std::invalid_argument("a track beside a system of bodies carries no wheelsets");
+  if (track_options.modal)
+    throw std::invalid_argument("a track beside a system of bodies is taken in full order");
+  if (options.energy_momentum)
+    throw std::invalid_argument("a track beside a system of bodies has no energy-momentum scheme");
+  Traffic both = traffic;
+  for (int rail = 0; rail < track.rails; ++rail) both.held.push_back(rail);
+  memory_->track = std::make_unique<PackedModel>(track, both, track_options);
+  model_ = memory_->track->model();
+  build(system, options, &track);
+}
+
+const PackedModel* PackedSystem::track() const { return memory_->track.get(); }
+
+void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track) {
+  check(system, options);
+  SystemParts& parts = memory_->parts;
+  add_parts(system, parts);
+  add_connections(system, track, parts);
+  const std::int32_t first = model_.unknowns;
+  const auto own = static_cast<std::int32_t>(parts.constant_force.size());
+  if (track != nullptr) memory_->widened.widen(own, model_);
+  model_.unknowns = first + own;
+  SystemModel& s = model_.system;
+  const auto count = [](const auto& items) { return static_cast<std::int32_t>(items.size()); };
+  s.bodies = count(parts.bodies);
+  s.beams = count(parts.beams);
+  s.markers = count(parts.markers);
+  s.joint_rows = count(parts.joint_rows);
+  s.spring_rows = count(parts.spring_rows);
+  s.motions = count(parts.motions);
+  s.forces = count(parts.forces);
+  s.sensors = count(parts.sensors);
+  s.ends = count(parts.ends);
+  s.first = first;
+  s.unknowns = own;
+  s.hold = options.hold;
+  s.renew = options.renew;
+  s.mean = options.energy_momentum ? 1 : 0;
+  s.cap = options.cap;
+  s.projections = options.projections;
+  s.keep_steps = options.keep_steps;
+  const bool given = options.alpha > 0. || options.beta > 0.;
+  s.alpha = given ? options.alpha : .2 / model_.scheme.dt;
+  s.beta = given ? options.beta : .2 / model_.scheme.dt;
+  s.tolerance = options.tolerance;
+  s.joint_tolerance = options.joint_tolerance;
+  s.rank_tolerance = options.hold == Hold::augmented_lagrangian ? 1e-15 : 1e-10;
+  s.body = parts.bodies.data();
+  s.beam = parts.beams.data();
+  s.marker = parts.markers.data();
+  s.row = parts.rows.data();
+  s.end = parts.ends.data();
+  s.part_end = parts.part_end.data();
+  s.motion = parts.motions.data();
+  s.force = parts.forces.data();
+  s.sensor = parts.sensors.data();
+  s.constant_force = parts.constant_force.data();
+  s.per_length = parts.per_length.data();
+  s.ports = count(parts.ports);
+  s.port = parts.ports.data();
+  memory_->ports = track_ports(model_);
+  s.port_compliance = memory_->ports.compliance.data();
+  s.port_shapes = memory_->ports.shapes.data();
+  const SystemStartState start = start_system(system, parts, model_);
+  const double penalty = options.penalty > 0. ? options.penalty : s.mean != 0 ? 1e4 : 1e9;
+  for (std::size_t r = 0; r < parts.joint_rows.size(); ++r)
+    parts.rows[r].compliance = start.mobility[r] / (model_.scheme.kg * penalty);
+  memory_->start = start.state;
+  if (track != nullptr) memory_->widened.put_start(memory_->track->model(), model_, memory_->start);
+  model_.start = memory_->start.data();
+}
+
+Scheme energy_momentum(double dt) {
+  Scheme s = held_force(dt, 1.);
+  s.theta = 1.;
+  return s;
+}
+
+}  // namespace railstep

@@ -1,0 +1,65 @@
+#pragma once
+#include <memory>
+
+#include "offline/pack/pack.h"
+#include "offline/pack/scheme.h"
+#include "offline/system/system.h"
+#include "online/model/state.h"
+
+namespace railstep {
+
+/// How a system's joints are held and its steps are solved.
+struct SystemOptions {
+  Scheme scheme = {};
+  bool energy_momentum = false;  // with the scheme energy_momentum()
+  int steps_per_frame = 1;
+  Hold hold = Hold::augmented_lagrangian;
+  Renew renew = Renew::every_step;
+  int cap = 20;         // Newton iterations a step
+  int projections = 4;  // iterations of a projection of velocities or accelerations
+  int keep_steps = 10;  // of Renew::kept
+  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2. 0: 1e9, and 1e4 with the
+  /// energy-momentum scheme, whose matrix takes a row's gradient at the mean: at a singular
+  /// position stiffer rows make its iterations diverge.
+  double penalty = 0.;
+  double alpha = 0.;  // Baumgarte, 1/s; both 0: alpha = beta = 1 / (5 dt)
+  double beta = 0.;
+  double tolerance = 1e-8;         // of the forces, over the largest kind of force
+  double joint_tolerance = 1e-10;  // m, and 1
+  std::int64_t steps = 0;          // of the scene's run
+};
+
+/// A model of a system alone, and the memory its views look into.
+class PackedSystem {
+ public:
+  /// The start is that of the parts' positions and velocities; accelerations and joint forces are
+  /// in balance with them. Velocities that the joints do not allow are taken out as by an impulse.
+  /// Throws std::invalid_argument on what cannot be built: parts without mass, joints of parts that
+  /// do not exist, points off their beam, motion out of a planar system.
+  PackedSystem(const System& system, const SystemOptions& options);
+  /// Beside a linear track in full order that carries no wheelsets, and that the system's joints,
+  /// springs and sensors may name; the track gives the scheme and the frames. A rail moves only in
+  /// what its track carries. The joint forces at the start are those of the first step's inertia,
+  /// as a track has unknowns without mass. Residual flexibility is not part of it.
+  PackedSystem(const System& system, const SystemOptions& options, const Track& track,
+               const Traffic& traffic, const PackOptions& track_options);
+  PackedSystem(const PackedSystem&) = delete;
+  PackedSystem& operator=(const PackedSystem&) = delete;
+  ~PackedSystem();
+
+  const Model& model() const { return model_; }
+  /// The track's own part; null without one.
+  const PackedModel* track() const;
+
+ private:
+  struct Memory;
+  void build(const System& system, const SystemOptions& options, const Track* track);
+  Model model_{};
+  std::unique_ptr<Memory> memory_;
+};
+
+/// Energy-momentum: forces at the mean of a step's ends, elastic ones by the mean stress (Simo and
+/// Tarnow 1992), which makes and loses no energy; second order. For systems alone.
+Scheme energy_momentum(double dt);
+
+}  // namespace railstep

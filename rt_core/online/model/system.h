@@ -1,0 +1,145 @@
+#pragma once
+#include <cstdint>
+
+#include "online/beam/chain.h"
+
+namespace railstep {
+
+// Rigid bodies and nonlinear beams, what holds and drives them. Their unknowns stand in the state's
+// u, v, a, g behind the track's and the wheelsets'.
+//   beam   displacement from rest of its nodes, 9 each (r, a, b), planar 5 (r_x, r_z, a_y, b_x,
+//   b_z) body   displacement of its centre from rest, then the turn of the step in body axes, which
+//   the
+//          end of the step folds into the state's quaternion: between steps 0; planar x, z, about y
+
+inline constexpr int kMaxSystemRows = 512;
+inline constexpr int kMaxSystemParts = 256;
+inline constexpr int kMostElementsOfBeam = 10'000;
+inline constexpr int kMotionCoefficients = 6;
+inline constexpr int kMostNamedRows = 16;  // redundant ones that a frame names
+inline constexpr int kMostNodeUnknowns = 27;  // that one row touches in one part
+
+/// A rigid body about its centre of mass.
+struct RigidBodyModel {
+  std::int32_t first;      // of its unknowns among the system's
+  std::int32_t column[6];  // unknown of x, y, z and of turns about the body's axes; -1: not carried
+  std::int32_t unknowns;   // 6 or 3
+  double mass;             // kg
+  double inertia[9];       // kg m2, in body axes
+  double inverse_inertia[9];
+  double rest[3];  // of the centre, m
+  double radius;   // of gyration, m: a moment over it compares with a force
+};
+
+/// A nonlinear beam: a chain of alike straight elements.
+struct BeamChainModel {
+  std::int32_t first;
+  std::int32_t unknowns;  // of all its nodes
+  std::int32_t planar;
+  Chain chain;
+  const double* rest;  // [unknowns] positions and slopes
+  double slope_scale;  // m: half the section's height; force / scale compares with a force
+};
+
+/// A place of a linear track's rail that rows pull at. Its nine unknowns are the displacements of
+/// r, a, b there; the track's step matrix gives them as free motion - compliance * forces.
+struct RailPortModel {
+  std::int32_t first;  // of its unknowns among the system's
+  std::int32_t rail, element;
+  double value[3];  // shape functions of the element's nodes
+  double rest[9];   // r, a, b
+};
+
+enum class PartKind : std::int32_t { ground, body, beam, rail };
+
+/// A point with three directions that a part carries. Directions are rows of `frame`, over the
+/// ground's axes, the body's axes, or the section's a x b, a, b.
+struct MarkerModel {
+  PartKind kind;
+  std::int32_t part;   // body, beam, or port on a rail
+  double position[3];  // on the ground; in body axes from the centre; of a beam or rail 0, y, z, m
+  double frame[9];
+  std::int32_t node;  // of a beam: the first of the three it lies on
+  double value[3];    // shape functions of these three
+};
+
+/// What a row asks of its markers A and B, its value Phi; each a sum of products of linear
+/// functions of points and directions, so that its mean gradient is exact (energy-momentum).
+enum class RowKind : std::int32_t {
+  along_ground,  // axis k of the ground . (p_B - p_A) - s(t), m
+  along_a,       // e_k of A . (p_B - p_A) - s(t), m
+  square,        // e_i of A . e_j of B, 1; turned by s(t): cos(s) e_i . e_j - sin(s) e_l . e_j
+  distance,      // (|p_B - p_A|^2 - s^2) / (2 s0), m
+  spring,        // |p_B - p_A| - s0, m; a spring and a damper along it
+};
+
+/// Joint rows come first, springs after.
+struct RowModel {
+  RowKind kind;
+  std::int32_t a, b;          // markers
+  std::int32_t end[2];        // its ends on parts; -1 on the ground
+  std::int32_t i, j, l;       // axes
+  std::int32_t motion;        // s(t); -1: `offset`
+  std::int32_t joint;         // it belongs to
+  double offset;              // s0
+  double compliance;          // of the augmented Lagrangian, 1 / penalty, m/N; 0: rigid
+  double stiffness, damping;  // of springs, N/m, N s/m
+};
+
+/// s(t), piece by piece a polynomial in t - start; before the first and behind the last piece these
+/// go on.
+struct MotionModel {
+  std::int32_t pieces;
+  const double* start;        // [pieces] s, rising
+  const double* coefficient;  // [pieces][kMotionCoefficients]
+};
+
+/// A force on a marker's point, or a moment on its body: direction (ground axes) times s(t).
+struct PointForceModel {
+  std::int32_t marker, motion;
+  std::int32_t moment;  // 1: N m on a body
+  double direction[3];
+};
+
+enum class Hold : std::int32_t { augmented_lagrangian, baumgarte, gear_gupta_leimkuhler, direct };
+
+/// When Newton's matrix is made anew; always where it stops to bring the residual down.
+enum class Renew : std::int32_t { every_iteration, every_step, kept };
+
+/// A row's end A (side 0) or B (side 1) on a body, a beam or the track.
+struct EndModel {
+  std::int32_t row, side;
+};
+
+/// All of it. Rows of joints, then those of springs; parts are bodies, then beams, then the track.
+struct SystemModel {
+  std::int32_t bodies, beams, markers, joint_rows, spring_rows, motions, forces, sensors, ends;
+  std::int32_t ports;            // on rails; their unknowns are the last
+  std::int32_t first, unknowns;  // in the state, padded to whole panels; parts count from `first`
+  Hold hold;
+  Renew renew;
+  std::int32_t mean;         // 1: forces at the mean of both ends of a step (energy-momentum)
+  std::int32_t cap;          // Newton iterations a step
+  std::int32_t projections;  // most iterations of a projection
+  std::int32_t keep_steps;   // Renew::kept: made anew after so many steps
+  double alpha, beta;        // Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0, 1/s
+  double tolerance;          // of the forces, over the largest kind of force
+  double joint_tolerance;    // m, and 1
+  double rank_tolerance;     // direct: a pivot below it times its own diagonal is redundant
+  const RigidBodyModel* body;
+  const BeamChainModel* beam;
+  const MarkerModel* marker;
+  const RowModel* row;           // [joint_rows + spring_rows]
+  const EndModel* end;           // [ends] of all rows, part after part
+  const std::int32_t* part_end;  // [bodies + beams + 2] the first end of a part
+  const MotionModel* motion;
+  const PointForceModel* force;
+  const std::int32_t* sensor;    // [sensors] markers
+  const double* constant_force;  // [unknowns] N: weight
+  const RailPortModel* port;
+  const double* port_compliance;  // [9 ports][9 ports] B S^-1 B', m/N
+  const double* port_shapes;      // [9 ports][lines' unknowns] S^-1 B', m/N
+  const double* per_length;       // [unknowns] what makes their forces comparable: 1, or 1/m
+};
+
+}  // namespace railstep
