@@ -29,7 +29,8 @@ inline Eigen::VectorXd extrapolated_step(const OdeSlope& f, double t, const Eige
       now = next;
     }
     T[static_cast<std::size_t>(row)] = .5 * (before + now + h * f(t + step, now));
-    for (int k = row - 1; k >= 0; --k) {  // T[k] of this row from T[k + 1] and that of the row above
+    for (int k = row - 1; k >= 0;
+         --k) {  // T[k] of this row from T[k + 1] and that of the row above
       const double ratio = static_cast<double>(row + 1) / (k + 1);
       const auto at = static_cast<std::size_t>(k);
       const Eigen::VectorXd change = (T[at + 1] - T[at]) / (ratio * ratio - 1.);
@@ -64,8 +65,7 @@ inline HighOrder high_order(const OdeSlope& f, const Eigen::VectorXd& y0,
   const std::vector<Eigen::VectorXd> coarse = integrate(f, y0, times, step);
   HighOrder result{integrate(f, y0, times, step / 2.), 0.};
   for (std::size_t i = 0; i < times.size(); ++i)
-    result.own_error =
-        std::max(result.own_error, (result.y[i] - coarse[i]).cwiseAbs().maxCoeff());
+    result.own_error = std::max(result.own_error, (result.y[i] - coarse[i]).cwiseAbs().maxCoeff());
   return result;
 }
 
