@@ -103,7 +103,7 @@ TEST_CASE("the keys of [joints] and their defaults", "[scene]") {
   const SystemOptions kept =
       system_scene(kPendulum, {"joints={hold=\"direct\", tangent=\"kept\", kept_steps=4}"}).options;
   CHECK(kept.hold == Hold::direct);
-  CHECK(kept.tangent == Tangent::kept);
+  CHECK(kept.renew == Renew::kept);
   CHECK(kept.keep_steps == 4);
   CHECK(system_scene(kPendulum, {"joints={penalty=1e7, tangent=\"iteration\"}"}).options.penalty ==
         1e7);
@@ -299,9 +299,10 @@ TEST_CASE("a track and a system keep apart", "[scene]") {
   CHECK_THAT(with(kPendulum, {"condense.kind=\"modal\""}), Contains("[condense] says something"));
   CHECK_THAT(with(kPendulum, {"beam=[]", "joint=[]", "sensor=[]"}),
              Contains("neither a [[body]] nor a [[beam]]"));
-  CHECK_THROWS_WITH(read_scene(shipped(kPendulum)),
-                    Contains("double_pendulum.toml") &&
-                        Contains("a scene with [beam] and no [track] is stepped by run alone"));
+  CHECK_THROWS_WITH(
+      read_scene(shipped(kPendulum)),
+      Contains("double_pendulum.toml") &&
+          Contains("the key beam makes this a scene of bodies and beams, which run alone takes"));
   CHECK(std::holds_alternative<Scene>(read_any_scene(shipped("moving_load"))));
 }
 

@@ -36,6 +36,7 @@ Scheme scheme_of(const StepScene& step) {
 SystemOptions options_of(const SystemScene& scene) {
   SystemOptions options = scene.options;
   options.scheme = scheme_of(scene.step);
+  options.energy_momentum = scene.step.scheme == TimeScheme::energy_momentum;
   options.steps_per_frame = static_cast<int>(scene.step.steps_per_frame);
   options.steps = scene.step.steps;
   return options;

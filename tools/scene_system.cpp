@@ -59,7 +59,7 @@ void belongs(const Table& t, const char* key, bool in_use, const char* choice) {
 SystemOptions read_hold(const Table& root) {
   constexpr Hold kHolds[] = {Hold::augmented_lagrangian, Hold::baumgarte,
                              Hold::gear_gupta_leimkuhler, Hold::direct};
-  constexpr Tangent kTangents[] = {Tangent::every_iteration, Tangent::every_step, Tangent::kept};
+  constexpr Renew kTangents[] = {Renew::every_iteration, Renew::every_step, Renew::kept};
   SystemOptions o{};
   const std::optional<Table> t = root.table_if("joints");
   if (!t) return o;
@@ -75,8 +75,8 @@ SystemOptions read_hold(const Table& root) {
     belongs(*t, key, o.hold == Hold::baumgarte, "hold = \"baumgarte\"");
   o.alpha = t->number("alpha_per_s", above_upto(0.0, 1e6), o.alpha);
   o.beta = t->number("beta_per_s", above_upto(0.0, 1e6), o.beta);
-  if (t->has("tangent")) o.tangent = kTangents[t->choice("tangent", {"iteration", "step", "kept"})];
-  belongs(*t, "kept_steps", o.tangent == Tangent::kept, "tangent = \"kept\"");
+  if (t->has("tangent")) o.renew = kTangents[t->choice("tangent", {"iteration", "step", "kept"})];
+  belongs(*t, "kept_steps", o.renew == Renew::kept, "tangent = \"kept\"");
   o.keep_steps = static_cast<int>(t->integer("kept_steps", 1, 100'000, o.keep_steps));
   return o;
 }
