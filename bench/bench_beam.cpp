@@ -75,7 +75,8 @@ struct Differences {
 /// entry of all elements.
 Differences differences(Row& row) {
   double force_peak = 0., tangent_peak = 0., force_gap = 0., tangent_gap = 0.;
-  straight_tangents(row.straight, kElements, row.q.data(), row.force.data(), row.tangent.data());
+  straight_tangents(row.straight, kElements, row.q.data(), nullptr, row.force.data(),
+                    row.tangent.data());
   for (int e = 0; e < kElements; ++e) {
     std::array<double, 27> F{}, f{};
     std::array<double, 729> K{}, k{};
@@ -124,18 +125,19 @@ long flops(bool with_tangent) {
   std::vector<Counted> K(9 * kMatrices);
   const StraightBeam beam{};
   Counted::operations = 0;
-  split(1., q, q + 9, q + 18, even, odd);
+  split<Spatial>(1., q, q + 9, q + 18, even, odd);
   for (int point = 0; point < 2; ++point) {
-    strains(V, s);
-    stresses(beam, s, stress);
-    vector_forces(stress, V, F);
-    if (with_tangent) vector_tangent(beam, stress, V, K.data());
+    strains<Spatial>(V, s);
+    stresses<Spatial>(beam, s, stress);
+    vector_forces<Spatial>(stress, V, F);
+    if (with_tangent) vector_tangent<Spatial>(beam, stress, V, K.data());
   }
-  gather(1., even, odd, q, q + 9, q + 18);
+  gather<Spatial>(1., even, odd, q, q + 9, q + 18);
   if (with_tangent)
     unrolled<kUpperPairs>([&](auto pair) {
       for (int c = 0; c < 9; ++c)
-        benchmark::DoNotOptimize(node_pairs<pair, 9>({}, K.data(), K.data(), c));
+        benchmark::DoNotOptimize(
+            node_pairs<pair>({}, K.data(), K.data(), [c](int matrix) { return 9 * matrix + c; }));
     });
   // V, its forces and its tangent at the two points: a sum and a difference each.
   return Counted::operations + 2 * (15 + 15 + (with_tangent ? 9 * kProducts : 0));
@@ -209,7 +211,7 @@ void tangent(benchmark::State& run, Section* section) {
 void forces_of_16(benchmark::State& run, Section* section) {
   Row row(section());
   measure(run, 16, kElements, [&] {
-    straight_forces(row.straight, kElements, row.q.data(), row.force.data());
+    straight_forces(row.straight, kElements, row.q.data(), nullptr, row.force.data());
     benchmark::ClobberMemory();
   });
   run.counters["error"] = differences(row).force;
@@ -219,7 +221,8 @@ void forces_of_16(benchmark::State& run, Section* section) {
 void tangents_of_16(benchmark::State& run, Section* section) {
   Row row(section());
   measure(run, 8, kElements, [&] {
-    straight_tangents(row.straight, kElements, row.q.data(), row.force.data(), row.tangent.data());
+    straight_tangents(row.straight, kElements, row.q.data(), nullptr, row.force.data(),
+                      row.tangent.data());
     benchmark::ClobberMemory();
   });
   run.counters["error"] = differences(row).tangent;

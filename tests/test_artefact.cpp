@@ -78,9 +78,9 @@ std::int64_t some_value(std::int64_t old, std::mt19937_64& random) {
     case 2:
       return static_cast<std::int64_t>(random() % 64);
     case 3:
-      return old + 1;
+      return static_cast<std::int64_t>(static_cast<std::uint64_t>(old) + 1u);
     case 4:
-      return old - 1;
+      return static_cast<std::int64_t>(static_cast<std::uint64_t>(old) - 1u);
     case 5:
       return -1;
     case 6:

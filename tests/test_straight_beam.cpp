@@ -1,78 +1,16 @@
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <vector>
 
 #include "offline/beam/equilibrium.h"
 #include "offline/element/straight.h"
-#include "sections.h"
+#include "straight_rows.h"
 
 using namespace railstep;
 
 namespace {
-
-/// Numbers in [-1, 1) that are the same on every machine: Knuth's MMIX generator.
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : state_(seed) {}
-  double next() {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(static_cast<std::int64_t>(state_ >> 11)) * 0x1p-52 - 1.;
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-/// FNV-1a over the bits.
-std::uint64_t hash(std::uint64_t h, const double* x, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) {
-    unsigned char bytes[sizeof(double)];
-    std::memcpy(bytes, x + i, sizeof bytes);
-    for (const unsigned char byte : bytes) h = (h ^ byte) * 1099511628211ULL;
-  }
-  return h;
-}
-constexpr std::uint64_t kEmpty = 14695981039346656037ULL;
-
-bool same_bits(const double* a, const double* b, std::size_t n) {
-  return std::memcmp(a, b, n * sizeof(double)) == 0;
-}
-
-BeamSection full_section_f() {
-  BeamSection f = section_f();
-  f.moments = moments(Rectangles<double>{{.1380985536, .02522171327, .07720505094},
-                                         {.020996636, .13308941227, .03165145173}});
-  return f;
-}
-
-/// Constants of no section, without a step through any library; every one of them counts.
-StraightBeam made_up_beam() {
-  Numbers numbers(5);
-  StraightBeam beam{};
-  beam.per_length = 1. / .6;
-  for (double& p : beam.preload) p = 1e5 * numbers.next();
-  for (double& c : beam.stiffness) c = 1e8 * numbers.next();
-  return beam;
-}
-
-/// Nodes of n elements of 0.6 m in a row along x, every unknown shaken; turned by R.
-std::vector<double> shaken_nodes(int n, std::uint64_t seed, double shake,
-                                 const Eigen::Matrix3d& R = Eigen::Matrix3d::Identity()) {
-  Numbers numbers(seed);
-  std::vector<double> q;
-  for (int node = 0; node <= 2 * n; ++node) {
-    Eigen::Matrix3d columns = Eigen::Matrix3d::Identity();
-    columns(0, 0) = .3 * node;
-    columns = R * columns;
-    for (int c = 0; c < 9; ++c) q.push_back(columns(c % 3, c / 3) + shake * numbers.next());
-  }
-  return q;
-}
 
 /// All single calls of a row of elements: forces summed in the batch's order, tangents one by one.
 struct OneByOne {
@@ -153,8 +91,8 @@ TEST_CASE("a batch of straight elements has the bits of its elements", "[straigh
     std::vector<double> force = filled(q.size()), same = filled(q.size()),
                         tangent = filled(static_cast<std::size_t>(straight_groups(n)) *
                                          static_cast<std::size_t>(kStraightGroup));
-    straight_forces(beam, n, q.data(), force.data());
-    straight_tangents(beam, n, q.data(), same.data(), tangent.data());
+    straight_forces(beam, n, q.data(), nullptr, force.data());
+    straight_tangents(beam, n, q.data(), nullptr, same.data(), tangent.data());
     CHECK(same_bits(force.data(), want.force.data(), q.size()));
     CHECK(same_bits(same.data(), want.force.data(), q.size()));
     CHECK(std::isnan(force.back()));
@@ -207,7 +145,7 @@ TEST_CASE("a cantilever's tip by the batch is that of the general kernel", "[str
   Eigen::VectorXd q = structure.rest, force(q.size());
   std::vector<double> tangents(static_cast<std::size_t>(straight_groups(n) * kStraightGroup));
   for (int iteration = 0; iteration < 12; ++iteration) {
-    straight_tangents(beam, n, q.data(), force.data(), tangents.data());
+    straight_tangents(beam, n, q.data(), nullptr, force.data(), tangents.data());
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(q.size(), q.size());
     for (int e = 0; e < n; ++e)
       for (int i = 0; i < 27; ++i)

@@ -28,4 +28,10 @@ StraightBeam straight_beam(const BeamLaw& law, double length) {
   return beam;
 }
 
+std::array<double, 4> chain_mass(const BeamSection& section, const BeamLaw& law) {
+  const double z = law.moments.centroid_z(), density = law.material.density;
+  return {density * section.area, density * section.inertia_z,
+          density * (section.inertia_y + z * z * section.area), density * z * section.area};
+}
+
 }  // namespace railstep

@@ -11,12 +11,12 @@ namespace railstep {
 
 /// A rigid body at rest, about its centre of mass.
 struct RigidBody {
-  double mass = 0.;                                                     // kg, > 0
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();                    // kg m2, in body axes
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();                   // of the centre, m
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();      // body axes to ground
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();                   // of the centre, m/s
-  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();           // ground axes, rad/s
+  double mass = 0.;                                                 // kg, > 0
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();                // kg m2, in body axes
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();               // of the centre, m
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // body axes to ground
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               // of the centre, m/s
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();       // ground axes, rad/s
 };
 
 enum class BeamEnd { free, pinned, clamped };  // pinned: its position is held; clamped: all of it
@@ -25,11 +25,11 @@ enum class BeamEnd { free, pinned, clamped };  // pinned: its position is held; 
 struct FlexibleBeam {
   BeamSection section;
   Material material;
-  ElementRule rule = {};     // two axial points
-  double axis_z = 0.;        // of the reference line above the centroid, m
+  ElementRule rule = {};  // two axial points
+  double axis_z = 0.;     // of the reference line above the centroid, m
   int elements = 1;
-  double length = 0.;        // m
-  double half_height = 0.;   // of the section, m: what makes a slope comparable to a length
+  double length = 0.;       // m
+  double half_height = 0.;  // of the section, m: what makes a slope comparable to a length
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  // of the reference line, m
   /// Columns: along the beam, lateral (a), up (b).
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -56,18 +56,18 @@ struct Motion {
 
 /// How two parts move together. Point and axes are those at rest, in ground axes.
 enum class JointKind {
-  spherical,      // the points coincide; a hinge in the plane
-  revolute,       // and turn about the axis alone
-  prismatic,      // slide along the axis, no turn
-  cylindrical,    // slide along and turn about the axis
-  fixed,          // no motion
-  distance,       // point and other_point keep their distance
-  point_on_line,  // B's point stays on A's line along the axis
-  point_on_plane, // B's point stays in A's plane across the axis
-  universal,      // the points coincide; axis of A and second axis of B stay square
-  translation,    // driven: B's point is s(t) from A's along A's axis; nothing else is held
-  rotation,       // driven: B turns by s(t) (rad) about the axis against A; nothing else is held:
-                  // put it beside a revolute joint
+  spherical,       // the points coincide; a hinge in the plane
+  revolute,        // and turn about the axis alone
+  prismatic,       // slide along the axis, no turn
+  cylindrical,     // slide along and turn about the axis
+  fixed,           // no motion
+  distance,        // point and other_point keep their distance
+  point_on_line,   // B's point stays on A's line along the axis
+  point_on_plane,  // B's point stays in A's plane across the axis
+  universal,       // the points coincide; axis of A and second axis of B stay square
+  translation,     // driven: B's point is s(t) from A's along A's axis; nothing else is held
+  rotation,        // driven: B turns by s(t) (rad) about the axis against A; nothing else is held:
+                   // put it beside a revolute joint
 };
 
 struct Joint {
@@ -84,7 +84,7 @@ struct Joint {
 struct SpringDamper {
   Part a = {}, b = {};
   Eigen::Vector3d point_a = Eigen::Vector3d::Zero(), point_b = Eigen::Vector3d::Zero();  // m
-  double stiffness = 0., damping = 0.;                            // N/m, N s/m
+  double stiffness = 0., damping = 0.;                       // N/m, N s/m
   double length = std::numeric_limits<double>::quiet_NaN();  // without force, m; NaN: as at rest
 };
 

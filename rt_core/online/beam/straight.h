@@ -59,18 +59,25 @@ void straight_tangent(const StraightBeam& beam, const double* q, double* force,
 constexpr int straight_groups(int n) noexcept { return (n + kStraightLanes - 1) / kStraightLanes; }
 
 /// Forces of n elements in a row that are alike; element e has the nodes 2e, 2e + 1, 2e + 2.
-/// @param n      at least 1
-/// @param q      [2n + 1][9]
-/// @param force  [2n + 1][9], overwritten: the sum of an inner end node's two elements; no alias
-void straight_forces(const StraightBeam& beam, int n, const double* q, double* force) noexcept;
+/// With half a change, d = (q1 - q0) / 2 at q = (q0 + q1) / 2, the stress is the mean of those at
+/// q0 and q1, and F . (q1 - q0) = U(q1) - U(q0): every product is quadratic in q, so the mean one
+/// is s(q) + s(d), and its change is ds/dq(q) . 2d (Simo and Tarnow 1992, for a quadratic energy).
+/// @param n            at least 1
+/// @param q            [2n + 1][9]
+/// @param half_change  d, [2n + 1][9]; nullptr for none
+/// @param force        [2n + 1][9], overwritten: the sum of an inner end node's two elements; no
+///                     alias
+void straight_forces(const StraightBeam& beam, int n, const double* q, const double* half_change,
+                     double* force) noexcept;
 
 /// Forces, and tangents element by element: element e is lane e % 4 of group e / 4, ready to be
 /// condensed to its end nodes lane by lane, or to be added to a band at row and column
 /// 18 e + 9 node. Blocks (1,1), (2,2) and (3,3) hold both triangles. Lanes after the last element
-/// repeat it.
+/// repeat it. With half a change the tangent is the ordinary one at q under the mean stress: twice
+/// dF/dq1 but for the unsymmetric part B' C B(d).
 /// @param tangent  [straight_groups(n)][kStraightGroup], overwritten; must not alias q or force
-void straight_tangents(const StraightBeam& beam, int n, const double* q, double* force,
-                       double* tangent) noexcept;
+void straight_tangents(const StraightBeam& beam, int n, const double* q, const double* half_change,
+                       double* force, double* tangent) noexcept;
 
 /// Entry (i, j) of [27][27] of an element in a batch's tangents.
 constexpr double straight_entry(const double* tangent, int element, int i, int j) noexcept {

@@ -8,37 +8,40 @@ namespace railstep::straight {
 
 inline constexpr double kG = 0.57735026918962576451;  // 1 / sqrt 3
 
-/// The parts of V, [15] each, that are even and odd in xi.
-/// @param n1, n2, n3  [9], the nodes
-template <class T>
+/// The parts of V that are even and odd in xi.
+/// @param n1, n2, n3  the nodes
+template <class Kind, class T>
 [[gnu::always_inline]] inline void split(double h, const T* n1, const T* n2, const T* n3, T* even,
                                          T* odd) noexcept {
+  constexpr int unknowns = Kind::kUnknowns, position = Kind::kSize[0];
   const double bend = 2. * kG * h;
-  for (int c = 0; c < 9; ++c) {
+  for (int c = 0; c < unknowns; ++c) {
     even[c] = h * (n3[c] - n1[c]);
     odd[c] = bend * ((n3[c] + n1[c]) - 2. * n2[c]);
   }
-  for (int c = 3; c < 9; ++c) {
-    even[6 + c] = (1. / 6.) * (n3[c] + n1[c]) + (2. / 3.) * n2[c];
-    odd[6 + c] = (.5 * kG) * (n3[c] - n1[c]);
+  for (int c = position; c < unknowns; ++c) {
+    even[unknowns - position + c] = (1. / 6.) * (n3[c] + n1[c]) + (2. / 3.) * n2[c];
+    odd[unknowns - position + c] = (.5 * kG) * (n3[c] - n1[c]);
   }
 }
 
 /// Nodal forces of the sum and the difference of the points' forces on V: the transpose of split().
-template <class T>
+template <class Kind, class T>
 [[gnu::always_inline]] inline void gather(double h, const T* even, const T* odd, T* n1, T* n2,
                                           T* n3) noexcept {
+  constexpr int unknowns = Kind::kUnknowns, position = Kind::kSize[0];
   const double bend = 2. * kG * h;
-  for (int c = 0; c < 9; ++c) {
+  for (int c = 0; c < unknowns; ++c) {
     const T stretch = h * even[c], turn = bend * odd[c];
     n1[c] = turn - stretch;
     n2[c] = -2. * turn;
     n3[c] = turn + stretch;
   }
-  for (int c = 3; c < 9; ++c) {
-    const T mean = (1. / 6.) * even[6 + c], tilt = (.5 * kG) * odd[6 + c];
+  for (int c = position; c < unknowns; ++c) {
+    const T& sum = even[unknowns - position + c];
+    const T mean = (1. / 6.) * sum, tilt = (.5 * kG) * odd[unknowns - position + c];
     n1[c] += mean - tilt;
-    n2[c] += (2. / 3.) * even[6 + c];
+    n2[c] += (2. / 3.) * sum;
     n3[c] += mean + tilt;
   }
 }
@@ -121,12 +124,7 @@ template <class T>
   K.of[2][0] -= ends;
 }
 
-/// Matrices of a tangent: the blocks of V in the order of kProductOf, then transposes of some. The
-/// first three of these are all that the fields' upper triangle needs.
-inline constexpr int kTransposeOf[] = {8, 10, 11, 1, 2, 4, 6, 7, 9, 13};
-inline constexpr int kUpperMatrices = kProducts + 3, kMatrices = kProducts + 10;
-
-/// Which of them make the block of two nodal fields r, a, b; -1 where there is none.
+/// Which matrices make the block of two nodal fields r, a, b; -1 where there is none.
 struct FieldPair {
   int row, column;  // fields
   int slopes, mixed, transposed, values;
@@ -138,13 +136,12 @@ inline constexpr FieldPair kFieldPair[kFieldPairs] = {
     {1, 1, 3, 8, 15, 12},   {1, 2, 4, 9, 16, 13},   {2, 2, 5, 11, 17, 14},
     {1, 0, 18, -1, 21, -1}, {2, 0, 19, -1, 22, -1}, {2, 1, 20, 10, 23, 24}};
 
-/// One entry, or row, c of a field pair; a block and its mirror image have the same bits.
-/// @param even, odd  [kMatrices][kStride]
-template <int kPair, int kStride, class T>
+/// One entry, or row, of a field pair; a block and its mirror image have the same bits.
+/// @param at  where that entry of a matrix is in `even` and `odd`, at(matrix)
+template <int kPair, class T, class At>
 [[gnu::always_inline]] inline NodePairs<T> node_pairs(const Coefficients& k, const T* even,
-                                                      const T* odd, int c) noexcept {
+                                                      const T* odd, const At& at) noexcept {
   constexpr FieldPair p = kFieldPair[kPair];
-  const auto at = [c](int matrix) __attribute__((always_inline)) { return matrix * kStride + c; };
   NodePairs<T> K;
   set_slopes(k, even[at(p.slopes)], odd[at(p.slopes)], K);
   if constexpr (p.mixed >= 0 && p.transposed >= 0) {

@@ -4,6 +4,7 @@
 #include "online/math/band.h"
 #include "online/math/diagonals.h"
 #include "online/math/modes.h"
+#include "online/model/system.h"
 
 namespace railstep {
 
@@ -132,7 +133,7 @@ struct ProbeModel {
 struct Model {
   Scheme scheme;
   std::int32_t lines, loads, wheelsets, elements;
-  std::int32_t unknowns;   // of all lines, padded, and 8 per wheelset
+  std::int32_t unknowns;   // of all lines, padded, 8 per wheelset, and the system's
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
   std::int32_t bodies;     // first unknown behind the lines
   std::int32_t steps_per_frame;
@@ -149,6 +150,7 @@ struct Model {
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];
+  SystemModel system;
 };
 
 }  // namespace railstep

@@ -3,6 +3,7 @@
 
 #include "online/model/model.h"
 #include "online/model/status.h"
+#include "online/system/workspace.h"
 
 namespace railstep {
 
@@ -17,6 +18,10 @@ struct State {
   double* wheel_force;  // [2 wheelsets] N, of the last step: where the contact solve starts
   double* multiplier;   // [2 wheelsets] of the guide along x, N, and about z, N m; the
                         // force on the wheelset is its negative
+  double* quaternion;   // [system.bodies][4] body axes to ground
+  double* row_force;    // [rows] of the system's joints and springs, N; the force on its parts is
+                        // -G' of it, so a joint's or spring's pull is positive
+  double* kept;         // Newton's matrix of the system where it is kept over steps, or null
 };
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
@@ -28,6 +33,7 @@ struct Workspace {
                    // of a unit force at each wheel; after the solve, the displacements
   double* imaginary;  // the same of condensed lines; solved is their real part
   double* row;        // [2 wheelsets][2][unknowns] of condensed lines: shape under each wheel
+  double* system;     // system/workspace.h
 };
 
 /// What a frame publishes.
@@ -46,33 +52,47 @@ struct Outputs {
   double wheel_x[kMaxWheels];       // of the contact along the undeformed rail, m
   double wheel_rail_z[kMaxWheels];  // displacement of the rail's axis under it, m
   double constraint_violation;      // largest of the frame, m or rad
-  std::int32_t iterations;          // largest of the frame, of contact and joint solves
+  std::int32_t iterations;          // largest of the frame, of contact, joint and Newton solves
+  double force_residual;            // of the system: largest of the frame, over its largest force
 };
 
 inline std::int64_t state_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + 4LL * model.wheelsets;
+  return 4LL * model.unknowns + 4LL * model.wheelsets + system_state_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t wheels = 2LL * model.wheelsets;
-  return (4 + wheels + model.condensed * (1 + 3 * wheels)) * model.unknowns;
+  return (4 + wheels + model.condensed * (1 + 3 * wheels)) * model.unknowns +
+         system_workspace_doubles(model.system);
 }
 
 /// Views over the caller's memory, which must be aligned to doubles.
 inline State state_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns;
+  double* const wheels = memory + 4 * n;
+  double* const system = wheels + 4LL * model.wheelsets;
+  double* const rows = system + 4LL * model.system.bodies;
   return {0,
           memory,
           memory + n,
           memory + 2 * n,
           memory + 3 * n,
-          memory + 4 * n,
-          memory + 4 * n + 2 * model.wheelsets};
+          wheels,
+          wheels + 2LL * model.wheelsets,
+          system,
+          rows,
+          model.system.renew == Renew::kept ? rows + system_rows(model.system) : nullptr};
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns, solved = (1 + 2LL * model.wheelsets) * n;
   double* const condensed = memory + 3 * n + solved;
-  return {memory,         memory + n, memory + 2 * n,
-          memory + 3 * n, condensed,  condensed + model.condensed * solved};
+  double* const row = condensed + model.condensed * solved;
+  return {memory,
+          memory + n,
+          memory + 2 * n,
+          memory + 3 * n,
+          condensed,
+          row,
+          row + model.condensed * 2LL * 2LL * model.wheelsets * n};
 }
 
 /// Puts the model's start into a state: step 0.

@@ -11,6 +11,7 @@ enum class Status : std::uint32_t {
   cap_reached = 1u << 2,      // contact, joint or projection hit its cap: shorten dt
   nonfinite_state = 1u << 3,  // the state is no longer finite: Outputs name the first bad unknown
   contact_unresolved = 1u << 4,  // a wheel struck its rail for fewer than 10 steps: shorten dt
+  redundant_joint = 1u << 5,     // a joint row hung on others: it carries no force of its own
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {

@@ -7,24 +7,27 @@ namespace railstep {
 
 // Rigid bodies and nonlinear beams, what holds and drives them. Their unknowns stand in the state's
 // u, v, a, g behind the track's and the wheelsets'.
-//   beam   displacement from rest of its nodes, 9 each (r, a, b), planar 5 (r_x, r_z, a_y, b_x, b_z)
-//   body   displacement of its centre from rest, then the turn of the step in body axes, which the
+//   beam   displacement from rest of its nodes, 9 each (r, a, b), planar 5 (r_x, r_z, a_y, b_x,
+//   b_z) body   displacement of its centre from rest, then the turn of the step in body axes, which
+//   the
 //          end of the step folds into the state's quaternion: between steps 0; planar x, z, about y
 
 inline constexpr int kMaxSystemRows = 512;
 inline constexpr int kMaxSystemParts = 256;
+inline constexpr int kMostElementsOfBeam = 10'000;
 inline constexpr int kMotionCoefficients = 6;
 inline constexpr int kMostNodeUnknowns = 27;  // that one row touches in one part
 
 /// A rigid body about its centre of mass.
 struct RigidBodyModel {
-  std::int32_t first;       // of its unknowns in the state
-  std::int32_t column[6];   // unknown of x, y, z and of turns about the body's axes; -1: not carried
-  std::int32_t unknowns;    // 6 or 3
-  double mass;              // kg
-  double inertia[9];        // kg m2, in body axes
+  std::int32_t first;      // of its unknowns among the system's
+  std::int32_t column[6];  // unknown of x, y, z and of turns about the body's axes; -1: not carried
+  std::int32_t unknowns;   // 6 or 3
+  double mass;             // kg
+  double inertia[9];       // kg m2, in body axes
   double inverse_inertia[9];
-  double rest[3];           // of the centre, m
+  double rest[3];  // of the centre, m
+  double radius;   // of gyration, m: a moment over it compares with a force
 };
 
 /// A nonlinear beam: a chain of alike straight elements.
@@ -46,8 +49,8 @@ struct MarkerModel {
   std::int32_t part;
   double position[3];  // on the ground; in body axes from the centre; of a beam 0, y, z, m
   double frame[9];
-  std::int32_t node;   // of a beam: the first of the three it lies on
-  double value[3];     // shape functions of these three
+  std::int32_t node;  // of a beam: the first of the three it lies on
+  double value[3];    // shape functions of these three
 };
 
 /// What a row asks of its markers A and B, its value Phi; each a sum of products of linear
@@ -63,12 +66,13 @@ enum class RowKind : std::int32_t {
 /// Joint rows come first, springs after.
 struct RowModel {
   RowKind kind;
-  std::int32_t a, b;        // markers
-  std::int32_t i, j, l;     // axes
-  std::int32_t motion;      // s(t); -1: `offset`
-  std::int32_t joint;       // it belongs to
-  double offset;            // s0
-  double compliance;        // of the augmented Lagrangian over kg: 1 / penalty, 1/kg
+  std::int32_t a, b;          // markers
+  std::int32_t end[2];        // its ends on parts; -1 on the ground
+  std::int32_t i, j, l;       // axes
+  std::int32_t motion;        // s(t); -1: `offset`
+  std::int32_t joint;         // it belongs to
+  double offset;              // s0
+  double compliance;          // of the augmented Lagrangian, 1 / penalty, m/N; 0: rigid
   double stiffness, damping;  // of springs, N/m, N s/m
 };
 
@@ -89,19 +93,24 @@ struct PointForceModel {
 
 enum class Hold : std::int32_t { augmented_lagrangian, baumgarte, gear_gupta_leimkuhler, direct };
 
-/// When Newton's matrix is made anew.
-enum class Tangent : std::int32_t { every_iteration, every_step, kept };
+/// When Newton's matrix is made anew; always where it stops to bring the residual down.
+enum class Renew : std::int32_t { every_iteration, every_step, kept };
 
-/// All of it. `rows` joint rows, then `springs`.
+/// A row's end A (side 0) or B (side 1) on a body or beam.
+struct EndModel {
+  std::int32_t row, side;
+};
+
+/// All of it. Rows of joints, then those of springs; parts are bodies, then beams.
 struct SystemModel {
-  std::int32_t bodies, beams, markers, joints, springs, motions, forces, sensors;
-  std::int32_t first, unknowns;  // in the state, padded to whole panels
+  std::int32_t bodies, beams, markers, joint_rows, spring_rows, motions, forces, sensors, ends;
+  std::int32_t first, unknowns;  // in the state, padded to whole panels; parts count from `first`
   Hold hold;
-  Tangent tangent;
+  Renew renew;
   std::int32_t mean;         // 1: forces at the mean of both ends of a step (energy-momentum)
   std::int32_t cap;          // Newton iterations a step
   std::int32_t projections;  // most iterations of a projection
-  std::int32_t keep_steps;   // Tangent::kept: made anew after so many steps
+  std::int32_t keep_steps;   // Renew::kept: made anew after so many steps
   double alpha, beta;        // Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0, 1/s
   double tolerance;          // of the forces, over the largest kind of force
   double joint_tolerance;    // m, and 1
@@ -109,11 +118,14 @@ struct SystemModel {
   const RigidBodyModel* body;
   const BeamChainModel* beam;
   const MarkerModel* marker;
-  const RowModel* row;           // [joints + springs]
+  const RowModel* row;           // [joint_rows + spring_rows]
+  const EndModel* end;           // [ends] of all rows, part after part
+  const std::int32_t* part_end;  // [bodies + beams + 1] the first end of a part
   const MotionModel* motion;
   const PointForceModel* force;
   const std::int32_t* sensor;    // [sensors] markers
   const double* constant_force;  // [unknowns] N: weight
+  const double* per_length;      // [unknowns] what makes their forces comparable: 1, or 1/m
 };
 
 }  // namespace railstep

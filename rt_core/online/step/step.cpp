@@ -5,6 +5,7 @@
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/wheel.h"
+#include "online/system/system_step.h"
 
 namespace railstep {
 
@@ -99,6 +100,7 @@ void start_frame(const Model& model, Outputs& out) noexcept {
   out.status = Status::ok;
   out.constraint_violation = 0.;
   out.iterations = 0;
+  out.force_residual = 0.;
   for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
     out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
 }
@@ -120,6 +122,13 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
   }
 }
 
+void collect(const SystemResult& met, Outputs& out) noexcept {
+  out.status = out.status | met.status;
+  if (!(met.violation <= out.constraint_violation)) out.constraint_violation = met.violation;
+  if (!(met.force_residual <= out.force_residual)) out.force_residual = met.force_residual;
+  if (met.iterations > out.iterations) out.iterations = met.iterations;
+}
+
 void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
   predict(model, state, w);
   forces(model, state.steps + 1, w.solved, w.imaginary);
@@ -131,8 +140,10 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs)
     collect(model, state, couple(model, state.steps + 1, state, w), outputs);
   else if (model.condensed == 0)
     solve_bands(model, w);
+  if (model.system.unknowns > 0) collect(solve_system(model, state, w), outputs);
   correct(model, state, w);
   if (model.wheelsets > 0) project_guides(model, state);
+  if (model.system.unknowns > 0) outputs.status = outputs.status | finish_system(model, state, w);
   ++state.steps;
 }
 

@@ -1,0 +1,327 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "offline/element/shape.h"
+#include "offline/system/motion.h"
+#include "offline/system/parts.h"
+
+namespace railstep {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Puts markers and rows of a system together.
+class Connector {
+ public:
+  Connector(const System& system, SystemParts& parts) : system_(system), parts_(parts) {}
+
+  void add(const Joint& joint, std::int32_t index);
+  void add(const SpringDamper& spring, std::int32_t index);
+  void add(const PointForce& force);
+  void add(const SystemSensor& sensor) {
+    parts_.sensors.push_back(marker(sensor.on, sensor.point, Matrix3d::Identity()));
+  }
+
+ private:
+  std::int32_t marker(const Part& part, const Vector3d& point, const Matrix3d& axes);
+  std::int32_t motion(const Motion& motion);
+  void row(RowKind kind, int i, int j = 0, int l = 0, std::int32_t motion = -1, double offset = 0.);
+  void points(bool planar);
+  void add_in_plane(const Joint& joint);
+  void add_in_space(const Joint& joint);
+  void add_either_way(const Joint& joint);
+
+  const System& system_;
+  SystemParts& parts_;
+  std::int32_t joint_ = 0, a_ = 0, b_ = 0;  // of the rows that are being added
+};
+
+/// Columns: the axis, and two square to it. The second is as near to y as it can be, so that in the
+/// plane an axis in it gives the lateral one second.
+Matrix3d around(const Vector3d& axis) {
+  if (!axis.allFinite() || !(axis.norm() > 0.))
+    throw std::invalid_argument("its axis is a finite vector that is not 0");
+  const Vector3d n = axis.normalized();
+  const Vector3d helper = std::abs(n.y()) < .9 ? Vector3d::UnitY() : Vector3d::UnitZ();
+  Matrix3d axes;
+  axes.col(0) = n;
+  axes.col(1) = (helper - helper.dot(n) * n).normalized();
+  axes.col(2) = n.cross(axes.col(1));
+  return axes;
+}
+
+void set_frame(MarkerModel& marker, const Matrix3d& axes, const Matrix3d& own) {
+  const Matrix3d rows = axes.transpose() * own;  // row k: direction k in the part's axes
+  for (int k = 0; k < 3; ++k)
+    for (int c = 0; c < 3; ++c) marker.frame[3 * k + c] = rows(k, c);
+}
+
+/// Where on a beam a point lies.
+void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& marker) {
+  const Vector3d local = beam.axes.transpose() * (point - beam.start);
+  const double reach = 1e-9 * beam.length;
+  if (!(local.x() >= -reach && local.x() <= beam.length + reach))
+    throw std::invalid_argument("its point lies " + std::to_string(local.x()) +
+                                " m along a beam that is " + std::to_string(beam.length) +
+                                " m long");
+  const double along = std::clamp(local.x() / beam.length * beam.elements, 0., 1. * beam.elements);
+  const int element = std::min(static_cast<int>(along), beam.elements - 1);
+  double xi = 2. * (along - element) - 1.;
+  for (const double node : {-1., 0., 1.})
+    if (std::abs(xi - node) < 1e-9) xi = node;
+  marker.node = 2 * element;
+  const auto n = shape(xi);
+  for (std::size_t i = 0; i < 3; ++i) marker.value[i] = n[i];
+  marker.position[1] = local.y();
+  marker.position[2] = local.z();
+}
+
+std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Matrix3d& axes) {
+  if (!point.allFinite()) throw std::invalid_argument("its point is finite");
+  MarkerModel m{};
+  m.part = part.index;
+  if (part.kind == Part::Kind::ground) {
+    m.kind = PartKind::ground;
+    for (int c = 0; c < 3; ++c) m.position[c] = point[c];
+    set_frame(m, axes, Matrix3d::Identity());
+  } else if (part.kind == Part::Kind::body) {
+    if (part.index < 0 || static_cast<std::size_t>(part.index) >= system_.bodies.size())
+      throw std::invalid_argument("it names a body that is not there");
+    const RigidBody& body = system_.bodies[static_cast<std::size_t>(part.index)];
+    const Matrix3d R = body.orientation.toRotationMatrix();
+    m.kind = PartKind::body;
+    const Vector3d local = R.transpose() * (point - body.position);
+    for (int c = 0; c < 3; ++c) m.position[c] = local[c];
+    set_frame(m, axes, R);
+  } else {
+    if (part.index < 0 || static_cast<std::size_t>(part.index) >= system_.beams.size())
+      throw std::invalid_argument("it names a beam that is not there");
+    const FlexibleBeam& beam = system_.beams[static_cast<std::size_t>(part.index)];
+    m.kind = PartKind::beam;
+    put_on_beam(beam, point, m);
+    set_frame(m, axes, beam.axes);
+  }
+  parts_.markers.push_back(m);
+  return static_cast<std::int32_t>(parts_.markers.size()) - 1;
+}
+
+std::int32_t Connector::motion(const Motion& motion) {
+  MotionPieces pieces = motion_pieces(motion);
+  const auto count = static_cast<std::int32_t>(pieces.start.size());
+  parts_.motions.push_back(
+      {count, parts_.keep(std::move(pieces.start)), parts_.keep(std::move(pieces.coefficient))});
+  return static_cast<std::int32_t>(parts_.motions.size()) - 1;
+}
+
+void Connector::row(RowKind kind, int i, int j, int l, std::int32_t motion, double offset) {
+  RowModel r{};
+  r.kind = kind;
+  r.a = a_;
+  r.b = b_;
+  r.i = i;
+  r.j = j;
+  r.l = l;
+  r.motion = motion;
+  r.joint = joint_;
+  r.offset = offset;
+  (kind == RowKind::spring ? parts_.spring_rows : parts_.joint_rows).push_back(r);
+}
+
+void Connector::points(bool planar) {
+  for (int c = 0; c < 3; ++c)
+    if (!planar || c != 1) row(RowKind::along_ground, c);
+}
+
+/// Joints whose rows are the same in the plane and in space.
+void Connector::add_either_way(const Joint& joint) {
+  switch (joint.kind) {
+    case JointKind::distance: {
+      const double length = (joint.other_point - joint.point).norm();
+      if (!(length > 0.)) throw std::invalid_argument("its two points lie apart");
+      const bool driven = !joint.motion.polynomial.empty() || !joint.motion.table.empty();
+      return row(RowKind::distance, 0, 0, 0, driven ? motion(joint.motion) : -1, length);
+    }
+    case JointKind::point_on_plane:
+      return row(RowKind::along_a, 0);
+    case JointKind::translation:
+      return row(RowKind::along_a, 0, 0, 0, motion(joint.motion));
+    case JointKind::rotation:
+      return row(RowKind::square, 2, 1, 1, motion(joint.motion));
+    default:
+      break;
+  }
+}
+
+void Connector::add_in_plane(const Joint& joint) {
+  switch (joint.kind) {
+    case JointKind::spherical:
+    case JointKind::revolute:
+      return points(true);
+    case JointKind::prismatic:
+    case JointKind::cylindrical:
+      row(RowKind::along_a, 2);
+      return row(RowKind::square, 0, 2);
+    case JointKind::fixed:
+      points(true);
+      return row(RowKind::square, 0, 2);
+    case JointKind::point_on_line:
+      return row(RowKind::along_a, 2);
+    case JointKind::universal:
+      throw std::invalid_argument("a planar system has no universal joint; take a revolute one");
+    default:
+      return add_either_way(joint);
+  }
+}
+
+void Connector::add_in_space(const Joint& joint) {
+  const auto across = [&] {
+    row(RowKind::along_a, 1);
+    row(RowKind::along_a, 2);
+  };
+  const auto parallel = [&] {
+    row(RowKind::square, 0, 1);
+    row(RowKind::square, 0, 2);
+  };
+  switch (joint.kind) {
+    case JointKind::spherical:
+      return points(false);
+    case JointKind::revolute:
+      points(false);
+      return parallel();
+    case JointKind::prismatic:
+      across();
+      parallel();
+      return row(RowKind::square, 1, 2);
+    case JointKind::cylindrical:
+      across();
+      return parallel();
+    case JointKind::fixed:
+      points(false);
+      parallel();
+      return row(RowKind::square, 1, 2);
+    case JointKind::point_on_line:
+      return across();
+    case JointKind::universal:
+      points(false);
+      return row(RowKind::square, 0, 0);
+    default:
+      return add_either_way(joint);
+  }
+}
+
+/// Whether an axis of a planar system has to be its lateral one, or has to lie in its plane.
+void check_plane(const Joint& joint) {
+  const Vector3d n = joint.axis.normalized();
+  const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::rotation;
+  const bool free = joint.kind == JointKind::spherical || joint.kind == JointKind::distance;
+  if (turns && !(std::abs(n.y()) > 1. - 1e-12))
+    throw std::invalid_argument("in a planar system its axis is y");
+  if (!turns && !free && !(std::abs(n.y()) < 1e-12))
+    throw std::invalid_argument("in a planar system its axis lies in x and z");
+}
+
+void Connector::add(const Joint& joint, std::int32_t index) {
+  if (joint.a.kind == joint.b.kind && joint.a.index == joint.b.index &&
+      joint.a.kind != Part::Kind::beam)
+    throw std::invalid_argument("it joins a part with itself");
+  if (system_.planar) check_plane(joint);
+  const Matrix3d axes = around(joint.axis);
+  const bool two = joint.kind == JointKind::distance;
+  joint_ = index;
+  a_ = marker(joint.a, joint.point, axes);
+  Matrix3d other = axes;
+  if (joint.kind == JointKind::universal) {
+    other = around(joint.other_axis);
+    if (std::abs(other.col(0).dot(axes.col(0))) > 1e-12)
+      throw std::invalid_argument("its two axes are square to each other");
+  }
+  b_ = marker(joint.b, two ? joint.other_point : joint.point, other);
+  system_.planar ? add_in_plane(joint) : add_in_space(joint);
+}
+
+void Connector::add(const SpringDamper& spring, std::int32_t index) {
+  if (!(spring.stiffness >= 0.) || !(spring.damping >= 0.) ||
+      !(spring.stiffness + spring.damping > 0.))
+    throw std::invalid_argument("its stiffness and damping are not negative, and one is above 0");
+  const double apart = (spring.point_b - spring.point_a).norm();
+  const double length = std::isnan(spring.length) ? apart : spring.length;
+  if (!(length >= 0.) || !(apart > 0.))
+    throw std::invalid_argument("its two points lie apart, and its length is not negative");
+  joint_ = index;
+  a_ = marker(spring.a, spring.point_a, Matrix3d::Identity());
+  b_ = marker(spring.b, spring.point_b, Matrix3d::Identity());
+  row(RowKind::spring, 0, 0, 0, -1, length);
+  parts_.spring_rows.back().stiffness = spring.stiffness;
+  parts_.spring_rows.back().damping = spring.damping;
+}
+
+void Connector::add(const PointForce& force) {
+  if (force.moment && force.on.kind != Part::Kind::body)
+    throw std::invalid_argument("a moment acts on a body");
+  PointForceModel packed{};
+  packed.marker = marker(force.on, force.point, Matrix3d::Identity());
+  packed.motion = motion(force.factor);
+  packed.moment = force.moment ? 1 : 0;
+  for (int c = 0; c < 3; ++c) packed.direction[c] = force.direction[c];
+  parts_.forces.push_back(packed);
+}
+
+/// Adds them one by one; an error says which.
+template <class Item, class Add>
+void each(const std::vector<Item>& items, const char* name, const Add& add) {
+  for (std::size_t i = 0; i < items.size(); ++i) try {
+      add(items[i], static_cast<std::int32_t>(i));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(std::string(name) + " " + std::to_string(i) + ": " +
+                                  error.what());
+    }
+}
+
+/// Part of a marker among bodies, then beams; -1 on the ground.
+std::int32_t part_of(const SystemParts& parts, const MarkerModel& marker) {
+  if (marker.kind == PartKind::ground) return -1;
+  return marker.part +
+         (marker.kind == PartKind::beam ? static_cast<std::int32_t>(parts.bodies.size()) : 0);
+}
+
+/// Ends of all rows, part after part.
+void add_ends(SystemParts& parts) {
+  const auto count = static_cast<std::int32_t>(parts.bodies.size() + parts.beams.size());
+  for (RowModel& row : parts.rows) row.end[0] = row.end[1] = -1;
+  for (std::int32_t part = 0; part < count; ++part) {
+    parts.part_end.push_back(static_cast<std::int32_t>(parts.ends.size()));
+    for (std::size_t r = 0; r < parts.rows.size(); ++r)
+      for (std::int32_t side = 0; side < 2; ++side) {
+        RowModel& row = parts.rows[r];
+        const std::int32_t on = side == 0 ? row.a : row.b;
+        if (part_of(parts, parts.markers[static_cast<std::size_t>(on)]) != part) continue;
+        row.end[side] = static_cast<std::int32_t>(parts.ends.size());
+        parts.ends.push_back({static_cast<std::int32_t>(r), side});
+      }
+  }
+  parts.part_end.push_back(static_cast<std::int32_t>(parts.ends.size()));
+}
+
+}  // namespace
+
+void add_connections(const System& system, SystemParts& parts) {
+  Connector connect(system, parts);
+  each(system.joints, "joint", [&](const Joint& j, std::int32_t i) { connect.add(j, i); });
+  const auto joints = static_cast<std::int32_t>(system.joints.size());
+  each(system.springs, "spring",
+       [&](const SpringDamper& s, std::int32_t i) { connect.add(s, joints + i); });
+  each(system.forces, "force", [&](const PointForce& f, std::int32_t) { connect.add(f); });
+  each(system.sensors, "sensor", [&](const SystemSensor& s, std::int32_t) { connect.add(s); });
+  parts.rows = parts.joint_rows;
+  parts.rows.insert(parts.rows.end(), parts.spring_rows.begin(), parts.spring_rows.end());
+  if (parts.rows.size() > static_cast<std::size_t>(kMaxSystemRows))
+    throw std::invalid_argument("joints and springs have " + std::to_string(parts.rows.size()) +
+                                " rows; at most " + std::to_string(kMaxSystemRows));
+  add_ends(parts);
+}
+
+}  // namespace railstep

@@ -1,0 +1,21 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "online/model/state.h"
+
+namespace railstep {
+
+struct SystemEnergy {
+  double kinetic = 0., strain = 0., springs = 0.;  // J
+  double potential = 0.;                           // of weight, against the start, J
+  double total() const { return kinetic + strain + springs + potential; }
+};
+SystemEnergy system_energy(const Model& model, const State& state);
+
+/// About the ground's origin; kg m/s and kg m2/s.
+struct SystemMomentum {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+};
+SystemMomentum system_momentum(const Model& model, const State& state);
+
+}  // namespace railstep

@@ -1,0 +1,18 @@
+#pragma once
+#include <vector>
+
+#include "offline/system/system.h"
+#include "online/model/system.h"
+
+namespace railstep {
+
+/// A motion as pieces of polynomials, [pieces] starts and [pieces][kMotionCoefficients].
+struct MotionPieces {
+  std::vector<double> start, coefficient;
+};
+
+/// Throws std::invalid_argument unless there is either a polynomial of 1 to 6 coefficients or a
+/// table of 2 rows or more with rising times.
+MotionPieces motion_pieces(const Motion& motion);
+
+}  // namespace railstep

@@ -1,0 +1,39 @@
+#pragma once
+#include <deque>
+#include <vector>
+
+#include "offline/system/system.h"
+#include "online/model/system.h"
+
+namespace railstep {
+
+/// A system's model while it is put together; its arrays are what the model's views look into.
+struct SystemParts {
+  std::vector<RigidBodyModel> bodies;
+  std::vector<BeamChainModel> beams;
+  std::vector<MarkerModel> markers;
+  std::vector<RowModel> joint_rows, spring_rows;
+  std::vector<MotionModel> motions;
+  std::vector<PointForceModel> forces;
+  std::vector<std::int32_t> sensors;
+  std::vector<RowModel> rows;  // of joints, then of springs
+  std::vector<EndModel> ends;
+  std::vector<std::int32_t> part_end;
+  std::vector<double> constant_force, per_length;  // [unknowns]
+  std::int32_t unknowns = 0;
+  std::deque<std::vector<double>> reals;  // what the parts point to; does not move
+  std::deque<std::vector<std::int32_t>> integers;
+
+  const double* keep(std::vector<double> values);
+};
+
+/// Bodies and beams: unknowns, inertia, weight. Throws std::invalid_argument.
+void add_parts(const System& system, SystemParts& parts);
+
+/// Motion, markers and rows of joints, springs, forces and sensors. Throws std::invalid_argument.
+void add_connections(const System& system, SystemParts& parts);
+
+/// Velocity of every unknown at the start, [unknowns].
+std::vector<double> start_velocities(const System& system, const SystemParts& parts);
+
+}  // namespace railstep

@@ -1,0 +1,189 @@
+#include "offline/system/start_system.h"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+#include <stdexcept>
+
+#include "online/system/beam_chain.h"
+#include "online/system/row.h"
+#include "online/system/rows.h"
+
+namespace railstep {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Sparse = Eigen::SparseMatrix<double>;
+
+VectorXd vector(const double* values, std::int32_t n) {
+  return Eigen::Map<const VectorXd>(values, n);
+}
+
+void add_bodies(const SystemModel& s, std::vector<Eigen::Triplet<double>>& entries) {
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    const RigidBodyModel& body = s.body[b];
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) {
+        if (body.column[i] < 0 || body.column[j] < 0 || (i < 3) != (j < 3)) continue;
+        const double m = i >= 3 ? body.inertia[3 * (i - 3) + (j - 3)] : i == j ? body.mass : 0.;
+        entries.emplace_back(body.first + body.column[i], body.first + body.column[j], m);
+      }
+  }
+}
+
+/// Column by column: what the online inertia makes of unit accelerations of one node.
+void add_beam(const SystemModel& s, const BeamChainModel& beam,
+              std::vector<Eigen::Triplet<double>>& entries) {
+  const int width = beam_width(beam), nodes = beam.unknowns / width;
+  const double* is_free = s.per_length + beam.first;  // 0 where held
+  for (int c = 0; c < beam.unknowns; ++c) {
+    VectorXd unit = VectorXd::Zero(beam.unknowns), force = VectorXd::Zero(beam.unknowns);
+    unit[c] = 1.;
+    beam_inertia(beam, unit.data(), force.data());
+    const int node = c / width;
+    const int from = std::max(0, node - 2) * width, to = std::min(nodes, node + 3) * width;
+    for (int r = from; r < to; ++r)
+      if (is_free[r] * is_free[c] != 0. && force[r] != 0.)
+        entries.emplace_back(beam.first + r, beam.first + c, force[r]);
+    if (is_free[c] == 0.) entries.emplace_back(beam.first + c, beam.first + c, 1.);
+  }
+}
+
+/// M, with ones where unknowns are held or pad.
+Sparse mass(const SystemModel& s) {
+  std::vector<Eigen::Triplet<double>> entries;
+  add_bodies(s, entries);
+  std::int32_t used = 0;
+  for (std::int32_t b = 0; b < s.bodies; ++b) used += s.body[b].unknowns;
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    add_beam(s, s.beam[b], entries);
+    used += s.beam[b].unknowns;
+  }
+  for (std::int32_t i = used; i < s.unknowns; ++i) entries.emplace_back(i, i, 1.);
+  Sparse M(s.unknowns, s.unknowns);
+  M.setFromTriplets(entries.begin(), entries.end());
+  return M;
+}
+
+/// The system as it stands at the start, in the online workspace.
+struct Standing {
+  Model model;
+  std::vector<double> memory, quaternion, zero, v;
+  SystemWorkspace w;
+  SystemStart start;
+
+  Standing(const Model& from, std::vector<double> q, std::vector<double> rates)
+      : model(from), quaternion(std::move(q)), v(std::move(rates)) {
+    SystemModel& s = model.system;
+    model.scheme.kv = model.scheme.kg = 0.;  // so that the velocities are v, accelerations 0
+    s.mean = 0;
+    s.hold = Hold::direct;
+    memory.assign(static_cast<std::size_t>(system_workspace_doubles(s) + system_tangent_doubles(s)),
+                  0.);
+    zero.assign(static_cast<std::size_t>(s.unknowns), 0.);
+    w = system_workspace_on(s, memory.data(), nullptr);
+    start = {zero.data(), v.data(), zero.data(), v.data(), quaternion.data()};
+    place();
+  }
+  void place() {
+    place_start(model, start, w);
+    place_parts(model, start, w);
+    part_forces(model, start, false, w);
+    outer_forces(model, 0., w);
+    for (std::int32_t r = 0; r < system_rows(model.system); ++r) w.force[r] = 0.;
+    Model plain = model;
+    plain.scheme.kv = 1.;  // springs have no slope else; what rows want is not used
+    set_rows(plain, 0., w);
+  }
+  Jet jet(std::int32_t r) const {
+    const SystemModel& s = model.system;
+    const RowModel& row = s.row[r];
+    const Motions at{zero.data(), v.data(), zero.data(), w.matrix};
+    const Jet motion =
+        row.motion >= 0 ? motion_at(s.motion[row.motion], 0.) : Jet{row.offset, 0., 0.};
+    return row_jet(row, marker_jet(s, s.marker[row.a], at), marker_jet(s, s.marker[row.b], at),
+                   motion);
+  }
+  /// Rows `first` to `last` of G, dense.
+  MatrixXd gradients(std::int32_t first, std::int32_t last) const {
+    const SystemModel& s = model.system;
+    MatrixXd G = MatrixXd::Zero(last - first, s.unknowns);
+    VectorXd unit(system_rows(s)), row(s.unknowns);
+    for (std::int32_t r = first; r < last; ++r) {
+      unit.setZero();
+      unit[r] = 1.;
+      row.setZero();
+      add_row_forces(s, w.gradient, unit.data(), row.data());
+      G.row(r - first) = row;
+    }
+    return G;
+  }
+};
+
+void check_joints(const SystemModel& s, const SystemWorkspace& w, double size) {
+  for (std::int32_t r = 0; r < s.joint_rows; ++r)
+    if (!(std::abs(w.value[r]) <= 1e-9 * size))
+      throw std::invalid_argument("joint " + std::to_string(s.row[r].joint) +
+                                  ": it does not hold at the start: it is off by " +
+                                  std::to_string(w.value[r]));
+}
+
+}  // namespace
+
+SystemStartState start_system(const System& system, const SystemParts& parts, const Model& model) {
+  const SystemModel& s = model.system;
+  std::vector<double> quaternion;
+  for (const RigidBody& body : system.bodies) {
+    const Eigen::Quaterniond q = body.orientation.normalized();
+    for (const double x : {q.w(), q.x(), q.y(), q.z()}) quaternion.push_back(x);
+  }
+  Standing at(model, quaternion, start_velocities(system, parts));
+  check_joints(s, at.w, 1.);
+  const std::int32_t joints = s.joint_rows, rows = system_rows(s), n = s.unknowns;
+  const Eigen::SimplicialLDLT<Sparse> inertia(mass(s));
+  if (inertia.info() != Eigen::Success) throw std::invalid_argument("the mass is not positive");
+  Eigen::Map<const VectorXd> per(s.per_length, n);
+  const VectorXd is_free = per.unaryExpr([](double x) { return x != 0. ? 1. : 0.; });
+  MatrixXd G = at.gradients(0, joints) * is_free.asDiagonal();
+  const MatrixXd X = inertia.solve(G.transpose());
+  const MatrixXd W = G * X;
+  const auto held = W.completeOrthogonalDecomposition();
+
+  VectorXd rates(joints);
+  for (std::int32_t r = 0; r < joints; ++r) rates[r] = at.jet(r).v;
+  if (joints > 0 && rates.cwiseAbs().maxCoeff() > 0.) {
+    const VectorXd taken = X * held.solve(rates);
+    for (std::int32_t i = 0; i < n; ++i) at.v[static_cast<std::size_t>(i)] -= taken[i];
+    at.place();
+  }
+  VectorXd spring_force = VectorXd::Zero(rows);
+  for (std::int32_t r = joints; r < rows; ++r) {
+    const Jet phi = at.jet(r);
+    spring_force[r] = s.row[r].stiffness * phi.x + s.row[r].damping * phi.v;
+  }
+  VectorXd force = vector(at.w.outer, n) - vector(at.w.inertia, n) - vector(at.w.elastic, n);
+  VectorXd pulled = VectorXd::Zero(n);
+  add_row_forces(s, at.w.gradient, spring_force.data(), pulled.data());
+  force = (force - pulled).cwiseProduct(is_free);
+  VectorXd wanted = VectorXd::Zero(joints);
+  const VectorXd loose = inertia.solve(force);
+  for (std::int32_t r = 0; r < joints; ++r) wanted[r] = at.jet(r).a;
+  const VectorXd multiplier = joints > 0 ? VectorXd(held.solve(wanted + G * loose)) : wanted;
+  const VectorXd a = joints > 0 ? VectorXd(loose - X * multiplier) : loose;
+
+  SystemStartState result;
+  result.state.assign(static_cast<std::size_t>(state_doubles(model)), 0.);
+  State state = state_on(model, result.state.data());
+  for (std::int32_t i = 0; i < n; ++i) {
+    state.v[s.first + i] = at.v[static_cast<std::size_t>(i)];
+    state.a[s.first + i] = state.g[s.first + i] = a[i];
+  }
+  for (std::size_t k = 0; k < quaternion.size(); ++k) state.quaternion[k] = quaternion[k];
+  for (std::int32_t r = 0; r < rows; ++r)
+    state.row_force[r] = r < joints ? multiplier[r] : spring_force[r];
+  for (std::int32_t r = 0; r < joints; ++r) result.mobility.push_back(W(r, r));
+  return result;
+}
+
+}  // namespace railstep

@@ -1,0 +1,19 @@
+#pragma once
+#include <vector>
+
+#include "offline/system/parts.h"
+#include "online/model/state.h"
+
+namespace railstep {
+
+struct SystemStartState {
+  std::vector<double> state;     // [state_doubles]
+  std::vector<double> mobility;  // [joint rows] g M^-1 g' of each row, 1/kg
+};
+
+/// Velocities of the parts, what joints do not allow of them taken out in the metric of the mass;
+/// accelerations and joint forces in balance. Joints that depend on each other share their force by
+/// least squares. @param model  with the system in it, without a start
+SystemStartState start_system(const System& system, const SystemParts& parts, const Model& model);
+
+}  // namespace railstep

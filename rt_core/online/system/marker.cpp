@@ -1,0 +1,208 @@
+#include "online/system/marker.h"
+
+#include "online/system/rotation.h"
+
+namespace railstep {
+
+namespace {
+
+/// Position of the section's point and a, b at a beam's marker, from nodal values of one kind.
+/// @param nodes  of the beam
+/// @param out    [3][3] r, a, b
+void interpolate(const BeamChainModel& beam, const MarkerModel& marker, const double* nodes,
+                 double out[3][3]) noexcept {
+  const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
+  double full[9] = {};
+  for (int n = 0; n < 3; ++n) {
+    const double* node = nodes + static_cast<std::ptrdiff_t>(width) * (marker.node + n);
+    for (int k = 0; k < width; ++k)
+      full[beam.planar != 0 ? kPlanarOf[k] : k] += marker.value[n] * node[k];
+  }
+  for (int f = 0; f < 3; ++f)
+    for (int c = 0; c < 3; ++c) out[f][c] = full[3 * f + c];
+}
+
+/// Nodal positions and slopes at a beam's marker: rest and displacement.
+void section_at(const BeamChainModel& beam, const MarkerModel& marker, const double* x,
+                double out[3][3]) noexcept {
+  double moved[3][3];
+  interpolate(beam, marker, beam.rest, out);
+  interpolate(beam, marker, x + beam.first, moved);
+  for (int f = 0; f < 3; ++f)
+    for (int c = 0; c < 3; ++c) out[f][c] += moved[f][c];
+}
+
+Pose on_ground(const MarkerModel& marker) noexcept {
+  Pose pose;
+  for (int c = 0; c < 3; ++c) pose.point[c] = marker.position[c];
+  for (int k = 0; k < 3; ++k)
+    for (int c = 0; c < 3; ++c) pose.axis[k][c] = marker.frame[3 * k + c];
+  return pose;
+}
+
+Pose on_body(const RigidBodyModel& body, const MarkerModel& marker, const double* x,
+             const double* R) noexcept {
+  Pose pose;
+  turn(R, marker.position, pose.point);
+  for (int c = 0; c < 3; ++c) {
+    pose.point[c] += body.rest[c];
+    if (body.column[c] >= 0) pose.point[c] += x[body.first + body.column[c]];
+  }
+  for (int k = 0; k < 3; ++k) turn(R, marker.frame + 3 * k, pose.axis[k]);
+  return pose;
+}
+
+Pose on_beam(const BeamChainModel& beam, const MarkerModel& marker, const double* x) noexcept {
+  double s[3][3], d[3];
+  section_at(beam, marker, x, s);
+  cross(s[1], s[2], d);
+  Pose pose;
+  for (int c = 0; c < 3; ++c) {
+    pose.point[c] = (s[0][c] + marker.position[1] * s[1][c]) + marker.position[2] * s[2][c];
+    for (int k = 0; k < 3; ++k)
+      pose.axis[k][c] = (marker.frame[3 * k] * d[c] + marker.frame[3 * k + 1] * s[1][c]) +
+                        marker.frame[3 * k + 2] * s[2][c];
+  }
+  return pose;
+}
+
+/// x with w x x and w' x x + w x (w x x).
+void turning(const double* x, const double* w, const double* dw, Jet* out) noexcept {
+  double v[3], a[3], b[3];
+  cross(w, x, v);
+  cross(dw, x, a);
+  cross(w, v, b);
+  for (int c = 0; c < 3; ++c) out[c] = {x[c], v[c], a[c] + b[c]};
+}
+
+PoseJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, const Motions& at,
+                    const double* R) noexcept {
+  const Pose pose = on_body(body, marker, at.x, R);
+  double own[2][3] = {}, w[3], dw[3], lever[3];
+  for (int c = 0; c < 3; ++c)
+    if (const std::int32_t k = body.column[3 + c]; k >= 0) {
+      own[0][c] = at.v[body.first + k];
+      own[1][c] = at.g[body.first + k];
+    }
+  turn(R, own[0], w);
+  turn(R, own[1], dw);
+  turn(R, marker.position, lever);
+  PoseJet jet;
+  turning(lever, w, dw, jet.point);
+  for (int c = 0; c < 3; ++c) {
+    const std::int32_t k = body.column[c];
+    jet.point[c].x = pose.point[c];
+    if (k >= 0) jet.point[c] = jet.point[c] + Jet{0., at.v[body.first + k], at.g[body.first + k]};
+  }
+  for (int k = 0; k < 3; ++k) turning(pose.axis[k], w, dw, jet.axis[k]);
+  return jet;
+}
+
+PoseJet jet_on_beam(const BeamChainModel& beam, const MarkerModel& marker,
+                    const Motions& at) noexcept {
+  double x[3][3], v[3][3], g[3][3];
+  section_at(beam, marker, at.x, x);
+  interpolate(beam, marker, at.v + beam.first, v);
+  interpolate(beam, marker, at.g + beam.first, g);
+  Jet s[3][3], d[3];
+  for (int f = 0; f < 3; ++f)
+    for (int c = 0; c < 3; ++c) s[f][c] = {x[f][c], v[f][c], g[f][c]};
+  for (int c = 0; c < 3; ++c)
+    d[c] = s[1][(c + 1) % 3] * s[2][(c + 2) % 3] - s[1][(c + 2) % 3] * s[2][(c + 1) % 3];
+  PoseJet jet;
+  for (int c = 0; c < 3; ++c) {
+    jet.point[c] = (s[0][c] + marker.position[1] * s[1][c]) + marker.position[2] * s[2][c];
+    for (int k = 0; k < 3; ++k)
+      jet.axis[k][c] = (marker.frame[3 * k] * d[c] + marker.frame[3 * k + 1] * s[1][c]) +
+                       marker.frame[3 * k + 2] * s[2][c];
+  }
+  return jet;
+}
+
+void pull_on_body(const RigidBodyModel& body, const Pose& at, const double* centre,
+                  const double* matrix, const Pull& pull, double* row) noexcept {
+  double lever[3], part[3], moment[3], own[3];
+  for (int c = 0; c < 3; ++c) lever[c] = at.point[c] - centre[c];
+  cross(lever, pull.point, moment);
+  for (int k = 0; k < 3; ++k) {
+    cross(at.axis[k], pull.axis[k], part);
+    for (int c = 0; c < 3; ++c) moment[c] += part[c];
+  }
+  turn_back(matrix, moment, own);
+  for (int c = 0; c < 3; ++c) {
+    if (body.column[c] >= 0) row[body.column[c]] = pull.point[c];
+    if (body.column[3 + c] >= 0) row[body.column[3 + c]] = own[c];
+  }
+}
+
+void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const Pose& at,
+                  const Pull& pull, double* row) noexcept {
+  double on[9], normal[3] = {}, a[3] = {}, b[3] = {}, part[3];
+  for (int k = 0; k < 3; ++k)
+    for (int c = 0; c < 3; ++c) {
+      normal[c] += marker.frame[3 * k] * pull.axis[k][c];
+      a[c] += marker.frame[3 * k + 1] * at.axis[k][c];  // the frame's transpose gives a, b back
+      b[c] += marker.frame[3 * k + 2] * at.axis[k][c];
+    }
+  for (int c = 0; c < 3; ++c) {
+    on[c] = pull.point[c];
+    on[3 + c] = marker.position[1] * pull.point[c];
+    on[6 + c] = marker.position[2] * pull.point[c];
+    for (int k = 0; k < 3; ++k) {
+      on[3 + c] += marker.frame[3 * k + 1] * pull.axis[k][c];
+      on[6 + c] += marker.frame[3 * k + 2] * pull.axis[k][c];
+    }
+  }
+  cross(b, normal, part);  // n . (da x b) = da . (b x n)
+  for (int c = 0; c < 3; ++c) on[3 + c] += part[c];
+  cross(normal, a, part);  // n . (a x db) = db . (n x a)
+  for (int c = 0; c < 3; ++c) on[6 + c] += part[c];
+  const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
+  for (int n = 0; n < 3; ++n)
+    for (int k = 0; k < width; ++k)
+      row[width * n + k] = marker.value[n] * on[beam.planar != 0 ? kPlanarOf[k] : k];
+}
+
+}  // namespace
+
+Pose marker_pose(const SystemModel& system, const MarkerModel& marker, const double* x,
+                 const double* matrix) noexcept {
+  if (marker.kind == PartKind::body)
+    return on_body(system.body[marker.part], marker, x, matrix + 9 * marker.part);
+  if (marker.kind == PartKind::beam) return on_beam(system.beam[marker.part], marker, x);
+  return on_ground(marker);
+}
+
+PoseJet marker_jet(const SystemModel& system, const MarkerModel& marker,
+                   const Motions& at) noexcept {
+  if (marker.kind == PartKind::body)
+    return jet_on_body(system.body[marker.part], marker, at, at.matrix + 9 * marker.part);
+  if (marker.kind == PartKind::beam) return jet_on_beam(system.beam[marker.part], marker, at);
+  const Pose pose = on_ground(marker);
+  PoseJet jet{};
+  for (int c = 0; c < 3; ++c) {
+    jet.point[c].x = pose.point[c];
+    for (int k = 0; k < 3; ++k) jet.axis[k][c].x = pose.axis[k][c];
+  }
+  return jet;
+}
+
+void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const Pose& at,
+                      const double* centre, const double* matrix, const Pull& pull,
+                      double* row) noexcept {
+  if (marker.kind == PartKind::body)
+    pull_on_body(system.body[marker.part], at, centre, matrix, pull, row);
+  else if (marker.kind == PartKind::beam)
+    pull_on_beam(system.beam[marker.part], marker, at, pull, row);
+}
+
+Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept {
+  if (marker.kind == PartKind::body)
+    return {system.body[marker.part].first, system.body[marker.part].unknowns};
+  if (marker.kind == PartKind::ground) return {0, 0};
+  const BeamChainModel& beam = system.beam[marker.part];
+  const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
+  return {beam.first + width * marker.node, 3 * width};
+}
+
+}  // namespace railstep

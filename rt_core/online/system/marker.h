@@ -1,0 +1,56 @@
+#pragma once
+#include "online/system/workspace.h"
+
+namespace railstep {
+
+/// A scalar and its first and second derivative in time.
+struct Jet {
+  double x, v, a;
+};
+inline Jet operator+(Jet p, Jet q) noexcept { return {p.x + q.x, p.v + q.v, p.a + q.a}; }
+inline Jet operator-(Jet p, Jet q) noexcept { return {p.x - q.x, p.v - q.v, p.a - q.a}; }
+inline Jet operator*(Jet p, Jet q) noexcept {
+  return {p.x * q.x, p.v * q.x + p.x * q.v, (p.a * q.x + p.x * q.a) + 2. * (p.v * q.v)};
+}
+inline Jet operator*(double s, Jet p) noexcept { return {s * p.x, s * p.v, s * p.a}; }
+
+/// A marker's pose with its velocities and accelerations.
+struct PoseJet {
+  Jet point[3];
+  Jet axis[3][3];
+};
+
+/// Configuration of a system: x are displacements (of bodies with the turn folded into `matrix`),
+/// v and g velocities and accelerations in the unknowns' order.
+struct Motions {
+  const double* x;
+  const double* v;
+  const double* g;
+  const double* matrix;  // [bodies][9]
+};
+
+/// @param x       [unknowns] displacements
+/// @param matrix  [bodies][9] rotations
+Pose marker_pose(const SystemModel& system, const MarkerModel& marker, const double* x,
+                 const double* matrix) noexcept;
+
+PoseJet marker_jet(const SystemModel& system, const MarkerModel& marker,
+                   const Motions& at) noexcept;
+
+/// A pull on a marker as forces on its part's own unknowns: of a body its 6 or 3, of a beam those
+/// of the marker's three nodes.
+/// @param at      pose at which the pull is taken
+/// @param centre  of the body at that pose, m
+/// @param matrix  that turns the body's axes of the turn unknowns to the ground
+/// @param row     [kMostNodeUnknowns], overwritten
+void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const Pose& at,
+                      const double* centre, const double* matrix, const Pull& pull,
+                      double* row) noexcept;
+
+/// How many unknowns a marker's part gives to a row, and where in the part they begin.
+struct Reach {
+  std::int32_t first, count;
+};
+Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept;
+
+}  // namespace railstep

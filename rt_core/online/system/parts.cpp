@@ -1,0 +1,256 @@
+#include "online/system/parts.h"
+
+#include "online/system/beam_chain.h"
+#include "online/system/marker.h"
+#include "online/system/rotation.h"
+#include "online/system/row.h"
+#include "online/system/rows.h"
+
+namespace railstep {
+
+namespace {
+
+/// The turn unknowns of a body as a vector in its axes.
+void own_turn(const RigidBodyModel& body, const double* x, double* out) noexcept {
+  for (int c = 0; c < 3; ++c) {
+    const std::int32_t k = body.column[3 + c];
+    out[c] = k >= 0 ? x[body.first + k] : 0.;
+  }
+}
+
+void set_turn(const RigidBodyModel& body, const double* from, double* out) noexcept {
+  for (int c = 0; c < 3; ++c)
+    if (const std::int32_t k = body.column[3 + c]; k >= 0) out[body.first + k] = from[c];
+}
+
+void place_nodes(const SystemModel& s, const SystemStart& start, SystemWorkspace& w) noexcept {
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    const BeamChainModel& beam = s.beam[b];
+    const std::int32_t first = beam.first;
+    const double* rest = beam.rest;
+    if (s.mean == 0) {
+#pragma omp simd
+      for (std::int32_t i = 0; i < beam.unknowns; ++i)
+        w.nodes[first + i] = rest[i] + w.x[first + i];
+      continue;
+    }
+#pragma omp simd
+    for (std::int32_t i = 0; i < beam.unknowns; ++i) {
+      w.nodes[first + i] = rest[i] + .5 * (start.u[first + i] + w.x[first + i]);
+      w.half_change[first + i] = .5 * (w.x[first + i] - start.u[first + i]);
+    }
+  }
+}
+
+/// Where forces are taken, as the poses of markers.
+void place_centre(const SystemModel& s, std::int32_t b, const SystemStart& start,
+                  SystemWorkspace& w) noexcept {
+  const RigidBodyModel& body = s.body[b];
+  for (int c = 0; c < 3; ++c) {
+    w.centre[3 * b + c] = body.rest[c];
+    if (const std::int32_t k = body.column[c]; k >= 0)
+      w.centre[3 * b + c] +=
+          s.mean != 0 ? .5 * (start.u[body.first + k] + w.x[body.first + k]) : w.x[body.first + k];
+  }
+}
+
+/// J g + v x J v, in the body's axes at the step's end.
+void turn_inertia(const RigidBodyModel& body, const double* v, const double* g,
+                  double* out) noexcept {
+  double momentum[3], gyroscopic[3];
+  turn(body.inertia, v, momentum);
+  cross(v, momentum, gyroscopic);
+  turn(body.inertia, g, out);
+  for (int c = 0; c < 3; ++c) out[c] += gyroscopic[c];
+}
+
+/// Change of the angular momentum over the step, in the body's axes at its start: a free body
+/// keeps it, and its energy, to round-off (Simo and Wong 1991, with Cayley's rotation).
+void mean_turn_inertia(const RigidBodyModel& body, double per_step, const double* change,
+                       const double* v0, const double* v1, double* out) noexcept {
+  constexpr double upright[4] = {1., 0., 0., 0.};
+  double q[4], R[9], old[3], fresh[3];
+  turned_by_mean(upright, change, q);
+  rotation_matrix(q, R);
+  turn(body.inertia, v1, fresh);
+  turn(R, fresh, fresh);
+  turn(body.inertia, v0, old);
+  for (int c = 0; c < 3; ++c) out[c] = per_step * (fresh[c] - old[c]);
+}
+
+void body_inertia(const Model& model, const RigidBodyModel& body, const SystemStart& start,
+                  SystemWorkspace& w) noexcept {
+  double v[3], g[3], moment[3];
+  own_turn(body, w.v, v);
+  own_turn(body, w.g, g);
+  if (model.system.mean != 0) {
+    double v0[3], change[3];
+    own_turn(body, start.v, v0);
+    own_turn(body, w.x, change);
+    mean_turn_inertia(body, 1. / model.scheme.dt, change, v0, v, moment);
+  } else {
+    turn_inertia(body, v, g, moment);
+  }
+  set_turn(body, moment, w.inertia);
+  for (int c = 0; c < 3; ++c)
+    if (const std::int32_t k = body.column[c]; k >= 0)
+      w.inertia[body.first + k] = body.mass * w.g[body.first + k];
+}
+
+void beam_elastic(const Model& model, const BeamChainModel& beam, bool renew,
+                  SystemWorkspace& w) noexcept {
+  const double* half = model.system.mean != 0 ? w.half_change + beam.first : nullptr;
+  const double* nodes = w.nodes + beam.first;
+  double* const force = w.elastic + beam.first;
+  if (renew)
+    beam_tangents(beam, nodes, half, force, w.tangents);
+  else
+    beam_forces(beam, nodes, half, force);
+}
+
+/// A body's S is kg M: gyroscopic terms and those of turning axes are h |w| / 2 of it, and left to
+/// the iterations.
+void solve_body(const RigidBodyModel& body, double per_kg, const double* force,
+                double* out) noexcept {
+  double moment[3] = {}, turned[3];
+  for (int c = 0; c < 3; ++c) {
+    if (body.column[c] >= 0) out[body.column[c]] = per_kg / body.mass * force[body.column[c]];
+    if (body.column[3 + c] >= 0) moment[c] = per_kg * force[body.column[3 + c]];
+  }
+  turn(body.inverse_inertia, moment, turned);
+  for (int c = 0; c < 3; ++c)
+    if (body.column[3 + c] >= 0) out[body.column[3 + c]] = turned[c];
+}
+
+void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor, double* solved,
+                     const double* gradient) noexcept {
+  const BeamChainModel& beam = s.beam[b];
+  const std::int32_t first = s.part_end[s.bodies + b], ends = part_ends(s, s.bodies + b);
+  for (std::int32_t i = 0; i < beam_groups(s, b) * 4 * beam.unknowns; ++i) solved[i] = 0.;
+  for (std::int32_t e = 0; e < ends; ++e) {
+    const EndModel& end = s.end[first + e];
+    const RowModel& row = s.row[end.row];
+    const Reach at = reach(s, s.marker[end.side == 0 ? row.a : row.b]);
+    double* const lane = solved + 4LL * beam.unknowns * (e / 4) + e % 4;
+    for (std::int32_t k = 0; k < at.count; ++k)
+      lane[4 * (at.first - beam.first + k)] =
+          gradient[std::ptrdiff_t{kMostNodeUnknowns} * (first + e) + k];
+  }
+  for (std::int32_t g = 0; g < beam_groups(s, b); ++g)
+    beam_solve(beam, factor, solved + 4LL * beam.unknowns * g);
+}
+
+}  // namespace
+
+void place_start(const Model& model, const SystemStart& start, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  for (std::int32_t b = 0; b < s.bodies; ++b)
+    rotation_matrix(start.quaternion + 4 * b, w.start_matrix + 9 * b);
+  if (s.mean == 0) return;
+  for (std::int32_t m = 0; m < s.markers; ++m)
+    w.start_pose[m] = marker_pose(s, s.marker[m], start.u, w.start_matrix);
+}
+
+void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const double kv = model.scheme.kv, kg = model.scheme.kg;
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i) {
+    const double change = (w.x[i] - w.shift[i]) - start.u_star[i];
+    w.v[i] = start.v_star[i] + kv * change;
+    w.g[i] = kg * change;
+  }
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    double change[3];
+    own_turn(s.body[b], w.x, change);
+    const double* q0 = start.quaternion + 4 * b;
+    if (s.mean != 0)
+      turned_by_mean(q0, change, w.quaternion + 4 * b);
+    else
+      turned(q0, change, w.quaternion + 4 * b);
+    rotation_matrix(w.quaternion + 4 * b, w.matrix + 9 * b);
+    place_centre(s, b, start, w);
+  }
+  place_nodes(s, start, w);
+  for (std::int32_t m = 0; m < s.markers; ++m) {
+    w.force_pose[m] = w.pose[m] = marker_pose(s, s.marker[m], w.x, w.matrix);
+    if (s.mean == 0) continue;
+    for (int c = 0; c < 3; ++c) {
+      w.force_pose[m].point[c] = .5 * (w.start_pose[m].point[c] + w.pose[m].point[c]);
+      for (int k = 0; k < 3; ++k)
+        w.force_pose[m].axis[k][c] = .5 * (w.start_pose[m].axis[k][c] + w.pose[m].axis[k][c]);
+    }
+  }
+}
+
+std::int32_t part_forces(const Model& model, const SystemStart& start, bool renew,
+                         SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    body_inertia(model, s.body[b], start, w);
+    for (std::int32_t k = 0; k < s.body[b].unknowns; ++k) w.elastic[s.body[b].first + k] = 0.;
+  }
+  std::int32_t lost = 0;
+  double* factor = w.tangent.factor;
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    const BeamChainModel& beam = s.beam[b];
+    beam_elastic(model, beam, renew, w);
+    if (renew)
+      lost += beam_factor(beam, model.scheme.kg, s.mean != 0 ? .5 : 1., w.tangents, factor);
+    for (std::int32_t i = 0; i < beam.unknowns; ++i) w.inertia[beam.first + i] = 0.;
+    beam_inertia(beam, w.g + beam.first, w.inertia + beam.first);
+    factor += beam_factor_doubles(beam);
+  }
+  return lost;
+}
+
+void outer_forces(const Model& model, double time, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.outer[i] = s.constant_force[i];
+  for (std::int32_t f = 0; f < s.forces; ++f) {
+    const PointForceModel& force = s.force[f];
+    const MarkerModel& marker = s.marker[force.marker];
+    const double size = motion_at(s.motion[force.motion], time).x;
+    const Reach at = reach(s, marker);
+    double row[kMostNodeUnknowns] = {};
+    end_row(s, w, force.marker, point_pull(force, size, w.force_pose[force.marker]), row);
+    for (std::int32_t k = 0; k < at.count; ++k) w.outer[at.first + k] += row[k];
+  }
+}
+
+void solve_parts(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const double per_kg = 1. / model.scheme.kg;
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.change[i] = -w.residual[i];
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    double* const own = w.change + s.body[b].first;
+    double force[6];
+    for (std::int32_t k = 0; k < s.body[b].unknowns; ++k) force[k] = own[k];
+    solve_body(s.body[b], per_kg, force, own);
+  }
+  const double* factor = w.tangent.factor;
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    const BeamChainModel& beam = s.beam[b];
+    beam_solve_one(beam, factor, w.change + beam.first);
+    factor += beam_factor_doubles(beam);
+  }
+}
+
+void solve_ends(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  double* solved = w.tangent.solved;
+  for (std::int32_t b = 0; b < s.bodies; ++b)
+    for (std::int32_t e = s.part_end[b]; e < s.part_end[b + 1]; ++e, solved += 6)
+      solve_body(s.body[b], 1. / model.scheme.kg,
+                 w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * e, solved);
+  const double* factor = w.tangent.factor;
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    solve_beam_ends(s, b, factor, solved, w.gradient);
+    solved += 4LL * beam_groups(s, b) * s.beam[b].unknowns;
+    factor += beam_factor_doubles(s.beam[b]);
+  }
+}
+
+}  // namespace railstep

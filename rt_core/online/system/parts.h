@@ -1,0 +1,36 @@
+#pragma once
+#include "online/model/model.h"
+#include "online/system/workspace.h"
+
+namespace railstep {
+
+/// Where a step starts: views into the state, from the system's first unknown on.
+struct SystemStart {
+  const double* u;           // [unknowns]
+  const double* v;           // [unknowns]
+  const double* u_star;      // [unknowns] of the scheme
+  const double* v_star;      // [unknowns]
+  const double* quaternion;  // [bodies][4]
+};
+
+/// Velocities, accelerations, rotations, nodes and poses of the iterate x.
+void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& w) noexcept;
+
+/// Poses at the step's start, which the mean of both ends needs.
+void place_start(const Model& model, const SystemStart& start, SystemWorkspace& w) noexcept;
+
+/// Elastic and inertia forces of all parts; with `renew` the factors of the beams' matrices too.
+/// @returns pivots that were not positive
+std::int32_t part_forces(const Model& model, const SystemStart& start, bool renew,
+                         SystemWorkspace& w) noexcept;
+
+/// Weight and applied forces.
+void outer_forces(const Model& model, double time, SystemWorkspace& w) noexcept;
+
+/// change = -S^-1 residual, by the factors that stand.
+void solve_parts(const Model& model, SystemWorkspace& w) noexcept;
+
+/// S^-1 g of every end of a row, into tangent.solved.
+void solve_ends(const Model& model, SystemWorkspace& w) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,57 @@
+#pragma once
+
+namespace railstep {
+
+// Rotations without the C library's functions, whose last bits differ between machines. Matrices
+// are [9], row after row; quaternions [w, x, y, z]; R turns body axes into the ground's.
+
+inline void cross(const double* a, const double* b, double* c) noexcept {
+  const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+  c[0] = x;
+  c[1] = y;
+}
+
+inline double dot(const double* a, const double* b) noexcept {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+/// y = R x.
+inline void turn(const double* R, const double* x, double* y) noexcept {
+  const double a = dot(R, x), b = dot(R + 3, x);
+  y[2] = dot(R + 6, x);
+  y[0] = a;
+  y[1] = b;
+}
+
+/// y = R' x.
+inline void turn_back(const double* R, const double* x, double* y) noexcept {
+  const double a = (R[0] * x[0] + R[3] * x[1]) + R[6] * x[2];
+  const double b = (R[1] * x[0] + R[4] * x[1]) + R[7] * x[2];
+  y[2] = (R[2] * x[0] + R[5] * x[1]) + R[8] * x[2];
+  y[0] = a;
+  y[1] = b;
+}
+
+/// cos x and sin(x) / x for |x| <= pi, by Taylor's series to x^24: 1e-15 at pi.
+struct CosSinc {
+  double cos, sinc;
+};
+CosSinc cos_sinc(double x_squared) noexcept;
+
+/// cos and sin of any angle, rad, brought to [-pi, pi] first.
+struct CosSin {
+  double cos, sin;
+};
+CosSin cos_sin(double angle) noexcept;
+
+/// q1 = q0 exp(turn), the turn a rotation vector in body axes of at most 2 pi; of unit length.
+void turned(const double* q0, const double* turn, double* q1) noexcept;
+
+/// q1 = q0 cay(turn): the rotation by 2 atan(|turn| / 2), which the mean of both ends' directions
+/// makes exact: R1 - R0 = [R0 turn]x (R0 + R1) / 2.
+void turned_by_mean(const double* q0, const double* turn, double* q1) noexcept;
+
+void rotation_matrix(const double* q, double* R) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,123 @@
+#include "online/system/row.h"
+
+#include "online/system/rotation.h"
+
+namespace railstep {
+
+namespace {
+
+double square_root(double x) noexcept { return __builtin_sqrt(x); }
+
+/// cos s and sin s with their derivatives.
+void turning_jet(Jet s, Jet& cos, Jet& sin) noexcept {
+  const CosSin at = cos_sin(s.x);
+  cos = {at.cos, -at.sin * s.v, -at.cos * s.v * s.v - at.sin * s.a};
+  sin = {at.sin, at.cos * s.v, -at.sin * s.v * s.v + at.cos * s.a};
+}
+
+Jet jet_dot(const Jet* p, const Jet* q) noexcept {
+  return (p[0] * q[0] + p[1] * q[1]) + p[2] * q[2];
+}
+
+/// A pose that stands still.
+PoseJet standing(const Pose& pose) noexcept {
+  PoseJet jet{};
+  for (int c = 0; c < 3; ++c) {
+    jet.point[c].x = pose.point[c];
+    for (int k = 0; k < 3; ++k) jet.axis[k][c].x = pose.axis[k][c];
+  }
+  return jet;
+}
+
+}  // namespace
+
+Jet motion_at(const MotionModel& motion, double time) noexcept {
+  std::int32_t piece = 0;
+  for (std::int32_t i = 1; i < motion.pieces; ++i)
+    if (motion.start[i] <= time) piece = i;
+  const double* c = motion.coefficient + static_cast<std::ptrdiff_t>(kMotionCoefficients) * piece;
+  const double t = time - motion.start[piece];
+  Jet s{0., 0., 0.};
+  for (int k = kMotionCoefficients - 1; k >= 0; --k) {
+    s.a = s.a * t + 2. * s.v;
+    s.v = s.v * t + s.x;
+    s.x = s.x * t + c[k];
+  }
+  return s;
+}
+
+double row_length(const Pose& a, const Pose& b) noexcept {
+  const double d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
+  return square_root(dot(d, d));
+}
+
+double row_value(const RowModel& row, const Pose& a, const Pose& b, double s) noexcept {
+  return row_jet(row, standing(a), standing(b), {s, 0., 0.}).x;
+}
+
+Jet row_jet(const RowModel& row, const PoseJet& a, const PoseJet& b, Jet s) noexcept {
+  const Jet d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
+  switch (row.kind) {
+    case RowKind::along_ground:
+      return d[row.i] - s;
+    case RowKind::along_a:
+      return jet_dot(a.axis[row.i], d) - s;
+    case RowKind::square: {
+      if (row.motion < 0) return jet_dot(a.axis[row.i], b.axis[row.j]);
+      Jet cos, sin;
+      turning_jet(s, cos, sin);
+      return cos * jet_dot(a.axis[row.i], b.axis[row.j]) -
+             sin * jet_dot(a.axis[row.l], b.axis[row.j]);
+    }
+    case RowKind::distance:
+      return (.5 / row.offset) * (jet_dot(d, d) - s * s);
+    case RowKind::spring: {
+      const double length = square_root(jet_dot(d, d).x);
+      if (!(length > 0.)) return {-s.x, 0., 0.};
+      const double rate = ((d[0].x * d[0].v + d[1].x * d[1].v) + d[2].x * d[2].v) / length;
+      return {length - s.x, rate - s.v, 0.};
+    }
+  }
+  return {0., 0., 0.};
+}
+
+void row_pulls(const RowModel& row, const Pose& a, const Pose& b, double length, double s,
+               Pull& on_a, Pull& on_b) noexcept {
+  on_a = on_b = {};
+  const double d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
+  double along[3] = {};
+  switch (row.kind) {
+    case RowKind::along_ground:
+      along[row.i] = 1.;
+      break;
+    case RowKind::along_a:
+      for (int c = 0; c < 3; ++c) {
+        along[c] = a.axis[row.i][c];
+        on_a.axis[row.i][c] = d[c];
+      }
+      break;
+    case RowKind::square: {
+      const CosSin turn = row.motion < 0 ? CosSin{1., 0.} : cos_sin(s);
+      for (int c = 0; c < 3; ++c) {
+        on_a.axis[row.i][c] = turn.cos * b.axis[row.j][c];
+        on_b.axis[row.j][c] = turn.cos * a.axis[row.i][c];
+        if (row.motion < 0) continue;
+        on_a.axis[row.l][c] -= turn.sin * b.axis[row.j][c];
+        on_b.axis[row.j][c] -= turn.sin * a.axis[row.l][c];
+      }
+      return;
+    }
+    case RowKind::distance:
+      for (int c = 0; c < 3; ++c) along[c] = d[c] / row.offset;
+      break;
+    case RowKind::spring:
+      for (int c = 0; c < 3; ++c) along[c] = length > 0. ? d[c] / length : 0.;
+      break;
+  }
+  for (int c = 0; c < 3; ++c) {
+    on_b.point[c] = along[c];
+    on_a.point[c] = -along[c];
+  }
+}
+
+}  // namespace railstep

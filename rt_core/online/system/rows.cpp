@@ -1,0 +1,237 @@
+#include "online/system/rows.h"
+
+#include "online/system/row.h"
+
+namespace railstep {
+
+namespace {
+
+double magnitude(double x) noexcept { return x < 0. ? -x : x; }
+
+const MarkerModel& marker_of(const SystemModel& s, const EndModel& end) noexcept {
+  const RowModel& row = s.row[end.row];
+  return s.marker[end.side == 0 ? row.a : row.b];
+}
+
+Jet motion_of(const SystemModel& s, const RowModel& row, double time) noexcept {
+  return row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
+}
+
+Pivoted pivoted(const SystemModel& s, const SystemTangent& t) noexcept {
+  return {t.compliance,   t.scale,      t.order,
+          system_rows(s), s.joint_rows, static_cast<std::int32_t>(*t.rank)};
+}
+
+/// Of a joint row: Phi, or what its way to be held makes of it, in the row's unit; Newton's step
+/// changes it by G times the change of x.
+double joint_wanted(const Model& model, const RowModel& row, const SystemWorkspace& w, double value,
+                    Jet s) noexcept {
+  const SystemModel& system = model.system;
+  if (system.hold == Hold::augmented_lagrangian || system.hold == Hold::direct) return value;
+  const Motions at{w.x, w.v, w.g, w.matrix};
+  const Jet phi = row_jet(row, marker_jet(system, system.marker[row.a], at),
+                          marker_jet(system, system.marker[row.b], at), s);
+  const double kv = model.scheme.kv, kg = model.scheme.kg;
+  if (system.hold == Hold::gear_gupta_leimkuhler) return phi.v / kv;
+  const double damp = 2. * system.alpha, stiff = system.beta * system.beta;
+  return ((phi.a + damp * phi.v) + stiff * phi.x) / ((kg + damp * kv) + stiff);
+}
+
+/// Of a spring: what its force lacks of its law, as an extension.
+double spring_wanted(const Model& model, std::int32_t r, const SystemWorkspace& w, Jet s) noexcept {
+  const SystemModel& system = model.system;
+  const RowModel& row = system.row[r];
+  double law;
+  if (system.mean != 0) {
+    const double change = w.value[r] - w.start_value[r];
+    law = row.stiffness * (w.start_value[r] + .5 * change) + row.damping / model.scheme.dt * change;
+  } else {
+    const Motions at{w.x, w.v, w.g, w.matrix};
+    const Jet phi = row_jet(row, marker_jet(system, system.marker[row.a], at),
+                            marker_jet(system, system.marker[row.b], at), s);
+    law = row.stiffness * phi.x + row.damping * phi.v;
+  }
+  return (law - w.force[r]) / spring_slope(model, row);
+}
+
+/// Gradients of both ends of a row, where forces are taken.
+void set_gradient(const SystemModel& s, std::int32_t r, double motion, const std::int32_t* end,
+                  SystemWorkspace& w) noexcept {
+  const RowModel& row = s.row[r];
+  Pull pull[2];
+  double length = 0.;
+  if (row.kind == RowKind::spring) {
+    length = row_length(w.pose[row.a], w.pose[row.b]);
+    if (s.mean != 0) length = .5 * (length + row_length(w.start_pose[row.a], w.start_pose[row.b]));
+  }
+  row_pulls(row, w.force_pose[row.a], w.force_pose[row.b], length, motion, pull[0], pull[1]);
+  for (int side = 0; side < 2; ++side)
+    if (end[side] >= 0)
+      end_row(s, w, side == 0 ? row.a : row.b, pull[side],
+              w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * end[side]);
+}
+
+double lanes_dot(const double* g, const double* solved, std::int32_t stride,
+                 std::int32_t count) noexcept {
+  double sum = 0.;
+  for (std::int32_t k = 0; k < count; ++k) sum += g[k] * solved[stride * k];
+  return sum;
+}
+
+/// Adds what the ends of one part give to the compliance.
+/// @param lane    where S^-1 g of an end of the part begins
+template <class Lane>
+void add_part(const SystemModel& s, std::int32_t part, std::int32_t stride,
+              const SystemWorkspace& w, const Lane& lane) noexcept {
+  const std::int32_t rows = system_rows(s);
+  for (std::int32_t e = s.part_end[part]; e < s.part_end[part + 1]; ++e) {
+    const Reach at = reach(s, marker_of(s, s.end[e]));
+    const double* g = w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * e;
+    double* const row = w.tangent.compliance + std::ptrdiff_t{rows} * s.end[e].row;
+    for (std::int32_t f = s.part_end[part]; f < s.part_end[part + 1]; ++f)
+      row[s.end[f].row] += lanes_dot(g, lane(f, at.first), stride, at.count);
+  }
+}
+
+}  // namespace
+
+void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t marker,
+             const Pull& pull, double* out) noexcept {
+  const MarkerModel& on = system.marker[marker];
+  double centre[3] = {};
+  const double* matrix = nullptr;
+  if (on.kind == PartKind::body) {
+    matrix = (system.mean != 0 ? w.start_matrix : w.matrix) + 9 * on.part;
+    for (int c = 0; c < 3; ++c) centre[c] = w.centre[3 * on.part + c];
+  }
+  pull_on_unknowns(system, on, w.force_pose[marker], centre, matrix, pull, out);
+}
+
+Pull point_pull(const PointForceModel& force, double size, const Pose& at) noexcept {
+  Pull pull{};
+  for (int c = 0; c < 3; ++c) {
+    const double f = size * force.direction[c];
+    if (force.moment == 0) {
+      pull.point[c] = f;
+      continue;
+    }
+    const int d = (c + 1) % 3, e = (c + 2) % 3;  // M x e_k / 2 on each direction makes M
+    for (int k = 0; k < 3; ++k) {
+      pull.axis[k][e] += .5 * f * at.axis[k][d];
+      pull.axis[k][d] -= .5 * f * at.axis[k][e];
+    }
+  }
+  return pull;
+}
+
+double spring_slope(const Model& model, const RowModel& row) noexcept {
+  return model.system.mean != 0 ? .5 * row.stiffness + row.damping / model.scheme.dt
+                                : row.stiffness + row.damping * model.scheme.kv;
+}
+
+double set_rows(const Model& model, double time, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  double largest = 0.;
+  for (std::int32_t r = 0; r < system_rows(s); ++r) {
+    const RowModel& row = s.row[r];
+    const Jet motion = motion_of(s, row, time);
+    w.value[r] = row_value(row, w.pose[row.a], w.pose[row.b], motion.x);
+    set_gradient(s, r, motion.x, row.end, w);
+    if (r < s.joint_rows) {
+      w.velocity_part[r] = w.wanted[r] = joint_wanted(model, row, w, w.value[r], motion);
+      if (!(magnitude(w.wanted[r]) <= largest)) largest = magnitude(w.wanted[r]);
+    } else {
+      w.wanted[r] = spring_wanted(model, r, w, motion);
+    }
+  }
+  return largest;
+}
+
+double joint_violation(const SystemModel& system, const SystemWorkspace& w) noexcept {
+  double largest = 0.;
+  for (std::int32_t r = 0; r < system.joint_rows; ++r)
+    if (!(magnitude(w.value[r]) <= largest)) largest = magnitude(w.value[r]);
+  return largest;
+}
+
+void add_row_forces(const SystemModel& system, const double* gradient, const double* force,
+                    double* out) noexcept {
+  for (std::int32_t e = 0; e < system.ends; ++e) {
+    const Reach at = reach(system, marker_of(system, system.end[e]));
+    const double* g = gradient + std::ptrdiff_t{kMostNodeUnknowns} * e;
+    const double f = force[system.end[e].row];
+    for (std::int32_t k = 0; k < at.count; ++k) out[at.first + k] += f * g[k];
+  }
+}
+
+void add_row_changes(const SystemModel& system, const double* gradient, const double* change,
+                     double* out) noexcept {
+  for (std::int32_t e = 0; e < system.ends; ++e) {
+    const Reach at = reach(system, marker_of(system, system.end[e]));
+    out[system.end[e].row] +=
+        lanes_dot(gradient + std::ptrdiff_t{kMostNodeUnknowns} * e, change + at.first, 1, at.count);
+  }
+}
+
+void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const std::int32_t rows = system_rows(s);
+  for (std::int32_t i = 0; i < rows * rows; ++i) w.tangent.compliance[i] = 0.;
+  const double* solved = w.tangent.solved;
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    add_part(s, b, 1, w, [&](std::int32_t f, std::int32_t first) {
+      return solved + 6 * (f - s.part_end[b]) + (first - s.body[b].first);
+    });
+    solved += std::ptrdiff_t{6} * part_ends(s, b);
+  }
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    const BeamChainModel& beam = s.beam[b];
+    const std::int32_t part = s.bodies + b;
+    add_part(s, part, 4, w, [&](std::int32_t f, std::int32_t first) {
+      const std::int32_t own = f - s.part_end[part];
+      return solved + std::ptrdiff_t{4} * beam.unknowns * (own / 4) + own % 4 +
+             4 * (first - beam.first);
+    });
+    solved += std::ptrdiff_t{4} * beam_groups(s, b) * beam.unknowns;
+  }
+  const bool yields = s.hold == Hold::augmented_lagrangian;
+  for (std::int32_t r = 0; r < rows; ++r)
+    w.tangent.compliance[std::ptrdiff_t{rows} * r + r] += r >= s.joint_rows
+                                                              ? 1. / spring_slope(model, s.row[r])
+                                                          : yields ? s.row[r].compliance
+                                                                   : 0.;
+  Pivoted f = pivoted(s, w.tangent);
+  factor_pivoted(f, s.rank_tolerance);
+  *w.tangent.rank = f.rank;
+}
+
+void solve_rows(const Model& model, SystemWorkspace& w, bool all, double* x) noexcept {
+  solve_pivoted(pivoted(model.system, w.tangent), all, x, w.scratch);
+}
+
+void subtract_row_motion(const SystemModel& system, const SystemWorkspace& w, const double* force,
+                         double* change) noexcept {
+  const SystemModel& s = system;
+  const double* solved = w.tangent.solved;
+  for (std::int32_t b = 0; b < s.bodies; ++b)
+    for (std::int32_t e = s.part_end[b]; e < s.part_end[b + 1]; ++e, solved += 6) {
+      const double f = force[s.end[e].row];
+      for (std::int32_t k = 0; k < s.body[b].unknowns; ++k)
+        change[s.body[b].first + k] -= f * solved[k];
+    }
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    const BeamChainModel& beam = s.beam[b];
+    const std::int32_t first = s.part_end[s.bodies + b], ends = part_ends(s, s.bodies + b);
+    for (std::int32_t g = 0; g < beam_groups(s, b); ++g, solved += 4LL * beam.unknowns) {
+      double f[4] = {};
+      for (std::int32_t l = 0; l < 4 && 4 * g + l < ends; ++l)
+        f[l] = force[s.end[first + 4 * g + l].row];
+      for (std::int32_t k = 0; k < beam.unknowns; ++k) {
+        const double* x = solved + 4 * static_cast<std::ptrdiff_t>(k);
+        change[beam.first + k] -= (f[0] * x[0] + f[1] * x[1]) + (f[2] * x[2] + f[3] * x[3]);
+      }
+    }
+  }
+}
+
+}  // namespace railstep

@@ -1,0 +1,208 @@
+#include "online/system/system_step.h"
+
+#include "online/system/rotation.h"
+#include "online/system/row.h"
+#include "online/system/rows.h"
+
+namespace railstep {
+
+namespace {
+
+SystemStart start_of(const Model& model, const State& s, const Workspace& w) noexcept {
+  const std::int32_t at = model.system.first;
+  return {s.u + at, s.v + at, w.u_star + at, w.v_star + at, s.quaternion};
+}
+
+double square_root(double x) noexcept { return __builtin_sqrt(x); }
+
+/// Norm of forces, moments of slopes and turns over lengths of their parts, N.
+double force_norm(const SystemModel& s, const double* force) noexcept {
+  double sum = 0.;
+  for (std::int32_t i = 0; i < s.unknowns; ++i) {
+    const double f = force[i] * s.per_length[i];
+    sum += f * f;
+  }
+  return square_root(sum);
+}
+
+/// Where the iterations begin: the scheme's step with the last accelerations.
+void guess(const Model& model, const State& state, const Workspace& workspace,
+           SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const double per_kg = 1. / model.scheme.kg;
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i) {
+    w.x[i] = workspace.u_star[s.first + i] + per_kg * state.g[s.first + i];
+    w.shift[i] = 0.;
+  }
+  for (std::int32_t r = 0; r < system_rows(s); ++r) w.force[r] = state.row_force[r];
+}
+
+struct Size {
+  double residual, scale;  // N
+};
+
+/// residual = inertia + elastic - outer + G' force.
+Size set_residual(const SystemModel& s, SystemWorkspace& w) noexcept {
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.residual[i] = 0.;
+  add_row_forces(s, w.gradient, w.force, w.residual);
+  double scale = force_norm(s, w.residual);
+  for (const double* kind : {w.inertia, w.elastic, w.outer})
+    if (const double own = force_norm(s, kind); own > scale) scale = own;
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i)
+    w.residual[i] += (w.inertia[i] + w.elastic[i]) - w.outer[i];
+  return {force_norm(s, w.residual), scale};
+}
+
+/// One Newton step with the matrix that stands: row forces, then displacements.
+void newton_step(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const std::int32_t rows = system_rows(s);
+  solve_parts(model, w);
+  add_row_changes(s, w.gradient, w.change, w.wanted);
+  solve_rows(model, w, true, w.wanted);
+  for (std::int32_t r = 0; r < rows; ++r) w.force[r] += w.wanted[r];
+  subtract_row_motion(s, w, w.wanted, w.change);
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.x[i] += w.change[i];
+}
+
+/// Gear, Gupta, Leimkuhler: the force keeps the velocities, a shift of the positions Phi. Both in
+/// the metric of Newton's matrix; what is left of Phi after the change that velocities take.
+void shift_step(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.change[i] = 0.;
+  for (std::int32_t r = 0; r < system_rows(s); ++r)
+    w.wanted[r] = r < s.joint_rows ? w.value[r] - w.velocity_part[r] : 0.;
+  solve_rows(model, w, false, w.wanted);
+  subtract_row_motion(s, w, w.wanted, w.change);
+  for (std::int32_t i = 0; i < s.unknowns; ++i) {
+    w.x[i] += w.change[i];
+    w.shift[i] += w.change[i];
+  }
+}
+
+/// Extensions of springs where the step starts.
+void start_springs(const Model& model, double time, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) {
+    const RowModel& row = s.row[r];
+    const double length = row.motion >= 0 ? motion_at(s.motion[row.motion], time).x : row.offset;
+    w.start_value[r] = row_value(row, w.start_pose[row.a], w.start_pose[row.b], length);
+  }
+}
+
+/// Hands the step's end to the scheme's correction.
+void leave(const Model& model, const SystemWorkspace& w, State& state,
+           Workspace& workspace) noexcept {
+  const SystemModel& s = model.system;
+  for (std::int32_t i = 0; i < s.unknowns; ++i) workspace.solved[s.first + i] = w.x[i] - w.shift[i];
+  for (std::int32_t r = 0; r < system_rows(s); ++r) state.row_force[r] = w.force[r];
+  for (std::int32_t i = 0; i < 4 * s.bodies; ++i) state.quaternion[i] = w.quaternion[i];
+}
+
+/// Takes from velocities (order 1) or accelerations (2) what joints do not allow, in the metric of
+/// Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped. `second` takes the
+/// same change. @returns whether they are held
+bool project(const Model& model, double time, int order, const Motions& at, double* rates,
+             double* second, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const double per_step = 1. / model.scheme.dt;
+  const double tolerance = s.joint_tolerance * (order == 1 ? per_step : per_step * per_step);
+  for (std::int32_t done = 0;; ++done) {
+    double largest = 0.;
+    for (std::int32_t r = 0; r < system_rows(s); ++r) {
+      w.wanted[r] = 0.;
+      if (r >= s.joint_rows) continue;
+      const RowModel& row = s.row[r];
+      const Jet motion =
+          row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
+      const Jet phi = row_jet(row, marker_jet(s, s.marker[row.a], at),
+                              marker_jet(s, s.marker[row.b], at), motion);
+      w.wanted[r] = order == 1 ? phi.v : phi.a;
+      const double size = w.wanted[r] < 0. ? -w.wanted[r] : w.wanted[r];
+      if (!(size <= largest)) largest = size;
+    }
+    if (largest <= tolerance) return true;
+    if (done == s.projections) return false;
+    solve_rows(model, w, false, w.wanted);
+    subtract_row_motion(s, w, w.wanted, rates);
+    if (second != nullptr) subtract_row_motion(s, w, w.wanted, second);
+  }
+}
+
+/// Whether the matrix is made anew before iteration `done`.
+bool is_renewed(const SystemModel& s, const SystemTangent& t, std::int32_t done,
+                bool slow) noexcept {
+  if (s.renew == Renew::every_iteration || slow) return true;
+  if (done > 0) return false;
+  return s.renew == Renew::every_step || !(*t.age > 0.) ||
+         *t.age > static_cast<double>(s.keep_steps);
+}
+
+}  // namespace
+
+SystemResult solve_system(const Model& model, State& state, Workspace& workspace) noexcept {
+  const SystemModel& s = model.system;
+  SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
+  const SystemStart start = start_of(model, state, workspace);
+  const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
+  SystemResult result{Status::ok, 0, 0., 0.};
+  guess(model, state, workspace, w);
+  place_start(model, start, w);
+  if (s.mean != 0) start_springs(model, time - model.scheme.dt, w);
+  if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
+  double before = -1.;
+  bool slow = false;
+  for (std::int32_t done = 0;; ++done) {
+    place_parts(model, start, w);
+    const bool renew = is_renewed(s, w.tangent, done, slow);
+    part_forces(model, start, renew, w);
+    outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, w);
+    const double wanted = set_rows(model, time, w);
+    const Size size = set_residual(s, w);
+    result.violation = joint_violation(s, w);
+    result.force_residual = size.scale > 0. ? size.residual / size.scale : 0.;
+    const bool held = wanted <= s.joint_tolerance && (s.hold != Hold::gear_gupta_leimkuhler ||
+                                                      result.violation <= s.joint_tolerance);
+    if (done > 0 && result.force_residual <= s.tolerance && held) break;
+    if (done == s.cap) {
+      result.status = Status::cap_reached;
+      break;
+    }
+    if (renew) {
+      solve_ends(model, w);
+      factor_rows(model, w);
+      *w.tangent.age = 1.;
+    }
+    newton_step(model, w);
+    if (s.hold == Hold::gear_gupta_leimkuhler) shift_step(model, w);
+    slow = before >= 0. && !renew && !(size.residual <= .5 * before);
+    before = size.residual;
+    result.iterations = done + 1;
+  }
+  leave(model, w, state, workspace);
+  if (static_cast<std::int32_t>(*w.tangent.rank) < s.joint_rows)
+    result.status = result.status | Status::redundant_joint;
+  return result;
+}
+
+Status finish_system(const Model& model, State& state, Workspace& workspace) noexcept {
+  const SystemModel& s = model.system;
+  SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
+  double* const u = state.u + s.first;
+  if (s.hold == Hold::gear_gupta_leimkuhler)
+    for (std::int32_t i = 0; i < s.unknowns; ++i) u[i] += w.shift[i];
+  for (std::int32_t b = 0; b < s.bodies; ++b)
+    for (int c = 3; c < 6; ++c)
+      if (const std::int32_t k = s.body[b].column[c]; k >= 0) u[s.body[b].first + k] = 0.;
+  if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
+  double *v = state.v + s.first, *g = state.g + s.first;
+  const Motions at{u, v, g, w.matrix};
+  const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
+  const bool velocities = project(model, time, 1, at, v, nullptr, w);
+  const bool accelerations = project(model, time, 2, at, g, state.a + s.first, w);
+  return velocities && accelerations ? Status::ok : Status::cap_reached;
+}
+
+}  // namespace railstep

@@ -1,0 +1,24 @@
+#pragma once
+#include "online/model/state.h"
+
+namespace railstep {
+
+/// What the solve of a system's step met.
+struct SystemResult {
+  Status status;
+  std::int32_t iterations;
+  double violation;       // largest |Phi| of the joints at the step's end, m, or 1
+  double force_residual;  // over the largest kind of force
+};
+
+/// Newton's iterations of one step, capped: finds the displacements at its end, which go into
+/// workspace.solved from the system's first unknown on, as the scheme's correction expects them,
+/// and the forces of joints and springs.
+SystemResult solve_system(const Model& model, State& state, Workspace& workspace) noexcept;
+
+/// After the scheme's correction: turns pass into quaternions, and velocities and accelerations are
+/// put onto the joints where the way to hold them asks for it. @returns cap_reached if a projection
+/// was not done
+Status finish_system(const Model& model, State& state, Workspace& workspace) noexcept;
+
+}  // namespace railstep

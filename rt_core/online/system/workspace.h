@@ -1,0 +1,92 @@
+#pragma once
+#include <cstddef>
+#include <initializer_list>
+
+#include "online/model/system.h"
+
+namespace railstep {
+
+/// Where a marker is: its point, then its three directions, in ground axes.
+struct Pose {
+  double point[3];
+  double axis[3][3];
+};
+
+/// What a row pulls with at one end per unit of its force: a force on the point, and one on each
+/// direction e_k (for a body the moment e_k x f).
+struct Pull {
+  double point[3];
+  double axis[3][3];
+};
+
+/// What Newton's matrix is made of. Stands in the state where it is kept over steps, else in the
+/// workspace.
+struct SystemTangent {
+  double* factor;       // of every beam, one after another
+  double* solved;       // S^-1 g: per beam [groups][unknowns][4], per end of a body [6]
+  double* compliance;   // [rows][rows] of the rows' own, factored
+  double* scale;        // [rows]
+  std::int32_t* order;  // [rows]
+  double* rank;         // [1] of the joint rows
+  double* age;          // [1] steps since it was made; 0: never
+};
+
+/// Scratch of a system's step, one block of the caller's.
+struct SystemWorkspace {
+  double* x;              // [unknowns] displacements at the step's end, the iterate
+  double* shift;          // [unknowns] Gear, Gupta, Leimkuhler: the part of x without velocity
+  double* v;              // [unknowns] velocities of x
+  double* g;              // [unknowns] accelerations of x
+  double* residual;       // [unknowns] N
+  double* change;         // [unknowns]
+  double* elastic;        // [unknowns] N
+  double* inertia;        // [unknowns] N
+  double* outer;          // [unknowns] N, weight and applied forces
+  double* nodes;          // [unknowns] of beams, positions at which forces are taken
+  double* half_change;    // [unknowns] of beams, energy-momentum
+  double* lanes;          // [unknowns][4]
+  double* quaternion;     // [bodies][4] at the step's end
+  double* matrix;         // [bodies][9] of it
+  double* start_matrix;   // [bodies][9] at the step's start
+  double* centre;         // [bodies][3] where forces are taken, m
+  Pose* pose;             // [markers] at the step's end
+  Pose* start_pose;       // [markers]
+  Pose* force_pose;       // [markers] where forces are taken: the end, or the mean of both
+  double* gradient;       // [ends][kMostNodeUnknowns] of a row in the unknowns that its end moves
+  double* value;          // [rows] Phi at the end
+  double* start_value;    // [rows] of springs, energy-momentum
+  double* wanted;         // [rows]
+  double* velocity_part;  // [rows] of `wanted`, Gear, Gupta, Leimkuhler
+  double* force;          // [rows] the iterate
+  double* scratch;        // [rows]
+  double* tangents;       // of the largest beam
+  SystemTangent tangent;
+};
+
+inline std::int32_t system_rows(const SystemModel& s) noexcept {
+  return s.joint_rows + s.spring_rows;
+}
+inline std::int32_t beam_width(const BeamChainModel& beam) noexcept {
+  return beam.planar != 0 ? kPlanarUnknowns : 9;
+}
+/// Ends of rows on a part; parts are bodies, then beams.
+inline std::int32_t part_ends(const SystemModel& s, std::int32_t part) noexcept {
+  return s.part_end[part + 1] - s.part_end[part];
+}
+/// Groups of four right-hand sides of a beam's ends.
+inline std::int32_t beam_groups(const SystemModel& s, std::int32_t beam) noexcept {
+  return (part_ends(s, s.bodies + beam) + 3) / 4;
+}
+
+std::int64_t system_tangent_doubles(const SystemModel& system) noexcept;
+/// Quaternions, row forces, and the tangent where it is kept.
+std::int64_t system_state_doubles(const SystemModel& system) noexcept;
+std::int64_t system_workspace_doubles(const SystemModel& system) noexcept;
+
+/// Views over the caller's memory.
+SystemTangent system_tangent_on(const SystemModel& system, double* memory) noexcept;
+/// @param kept  the tangent's memory in the state, or null
+SystemWorkspace system_workspace_on(const SystemModel& system, double* memory,
+                                    double* kept) noexcept;
+
+}  // namespace railstep
