@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "online/system/beam_chain.h"
+#include "online/model/beam_chain.h"
 #include "online/system/marker.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"

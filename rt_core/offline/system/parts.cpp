@@ -8,7 +8,7 @@
 
 #include "offline/element/straight.h"
 #include "online/math/lanes.h"
-#include "online/system/beam_chain.h"
+#include "online/model/beam_chain.h"
 
 namespace railstep {
 

@@ -4,7 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <stdexcept>
 
-#include "online/system/beam_chain.h"
+#include "online/model/beam_chain.h"
 #include "online/system/row.h"
 #include "online/system/rows.h"
 

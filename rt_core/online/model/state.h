@@ -3,7 +3,7 @@
 
 #include "online/model/model.h"
 #include "online/model/status.h"
-#include "online/system/workspace.h"
+#include "online/model/system_workspace.h"
 
 namespace railstep {
 

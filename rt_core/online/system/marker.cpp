@@ -32,17 +32,17 @@ void section_at(const BeamChainModel& beam, const MarkerModel& marker, const dou
     for (int c = 0; c < 3; ++c) out[f][c] += moved[f][c];
 }
 
-Pose on_ground(const MarkerModel& marker) noexcept {
-  Pose pose;
+MarkerPose on_ground(const MarkerModel& marker) noexcept {
+  MarkerPose pose;
   for (int c = 0; c < 3; ++c) pose.point[c] = marker.position[c];
   for (int k = 0; k < 3; ++k)
     for (int c = 0; c < 3; ++c) pose.axis[k][c] = marker.frame[3 * k + c];
   return pose;
 }
 
-Pose on_body(const RigidBodyModel& body, const MarkerModel& marker, const double* x,
-             const double* R) noexcept {
-  Pose pose;
+MarkerPose on_body(const RigidBodyModel& body, const MarkerModel& marker, const double* x,
+                   const double* R) noexcept {
+  MarkerPose pose;
   turn(R, marker.position, pose.point);
   for (int c = 0; c < 3; ++c) {
     pose.point[c] += body.rest[c];
@@ -52,11 +52,12 @@ Pose on_body(const RigidBodyModel& body, const MarkerModel& marker, const double
   return pose;
 }
 
-Pose on_beam(const BeamChainModel& beam, const MarkerModel& marker, const double* x) noexcept {
+MarkerPose on_beam(const BeamChainModel& beam, const MarkerModel& marker,
+                   const double* x) noexcept {
   double s[3][3], d[3];
   section_at(beam, marker, x, s);
   cross(s[1], s[2], d);
-  Pose pose;
+  MarkerPose pose;
   for (int c = 0; c < 3; ++c) {
     pose.point[c] = (s[0][c] + marker.position[1] * s[1][c]) + marker.position[2] * s[2][c];
     for (int k = 0; k < 3; ++k)
@@ -75,9 +76,9 @@ void turning(const double* x, const double* w, const double* dw, Jet* out) noexc
   for (int c = 0; c < 3; ++c) out[c] = {x[c], v[c], a[c] + b[c]};
 }
 
-PoseJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, const Motions& at,
-                    const double* R) noexcept {
-  const Pose pose = on_body(body, marker, at.x, R);
+MarkerJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, const Motions& at,
+                      const double* R) noexcept {
+  const MarkerPose pose = on_body(body, marker, at.x, R);
   double own[2][3] = {}, w[3], dw[3], lever[3];
   for (int c = 0; c < 3; ++c)
     if (const std::int32_t k = body.column[3 + c]; k >= 0) {
@@ -87,7 +88,7 @@ PoseJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, const
   turn(R, own[0], w);
   turn(R, own[1], dw);
   turn(R, marker.position, lever);
-  PoseJet jet;
+  MarkerJet jet;
   turning(lever, w, dw, jet.point);
   for (int c = 0; c < 3; ++c) {
     const std::int32_t k = body.column[c];
@@ -98,8 +99,8 @@ PoseJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, const
   return jet;
 }
 
-PoseJet jet_on_beam(const BeamChainModel& beam, const MarkerModel& marker,
-                    const Motions& at) noexcept {
+MarkerJet jet_on_beam(const BeamChainModel& beam, const MarkerModel& marker,
+                      const Motions& at) noexcept {
   double x[3][3], v[3][3], g[3][3];
   section_at(beam, marker, at.x, x);
   interpolate(beam, marker, at.v + beam.first, v);
@@ -109,7 +110,7 @@ PoseJet jet_on_beam(const BeamChainModel& beam, const MarkerModel& marker,
     for (int c = 0; c < 3; ++c) s[f][c] = {x[f][c], v[f][c], g[f][c]};
   for (int c = 0; c < 3; ++c)
     d[c] = s[1][(c + 1) % 3] * s[2][(c + 2) % 3] - s[1][(c + 2) % 3] * s[2][(c + 1) % 3];
-  PoseJet jet;
+  MarkerJet jet;
   for (int c = 0; c < 3; ++c) {
     jet.point[c] = (s[0][c] + marker.position[1] * s[1][c]) + marker.position[2] * s[2][c];
     for (int k = 0; k < 3; ++k)
@@ -119,7 +120,7 @@ PoseJet jet_on_beam(const BeamChainModel& beam, const MarkerModel& marker,
   return jet;
 }
 
-void pull_on_body(const RigidBodyModel& body, const Pose& at, const double* centre,
+void pull_on_body(const RigidBodyModel& body, const MarkerPose& at, const double* centre,
                   const double* matrix, const Pull& pull, double* row) noexcept {
   double lever[3], part[3], moment[3], own[3];
   for (int c = 0; c < 3; ++c) lever[c] = at.point[c] - centre[c];
@@ -135,7 +136,7 @@ void pull_on_body(const RigidBodyModel& body, const Pose& at, const double* cent
   }
 }
 
-void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const Pose& at,
+void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const MarkerPose& at,
                   const Pull& pull, double* row) noexcept {
   double on[9], normal[3] = {}, a[3] = {}, b[3] = {}, part[3];
   for (int k = 0; k < 3; ++k)
@@ -165,21 +166,21 @@ void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const P
 
 }  // namespace
 
-Pose marker_pose(const SystemModel& system, const MarkerModel& marker, const double* x,
-                 const double* matrix) noexcept {
+MarkerPose marker_pose(const SystemModel& system, const MarkerModel& marker, const double* x,
+                       const double* matrix) noexcept {
   if (marker.kind == PartKind::body)
     return on_body(system.body[marker.part], marker, x, matrix + 9 * marker.part);
   if (marker.kind == PartKind::beam) return on_beam(system.beam[marker.part], marker, x);
   return on_ground(marker);
 }
 
-PoseJet marker_jet(const SystemModel& system, const MarkerModel& marker,
-                   const Motions& at) noexcept {
+MarkerJet marker_jet(const SystemModel& system, const MarkerModel& marker,
+                     const Motions& at) noexcept {
   if (marker.kind == PartKind::body)
     return jet_on_body(system.body[marker.part], marker, at, at.matrix + 9 * marker.part);
   if (marker.kind == PartKind::beam) return jet_on_beam(system.beam[marker.part], marker, at);
-  const Pose pose = on_ground(marker);
-  PoseJet jet{};
+  const MarkerPose pose = on_ground(marker);
+  MarkerJet jet{};
   for (int c = 0; c < 3; ++c) {
     jet.point[c].x = pose.point[c];
     for (int k = 0; k < 3; ++k) jet.axis[k][c].x = pose.axis[k][c];
@@ -187,7 +188,7 @@ PoseJet marker_jet(const SystemModel& system, const MarkerModel& marker,
   return jet;
 }
 
-void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const Pose& at,
+void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const MarkerPose& at,
                       const double* centre, const double* matrix, const Pull& pull,
                       double* row) noexcept {
   if (marker.kind == PartKind::body)

@@ -1,5 +1,5 @@
 #pragma once
-#include "online/system/workspace.h"
+#include "online/model/system_workspace.h"
 
 namespace railstep {
 
@@ -15,7 +15,7 @@ inline Jet operator*(Jet p, Jet q) noexcept {
 inline Jet operator*(double s, Jet p) noexcept { return {s * p.x, s * p.v, s * p.a}; }
 
 /// A marker's pose with its velocities and accelerations.
-struct PoseJet {
+struct MarkerJet {
   Jet point[3];
   Jet axis[3][3];
 };
@@ -31,11 +31,11 @@ struct Motions {
 
 /// @param x       [unknowns] displacements
 /// @param matrix  [bodies][9] rotations
-Pose marker_pose(const SystemModel& system, const MarkerModel& marker, const double* x,
-                 const double* matrix) noexcept;
+MarkerPose marker_pose(const SystemModel& system, const MarkerModel& marker, const double* x,
+                       const double* matrix) noexcept;
 
-PoseJet marker_jet(const SystemModel& system, const MarkerModel& marker,
-                   const Motions& at) noexcept;
+MarkerJet marker_jet(const SystemModel& system, const MarkerModel& marker,
+                     const Motions& at) noexcept;
 
 /// A pull on a marker as forces on its part's own unknowns: of a body its 6 or 3, of a beam those
 /// of the marker's three nodes.
@@ -43,7 +43,7 @@ PoseJet marker_jet(const SystemModel& system, const MarkerModel& marker,
 /// @param centre  of the body at that pose, m
 /// @param matrix  that turns the body's axes of the turn unknowns to the ground
 /// @param row     [kMostNodeUnknowns], overwritten
-void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const Pose& at,
+void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const MarkerPose& at,
                       const double* centre, const double* matrix, const Pull& pull,
                       double* row) noexcept;
 

@@ -1,6 +1,6 @@
 #include "online/system/parts.h"
 
-#include "online/system/beam_chain.h"
+#include "online/model/beam_chain.h"
 #include "online/system/marker.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"

@@ -1,6 +1,6 @@
 #pragma once
 #include "online/model/model.h"
-#include "online/system/workspace.h"
+#include "online/model/system_workspace.h"
 
 namespace railstep {
 

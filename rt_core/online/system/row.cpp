@@ -20,8 +20,8 @@ Jet jet_dot(const Jet* p, const Jet* q) noexcept {
 }
 
 /// A pose that stands still.
-PoseJet standing(const Pose& pose) noexcept {
-  PoseJet jet{};
+MarkerJet standing(const MarkerPose& pose) noexcept {
+  MarkerJet jet{};
   for (int c = 0; c < 3; ++c) {
     jet.point[c].x = pose.point[c];
     for (int k = 0; k < 3; ++k) jet.axis[k][c].x = pose.axis[k][c];
@@ -46,16 +46,16 @@ Jet motion_at(const MotionModel& motion, double time) noexcept {
   return s;
 }
 
-double row_length(const Pose& a, const Pose& b) noexcept {
+double row_length(const MarkerPose& a, const MarkerPose& b) noexcept {
   const double d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
   return square_root(dot(d, d));
 }
 
-double row_value(const RowModel& row, const Pose& a, const Pose& b, double s) noexcept {
+double row_value(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double s) noexcept {
   return row_jet(row, standing(a), standing(b), {s, 0., 0.}).x;
 }
 
-Jet row_jet(const RowModel& row, const PoseJet& a, const PoseJet& b, Jet s) noexcept {
+Jet row_jet(const RowModel& row, const MarkerJet& a, const MarkerJet& b, Jet s) noexcept {
   const Jet d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
   switch (row.kind) {
     case RowKind::along_ground:
@@ -81,8 +81,8 @@ Jet row_jet(const RowModel& row, const PoseJet& a, const PoseJet& b, Jet s) noex
   return {0., 0., 0.};
 }
 
-void row_pulls(const RowModel& row, const Pose& a, const Pose& b, double length, double s,
-               Pull& on_a, Pull& on_b) noexcept {
+void row_pulls(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double length,
+               double s, Pull& on_a, Pull& on_b) noexcept {
   on_a = on_b = {};
   const double d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
   double along[3] = {};

@@ -107,7 +107,7 @@ void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t m
   pull_on_unknowns(system, on, w.force_pose[marker], centre, matrix, pull, out);
 }
 
-Pull point_pull(const PointForceModel& force, double size, const Pose& at) noexcept {
+Pull point_pull(const PointForceModel& force, double size, const MarkerPose& at) noexcept {
   Pull pull{};
   for (int c = 0; c < 3; ++c) {
     const double f = size * force.direction[c];

@@ -11,7 +11,7 @@ void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t m
              const Pull& pull, double* out) noexcept;
 
 /// The pull of an applied force or moment of this size.
-Pull point_pull(const PointForceModel& force, double size, const Pose& at) noexcept;
+Pull point_pull(const PointForceModel& force, double size, const MarkerPose& at) noexcept;
 
 /// Values and gradients of all rows at the iterate, and what Newton's step is to bring of each, m:
 /// `wanted`, without the parts' own change. @returns the largest of these, over joint rows

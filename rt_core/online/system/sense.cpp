@@ -22,8 +22,8 @@ Motions motions_of(const SystemModel& s, const State& state, const Rotations& tu
   return {state.u + s.first, state.v + s.first, state.g + s.first, turned.of[0]};
 }
 
-Pose pose_of(const PoseJet& jet) noexcept {
-  Pose pose;
+MarkerPose pose_of(const MarkerJet& jet) noexcept {
+  MarkerPose pose;
   for (int c = 0; c < 3; ++c) {
     pose.point[c] = jet.point[c].x;
     for (int k = 0; k < 3; ++k) pose.axis[k][c] = jet.axis[k][c].x;
@@ -36,7 +36,7 @@ Pose pose_of(const PoseJet& jet) noexcept {
 PointMotion sense(const Model& model, const State& state, std::int32_t sensor) noexcept {
   const SystemModel& s = model.system;
   const Rotations turned(s, state);
-  const PoseJet jet = marker_jet(s, s.marker[s.sensor[sensor]], motions_of(s, state, turned));
+  const MarkerJet jet = marker_jet(s, s.marker[s.sensor[sensor]], motions_of(s, state, turned));
   PointMotion motion;
   for (int c = 0; c < 3; ++c) {
     motion.position[c] = jet.point[c].x;
@@ -59,8 +59,8 @@ JointForce joint_force(const Model& model, const State& state, std::int32_t join
   for (std::int32_t r = 0; r < system_rows(s); ++r) {
     const RowModel& row = s.row[r];
     if (row.joint != joint) continue;
-    const Pose a = pose_of(marker_jet(s, s.marker[row.a], at));
-    const Pose b = pose_of(marker_jet(s, s.marker[row.b], at));
+    const MarkerPose a = pose_of(marker_jet(s, s.marker[row.a], at));
+    const MarkerPose b = pose_of(marker_jet(s, s.marker[row.b], at));
     Pull on_a, on_b;
     const double motion = row.motion >= 0 ? motion_at(s.motion[row.motion], time).x : row.offset;
     row_pulls(row, a, b, row_length(a, b), motion, on_a, on_b);

@@ -1,7 +1,7 @@
-#include "online/system/workspace.h"
+#include "online/model/system_workspace.h"
 
 #include "online/math/lanes.h"
-#include "online/system/beam_chain.h"
+#include "online/model/beam_chain.h"
 
 namespace railstep {
 
@@ -17,9 +17,9 @@ struct Cursor {
     used += (doubles + kLanes - 1) / kLanes * kLanes;
     return here;
   }
-  Pose* poses(std::int64_t count) noexcept {
-    static_assert(sizeof(Pose) == 12 * sizeof(double));
-    return reinterpret_cast<Pose*>(take(12 * count));
+  MarkerPose* poses(std::int64_t count) noexcept {
+    static_assert(sizeof(MarkerPose) == 12 * sizeof(double));
+    return reinterpret_cast<MarkerPose*>(take(12 * count));
   }
 };
 
@@ -53,7 +53,7 @@ SystemWorkspace workspace_from(const SystemModel& s, Cursor& cursor, double* kep
   w.matrix = cursor.take(9LL * s.bodies);
   w.start_matrix = cursor.take(9LL * s.bodies);
   w.centre = cursor.take(3LL * s.bodies);
-  for (Pose** part : {&w.pose, &w.start_pose, &w.force_pose}) *part = cursor.poses(s.markers);
+  for (MarkerPose** part : {&w.pose, &w.start_pose, &w.force_pose}) *part = cursor.poses(s.markers);
   w.gradient = cursor.take(std::int64_t{kMostNodeUnknowns} * s.ends);
   for (double** part :
        {&w.value, &w.start_value, &w.wanted, &w.velocity_part, &w.force, &w.scratch})

@@ -7,7 +7,7 @@
 namespace railstep {
 
 /// Where a marker is: its point, then its three directions, in ground axes.
-struct Pose {
+struct MarkerPose {
   double point[3];
   double axis[3][3];
 };
@@ -33,33 +33,33 @@ struct SystemTangent {
 
 /// Scratch of a system's step, one block of the caller's.
 struct SystemWorkspace {
-  double* x;              // [unknowns] displacements at the step's end, the iterate
-  double* shift;          // [unknowns] Gear, Gupta, Leimkuhler: the part of x without velocity
-  double* v;              // [unknowns] velocities of x
-  double* g;              // [unknowns] accelerations of x
-  double* residual;       // [unknowns] N
-  double* change;         // [unknowns]
-  double* elastic;        // [unknowns] N
-  double* inertia;        // [unknowns] N
-  double* outer;          // [unknowns] N, weight and applied forces
-  double* nodes;          // [unknowns] of beams, positions at which forces are taken
-  double* half_change;    // [unknowns] of beams, energy-momentum
-  double* lanes;          // [unknowns][4]
-  double* quaternion;     // [bodies][4] at the step's end
-  double* matrix;         // [bodies][9] of it
-  double* start_matrix;   // [bodies][9] at the step's start
-  double* centre;         // [bodies][3] where forces are taken, m
-  Pose* pose;             // [markers] at the step's end
-  Pose* start_pose;       // [markers]
-  Pose* force_pose;       // [markers] where forces are taken: the end, or the mean of both
-  double* gradient;       // [ends][kMostNodeUnknowns] of a row in the unknowns that its end moves
-  double* value;          // [rows] Phi at the end
-  double* start_value;    // [rows] of springs, energy-momentum
-  double* wanted;         // [rows]
-  double* velocity_part;  // [rows] of `wanted`, Gear, Gupta, Leimkuhler
-  double* force;          // [rows] the iterate
-  double* scratch;        // [rows]
-  double* tangents;       // of the largest beam
+  double* x;               // [unknowns] displacements at the step's end, the iterate
+  double* shift;           // [unknowns] Gear, Gupta, Leimkuhler: the part of x without velocity
+  double* v;               // [unknowns] velocities of x
+  double* g;               // [unknowns] accelerations of x
+  double* residual;        // [unknowns] N
+  double* change;          // [unknowns]
+  double* elastic;         // [unknowns] N
+  double* inertia;         // [unknowns] N
+  double* outer;           // [unknowns] N, weight and applied forces
+  double* nodes;           // [unknowns] of beams, positions at which forces are taken
+  double* half_change;     // [unknowns] of beams, energy-momentum
+  double* lanes;           // [unknowns][4]
+  double* quaternion;      // [bodies][4] at the step's end
+  double* matrix;          // [bodies][9] of it
+  double* start_matrix;    // [bodies][9] at the step's start
+  double* centre;          // [bodies][3] where forces are taken, m
+  MarkerPose* pose;        // [markers] at the step's end
+  MarkerPose* start_pose;  // [markers]
+  MarkerPose* force_pose;  // [markers] where forces are taken: the end, or the mean of both
+  double* gradient;        // [ends][kMostNodeUnknowns] of a row in the unknowns that its end moves
+  double* value;           // [rows] Phi at the end
+  double* start_value;     // [rows] of springs, energy-momentum
+  double* wanted;          // [rows]
+  double* velocity_part;   // [rows] of `wanted`, Gear, Gupta, Leimkuhler
+  double* force;           // [rows] the iterate
+  double* scratch;         // [rows]
+  double* tangents;        // of the largest beam
   SystemTangent tangent;
 };
 
