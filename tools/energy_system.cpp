@@ -21,7 +21,7 @@ Motions motions_of(const SystemModel& s, const State& state, std::vector<double>
   return {state.u + s.first, state.v + s.first, state.g + s.first, matrix.data()};
 }
 
-Vector3d point_of(const PoseJet& jet) { return {jet.point[0].x, jet.point[1].x, jet.point[2].x}; }
+Vector3d point_of(const MarkerJet& jet) { return {jet.point[0].x, jet.point[1].x, jet.point[2].x}; }
 
 /// Of a body in ground axes, rad/s.
 Vector3d angular_velocity(const SystemModel& s, std::int32_t b, const Motions& at) {
@@ -34,7 +34,7 @@ Vector3d angular_velocity(const SystemModel& s, std::int32_t b, const Motions& a
 }
 
 /// The same pose without its motion.
-PoseJet held(PoseJet jet) {
+MarkerJet held(MarkerJet jet) {
   for (int c = 0; c < 3; ++c) {
     jet.point[c] = {jet.point[c].x, 0., 0.};
     for (auto& axis : jet.axis) axis[c] = {axis[c].x, 0., 0.};
@@ -62,7 +62,7 @@ SystemAccount::Standing SystemAccount::stand(const State& state) const {
   for (std::int32_t r = 0; r < s.joint_rows + s.spring_rows; ++r) {
     const RowModel& row = s.row[r];
     const bool spring = r >= s.joint_rows, driven = !spring && row.motion >= 0;
-    const PoseJet a = marker_jet(s, s.marker[row.a], at), b = marker_jet(s, s.marker[row.b], at);
+    const MarkerJet a = marker_jet(s, s.marker[row.a], at), b = marker_jet(s, s.marker[row.b], at);
     if (spring) {
       now.length.push_back((point_of(b) - point_of(a)).norm());
       continue;

@@ -13,7 +13,7 @@
 #include "online/step/probe.h"
 #include "online/step/step.h"
 #include "online/system/sense.h"
-#include "online/system/workspace.h"
+#include "online/model/system_workspace.h"
 
 namespace railstep {
 namespace {
