@@ -28,6 +28,9 @@ bool reaches(const Track& track, const Line& line, int rail, double y, double z,
 bool is_moved(const Track& track, const Line& line, const Traffic& traffic, double gravity) {
   for (const MovingLoad& load : traffic.loads)
     if (reaches(track, line, load.rail, 0., load.z, 2)) return true;
+  for (const int rail : traffic.held)
+    for (int direction = 0; direction < 3; ++direction)
+      if (reaches(track, line, rail, .01, .1, direction)) return true;
   for (int direction = 0; direction < 3 && !traffic.wheelsets.empty(); ++direction)
     for (int rail = 0; rail < track.rails; ++rail)
       if (reaches(track, line, rail, .01, .1, direction)) return true;

@@ -60,6 +60,7 @@ struct Traffic {
   std::vector<Wheelset> wheelsets = {};
   Railhead head = {};
   std::vector<Probe> probes = {};
+  std::vector<int> held = {};  // rails that a multibody system holds on to
 };
 
 struct PackOptions {

@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 /// Puts markers and rows of a system together.
 class Connector {
  public:
-  Connector(const System& system, SystemParts& parts) : system_(system), parts_(parts) {}
+  Connector(const System& system, const Track* track, SystemParts& parts)
+      : system_(system), track_(track), parts_(parts) {}
 
   void add(const Joint& joint, std::int32_t index);
   void add(const SpringDamper& spring, std::int32_t index);
@@ -28,6 +29,7 @@ class Connector {
 
  private:
   std::int32_t marker(const Part& part, const Vector3d& point, const Matrix3d& axes);
+  void put_on_rail(const Part& part, const Vector3d& point, MarkerModel& marker);
   std::int32_t motion(const Motion& motion);
   void row(RowKind kind, int i, int j = 0, int l = 0, std::int32_t motion = -1, double offset = 0.);
   void points(bool planar);
@@ -36,6 +38,7 @@ class Connector {
   void add_either_way(const Joint& joint);
 
   const System& system_;
+  const Track* track_;
   SystemParts& parts_;
   std::int32_t joint_ = 0, a_ = 0, b_ = 0;  // of the rows that are being added
 };
@@ -80,6 +83,30 @@ void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& m
   marker.position[2] = local.z();
 }
 
+void Connector::put_on_rail(const Part& part, const Vector3d& point, MarkerModel& marker) {
+  if (track_ == nullptr) throw std::invalid_argument("it names a rail, but there is no track");
+  if (part.index < 0 || part.index >= track_->rails)
+    throw std::invalid_argument("it names a rail that the track does not have");
+  if (!(point.x() >= 0. && point.x() <= track_->length()))
+    throw std::invalid_argument("its point lies beyond the rail's ends");
+  const double side = track_->rails == 2 ? track_->rail_spacing / 2. : 0.;
+  const double y = part.index == 0 ? side : -side;
+  const double along = point.x() / track_->element_length();
+  RailPortModel port{};
+  port.first = parts_.unknowns;
+  port.rail = part.index;
+  port.element = std::min(static_cast<int>(along), track_->elements() - 1);
+  const auto n = shape(2. * (along - port.element) - 1.);
+  for (std::size_t i = 0; i < 3; ++i) port.value[i] = n[i];
+  const double rest[9] = {point.x(), y, 0., 0., 1., 0., 0., 0., 1.};
+  for (int k = 0; k < 9; ++k) port.rest[k] = rest[k];
+  marker.part = static_cast<std::int32_t>(parts_.ports.size());
+  marker.position[1] = point.y() - y;
+  marker.position[2] = point.z();
+  parts_.ports.push_back(port);
+  parts_.unknowns += 9;
+}
+
 std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Matrix3d& axes) {
   if (!point.allFinite()) throw std::invalid_argument("its point is finite");
   MarkerModel m{};
@@ -97,6 +124,10 @@ std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Ma
     const Vector3d local = R.transpose() * (point - body.position);
     for (int c = 0; c < 3; ++c) m.position[c] = local[c];
     set_frame(m, axes, R);
+  } else if (part.kind == Part::Kind::rail) {
+    m.kind = PartKind::rail;
+    put_on_rail(part, point, m);
+    set_frame(m, axes, Matrix3d::Identity());
   } else {
     if (part.index < 0 || static_cast<std::size_t>(part.index) >= system_.beams.size())
       throw std::invalid_argument("it names a beam that is not there");
@@ -281,16 +312,18 @@ void each(const std::vector<Item>& items, const char* name, const Add& add) {
     }
 }
 
-/// Part of a marker among bodies, then beams; -1 on the ground.
+/// Part of a marker among bodies, then beams, then the track; -1 on the ground.
 std::int32_t part_of(const SystemParts& parts, const MarkerModel& marker) {
   if (marker.kind == PartKind::ground) return -1;
+  if (marker.kind == PartKind::rail)
+    return static_cast<std::int32_t>(parts.bodies.size() + parts.beams.size());
   return marker.part +
          (marker.kind == PartKind::beam ? static_cast<std::int32_t>(parts.bodies.size()) : 0);
 }
 
 /// Ends of all rows, part after part.
 void add_ends(SystemParts& parts) {
-  const auto count = static_cast<std::int32_t>(parts.bodies.size() + parts.beams.size());
+  const auto count = static_cast<std::int32_t>(parts.bodies.size() + parts.beams.size()) + 1;
   for (RowModel& row : parts.rows) row.end[0] = row.end[1] = -1;
   for (std::int32_t part = 0; part < count; ++part) {
     parts.part_end.push_back(static_cast<std::int32_t>(parts.ends.size()));
@@ -308,8 +341,8 @@ void add_ends(SystemParts& parts) {
 
 }  // namespace
 
-void add_connections(const System& system, SystemParts& parts) {
-  Connector connect(system, parts);
+void add_connections(const System& system, const Track* track, SystemParts& parts) {
+  Connector connect(system, track, parts);
   each(system.joints, "joint", [&](const Joint& j, std::int32_t i) { connect.add(j, i); });
   const auto joints = static_cast<std::int32_t>(system.joints.size());
   each(system.springs, "spring",
@@ -322,6 +355,7 @@ void add_connections(const System& system, SystemParts& parts) {
     throw std::invalid_argument("joints and springs have " + std::to_string(parts.rows.size()) +
                                 " rows; at most " + std::to_string(kMaxSystemRows));
   add_ends(parts);
+  parts.pad();
 }
 
 }  // namespace railstep

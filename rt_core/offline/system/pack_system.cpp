@@ -6,11 +6,15 @@
 
 #include "offline/system/parts.h"
 #include "offline/system/start_system.h"
+#include "offline/system/track_ports.h"
 
 namespace railstep {
 
 struct PackedSystem::Memory {
   SystemParts parts;
+  std::unique_ptr<PackedModel> track;
+  TrackPorts ports;
+  WidenedTrack widened;
   std::vector<double> start;
 };
 
@@ -37,14 +41,39 @@ void check(const System& system, const SystemOptions& o) {
 
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
     : memory_(std::make_unique<Memory>()) {
-  check(system, options);
-  SystemParts& parts = memory_->parts;
-  add_parts(system, parts);
-  add_connections(system, parts);
   model_.scheme = options.scheme;
   model_.steps_per_frame = options.steps_per_frame;
   model_.steps = options.steps;
-  model_.unknowns = static_cast<std::int32_t>(parts.constant_force.size());
+  build(system, options, nullptr);
+}
+
+PackedSystem::PackedSystem(const System& system, const SystemOptions& options, const Track& track,
+                           const Traffic& traffic, const PackOptions& track_options)
+    : memory_(std::make_unique<Memory>()) {
+  if (!traffic.wheelsets.empty())
+    throw std::invalid_argument("a track beside a system of bodies carries no wheelsets");
+  if (track_options.modal)
+    throw std::invalid_argument("a track beside a system of bodies is taken in full order");
+  if (options.energy_momentum)
+    throw std::invalid_argument("a track beside a system of bodies has no energy-momentum scheme");
+  Traffic both = traffic;
+  for (int rail = 0; rail < track.rails; ++rail) both.held.push_back(rail);
+  memory_->track = std::make_unique<PackedModel>(track, both, track_options);
+  model_ = memory_->track->model();
+  build(system, options, &track);
+}
+
+const PackedModel* PackedSystem::track() const { return memory_->track.get(); }
+
+void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track) {
+  check(system, options);
+  SystemParts& parts = memory_->parts;
+  add_parts(system, parts);
+  add_connections(system, track, parts);
+  const std::int32_t first = model_.unknowns;
+  const auto own = static_cast<std::int32_t>(parts.constant_force.size());
+  if (track != nullptr) memory_->widened.widen(own, model_);
+  model_.unknowns = first + own;
   SystemModel& s = model_.system;
   const auto count = [](const auto& items) { return static_cast<std::int32_t>(items.size()); };
   s.bodies = count(parts.bodies);
@@ -56,16 +85,17 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
   s.forces = count(parts.forces);
   s.sensors = count(parts.sensors);
   s.ends = count(parts.ends);
-  s.unknowns = model_.unknowns;
+  s.first = first;
+  s.unknowns = own;
   s.hold = options.hold;
   s.renew = options.renew;
   s.mean = options.energy_momentum ? 1 : 0;
   s.cap = options.cap;
   s.projections = options.projections;
   s.keep_steps = options.keep_steps;
-  const bool own = options.alpha > 0. || options.beta > 0.;
-  s.alpha = own ? options.alpha : .2 / options.scheme.dt;
-  s.beta = own ? options.beta : .2 / options.scheme.dt;
+  const bool given = options.alpha > 0. || options.beta > 0.;
+  s.alpha = given ? options.alpha : .2 / model_.scheme.dt;
+  s.beta = given ? options.beta : .2 / model_.scheme.dt;
   s.tolerance = options.tolerance;
   s.joint_tolerance = options.joint_tolerance;
   s.rank_tolerance = options.hold == Hold::augmented_lagrangian ? 1e-15 : 1e-10;
@@ -80,10 +110,16 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
   s.sensor = parts.sensors.data();
   s.constant_force = parts.constant_force.data();
   s.per_length = parts.per_length.data();
+  s.ports = count(parts.ports);
+  s.port = parts.ports.data();
+  memory_->ports = track_ports(model_);
+  s.port_compliance = memory_->ports.compliance.data();
+  s.port_shapes = memory_->ports.shapes.data();
   const SystemStartState start = start_system(system, parts, model_);
   for (std::size_t r = 0; r < parts.joint_rows.size(); ++r)
-    parts.rows[r].compliance = start.mobility[r] / (options.scheme.kg * options.penalty);
+    parts.rows[r].compliance = start.mobility[r] / (model_.scheme.kg * options.penalty);
   memory_->start = start.state;
+  if (track != nullptr) memory_->widened.put_start(memory_->track->model(), model_, memory_->start);
   model_.start = memory_->start.data();
 }
 

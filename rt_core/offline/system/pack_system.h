@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 
+#include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
 #include "offline/system/system.h"
 #include "online/model/state.h"
@@ -33,14 +34,23 @@ class PackedSystem {
   /// Throws std::invalid_argument on what cannot be built: parts without mass, joints of parts that
   /// do not exist, points off their beam, motion out of a planar system.
   PackedSystem(const System& system, const SystemOptions& options);
+  /// Beside a linear track in full order that carries no wheelsets, and that the system's joints,
+  /// springs and sensors may name; the track gives the scheme and the frames. A rail moves only in
+  /// what its track carries. The joint forces at the start are those of the first step's inertia,
+  /// as a track has unknowns without mass. Residual flexibility is not part of it.
+  PackedSystem(const System& system, const SystemOptions& options, const Track& track,
+               const Traffic& traffic, const PackOptions& track_options);
   PackedSystem(const PackedSystem&) = delete;
   PackedSystem& operator=(const PackedSystem&) = delete;
   ~PackedSystem();
 
   const Model& model() const { return model_; }
+  /// The track's own part; null without one.
+  const PackedModel* track() const;
 
  private:
   struct Memory;
+  void build(const System& system, const SystemOptions& options, const Track* track);
   Model model_{};
   std::unique_ptr<Memory> memory_;
 };

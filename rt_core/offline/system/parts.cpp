@@ -16,6 +16,12 @@ const double* SystemParts::keep(std::vector<double> values) {
   return reals.emplace_back(std::move(values)).data();
 }
 
+void SystemParts::pad() {
+  const auto n = static_cast<std::size_t>((unknowns + kLanes - 1) / kLanes * kLanes);
+  constant_force.resize(n, 0.);
+  per_length.resize(n, 0.);
+}
+
 namespace {
 
 using Eigen::Matrix3d;
@@ -199,9 +205,7 @@ void add_parts(const System& system, SystemParts& parts) {
   for (std::size_t i = 0; i < system.beams.size(); ++i)
     add_beam(system.beams[i], i, system.planar, parts);
   if (parts.unknowns == 0) throw std::invalid_argument("a system has a body or a beam");
-  const auto n = static_cast<std::size_t>((parts.unknowns + kLanes - 1) / kLanes * kLanes);
-  parts.constant_force.assign(n, 0.);
-  parts.per_length.assign(n, 0.);
+  parts.pad();
   add_weight(system, parts);
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "offline/system/system.h"
+#include "offline/track/track.h"
 #include "online/model/system.h"
 
 namespace railstep {
@@ -11,6 +12,7 @@ namespace railstep {
 struct SystemParts {
   std::vector<RigidBodyModel> bodies;
   std::vector<BeamChainModel> beams;
+  std::vector<RailPortModel> ports;
   std::vector<MarkerModel> markers;
   std::vector<RowModel> joint_rows, spring_rows;
   std::vector<MotionModel> motions;
@@ -25,13 +27,16 @@ struct SystemParts {
   std::deque<std::vector<std::int32_t>> integers;
 
   const double* keep(std::vector<double> values);
+  /// Makes room for all unknowns, in whole panels.
+  void pad();
 };
 
 /// Bodies and beams: unknowns, inertia, weight. Throws std::invalid_argument.
 void add_parts(const System& system, SystemParts& parts);
 
 /// Motion, markers and rows of joints, springs, forces and sensors. Throws std::invalid_argument.
-void add_connections(const System& system, SystemParts& parts);
+/// @param track  beside which the system stands, or null
+void add_connections(const System& system, const Track* track, SystemParts& parts);
 
 /// Velocity of every unknown at the start, [unknowns].
 std::vector<double> start_velocities(const System& system, const SystemParts& parts);

@@ -50,7 +50,7 @@ void add_beam(const SystemModel& s, const BeamChainModel& beam,
   }
 }
 
-/// M, with ones where unknowns are held or pad.
+/// M, with ones where unknowns are held, pad, or are the track's.
 Sparse mass(const SystemModel& s) {
   std::vector<Eigen::Triplet<double>> entries;
   add_bodies(s, entries);
@@ -65,6 +65,29 @@ Sparse mass(const SystemModel& s) {
   M.setFromTriplets(entries.begin(), entries.end());
   return M;
 }
+
+/// M^-1; of the track what a step sees of it, kg times its ports' compliance.
+class Mobility {
+ public:
+  explicit Mobility(const Model& model) : model_(model), inverse_(mass(model.system)) {
+    if (inverse_.info() != Eigen::Success) throw std::invalid_argument("the mass is not positive");
+  }
+  MatrixXd operator*(const MatrixXd& forces) const {
+    MatrixXd moved = inverse_.solve(forces);
+    const SystemModel& s = model_.system;
+    if (s.ports == 0) return moved;
+    using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Eigen::Index n = 9 * s.ports, first = s.port[0].first;
+    moved.middleRows(first, n) = model_.scheme.kg *
+                                 Eigen::Map<const Square>(s.port_compliance, n, n) *
+                                 forces.middleRows(first, n);
+    return moved;
+  }
+
+ private:
+  const Model& model_;
+  Eigen::SimplicialLDLT<Sparse> inverse_;
+};
 
 /// The system as it stands at the start, in the online workspace.
 struct Standing {
@@ -141,14 +164,16 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
   Standing at(model, quaternion, start_velocities(system, parts));
   check_joints(s, at.w, 1.);
   const std::int32_t joints = s.joint_rows, rows = system_rows(s), n = s.unknowns;
-  const Eigen::SimplicialLDLT<Sparse> inertia(mass(s));
-  if (inertia.info() != Eigen::Success) throw std::invalid_argument("the mass is not positive");
-  Eigen::Map<const VectorXd> per(s.per_length, n);
-  const VectorXd is_free = per.unaryExpr([](double x) { return x != 0. ? 1. : 0.; });
+  const Mobility mobility(model);
+  VectorXd is_free = Eigen::Map<const VectorXd>(s.per_length, n).unaryExpr([](double x) {
+    return x != 0. ? 1. : 0.;
+  });
+  if (s.ports > 0) is_free.segment(s.port[0].first, Eigen::Index{9} * s.ports).setOnes();
   MatrixXd G = at.gradients(0, joints) * is_free.asDiagonal();
-  const MatrixXd X = inertia.solve(G.transpose());
+  const MatrixXd X = mobility * G.transpose();
   const MatrixXd W = G * X;
-  const auto held = W.completeOrthogonalDecomposition();
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
+  if (joints > 0) held.compute(W);
 
   VectorXd rates(joints);
   for (std::int32_t r = 0; r < joints; ++r) rates[r] = at.jet(r).v;
@@ -167,7 +192,7 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
   add_row_forces(s, at.w.gradient, spring_force.data(), pulled.data());
   force = (force - pulled).cwiseProduct(is_free);
   VectorXd wanted = VectorXd::Zero(joints);
-  const VectorXd loose = inertia.solve(force);
+  const VectorXd loose = mobility * force;
   for (std::int32_t r = 0; r < joints; ++r) wanted[r] = at.jet(r).a;
   const VectorXd multiplier = joints > 0 ? VectorXd(held.solve(wanted + G * loose)) : wanted;
   const VectorXd a = joints > 0 ? VectorXd(loose - X * multiplier) : loose;

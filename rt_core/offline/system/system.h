@@ -40,12 +40,14 @@ struct FlexibleBeam {
 
 /// What a joint holds on to.
 struct Part {
-  enum class Kind { ground, body, beam } kind = Kind::ground;
-  int index = 0;  // among the system's bodies or beams
+  enum class Kind { ground, body, beam, rail } kind = Kind::ground;
+  int index = 0;  // among the system's bodies or beams; of rails 0 left, 1 right
 };
 inline Part ground() { return {}; }
 inline Part body(int index) { return {Part::Kind::body, index}; }
 inline Part beam(int index) { return {Part::Kind::beam, index}; }
+/// A rail of the linear track beside which the system stands.
+inline Part rail(int index) { return {Part::Kind::rail, index}; }
 
 /// s(t): a polynomial c0 + c1 t + ..., at most 6 coefficients, or a table, through which a natural
 /// cubic spline goes, constant outside.

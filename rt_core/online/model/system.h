@@ -40,14 +40,23 @@ struct BeamChainModel {
   double slope_scale;  // m: half the section's height; force / scale compares with a force
 };
 
-enum class PartKind : std::int32_t { ground, body, beam };
+/// A place of a linear track's rail that rows pull at. Its nine unknowns are the displacements of
+/// r, a, b there; the track's step matrix gives them as free motion - compliance * forces.
+struct RailPortModel {
+  std::int32_t first;  // of its unknowns among the system's
+  std::int32_t rail, element;
+  double value[3];  // shape functions of the element's nodes
+  double rest[9];   // r, a, b
+};
+
+enum class PartKind : std::int32_t { ground, body, beam, rail };
 
 /// A point with three directions that a part carries. Directions are rows of `frame`, over the
 /// ground's axes, the body's axes, or the section's a x b, a, b.
 struct MarkerModel {
   PartKind kind;
-  std::int32_t part;
-  double position[3];  // on the ground; in body axes from the centre; of a beam 0, y, z, m
+  std::int32_t part;   // body, beam, or port on a rail
+  double position[3];  // on the ground; in body axes from the centre; of a beam or rail 0, y, z, m
   double frame[9];
   std::int32_t node;  // of a beam: the first of the three it lies on
   double value[3];    // shape functions of these three
@@ -96,14 +105,15 @@ enum class Hold : std::int32_t { augmented_lagrangian, baumgarte, gear_gupta_lei
 /// When Newton's matrix is made anew; always where it stops to bring the residual down.
 enum class Renew : std::int32_t { every_iteration, every_step, kept };
 
-/// A row's end A (side 0) or B (side 1) on a body or beam.
+/// A row's end A (side 0) or B (side 1) on a body, a beam or the track.
 struct EndModel {
   std::int32_t row, side;
 };
 
-/// All of it. Rows of joints, then those of springs; parts are bodies, then beams.
+/// All of it. Rows of joints, then those of springs; parts are bodies, then beams, then the track.
 struct SystemModel {
   std::int32_t bodies, beams, markers, joint_rows, spring_rows, motions, forces, sensors, ends;
+  std::int32_t ports;            // on rails; their unknowns are the last
   std::int32_t first, unknowns;  // in the state, padded to whole panels; parts count from `first`
   Hold hold;
   Renew renew;
@@ -120,12 +130,15 @@ struct SystemModel {
   const MarkerModel* marker;
   const RowModel* row;           // [joint_rows + spring_rows]
   const EndModel* end;           // [ends] of all rows, part after part
-  const std::int32_t* part_end;  // [bodies + beams + 1] the first end of a part
+  const std::int32_t* part_end;  // [bodies + beams + 2] the first end of a part
   const MotionModel* motion;
   const PointForceModel* force;
   const std::int32_t* sensor;    // [sensors] markers
   const double* constant_force;  // [unknowns] N: weight
-  const double* per_length;      // [unknowns] what makes their forces comparable: 1, or 1/m
+  const RailPortModel* port;
+  const double* port_compliance;  // [9 ports][9 ports] B S^-1 B', m/N
+  const double* port_shapes;      // [9 ports][lines' unknowns] S^-1 B', m/N
+  const double* per_length;       // [unknowns] what makes their forces comparable: 1, or 1/m
 };
 
 }  // namespace railstep

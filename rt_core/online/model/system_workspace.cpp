@@ -31,6 +31,7 @@ SystemTangent tangent_from(const SystemModel& s, Cursor& cursor) noexcept {
     factor += beam_factor_doubles(s.beam[i]);
     solved += 4LL * beam_groups(s, i) * s.beam[i].unknowns;
   }
+  solved += 9LL * s.ports * part_ends(s, s.bodies + s.beams);
   SystemTangent t{};
   t.factor = cursor.take(factor);
   t.solved = cursor.take(solved);
@@ -48,15 +49,15 @@ SystemWorkspace workspace_from(const SystemModel& s, Cursor& cursor, double* kep
   for (double** part : {&w.x, &w.shift, &w.v, &w.g, &w.residual, &w.change, &w.elastic, &w.inertia,
                         &w.outer, &w.nodes, &w.half_change})
     *part = cursor.take(n);
-  w.lanes = cursor.take(4 * n);
+  w.free_ports = cursor.take(9LL * s.ports);
   w.quaternion = cursor.take(4LL * s.bodies);
   w.matrix = cursor.take(9LL * s.bodies);
   w.start_matrix = cursor.take(9LL * s.bodies);
   w.centre = cursor.take(3LL * s.bodies);
   for (MarkerPose** part : {&w.pose, &w.start_pose, &w.force_pose}) *part = cursor.poses(s.markers);
   w.gradient = cursor.take(std::int64_t{kMostNodeUnknowns} * s.ends);
-  for (double** part :
-       {&w.value, &w.start_value, &w.wanted, &w.velocity_part, &w.force, &w.scratch})
+  for (double** part : {&w.value, &w.start_value, &w.wanted, &w.spring_lack, &w.velocity_part,
+                        &w.force, &w.scratch})
     *part = cursor.take(rows);
   std::int64_t tangents = 0;
   for (std::int32_t i = 0; i < s.beams; ++i)

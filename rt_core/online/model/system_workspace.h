@@ -23,7 +23,8 @@ struct Pull {
 /// workspace.
 struct SystemTangent {
   double* factor;       // of every beam, one after another
-  double* solved;       // S^-1 g: per beam [groups][unknowns][4], per end of a body [6]
+  double* solved;       // S^-1 g: per end of a body [6], per beam [groups][unknowns][4], per end of
+                        // the track [9 ports]
   double* compliance;   // [rows][rows] of the rows' own, factored
   double* scale;        // [rows]
   std::int32_t* order;  // [rows]
@@ -44,7 +45,7 @@ struct SystemWorkspace {
   double* outer;           // [unknowns] N, weight and applied forces
   double* nodes;           // [unknowns] of beams, positions at which forces are taken
   double* half_change;     // [unknowns] of beams, energy-momentum
-  double* lanes;           // [unknowns][4]
+  double* free_ports;      // [9 ports] displacements of the track without rows
   double* quaternion;      // [bodies][4] at the step's end
   double* matrix;          // [bodies][9] of it
   double* start_matrix;    // [bodies][9] at the step's start
@@ -56,6 +57,7 @@ struct SystemWorkspace {
   double* value;           // [rows] Phi at the end
   double* start_value;     // [rows] of springs, energy-momentum
   double* wanted;          // [rows]
+  double* spring_lack;     // [rows] of springs: their law less their force, N
   double* velocity_part;   // [rows] of `wanted`, Gear, Gupta, Leimkuhler
   double* force;           // [rows] the iterate
   double* scratch;         // [rows]
@@ -69,7 +71,7 @@ inline std::int32_t system_rows(const SystemModel& s) noexcept {
 inline std::int32_t beam_width(const BeamChainModel& beam) noexcept {
   return beam.planar != 0 ? kPlanarUnknowns : 9;
 }
-/// Ends of rows on a part; parts are bodies, then beams.
+/// Ends of rows on a part; parts are bodies, then beams, then the track.
 inline std::int32_t part_ends(const SystemModel& s, std::int32_t part) noexcept {
   return s.part_end[part + 1] - s.part_end[part];
 }

@@ -6,7 +6,7 @@ namespace railstep {
 
 namespace {
 
-/// Position of the section's point and a, b at a beam's marker, from nodal values of one kind.
+/// r, a, b at a beam's marker from nodal values of one kind.
 /// @param nodes  of the beam
 /// @param out    [3][3] r, a, b
 void interpolate(const BeamChainModel& beam, const MarkerModel& marker, const double* nodes,
@@ -22,12 +22,28 @@ void interpolate(const BeamChainModel& beam, const MarkerModel& marker, const do
     for (int c = 0; c < 3; ++c) out[f][c] = full[3 * f + c];
 }
 
-/// Nodal positions and slopes at a beam's marker: rest and displacement.
-void section_at(const BeamChainModel& beam, const MarkerModel& marker, const double* x,
+/// What a port's nine are.
+void nine(const double* values, double out[3][3]) noexcept {
+  for (int f = 0; f < 3; ++f)
+    for (int c = 0; c < 3; ++c) out[f][c] = values[3 * f + c];
+}
+
+/// r, a, b of displacements, velocities or accelerations at a marker on a beam or rail.
+void section_change(const SystemModel& s, const MarkerModel& marker, const double* x,
+                    double out[3][3]) noexcept {
+  if (marker.kind == PartKind::rail) return nine(x + s.port[marker.part].first, out);
+  interpolate(s.beam[marker.part], marker, x + s.beam[marker.part].first, out);
+}
+
+/// Position and slopes at a marker on a beam or rail: rest and displacement.
+void section_at(const SystemModel& s, const MarkerModel& marker, const double* x,
                 double out[3][3]) noexcept {
   double moved[3][3];
-  interpolate(beam, marker, beam.rest, out);
-  interpolate(beam, marker, x + beam.first, moved);
+  if (marker.kind == PartKind::rail)
+    nine(s.port[marker.part].rest, out);
+  else
+    interpolate(s.beam[marker.part], marker, s.beam[marker.part].rest, out);
+  section_change(s, marker, x, moved);
   for (int f = 0; f < 3; ++f)
     for (int c = 0; c < 3; ++c) out[f][c] += moved[f][c];
 }
@@ -52,10 +68,10 @@ MarkerPose on_body(const RigidBodyModel& body, const MarkerModel& marker, const 
   return pose;
 }
 
-MarkerPose on_beam(const BeamChainModel& beam, const MarkerModel& marker,
-                   const double* x) noexcept {
+MarkerPose on_section(const SystemModel& system, const MarkerModel& marker,
+                      const double* x) noexcept {
   double s[3][3], d[3];
-  section_at(beam, marker, x, s);
+  section_at(system, marker, x, s);
   cross(s[1], s[2], d);
   MarkerPose pose;
   for (int c = 0; c < 3; ++c) {
@@ -99,12 +115,12 @@ MarkerJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, con
   return jet;
 }
 
-MarkerJet jet_on_beam(const BeamChainModel& beam, const MarkerModel& marker,
-                      const Motions& at) noexcept {
+MarkerJet jet_on_section(const SystemModel& system, const MarkerModel& marker,
+                         const Motions& at) noexcept {
   double x[3][3], v[3][3], g[3][3];
-  section_at(beam, marker, at.x, x);
-  interpolate(beam, marker, at.v + beam.first, v);
-  interpolate(beam, marker, at.g + beam.first, g);
+  section_at(system, marker, at.x, x);
+  section_change(system, marker, at.v, v);
+  section_change(system, marker, at.g, g);
   Jet s[3][3], d[3];
   for (int f = 0; f < 3; ++f)
     for (int c = 0; c < 3; ++c) s[f][c] = {x[f][c], v[f][c], g[f][c]};
@@ -136,9 +152,10 @@ void pull_on_body(const RigidBodyModel& body, const MarkerPose& at, const double
   }
 }
 
-void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const MarkerPose& at,
-                  const Pull& pull, double* row) noexcept {
-  double on[9], normal[3] = {}, a[3] = {}, b[3] = {}, part[3];
+/// A pull as forces on the r, a, b of a section.
+void pull_on_section(const MarkerModel& marker, const MarkerPose& at, const Pull& pull,
+                     double* on) noexcept {
+  double normal[3] = {}, a[3] = {}, b[3] = {}, part[3];
   for (int k = 0; k < 3; ++k)
     for (int c = 0; c < 3; ++c) {
       normal[c] += marker.frame[3 * k] * pull.axis[k][c];
@@ -158,6 +175,12 @@ void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const M
   for (int c = 0; c < 3; ++c) on[3 + c] += part[c];
   cross(normal, a, part);  // n . (a x db) = db . (n x a)
   for (int c = 0; c < 3; ++c) on[6 + c] += part[c];
+}
+
+void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const MarkerPose& at,
+                  const Pull& pull, double* row) noexcept {
+  double on[9];
+  pull_on_section(marker, at, pull, on);
   const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
   for (int n = 0; n < 3; ++n)
     for (int k = 0; k < width; ++k)
@@ -170,15 +193,15 @@ MarkerPose marker_pose(const SystemModel& system, const MarkerModel& marker, con
                        const double* matrix) noexcept {
   if (marker.kind == PartKind::body)
     return on_body(system.body[marker.part], marker, x, matrix + 9 * marker.part);
-  if (marker.kind == PartKind::beam) return on_beam(system.beam[marker.part], marker, x);
-  return on_ground(marker);
+  if (marker.kind == PartKind::ground) return on_ground(marker);
+  return on_section(system, marker, x);
 }
 
 MarkerJet marker_jet(const SystemModel& system, const MarkerModel& marker,
                      const Motions& at) noexcept {
   if (marker.kind == PartKind::body)
     return jet_on_body(system.body[marker.part], marker, at, at.matrix + 9 * marker.part);
-  if (marker.kind == PartKind::beam) return jet_on_beam(system.beam[marker.part], marker, at);
+  if (marker.kind != PartKind::ground) return jet_on_section(system, marker, at);
   const MarkerPose pose = on_ground(marker);
   MarkerJet jet{};
   for (int c = 0; c < 3; ++c) {
@@ -195,12 +218,15 @@ void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, cons
     pull_on_body(system.body[marker.part], at, centre, matrix, pull, row);
   else if (marker.kind == PartKind::beam)
     pull_on_beam(system.beam[marker.part], marker, at, pull, row);
+  else if (marker.kind == PartKind::rail)
+    pull_on_section(marker, at, pull, row);
 }
 
 Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept {
   if (marker.kind == PartKind::body)
     return {system.body[marker.part].first, system.body[marker.part].unknowns};
   if (marker.kind == PartKind::ground) return {0, 0};
+  if (marker.kind == PartKind::rail) return {system.port[marker.part].first, 9};
   const BeamChainModel& beam = system.beam[marker.part];
   const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
   return {beam.first + width * marker.node, 3 * width};

@@ -140,6 +140,33 @@ void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor,
     beam_solve(beam, factor, solved + 4LL * beam.unknowns * g);
 }
 
+/// y += C f of all ports.
+void add_port_motion(const SystemModel& s, double factor, const double* force,
+                     double* out) noexcept {
+  const std::int32_t n = 9 * s.ports;
+  for (std::int32_t i = 0; i < n; ++i) {
+    double sum = 0.;
+    for (std::int32_t k = 0; k < n; ++k)
+      sum += s.port_compliance[std::ptrdiff_t{n} * i + k] * force[k];
+    out[i] += factor * sum;
+  }
+}
+
+/// C g of an end on a rail. @returns how many it is
+std::int32_t solve_track_end(const SystemModel& s, std::int32_t end, const double* gradient,
+                             double* solved) noexcept {
+  const RowModel& row = s.row[s.end[end].row];
+  const MarkerModel& marker = s.marker[s.end[end].side == 0 ? row.a : row.b];
+  const std::int32_t n = 9 * s.ports;
+  for (std::int32_t i = 0; i < n; ++i) {
+    const double* C = s.port_compliance + std::ptrdiff_t{n} * i + 9 * marker.part;
+    double sum = 0.;
+    for (int k = 0; k < 9; ++k) sum += C[k] * gradient[k];
+    solved[i] = sum;
+  }
+  return n;
+}
+
 }  // namespace
 
 void place_start(const Model& model, const SystemStart& start, SystemWorkspace& w) noexcept {
@@ -186,10 +213,8 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
 std::int32_t part_forces(const Model& model, const SystemStart& start, bool renew,
                          SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
-  for (std::int32_t b = 0; b < s.bodies; ++b) {
-    body_inertia(model, s.body[b], start, w);
-    for (std::int32_t k = 0; k < s.body[b].unknowns; ++k) w.elastic[s.body[b].first + k] = 0.;
-  }
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.inertia[i] = w.elastic[i] = 0.;  // padding too
+  for (std::int32_t b = 0; b < s.bodies; ++b) body_inertia(model, s.body[b], start, w);
   std::int32_t lost = 0;
   double* factor = w.tangent.factor;
   for (std::int32_t b = 0; b < s.beams; ++b) {
@@ -197,10 +222,11 @@ std::int32_t part_forces(const Model& model, const SystemStart& start, bool rene
     beam_elastic(model, beam, renew, w);
     if (renew)
       lost += beam_factor(beam, model.scheme.kg, s.mean != 0 ? .5 : 1., w.tangents, factor);
-    for (std::int32_t i = 0; i < beam.unknowns; ++i) w.inertia[beam.first + i] = 0.;
     beam_inertia(beam, w.g + beam.first, w.inertia + beam.first);
     factor += beam_factor_doubles(beam);
   }
+  for (std::int32_t i = 0; i < 9 * s.ports; ++i)
+    w.inertia[s.port[0].first + i] = w.elastic[s.port[0].first + i] = 0.;
   return lost;
 }
 
@@ -217,6 +243,12 @@ void outer_forces(const Model& model, double time, SystemWorkspace& w) noexcept 
     end_row(s, w, force.marker, point_pull(force, size, w.force_pose[force.marker]), row);
     for (std::int32_t k = 0; k < at.count; ++k) w.outer[at.first + k] += row[k];
   }
+}
+
+void solve_ports(const SystemModel& s, SystemWorkspace& w) noexcept {
+  const std::int32_t at = s.port[0].first;
+  for (std::int32_t i = 0; i < 9 * s.ports; ++i) w.change[at + i] = w.free_ports[i] - w.x[at + i];
+  add_port_motion(s, -1., w.residual + at, w.change + at);
 }
 
 void solve_parts(const Model& model, SystemWorkspace& w) noexcept {
@@ -236,6 +268,7 @@ void solve_parts(const Model& model, SystemWorkspace& w) noexcept {
     beam_solve_one(beam, factor, w.change + beam.first);
     factor += beam_factor_doubles(beam);
   }
+  if (s.ports > 0) solve_ports(s, w);
 }
 
 void solve_ends(const Model& model, SystemWorkspace& w) noexcept {
@@ -251,6 +284,9 @@ void solve_ends(const Model& model, SystemWorkspace& w) noexcept {
     solved += 4LL * beam_groups(s, b) * s.beam[b].unknowns;
     factor += beam_factor_doubles(s.beam[b]);
   }
+  const std::int32_t track = s.bodies + s.beams;
+  for (std::int32_t e = s.part_end[track]; e < s.part_end[track + 1]; ++e)
+    solved += solve_track_end(s, e, w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * e, solved);
 }
 
 }  // namespace railstep

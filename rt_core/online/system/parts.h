@@ -27,6 +27,9 @@ std::int32_t part_forces(const Model& model, const SystemStart& start, bool rene
 /// Weight and applied forces.
 void outer_forces(const Model& model, double time, SystemWorkspace& w) noexcept;
 
+/// change of the ports on rails: to free motion - compliance * residual.
+void solve_ports(const SystemModel& system, SystemWorkspace& w) noexcept;
+
 /// change = -S^-1 residual, by the factors that stand.
 void solve_parts(const Model& model, SystemWorkspace& w) noexcept;
 

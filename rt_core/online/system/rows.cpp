@@ -37,8 +37,8 @@ double joint_wanted(const Model& model, const RowModel& row, const SystemWorkspa
   return ((phi.a + damp * phi.v) + stiff * phi.x) / ((kg + damp * kv) + stiff);
 }
 
-/// Of a spring: what its force lacks of its law, as an extension.
-double spring_wanted(const Model& model, std::int32_t r, const SystemWorkspace& w, Jet s) noexcept {
+/// Of a spring: what its force lacks of its law, N.
+double spring_lack(const Model& model, std::int32_t r, const SystemWorkspace& w, Jet s) noexcept {
   const SystemModel& system = model.system;
   const RowModel& row = system.row[r];
   double law;
@@ -51,7 +51,7 @@ double spring_wanted(const Model& model, std::int32_t r, const SystemWorkspace& 
                             marker_jet(system, system.marker[row.b], at), s);
     law = row.stiffness * phi.x + row.damping * phi.v;
   }
-  return (law - w.force[r]) / spring_slope(model, row);
+  return law - w.force[r];
 }
 
 /// Gradients of both ends of a row, where forces are taken.
@@ -141,7 +141,8 @@ double set_rows(const Model& model, double time, SystemWorkspace& w) noexcept {
       w.velocity_part[r] = w.wanted[r] = joint_wanted(model, row, w, w.value[r], motion);
       if (!(magnitude(w.wanted[r]) <= largest)) largest = magnitude(w.wanted[r]);
     } else {
-      w.wanted[r] = spring_wanted(model, r, w, motion);
+      w.spring_lack[r] = spring_lack(model, r, w, motion);
+      w.wanted[r] = w.spring_lack[r] / spring_slope(model, row);
     }
   }
   return largest;
@@ -194,6 +195,11 @@ void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
     });
     solved += std::ptrdiff_t{4} * beam_groups(s, b) * beam.unknowns;
   }
+  const std::int32_t track = s.bodies + s.beams;
+  add_part(s, track, 1, w, [&](std::int32_t f, std::int32_t first) {
+    return solved + std::ptrdiff_t{9} * s.ports * (f - s.part_end[track]) +
+           (first - s.port[0].first);
+  });
   const bool yields = s.hold == Hold::augmented_lagrangian;
   for (std::int32_t r = 0; r < rows; ++r)
     w.tangent.compliance[std::ptrdiff_t{rows} * r + r] += r >= s.joint_rows
@@ -232,6 +238,10 @@ void subtract_row_motion(const SystemModel& system, const SystemWorkspace& w, co
       }
     }
   }
+  const std::int32_t track = s.bodies + s.beams, moved = 9 * s.ports;
+  for (std::int32_t e = s.part_end[track]; e < s.part_end[track + 1]; ++e, solved += moved)
+    for (std::int32_t k = 0; k < moved; ++k)
+      change[s.port[0].first + k] -= force[s.end[e].row] * solved[k];
 }
 
 }  // namespace railstep

@@ -3,6 +3,7 @@
 #include "online/system/rotation.h"
 #include "online/system/row.h"
 #include "online/system/rows.h"
+#include "online/system/track_ports.h"
 
 namespace railstep {
 
@@ -52,7 +53,11 @@ Size set_residual(const SystemModel& s, SystemWorkspace& w) noexcept {
 #pragma omp simd
   for (std::int32_t i = 0; i < s.unknowns; ++i)
     w.residual[i] += (w.inertia[i] + w.elastic[i]) - w.outer[i];
-  return {force_norm(s, w.residual), scale};
+  double sum = 0.;
+  for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r)
+    sum += w.spring_lack[r] * w.spring_lack[r];
+  const double own = force_norm(s, w.residual);
+  return {square_root(own * own + sum), scale};
 }
 
 /// One Newton step with the matrix that stands: row forces, then displacements.
@@ -93,17 +98,22 @@ void start_springs(const Model& model, double time, SystemWorkspace& w) noexcept
 }
 
 /// Hands the step's end to the scheme's correction.
-void leave(const Model& model, const SystemWorkspace& w, State& state,
-           Workspace& workspace) noexcept {
+void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& workspace) noexcept {
   const SystemModel& s = model.system;
+  if (s.ports > 0) {
+    solve_ports(s, w);
+    for (std::int32_t i = 0; i < 9 * s.ports; ++i)
+      w.x[s.port[0].first + i] += w.change[s.port[0].first + i];
+    subtract_line_motion(model, w.gradient, w.force, workspace.solved);
+  }
   for (std::int32_t i = 0; i < s.unknowns; ++i) workspace.solved[s.first + i] = w.x[i] - w.shift[i];
   for (std::int32_t r = 0; r < system_rows(s); ++r) state.row_force[r] = w.force[r];
   for (std::int32_t i = 0; i < 4 * s.bodies; ++i) state.quaternion[i] = w.quaternion[i];
 }
 
-/// Takes from velocities (order 1) or accelerations (2) what joints do not allow, in the metric of
-/// Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped. `second` takes the
-/// same change. @returns whether they are held
+/// Takes from velocities (order 1) or accelerations (2) of the model what joints do not allow, in
+/// the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped.
+/// `second` takes the same change. @returns whether they are held
 bool project(const Model& model, double time, int order, const Motions& at, double* rates,
              double* second, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
@@ -126,8 +136,11 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
     if (largest <= tolerance) return true;
     if (done == s.projections) return false;
     solve_rows(model, w, false, w.wanted);
-    subtract_row_motion(s, w, w.wanted, rates);
-    if (second != nullptr) subtract_row_motion(s, w, w.wanted, second);
+    for (double* const taken : {rates, second}) {
+      if (taken == nullptr) continue;
+      subtract_row_motion(s, w, w.wanted, taken + s.first);
+      subtract_line_motion(model, w.gradient, w.wanted, taken);
+    }
   }
 }
 
@@ -149,6 +162,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
   SystemResult result{Status::ok, 0, 0., 0.};
   guess(model, state, workspace, w);
+  read_ports(model, workspace.solved, w.free_ports);
   place_start(model, start, w);
   if (s.mean != 0) start_springs(model, time - model.scheme.dt, w);
   if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
@@ -197,11 +211,10 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
     for (int c = 3; c < 6; ++c)
       if (const std::int32_t k = s.body[b].column[c]; k >= 0) u[s.body[b].first + k] = 0.;
   if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
-  double *v = state.v + s.first, *g = state.g + s.first;
-  const Motions at{u, v, g, w.matrix};
+  const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
-  const bool velocities = project(model, time, 1, at, v, nullptr, w);
-  const bool accelerations = project(model, time, 2, at, g, state.a + s.first, w);
+  const bool velocities = project(model, time, 1, at, state.v, nullptr, w);
+  const bool accelerations = project(model, time, 2, at, state.g, state.a, w);
   return velocities && accelerations ? Status::ok : Status::cap_reached;
 }
 

@@ -1,0 +1,68 @@
+#include "offline/system/track_ports.h"
+
+#include "online/model/state.h"
+#include "online/step/line.h"
+#include "online/system/track_ports.h"
+
+namespace railstep {
+
+namespace {
+
+/// B' of one of a port's nine: its unit force on the lines' unknowns.
+void add_unit_force(const Model& model, const RailPortModel& port, int k, double* force) {
+  RailRow row{port.rail, port.element, {}};
+  for (int i = 0; i < 3; ++i) row.coefficient[i][k] = port.value[i];
+  for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], row, 1., force);
+}
+
+}  // namespace
+
+TrackPorts track_ports(const Model& model) {
+  const SystemModel& s = model.system;
+  const auto rows = static_cast<std::size_t>(9 * s.ports);
+  const auto n = static_cast<std::size_t>(model.bodies);
+  TrackPorts ports{std::vector<double>(rows * n, 0.), std::vector<double>(rows * rows, 0.)};
+  std::vector<double> column(rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    double* const shape = ports.shapes.data() + n * i;
+    add_unit_force(model, s.port[i / 9], static_cast<int>(i % 9), shape);
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      solve_band<1>(model.line[l].step, shape + model.line[l].first, 0);
+    read_ports(model, shape, column.data());
+    for (std::size_t k = 0; k < rows; ++k) ports.compliance[rows * k + i] = column[k];
+  }
+  return ports;
+}
+
+void WidenedTrack::widen(std::int32_t own, Model& model) {
+  const auto n = static_cast<std::size_t>(model.unknowns);
+  if (model.constant_force != nullptr) {
+    constant_force_.assign(model.constant_force, model.constant_force + n);
+    constant_force_.resize(n + static_cast<std::size_t>(own), 0.);
+    model.constant_force = constant_force_.data();
+  }
+  ProbeModel& probe = model.probe;
+  probe_index_.assign(probe.index, probe.index + probe.entries);
+  for (std::int32_t& index : probe_index_)
+    if (index >= model.unknowns) index += own;  // into v, which stands behind a longer u
+  probe.index = probe_index_.data();
+}
+
+void WidenedTrack::put_start(const Model& track, const Model& both,
+                             std::vector<double>& start) const {
+  std::vector<double> from(track.start, track.start + state_doubles(track));
+  const State own = state_on(track, from.data());
+  State all = state_on(both, start.data());
+  for (std::int32_t i = 0; i < track.unknowns; ++i) {
+    all.u[i] = own.u[i];
+    all.v[i] = own.v[i];
+    all.a[i] = own.a[i];
+    all.g[i] = own.g[i];
+  }
+  const std::int32_t at = both.system.ports > 0 ? both.system.first + both.system.port[0].first : 0;
+  if (both.system.ports == 0) return;
+  read_ports(both, all.u, all.u + at);
+  read_ports(both, all.v, all.v + at);
+}
+
+}  // namespace railstep
