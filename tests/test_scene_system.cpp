@@ -50,6 +50,7 @@ TEST_CASE("double_pendulum is the paper's", "[scene]") {
   CHECK(s.system.beams[0].ends[0] == BeamEnd::pinned);
   CHECK(s.system.beams[0].ends[1] == BeamEnd::free);
   CHECK(std::get<RectangleSize>(s.bars[0].bar.shape).height == .02);
+  CHECK(s.bars[0].bar.young == 210e6);  // the paper's, a thousandth of steel's
   CHECK(s.bars[0].bar.density == 7900.);
   CHECK(s.bars[0].bar.shear_factor_z == 1.);
   REQUIRE(s.system.joints.size() == 1);
