@@ -119,6 +119,18 @@ inline Eigen::Matrix2Xd jacobian(const FramePoint& p, const Eigen::VectorXd& q) 
   return J;
 }
 
+/// A point's acceleration where the unknowns have none, J' v with J' the Jacobian's rate:
+///   -th'^2 A s + 2 th' A' s_eta eta' - A e_x eta' H eta'.
+inline Eigen::Vector2d convective(const FramePoint& p, const Eigen::VectorXd& q,
+                                  const Eigen::VectorXd& v) {
+  const auto n = p.shape.cols();
+  const Eigen::VectorXd eta = q.tail(n), rate = v.tail(n);
+  const Eigen::Matrix2d A = turned(q[2]), slope = turned_slope(q[2]);
+  return -v[2] * v[2] * A * moved(p.at, p.shape, p.shortening, eta) +
+         2. * v[2] * slope * (moved_slope(p.shape, p.shortening, eta) * rate) -
+         rate.dot(p.shortening * rate) * A.col(0);
+}
+
 /// The in-plane part of nodal vectors, and the same turned by a right angle: (x, z) to (-z, x).
 inline Eigen::MatrixXd in_plane(Eigen::MatrixXd nodal) {
   for (int i = 1; i < nodal.rows(); i += 3) nodal.row(i).setZero();

@@ -37,6 +37,18 @@ struct SystemRun {
     reset(model(), state);
   }
 
+  /// Beside a track.
+  SystemRun(System scene, const SystemOptions& options, const Track& track,
+            const PackOptions& track_options, const Traffic& traffic = {})
+      : system(std::move(scene)),
+        packed(std::make_unique<PackedSystem>(system, options, track, traffic, track_options)),
+        memory(static_cast<std::size_t>(state_doubles(model()))),
+        scratch(static_cast<std::size_t>(workspace_doubles(model()))),
+        state(state_on(model(), memory.data())),
+        workspace(workspace_on(model(), scratch.data())) {
+    reset(model(), state);
+  }
+
   const Model& model() const { return packed->model(); }
   double time() const { return static_cast<double>(state.steps) * model().scheme.dt; }
   void frame() {
@@ -80,8 +92,7 @@ struct SystemRun {
   /// Of the body's material point that stands at `point` at rest.
   Eigen::Vector3d point_of_body(int i, const Eigen::Vector3d& point) const {
     const RigidBody& b = system.bodies[at(i)];
-    return body_position(i) +
-           body_rotation(i) * (b.orientation.conjugate() * (point - b.position));
+    return body_position(i) + body_rotation(i) * (b.orientation.conjugate() * (point - b.position));
   }
 
   /// Centre of mass of a beam, m.
@@ -115,11 +126,11 @@ struct SystemRun {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
     for (int c = 0; c < 3; ++c)
       if (const std::int32_t k = body(i).column[from + c]; k >= 0)
-        result[c] = values[body(i).first + k];
+        result[c] = values[model().system.first + body(i).first + k];
     return result;
   }
   Eigen::VectorXd unpacked(const double* values, int i) const {
-    const double* from = values + model().system.beam[i].first;
+    const double* from = values + model().system.first + model().system.beam[i].first;
     const int nodes = 2 * system.beams[at(i)].elements + 1;
     if (!system.planar) return Eigen::Map<const Eigen::VectorXd>(from, 9 * nodes);
     constexpr int kPlace[5] = {0, 2, 4, 6, 8};
@@ -195,8 +206,7 @@ inline double SystemRun::energy() const {
       const Vector27 own = q.segment<27>(18 * e), speed = v.segment<27>(18 * e);
       Vector27 fall = Vector27::Zero();
       for (int n = 0; n < 3; ++n) fall.segment<3>(9 * n) = system.gravity;
-      sum += beam_energy(element, own.data()) + .5 * speed.dot(mass * speed) -
-             fall.dot(mass * own);
+      sum += beam_energy(element, own.data()) + .5 * speed.dot(mass * speed) - fall.dot(mass * own);
     }
   }
   return sum;

@@ -12,6 +12,8 @@
 #include "online/model/load.h"
 #include "online/step/probe.h"
 #include "online/step/step.h"
+#include "online/system/sense.h"
+#include "pendulum_core.h"
 #include "simulate.h"
 
 using namespace railstep;
@@ -170,4 +172,39 @@ TEST_CASE("what goes wrong in a run takes nothing from the heap either", "[no_he
     CHECK(has(met, Status::nonfinite_state));
     CHECK(outputs.first_bad_unknown >= 0);
   }
+}
+
+TEST_CASE("a system of beams and joints takes nothing from the heap", "[no_heap][system]") {
+  const bool planar = GENERATE(false, true);
+  const Hold hold = GENERATE(Hold::augmented_lagrangian, Hold::baumgarte,
+                             Hold::gear_gupta_leimkuhler, Hold::direct);
+  const Renew renew = GENERATE(Renew::every_iteration, Renew::every_step, Renew::kept);
+  SystemOptions options;
+  options.scheme = generalised_alpha(1e-3, .9);
+  options.hold = hold;
+  options.renew = renew;
+  System scene = pendulum_system({}, 5, planar);
+  scene.joints.push_back(scene.joints[0]);  // twice: rows without a force of their own
+  const PackedSystem packed(scene, options);
+  const Model& model = packed.model();
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(model))),
+      scratch(static_cast<std::size_t>(workspace_doubles(model)));
+  Outputs outputs{};
+  Status met = Status::ok;
+  const Heap before;
+  State state = state_on(model, memory.data());
+  Workspace workspace = workspace_on(model, scratch.data());
+  reset(model, state);
+  for (int frame = 0; frame < 50; ++frame)
+    met = met | advance_frame(model, state, workspace, outputs);
+  const PointMotion end = sense(model, state, 2);
+  const JointForce pull = joint_force(model, state, 0);
+  state.v[0] = std::numeric_limits<double>::quiet_NaN();
+  met = met | advance_frame(model, state, workspace, outputs);
+  const Heap after;
+  CHECK(after == before);
+  CHECK(end.position[2] < -1e-3);
+  CHECK(pull.force[2] != 0.);
+  CHECK(has(met, Status::nonfinite_state));
+  CHECK(has(met, Status::redundant_joint) == (hold != Hold::augmented_lagrangian));
 }

@@ -10,7 +10,7 @@ namespace railstep {
 
 /// How a system's joints are held and its steps are solved.
 struct SystemOptions {
-  Scheme scheme;
+  Scheme scheme = {};
   bool energy_momentum = false;  // with the scheme energy_momentum()
   int steps_per_frame = 1;
   Hold hold = Hold::augmented_lagrangian;

@@ -1,5 +1,7 @@
 #include "offline/system/track_ports.h"
 
+#include <Eigen/Dense>
+
 #include "online/model/state.h"
 #include "online/step/line.h"
 #include "online/system/track_ports.h"
@@ -13,6 +15,20 @@ void add_unit_force(const Model& model, const RailPortModel& port, int k, double
   RailRow row{port.rail, port.element, {}};
   for (int i = 0; i < 3; ++i) row.coefficient[i][k] = port.value[i];
   for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], row, 1., force);
+}
+
+/// Accelerations of lines under the forces that move the ports: g = kg S^-1 B' f, where kg C f are
+/// the ports' own. @param g  of all unknowns
+void add_port_accelerations(const Model& model, double* g) {
+  const SystemModel& s = model.system;
+  const Eigen::Index n = 9 * s.ports;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::MatrixXd C = Eigen::Map<const Square>(s.port_compliance, n, n);
+  const Eigen::Map<const Eigen::VectorXd> moved(g + s.first + s.port[0].first, n);
+  const Eigen::VectorXd f = C.completeOrthogonalDecomposition().solve(moved);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (std::int32_t k = 0; k < model.bodies; ++k)
+      g[k] += f[i] * s.port_shapes[Eigen::Index{model.bodies} * i + k];
 }
 
 }  // namespace
@@ -56,13 +72,13 @@ void WidenedTrack::put_start(const Model& track, const Model& both,
   for (std::int32_t i = 0; i < track.unknowns; ++i) {
     all.u[i] = own.u[i];
     all.v[i] = own.v[i];
-    all.a[i] = own.a[i];
-    all.g[i] = own.g[i];
+    all.a[i] = all.g[i] = own.g[i];
   }
-  const std::int32_t at = both.system.ports > 0 ? both.system.first + both.system.port[0].first : 0;
   if (both.system.ports == 0) return;
-  read_ports(both, all.u, all.u + at);
-  read_ports(both, all.v, all.v + at);
+  add_port_accelerations(both, all.a);
+  add_port_accelerations(both, all.g);
+  const std::int32_t at = both.system.first + both.system.port[0].first;
+  for (double* values : {all.u, all.v, all.a, all.g}) read_ports(both, values, values + at);
 }
 
 }  // namespace railstep

@@ -54,6 +54,8 @@ struct Outputs {
   double constraint_violation;      // largest of the frame, m or rad
   std::int32_t iterations;          // largest of the frame, of contact, joint and Newton solves
   double force_residual;            // of the system: largest of the frame, over its largest force
+  std::int32_t redundant_rows;      // of the system's joints, in the frame's last step that met any
+  std::int32_t redundant_row[kMostNamedRows];  // the first of them, among the system's rows
 };
 
 inline std::int64_t state_doubles(const Model& model) noexcept {

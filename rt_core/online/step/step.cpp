@@ -101,6 +101,7 @@ void start_frame(const Model& model, Outputs& out) noexcept {
   out.constraint_violation = 0.;
   out.iterations = 0;
   out.force_residual = 0.;
+  out.redundant_rows = 0;
   for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
     out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
 }
@@ -127,6 +128,9 @@ void collect(const SystemResult& met, Outputs& out) noexcept {
   if (!(met.violation <= out.constraint_violation)) out.constraint_violation = met.violation;
   if (!(met.force_residual <= out.force_residual)) out.force_residual = met.force_residual;
   if (met.iterations > out.iterations) out.iterations = met.iterations;
+  if (met.redundant_rows == 0) return;
+  out.redundant_rows = met.redundant_rows;
+  for (int i = 0; i < kMostNamedRows; ++i) out.redundant_row[i] = met.redundant_row[i];
 }
 
 void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {

@@ -153,6 +153,35 @@ bool is_renewed(const SystemModel& s, const SystemTangent& t, std::int32_t done,
          *t.age > static_cast<double>(s.keep_steps);
 }
 
+/// Rows that hang on others where the matrix was made.
+void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& result) noexcept {
+  const auto rank = static_cast<std::int32_t>(*t.rank);
+  result.redundant_rows = s.joint_rows - rank;
+  if (result.redundant_rows > 0) result.status = result.status | Status::redundant_joint;
+  for (std::int32_t i = 0; i < result.redundant_rows && i < kMostNamedRows; ++i)
+    result.redundant_row[i] = t.order[rank + i];
+}
+/// How the iterations go on: what forces lack and what joints want, each against the one before.
+struct Progress {
+  double residual = __builtin_inf(), wanted = __builtin_inf();
+  bool slow = false;   // one did not halve with a matrix that stood: make it anew
+  bool grown = false;  // one grew, far off perhaps, with a matrix of an earlier step: begin again
+
+  /// @param stood  whether this iterate came by a matrix that stood
+  /// @param old    whether that is one of an earlier step
+  void look(double residual_now, double wanted_now, double tolerance, bool stood,
+            bool old) noexcept {
+    const auto over = [&](double part) {
+      return !(residual_now <= part * residual) ||
+             (wanted_now > tolerance && !(wanted_now <= part * wanted));
+    };
+    slow = stood && over(.5);
+    grown = old && over(1.);
+    residual = residual_now;
+    wanted = wanted_now;
+  }
+};
+
 }  // namespace
 
 SystemResult solve_system(const Model& model, State& state, Workspace& workspace) noexcept {
@@ -160,17 +189,17 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
   const SystemStart start = start_of(model, state, workspace);
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
-  SystemResult result{Status::ok, 0, 0., 0.};
+  SystemResult result{};
   guess(model, state, workspace, w);
   read_ports(model, workspace.solved, w.free_ports);
   place_start(model, start, w);
   if (s.mean != 0) start_springs(model, time - model.scheme.dt, w);
   if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
-  double before = -1.;
-  bool slow = false;
+  Progress progress;
+  bool old = true;  // the matrix is of an earlier step
   for (std::int32_t done = 0;; ++done) {
     place_parts(model, start, w);
-    const bool renew = is_renewed(s, w.tangent, done, slow);
+    const bool renew = is_renewed(s, w.tangent, done, progress.slow);
     part_forces(model, start, renew, w);
     outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, w);
     const double wanted = set_rows(model, time, w);
@@ -184,20 +213,24 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
       result.status = Status::cap_reached;
       break;
     }
+    result.iterations = done + 1;
+    progress.look(size.residual, wanted, s.joint_tolerance, !renew, old && !renew);
+    if (progress.grown) {
+      progress = {.slow = true};
+      guess(model, state, workspace, w);
+      continue;
+    }
     if (renew) {
+      old = false;
       solve_ends(model, w);
       factor_rows(model, w);
       *w.tangent.age = 1.;
     }
     newton_step(model, w);
     if (s.hold == Hold::gear_gupta_leimkuhler) shift_step(model, w);
-    slow = before >= 0. && !renew && !(size.residual <= .5 * before);
-    before = size.residual;
-    result.iterations = done + 1;
   }
   leave(model, w, state, workspace);
-  if (static_cast<std::int32_t>(*w.tangent.rank) < s.joint_rows)
-    result.status = result.status | Status::redundant_joint;
+  name_redundant(s, w.tangent, result);
   return result;
 }
 

@@ -9,6 +9,8 @@ struct SystemResult {
   std::int32_t iterations;
   double violation;       // largest |Phi| of the joints at the step's end, m, or 1
   double force_residual;  // over the largest kind of force
+  std::int32_t redundant_rows;
+  std::int32_t redundant_row[kMostNamedRows];
 };
 
 /// Newton's iterations of one step, capped: finds the displacements at its end, which go into

@@ -1,0 +1,160 @@
+// Ways to hold a joint against each other, as CSV on stdout for docs/joints.md.
+// Usage: joints_table ways|penalty|baumgarte|tangent rigid|flexible|four_bar|four_bar_doubled
+#include <cstdio>
+#include <stdexcept>
+
+#include "joints_scenes.h"
+
+namespace railstep {
+namespace {
+
+constexpr double kSteps[] = {4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1e-4};  // s
+constexpr int kCaps[] = {1, 2, 3, 20};
+
+struct NamedScheme {
+  const char* name;
+  double rho;  // of generalised-alpha; below 0: backward Euler; above 1: energy-momentum
+};
+constexpr NamedScheme kSchemes[] = {{"euler", -1.},
+                                    {"generalised_alpha_0.6", .6},
+                                    {"generalised_alpha_0.9", .9},
+                                    {"generalised_alpha_1", 1.},
+                                    {"energy_momentum", 2.}};
+
+struct Way {
+  const char* name;
+  Hold hold;
+  double alpha_dt = 0.;  // Baumgarte's alpha = beta times the step; 0: the default
+  double alpha = 0.;     // the same in 1/s, where it does not follow the step
+};
+constexpr Way kWays[] = {{"augmented_lagrangian", Hold::augmented_lagrangian},
+                         {"baumgarte", Hold::baumgarte},
+                         {"baumgarte_20_per_s", Hold::baumgarte, 0., 20.},
+                         {"baumgarte_1_per_dt", Hold::baumgarte, 1.},
+                         {"index_1", Hold::baumgarte, 0., 1e-9},
+                         {"gear_gupta_leimkuhler", Hold::gear_gupta_leimkuhler},
+                         {"direct", Hold::direct}};
+
+bool allowed(Hold hold, const NamedScheme& scheme) {
+  return scheme.rho <= 1. || hold == Hold::augmented_lagrangian || hold == Hold::direct;
+}
+
+SystemOptions options_of(const Way& way, const NamedScheme& scheme, double dt, int cap) {
+  SystemOptions o;
+  o.scheme = scheme.rho < 0.   ? backward_euler(dt)
+             : scheme.rho > 1. ? energy_momentum(dt)
+                               : generalised_alpha(dt, scheme.rho);
+  o.energy_momentum = scheme.rho > 1.;
+  o.hold = way.hold;
+  o.alpha = o.beta = way.alpha > 0. ? way.alpha : way.alpha_dt / dt;
+  o.cap = cap;
+  o.tolerance = reachable_tolerance(o.scheme);
+  return o;
+}
+
+class Table {
+ public:
+  explicit Table(JointScene scene) : scene_(std::move(scene)) {
+    std::printf(
+        "scene,way,scheme,dt_s,cap,penalty,alpha_per_s,beta_per_s,tangent,tolerance,violation_m,"
+        "drift_m_per_s,violation_velocity_m_per_s,energy_error_j,energy_end_j,error_1s_m,"
+        "reference_error_m,mean_iterations,max_iterations,capped,redundant,step_us,end_s\n");
+  }
+
+  void row(const Way& way, const NamedScheme& scheme, const SystemOptions& o) const {
+    const RunResult r = measure(scene_.system, o, scene_.until, scene_.reference);
+    const bool own = o.alpha > 0. || o.beta > 0.;
+    const double alpha = own ? o.alpha : .2 / o.scheme.dt, beta = own ? o.beta : .2 / o.scheme.dt;
+    const char* tangent = o.renew == Renew::every_iteration ? "every_iteration"
+                          : o.renew == Renew::every_step    ? "every_step"
+                                                            : "kept";
+    const bool damped = way.hold == Hold::baumgarte;
+    std::printf("%s,%s,%s,%g,%d,%g,%g,%g,%s,%.2e,", scene_.name.c_str(), way.name, scheme.name,
+                o.scheme.dt, o.cap, o.penalty, damped ? alpha : 0., damped ? beta : 0., tangent,
+                o.tolerance);
+    std::printf("%.3e,%.2e,%.3e,%.3e,%.3e,%.3e,%.0e,", r.position, r.drift, r.velocity, r.energy,
+                r.energy_end, r.error, scene_.reference_error);
+    std::printf("%.3f,%d,%.4f,%.4f,%.2f,%g\n", r.mean_iterations, r.most_iterations, r.capped,
+                r.redundant, r.step_us, r.end);
+    std::fflush(stdout);
+  }
+
+ private:
+  JointScene scene_;
+};
+
+void ways(const Table& table) {
+  for (const Way& way : kWays)
+    for (const NamedScheme& scheme : kSchemes)
+      for (const double dt : kSteps)
+        for (const int cap : kCaps)
+          if (allowed(way.hold, scheme)) table.row(way, scheme, options_of(way, scheme, dt, cap));
+}
+
+void penalties(const Table& table) {
+  for (const double dt : {4e-3, 1e-3, 2.5e-4})
+    for (const int cap : {2, 20})
+      for (double penalty = 1e3; penalty < 2e13; penalty *= 10.) {
+        SystemOptions o = options_of(kWays[0], kSchemes[2], dt, cap);
+        o.penalty = penalty;
+        table.row(kWays[0], kSchemes[2], o);
+      }
+}
+
+/// beta = ratio alpha: below 1 aperiodic, 1 critical, above it swings.
+void dampings(const Table& table) {
+  for (const double dt : {4e-3, 1e-3, 2.5e-4})
+    for (const double alpha_dt : {.002, .01, .02, .05, .1, .2, .3, .5, 1., 2., 5.})
+      for (const double ratio : {.5, 1., 1.4142135623730951, 2.}) {
+        SystemOptions o = options_of(kWays[1], kSchemes[2], dt, 20);
+        o.alpha = alpha_dt / dt;
+        o.beta = ratio * o.alpha;
+        table.row(kWays[1], kSchemes[2], o);
+      }
+}
+
+void tangents(const Table& table) {
+  for (const Way& way : kWays)
+    for (const double dt : {4e-3, 1e-3, 2.5e-4})
+      for (const Renew renew : {Renew::every_iteration, Renew::every_step, Renew::kept})
+        for (const NamedScheme& scheme : {kSchemes[2], kSchemes[4]}) {
+          if (!allowed(way.hold, scheme)) continue;
+          SystemOptions o = options_of(way, scheme, dt, 20);
+          o.renew = renew;
+          table.row(way, scheme, o);
+        }
+}
+
+JointScene scene_of(const std::string& name) {
+  if (name == "rigid") return rigid_pendulum();
+  if (name == "flexible") return flexible_pendulum();
+  if (name == "four_bar" || name == "four_bar_doubled") return four_bar(name != "four_bar");
+  throw std::invalid_argument("unknown scene " + name);
+}
+
+void print_table(const std::string& name, const Table& table) {
+  if (name == "ways") return ways(table);
+  if (name == "penalty") return penalties(table);
+  if (name == "baumgarte") return dampings(table);
+  if (name == "tangent") return tangents(table);
+  throw std::invalid_argument("unknown table " + name);
+}
+
+}  // namespace
+}  // namespace railstep
+
+int main(int count, char** words) {
+  if (count != 3) {
+    std::fprintf(stderr,
+                 "usage: joints_table ways|penalty|baumgarte|tangent "
+                 "rigid|flexible|four_bar|four_bar_doubled\n");
+    return 2;
+  }
+  try {
+    railstep::print_table(words[1], railstep::Table(railstep::scene_of(words[2])));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}
