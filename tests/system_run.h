@@ -35,6 +35,7 @@ struct SystemRun {
         state(state_on(model(), memory.data())),
         workspace(workspace_on(model(), scratch.data())) {
     reset(model(), state);
+    measure_beams();
   }
 
   /// Beside a track.
@@ -47,6 +48,7 @@ struct SystemRun {
         state(state_on(model(), memory.data())),
         workspace(workspace_on(model(), scratch.data())) {
     reset(model(), state);
+    measure_beams();
   }
 
   const Model& model() const { return packed->model(); }
@@ -121,6 +123,22 @@ struct SystemRun {
   double energy() const;
 
  private:
+  /// An element of each beam, by itself. Its mass couples alike components only, so it is the same
+  /// in all axes.
+  struct OwnBeam {
+    Matrix27 mass;
+    Beam element;
+  };
+  std::vector<OwnBeam> own_beams;
+
+  void measure_beams() {
+    for (const FlexibleBeam& b : system.beams) {
+      const BeamLaw law = beam_law(b.section, b.material, b.rule, b.axis_z);
+      const double part = b.length / b.elements;
+      own_beams.push_back(
+          {element_matrices(b.section, law, part).mass, beam_element(law, straight_nodes(part))});
+    }
+  }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   Eigen::Vector3d carried(const double* values, int i, int from) const {
     Eigen::Vector3d result = Eigen::Vector3d::Zero();
@@ -139,9 +157,6 @@ struct SystemRun {
       for (int k = 0; k < 5; ++k) result[9 * n + kPlace[k]] = from[5 * n + k];
     return result;
   }
-  BeamLaw law(const FlexibleBeam& b) const {
-    return beam_law(b.section, b.material, b.rule, b.axis_z);
-  }
   /// M times nodal values of a beam.
   Eigen::VectorXd by_mass(int i, const Eigen::VectorXd& v) const;
   Eigen::VectorXd all_along_x(int i) const {
@@ -152,11 +167,9 @@ struct SystemRun {
 };
 
 inline Eigen::VectorXd SystemRun::by_mass(int i, const Eigen::VectorXd& v) const {
-  // The mass matrix couples alike components only, so it is the same in every axes.
-  const FlexibleBeam& b = system.beams[at(i)];
-  const Matrix27 mass = element_matrices(b.section, law(b), b.length / b.elements).mass;
   Eigen::VectorXd p = Eigen::VectorXd::Zero(v.size());
-  for (int e = 0; e < b.elements; ++e) p.segment<27>(18 * e) += mass * v.segment<27>(18 * e);
+  for (int e = 0; e < system.beams[at(i)].elements; ++e)
+    p.segment<27>(18 * e) += own_beams[at(i)].mass * v.segment<27>(18 * e);
   return p;
 }
 
@@ -198,9 +211,7 @@ inline double SystemRun::energy() const {
   }
   for (int i = 0; i < static_cast<int>(system.beams.size()); ++i) {
     const FlexibleBeam& b = system.beams[at(i)];
-    const double part = b.length / b.elements;
-    const Beam element = beam_element(law(b), straight_nodes(part));
-    const Matrix27 mass = element_matrices(b.section, law(b), part).mass;
+    const auto& [mass, element] = own_beams[at(i)];
     const Eigen::VectorXd q = beam_nodes(i), v = beam_speeds(i);
     for (int e = 0; e < b.elements; ++e) {
       const Vector27 own = q.segment<27>(18 * e), speed = v.segment<27>(18 * e);
@@ -241,9 +252,7 @@ inline SystemOptions sharp(const Scheme& scheme, Hold hold = Hold::augmented_lag
   options.hold = hold;
   options.cap = 20;
   options.projections = 8;
-  // A place of 1 m is known to 1e-16, so accelerations to kg of that, against those of 10 m/s2 and
-  // more that forces of weight make. Within a step it is a path of 2e-15 m.
-  options.tolerance = 1e-11 + 2e-16 * scheme.kg;
+  options.tolerance = 1e-12;  // else the round-off of places, which ends the iterations too
   options.joint_tolerance = 1e-12;
   return options;
 }

@@ -150,8 +150,8 @@ TEST_CASE("the published start and end close the squeezer's loops", "[system]") 
 }
 
 TEST_CASE("Andrews' squeezer ends where it is published to", "[system]") {
-  // An energy-momentum step is symmetric, so its error has even powers of h alone: three runs, two
-  // extrapolations (Romberg) leave h^6.
+  // An energy-momentum step is symmetric, so its error has even powers of h alone: two runs
+  // extrapolated leave h^4.
   const Pose7 right = pose(places(kEnd));
   std::array<Pose7, 3> T;
   for (std::size_t i = 0; i < 3; ++i)
@@ -163,31 +163,22 @@ TEST_CASE("Andrews' squeezer ends where it is published to", "[system]") {
   CHECK(error[0] < 2e-3);
   CHECK_THAT(order(error[1], error[2]), WithinAbs(2., .05));
   const Pose7 once = (4. * T[1] - T[0]) / 3., more = (4. * T[2] - T[1]) / 3.;
-  const Pose7 twice = (16. * more - once) / 15.;
-  INFO("extrapolated " << largest(once - right) << " " << largest(more - right) << " "
-                       << largest(twice - right));
-  CHECK(largest(more - right) < largest(once - right) / 8.);
-  // What the second extrapolation changes is the error it takes away.
-  CHECK(largest(twice - right) < 1e-8 + .2 * largest(twice - more));
+  INFO("extrapolated " << largest(once - right) << " " << largest(more - right));
+  // Next comes (w h)^4 / 80 over the crank's 16 rad: 3e-8, and a sixteenth of it.
+  CHECK(largest(once - right) < 3e-8);
+  CHECK(largest(more - right) < 3e-8 / 16.);
 }
 
-TEST_CASE("Andrews' squeezer by each scheme and hold", "[system]") {
+TEST_CASE("Andrews' squeezer by each way to hold its joints", "[system]") {
   const Pose7 right = pose(places(kEnd));
-  struct Case {
-    Hold hold;
-    Scheme (*scheme)(double);
-    double order;
-  };
-  const auto damped = [](double h) { return generalised_alpha(h, .9); };
-  const Case cases[] = {{Hold::augmented_lagrangian, damped, 2.},
-                        {Hold::baumgarte, damped, 2.},
-                        {Hold::gear_gupta_leimkuhler, damped, 2.},
-                        {Hold::direct, damped, 2.}};
-  for (const Case& c : cases) {
-    const double coarse = largest(at_end(c.scheme(1e-5), c.hold) - right);
-    const double fine = largest(at_end(c.scheme(5e-6), c.hold) - right);
-    INFO("hold " << static_cast<int>(c.hold) << ": " << coarse << " " << fine);
-    CHECK_THAT(order(coarse, fine), WithinAbs(c.order, .2));
+  for (const Hold hold : {Hold::augmented_lagrangian, Hold::baumgarte, Hold::gear_gupta_leimkuhler,
+                          Hold::direct}) {
+    const double coarse = largest(at_end(generalised_alpha(1e-5, .9), hold) - right);
+    const double fine = largest(at_end(generalised_alpha(5e-6, .9), hold) - right);
+    INFO("hold " << static_cast<int>(hold) << ": " << coarse << " " << fine);
+    // Baumgarte's rate goes with the step and adds an error of higher order.
+    CHECK(order(coarse, fine) > 1.8);
+    CHECK(fine < 1e-4);  // a quarter of w^3 T h^2 / 12 (above), halved for its mean
   }
 }
 

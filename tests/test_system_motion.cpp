@@ -71,7 +71,8 @@ TEST_CASE("a slider follows a polynomial", "[system]") {
     INFO("hold " << static_cast<int>(hold) << ": " << place << " m, " << speed << " m/s");
     CHECK(r.seen == Status::ok);
     CHECK(place < 1e-11);  // the joints' tolerance is 1e-12
-    CHECK(speed < 1e-8);   // and over the step 1e-9
+    // And over the step 1e-9; the direct solve leaves rates to the scheme: h^2 s''', at most 2 m/s3.
+    CHECK(speed < (hold == Hold::direct ? 2e-6 : 1e-8));
   }
 }
 

@@ -29,9 +29,9 @@ TEST_CASE("a hanging body hangs on its weight", "[system]") {
     for (int i = 0; i < 200; ++i) r.frame();
     INFO("hold " << static_cast<int>(hold));
     CHECK(r.seen == Status::ok);
-    // Newton's tolerance of 1e-11 and the round-off of 30 N.
-    CHECK(largest(r.joint_force(0) - Vector3d(0., 0., 3. * kGravity)) < 1e-9);
-    CHECK(largest(r.joint_moment(0)) < 1e-9);
+    // Places of 1 m are known to some ulp, 1e-15 m, forces to m kg = 1e7 N/m of that.
+    CHECK(largest(r.joint_force(0) - Vector3d(0., 0., 3. * kGravity)) < 1e-7);
+    CHECK(largest(r.joint_moment(0)) < 1e-7);
   }
 }
 
@@ -50,10 +50,11 @@ TEST_CASE("a clamped lever carries its weight and its moment", "[system]") {
     INFO("hold " << static_cast<int>(hold));
     CHECK(r.seen == Status::ok);
     CHECK(largest(r.body_position(0) - Vector3d(1., 0., 0.)) < 1e-11);
-    CHECK(largest(r.joint_force(0) - Vector3d(0., -4., 3. * kGravity - 10.)) < 1e-9);
+    // As above.
+    CHECK(largest(r.joint_force(0) - Vector3d(0., -4., 3. * kGravity - 10.)) < 1e-7);
     // Balance about the clamp: M + r x F + r_g x W = 0; (2,0,0) x (0,4,10) = (0,-20,8), and
     // (1,0,0) x (0,0,-3 g) = (0, 3 g, 0).
-    CHECK(largest(r.joint_moment(0) - Vector3d(0., 20. - 3. * kGravity, -8.)) < 1e-9);
+    CHECK(largest(r.joint_moment(0) - Vector3d(0., 20. - 3. * kGravity, -8.)) < 1e-7);
   }
 }
 
@@ -72,8 +73,8 @@ TEST_CASE("a see-saw's pivot and a line under its end share the load", "[system]
   SystemRun r(s, sharp(generalised_alpha(1e-3, .9)));
   for (int i = 0; i < 200; ++i) r.frame();
   CHECK(r.seen == Status::ok);
-  CHECK(largest(r.joint_force(0) - Vector3d(0., 0., .75 * 2. * kGravity)) < 1e-9);
-  CHECK(largest(r.joint_force(1) - Vector3d(0., 0., .25 * 2. * kGravity)) < 1e-9);
+  CHECK(largest(r.joint_force(0) - Vector3d(0., 0., .75 * 2. * kGravity)) < 1e-7);
+  CHECK(largest(r.joint_force(1) - Vector3d(0., 0., .25 * 2. * kGravity)) < 1e-7);
 }
 
 TEST_CASE("a swinging pendulum pulls m g cos + m l w^2 on its hinge", "[system]") {
@@ -88,11 +89,11 @@ TEST_CASE("a swinging pendulum pulls m g cos + m l w^2 on its hinge", "[system]"
       s.planar = planar;
       s.bodies = {rod_body(Vector3d::Zero(), 1., 0., m, .05)};
       s.joints = {hinge(ground(), body(0), Vector3d::Zero(), planar)};
-      SystemRun r(s, sharp(generalised_alpha(h, .9), hold));
+      SystemRun r(s, sharp(generalised_alpha(h, .6), hold));
       double most = 0.;
       while (r.time() < .8 - .5 * h) {
         r.frame();
-        if (r.time() < .1) continue;  // the scheme's own acceleration swings in from its start
+        if (r.time() < .1) continue;  // .6^100: what swings in from the start is over
         const Vector3d along = r.body_rotation(0).col(0), across(-along.z(), 0., along.x());
         const double sine = -along.z(), cosine = along.x();
         const double w2 = 2. * m * kGravity * l * sine / inertia;
@@ -154,6 +155,6 @@ TEST_CASE("an accelerated slider pulls m a on its drive", "[system]") {
     CHECK(r.seen == Status::ok);
     // 4 kg (2 - 1.8 t): the scheme's accelerations of a cubic motion lag by less than a step, 1.8 h.
     CHECK(largest(r.joint_force(1) - Vector3d(4. * (2. - 1.8), 0., 0.)) < 4. * 1.8e-3);
-    CHECK(largest(r.joint_force(0) - Vector3d(0., 0., 4. * kGravity)) < 1e-9);
+    CHECK(largest(r.joint_force(0) - Vector3d(0., 0., 4. * kGravity)) < 1e-7);
   }
 }

@@ -193,8 +193,16 @@ TEST_CASE("an equal-arm slider-crank goes through its singular position", "[syst
   constexpr double kUpright = .391732135, kRate = 1.68672409, kAt1 = -1.95128839;
   constexpr double kAt10 = -1.06179862;
   const Vector3d end(std::sqrt(2.), 0., 0.);
+  // Energy-momentum takes joints at the mean of a step, where Newton's matrix is not quite that of
+  // their end: through a singular position it goes with a softer penalty.
+  const bool by_mean = GENERATE(true, false);
+  const auto options = [&](double h) {
+    SystemOptions o = sharp(by_mean ? energy_momentum(h) : generalised_alpha(h, .95));
+    if (by_mean) o.penalty = 1e4;
+    return o;
+  };
   const auto run = [&](double h, double t, double& lost) {
-    SystemRun r(equal_arms(), sharp(energy_momentum(h)));
+    SystemRun r(equal_arms(), options(h));
     const double energy = r.energy();
     const auto steps = std::llround(t / h);
     for (std::int64_t i = 0; i < steps; ++i) {
@@ -225,7 +233,7 @@ TEST_CASE("an equal-arm slider-crank goes through its singular position", "[syst
   CHECK(later < .3 * late + 1e-8);
 
   // Upright: the crank's angle and rate at the published time, between two steps by a parabola.
-  SystemRun r(equal_arms(), sharp(energy_momentum(2.5e-4)));
+  SystemRun r(equal_arms(), options(2.5e-4));
   r.until(kUpright - 1e-4);
   const double left = kUpright - r.time(), rate = -r.body_spin(0).y();
   const Vector3d along = r.body_rotation(0).col(0);

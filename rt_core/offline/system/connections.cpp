@@ -22,7 +22,7 @@ class Connector {
 
   void add(const Joint& joint, std::int32_t index);
   void add(const SpringDamper& spring, std::int32_t index);
-  void add(const PointForce& force);
+  void add(const SystemForce& force);
   void add(const SystemSensor& sensor) {
     parts_.sensors.push_back(marker(sensor.on, sensor.point, Matrix3d::Identity()));
   }
@@ -290,7 +290,7 @@ void Connector::add(const SpringDamper& spring, std::int32_t index) {
   parts_.spring_rows.back().damping = spring.damping;
 }
 
-void Connector::add(const PointForce& force) {
+void Connector::add(const SystemForce& force) {
   if (force.moment && force.on.kind != Part::Kind::body)
     throw std::invalid_argument("a moment acts on a body");
   PointForceModel packed{};
@@ -347,7 +347,7 @@ void add_connections(const System& system, const Track* track, SystemParts& part
   const auto joints = static_cast<std::int32_t>(system.joints.size());
   each(system.springs, "spring",
        [&](const SpringDamper& s, std::int32_t i) { connect.add(s, joints + i); });
-  each(system.forces, "force", [&](const PointForce& f, std::int32_t) { connect.add(f); });
+  each(system.forces, "force", [&](const SystemForce& f, std::int32_t) { connect.add(f); });
   each(system.sensors, "sensor", [&](const SystemSensor& s, std::int32_t) { connect.add(s); });
   parts.rows = parts.joint_rows;
   parts.rows.insert(parts.rows.end(), parts.spring_rows.begin(), parts.spring_rows.end());

@@ -27,8 +27,8 @@ void check(const System& system, const SystemOptions& o) {
   if (o.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
   if (o.cap < 1 || o.projections < 0 || o.keep_steps < 1)
     throw std::invalid_argument("caps: 1 iteration or more, projections 0 or more, kept 1 or more");
-  if (!(o.penalty > 0.) || !(o.tolerance > 0.) || !(o.joint_tolerance > 0.))
-    throw std::invalid_argument("penalty and tolerances are above zero");
+  if (!(o.penalty >= 0.) || !(o.tolerance > 0.) || !(o.joint_tolerance > 0.))
+    throw std::invalid_argument("tolerances are above zero, and the penalty is not below it");
   if (!(o.alpha >= 0.) || !(o.beta >= 0.))
     throw std::invalid_argument("Baumgarte's alpha and beta are not negative");
   const bool by_mean = o.hold == Hold::augmented_lagrangian || o.hold == Hold::direct;
@@ -116,8 +116,9 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.port_compliance = memory_->ports.compliance.data();
   s.port_shapes = memory_->ports.shapes.data();
   const SystemStartState start = start_system(system, parts, model_);
+  const double penalty = options.penalty > 0. ? options.penalty : s.mean != 0 ? 1e4 : 1e9;
   for (std::size_t r = 0; r < parts.joint_rows.size(); ++r)
-    parts.rows[r].compliance = start.mobility[r] / (model_.scheme.kg * options.penalty);
+    parts.rows[r].compliance = start.mobility[r] / (model_.scheme.kg * penalty);
   memory_->start = start.state;
   if (track != nullptr) memory_->widened.put_start(memory_->track->model(), model_, memory_->start);
   model_.start = memory_->start.data();

@@ -15,11 +15,14 @@ struct SystemOptions {
   int steps_per_frame = 1;
   Hold hold = Hold::augmented_lagrangian;
   Renew renew = Renew::every_step;
-  int cap = 20;          // Newton iterations a step
-  int projections = 4;   // iterations of a projection of velocities or accelerations
-  int keep_steps = 10;   // of Renew::kept
-  double penalty = 1e9;  // augmented Lagrangian, over each joint row's own mass at rest / dt^2
-  double alpha = 0.;     // Baumgarte, 1/s; both 0: alpha = beta = 1 / (5 dt)
+  int cap = 20;         // Newton iterations a step
+  int projections = 4;  // iterations of a projection of velocities or accelerations
+  int keep_steps = 10;  // of Renew::kept
+  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2. 0: 1e9, and 1e4 with the
+  /// energy-momentum scheme, whose matrix takes a row's gradient at the mean: at a singular
+  /// position stiffer rows make its iterations diverge.
+  double penalty = 0.;
+  double alpha = 0.;  // Baumgarte, 1/s; both 0: alpha = beta = 1 / (5 dt)
   double beta = 0.;
   double tolerance = 1e-8;         // of the forces, over the largest kind of force
   double joint_tolerance = 1e-10;  // m, and 1

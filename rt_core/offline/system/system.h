@@ -91,7 +91,7 @@ struct SpringDamper {
 };
 
 /// Direction (ground axes) times s(t): N at a point, or N m on a body.
-struct PointForce {
+struct SystemForce {
   Part on = {};
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
@@ -114,7 +114,7 @@ struct System {
   std::vector<FlexibleBeam> beams = {};
   std::vector<Joint> joints = {};
   std::vector<SpringDamper> springs = {};
-  std::vector<PointForce> forces = {};
+  std::vector<SystemForce> forces = {};
   std::vector<SystemSensor> sensors = {};
 };
 

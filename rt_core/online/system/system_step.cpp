@@ -72,6 +72,32 @@ void newton_step(const Model& model, SystemWorkspace& w) noexcept {
   for (std::int32_t i = 0; i < s.unknowns; ++i) w.x[i] += w.change[i];
 }
 
+double larger(double a, double b) noexcept { return b > a ? b : a; }
+double magnitude(double x) noexcept { return x < 0. ? -x : x; }
+
+/// Largest entry of a Newton step.
+double step_size(const SystemModel& s, const SystemWorkspace& w) noexcept {
+  double size = 0.;
+  for (std::int32_t i = 0; i < s.unknowns; ++i) size = larger(size, magnitude(w.change[i]));
+  return size;
+}
+
+/// Whether a Newton step is the round-off of the places that forces are taken at, or is small and no
+/// smaller than the one before: more of them find nothing, whatever is left of the forces.
+/// @param before  size of the step before, 0: none
+bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
+                double before) noexcept {
+  double place = 0.;
+  for (std::int32_t i = 0; i < s.unknowns; ++i) place = larger(place, magnitude(w.x[i]));
+  for (std::int32_t b = 0; b < s.beams; ++b)
+    for (std::int32_t i = 0; i < s.beam[b].unknowns; ++i)
+      place = larger(place, magnitude(w.nodes[s.beam[b].first + i]));
+  for (std::int32_t m = 0; m < s.markers; ++m)
+    for (const double p : w.pose[m].point) place = larger(place, magnitude(p));
+  constexpr double ulp = 2.3e-16;
+  return step <= 4. * ulp * place || (step <= 1e-10 * place && step > .5 * before && before > 0.);
+}
+
 /// Gear, Gupta, Leimkuhler: the force keeps the velocities, a shift of the positions Phi. Both in
 /// the metric of Newton's matrix; what is left of Phi after the change that velocities take.
 void shift_step(const Model& model, SystemWorkspace& w) noexcept {
@@ -113,9 +139,11 @@ void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& work
 
 /// Takes from velocities (order 1) or accelerations (2) of the model what joints do not allow, in
 /// the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped.
-/// `second` takes the same change. @returns whether they are held
+/// `second` takes the same change. With accelerations go the forces that belong to them: S is kg M of
+/// a body, so that M g + G' force stays what it was.
+/// @returns whether they are held
 bool project(const Model& model, double time, int order, const Motions& at, double* rates,
-             double* second, SystemWorkspace& w) noexcept {
+             double* second, double* row_force, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const double per_step = 1. / model.scheme.dt;
   const double tolerance = s.joint_tolerance * (order == 1 ? per_step : per_step * per_step);
@@ -136,6 +164,9 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
     if (largest <= tolerance) return true;
     if (done == s.projections) return false;
     solve_rows(model, w, false, w.wanted);
+    if (row_force != nullptr)
+      for (std::int32_t r = 0; r < s.joint_rows; ++r)
+        row_force[r] += w.wanted[r] / model.scheme.kg;
     for (double* const taken : {rates, second}) {
       if (taken == nullptr) continue;
       subtract_row_motion(s, w, w.wanted, taken + s.first);
@@ -161,6 +192,7 @@ void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& 
   for (std::int32_t i = 0; i < result.redundant_rows && i < kMostNamedRows; ++i)
     result.redundant_row[i] = t.order[rank + i];
 }
+
 /// How the iterations go on: what forces lack and what joints want, each against the one before.
 struct Progress {
   double residual = __builtin_inf(), wanted = __builtin_inf();
@@ -197,6 +229,8 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
   Progress progress;
   bool old = true;  // the matrix is of an earlier step
+  double step = 0.;
+  bool settled = false;
   for (std::int32_t done = 0;; ++done) {
     place_parts(model, start, w);
     const bool renew = is_renewed(s, w.tangent, done, progress.slow);
@@ -208,7 +242,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     result.force_residual = size.scale > 0. ? size.residual / size.scale : 0.;
     const bool held = wanted <= s.joint_tolerance && (s.hold != Hold::gear_gupta_leimkuhler ||
                                                       result.violation <= s.joint_tolerance);
-    if (done > 0 && result.force_residual <= s.tolerance && held) break;
+    if (done > 0 && (result.force_residual <= s.tolerance || settled) && held) break;
     if (done == s.cap) {
       result.status = Status::cap_reached;
       break;
@@ -217,6 +251,8 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     progress.look(size.residual, wanted, s.joint_tolerance, !renew, old && !renew);
     if (progress.grown) {
       progress = {.slow = true};
+      step = 0.;
+      settled = false;
       guess(model, state, workspace, w);
       continue;
     }
@@ -227,6 +263,9 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
       *w.tangent.age = 1.;
     }
     newton_step(model, w);
+    const double last = step;
+    step = step_size(s, w);
+    settled = is_settled(s, w, step, last);
     if (s.hold == Hold::gear_gupta_leimkuhler) shift_step(model, w);
   }
   leave(model, w, state, workspace);
@@ -246,8 +285,8 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
   if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
   const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
-  const bool velocities = project(model, time, 1, at, state.v, nullptr, w);
-  const bool accelerations = project(model, time, 2, at, state.g, state.a, w);
+  const bool velocities = project(model, time, 1, at, state.v, nullptr, nullptr, w);
+  const bool accelerations = project(model, time, 2, at, state.g, state.a, state.row_force, w);
   return velocities && accelerations ? Status::ok : Status::cap_reached;
 }
 
