@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "heap_count.h"
+#include "online/model/system_workspace.h"
 #include "online/step/line.h"
 #include "online/step/probe.h"
 #include "online/step/step.h"
 #include "online/system/sense.h"
-#include "online/model/system_workspace.h"
 
 namespace railstep {
 namespace {
