@@ -13,7 +13,7 @@ namespace railstep {
 struct Bricard {
   static constexpr double kGravity = 9.81, kSide = .1;
   std::array<Eigen::Vector3d, 6> point = {
-      Eigen::Vector3d{0., 0., 0.},  Eigen::Vector3d{1., 0., 0.},   Eigen::Vector3d{1., 0., -1.},
+      Eigen::Vector3d{0., 0., 0.},   Eigen::Vector3d{1., 0., 0.},   Eigen::Vector3d{1., 0., -1.},
       Eigen::Vector3d{1., -1., -1.}, Eigen::Vector3d{0., -1., -1.}, Eigen::Vector3d{0., -1., 0.}};
   std::array<Eigen::Vector3d, 6> axis = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY(),
                                          Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ(),
@@ -46,8 +46,8 @@ struct Bricard {
   struct Chain5 {
     std::array<Eigen::Matrix3d, 5> turn;
     std::array<Eigen::Vector3d, 6> point, axis;
-    std::array<Eigen::Vector3d, 5> spin, spin_change;   // with hinge accelerations 0
-    std::array<Eigen::Vector3d, 6> velocity, change;    // of the points, likewise
+    std::array<Eigen::Vector3d, 5> spin, spin_change;  // with hinge accelerations 0
+    std::array<Eigen::Vector3d, 6> velocity, change;   // of the points, likewise
   };
   Chain5 chain(const Eigen::VectorXd& y) const {
     Chain5 c;
@@ -83,8 +83,8 @@ struct Bricard {
       J.col(static_cast<Eigen::Index>(i)) << c.axis[i].cross(c.point[5] - c.point[i]),
           c.axis[i].cross(c.axis[5]);
     Eigen::Matrix<double, 6, 1> bias;
-    bias << c.change[5], c.spin_change[4].cross(c.axis[5]) +
-                             c.spin[4].cross(c.spin[4].cross(c.axis[5]));
+    bias << c.change[5],
+        c.spin_change[4].cross(c.axis[5]) + c.spin[4].cross(c.spin[4].cross(c.axis[5]));
     Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeThinU | Eigen::ComputeFullV);
     svd.setThreshold(1e-6);  // the fifth singular value is 0 where the loop is closed
     const Vector5 closing = svd.solve(-bias), left = svd.matrixV().col(4);
@@ -101,9 +101,9 @@ struct Bricard {
       }
       const Eigen::Vector3d bare = .5 * (c.change[i] + c.change[i + 1]);
       M += v.transpose() * v + w.transpose() * I * w;
-      force += v.transpose() * (Eigen::Vector3d(0., 0., -kGravity) - bare) -
-               w.transpose() *
-                   (I * c.spin_change[i] + c.spin[i].cross(Eigen::Vector3d(I * c.spin[i])));
+      force +=
+          v.transpose() * (Eigen::Vector3d(0., 0., -kGravity) - bare) -
+          w.transpose() * (I * c.spin_change[i] + c.spin[i].cross(Eigen::Vector3d(I * c.spin[i])));
     }
     const double along = left.dot(force - M * closing) / left.dot(M * left);
     Eigen::VectorXd d(10);

@@ -1,7 +1,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -11,15 +10,14 @@ namespace railstep {
 /// y' = f(t, y).
 using OdeSlope = std::function<Eigen::VectorXd(double, const Eigen::VectorXd&)>;
 
-/// One step of Gragg, Bulirsch and Stoer at a fixed order 16: the modified midpoint rule with 2, 4,
-/// ... 16 parts, extrapolated in the square of the part (Hairer, Norsett, Wanner, Solving Ordinary
-/// Differential Equations I, section II.9).
+/// One step of Gragg, Bulirsch and Stoer at a fixed order of 2 rows: the modified midpoint rule
+/// with 2, 4, ... parts, extrapolated in the square of the part (Hairer, Norsett, Wanner, Solving
+/// Ordinary Differential Equations I, section II.9).
 inline Eigen::VectorXd extrapolated_step(const OdeSlope& f, double t, const Eigen::VectorXd& y,
-                                         double step) {
-  constexpr int kRows = 8;
+                                         double step, int rows = 8) {
   const Eigen::VectorXd first = f(t, y);
-  std::array<Eigen::VectorXd, kRows> T;
-  for (int row = 0; row < kRows; ++row) {
+  std::vector<Eigen::VectorXd> T(static_cast<std::size_t>(rows));
+  for (int row = 0; row < rows; ++row) {
     const int parts = 2 * (row + 1);
     const double h = step / parts;
     Eigen::VectorXd before = y, now = y + h * first;
@@ -29,7 +27,8 @@ inline Eigen::VectorXd extrapolated_step(const OdeSlope& f, double t, const Eige
       now = next;
     }
     T[static_cast<std::size_t>(row)] = .5 * (before + now + h * f(t + step, now));
-    for (int k = row - 1; k >= 0; --k) {  // T[k] of this row from T[k + 1] and that of the row above
+    // T[k] of this row from T[k + 1] and that of the row above.
+    for (int k = row - 1; k >= 0; --k) {
       const double ratio = static_cast<double>(row + 1) / (k + 1);
       const auto at = static_cast<std::size_t>(k);
       const Eigen::VectorXd change = (T[at + 1] - T[at]) / (ratio * ratio - 1.);
@@ -64,8 +63,7 @@ inline HighOrder high_order(const OdeSlope& f, const Eigen::VectorXd& y0,
   const std::vector<Eigen::VectorXd> coarse = integrate(f, y0, times, step);
   HighOrder result{integrate(f, y0, times, step / 2.), 0.};
   for (std::size_t i = 0; i < times.size(); ++i)
-    result.own_error =
-        std::max(result.own_error, (result.y[i] - coarse[i]).cwiseAbs().maxCoeff());
+    result.own_error = std::max(result.own_error, (result.y[i] - coarse[i]).cwiseAbs().maxCoeff());
   return result;
 }
 

@@ -1,5 +1,5 @@
-#include <catch2/catch.hpp>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
@@ -60,12 +60,9 @@ Places places(const Angles& q) {
   p.k4_end = A + turned(p.turn[4], kZt, 0.);
   p.k6_end = A + turned(p.turn[6], 0., -kU);
   p.spring = B + turned(p.turn[2], kSd, -kSc);
-  p.centre = {turned(p.turn[0], kRa, 0.),
-              p.crank_end + turned(p.turn[1], -kDa, 0.),
-              B + turned(p.turn[2], kSb, -kSa),
-              p.k4_end + turned(p.turn[3], 0., kEa - kE),
-              A + turned(p.turn[4], kTa, kTb),
-              p.k6_end + turned(p.turn[5], kZf - kFa, 0.),
+  p.centre = {turned(p.turn[0], kRa, 0.),       p.crank_end + turned(p.turn[1], -kDa, 0.),
+              B + turned(p.turn[2], kSb, -kSa), p.k4_end + turned(p.turn[3], 0., kEa - kE),
+              A + turned(p.turn[4], kTa, kTb),  p.k6_end + turned(p.turn[5], kZf - kFa, 0.),
               A + turned(p.turn[6], -kUa, -kUb)};
   return p;
 }
@@ -171,8 +168,8 @@ TEST_CASE("Andrews' squeezer ends where it is published to", "[system]") {
 
 TEST_CASE("Andrews' squeezer by each way to hold its joints", "[system]") {
   const Pose7 right = pose(places(kEnd));
-  for (const Hold hold : {Hold::augmented_lagrangian, Hold::baumgarte, Hold::gear_gupta_leimkuhler,
-                          Hold::direct}) {
+  for (const Hold hold :
+       {Hold::augmented_lagrangian, Hold::baumgarte, Hold::gear_gupta_leimkuhler, Hold::direct}) {
     const double coarse = largest(at_end(generalised_alpha(1e-5, .9), hold) - right);
     const double fine = largest(at_end(generalised_alpha(5e-6, .9), hold) - right);
     INFO("hold " << static_cast<int>(hold) << ": " << coarse << " " << fine);

@@ -95,8 +95,8 @@ TEST_CASE("a rigid double pendulum converges with the order of its scheme", "[sy
     const double coarse = error(planar, sharp(c.scheme(1e-3)));
     const double middle = error(planar, sharp(c.scheme(5e-4)));
     const double fine = error(planar, sharp(c.scheme(2.5e-4)));
-    INFO((planar ? "planar, " : "spatial, ") << c.name << ": " << coarse << " " << middle << " "
-                                             << fine << " m at 1, .5, .25 ms");
+    INFO((planar ? "planar, " : "spatial, ")
+         << c.name << ": " << coarse << " " << middle << " " << fine << " m at 1, .5, .25 ms");
     CHECK(coarse < c.bound);
     // The next term is of relative order w h: 2e-3 at .25 ms for schemes of even powers, and with
     // the coefficient of a first-order scheme 10 %.

@@ -24,7 +24,8 @@ System thrown(bool planar, const Vector3d& gravity = Vector3d::Zero()) {
   b.half_height = .01;
   b.angular_velocity = planar ? Vector3d(0., -30., 0.) : Vector3d(5., -30., 12.);
   // The centre flies 4 m in 100 s: momentum about the origin is not that of a far flight.
-  b.velocity = Vector3d(.03, planar ? 0. : .01, .02) - b.angular_velocity.cross(Vector3d(.2, 0., 0.));
+  b.velocity =
+      Vector3d(.03, planar ? 0. : .01, .02) - b.angular_velocity.cross(Vector3d(.2, 0., 0.));
   s.beams = {b};
   return s;
 }
@@ -78,9 +79,9 @@ TEST_CASE("a thrown beam starts as a rigid body does", "[system]") {
 TEST_CASE("energy-momentum keeps a thrown beam's momenta and energy over 1e5 steps", "[system]") {
   const bool planar = GENERATE(true, false);
   const Kept k = kept(thrown(planar), sharp(energy_momentum(1e-3)), 100000, 50);
-  INFO((planar ? "planar" : "spatial") << ": linear " << k.linear << ", angular " << k.angular
-                                       << ", energy " << k.energy << ", iterations "
-                                       << k.iterations);
+  INFO((planar ? "planar" : "spatial")
+       << ": linear " << k.linear << ", angular " << k.angular << ", energy " << k.energy
+       << ", iterations " << k.iterations);
   CHECK(k.seen == Status::ok);
   // Some 10 roundings of 1e-16 a step, all to one side, and what Newton leaves: 1e-11 of forces of
   // which momentum flows through a node within a step, either way.

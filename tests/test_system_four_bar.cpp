@@ -114,9 +114,10 @@ TEST_CASE("two four-bars go through their singular position for 10 s", "[system]
   // w^3 t h^2 / 12 at the fastest 6.9 rad/s and 1 s: 3e-5 rad; twice over the top each 1.3 s
   // errors grow, by some (6.9 / 1)^2 of what is slow there: 1e-3 at 1 s, in 10 s by time again.
   CHECK(one.error < 1e-3);
-  CHECK(ten.energy < 1e-3);  // H21
-  CHECK(ten.uneven < 1e-6);
-  CHECK(ten.violation < 1e-7);
+  CHECK(ten.energy < 1e-3);     // H21
+  CHECK(ten.violation < 1e-6);  // a micron
+  // A flat loop that is open by phi lets its rods differ by d^2 / 2 = phi.
+  CHECK(ten.uneven < std::sqrt(2. * ten.violation) + 1e-8);
 }
 
 TEST_CASE("forty four-bars go through their singular position", "[system]") {
@@ -129,7 +130,8 @@ TEST_CASE("forty four-bars go through their singular position", "[system]") {
   CHECK(!has(p.seen, Status::nonfinite_state));
   CHECK(p.error < 1e-3);
   CHECK(p.energy < 1e-3 * (2 * count + 1) / 5.);  // H21, for each of its five rods
-  CHECK(p.uneven < 1e-6);
+  CHECK(p.violation < 1e-6);
+  CHECK(p.uneven < std::sqrt(2. * p.violation) + 1e-8);
 }
 
 TEST_CASE("a kept matrix takes four-bars through their singular position", "[system]") {

@@ -17,7 +17,8 @@ namespace {
 // cube's sides and the rods' middles. Steel would be stiff; these are 8e5 N/m and 4e4 N s/m.
 constexpr double kGravity = 9.81, kDensity = 3000., kRodSide = .01, kCube = .1, kBall = 5.;
 constexpr double kStiffness = 8e5, kDamping = 4e4, kSpringLength = .5, kBeside = .05;
-constexpr double kRodMass = kDensity * kRodSide * kRodSide, kCubeMass = kDensity * kCube * kCube * kCube;
+constexpr double kRodMass = kDensity * kRodSide * kRodSide,
+                 kCubeMass = kDensity * kCube * kCube * kCube;
 constexpr double kAcross = kRodMass * (1. + kRodSide * kRodSide) / 12.;
 constexpr double kAlong = kRodMass * kRodSide * kRodSide / 6.;
 const double kSpin = 8. * std::atan(1.), kRodAngle = kSpin / 6.;  // rad/s; rad from down
@@ -81,11 +82,12 @@ struct About {
   double value, slope;
 };
 About about_shaft(double angle) {
-  const double c = std::cos(angle), s = std::sin(angle), middle = kBeside + .5 * s, end = kBeside + s;
-  return {kAlong + kCubeMass * kCube * kCube / 6. +
-              2. * (kRodMass * middle * middle + kAlong * c * c + kAcross * s * s +
-                    kBall * end * end),
-          2. * (kRodMass * middle * c + 2. * (kAcross - kAlong) * s * c + 2. * kBall * end * c)};
+  const double c = std::cos(angle), s = std::sin(angle), middle = kBeside + .5 * s,
+               end = kBeside + s;
+  return {
+      kAlong + kCubeMass * kCube * kCube / 6. +
+          2. * (kRodMass * middle * middle + kAlong * c * c + kAcross * s * s + kBall * end * end),
+      2. * (kRodMass * middle * c + 2. * (kAcross - kAlong) * s * c + 2. * kBall * end * c)};
 }
 
 /// Rod angle, height of the cube, their rates; the spin follows from its momentum L.
@@ -97,13 +99,12 @@ Eigen::VectorXd slope(const Eigen::VectorXd& y, double L) {
   const double length = d.norm();
   const double by_angle = d.dot(Eigen::Vector2d(.5 * c, .5 * s)) / length;
   const double by_height = -d[1] / length;
-  const double force = kStiffness * (length - kSpringLength) +
-                       kDamping * (by_angle * y[2] + by_height * y[3]);
+  const double force =
+      kStiffness * (length - kSpringLength) + kDamping * (by_angle * y[2] + by_height * y[3]);
   const double swing = 2. * (.25 * kRodMass + kAcross + kBall);
   const double weight = 2. * kGravity * s * (.5 * kRodMass + kBall);
   Eigen::VectorXd result(4);
-  result << y[2], y[3],
-      (.5 * J.slope * spin * spin - weight - 2. * force * by_angle) / swing,
+  result << y[2], y[3], (.5 * J.slope * spin * spin - weight - 2. * force * by_angle) / swing,
       -kGravity - 2. * force * by_height / kCubeMass;
   return result;
 }
@@ -126,9 +127,10 @@ TEST_CASE("a stiff flyball governor settles as its three equations say", "[syste
     Scheme (*scheme)(double);
     double order;
   };
-  const Case cases[] = {{"generalised-alpha", [](double h) { return generalised_alpha(h, .6); }, 2.},
-                        {"energy-momentum", [](double h) { return energy_momentum(h); }, 2.},
-                        {"backward Euler", [](double h) { return backward_euler(h); }, 1.}};
+  const Case cases[] = {
+      {"generalised-alpha", [](double h) { return generalised_alpha(h, .6); }, 2.},
+      {"energy-momentum", [](double h) { return energy_momentum(h); }, 2.},
+      {"backward Euler", [](double h) { return backward_euler(h); }, 1.}};
   for (const Case& c : cases) {
     const auto error = [&](double h) {
       SystemRun r(governor(), sharp(c.scheme(h)));

@@ -71,7 +71,8 @@ TEST_CASE("a slider follows a polynomial", "[system]") {
     INFO("hold " << static_cast<int>(hold) << ": " << place << " m, " << speed << " m/s");
     CHECK(r.seen == Status::ok);
     CHECK(place < 1e-11);  // the joints' tolerance is 1e-12
-    // And over the step 1e-9; the direct solve leaves rates to the scheme: h^2 s''', at most 2 m/s3.
+    // And over the step 1e-9; the direct solve leaves rates to the scheme: h^2 s''', at most 2
+    // m/s3.
     CHECK(speed < (hold == Hold::direct ? 2e-6 : 1e-8));
   }
 }
@@ -103,8 +104,7 @@ TEST_CASE("a slider follows the natural spline of a table and rests behind it", 
   for (int i = 0; i < 2500; ++i) {
     r.frame();
     const double t = r.time();
-    place = std::max(place,
-                     largest(r.body_position(0) - s.bodies[0].position - spline(t) * axis));
+    place = std::max(place, largest(r.body_position(0) - s.bodies[0].position - spline(t) * axis));
     if (std::abs(t - 2.) > 1.5e-3)
       speed = std::max(speed, largest(r.body_velocity(0) - spline_rate(t) * axis));
   }
@@ -131,8 +131,8 @@ TEST_CASE("a driven hinge turns its body by its polynomial, over whole turns", "
     for (int i = 0; i < 3000; ++i) {
       r.frame();
       const double t = r.time(), angle = rate * t + t * t;
-      const Eigen::Matrix3d right = Eigen::AngleAxisd(angle, Vector3d::UnitY()) *
-                                    s.bodies[0].orientation.toRotationMatrix();
+      const Eigen::Matrix3d right =
+          Eigen::AngleAxisd(angle, Vector3d::UnitY()) * s.bodies[0].orientation.toRotationMatrix();
       turn = std::max(turn, largest(r.body_rotation(0) - right));
       speed = std::max(speed, std::abs(r.body_spin(0).y() - (rate + 2. * t)));
     }

@@ -153,7 +153,8 @@ TEST_CASE("an accelerated slider pulls m a on its drive", "[system]") {
     r.until(1.);
     INFO("hold " << static_cast<int>(hold));
     CHECK(r.seen == Status::ok);
-    // 4 kg (2 - 1.8 t): the scheme's accelerations of a cubic motion lag by less than a step, 1.8 h.
+    // 4 kg (2 - 1.8 t): the scheme's accelerations of a cubic motion lag by less than a step, 1.8
+    // h.
     CHECK(largest(r.joint_force(1) - Vector3d(4. * (2. - 1.8), 0., 0.)) < 4. * 1.8e-3);
     CHECK(largest(r.joint_force(0) - Vector3d(0., 0., 4. * kGravity)) < 1e-7);
   }

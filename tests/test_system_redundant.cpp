@@ -32,7 +32,8 @@ TEST_CASE("a doubled hinge moves as a single one", "[system]") {
   double apart = 0.;
   for (int i = 0; i < 2000; ++i) {
     for (SystemRun* r : {&single, &twice, &thrice}) r->frame();
-    apart = std::max({apart, largest(end(single) - end(twice)), largest(end(single) - end(thrice))});
+    apart =
+        std::max({apart, largest(end(single) - end(twice)), largest(end(single) - end(thrice))});
   }
   INFO("apart " << apart << " m");
   CHECK((single.seen | twice.seen | thrice.seen) == Status::ok);
@@ -69,9 +70,8 @@ TEST_CASE("the direct solve names redundant joints", "[system]") {
 
 TEST_CASE("the direct solve names Bricard's one row too many and goes on", "[system]") {
   const Bricard m;
-  const HighOrder known =
-      high_order([&](double, const Eigen::VectorXd& y) { return m.slope(y); },
-                 Eigen::VectorXd::Zero(10), {0., 1.}, .05);
+  const HighOrder known = high_order([&](double, const Eigen::VectorXd& y) { return m.slope(y); },
+                                     Eigen::VectorXd::Zero(10), {0., 1.}, .05);
   REQUIRE(known.own_error < 1e-10);
   const Bricard::Chain5 right = m.chain(known.y[1]);
   const auto error = [&](double h) {

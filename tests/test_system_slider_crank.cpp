@@ -16,10 +16,10 @@ constexpr double kGravity = 9.81;
 
 /// A crank about the origin, a connecting rod and a slider on x.
 struct SliderCrank {
-  double crank = .2, rod = .5;                           // m
+  double crank = .2, rod = .5;                              // m
   double crank_mass = 1., rod_mass = 2., slider_mass = 3.;  // kg
-  double side = .02;                                     // of the square sections, m
-  double start = .7, rate = 3.;                          // crank, rad from x towards z, rad/s
+  double side = .02;                                        // of the square sections, m
+  double start = .7, rate = 3.;                             // crank, rad from x towards z, rad/s
 
   double rod_angle(double angle) const { return std::asin(-crank / rod * std::sin(angle)); }
   /// d(rod angle)/d(angle)
@@ -62,7 +62,8 @@ System SliderCrank::scene(bool planar) const {
   // In space hinges about y say more than the loop needs; a ball and a universal joint do not.
   s.joints = {hinge(ground(), body(0), Vector3d::Zero(), planar),
               {.kind = JointKind::spherical, .a = body(0), .b = body(1), .point = pin(start)},
-              hinge(body(1), body(2), block.position, true), rail};
+              hinge(body(1), body(2), block.position, true),
+              rail};
   if (!planar)
     s.joints[1] = {.kind = JointKind::universal,
                    .a = body(0),
@@ -137,8 +138,8 @@ TEST_CASE("a free slider-crank runs as its one equation says", "[system]") {
   const SliderCrank m;
   Eigen::VectorXd y(2);
   y << m.start, m.rate;
-  const HighOrder known = high_order(
-      [&](double, const Eigen::VectorXd& at) { return m.slope(at); }, y, {0., 1.}, .01);
+  const HighOrder known =
+      high_order([&](double, const Eigen::VectorXd& at) { return m.slope(at); }, y, {0., 1.}, .01);
   REQUIRE(known.own_error < 1e-11);
   const auto error = [&](const Scheme& scheme) {
     SystemRun r(m.scene(planar), sharp(scheme));

@@ -75,14 +75,17 @@ double error(const Top& top, const TopMotion& known, double t, const Scheme& sch
 /// A fast top of Geradin and Cardona (2001), as Bruls and Cardona (2010) and Arnold and Bruls use
 /// it: it nutates some 70 times a second.
 Top fast_top() {
-  return {15., {.234375, .46875, .234375}, {0., 1., 0.}, Matrix3d::Identity(),
-          {0., 150., -4.61538}};
+  return {
+      15., {.234375, .46875, .234375}, {0., 1., 0.}, Matrix3d::Identity(), {0., 150., -4.61538}};
 }
 
 /// About its z axis, .1 m over its point; I3 = 2e-3, I1 = 1.25e-3 kg m2 about the centre.
 Top slow_top(double tilt, double spin) {
-  return {1., {1.25e-3, 1.25e-3, 2e-3}, {0., 0., .1},
-          Matrix3d(Eigen::AngleAxisd(tilt, Vector3d::UnitX())), {0., 0., spin}};
+  return {1.,
+          {1.25e-3, 1.25e-3, 2e-3},
+          {0., 0., .1},
+          Matrix3d(Eigen::AngleAxisd(tilt, Vector3d::UnitX())),
+          {0., 0., spin}};
 }
 
 /// From which a top sleeps: I3 w = 2 sqrt(I1 m g r), I1 about the point.

@@ -11,8 +11,8 @@ using Number = std::complex<double>;
 
 namespace {
 
-/// m x'' + c x' + k x = 0 from x0 at rest, by its two roots; and as a one-step scheme of amplification
-/// `grow`(h root) takes it.
+/// m x'' + c x' + k x = 0 from x0 at rest, by its two roots; and as a one-step scheme of
+/// amplification `grow`(h root) takes it.
 struct Oscillator {
   double mass, stiffness, damping, x0;
 

@@ -82,8 +82,8 @@ double step_size(const SystemModel& s, const SystemWorkspace& w) noexcept {
   return size;
 }
 
-/// Whether a Newton step is the round-off of the places that forces are taken at, or is small and no
-/// smaller than the one before: more of them find nothing, whatever is left of the forces.
+/// Whether a Newton step is the round-off of the places that forces are taken at, or is small and
+/// no smaller than the one before: more of them find nothing, whatever is left of the forces.
 /// @param before  size of the step before, 0: none
 bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
                 double before) noexcept {
@@ -139,8 +139,8 @@ void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& work
 
 /// Takes from velocities (order 1) or accelerations (2) of the model what joints do not allow, in
 /// the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped.
-/// `second` takes the same change. With accelerations go the forces that belong to them: S is kg M of
-/// a body, so that M g + G' force stays what it was.
+/// `second` takes the same change. With accelerations go the forces that belong to them: S is kg M
+/// of a body, so that M g + G' force stays what it was.
 /// @returns whether they are held
 bool project(const Model& model, double time, int order, const Motions& at, double* rates,
              double* second, double* row_force, SystemWorkspace& w) noexcept {
@@ -165,8 +165,7 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
     if (done == s.projections) return false;
     solve_rows(model, w, false, w.wanted);
     if (row_force != nullptr)
-      for (std::int32_t r = 0; r < s.joint_rows; ++r)
-        row_force[r] += w.wanted[r] / model.scheme.kg;
+      for (std::int32_t r = 0; r < s.joint_rows; ++r) row_force[r] += w.wanted[r] / model.scheme.kg;
     for (double* const taken : {rates, second}) {
       if (taken == nullptr) continue;
       subtract_row_motion(s, w, w.wanted, taken + s.first);
