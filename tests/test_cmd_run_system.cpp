@@ -212,7 +212,7 @@ TEST_CASE("a drive's work and a damper's heat close the balance, whatever holds 
   };
   for (const std::string hold :
        {"augmented-lagrangian", "baumgarte", "gear-gupta-leimkuhler", "direct"})
-    check(kCrank + " --set 'joints.hold=\"" + hold + "\"'");
+    check(std::string(kCrank).append(" --set 'joints.hold=\"").append(hold).append("\"'"));
   check(kCrank + " --set 'step.scheme=\"energy-momentum\"'");
   check(kSpring);
 }
