@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <vector>
 
 #include "offline/system/energy.h"
@@ -70,13 +71,15 @@ inline Violation violation(const Model& model, const State& state) {
   return most;
 }
 
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 /// What one run showed.
 struct RunResult {
   double position = 0., velocity = 0.;  // largest violations, m and m/s
-  double drift = NAN;                   // slope over time of the largest of each tenth, m/s
+  double drift = kUnknown;              // slope over time of the largest of each tenth, m/s
   double energy = 0.;                   // largest change, J
   double energy_end = 0.;               // change at the end, J
-  double error = NAN;                   // of the sensor at 1 s, m
+  double error = kUnknown;              // of the sensor at 1 s, m
   double mean_iterations = 0.;
   int most_iterations = 0;
   double capped = 0.;     // part of the steps that ran to the cap
@@ -99,7 +102,7 @@ inline double slope(const std::array<double, 10>& value, double until) {
 /// Processor time of a step over the first second, best of `times`, us.
 inline double best_step_time(Rollout& run, int times) {
   const auto steps = static_cast<int>(std::lround(1. / run.model().scheme.dt));
-  double best = INFINITY;
+  double best = std::numeric_limits<double>::infinity();
   for (int i = 0; i < times; ++i) {
     run.again();
     const std::clock_t begin = std::clock();

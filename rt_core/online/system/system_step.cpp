@@ -199,13 +199,15 @@ struct Progress {
   bool slow = false;   // one did not halve with a matrix that stood: make it anew
   bool grown = false;  // one grew, far off perhaps, with a matrix of an earlier step: begin again
 
+  /// Joints count with matrices of an earlier step alone: soft rows give way in proportion to their
+  /// force, so that a good step may leave more of Phi than the guess had.
   /// @param stood  whether this iterate came by a matrix that stood
   /// @param old    whether that is one of an earlier step
   void look(double residual_now, double wanted_now, double tolerance, bool stood,
             bool old) noexcept {
     const auto over = [&](double part) {
       return !(residual_now <= part * residual) ||
-             (wanted_now > tolerance && !(wanted_now <= part * wanted));
+             (old && wanted_now > tolerance && !(wanted_now <= part * wanted));
     };
     slow = stood && over(.5);
     grown = old && over(1.);
