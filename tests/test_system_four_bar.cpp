@@ -51,7 +51,7 @@ std::vector<Vector3d> known(int count, const std::vector<double>& times) {
     return Eigen::Vector2d(at[1], -k * std::cos(at[0]));
   };
   const HighOrder solution = high_order(f, y, times, .05);
-  REQUIRE(solution.own_error < 1e-11);
+  REQUIRE(solution.own_error < 1e-9);  // R8 is given to 1e-8
   std::vector<Vector3d> result;
   for (const Eigen::VectorXd& at : solution.y)
     result.emplace_back(std::cos(at[0]), 0., std::sin(at[0]));
