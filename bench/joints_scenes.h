@@ -88,15 +88,11 @@ inline JointScene rigid_pendulum() {
   return scene;
 }
 
-/// Newton's test for steps of any size: round-off of the inertia forces grows by 1 / dt^2.
-inline double reachable_tolerance(const Scheme& scheme) { return 1e-8 + 2e-16 * scheme.kg; }
-
 /// Where the sensor is at 1 s; held directly, generalised-alpha.
 inline Eigen::Vector2d place_at_one_second(const System& system, double dt) {
   SystemOptions options;
   options.scheme = generalised_alpha(dt, .9);
   options.hold = Hold::direct;
-  options.tolerance = reachable_tolerance(options.scheme);
   Rollout run(system, options);
   for (int k = 0; k < std::lround(1. / dt); ++k) (void)run.step();
   return run.place();

@@ -1,5 +1,6 @@
 // Ways to hold a joint against each other, as CSV on stdout for docs/joints.md.
-// Usage: joints_table ways|penalty|baumgarte|tangent rigid|flexible|four_bar|four_bar_doubled
+// Usage: joints_table ways|penalty|baumgarte|tangent|tolerance
+// rigid|flexible|four_bar|four_bar_doubled
 #include <cstdio>
 #include <stdexcept>
 
@@ -48,7 +49,7 @@ SystemOptions options_of(const Way& way, const NamedScheme& scheme, double dt, i
   o.hold = way.hold;
   o.alpha = o.beta = way.alpha > 0. ? way.alpha : way.alpha_dt / dt;
   o.cap = cap;
-  o.tolerance = reachable_tolerance(o.scheme);
+  o.penalty = o.energy_momentum ? 1e4 : 1e9;  // the defaults, for the table to name
   return o;
 }
 
@@ -58,7 +59,8 @@ class Table {
     std::printf(
         "scene,way,scheme,dt_s,cap,penalty,alpha_per_s,beta_per_s,tangent,tolerance,violation_m,"
         "drift_m_per_s,violation_velocity_m_per_s,energy_error_j,energy_end_j,error_1s_m,"
-        "reference_error_m,mean_iterations,max_iterations,capped,redundant,step_us,end_s\n");
+        "reference_error_m,mean_iterations,max_iterations,capped,redundant,step_us,end_s,joint_"
+        "tolerance\n");
   }
 
   void row(const Way& way, const NamedScheme& scheme, const SystemOptions& o) const {
@@ -74,8 +76,8 @@ class Table {
                 o.tolerance);
     std::printf("%.3e,%.2e,%.3e,%.3e,%.3e,%.3e,%.0e,", r.position, r.drift, r.velocity, r.energy,
                 r.energy_end, r.error, scene_.reference_error);
-    std::printf("%.3f,%d,%.4f,%.4f,%.2f,%g\n", r.mean_iterations, r.most_iterations, r.capped,
-                r.redundant, r.step_us, r.end);
+    std::printf("%.3f,%d,%.4f,%.4f,%.2f,%g,%g\n", r.mean_iterations, r.most_iterations, r.capped,
+                r.redundant, r.step_us, r.end, o.joint_tolerance);
     std::fflush(stdout);
   }
 
@@ -92,13 +94,14 @@ void ways(const Table& table) {
 }
 
 void penalties(const Table& table) {
-  for (const double dt : {4e-3, 1e-3, 2.5e-4})
-    for (const int cap : {2, 20})
-      for (double penalty = 1e3; penalty < 2e13; penalty *= 10.) {
-        SystemOptions o = options_of(kWays[0], kSchemes[2], dt, cap);
-        o.penalty = penalty;
-        table.row(kWays[0], kSchemes[2], o);
-      }
+  for (const NamedScheme& scheme : {kSchemes[2], kSchemes[4]})
+    for (const double dt : {4e-3, 1e-3, 2.5e-4})
+      for (const int cap : {2, 20})
+        for (double penalty = 1e3; penalty < 2e13; penalty *= 10.) {
+          SystemOptions o = options_of(kWays[0], scheme, dt, cap);
+          o.penalty = penalty;
+          table.row(kWays[0], scheme, o);
+        }
 }
 
 /// beta = ratio alpha: below 1 aperiodic, 1 critical, above it swings.
@@ -125,6 +128,19 @@ void tangents(const Table& table) {
         }
 }
 
+/// Both tests of Newton's iterations.
+void tolerances(const Table& table) {
+  for (const NamedScheme& scheme : {kSchemes[2], kSchemes[4]})
+    for (const double dt : {4e-3, 1e-3, 2.5e-4})
+      for (const double forces : {1e-4, 1e-6, 1e-8, 1e-10})
+        for (const double joints : {1e-6, 1e-8, 1e-10, 1e-12}) {
+          SystemOptions o = options_of(kWays[0], scheme, dt, 20);
+          o.tolerance = forces;
+          o.joint_tolerance = joints;
+          table.row(kWays[0], scheme, o);
+        }
+}
+
 JointScene scene_of(const std::string& name) {
   if (name == "rigid") return rigid_pendulum();
   if (name == "flexible") return flexible_pendulum();
@@ -137,6 +153,7 @@ void print_table(const std::string& name, const Table& table) {
   if (name == "penalty") return penalties(table);
   if (name == "baumgarte") return dampings(table);
   if (name == "tangent") return tangents(table);
+  if (name == "tolerance") return tolerances(table);
   throw std::invalid_argument("unknown table " + name);
 }
 
@@ -146,7 +163,7 @@ void print_table(const std::string& name, const Table& table) {
 int main(int count, char** words) {
   if (count != 3) {
     std::fprintf(stderr,
-                 "usage: joints_table ways|penalty|baumgarte|tangent "
+                 "usage: joints_table ways|penalty|baumgarte|tangent|tolerance "
                  "rigid|flexible|four_bar|four_bar_doubled\n");
     return 2;
   }

@@ -1,6 +1,6 @@
 #pragma once
 #include "double_pendulum.h"
-#include "extrapolation.h"
+#include "high_order.h"
 
 namespace railstep {
 
@@ -16,14 +16,16 @@ struct PendulumRun {
 /// of the start; slope(y, dy); seen(y), B and C; energy(y). `watch` is called at every sample.
 template <typename Model, typename Watch>
 PendulumRun swing(const Model& model, double until, int parts, Watch watch) {
-  Extrapolation scheme(6);
+  const auto slope = [&model](double, const Eigen::VectorXd& at) {
+    Eigen::VectorXd dy(at.size());
+    model.slope(at, dy);
+    return dy;
+  };
   Eigen::VectorXd y = model.start();
   const double energy = model.energy(y);
   PendulumRun run{{kPendulumSample, {model.seen(y)}}};
   for (int i = 0; i < std::lround(until / kPendulumSample); ++i) {
-    for (int k = 0; k < parts; ++k)
-      scheme.advance([&](const auto& at, auto& dy) { model.slope(at, dy); },
-                     kPendulumSample / parts, y);
+    for (int k = 0; k < parts; ++k) y = extrapolated_step(slope, 0., y, kPendulumSample / parts, 6);
     run.path.at.push_back(model.seen(y));
     run.energy_change = std::max(run.energy_change, std::abs(model.energy(y) - energy));
     watch(y);

@@ -277,7 +277,7 @@ TEST_CASE("a state that stops being finite ends the run, names its place and kee
   CHECK(run.state.steps == 11);
   CHECK(status_names(record.status) == std::vector<std::string>{"nonfinite_state"});
   REQUIRE(record.first_bad_unknown >= run.model().line[1].first);
-  CHECK_THAT(unknown_place(run.model(), record.first_bad_unknown), Contains("of rail node"));
+  CHECK_THAT(unknown_place(run, record.first_bad_unknown), Contains("of rail node"));
   CHECK(rows_of(text_of(file)).size() == 12);
 }
 

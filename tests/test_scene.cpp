@@ -248,7 +248,8 @@ std::vector<std::string> quoted_keys(const std::string& source) {
   std::vector<std::string> keys;
   for (const std::string opener :
        {"number(\"", "integer(\"", "boolean(\"", "string(\"", "strings(\"", "choice(\"", "path(\"",
-        "table(\"", "table_if(\"", "tables(\"", "has(\"", "(t, \"", "(force, \"", "(rail, \""})
+        "table(\"", "table_if(\"", "tables(\"", "has(\"", "(t, \"", "(force, \"", "(rail, \"",
+        "(bar, \"", "(*t, \""})
     for (auto at = source.find(opener); at != std::string::npos; at = source.find(opener, at + 1)) {
       const auto from = at + opener.size();
       keys.push_back(source.substr(from, source.find('"', from) - from));
@@ -262,7 +263,8 @@ TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]")
   const std::filesystem::path source(RAILSTEP_SOURCE);
   const std::string documented = read_text(source / "config/README.md");
   std::size_t count = 0;
-  for (const char* name : {"scene.cpp", "scene_rail.cpp", "scene_bodies.cpp"})
+  for (const char* name : {"scene.cpp", "scene_rail.cpp", "scene_bodies.cpp", "scene_system.cpp",
+                           "scene_parts.cpp", "scene_joints.cpp"})
     for (const std::string& key : quoted_keys(read_text(source / "tools" / name))) {
       if (key.size() == 1) continue;  // an axis, whose full keys are checked below
       INFO(key);
@@ -274,9 +276,13 @@ TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]")
       CHECK(found);
       ++count;
     }
-  CHECK(count > 70);  // the openers above still see the reader's getters
+  CHECK(count > 120);  // the openers above still see the reader's getters
   for (const std::string axis : {"x", "y", "z"}) {
     CHECK_THAT(documented, Contains("`stiffness_" + axis + "_n_per_m`"));
     CHECK_THAT(documented, Contains("`damping_" + axis + "_n_s_per_m`"));
+  }
+  for (const std::string unit : {"m", "rad", "n", "n_m"}) {
+    CHECK_THAT(documented, Contains("`polynomial_" + unit + "`"));
+    CHECK_THAT(documented, Contains("`table_" + unit + "`"));
   }
 }

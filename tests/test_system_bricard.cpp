@@ -21,8 +21,8 @@ Corners corners(const SystemRun& r, const Bricard& m) {
 }
 
 HighOrder known(const Bricard& m, const std::vector<double>& times) {
-  return high_order([&](const Eigen::VectorXd& y) { return m.slope(y); }, Eigen::VectorXd::Zero(10),
-                    times, .05);
+  return high_order([&](double, const Eigen::VectorXd& y) { return m.slope(y); },
+                    Eigen::VectorXd::Zero(10), times, .05);
 }
 
 Corners corners(const Bricard& m, const Eigen::VectorXd& y) {

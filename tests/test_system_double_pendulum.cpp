@@ -27,7 +27,7 @@ System double_pendulum(bool planar) {
 }
 
 /// Angles and rates by Lagrange's equations; rods with the inertia of their section.
-Eigen::VectorXd slope(const Eigen::VectorXd& y) {
+Eigen::VectorXd slope(double, const Eigen::VectorXd& y) {
   const double inertia = kMass * (kLength * kLength + kSide * kSide) / 12.;
   const double own = inertia + kMass * kLength * kLength / 4.;
   const double couple = kMass * kLength * kLength / 2.;

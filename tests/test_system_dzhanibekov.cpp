@@ -95,7 +95,7 @@ double spin_error(const FreeBody& body, double duration, const Scheme& scheme) {
 TEST_CASE("a book turns over as Jacobi's functions say", "[system]") {
   const FreeBody book;
   // The closed form against Euler's equations first.
-  const auto euler = [&](const Eigen::VectorXd& w) -> Eigen::VectorXd {
+  const auto euler = [&](double, const Eigen::VectorXd& w) -> Eigen::VectorXd {
     const Vector3d own = w, momentum = book.inertia.cwiseProduct(own);
     return momentum.cross(own).cwiseQuotient(book.inertia);
   };

@@ -117,8 +117,8 @@ TEST_CASE("a stiff flyball governor settles as its three equations say", "[syste
   y << kRodAngle, .5, 0., 0.;
   // The dampers' fastest rate is 2 c / 3 kg = 2e4 1/s; the extrapolated step is stable to some 30
   // of it and exact to 1e-12 at a third of that.
-  const HighOrder known =
-      high_order([L](const Eigen::VectorXd& at) { return slope(at, L); }, y, {0., .2, .5}, 4e-4);
+  const HighOrder known = high_order(
+      [L](double, const Eigen::VectorXd& at) { return slope(at, L); }, y, {0., .2, .5}, 4e-4);
   REQUIRE(known.own_error < 1e-10);
   INFO("cube at " << known.y[1][1] << " and " << known.y[2][1] << " m");
   CHECK(std::abs(known.y[2][1] - .5) > .02);  // it does move

@@ -73,7 +73,7 @@ TEST_CASE("the direct solve names redundant joints", "[system]") {
 
 TEST_CASE("the direct solve names Bricard's one row too many and goes on", "[system]") {
   const Bricard m;
-  const HighOrder known = high_order([&](const Eigen::VectorXd& y) { return m.slope(y); },
+  const HighOrder known = high_order([&](double, const Eigen::VectorXd& y) { return m.slope(y); },
                                      Eigen::VectorXd::Zero(10), {0., 1.}, .05);
   REQUIRE(known.own_error < 1e-10);
   const Bricard::Chain5 right = m.chain(known.y[1]);

@@ -139,7 +139,7 @@ TEST_CASE("a free slider-crank runs as its one equation says", "[system]") {
   Eigen::VectorXd y(2);
   y << m.start, m.rate;
   const HighOrder known =
-      high_order([&](const Eigen::VectorXd& at) { return m.slope(at); }, y, {0., 1.}, .01);
+      high_order([&](double, const Eigen::VectorXd& at) { return m.slope(at); }, y, {0., 1.}, .01);
   REQUIRE(known.own_error < 1e-11);
   const auto error = [&](const Scheme& scheme) {
     SystemRun r(m.scene(planar), sharp(scheme));

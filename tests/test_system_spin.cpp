@@ -47,7 +47,7 @@ struct TopMotion {
   HighOrder solution;
   TopMotion(const Top& top, double t, double step) {
     const Matrix3d I = top.about_pivot(), inverse = I.inverse();
-    const auto f = [=](const Eigen::VectorXd& y) {
+    const auto f = [=](double, const Eigen::VectorXd& y) {
       const Matrix3d R = Eigen::Map<const Matrix3d>(y.data());
       const Vector3d w = y.tail<3>();
       const Vector3d weight = R.transpose() * Vector3d(0., 0., -top.mass * kGravity);

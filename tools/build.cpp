@@ -152,21 +152,14 @@ Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scen
 Track track_of(const Scene& scene, const RailSection& rail) try {
   const Section& section = rail.section;
   Track track;
-  track.section = {
-      .area = section.area.area,
-      .inertia_y = section.area.inertia_y,
-      .inertia_z = section.area.inertia_z,
-      .torsion = section.shear.torsion,
-      .shear_factor_y = section.shear.shear_factor_y,
-      .shear_factor_z = section.shear.shear_factor_z,
-      .shear_centre_z = section.shear.shear_centre_height - section.area.centroid_height};
+  track.section = beam_section(rail);
   track.material = {scene.rail.young, scene.rail.poisson, scene.rail.density};
   // Without third and fourth moments, which it does not need, a linear element keeps its bits.
-  if (scene.track.model == RailModel::nonlinear || scene.track.linearised_under_weight ||
-      scene.rail.section_points > 0)
-    track.section.moments = rail.moments;
+  if (scene.track.model != RailModel::nonlinear && !scene.track.linearised_under_weight &&
+      scene.rail.section_points == 0)
+    track.section.moments.reset();
   track.rule = scene.rail.rule;
-  track.axis_z = axis_z_of(scene, section);
+  track.axis_z = axis_z_of(scene.track.reference_line, section);
   track.unknowns = scene.track.unknowns;
   track.rails = scene.track.rails;
   track.bays = static_cast<int>(scene.track.bays);  // read_scene keeps it under kMostElements

@@ -19,6 +19,13 @@ struct RailSection {
   std::optional<SectionMoments> moments;
 };
 
+/// Section of a bar. Throws InputError at `place`, "FILE: [table]", and where `nonlinear` (or the
+/// bar's rule) wants moments that it does not have.
+RailSection bar_section(const BarScene& bar, bool nonlinear, const std::string& place);
+
+/// A section about its centroid, with its moments where there are any.
+BeamSection beam_section(const RailSection& bar);
+
 /// The section that a scene names, whichever way it does; shear factors given in [rail] replace the
 /// section's. Those of rectangles are at the scene's Poisson ratio, those of a profile or a section
 /// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
@@ -30,8 +37,8 @@ Section section_of(const Scene& scene);
 /// @param axis_z  of that line above the centroid, m
 double height_z(Height at, const Section& section, double axis_z = 0.);
 
-/// Height of the scene's reference line above the centroid, m.
-double axis_z_of(const Scene& scene, const Section& section);
+/// Height of a reference line above the centroid, m.
+double axis_z_of(ReferenceLine line, const Section& section);
 
 /// The track of a scene. Throws InputError, for rails under so much compression that they buckle
 /// too.

@@ -23,60 +23,73 @@ SectionMoments integrated(const Rectangles<double>& shape, int points) {
   return points == 0 ? moments(shape) : moments(shape, points);
 }
 
-RailSection from(const RectangleSizes& r, const RailScene& rail) {
+RailSection from(const RectangleSizes& r, const BarScene& bar) {
   const Rectangles<double> shape{{r.foot_width, r.web_width, r.head_width},
                                  {r.foot_height, r.web_height, r.head_height}};
   const double height = r.foot_height + r.web_height + r.head_height;
-  return {solved(properties(shape), polygon(shape), height, rail.poisson),
-          integrated(shape, rail.section_points)};
+  return {solved(properties(shape), polygon(shape), height, bar.poisson),
+          integrated(shape, bar.section_points)};
 }
 
-RailSection from(const RectangleSize& r, const RailScene& rail) {
+RailSection from(const RectangleSize& r, const BarScene& bar) {
   const double w = r.width, h = r.height;
   const Polygon outline = {{-.5 * w, 0.}, {.5 * w, 0.}, {.5 * w, h}, {-.5 * w, h}};
   return {
-      solved({w * h, .5 * h, w * h * h * h / 12., h * w * w * w / 12.}, outline, h, rail.poisson),
-      rectangle_moments(h, w, rail.section_points == 0 ? 3 : rail.section_points)};
+      solved({w * h, .5 * h, w * h * h * h / 12., h * w * w * w / 12.}, outline, h, bar.poisson),
+      rectangle_moments(h, w, bar.section_points == 0 ? 3 : bar.section_points)};
 }
 
-RailSection from(const Section& given, const RailScene&) { return {given, std::nullopt}; }
+RailSection from(const Section& given, const BarScene&) { return {given, std::nullopt}; }
 
 /// As the file has them: its shear factors are those at kFitPoisson, like a profile's.
-RailSection from(const SectionFile& file, const RailScene& rail) {
+RailSection from(const SectionFile& file, const BarScene& bar) {
   const std::optional<Rectangles<double>> shape = read_dimensions(file.path);
   RailSection result{read_section(file.path), std::nullopt};
-  if (shape) result.moments = integrated(*shape, rail.section_points);
+  if (shape) result.moments = integrated(*shape, bar.section_points);
   return result;
 }
 
-RailSection from(const ProfileFile& file, const RailScene& rail) {
+RailSection from(const ProfileFile& file, const BarScene& bar) {
   const Outline outline = read_profile(file.path).outline;
   if (file.exact)
     return {{properties(outline), outline_shear(outline, 0.), outline.height}, moments(outline)};
   const SectionFit fit = fit_section(outline);
-  return {fitted_section(fit, outline.height), integrated(fit.section, rail.section_points)};
+  return {fitted_section(fit, outline.height), integrated(fit.section, bar.section_points)};
 }
 
 }  // namespace
 
-RailSection rail_section_of(const Scene& scene) try {
-  const RailScene& rail = scene.rail;
-  RailSection found = std::visit([&](const auto& shape) { return from(shape, rail); }, rail.shape);
+RailSection bar_section(const BarScene& bar, bool nonlinear, const std::string& place) try {
+  RailSection found = std::visit([&](const auto& shape) { return from(shape, bar); }, bar.shape);
   SaintVenant& shear = found.section.shear;
-  shear.shear_factor_y = rail.shear_factor_y.value_or(shear.shear_factor_y);
-  shear.shear_factor_z = rail.shear_factor_z.value_or(shear.shear_factor_z);
-  const bool nonlinear =
-      scene.track.model == RailModel::nonlinear || scene.track.linearised_under_weight;
-  const bool needed = nonlinear || rail.section_points > 0;
-  if (needed && !found.moments)
+  shear.shear_factor_y = bar.shear_factor_y.value_or(shear.shear_factor_y);
+  shear.shear_factor_z = bar.shear_factor_z.value_or(shear.shear_factor_z);
+  if ((nonlinear || bar.section_points > 0) && !found.moments)
     throw InputError(fmt::format(
-        "{}: [rail] gives a section's constants, but {} wants its shape, of which moments of third "
+        "{} gives a section's constants, but {} wants its shape, of which moments of third "
         "and fourth degree are taken; accepted are profile, rectangles and rectangle",
-        scene.file.string(),
-        rail.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
+        place, bar.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
   return found;
 } catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: [rail] {}", scene.file.string(), error.what()));
+  throw InputError(fmt::format("{} {}", place, error.what()));
+}
+
+BeamSection beam_section(const RailSection& bar) {
+  const Section& section = bar.section;
+  return {.area = section.area.area,
+          .inertia_y = section.area.inertia_y,
+          .inertia_z = section.area.inertia_z,
+          .torsion = section.shear.torsion,
+          .shear_factor_y = section.shear.shear_factor_y,
+          .shear_factor_z = section.shear.shear_factor_z,
+          .shear_centre_z = section.shear.shear_centre_height - section.area.centroid_height,
+          .moments = bar.moments};
+}
+
+RailSection rail_section_of(const Scene& scene) {
+  const bool nonlinear =
+      scene.track.model == RailModel::nonlinear || scene.track.linearised_under_weight;
+  return bar_section(scene.rail, nonlinear, scene.file.string() + ": [rail]");
 }
 
 Section section_of(const Scene& scene) { return rail_section_of(scene).section; }
@@ -86,8 +99,8 @@ double height_z(Height at, const Section& section, double axis_z) {
   return (at == Height::head ? section.height : 0.) - section.area.centroid_height - axis_z;
 }
 
-double axis_z_of(const Scene& scene, const Section& section) {
-  switch (scene.track.reference_line) {
+double axis_z_of(ReferenceLine line, const Section& section) {
+  switch (line) {
     case ReferenceLine::mid_height:
       return .5 * section.height - section.area.centroid_height;
     case ReferenceLine::foot:

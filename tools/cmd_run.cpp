@@ -13,6 +13,7 @@
 
 #include "command.h"
 #include "energy.h"
+#include "energy_system.h"
 #include "run_report.h"
 #include "simulate.h"
 #include "write.h"
@@ -53,13 +54,13 @@ class Progress {
   int percent_ = -1;
 };
 
-Scene scene_of(const RunOptions& o) {
+AnyScene scene_of(const RunOptions& o) {
   std::vector<std::string> overrides = o.overrides;
   if (o.model == "full") overrides.emplace_back("condense.kind=\"full\"");
   if (o.model == "condensed") overrides.emplace_back("condense.kind=\"modal\"");
   if (o.step) overrides.push_back(fmt::format("step.dt_s={}", *o.step));
   if (o.duration) overrides.push_back(fmt::format("step.duration_s={}", *o.duration));
-  return read_scene(o.input, overrides);
+  return read_any_scene(o.input, overrides);
 }
 
 /// A model file is what it is: only how long it runs can be chosen.
@@ -86,13 +87,20 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
   return std::llround(frames);
 }
 
-/// The energies of what was run, from a second pass over it; none of a model file, which has no
-/// matrices, and of a run that did not stay finite.
+/// Whether the energies of a run can be told; of a model file, which has no matrices, they cannot.
+bool has_energies(const Simulation& run) {
+  return run.packed() != nullptr || run.system() != nullptr;
+}
+
+/// The energies of what was run, from a second pass over it; none where there are none, and of a
+/// run that did not stay finite.
 std::optional<EnergyBalance> balance_of_run(const Simulation& run, const RunRecord& record,
                                             std::int64_t frames, Progress& bar) {
-  if (run.packed() == nullptr || record.first_bad_unknown >= 0) return std::nullopt;
-  const EnergyBalance found = balance_of(*run.packed(), run.model(), frames,
-                                         [&bar, frames](std::int64_t done) { bar(frames + done); });
+  if (!has_energies(run) || record.first_bad_unknown >= 0) return std::nullopt;
+  const auto after = [&bar, frames](std::int64_t done) { bar(frames + done); };
+  const EnergyBalance found = run.system() != nullptr
+                                  ? balance_of(run.model(), frames, after)
+                                  : balance_of(*run.packed(), run.model(), frames, after);
   if (found.hash != state_hash(run.model(), run.state))
     throw std::runtime_error("a second run of the same model ended in another state");
   return found;
@@ -146,7 +154,7 @@ Exit verdict(const Simulation& run, const RunRecord& record) {
                  "error: nonfinite_state: at step {}, t = {:.9g} s, unknown {} of the state ({}) "
                  "is not finite\n",
                  run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
-                 record.first_bad_unknown, unknown_place(run.model(), record.first_bad_unknown));
+                 record.first_bad_unknown, unknown_place(run, record.first_bad_unknown));
   }
   return has(record.status, Status::nonfinite_state) ? Exit::not_reached : Exit::done;
 }
@@ -157,7 +165,7 @@ Exit run(const RunOptions& o) {
   const bool artefact = is_artefact(o.input);
   if (artefact) refuse_changes(o);
   const auto simulation = artefact ? std::make_unique<Simulation>(std::filesystem::path(o.input))
-                                   : std::make_unique<Simulation>(scene_of(o));
+                                   : simulation_of(scene_of(o));
   const std::int64_t frames = frames_of(o, artefact, simulation->model());
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
@@ -165,7 +173,7 @@ Exit run(const RunOptions& o) {
   RunRecord record;
   std::optional<EnergyBalance> energy;
   {
-    Progress bar(simulation->packed() == nullptr ? frames : 2 * frames);
+    Progress bar(has_energies(*simulation) ? 2 * frames : frames);
     record = simulate(*simulation, frames, trace ? &*trace : nullptr, !o.report.empty(),
                       [&bar](std::int64_t done) { bar(done); });
     energy = balance_of_run(*simulation, record, frames, bar);

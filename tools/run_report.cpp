@@ -107,6 +107,54 @@ std::string all_curves(const std::vector<std::string>& columns, const RunRecord&
   return html;
 }
 
+/// Paths of a system's sensors in the plane of x and z, both axes alike. Empty without one.
+std::string paths_script(const Simulation& run, const RunRecord& record) {
+  constexpr std::size_t kPoints = 4000;
+  const std::vector<std::string>& columns = run.columns();
+  const std::size_t rows = record.rows.size() / columns.size(), every = rows / kPoints + 1;
+  std::string blocks, curves;
+  for (std::size_t c = 0; run.system() != nullptr && c < columns.size(); ++c) {
+    if (!columns[c].ends_with(".x_m")) continue;
+    blocks += fmt::format("$path{} << EOD\n", c);
+    for (std::size_t r = 0; r < rows; r += every)
+      blocks += fmt::format("{:.9g} {:.9g}\n", record.rows[r * columns.size() + c],
+                            record.rows[r * columns.size() + c + 2]);
+    blocks += "EOD\n";
+    curves += fmt::format("{} $path{} with lines lw 1.5 title \"{}\"", curves.empty() ? "" : ",", c,
+                          columns[c].substr(0, columns[c].size() - 4));
+  }
+  if (curves.empty()) return {};
+  return fmt::format(
+      "set terminal svg size 900,600 name 'paths' noenhanced font 'sans,12'\n"
+      "set xlabel 'x, m'\nset ylabel 'z, m'\nset grid\nset size ratio -1\nset offsets graph "
+      "0.05, graph 0.05, graph 0.05, graph 0.05\nset key outside top right horizontal\n{}plot{}\n",
+      blocks, curves);
+}
+
+/// How far a system's joints are off, a logarithmic axis; empty where they never are.
+std::string joints_script(const Simulation& run, const RunRecord& record) {
+  constexpr std::size_t kPoints = 4000;
+  const std::vector<double>& off = record.violations;
+  const std::size_t width = run.columns().size(), every = off.size() / kPoints + 1;
+  std::string data;
+  for (std::size_t r = 0; run.system() != nullptr && r < off.size(); r += every)
+    if (off[r] > 0.) data += fmt::format("{:.9g} {:.6g}\n", record.rows[r * width], off[r]);
+  if (data.empty()) return {};
+  return fmt::format(
+      "set terminal svg size 900,420 name 'joints' noenhanced font 'sans,12'\n"
+      "set xlabel 'time, s'\nset ylabel 'largest residual of the joints, m'\nset logscale y\n"
+      "set format y '%.0e'\nset grid\n$off << EOD\n{}EOD\nplot $off with lines lw 1.5 notitle\n",
+      data);
+}
+
+std::string system_plots(const Simulation& run, const RunRecord& record) {
+  std::string html;
+  const std::string paths = paths_script(run, record), joints = joints_script(run, record);
+  if (!paths.empty()) html += fmt::format("<h2>Paths of the sensors</h2>\n{}\n", drawn(paths));
+  if (!joints.empty()) html += fmt::format("<h2>Residual of the joints</h2>\n{}\n", drawn(joints));
+  return html;
+}
+
 /// The rail's axis along the track, a curve a kept time; empty if the rail is not there.
 std::string shapes_script(int rail, const RunRecord& record) {
   std::string blocks, curves;
@@ -181,7 +229,8 @@ std::string run_report(const std::string& title, const Simulation& run, const Ru
       "{10}\n</body>\n</html>\n",
       escaped(title), kStyle, status, record.frame_us.size(), run.model().scheme.dt,
       quantile(record.frame_us, .5), quantile(record.frame_us, .99), quantile(record.frame_us, 1.),
-      all_curves(run.columns(), record), shapes, drawn(histogram_script(record)));
+      system_plots(run, record) + all_curves(run.columns(), record), shapes,
+      drawn(histogram_script(record)));
 }
 
 }  // namespace railstep

@@ -41,10 +41,7 @@ TrackScene read_track(const Table& t) {
     t.refuse("linearised_at",
              "linearised_at = \"weight\" couples sag and stretch; accepted with "
              "unknowns = \"full\"");
-  constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,
-                                      ReferenceLine::foot, ReferenceLine::head};
-  track.reference_line =
-      kLines[t.choice("reference_line", {"centroid", "mid-height", "foot", "head"}, 0)];
+  track.reference_line = read_reference_line(t);
   if (track.reference_line != ReferenceLine::centroid && track.unknowns == Unknowns::vertical)
     t.refuse("reference_line",
              "off the centroid nodes move along x as the rail bends; accepted is reference_line = "
@@ -135,16 +132,7 @@ std::int64_t whole_steps(const Table& t, std::string_view key, double time, doub
 }
 
 StepScene read_step(const Table& t) {
-  StepScene s;
-  s.dt = t.number("dt_s", between(1e-7, 0.1));
-  const double duration = t.number("duration_s", above_upto(0.0, 1e7));
-  if (s.dt > duration)
-    t.refuse("dt_s", fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; accepted is "
-                                 "at most the duration",
-                                 s.dt, duration));
-  const double frame = t.number("frame_s", above_upto(0.0, duration), s.dt);
-  s.steps_per_frame = whole_steps(t, "frame_s", frame, s.dt);
-  s.steps = whole_steps(t, "duration_s", duration, s.dt);
+  StepScene s = read_times(t);
   s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.6);
   s.scheme = t.choice("scheme", {"generalised-alpha", "backward-euler"}, 0) == 0
                  ? TimeScheme::generalised_alpha
@@ -189,14 +177,38 @@ double TimeTable::at(double t) const {
   return value[i - 1] + part * (value[i] - value[i - 1]);
 }
 
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  const Table root = read_toml(file, overrides);
+ReferenceLine read_reference_line(const Table& t) {
+  constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,
+                                      ReferenceLine::foot, ReferenceLine::head};
+  return kLines[t.choice("reference_line", {"centroid", "mid-height", "foot", "head"}, 0)];
+}
+
+StepScene read_times(const Table& t) {
+  StepScene s{};
+  s.dt = t.number("dt_s", between(1e-7, 0.1));
+  const double duration = t.number("duration_s", above_upto(0.0, 1e7));
+  if (s.dt > duration)
+    t.refuse("dt_s", fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; accepted is "
+                                 "at most the duration",
+                                 s.dt, duration));
+  const double frame = t.number("frame_s", above_upto(0.0, duration), s.dt);
+  s.steps_per_frame = whole_steps(t, "frame_s", frame, s.dt);
+  s.steps = whole_steps(t, "duration_s", duration, s.dt);
+  return s;
+}
+
+Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Table root = read_toml(file, overrides);
   const std::int64_t schema = root.integer("schema", 1, std::numeric_limits<std::int64_t>::max());
   if (schema > 1)
     root.refuse("schema",
                 fmt::format("schema = {} is newer than this program; accepted is 1", schema));
+  return root;
+}
+
+Scene read_track_scene(const Table& root) {
   Scene scene;
-  scene.file = file;
+  scene.file = root.file();
   scene.track = read_track(root.table("track"));
   check_size(root.table("track"), scene.track);
   scene.rail = read_rail(root.table("rail"));
@@ -214,6 +226,15 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   root.finish();
   check_names(root, scene);
   return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const Table root = open_scene(file, overrides);
+  if (const char* key = key_of_system(root))
+    root.refuse(key, fmt::format("the key {} makes this a scene of bodies and beams, which run "
+                                 "alone takes; accepted here is the scene of a track",
+                                 key));
+  return read_track_scene(root);
 }
 
 }  // namespace railstep

@@ -16,7 +16,7 @@ namespace railstep {
 
 enum class Height { axis, head, foot };  // where in the section a force acts or a sensor sits
 enum class Side { left, right };         // left is +y
-enum class TimeScheme { generalised_alpha, backward_euler };
+enum class TimeScheme { generalised_alpha, backward_euler, energy_momentum };
 enum class Start { equilibrium, released };
 enum class GuideMethod { augmented_lagrangian, baumgarte };
 enum class Condensation { full, modal };
@@ -57,13 +57,17 @@ struct TrackScene {
   [[nodiscard]] double length() const { return static_cast<double>(bays) * bay; }
 };
 
-struct RailScene {
+/// Section, material and element rule of a bar: of a rail, or of a beam.
+struct BarScene {
   SectionSource shape;
   double young, poisson, density;  // Pa, 1, kg/m3
   ElementRule rule;
   int section_points;  // Gauss points per rectangle and direction; 0: exact moments
   std::optional<double> shear_factor_y, shear_factor_z;  // replace the section's
-  double crown_radius;                                   // m
+};
+
+struct RailScene : BarScene {
+  double crown_radius;      // m
   double axial_force;       // N, tension positive, beside what the temperature makes
   double temperature_rise;  // K, over that without force
   double expansion;         // 1/K
@@ -165,7 +169,8 @@ struct SensorScene {
   std::variant<RailSensor, SleeperSensor, WheelsetSensor> on;
 };
 
-/// One scene, every number checked and in SI. config/README.md, "Scenes", has it key by key.
+/// One scene of a track, every number checked and in SI. config/README.md, "Scenes", has it key by
+/// key.
 struct Scene {
   std::filesystem::path file;
   TrackScene track;
@@ -185,7 +190,8 @@ struct Scene {
   }
 };
 
-/// Reads and checks a scene; nothing of its size is allocated. Throws InputError.
+/// Reads and checks a scene of a track; nothing of its size is allocated. Throws InputError, also
+/// at a scene of bodies and beams, which scene_system.h reads.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 }  // namespace railstep

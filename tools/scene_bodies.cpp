@@ -12,23 +12,6 @@ namespace {
 const Range kSpeed = between(-2000.0, 2000.0);
 const Range kForce = between(-1e8, 1e8);
 
-/// A name stands in the trace's header, so it is a word.
-std::string checked_name(const Table& t, std::string_view key, const std::string& name) {
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  };
-  if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
-    t.refuse(key, fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
-                              "and -",
-                              key, name.substr(0, 64)));
-  if (name.starts_with("support_"))
-    t.refuse(key, fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
-                              "does not start with support_",
-                              key, name));
-  return name;
-}
-
 Side read_side(const Table& t, const Scene& scene) {
   // One rail is the left one, so that a scene can leave the key out.
   const std::size_t side = scene.track.rails == 1 ? t.choice("rail", {"left", "right"}, 0)
@@ -181,6 +164,22 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
 }
 
 }  // namespace
+
+std::string checked_name(const Table& t, std::string_view key, const std::string& name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
+    t.refuse(key, fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
+                              "and -",
+                              key, name.substr(0, 64)));
+  if (name.starts_with("support_"))
+    t.refuse(key, fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
+                              "does not start with support_",
+                              key, name));
+  return name;
+}
 
 std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {
   std::vector<LoadScene> loads;

@@ -69,9 +69,8 @@ std::optional<double> read_override(const Table& rail, std::string_view key) {
   const std::optional<Table> rectangle = rail.table_if("rectangle");
   const bool inside = rectangle && rectangle->has(key);
   if (inside && rail.has(key))
-    rail.refuse(key, fmt::format("{} is given in [rail] and in [rail.rectangle]; one of them is "
-                                 "accepted",
-                                 key));
+    rail.refuse(key, fmt::format("{} is given in [{}] and in [{}]; one of them is accepted", key,
+                                 rail.name(), rectangle->name()));
   if (inside) return rectangle->number(key, kShearFactor);
   if (rail.has(key)) return rail.number(key, kShearFactor);
   return std::nullopt;
@@ -102,20 +101,26 @@ int read_section_points(const Table& t, const SectionSource& shape) {
 
 }  // namespace
 
-RailScene read_rail(const Table& rail) {
-  RailScene r;
-  r.shape = read_shape(rail);
-  r.young = rail.number("young_pa", between(1e5, 1e13), 210e9);
+BarScene read_bar(const Table& bar) {
+  BarScene r;
+  r.shape = read_shape(bar);
+  r.young = bar.number("young_pa", between(1e5, 1e13), 210e9);
   // Beyond these a material makes work out of nothing; at 0.5 it cannot be compressed at all.
-  r.poisson = rail.number("poisson", {-1.0, 0.5, false, false}, 0.3);
-  r.density = rail.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
+  r.poisson = bar.number("poisson", {-1.0, 0.5, false, false}, 0.3);
+  r.density = bar.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
   r.section_points = 0;
-  if (const std::optional<Table> rule = rail.table_if("rule")) {
+  if (const std::optional<Table> rule = bar.table_if("rule")) {
     r.rule = read_rule(*rule);
     r.section_points = read_section_points(*rule, r.shape);
   }
-  r.shear_factor_y = read_override(rail, "shear_factor_y");
-  r.shear_factor_z = read_override(rail, "shear_factor_z");
+  r.shear_factor_y = read_override(bar, "shear_factor_y");
+  r.shear_factor_z = read_override(bar, "shear_factor_z");
+  return r;
+}
+
+RailScene read_rail(const Table& rail) {
+  RailScene r;
+  static_cast<BarScene&>(r) = read_bar(rail);
   r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), 0.3);
   r.axial_force = rail.number("axial_force_n", between(-1e10, 1e10), 0.0);
   r.temperature_rise = rail.number("temperature_rise_k", between(-300.0, 300.0), 0.0);

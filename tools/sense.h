@@ -7,6 +7,10 @@
 
 namespace railstep {
 
+/// What a trace has of every sensor, in its order.
+inline constexpr const char* kSensorQuantities[] = {"x_m",  "y_m",  "z_m",       "dx_m",
+                                                    "dy_m", "dz_m", "vz_m_per_s"};
+
 /// A scene's sensors and support forces as probes of a model.
 struct Sensors {
   /// S.x_m .. S.vz_m_per_s of each sensor, then support_<i>.force_z_n of the left rail's supports

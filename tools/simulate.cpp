@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "heap_count.h"
+#include "online/model/system_workspace.h"
 #include "online/step/line.h"
 #include "online/step/probe.h"
 #include "online/step/step.h"
+#include "online/system/sense.h"
 
 namespace railstep {
 namespace {
@@ -26,12 +28,26 @@ constexpr StatusText kStatus[] = {
      "a load or wheel is off the rail and its force is 0: lengthen the track"},
     {Status::contact_lost, "contact_lost", "a wheel stood free of its rail for a while"},
     {Status::cap_reached, "cap_reached",
-     "a contact or guide solve ended at its cap: shorten step.dt_s or raise the guide's cap"},
+     "a solve of contact, guide or joints ended at its cap: shorten step.dt_s or raise the cap"},
     {Status::contact_unresolved, "contact_unresolved",
      "a wheel struck its rail for fewer than 10 steps: its peak force is not right, shorten "
      "step.dt_s"},
+    {Status::redundant_joint, "redundant_joint",
+     "a row of a joint hangs on others and carries no force of its own: leave it out, or hold the "
+     "joints by the augmented Lagrangian"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
+
+/// kSensorQuantities of a system's sensors.
+void append_sensors(const Simulation& run, std::vector<double>& row) {
+  const std::vector<SystemSensor>& sensors = run.system()->system.sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const PointMotion p = sense(run.model(), run.state, static_cast<std::int32_t>(i));
+    row.insert(row.end(), p.position, p.position + 3);
+    for (int d = 0; d < 3; ++d) row.push_back(p.position[d] - sensors[i].point[d]);
+    row.push_back(p.velocity[2]);
+  }
+}
 
 void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
   const Model& model = run.model();
@@ -47,11 +63,13 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
   const std::size_t probes = row.size();
   row.resize(probes + static_cast<std::size_t>(model.probe.count));
   read_probes(model, run.state, outputs, row.data() + probes);
+  if (run.system() != nullptr) append_sensors(run, row);
 }
 
 /// Axes of the rails that the model's lines carry.
 void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
   const Model& model = run.model();
+  if (model.lines == 0) return;  // a system alone has no rails
   const Configuration at{run.state.u, {run.state.u, run.state.v}};
   for (const int rail : {0, 1}) {
     RailSnapshot shape{static_cast<double>(run.state.steps) * model.scheme.dt, rail,
@@ -96,7 +114,9 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
     if (!trace && !keep_rows) return;
     write_row(run, outputs, row);
     if (trace) trace->row(row);
-    if (keep_rows) record.rows.insert(record.rows.end(), row.begin(), row.end());
+    if (!keep_rows) return;
+    record.rows.insert(record.rows.end(), row.begin(), row.end());
+    record.violations.push_back(outputs.constraint_violation);
   };
   publish_start(run.model(), run.state, outputs);
   take();
@@ -125,10 +145,13 @@ std::string status_sentence(const std::string& name) {
   return {};
 }
 
-std::string unknown_place(const Model& model, std::int32_t unknown) {
-  static const char* const names[9] = {
-      "x position",         "lateral position", "height", "lateral slope a_x", "a_y", "roll a_z",
-      "vertical slope b_x", "roll b_y",         "b_z"};
+namespace {
+
+constexpr const char* kNodeUnknowns[9] = {
+    "x position",         "lateral position", "height", "lateral slope a_x", "a_y", "roll a_z",
+    "vertical slope b_x", "roll b_y",         "b_z"};
+
+std::string place_in_track(const Model& model, std::int32_t unknown) {
   for (std::int32_t l = model.lines - 1; l >= 0; --l) {
     const LineModel& line = model.line[l];
     if (unknown < line.first || unknown >= line.first + line.size) continue;
@@ -136,10 +159,39 @@ std::string unknown_place(const Model& model, std::int32_t unknown) {
       return fmt::format("mode {} of the track's line {}", unknown - line.first, l);
     for (std::int32_t i = 0; i < 9 * (2 * model.elements + 1); ++i)
       if (line.unknown_of[i] == unknown - line.first)
-        return fmt::format("{} of rail node {}", names[i % 9], i / 9);
+        return fmt::format("{} of rail node {}", kNodeUnknowns[i % 9], i / 9);
     break;
   }
   return unknown < model.bodies ? "a sleeper's motion" : "a wheelset's coordinate";
+}
+
+/// @param unknown  from the system's first on
+std::string place_in_system(const SystemModel& system, const SystemNames& names,
+                            std::int32_t unknown) {
+  static const char* const of_body[6] = {"x position of",   "y position of",   "z position of",
+                                         "turn about x of", "turn about y of", "turn about z of"};
+  for (std::int32_t b = 0; b < system.bodies; ++b)
+    for (int c = 0; c < 6; ++c)
+      if (const std::int32_t column = system.body[b].column[c];
+          column >= 0 && system.body[b].first + column == unknown)
+        return fmt::format("{} body \"{}\"", of_body[c], names.bodies[static_cast<std::size_t>(b)]);
+  for (std::int32_t b = 0; b < system.beams; ++b) {
+    const BeamChainModel& beam = system.beam[b];
+    const std::int32_t at = unknown - beam.first, width = beam_width(beam);
+    if (at < 0 || at >= beam.unknowns) continue;
+    const int which = beam.planar != 0 ? kPlanarOf[at % width] : at % width;
+    return fmt::format("{} of node {} of beam \"{}\"", kNodeUnknowns[which], at / width,
+                       names.beams[static_cast<std::size_t>(b)]);
+  }
+  return "padding of the system";
+}
+
+}  // namespace
+
+std::string unknown_place(const Simulation& run, std::int32_t unknown) {
+  if (run.system() == nullptr) return place_in_track(run.model(), unknown);
+  const SystemModel& system = run.model().system;
+  return place_in_system(system, run.system()->names, unknown - system.first);
 }
 
 double quantile(std::vector<double> values, double q) {

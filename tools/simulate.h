@@ -28,6 +28,7 @@ struct RunRecord {
   std::vector<double> frame_us;         // [frames] wall time of the steps alone, us
   std::int64_t allocations = 0;         // calls of new within the frames, see heap_count.h
   std::vector<double> rows;             // the trace, row after row; only when asked for
+  std::vector<double> violations;       // [frames + 1] of the constraints; with the rows
   std::vector<RailSnapshot> shapes;     // at kShapes times; only when asked for
 };
 
@@ -43,7 +44,7 @@ std::vector<std::string> status_names(Status status);
 /// What a status bit means and what to do about it, by its name.
 std::string status_sentence(const std::string& name);
 /// Where an unknown of the state sits, in words.
-std::string unknown_place(const Model& model, std::int32_t unknown);
+std::string unknown_place(const Simulation& run, std::int32_t unknown);
 
 /// Time of the q-th part of the frames (0 to 1), us: the smallest that this part does not exceed.
 double quantile(std::vector<double> values, double q);

@@ -56,6 +56,13 @@ Simulation::Simulation(const Scene& scene)
   load(scene.file.string());
 }
 
+Simulation::Simulation(const SystemScene& scene)
+    : system_(std::make_unique<BuiltSystem>(scene)),
+      model_(system_->packed->model()),
+      columns_(system_->columns) {
+  place();
+}
+
 Simulation::Simulation(const std::filesystem::path& artefact) : block_(read_bytes(artefact)) {
   load(artefact.string());
 }
@@ -70,11 +77,19 @@ void Simulation::load(const std::string& name) {
                                static_cast<std::size_t>(model_.probe.count);
   if (columns_.size() != expected)
     throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));
+  place();
+}
+
+void Simulation::place() {
   memory_.resize(static_cast<std::size_t>(state_doubles(model_)));
   scratch_.resize(static_cast<std::size_t>(workspace_doubles(model_)));
   state = state_on(model_, memory_.data());
   workspace = workspace_on(model_, scratch_.data());
   reset(model_, state);
+}
+
+std::unique_ptr<Simulation> simulation_of(const AnyScene& scene) {
+  return std::visit([](const auto& kind) { return std::make_unique<Simulation>(kind); }, scene);
 }
 
 bool is_artefact(const std::filesystem::path& file) {

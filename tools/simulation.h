@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "build.h"
+#include "build_system.h"
 #include "online/model/state.h"
 #include "scene.h"
 
@@ -16,15 +17,20 @@ class Simulation {
  public:
   /// Of a scene, condensed where it says so. Throws InputError.
   explicit Simulation(const Scene& scene);
+  /// Of a scene of bodies and beams, which has no block. Throws InputError.
+  explicit Simulation(const SystemScene& scene);
   /// Of a block that `railstep condense` wrote. Throws InputError.
   explicit Simulation(const std::filesystem::path& artefact);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
   const Model& model() const { return model_; }
+  /// Empty of a system.
   const std::vector<std::byte>& block() const { return block_; }
   /// What the block was made of, matrices and all; null for a model file, which carries none.
   const PackedModel* packed() const { return built_ ? built_->packed.get() : nullptr; }
+  /// The system that is stepped, with its names; null where it is a track.
+  const BuiltSystem* system() const { return system_.get(); }
   /// Of a trace: time_s, then those of every load, wheel, sensor and support.
   const std::vector<std::string>& columns() const { return columns_; }
 
@@ -33,13 +39,18 @@ class Simulation {
 
  private:
   void load(const std::string& name);
+  void place();
 
   std::unique_ptr<Built> built_;
+  std::unique_ptr<BuiltSystem> system_;
   std::vector<std::byte> block_;
   Model model_{};
   std::vector<std::string> columns_;
   std::vector<double> memory_, scratch_;
 };
+
+/// Of either kind of scene. Throws InputError.
+std::unique_ptr<Simulation> simulation_of(const AnyScene& scene);
 
 /// Whether a file begins as a block does.
 bool is_artefact(const std::filesystem::path& file);

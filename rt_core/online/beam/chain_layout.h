@@ -45,13 +45,4 @@ constexpr int field_of(int unknown) noexcept {
 /// 30 / L times the integral of N_i N_j, quadratic shape functions.
 inline constexpr double kMassPairs[3][3] = {{4., 2., -1.}, {2., 16., 2.}, {-1., 2., 4.}};
 
-[[gnu::always_inline]] inline Wide load(const double* from) noexcept {
-  Wide x;
-  __builtin_memcpy(&x, from, sizeof x);
-  return x;
-}
-[[gnu::always_inline]] inline void store(const Wide& x, double* to) noexcept {
-  __builtin_memcpy(to, &x, sizeof x);
-}
-
 }  // namespace railstep::chained

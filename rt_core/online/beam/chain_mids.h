@@ -4,80 +4,132 @@
 namespace railstep::chained {
 
 // The mid nodes of four elements, one in each lane: their pivots, their rows of L, and what is left
-// to the elements' end nodes.
+// to the elements' end nodes. D L' takes the place of S, so that all of a group stays in a cache of
+// 32 KiB. Every entry is S less its terms in the order of the rows above; columns are taken in
+// numbers that fit the processor's 16 vectors.
 
-/// Pivot rows of the mid node, and its 2W columns of the end nodes; kWide lanes.
-/// @param S       a group's blocks of S, from the first of these lanes
-/// @param mid     the group's part of the factor, from the first of these lanes
-/// @param pivots  D [W] and D L' in the columns of the ends [W][2W], for condense()
+/// kWide of a group's lanes.
 template <int W>
-struct MidRows {
-  Wide of[W][2 * W];
+struct MidLanes {
+  using At = Layout<W>;
+  double* S;    // the group's blocks of S / k_factor, from the first of these lanes
+  double* mid;  // the group's part of the factor, likewise
 
-  /// Row k of D L': S less what the rows above take, then L' = D^-1 (D L').
-  /// @returns lanes' counts of pivots that are not above 0
-  [[gnu::always_inline]] void set(const double* S, double* mid, std::int64_t* bad) noexcept {
-    using At = Layout<W>;
-    Wide own[W][W];  // D L' among the mid node's unknowns
+  /// Column c of the two end nodes' 2W in row k of the mid node.
+  [[gnu::always_inline]] double* end(int k, int c) const noexcept {
+    return S + (c < W ? At::tangent(kFirstMid, c, k) : At::tangent(kMidLast, k, c - W));
+  }
+
+  /// Row after row, so that the wait for a row's pivot is filled with the ends of the one above.
+  /// 1 / D is stored over k_factor.
+  /// @param bad  counts the lanes' pivots that are not above 0
+  [[gnu::always_inline]] void eliminate(double inverse_k, int* bad) const noexcept {
+    constexpr int columns = W % 3 == 0 ? 6 : 5;
     unrolled<W>([&](auto k) __attribute__((always_inline)) {
-      unrolled<W - k>([&](auto c) __attribute__((always_inline)) {
-        constexpr int j = k + c;
-        Wide sum = load(S + At::tangent(kMidMid, k, j));
-        unrolled<k>([&](auto i) __attribute__((always_inline)) {
-          sum -= own[i][k] * load(mid + At::mid(i, j));
-        });
-        own[k][j] = sum;
+      const Wide pivot = own_row<k>(), inverse = 1. / pivot;
+      for (int lane = 0; lane < kWide; ++lane) bad[lane] += pivot[lane] > 0. ? 0 : 1;
+      store(inverse * inverse_k, mid + At::mid(k, k));
+      unrolled<W - 1 - k>([&](auto c) __attribute__((always_inline)) {
+        constexpr int j = k + 1 + c;
+        store(load(S + At::tangent(kMidMid, k, j)) * inverse, mid + At::mid(k, j));
       });
-      const Wide inverse = 1. / own[k][k];
-      for (int lane = 0; lane < kWide; ++lane) bad[lane] += own[k][k][lane] > 0. ? 0 : 1;
-      store(inverse, mid + At::mid(k, k));
-      for (int j = k + 1; j < W; ++j) store(own[k][j] * inverse, mid + At::mid(k, j));
+      unrolled<2 * W / columns>([&](auto part) __attribute__((always_inline)) {
+        end_columns<k, columns * part, columns>(inverse);
+      });
     });
-    for (int c = 0; c < 2 * W; ++c)
-      unrolled<W>([&](auto k) __attribute__((always_inline)) {
-        Wide sum =
-            load(S + (c < W ? At::tangent(kFirstMid, c, k) : At::tangent(kMidLast, k, c - W)));
-        unrolled<k>([&](auto i) __attribute__((always_inline)) {
-          sum -= load(mid + At::mid(i, k)) * of[i][c];
-        });
-        of[k][c] = sum;
+  }
+
+  /// Row k of D L' in the mid node's own columns.
+  /// @returns D
+  template <int k>
+  [[gnu::always_inline]] Wide own_row() const noexcept {
+    Wide row[W - k];
+    unrolled<W - k>([&](auto c) __attribute__((always_inline)) {
+      row[c] = load(S + At::tangent(kMidMid, k, k + c));
+    });
+    unrolled<k>([&](auto i) __attribute__((always_inline)) {
+      const Wide factor = load(mid + At::mid(i, k));
+      unrolled<W - k>([&](auto c) __attribute__((always_inline)) {
+        row[c] -= factor * load(S + At::tangent(kMidMid, i, k + c));
       });
-    for (int k = 0; k < W; ++k) {
-      const Wide inverse = load(mid + At::mid(k, k));
-      for (int c = 0; c < 2 * W; ++c) store(of[k][c] * inverse, mid + At::mid(k, W + c));
-    }
+    });
+    unrolled<W - 1 - k>([&](auto c) __attribute__((always_inline)) {
+      store(row[c + 1], S + At::tangent(kMidMid, k, k + c + 1));
+    });
+    return row[0];
+  }
+
+  template <int k, int kFirst, int kCount>
+  [[gnu::always_inline]] void end_columns(const Wide& inverse) const noexcept {
+    Wide row[kCount];
+    unrolled<kCount>([&](auto c)
+                         __attribute__((always_inline)) { row[c] = load(end(k, kFirst + c)); });
+    unrolled<k>([&](auto i) __attribute__((always_inline)) {
+      const Wide factor = load(mid + At::mid(i, k));
+      unrolled<kCount>([&](auto c) __attribute__((always_inline)) {
+        row[c] -= factor * load(end(i, kFirst + c));
+      });
+    });
+    unrolled<kCount>([&](auto c) __attribute__((always_inline)) {
+      store(row[c], end(k, kFirst + c));
+      store(row[c] * inverse, mid + At::mid(k, W + kFirst + c));
+    });
+  }
+
+  /// A part of a block of S of the end nodes less what the mid node takes.
+  /// @param left, right  its first row and column among the ends' 2W
+  /// @param part         in S
+  template <int kRows, int kColumns>
+  [[gnu::always_inline]] void condense(int left, int right, double* part) const noexcept {
+    Wide sum[kRows * kColumns];
+    const auto each = [](const auto& entry) __attribute__((always_inline)) {
+      unrolled<kRows * kColumns>([&](auto c) __attribute__((always_inline)) {
+        constexpr int i = c / kColumns, j = c % kColumns;
+        entry(c, std::integral_constant<int, i>{}, std::integral_constant<int, j>{});
+      });
+    };
+    each([&](auto c, auto i, auto j) __attribute__((always_inline)) {
+      sum[c] = load(part + (W * i + j) * kStraightLanes);
+    });
+    for (int k = 0; k < W; ++k)
+      each([&](auto c, auto i, auto j) __attribute__((always_inline)) {
+        sum[c] -= load(end(k, left + i)) * load(mid + At::mid(k, W + right + j));
+      });
+    each([&](auto c, auto i, auto j) __attribute__((always_inline)) {
+      store(sum[c], part + (W * i + j) * kStraightLanes);
+    });
+  }
+
+  /// A block of S of the end nodes, in parts of 3 x 3, a symmetric one above its diagonal.
+  template <int kPair>
+  void condense_block() const noexcept {
+    constexpr int parts = (W + 2) / 3;
+    constexpr int left = kPair == kLastLast ? W : 0, right = kPair == kFirstFirst ? 0 : W;
+    unrolled<parts>([&](auto a) __attribute__((always_inline)) {
+      unrolled<parts>([&](auto b) __attribute__((always_inline)) {
+        constexpr int i = 3 * a, j = 3 * b;
+        if constexpr (kPair == kFirstLast || a <= b)
+          condense<(W - i < 3 ? W - i : 3), (W - j < 3 ? W - j : 3)>(left + i, right + j,
+                                                                     S + At::tangent(kPair, i, j));
+      });
+    });
   }
 };
-
-/// S of the end nodes less what the mid node takes: rows and columns of two of the blocks of W.
-template <int W>
-void condense_block(const MidRows<W>& rows, const double* mid, int pair, double* S) noexcept {
-  using At = Layout<W>;
-  const int left = pair == kLastLast ? W : 0, right = pair == kFirstFirst ? 0 : W;
-  for (int i = 0; i < W; ++i)
-    for (int j = pair == kFirstLast ? 0 : i; j < W; ++j) {
-      double* at = S + At::tangent(pair, i, j);
-      Wide sum = load(at);
-      for (int k = 0; k < W; ++k)
-        sum -= rows.of[k][left + i] * load(mid + At::mid(k, W + right + j));
-      store(sum, at);
-    }
-}
 
 /// Mid nodes of a group out of S.
 /// @returns how many pivots of the first `count` lanes are not above 0
 template <int W>
-int condense_group(int count, double* S, double* factor) noexcept {
-  std::int64_t bad[kStraightLanes] = {};
+int condense_group(int count, double inverse_k, double* S, double* factor) noexcept {
+  int bad[kStraightLanes] = {};
   for (int lane = 0; lane < kStraightLanes; lane += kWide) {
-    MidRows<W> rows;
-    rows.set(S + lane, factor + lane, bad + lane);
-    condense_block<W>(rows, factor + lane, kFirstFirst, S + lane);
-    condense_block<W>(rows, factor + lane, kFirstLast, S + lane);
-    condense_block<W>(rows, factor + lane, kLastLast, S + lane);
+    const MidLanes<W> lanes{S + lane, factor + lane};
+    lanes.eliminate(inverse_k, bad + lane);
+    lanes.template condense_block<kFirstFirst>();
+    lanes.template condense_block<kFirstLast>();
+    lanes.template condense_block<kLastLast>();
   }
   int all = 0;
-  for (int lane = 0; lane < count; ++lane) all += static_cast<int>(bad[lane]);
+  for (int lane = 0; lane < count; ++lane) all += bad[lane];
   return all;
 }
 

@@ -15,6 +15,15 @@ struct Group {
   int element(int lane) const noexcept { return first + lane < count ? first + lane : count - 1; }
 };
 
+/// Where part `part` of N numbers begins, kWide each; the last one takes some again that are not
+/// its own, instead of any behind them.
+template <int N>
+constexpr int part_first(int part) noexcept {
+  return kWide * (part + 1) <= N ? kWide * part : N - kWide;
+}
+template <int N>
+inline constexpr int kParts = (N + kWide - 1) / kWide;
+
 /// Even and odd part of V.
 template <class Kind>
 struct LaneVectors {
@@ -24,8 +33,13 @@ struct LaneVectors {
                                   const double* q) noexcept {
     constexpr int W = Kind::kUnknowns;
     Wide nodes[3 * W];
-    for (int l = 0; l < kWide; ++l)
-      for (int c = 0; c < 3 * W; ++c) nodes[c][l] = q[2 * W * group.element(l) + c];
+    unrolled<kParts<3 * W>>([&](auto part) __attribute__((always_inline)) {
+      constexpr int c = part_first<3 * W>(part);
+      unrolled<kWide>([&](auto l) __attribute__((always_inline)) {
+        nodes[c + l] = load(q + 2 * W * group.element(l) + c);
+      });
+      transpose(nodes + c);
+    });
     split<Kind>(beam.per_length, nodes, nodes + W, nodes + 2 * W, even, odd);
   }
   /// V at +g or -g.
@@ -78,10 +92,21 @@ template <class Kind>
   Wide nodes[3 * W];
   sum_difference<kComponentsOf<Kind>>(F, F_minus);
   gather<Kind>(beam.per_length, F, F_minus, nodes, nodes + W, nodes + 2 * W);
+  double of[kWide][3 * W];
+  unrolled<kParts<3 * W>>([&](auto part) __attribute__((always_inline)) {
+    constexpr int c = part_first<3 * W>(part);
+    Wide turned[kWide];
+    unrolled<kWide>([&](auto i) __attribute__((always_inline)) { turned[i] = nodes[c + i]; });
+    transpose(turned);
+    unrolled<kWide>([&](auto l) __attribute__((always_inline)) { store(turned[l], of[l] + c); });
+  });
   for (int l = 0; l < kWide && group.first + l < group.count; ++l) {
     double* at = force + 2 * W * (group.first + l);
-    for (int c = 0; c < W; ++c) at[c] = group.first + l == 0 ? nodes[c][l] : at[c] + nodes[c][l];
-    for (int c = W; c < 3 * W; ++c) at[c] = nodes[c][l];
+    if (group.first + l > 0)
+      for (int c = 0; c < W; ++c) at[c] += of[l][c];
+    else
+      for (int c = 0; c < W; ++c) at[c] = of[l][c];
+    for (int c = W; c < 3 * W; ++c) at[c] = of[l][c];
   }
 }
 
@@ -138,12 +163,14 @@ void set_lane_fields(const Coefficients& k, const Wide* even, const Wide* odd,
       return matrix_first<Kind>(matrix) + c;
     };
     const NodePairs<Wide> K = node_pairs<kPair>(k, even, odd, entry);
-    for (int m = 0; m < 3; ++m)
-      for (int n = f == g ? m : 0; n < 3; ++n) {
-        if (f == g && m == n && i > j) continue;
-        if (m <= n) set(m, n, row, column, K.of[m][n]);
-        if (m >= n && (f != g || i != j)) set(n, m, column, row, K.of[m][n]);
-      }
+    unrolled<9>([&](auto nodes) __attribute__((always_inline)) {
+      constexpr int m = nodes / 3, n = nodes % 3;
+      if constexpr (f == g && n < m) return;
+      if (f == g && m == n && i > j) return;
+      if constexpr (m <= n) set(m, n, row, column, K.of[m][n]);
+      if constexpr (m >= n)
+        if (f != g || i != j) set(n, m, column, row, K.of[m][n]);
+    });
   }
 }
 

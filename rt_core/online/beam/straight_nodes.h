@@ -67,8 +67,9 @@ struct NodePairs {
   T of[3][3];
 
   [[gnu::always_inline]] void operator+=(const NodePairs& other) noexcept {
-    for (int m = 0; m < 3; ++m)
-      for (int n = 0; n < 3; ++n) of[m][n] += other.of[m][n];
+    unrolled<9>([&](auto nodes) __attribute__((always_inline)) {
+      of[nodes / 3][nodes % 3] += other.of[nodes / 3][nodes % 3];
+    });
   }
 };
 

@@ -11,4 +11,31 @@ using Wide = Two;
 #endif
 inline constexpr int kWide = static_cast<int>(sizeof(Wide) / sizeof(double));
 
+[[gnu::always_inline]] inline Wide load(const double* from) noexcept {
+  Wide x;
+  __builtin_memcpy(&x, from, sizeof x);
+  return x;
+}
+[[gnu::always_inline]] inline void store(const Wide& x, double* to) noexcept {
+  __builtin_memcpy(to, &x, sizeof x);
+}
+
+/// Rows become columns, [kWide][kWide].
+[[gnu::always_inline]] inline void transpose(Wide* x) noexcept {
+#ifdef __AVX__
+  const Wide a = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6);
+  const Wide b = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
+  const Wide c = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6);
+  const Wide d = __builtin_shufflevector(x[2], x[3], 1, 5, 3, 7);
+  x[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  x[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  x[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  x[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+#else
+  const Wide a = __builtin_shufflevector(x[0], x[1], 0, 2);
+  x[1] = __builtin_shufflevector(x[0], x[1], 1, 3);
+  x[0] = a;
+#endif
+}
+
 }  // namespace railstep

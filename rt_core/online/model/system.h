@@ -16,7 +16,7 @@ inline constexpr int kMaxSystemRows = 512;
 inline constexpr int kMaxSystemParts = 256;
 inline constexpr int kMostElementsOfBeam = 10'000;
 inline constexpr int kMotionCoefficients = 6;
-inline constexpr int kMostNamedRows = 16;  // redundant ones that a frame names
+inline constexpr int kMostNamedRows = 16;     // redundant ones that a frame names
 inline constexpr int kMostNodeUnknowns = 27;  // that one row touches in one part
 
 /// A rigid body about its centre of mass.

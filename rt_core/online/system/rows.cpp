@@ -174,7 +174,7 @@ void add_row_changes(const SystemModel& system, const double* gradient, const do
   }
 }
 
-void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
+void factor_rows(const Model& model, double soft, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const std::int32_t rows = system_rows(s);
   for (std::int32_t i = 0; i < rows * rows; ++i) w.tangent.compliance[i] = 0.;
@@ -204,7 +204,7 @@ void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
   for (std::int32_t r = 0; r < rows; ++r)
     w.tangent.compliance[std::ptrdiff_t{rows} * r + r] += r >= s.joint_rows
                                                               ? 1. / spring_slope(model, s.row[r])
-                                                          : yields ? s.row[r].compliance
+                                                          : yields ? soft * s.row[r].compliance
                                                                    : 0.;
   Pivoted f = pivoted(s, w.tangent);
   factor_pivoted(f, s.rank_tolerance);

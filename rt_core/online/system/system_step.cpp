@@ -192,6 +192,11 @@ void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& 
     result.redundant_row[i] = t.order[rank + i];
 }
 
+/// Energy-momentum takes a row's gradient at the mean, where Newton's matrix wants that of the end
+/// on one side: at a singular position stiff rows make its iterations diverge. They begin again,
+/// once, with rows so much softer.
+constexpr double kSofter = 1e5;
+
 /// How the iterations go on: what forces lack and what joints want, each against the one before.
 struct Progress {
   double residual = __builtin_inf(), wanted = __builtin_inf();
@@ -228,8 +233,9 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
   Progress progress;
   bool old = true;  // the matrix is of an earlier step
-  double step = 0.;
+  double step = 0., soft = 1.;
   bool settled = false;
+  const bool may_soften = s.mean != 0 && s.hold == Hold::augmented_lagrangian;
   for (std::int32_t done = 0;; ++done) {
     place_parts(model, start, w);
     const bool renew = is_renewed(s, w.tangent, done, progress.slow);
@@ -242,6 +248,15 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     const bool held = wanted <= s.joint_tolerance && (s.hold != Hold::gear_gupta_leimkuhler ||
                                                       result.violation <= s.joint_tolerance);
     if (done > 0 && (result.force_residual <= s.tolerance || settled) && held) break;
+    if (done == s.cap && may_soften && soft < kSofter) {
+      soft = kSofter;
+      progress = {.slow = true};
+      step = 0.;
+      settled = false;
+      guess(model, state, workspace, w);
+      done = -1;
+      continue;
+    }
     if (done == s.cap) {
       result.status = Status::cap_reached;
       break;
@@ -258,7 +273,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     if (renew) {
       old = false;
       solve_ends(model, w);
-      factor_rows(model, w);
+      factor_rows(model, soft, w);
       *w.tangent.age = 1.;
     }
     newton_step(model, w);

@@ -1,0 +1,41 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "offline/system/pack_system.h"
+#include "scene.h"
+
+namespace railstep {
+
+/// What a beam of a system is made of.
+struct BeamBar {
+  BarScene bar;
+  ReferenceLine line;
+};
+
+/// Names of a system's things, in the order in which it has them.
+struct SystemNames {
+  std::vector<std::string> bodies, beams, joints, sensors;
+};
+
+/// One scene of bodies, beams and joints without a track, every number checked and in SI.
+/// config/README.md, "Systems", has it key by key.
+struct SystemScene {
+  std::filesystem::path file;
+  System system;              // beams without section, material, rule and axis
+  std::vector<BeamBar> bars;  // [beams] of which these come
+  SystemNames names;
+  SystemOptions options{};  // without scheme and steps, which `step` has
+  StepScene step{};
+};
+
+using AnyScene = std::variant<Scene, SystemScene>;
+
+/// Reads and checks a scene of either kind. Throws InputError, also where a scene has both a track
+/// and bodies or beams.
+AnyScene read_any_scene(const std::filesystem::path& file,
+                        const std::vector<std::string>& overrides = {});
+
+}  // namespace railstep
