@@ -154,3 +154,14 @@ TEST_CASE("a rail does not carry what is not there", "[system][track]") {
   CHECK_THROWS_WITH(SystemRun(weight_on_rail(1., 80.), {}, track, full_order(1e-3), traffic),
                     Catch::Contains("no wheelsets"));
 }
+
+TEST_CASE("what a track beside bodies does not do is refused", "[system][track]") {
+  const Track track = peers_pair(1);
+  System scene = weight_on_rail(1., 80.);
+  CHECK_THROWS_WITH(
+      SystemRun(scene, {.hold = Hold::gear_gupta_leimkuhler}, track, full_order(1e-3)),
+      Catch::Contains("Gear, Gupta"));
+  scene.forces = {{.on = rail(0), .point = {1., .75, 0.}, .factor = {.polynomial = {1.}}}};
+  CHECK_THROWS_WITH(SystemRun(scene, {}, track, full_order(1e-3)),
+                    Catch::Contains("a load of the track"));
+}

@@ -148,7 +148,7 @@ void print_table(const nlohmann::ordered_json& result) {
 Exit verdict(const Simulation& run, const RunRecord& record) {
   for (const std::string& name : status_names(record.status)) {
     if (name != "nonfinite_state")
-      fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name));
+      fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, record));
     else
       fmt::print(stderr,
                  "error: nonfinite_state: at step {}, t = {:.9g} s, unknown {} of the state ({}) "

@@ -212,7 +212,7 @@ void need_gnuplot() {
 std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record) {
   std::string status;
   for (const std::string& name : status_names(record.status))
-    status += fmt::format("<p>{}: {}.</p>\n", name, status_sentence(name));
+    status += fmt::format("<p>{}: {}.</p>\n", name, status_sentence(name, record));
   std::string shapes;
   for (const int rail : {0, 1}) {
     const std::string script = shapes_script(rail, record);

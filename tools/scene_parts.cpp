@@ -158,7 +158,7 @@ Part read_part(const Table& t, std::string_view key, const std::string& name,
 
 Eigen::Vector3d read_point(const Table& t, std::string_view key, const Part& part,
                            const SystemScene& scene) {
-  const Eigen::Vector3d point = read_in_plane(t, key, kPlace, scene.system.planar);
+  Eigen::Vector3d point = read_in_plane(t, key, kPlace, scene.system.planar);
   if (part.kind != Part::Kind::beam) return point;
   const auto index = static_cast<std::size_t>(part.index);
   const FlexibleBeam& b = scene.system.beams[index];

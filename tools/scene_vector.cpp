@@ -30,7 +30,7 @@ Eigen::Vector3d read_vector(const Table& t, std::string_view key, const Range& a
 
 Eigen::Vector3d read_in_plane(const Table& t, std::string_view key, const Range& accepted,
                               bool planar) {
-  const Eigen::Vector3d v = read_vector(t, key, accepted);
+  Eigen::Vector3d v = read_vector(t, key, accepted);
   check_plane(t, key, v, planar);
   return v;
 }
@@ -43,7 +43,7 @@ Eigen::Vector3d read_in_plane(const Table& t, std::string_view key, const Range&
 Eigen::Vector3d read_turn(const Table& t, std::string_view key, const Range& accepted, bool planar,
                           const Eigen::Vector3d& otherwise) {
   if (!t.has(key)) return otherwise;
-  const Eigen::Vector3d v = read_vector(t, key, accepted);
+  Eigen::Vector3d v = read_vector(t, key, accepted);
   if (planar && (v.x() != 0. || v.z() != 0.))
     t.refuse(key, fmt::format("{} = [{:.15g}, {:.15g}, {:.15g}] turns out of the plane of x and z; "
                               "accepted is one about y alone, or system.planar = false",

@@ -1,6 +1,7 @@
 #include "simulate.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -98,6 +99,14 @@ double timed_frame(Simulation& run, Outputs& outputs, std::int64_t& allocations)
   return std::chrono::duration<double, std::micro>(end - start).count();
 }
 
+void note_redundant(const Simulation& run, const Outputs& outputs, RunRecord& record) {
+  if (run.system() == nullptr) return;
+  for (int i = 0; i < std::min(outputs.redundant_rows, kMostNamedRows); ++i) {
+    const RowModel& row = run.model().system.row[outputs.redundant_row[i]];
+    record.redundant.insert(run.system()->names.joints[static_cast<std::size_t>(row.joint)]);
+  }
+}
+
 }  // namespace
 
 RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
@@ -111,6 +120,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
     record.iterations = std::max(record.iterations, outputs.iterations);
     record.constraint_violation =
         std::max(record.constraint_violation, outputs.constraint_violation);
+    note_redundant(run, outputs, record);
     if (!trace && !keep_rows) return;
     write_row(run, outputs, row);
     if (trace) trace->row(row);
@@ -139,9 +149,12 @@ std::vector<std::string> status_names(Status status) {
   return names;
 }
 
-std::string status_sentence(const std::string& name) {
+std::string status_sentence(const std::string& name, const RunRecord& record) {
   for (const StatusText& text : kStatus)
-    if (name == text.name) return text.sentence;
+    if (name == text.name)
+      return text.bit == Status::redundant_joint && !record.redundant.empty()
+                 ? fmt::format("{} ({})", text.sentence, fmt::join(record.redundant, ", "))
+                 : text.sentence;
   return {};
 }
 

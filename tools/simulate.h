@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct RunRecord {
   std::int32_t first_bad_unknown = -1;  // -1: all finite
   double constraint_violation = 0.;     // largest, m or rad
   int iterations = 0;                   // largest of a step
+  std::set<std::string> redundant;      // joints that redundant rows belong to
   std::vector<double> frame_us;         // [frames] wall time of the steps alone, us
   std::int64_t allocations = 0;         // calls of new within the frames, see heap_count.h
   std::vector<double> rows;             // the trace, row after row; only when asked for
@@ -41,8 +43,8 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
 
 /// Names of the bits that are set, as in the JSON; empty when all is well.
 std::vector<std::string> status_names(Status status);
-/// What a status bit means and what to do about it, by its name.
-std::string status_sentence(const std::string& name);
+/// What a status bit means and what to do about it, by its name; with the joints it is about.
+std::string status_sentence(const std::string& name, const RunRecord& record);
 /// Where an unknown of the state sits, in words.
 std::string unknown_place(const Simulation& run, std::int32_t unknown);
 

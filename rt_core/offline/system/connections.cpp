@@ -6,6 +6,7 @@
 #include "offline/element/shape.h"
 #include "offline/system/motion.h"
 #include "offline/system/parts.h"
+#include "online/system/row.h"
 
 namespace railstep {
 
@@ -29,6 +30,7 @@ class Connector {
 
  private:
   std::int32_t marker(const Part& part, const Vector3d& point, const Matrix3d& axes);
+  void check_in_plane(const Part& part, const Vector3d& point) const;
   void put_on_rail(const Part& part, const Vector3d& point, MarkerModel& marker);
   std::int32_t motion(const Motion& motion);
   void row(RowKind kind, int i, int j = 0, int l = 0, std::int32_t motion = -1, double offset = 0.);
@@ -81,6 +83,13 @@ void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& m
   for (std::size_t i = 0; i < 3; ++i) marker.value[i] = n[i];
   marker.position[1] = local.y();
   marker.position[2] = local.z();
+}
+
+/// A force beside the axis of a planar beam would press on its section alone.
+void Connector::check_in_plane(const Part& part, const Vector3d& point) const {
+  const auto index = static_cast<std::size_t>(part.index);
+  if (index < system_.beams.size() && point.y() != system_.beams[index].start.y())
+    throw std::invalid_argument("in a planar system its point lies in the beam's plane");
 }
 
 void Connector::put_on_rail(const Part& part, const Vector3d& point, MarkerModel& marker) {
@@ -173,6 +182,8 @@ void Connector::add_either_way(const Joint& joint) {
     case JointKind::distance: {
       const double length = (joint.other_point - joint.point).norm();
       if (!(length > 0.)) throw std::invalid_argument("its two points lie apart");
+      if (system_.planar && joint.point.y() != joint.other_point.y())
+        throw std::invalid_argument("in a planar system its points lie side by side, not across");
       const bool driven = !joint.motion.polynomial.empty() || !joint.motion.table.empty();
       return row(RowKind::distance, 0, 0, 0, driven ? motion(joint.motion) : -1, length);
     }
@@ -180,8 +191,13 @@ void Connector::add_either_way(const Joint& joint) {
       return row(RowKind::along_a, 0);
     case JointKind::translation:
       return row(RowKind::along_a, 0, 0, 0, motion(joint.motion));
-    case JointKind::rotation:
-      return row(RowKind::square, 2, 1, 1, motion(joint.motion));
+    case JointKind::rotation: {
+      const std::int32_t turn = motion(joint.motion);
+      const Jet start = motion_at(parts_.motions[static_cast<std::size_t>(turn)], 0.);
+      if (!(std::abs(start.x) < 1e-9))
+        throw std::invalid_argument("its rotation is 0 at t = 0: axes are given at rest");
+      return row(RowKind::square, 2, 1, 1, turn);
+    }
     default:
       break;
   }
@@ -282,6 +298,10 @@ void Connector::add(const SpringDamper& spring, std::int32_t index) {
   const double length = std::isnan(spring.length) ? apart : spring.length;
   if (!(length >= 0.) || !(apart > 0.))
     throw std::invalid_argument("its two points lie apart, and its length is not negative");
+  if (!std::isfinite(spring.stiffness) || !std::isfinite(spring.damping))
+    throw std::invalid_argument("its stiffness and damping are finite");
+  if (system_.planar && spring.point_a.y() != spring.point_b.y())
+    throw std::invalid_argument("in a planar system its points lie side by side, not across");
   joint_ = index;
   a_ = marker(spring.a, spring.point_a, Matrix3d::Identity());
   b_ = marker(spring.b, spring.point_b, Matrix3d::Identity());
@@ -291,6 +311,14 @@ void Connector::add(const SpringDamper& spring, std::int32_t index) {
 }
 
 void Connector::add(const SystemForce& force) {
+  if (force.on.kind == Part::Kind::rail)
+    throw std::invalid_argument("a force on a rail is a load of the track");
+  if (!force.direction.allFinite()) throw std::invalid_argument("its direction is finite");
+  const Vector3d& d = force.direction;
+  if (system_.planar && !(force.moment ? d.x() == 0. && d.z() == 0. : d.y() == 0.))
+    throw std::invalid_argument("in a planar system forces lie in x and z, moments along y");
+  if (system_.planar && !force.moment && force.on.kind == Part::Kind::beam)
+    check_in_plane(force.on, force.point);
   if (force.moment && force.on.kind != Part::Kind::body)
     throw std::invalid_argument("a moment acts on a body");
   PointForceModel packed{};

@@ -22,7 +22,7 @@ PackedSystem::~PackedSystem() = default;
 
 namespace {
 
-void check(const System& system, const SystemOptions& o) {
+void check(const System& system, const SystemOptions& o, bool with_scheme) {
   if (!system.gravity.allFinite()) throw std::invalid_argument("gravity is finite");
   if (o.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
   if (o.cap < 1 || o.projections < 0 || o.keep_steps < 1)
@@ -31,6 +31,12 @@ void check(const System& system, const SystemOptions& o) {
     throw std::invalid_argument("tolerances are above zero, and the penalty is not below it");
   if (!(o.alpha >= 0.) || !(o.beta >= 0.))
     throw std::invalid_argument("Baumgarte's alpha and beta are not negative");
+  const Scheme& c = o.scheme;
+  const bool means = std::abs(c.kg * c.dt * c.dt - 2.) < 1e-9 &&
+                     std::abs(c.kv * c.dt - 2.) < 1e-9;  // energy_momentum(dt)
+  if (with_scheme && means != o.energy_momentum)
+    throw std::invalid_argument(
+        "the scheme energy_momentum() and the option of that name go together");
   const bool by_mean = o.hold == Hold::augmented_lagrangian || o.hold == Hold::direct;
   if (o.energy_momentum && !by_mean)
     throw std::invalid_argument(
@@ -54,6 +60,9 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
     throw std::invalid_argument("a track beside a system of bodies carries no wheelsets");
   if (track_options.modal)
     throw std::invalid_argument("a track beside a system of bodies is taken in full order");
+  if (options.hold == Hold::gear_gupta_leimkuhler)
+    throw std::invalid_argument(
+        "a track beside a system of bodies is not held by Gear, Gupta and Leimkuhler's way");
   if (options.energy_momentum)
     throw std::invalid_argument("a track beside a system of bodies has no energy-momentum scheme");
   Traffic both = traffic;
@@ -66,7 +75,7 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
 const PackedModel* PackedSystem::track() const { return memory_->track.get(); }
 
 void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track) {
-  check(system, options);
+  check(system, options, track == nullptr);
   SystemParts& parts = memory_->parts;
   add_parts(system, parts);
   add_connections(system, track, parts);

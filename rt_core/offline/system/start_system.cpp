@@ -181,6 +181,10 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
     const VectorXd taken = X * held.solve(rates);
     for (std::int32_t i = 0; i < n; ++i) at.v[static_cast<std::size_t>(i)] -= taken[i];
     at.place();
+    for (std::int32_t r = 0; r < joints; ++r)
+      if (!(std::abs(at.jet(r).v) <= 1e-9 * (1. + rates.cwiseAbs().maxCoeff())))
+        throw std::invalid_argument("joint " + std::to_string(s.row[r].joint) +
+                                    ": no velocities at the start suit it and the others");
   }
   VectorXd spring_force = VectorXd::Zero(rows);
   for (std::int32_t r = joints; r < rows; ++r) {

@@ -27,11 +27,11 @@ void exchange(const Pivoted& f, std::int32_t i, std::int32_t k) noexcept {
   f.order[k] = t;
 }
 
-/// The place from k to the end of the leading rows whose diagonal is largest.
+/// The place from k to the end of the leading rows that keeps most of its own diagonal.
 std::int32_t largest(const Pivoted& f, std::int32_t k) noexcept {
   std::int32_t best = k;
   for (std::int32_t i = k + 1; i < f.leading; ++i)
-    if (row(f, i)[i] > row(f, best)[best]) best = i;
+    if (row(f, i)[i] * f.scale[best] > row(f, best)[best] * f.scale[i]) best = i;
   return best;
 }
 

@@ -3,7 +3,7 @@
 
 namespace railstep {
 
-/// Factor of a symmetric matrix, L D L', pivots taken where the diagonal is largest: first among
+/// Factor of a symmetric matrix, L D L', pivots taken where most of a diagonal is left: first among
 /// the leading rows, then the others as they come. What is left of the leading ones below
 /// tolerance times its own diagonal depends on the rows before and is left out (its solution is 0).
 struct Pivoted {

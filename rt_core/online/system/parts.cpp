@@ -167,6 +167,20 @@ std::int32_t solve_track_end(const SystemModel& s, std::int32_t end, const doubl
   return n;
 }
 
+/// An applied force or moment on the unknowns of its part. A moment of a body turns in the axes in
+/// which the step takes it: of the start for the mean of both ends.
+void applied(const SystemModel& s, const SystemWorkspace& w, const PointForceModel& force,
+             double size, double* row) noexcept {
+  const MarkerModel& marker = s.marker[force.marker];
+  Pull pull{};
+  double own[3];
+  for (int c = 0; c < 3; ++c) own[c] = pull.point[c] = size * force.direction[c];
+  if (force.moment == 0) return end_row(s, w, force.marker, pull, row);
+  turn_back((s.mean != 0 ? w.start_matrix : w.matrix) + 9 * marker.part, own, own);
+  for (int c = 0; c < 3; ++c)
+    if (const std::int32_t k = s.body[marker.part].column[3 + c]; k >= 0) row[k] = own[c];
+}
+
 }  // namespace
 
 void place_start(const Model& model, const SystemStart& start, SystemWorkspace& w) noexcept {
@@ -240,7 +254,7 @@ void outer_forces(const Model& model, double time, SystemWorkspace& w) noexcept 
     const double size = motion_at(s.motion[force.motion], time).x;
     const Reach at = reach(s, marker);
     double row[kMostNodeUnknowns] = {};
-    end_row(s, w, force.marker, point_pull(force, size, w.force_pose[force.marker]), row);
+    applied(s, w, force, size, row);
     for (std::int32_t k = 0; k < at.count; ++k) w.outer[at.first + k] += row[k];
   }
 }

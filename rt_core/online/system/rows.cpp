@@ -107,23 +107,6 @@ void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t m
   pull_on_unknowns(system, on, w.force_pose[marker], centre, matrix, pull, out);
 }
 
-Pull point_pull(const PointForceModel& force, double size, const MarkerPose& at) noexcept {
-  Pull pull{};
-  for (int c = 0; c < 3; ++c) {
-    const double f = size * force.direction[c];
-    if (force.moment == 0) {
-      pull.point[c] = f;
-      continue;
-    }
-    const int d = (c + 1) % 3, e = (c + 2) % 3;  // M x e_k / 2 on each direction makes M
-    for (int k = 0; k < 3; ++k) {
-      pull.axis[k][e] += .5 * f * at.axis[k][d];
-      pull.axis[k][d] -= .5 * f * at.axis[k][e];
-    }
-  }
-  return pull;
-}
-
 double spring_slope(const Model& model, const RowModel& row) noexcept {
   return model.system.mean != 0 ? .5 * row.stiffness + row.damping / model.scheme.dt
                                 : row.stiffness + row.damping * model.scheme.kv;
@@ -206,6 +189,7 @@ void factor_rows(const Model& model, double soft, SystemWorkspace& w) noexcept {
                                                               ? 1. / spring_slope(model, s.row[r])
                                                           : yields ? soft * s.row[r].compliance
                                                                    : 0.;
+  *w.tangent.rank = 0.;
   Pivoted f = pivoted(s, w.tangent);
   factor_pivoted(f, s.rank_tolerance);
   *w.tangent.rank = f.rank;

@@ -10,9 +10,6 @@ namespace railstep {
 void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t marker,
              const Pull& pull, double* out) noexcept;
 
-/// The pull of an applied force or moment of this size.
-Pull point_pull(const PointForceModel& force, double size, const MarkerPose& at) noexcept;
-
 /// Values and gradients of all rows at the iterate, and what Newton's step is to bring of each, m:
 /// `wanted`, without the parts' own change. @returns the largest of these, over joint rows
 double set_rows(const Model& model, double time, SystemWorkspace& w) noexcept;

@@ -16,6 +16,7 @@ PointMotion sense(const Model& model, const State& state, std::int32_t sensor) n
 /// Rotation of a body, [9], body axes to ground.
 void body_rotation(const State& state, std::int32_t body, double* matrix) noexcept;
 
+/// In the energy-momentum scheme forces and accelerations are those of the last step's middle.
 /// What the joint rows and springs of one joint do to part B as a state stands: the resulting force
 /// and the moment about the joint's point on B, ground axes, N and N m.
 struct JointForce {

@@ -95,7 +95,8 @@ bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
   for (std::int32_t m = 0; m < s.markers; ++m)
     for (const double p : w.pose[m].point) place = larger(place, magnitude(p));
   constexpr double ulp = 2.3e-16;
-  return step <= 4. * ulp * place || (step <= 1e-10 * place && step > .5 * before && before > 0.);
+  return step <= 4. * ulp * place ||
+         (step <= 64. * ulp * place && step > .5 * before && before > 0.);
 }
 
 /// Gear, Gupta, Leimkuhler: the force keeps the velocities, a shift of the positions Phi. Both in
@@ -297,6 +298,10 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
     for (int c = 3; c < 6; ++c)
       if (const std::int32_t k = s.body[b].column[c]; k >= 0) u[s.body[b].first + k] = 0.;
   if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
+  if (s.renew == Renew::kept) {  // an old direction of the joints would take what they allow
+    solve_ends(model, w);
+    factor_rows(model, w);
+  }
   const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
   const bool velocities = project(model, time, 1, at, state.v, nullptr, nullptr, w);
