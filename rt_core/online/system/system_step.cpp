@@ -96,7 +96,7 @@ bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
     for (const double p : w.pose[m].point) place = larger(place, magnitude(p));
   constexpr double ulp = 2.3e-16;
   return step <= 4. * ulp * place ||
-         (step <= 64. * ulp * place && step > .5 * before && before > 0.);
+         (step <= 4096. * ulp * place && step > .5 * before && before > 0.);
 }
 
 /// Gear, Gupta, Leimkuhler: the force keeps the velocities, a shift of the positions Phi. Both in
@@ -300,7 +300,7 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
   if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
   if (s.renew == Renew::kept) {  // an old direction of the joints would take what they allow
     solve_ends(model, w);
-    factor_rows(model, w);
+    factor_rows(model, 1., w);
   }
   const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
