@@ -51,19 +51,11 @@ std::vector<Vector3d> known(int count, const std::vector<double>& times) {
     return Eigen::Vector2d(at[1], -k * std::cos(at[0]));
   };
   const HighOrder solution = high_order(f, y, times, .05);
-  REQUIRE(solution.own_error < 1e-11);
+  REQUIRE(solution.own_error < 1e-9);  // R8 is given to 1e-8
   std::vector<Vector3d> result;
   for (const Eigen::VectorXd& at : solution.y)
     result.emplace_back(std::cos(at[0]), 0., std::sin(at[0]));
   return result;
-}
-
-/// Energy-momentum takes joints at the mean of a step, where Newton's matrix is not quite that of
-/// their end: through a singular position it goes with a softer penalty.
-SystemOptions through(const Scheme& mean) {
-  SystemOptions options = sharp(mean);
-  options.penalty = 1e4;
-  return options;
 }
 
 struct Passed {
@@ -102,7 +94,7 @@ TEST_CASE("two four-bars go through their singular position for 10 s", "[system]
   REQUIRE((own[1] - Vector3d(-.19502030, 0., -.98079921)).norm() < 2e-8);
   REQUIRE((own[2] - Vector3d(.32845811, 0., .94451854)).norm() < 2e-8);
   const SystemOptions options =
-      GENERATE(through(energy_momentum(1e-3)), sharp(generalised_alpha(1e-3, .95)));
+      GENERATE(sharp(energy_momentum(1e-3)), sharp(generalised_alpha(1e-3, .95)));
   CHECK_THAT(SystemRun(four_bars(2, 2. * std::atan(1.), -1.), options).energy(),
              WithinAbs(35.835, 1e-12 * 36.));
   const Passed one = pass(2, 1., own[1], options);

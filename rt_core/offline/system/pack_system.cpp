@@ -125,7 +125,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.port_compliance = memory_->ports.compliance.data();
   s.port_shapes = memory_->ports.shapes.data();
   const SystemStartState start = start_system(system, parts, model_);
-  const double penalty = options.penalty > 0. ? options.penalty : s.mean != 0 ? 1e4 : 1e9;
+  const double penalty = options.penalty > 0. ? options.penalty : 1e9;
   for (std::size_t r = 0; r < parts.joint_rows.size(); ++r)
     parts.rows[r].compliance = start.mobility[r] / (model_.scheme.kg * penalty);
   memory_->start = start.state;

@@ -18,9 +18,8 @@ struct SystemOptions {
   int cap = 20;         // Newton iterations a step
   int projections = 4;  // iterations of a projection of velocities or accelerations
   int keep_steps = 10;  // of Renew::kept
-  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2. 0: 1e9, and 1e4 with the
-  /// energy-momentum scheme, whose matrix takes a row's gradient at the mean: at a singular
-  /// position stiffer rows make its iterations diverge.
+  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2; 0: 1e9. Where iterations
+  /// of the energy-momentum scheme reach the cap they begin again, once, with 1e-5 of it.
   double penalty = 0.;
   double alpha = 0.;  // Baumgarte, 1/s; both 0: alpha = beta = 1 / (5 dt)
   double beta = 0.;

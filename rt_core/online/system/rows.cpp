@@ -157,7 +157,7 @@ void add_row_changes(const SystemModel& system, const double* gradient, const do
   }
 }
 
-void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
+void factor_rows(const Model& model, double soft, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const std::int32_t rows = system_rows(s);
   for (std::int32_t i = 0; i < rows * rows; ++i) w.tangent.compliance[i] = 0.;
@@ -187,7 +187,7 @@ void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
   for (std::int32_t r = 0; r < rows; ++r)
     w.tangent.compliance[std::ptrdiff_t{rows} * r + r] += r >= s.joint_rows
                                                               ? 1. / spring_slope(model, s.row[r])
-                                                          : yields ? s.row[r].compliance
+                                                          : yields ? soft * s.row[r].compliance
                                                                    : 0.;
   *w.tangent.rank = 0.;
   Pivoted f = pivoted(s, w.tangent);

@@ -26,7 +26,8 @@ void add_row_changes(const SystemModel& system, const double* gradient, const do
                      double* out) noexcept;
 
 /// Factor of G S^-1 G' and the rows' own compliance.
-void factor_rows(const Model& model, SystemWorkspace& w) noexcept;
+/// @param soft  by which the joint rows' own compliance is larger than it is given
+void factor_rows(const Model& model, double soft, SystemWorkspace& w) noexcept;
 /// The same in place: x [rows]. @param all  springs too
 void solve_rows(const Model& model, SystemWorkspace& w, bool all, double* x) noexcept;
 

@@ -96,7 +96,7 @@ bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
     for (const double p : w.pose[m].point) place = larger(place, magnitude(p));
   constexpr double ulp = 2.3e-16;
   return step <= 4. * ulp * place ||
-         (step <= 64. * ulp * place && step > .5 * before && before > 0.);
+         (step <= 4096. * ulp * place && step > .5 * before && before > 0.);
 }
 
 /// Gear, Gupta, Leimkuhler: the force keeps the velocities, a shift of the positions Phi. Both in
@@ -193,6 +193,11 @@ void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& 
     result.redundant_row[i] = t.order[rank + i];
 }
 
+/// Energy-momentum takes a row's gradient at the mean, where Newton's matrix wants that of the end
+/// on one side: at a singular position stiff rows make its iterations diverge. They begin again,
+/// once, with rows so much softer.
+constexpr double kSofter = 1e5;
+
 /// How the iterations go on: what forces lack and what joints want, each against the one before.
 struct Progress {
   double residual = __builtin_inf(), wanted = __builtin_inf();
@@ -231,8 +236,9 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
   Progress progress;
   bool old = true;  // the matrix is of an earlier step
-  double step = 0.;
+  double step = 0., soft = 1.;
   bool settled = false;
+  const bool may_soften = s.mean != 0 && s.hold == Hold::augmented_lagrangian;
   for (std::int32_t done = 0;; ++done) {
     place_parts(model, start, w);
     const bool renew = is_renewed(s, w.tangent, done, progress.slow);
@@ -245,6 +251,15 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     const bool held = wanted <= s.joint_tolerance && (s.hold != Hold::gear_gupta_leimkuhler ||
                                                       result.violation <= s.joint_tolerance);
     if (done > 0 && (result.force_residual <= s.tolerance || settled) && held) break;
+    if (done == s.cap && may_soften && soft < kSofter) {
+      soft = kSofter;
+      progress = {.slow = true};
+      step = 0.;
+      settled = false;
+      guess(model, state, workspace, w);
+      done = -1;
+      continue;
+    }
     if (done == s.cap) {
       result.status = Status::cap_reached;
       break;
@@ -261,7 +276,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     if (renew) {
       old = false;
       solve_ends(model, w);
-      factor_rows(model, w);
+      factor_rows(model, soft, w);
       *w.tangent.age = 1.;
     }
     newton_step(model, w);
@@ -287,7 +302,7 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
   if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
   if (s.renew == Renew::kept) {  // an old direction of the joints would take what they allow
     solve_ends(model, w);
-    factor_rows(model, w);
+    factor_rows(model, 1., w);
   }
   const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
