@@ -42,7 +42,7 @@ System all_joints(bool planar) {
       Joint j{.kind = kind, .a = a, .b = b, .point = {.4, 0., 0.}, .axis = axis};
       j.other_point = {.4, 0., .1};
       if (kind == JointKind::translation || kind == JointKind::rotation)
-        j.motion.polynomial = {0., .3, .2};
+        j.motion.polynomial = {0., 0., .7};
       s.joints.push_back(j);
     }
   s.springs = {{.a = beam(0),

@@ -63,7 +63,7 @@ void factor_pivoted(Pivoted& f, double tolerance) noexcept {
   f.rank = f.leading;
   for (std::int32_t k = 0; k < f.leading; ++k) {
     exchange(f, k, largest(f, k));
-    if (!(row(f, k)[k] > tolerance * f.scale[k])) {
+    if (row(f, k)[k] <= tolerance * f.scale[k]) {  // of NaN there is no rank
       f.rank = k;
       break;
     }
