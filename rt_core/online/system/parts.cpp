@@ -188,7 +188,7 @@ void place_start(const Model& model, const SystemStart& start, SystemWorkspace& 
   for (std::int32_t b = 0; b < s.bodies; ++b)
     rotation_matrix(start.quaternion + 4 * b, w.start_matrix + 9 * b);
   if (s.mean == 0) return;
-  for (std::int32_t m = 0; m < s.markers; ++m)
+  for (std::int32_t m = 0; m < s.markers - s.sensors; ++m)
     w.start_pose[m] = marker_pose(s, s.marker[m], start.u, w.start_matrix);
 }
 
@@ -213,7 +213,7 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
     place_centre(s, b, start, w);
   }
   place_nodes(s, start, w);
-  for (std::int32_t m = 0; m < s.markers; ++m) {
+  for (std::int32_t m = 0; m < s.markers - s.sensors; ++m) {
     w.force_pose[m] = w.pose[m] = marker_pose(s, s.marker[m], w.x, w.matrix);
     if (s.mean == 0) continue;
     for (int c = 0; c < 3; ++c) {

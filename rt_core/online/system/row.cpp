@@ -15,19 +15,33 @@ void turning_jet(Jet s, Jet& cos, Jet& sin) noexcept {
   sin = {at.sin, at.cos * s.v, -at.sin * s.v * s.v + at.cos * s.a};
 }
 
-Jet jet_dot(const Jet* p, const Jet* q) noexcept {
+/// Jets, or plain numbers where no rates are asked for.
+template <class T>
+T three(const T* p, const T* q) noexcept {
   return (p[0] * q[0] + p[1] * q[1]) + p[2] * q[2];
 }
 
-/// A pose that stands still.
-MarkerJet standing(const MarkerPose& pose) noexcept {
-  MarkerJet jet{};
-  for (int c = 0; c < 3; ++c) {
-    jet.point[c].x = pose.point[c];
-    for (int k = 0; k < 3; ++k) jet.axis[k][c].x = pose.axis[k][c];
+/// Phi of all kinds but springs. @param Place  MarkerPose or MarkerJet
+template <class T, class Place>
+T joint_row(const RowModel& row, const Place& a, const Place& b, T s, T cos, T sin) noexcept {
+  const T d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
+  switch (row.kind) {
+    case RowKind::along_ground:
+      return d[row.i] - s;
+    case RowKind::along_a:
+      return three(a.axis[row.i], d) - s;
+    case RowKind::square:
+      if (row.motion < 0) return three(a.axis[row.i], b.axis[row.j]);
+      return cos * three(a.axis[row.i], b.axis[row.j]) - sin * three(a.axis[row.l], b.axis[row.j]);
+    case RowKind::distance:
+      return (.5 / row.offset) * (three(d, d) - s * s);
+    case RowKind::spring:
+      break;
   }
-  return jet;
+  return s;
 }
+
+bool turns(const RowModel& row) noexcept { return row.kind == RowKind::square && row.motion >= 0; }
 
 }  // namespace
 
@@ -52,33 +66,22 @@ double row_length(const MarkerPose& a, const MarkerPose& b) noexcept {
 }
 
 double row_value(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double s) noexcept {
-  return row_jet(row, standing(a), standing(b), {s, 0., 0.}).x;
+  if (row.kind == RowKind::spring) return row_length(a, b) - s;
+  const CosSin turn = turns(row) ? cos_sin(s) : CosSin{1., 0.};
+  return joint_row(row, a, b, s, turn.cos, turn.sin);
 }
 
 Jet row_jet(const RowModel& row, const MarkerJet& a, const MarkerJet& b, Jet s) noexcept {
-  const Jet d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
-  switch (row.kind) {
-    case RowKind::along_ground:
-      return d[row.i] - s;
-    case RowKind::along_a:
-      return jet_dot(a.axis[row.i], d) - s;
-    case RowKind::square: {
-      if (row.motion < 0) return jet_dot(a.axis[row.i], b.axis[row.j]);
-      Jet cos, sin;
-      turning_jet(s, cos, sin);
-      return cos * jet_dot(a.axis[row.i], b.axis[row.j]) -
-             sin * jet_dot(a.axis[row.l], b.axis[row.j]);
-    }
-    case RowKind::distance:
-      return (.5 / row.offset) * (jet_dot(d, d) - s * s);
-    case RowKind::spring: {
-      const double length = square_root(jet_dot(d, d).x);
-      if (!(length > 0.)) return {-s.x, 0., 0.};
-      const double rate = ((d[0].x * d[0].v + d[1].x * d[1].v) + d[2].x * d[2].v) / length;
-      return {length - s.x, rate - s.v, 0.};
-    }
+  if (row.kind == RowKind::spring) {
+    const Jet d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
+    const double length = square_root(three(d, d).x);
+    if (!(length > 0.)) return {-s.x, 0., 0.};
+    const double rate = ((d[0].x * d[0].v + d[1].x * d[1].v) + d[2].x * d[2].v) / length;
+    return {length - s.x, rate - s.v, 0.};
   }
-  return {0., 0., 0.};
+  Jet cos{1., 0., 0.}, sin{0., 0., 0.};
+  if (turns(row)) turning_jet(s, cos, sin);
+  return joint_row(row, a, b, s, cos, sin);
 }
 
 void row_pulls(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double length,

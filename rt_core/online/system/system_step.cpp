@@ -18,12 +18,14 @@ double square_root(double x) noexcept { return __builtin_sqrt(x); }
 
 /// Norm of forces, moments of slopes and turns over lengths of their parts, N.
 double force_norm(const SystemModel& s, const double* force) noexcept {
-  double sum = 0.;
-  for (std::int32_t i = 0; i < s.unknowns; ++i) {
-    const double f = force[i] * s.per_length[i];
-    sum += f * f;
-  }
-  return square_root(sum);
+  double sum[kLanes] = {};
+  for (std::int32_t i = 0; i < s.unknowns; i += kLanes)  // whole panels
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      const double f = force[i + l] * s.per_length[i + l];
+      sum[l] += f * f;
+    }
+  return square_root(lane_sum(sum));
 }
 
 /// Where the iterations begin: the scheme's step with the last accelerations.
@@ -41,6 +43,7 @@ void guess(const Model& model, const State& state, const Workspace& workspace,
 
 struct Size {
   double residual, scale;  // N
+  double wanted;           // largest of the joint rows, m or 1
 };
 
 /// residual = inertia + elastic - outer + G' force.
@@ -57,7 +60,7 @@ Size set_residual(const SystemModel& s, SystemWorkspace& w) noexcept {
   for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r)
     sum += w.spring_lack[r] * w.spring_lack[r];
   const double own = force_norm(s, w.residual);
-  return {square_root(own * own + sum), scale};
+  return {square_root(own * own + sum), scale, 0.};
 }
 
 /// One Newton step with the matrix that stands: row forces, then displacements.
@@ -77,22 +80,28 @@ double magnitude(double x) noexcept { return x < 0. ? -x : x; }
 
 /// Largest entry of a Newton step.
 double step_size(const SystemModel& s, const SystemWorkspace& w) noexcept {
-  double size = 0.;
-  for (std::int32_t i = 0; i < s.unknowns; ++i) size = larger(size, magnitude(w.change[i]));
-  return size;
+  double size[kLanes] = {};
+  for (std::int32_t i = 0; i < s.unknowns; i += kLanes)
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) size[l] = larger(size[l], magnitude(w.change[i + l]));
+  double most = 0.;
+  for (const double own : size) most = larger(most, own);
+  return most;
 }
 
 /// Whether a Newton step is the round-off of the places that forces are taken at, or is small and
 /// no smaller than the one before: more of them find nothing, whatever is left of the forces.
+/// @param step    its size, 0: none
 /// @param before  size of the step before, 0: none
 bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
                 double before) noexcept {
+  if (!(step > 0.) || step > 1e-6) return false;  // places stay below 1000 km
   double place = 0.;
   for (std::int32_t i = 0; i < s.unknowns; ++i) place = larger(place, magnitude(w.x[i]));
   for (std::int32_t b = 0; b < s.beams; ++b)
     for (std::int32_t i = 0; i < s.beam[b].unknowns; ++i)
       place = larger(place, magnitude(w.nodes[s.beam[b].first + i]));
-  for (std::int32_t m = 0; m < s.markers; ++m)
+  for (std::int32_t m = 0; m < s.markers - s.sensors; ++m)
     for (const double p : w.pose[m].point) place = larger(place, magnitude(p));
   constexpr double ulp = 2.3e-16;
   return step <= 4. * ulp * place ||
@@ -138,6 +147,26 @@ void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& work
   for (std::int32_t i = 0; i < 4 * s.bodies; ++i) state.quaternion[i] = w.quaternion[i];
 }
 
+/// Rates of the joint rows, first or second, into `wanted`; 0 for springs. @returns the largest
+double set_rates(const SystemModel& s, double time, int order, const Motions& at,
+                 SystemWorkspace& w) noexcept {
+  double largest = 0.;
+  MarkerJet a{}, b{};
+  std::int32_t at_a = -1, at_b = -1;  // rows of a joint share their markers
+  for (std::int32_t r = 0; r < s.joint_rows; ++r) {
+    const RowModel& row = s.row[r];
+    if (row.a != at_a) a = marker_jet(s, s.marker[at_a = row.a], at);
+    if (row.b != at_b) b = marker_jet(s, s.marker[at_b = row.b], at);
+    const Jet motion =
+        row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
+    const Jet phi = row_jet(row, a, b, motion);
+    w.wanted[r] = order == 1 ? phi.v : phi.a;
+    if (!(magnitude(w.wanted[r]) <= largest)) largest = magnitude(w.wanted[r]);
+  }
+  for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) w.wanted[r] = 0.;
+  return largest;
+}
+
 /// Takes from velocities (order 1) or accelerations (2) of the model what joints do not allow, in
 /// the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped.
 /// `second` takes the same change. With accelerations go the forces that belong to them: S is kg M
@@ -149,19 +178,7 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
   const double per_step = 1. / model.scheme.dt;
   const double tolerance = s.joint_tolerance * (order == 1 ? per_step : per_step * per_step);
   for (std::int32_t done = 0;; ++done) {
-    double largest = 0.;
-    for (std::int32_t r = 0; r < system_rows(s); ++r) {
-      w.wanted[r] = 0.;
-      if (r >= s.joint_rows) continue;
-      const RowModel& row = s.row[r];
-      const Jet motion =
-          row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
-      const Jet phi = row_jet(row, marker_jet(s, s.marker[row.a], at),
-                              marker_jet(s, s.marker[row.b], at), motion);
-      w.wanted[r] = order == 1 ? phi.v : phi.a;
-      const double size = w.wanted[r] < 0. ? -w.wanted[r] : w.wanted[r];
-      if (!(size <= largest)) largest = size;
-    }
+    const double largest = set_rates(s, time, order, at, w);
     if (largest <= tolerance) return true;
     if (done == s.projections) return false;
     solve_rows(model, w, false, w.wanted);
@@ -199,27 +216,65 @@ void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& 
 constexpr double kSofter = 1e5;
 
 /// How the iterations go on: what forces lack and what joints want, each against the one before.
-struct Progress {
+struct Search {
   double residual = __builtin_inf(), wanted = __builtin_inf();
-  bool slow = false;   // one did not halve with a matrix that stood: make it anew
+  double step = 0., before = 0.;  // sizes of the last two Newton steps
+  double soft = 1.;               // of the rows' compliance
+  bool old = true;                // the matrix is of an earlier step
+  bool slow = false;              // one did not halve with a matrix that stood: make it anew
   bool grown = false;  // one grew, far off perhaps, with a matrix of an earlier step: begin again
 
   /// Joints count with matrices of an earlier step alone: soft rows give way in proportion to their
   /// force, so that a good step may leave more of Phi than the guess had.
-  /// @param stood  whether this iterate came by a matrix that stood
-  /// @param old    whether that is one of an earlier step
-  void look(double residual_now, double wanted_now, double tolerance, bool stood,
-            bool old) noexcept {
+  void compare(const Size& left, double tolerance, bool renew) noexcept {
+    const bool was = old && !renew;  // this iterate came by a matrix of an earlier step
     const auto over = [&](double part) {
-      return !(residual_now <= part * residual) ||
-             (old && wanted_now > tolerance && !(wanted_now <= part * wanted));
+      return !(left.residual <= part * residual) ||
+             (was && left.wanted > tolerance && !(left.wanted <= part * wanted));
     };
-    slow = stood && over(.5);
-    grown = old && over(1.);
-    residual = residual_now;
-    wanted = wanted_now;
+    slow = !renew && over(.5);
+    grown = was && over(1.);
+    residual = left.residual;
+    wanted = left.wanted;
+  }
+  bool may_soften(const SystemModel& s) const noexcept {
+    return s.mean != 0 && s.hold == Hold::augmented_lagrangian && soft < kSofter;
+  }
+  /// @returns the iterations that count as done: begun anew
+  std::int32_t soften() noexcept {
+    soft = kSofter;
+    return -1;
+  }
+  void begin_again() noexcept {
+    residual = wanted = __builtin_inf();
+    step = before = 0.;
+    slow = true;
+    grown = false;
   }
 };
+
+/// Places the iterate and takes all forces and rows there.
+Size look(const Model& model, const SystemStart& start, double time, bool renew, SystemWorkspace& w,
+          SystemResult& result) noexcept {
+  const SystemModel& s = model.system;
+  place_parts(model, start, w);
+  part_forces(model, start, renew, w);
+  outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, w);
+  const double wanted = set_rows(model, time, w);
+  Size left = set_residual(s, w);
+  left.wanted = wanted;
+  result.violation = joint_violation(s, w);
+  result.force_residual = left.scale > 0. ? left.residual / left.scale : 0.;
+  return left;
+}
+
+bool is_done(const SystemModel& s, const SystemWorkspace& w, const Size& left, const Search& search,
+             const SystemResult& result) noexcept {
+  if (!(left.wanted <= s.joint_tolerance)) return false;
+  if (s.hold == Hold::gear_gupta_leimkuhler && !(result.violation <= s.joint_tolerance))
+    return false;
+  return result.force_residual <= s.tolerance || is_settled(s, w, search.step, search.before);
+}
 
 }  // namespace
 
@@ -228,61 +283,38 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
   const SystemStart start = start_of(model, state, workspace);
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
-  SystemResult result{};
   guess(model, state, workspace, w);
   read_ports(model, workspace.solved, w.free_ports);
   place_start(model, start, w);
   if (s.mean != 0) start_springs(model, time - model.scheme.dt, w);
   if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
-  Progress progress;
-  bool old = true;  // the matrix is of an earlier step
-  double step = 0., soft = 1.;
-  bool settled = false;
-  const bool may_soften = s.mean != 0 && s.hold == Hold::augmented_lagrangian;
+  SystemResult result{};
+  Search search;
   for (std::int32_t done = 0;; ++done) {
-    place_parts(model, start, w);
-    const bool renew = is_renewed(s, w.tangent, done, progress.slow);
-    part_forces(model, start, renew, w);
-    outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, w);
-    const double wanted = set_rows(model, time, w);
-    const Size size = set_residual(s, w);
-    result.violation = joint_violation(s, w);
-    result.force_residual = size.scale > 0. ? size.residual / size.scale : 0.;
-    const bool held = wanted <= s.joint_tolerance && (s.hold != Hold::gear_gupta_leimkuhler ||
-                                                      result.violation <= s.joint_tolerance);
-    if (done > 0 && (result.force_residual <= s.tolerance || settled) && held) break;
-    if (done == s.cap && may_soften && soft < kSofter) {
-      soft = kSofter;
-      progress = {.slow = true};
-      step = 0.;
-      settled = false;
-      guess(model, state, workspace, w);
-      done = -1;
-      continue;
-    }
-    if (done == s.cap) {
+    const bool renew = is_renewed(s, w.tangent, done, search.slow);
+    const Size left = look(model, start, time, renew, w, result);
+    if (done > 0 && is_done(s, w, left, search, result)) break;
+    if (done == s.cap && !search.may_soften(s)) {
       result.status = Status::cap_reached;
       break;
     }
-    result.iterations = done + 1;
-    progress.look(size.residual, wanted, s.joint_tolerance, !renew, old && !renew);
-    if (progress.grown) {
-      progress = {.slow = true};
-      step = 0.;
-      settled = false;
+    if (done < s.cap) result.iterations = done + 1;
+    search.compare(left, s.joint_tolerance, renew);
+    if (done == s.cap || search.grown) {
+      if (done == s.cap) done = search.soften();
+      search.begin_again();
       guess(model, state, workspace, w);
       continue;
     }
     if (renew) {
-      old = false;
+      search.old = false;
       solve_ends(model, w);
-      factor_rows(model, soft, w);
+      factor_rows(model, search.soft, w);
       *w.tangent.age = 1.;
     }
     newton_step(model, w);
-    const double last = step;
-    step = step_size(s, w);
-    settled = is_settled(s, w, step, last);
+    search.before = search.step;
+    search.step = step_size(s, w);
     if (s.hold == Hold::gear_gupta_leimkuhler) shift_step(model, w);
   }
   leave(model, w, state, workspace);
