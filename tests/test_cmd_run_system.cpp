@@ -162,7 +162,8 @@ TEST_CASE("a body below its spring swings as the damped oscillator", "[run]") {
   CHECK(coarse / fine < 4.5);
 }
 
-TEST_CASE("the option --json of a system has the contract's keys, and the same bits twice", "[run]") {
+TEST_CASE("the option --json of a system has the contract's keys, and the same bits twice",
+          "[run]") {
   const std::string brief = kPendulum + " --duration 0.2";
   const nlohmann::json first = told(brief);
   for (const char* key : {"steps", "final_time_s", "state_hash", "status",
