@@ -54,7 +54,7 @@ double error_of_c(Pendulum& run) {
   for (int n = 1; n <= kSteps; ++n) {
     run.step();
     const double time = n * kStep;
-    const long at = std::lround(time / known.step);
+    const double at = std::round(time / known.step);
     if (std::abs(at * known.step - time) > 1e-9) continue;
     const PointMotion c = sense(run.packed.model(), run.state, 2);
     const HingeAndEnd want = known.at.at(static_cast<std::size_t>(at));

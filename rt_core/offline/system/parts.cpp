@@ -17,7 +17,8 @@ const double* SystemParts::keep(std::vector<double> values) {
 }
 
 void SystemParts::pad() {
-  const auto n = static_cast<std::size_t>((unknowns + kLanes - 1) / kLanes * kLanes);
+  const std::int32_t panels = (unknowns + kLanes - 1) / kLanes;
+  const std::size_t n = std::size_t{kLanes} * static_cast<std::size_t>(panels);
   constant_force.resize(n, 0.);
   per_length.resize(n, 0.);
 }
@@ -105,9 +106,9 @@ Eigen::Matrix<double, 9, 1> node_at_rest(const FlexibleBeam& beam, int node) {
 
 /// What a node's unknowns are worth of its nine.
 std::vector<double> carried(bool planar, const Eigen::Matrix<double, 9, 1>& q) {
-  std::vector<double> out;
-  for (int k = 0; k < (planar ? kPlanarUnknowns : 9); ++k)
-    out.push_back(q[planar ? kPlanarOf[k] : k]);
+  std::vector<double> out(planar ? kPlanarUnknowns : 9);
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = q[planar ? kPlanarOf[k] : static_cast<int>(k)];
   return out;
 }
 
@@ -170,7 +171,8 @@ void add_weight(const System& system, SystemParts& parts) {
   for (const RigidBodyModel& body : parts.bodies)
     for (int c = 0; c < 6; ++c)
       if (body.column[c] >= 0) {
-        const auto k = static_cast<std::size_t>(body.first + body.column[c]);
+        const std::int32_t unknown = body.first + body.column[c];
+        const auto k = static_cast<std::size_t>(unknown);
         parts.constant_force[k] = c < 3 ? body.mass * g[c] : 0.;
         parts.per_length[k] = c < 3 ? 1. : 1. / body.radius;
       }
@@ -216,8 +218,10 @@ std::vector<double> start_velocities(const System& system, const SystemParts& pa
     Eigen::Matrix<double, 6, 1> own;
     own << body.velocity, body.orientation.conjugate() * body.angular_velocity;
     for (int c = 0; c < 6; ++c)
-      if (const std::int32_t k = parts.bodies[b].column[c]; k >= 0)
-        v[static_cast<std::size_t>(parts.bodies[b].first + k)] = own[c];
+      if (parts.bodies[b].column[c] >= 0) {
+        const std::int32_t k = parts.bodies[b].first + parts.bodies[b].column[c];
+        v[static_cast<std::size_t>(k)] = own[c];
+      }
   }
   for (std::size_t b = 0; b < parts.beams.size(); ++b) {
     const FlexibleBeam& beam = system.beams[b];

@@ -35,7 +35,7 @@ void add_port_accelerations(const Model& model, double* g) {
 
 TrackPorts track_ports(const Model& model) {
   const SystemModel& s = model.system;
-  const auto rows = static_cast<std::size_t>(9 * s.ports);
+  const auto rows = std::size_t{9} * static_cast<std::size_t>(s.ports);
   const auto n = static_cast<std::size_t>(model.bodies);
   TrackPorts ports{std::vector<double>(rows * n, 0.), std::vector<double>(rows * rows, 0.)};
   std::vector<double> column(rows);
