@@ -16,7 +16,7 @@ using Corners = Eigen::Matrix<double, 3, 4>;
 Corners corners(const SystemRun& r, const Bricard& m) {
   Corners c;
   for (int i = 0; i < 4; ++i)
-    c.col(i) = r.point_of_body(i, m.point[static_cast<std::size_t>(i + 1)]);
+    c.col(i) = r.point_of_body(i, m.point[static_cast<std::size_t>(i) + 1]);
   return c;
 }
 
@@ -28,7 +28,7 @@ HighOrder known(const Bricard& m, const std::vector<double>& times) {
 Corners corners(const Bricard& m, const Eigen::VectorXd& y) {
   const Bricard::Chain5 c = m.chain(y);
   Corners result;
-  for (int i = 0; i < 4; ++i) result.col(i) = c.point[static_cast<std::size_t>(i + 1)];
+  for (int i = 0; i < 4; ++i) result.col(i) = c.point[static_cast<std::size_t>(i) + 1];
   return result;
 }
 

@@ -5,7 +5,6 @@
 #include "system_run.h"
 
 using namespace railstep;
-using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using Eigen::Vector3d;
 
