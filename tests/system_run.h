@@ -27,9 +27,9 @@ struct SystemRun {
   double violation = 0.;  // largest of all frames, m or 1
   int iterations = 0;     // most of all frames
 
-  SystemRun(System scene, const SystemOptions& options)
+  SystemRun(System scene, std::unique_ptr<PackedSystem> made)
       : system(std::move(scene)),
-        packed(std::make_unique<PackedSystem>(system, options)),
+        packed(std::move(made)),
         memory(static_cast<std::size_t>(state_doubles(model()))),
         scratch(static_cast<std::size_t>(workspace_doubles(model()))),
         state(state_on(model(), memory.data())),
@@ -38,18 +38,13 @@ struct SystemRun {
     measure_beams();
   }
 
+  SystemRun(const System& scene, const SystemOptions& options)
+      : SystemRun(scene, std::make_unique<PackedSystem>(scene, options)) {}
   /// Beside a track.
-  SystemRun(System scene, const SystemOptions& options, const Track& track,
+  SystemRun(const System& scene, const SystemOptions& options, const Track& track,
             const PackOptions& track_options, const Traffic& traffic = {})
-      : system(std::move(scene)),
-        packed(std::make_unique<PackedSystem>(system, options, track, traffic, track_options)),
-        memory(static_cast<std::size_t>(state_doubles(model()))),
-        scratch(static_cast<std::size_t>(workspace_doubles(model()))),
-        state(state_on(model(), memory.data())),
-        workspace(workspace_on(model(), scratch.data())) {
-    reset(model(), state);
-    measure_beams();
-  }
+      : SystemRun(scene,
+                  std::make_unique<PackedSystem>(scene, options, track, traffic, track_options)) {}
 
   const Model& model() const { return packed->model(); }
   double time() const { return static_cast<double>(state.steps) * model().scheme.dt; }

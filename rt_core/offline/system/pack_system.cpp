@@ -72,8 +72,6 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
   build(system, options, &track);
 }
 
-const PackedModel* PackedSystem::track() const { return memory_->track.get(); }
-
 void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track) {
   check(system, options, track == nullptr);
   SystemParts& parts = memory_->parts;

@@ -47,8 +47,6 @@ class PackedSystem {
   ~PackedSystem();
 
   const Model& model() const { return model_; }
-  /// The track's own part; null without one.
-  const PackedModel* track() const;
 
  private:
   struct Memory;

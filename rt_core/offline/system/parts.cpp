@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -136,11 +137,8 @@ Chain chain_of(const FlexibleBeam& beam, const BeamLaw& law, bool planar, System
   Chain chain{};
   chain.beam = straight_beam(law, beam.length / beam.elements);
   chain.elements = beam.elements;
-  const double density = beam.material.density, z = law.moments.centroid_z();
-  chain.mass[0] = density * beam.section.area;
-  chain.mass[1] = density * beam.section.inertia_z;
-  chain.mass[2] = density * (beam.section.inertia_y + beam.section.area * z * z);
-  chain.mass[3] = density * beam.section.area * z;
+  const auto mass = chain_mass(beam.section, law);
+  std::copy(mass.begin(), mass.end(), chain.mass);
   const std::vector<double> is_free =
       over_nodes(beam, planar, [&](int n) { return free_of(beam, n); });
   std::vector<std::int32_t> held;
