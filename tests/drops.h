@@ -65,7 +65,7 @@ struct Drop {
   double wheel(const double* of) const { return of[model().wheelset[0].first + 2]; }
   /// Of the left rail's node under the wheel.
   double rail(const double* of, int node) const {
-    return of[model().line[0].first + model().line[0].unknown_of[9 * node + 2]];
+    return of[model().line[0].first + model().line[0].unknown_of[0][9 * node + 2]];
   }
 
   void step() {
@@ -100,7 +100,7 @@ struct Drop {
     }
     for (int i = 0; i < 2; ++i) {
       const double d = std::max(0., -outputs.wheel_gap[i]), f = outputs.wheel_force[i];
-      sum += .4 * w.hertz * d * d * std::sqrt(d);
+      sum += .4 * w.hertz[0] * d * d * std::sqrt(d);
       sum += .5 * f * f * residual_under(model(), rail_force(model(), w.kind[i], w.start, f));
     }
     return sum;

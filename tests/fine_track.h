@@ -13,7 +13,7 @@ inline constexpr int kPoints = 8;  // intervals per element, and how much finer 
 // The fine track and the tables are one discrete problem solved two ways: K has a condition of
 // about 1e8, so both are good to 1e-8 of the largest flexibility.
 inline constexpr double kRounding = 1e-7;
-inline constexpr double kHead = .1, kFoot = -.085;  // m over the axis
+inline constexpr double kHeadZ = .1, kFootZ = -.085;  // m over the axis
 
 /// Two rails on sleepers that move in all directions, so that rails are coupled by roll and shift.
 inline Track sleeper_track(int elements_per_bay, RailEnds ends = {}) {
@@ -22,8 +22,37 @@ inline Track sleeper_track(int elements_per_bay, RailEnds ends = {}) {
   t.bays = 6;
   t.elements_per_bay = elements_per_bay;
   t.ends = ends;
-  t.support = {.stiffness = {50e6, 50e6, 200e6}, .roll_stiffness = .3e6, .height_z = kFoot};
+  t.support = {.stiffness = {50e6, 50e6, 200e6}, .roll_stiffness = .3e6, .height_z = kFootZ};
   t.sleeper = Sleeper{300., 169., {20e6, 20e6, 50e6}, {}};
+  return t;
+}
+
+/// The same with pads and ballast that differ from side to side and from seat to seat; on the right
+/// one sleeper hangs, and one has lost its left pad.
+inline Track lopsided_track(int elements_per_bay) {
+  Track t = sleeper_track(elements_per_bay);
+  t.support.half_spread = .05;
+  for (int border = 0; border <= t.bays; ++border) {
+    Seat seat = t.seat(border);
+    for (const std::size_t side : {0u, 1u}) {
+      const double f = 1. + .1 * border + .5 * static_cast<double>(side);
+      for (double& k : seat.pad[side].stiffness) k *= f;
+      for (double& k : seat.ballast[side].stiffness) k /= f;
+      seat.pad[side].roll_stiffness *= f;
+    }
+    t.changed_seats[border] = seat;
+  }
+  t.changed_seats[2].ballast[1] = {};
+  t.changed_seats[3].pad[0].stiffness = {};
+  return t;
+}
+
+/// Pads of 0.16 m on sleepers that pitch.
+inline Track long_pads(int elements_per_bay) {
+  Track t = sleeper_track(elements_per_bay);
+  t.support.length = .16;
+  t.sleeper->pitch_inertia = 8.;
+  t.sleeper->ballast_length = .26;
   return t;
 }
 
@@ -60,22 +89,16 @@ inline std::vector<Basis> bases_of(Kind kind, const Track& track, const std::vec
 inline Functional at_point(const RailPoint& point) { return {.rail = {{point, 1.}}}; }
 
 /// The vertical opening of a pad: rail's foot over sleeper.
-inline Functional pad_gap(int rail, int seat) {
-  return {.rail = {{{rail, .6 * seat, 0., kFoot, 2}, 1.}}, .sleeper = {{rail, seat, 2, -1.}}};
+inline Functional opening(int rail, int seat) {
+  return {.rail = {{{rail, .6 * seat, 0., kFootZ, 2}, 1.}}, .sleeper = {{rail, seat, 2, -1.}}};
 }
 
-/// The functional over the unknowns of one line, from point_row and the meaning of mirror
-/// coordinates: the right rail's lateral motion is minus that of its mirror image.
+/// The functional over the unknowns of one line, term by term.
 inline Eigen::VectorXd row_of(const Track& track, const Line& line, const Functional& functional) {
   Eigen::VectorXd row = Eigen::VectorXd::Zero(line.unknowns());
   for (const auto& [point, factor] : functional.rail) row += factor * point_row(track, line, point);
-  for (const auto& at : functional.sleeper) {
-    const int unknown = line.sleeper_unknown_of[static_cast<std::size_t>(at.seat)]
-                                               [static_cast<std::size_t>(at.direction)];
-    const double mirror = line.mirrored && at.rail == 1 && at.direction == 1 ? -1. : 1.;
-    if (unknown >= 0)
-      row[unknown] += at.factor * mirror * line.rail_factor[static_cast<std::size_t>(at.rail)];
-  }
+  for (const auto& at : functional.sleeper)
+    row += at.factor * sleeper_row(track, line, at.rail, at.seat, at.direction);
   return row;
 }
 

@@ -19,10 +19,10 @@ TEST_CASE("between ports, model and residual make the fine track's flexibility",
   const std::vector<Basis> bases = bases_of(kind, coarse, lines);
   const ResidualFlexibility residual(coarse, lines, bases, kPoints);
   const KeptFlexibility model(coarse, bases);
-  const Port a{0, kHead};
+  const Port a{0, kHeadZ};
   const std::vector<double> under = residual.exact_under(a);
   const double largest = *std::max_element(under.begin(), under.end());
-  for (const Port b : {Port{0, kHead}, Port{0, 0.}, Port{1, kHead}}) {
+  for (const Port b : {Port{0, kHeadZ}, Port{0, 0.}, Port{1, kHeadZ}}) {
     const PairTable table = residual.between(a, b, kPoints);
     double inside = 0., beyond = 0., missing = 0.;
     for (int e = 0; e < coarse.elements(); ++e)
@@ -49,6 +49,46 @@ TEST_CASE("between ports, model and residual make the fine track's flexibility",
   }
 }
 
+TEST_CASE("sides that differ, pads with lengths: model and residual make the fine track",
+          "[flexibility]") {
+  // Pads with lengths spread their force over the fine track's shapes, which the coarse functional
+  // of a pad's mean gap, at Gauss points of its own elements, reads as the fine track does.
+  const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
+  const auto make = GENERATE(&lopsided_track, &long_pads);
+  const Track coarse = make(1);
+  const Statics fine(make(kPoints));
+  const std::vector<Line> lines = assemble(coarse);
+  const std::vector<Basis> bases = bases_of(kind, coarse, lines);
+  const ResidualFlexibility residual(coarse, lines, bases, kPoints);
+  const KeptFlexibility model(coarse, bases);
+  const Port a{1, kHeadZ};
+  const std::vector<double> under = residual.exact_under(a);
+  const double largest = *std::max_element(under.begin(), under.end());
+  const Functional pad = pad_gap(coarse, 0, 1);
+  const std::vector<double> read = residual.from(a, pad);
+  double error = 0., missing = 0.;
+  for (const Port b : {Port{0, kHeadZ}, Port{1, kHeadZ}}) {
+    const PairTable table = residual.between(a, b, kPoints);
+    for (int e = 1; e < coarse.elements(); ++e)
+      for (const int p : {0, 3, 6}) {
+        const double x = place(coarse, e, p);
+        const auto moved = fine.solve({{{a.rail, x, 0., a.z, 2}, 1.}});
+        const auto compare = [&](double added, const Functional& full, const Functional& kept) {
+          const double want = exact(fine, full, moved), own = model(kept, a.rail, x, a.z);
+          error = std::max(error, std::abs(own + added - want));
+          missing = std::max(missing, std::abs(want - own));
+        };
+        const double z = kind == Kind::full ? b.z : 0.;
+        compare(table.at(e, p, e, 4), at_point({b.rail, place(coarse, e, 4), 0., b.z, 2}),
+                at_point({b.rail, place(coarse, e, 4), 0., z, 2}));
+        compare(read[static_cast<std::size_t>(e * (kPoints + 1) + p)], pad, pad);
+      }
+  }
+  CAPTURE(static_cast<int>(kind), missing / largest);
+  CHECK(error / largest < kRounding);
+  CHECK(missing / largest > 1e-3);
+}
+
 TEST_CASE("from a port to rail points, sleepers and pads, model and residual make the fine track",
           "[flexibility]") {
   const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
@@ -63,20 +103,20 @@ TEST_CASE("from a port to rail points, sleepers and pads, model and residual mak
     Functional functional;
   };
   // 1.57 and 2.03 are no nodes of the fine track.
-  const Case cases[] = {{"along x", at_point({0, 1.57, .02, kHead, 0})},
-                        {"lateral, other rail", at_point({1, 2.03, -.01, kHead, 1})},
-                        {"lateral, own rail", at_point({0, 2.03, 0., kFoot, 1})},
-                        {"vertical, off the middle", at_point({1, 1.57, .03, kFoot, 2})},
+  const Case cases[] = {{"along x", at_point({0, 1.57, .02, kHeadZ, 0})},
+                        {"lateral, other rail", at_point({1, 2.03, -.01, kHeadZ, 1})},
+                        {"lateral, own rail", at_point({0, 2.03, 0., kFootZ, 1})},
+                        {"vertical, off the middle", at_point({1, 1.57, .03, kFootZ, 2})},
                         {"vertical at a seat", at_point({0, 1.8, 0., 0., 2})},
-                        {"vertical at the end", at_point({0, 3.6, 0., kHead, 2})},
+                        {"vertical at the end", at_point({0, 3.6, 0., kHeadZ, 2})},
                         {"sleeper, along x", {.sleeper = {{0, 2, 0, 1.}}}},
                         {"sleeper, lateral", {.sleeper = {{1, 3, 1, 2.}}}},
                         {"sleeper, vertical", {.sleeper = {{0, 2, 2, 1.}}}},
-                        {"pad", pad_gap(0, 3)},
-                        {"pad, other rail", pad_gap(1, 2)}};
+                        {"pad", opening(0, 3)},
+                        {"pad, other rail", opening(1, 2)}};
   for (const Case& c : cases) {
     double error = 0., size = 0., missing = 0.;
-    const Port port{0, kHead};
+    const Port port{0, kHeadZ};
     const std::vector<double> table = residual.from(port, c.functional);
     REQUIRE(table.size() == static_cast<std::size_t>(coarse.elements() * (kPoints + 1)));
     for (int e = 0; e < coarse.elements(); ++e)
@@ -119,8 +159,8 @@ TEST_CASE("a rigid sleeper shifts under both rails alike", "[flexibility]") {
   const Track t = sleeper_track(1);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility whole(t, lines, bases_of(Kind::nothing_kept, t, lines), kPoints);
-  const auto left = whole.from({0, kHead}, {.sleeper = {{0, 3, 1, 1.}}});
-  const auto right = whole.from({0, kHead}, {.sleeper = {{1, 3, 1, 1.}}});
+  const auto left = whole.from({0, kHeadZ}, {.sleeper = {{0, 3, 1, 1.}}});
+  const auto right = whole.from({0, kHeadZ}, {.sleeper = {{1, 3, 1, 1.}}});
   double size = 0.;
   for (std::size_t i = 0; i < left.size(); ++i) {
     CHECK_THAT(right[i], WithinAbs(left[i], 1e-22));  // one unknown, the same factors
@@ -134,7 +174,7 @@ TEST_CASE("residual flexibility is symmetric in its ports", "[flexibility]") {
   const Track t = sleeper_track(1);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, bases_of(kind, t, lines), kPoints);
-  const Port a{0, kHead}, b{1, .02};
+  const Port a{0, kHeadZ}, b{1, .02};
   const PairTable ab = residual.between(a, b, 4), ba = residual.between(b, a, 4);
   REQUIRE(ab.reach == ba.reach);
   double error = 0.;
@@ -151,7 +191,7 @@ TEST_CASE("on the diagonal the pairs are what a single port gives", "[flexibilit
   const Track t = sleeper_track(2);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, bases_of(kind, t, lines), kPoints);
-  const Port port{1, kHead};
+  const Port port{1, kHeadZ};
   const std::vector<double> under = residual.under(port);
   const PairTable table = residual.between(port, port, 4);
   for (int e = 0; e < t.elements(); ++e)
@@ -227,7 +267,7 @@ TEST_CASE("the lowest value of a table is reported, not changed", "[flexibility]
   // there, by some 1e-11 m/N; rounding is 2e-15.
   const Track soft = sleeper_track(2);
   const ResidualFlexibility at_head(soft, assemble(soft), {}, kPoints);
-  CHECK(most_negative(at_head.under({0, kHead})) < -1e-12);
+  CHECK(most_negative(at_head.under({0, kHeadZ})) < -1e-12);
   // The modes of a track are a projection of it: on the axis no residual is below 0 but by
   // rounding.
   const Track t = peers_track(2);
@@ -242,10 +282,10 @@ TEST_CASE("lines that the port does not move may be free", "[flexibility]") {
   t.sleeper.reset();
   t.support = {.stiffness = {3e6, 0., 3e7}};  // nothing holds it sideways or in roll
   t.section.shear_centre_z = 0.;              // r_z and b_z come apart
-  CHECK_NOTHROW(ResidualFlexibility(t, assemble(t), {}, 4).under({0, kHead}));
+  CHECK_NOTHROW(ResidualFlexibility(t, assemble(t), {}, 4).under({0, kHeadZ}));
   t.support.stiffness = {0., 0., 3e7};  // x, on b_z's line, which the axis does not move
   CHECK_NOTHROW(ResidualFlexibility(t, assemble(t), {}, 4).under({0, 0.}));
-  CHECK_THROWS_WITH(ResidualFlexibility(t, assemble(t), {}, 4).under({0, kHead}),
+  CHECK_THROWS_WITH(ResidualFlexibility(t, assemble(t), {}, 4).under({0, kHeadZ}),
                     Catch::Contains("free rigid mode"));
   t.support.stiffness = {3e6, 3e6, 0.};
   const ResidualFlexibility loose(t, assemble(t), {}, 4);

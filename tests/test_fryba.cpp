@@ -66,7 +66,7 @@ struct Crossing {
   /// Down positive, m; the middle is a node for every mesh.
   double midspan() const {
     const LineModel& line = model().line[0];
-    return -state.u[line.first + line.unknown_of[9 * track.elements() + 2]];
+    return -state.u[line.first + line.unknown_of[0][9 * track.elements() + 2]];
   }
   double under_load() const { return -outputs.load_deflection[0]; }
 };
@@ -235,7 +235,7 @@ TEST_CASE("each mode under the force converges with the second order of the step
       const Track track = c.track(64);
       const Line line = assemble(track)[0];
       const auto shape = modes(line).shape.col(n - 1).eval();
-      const int middle = line.unknown_of[static_cast<std::size_t>(track.elements())][2];
+      const int middle = line.unknown(0, track.elements(), 2);
       const Series exact(track, c.speed, c.force(), true, n);
       const Series::Term term = exact.terms[static_cast<std::size_t>(2 * n - 2)];
       const auto error = [&](double angle) {

@@ -73,7 +73,7 @@ struct Run {
     for (std::size_t l = 0; l < lines.size(); ++l) {
       const Eigen::Map<const Eigen::VectorXd> u(state.u + model().line[l].first,
                                                 lines[l].unknowns());
-      sum += point_row(track, lines[l], {rail, 1.7, 0., model().head_z, direction}).dot(u);
+      sum += point_row(track, lines[l], {rail, 1.7, 0., model().head_z[rail], direction}).dot(u);
     }
     return sum;
   }

@@ -36,8 +36,8 @@ double cantilever(const Track& track, const Rows& load, const Rows& sensor) {
   for (const Line& line : assemble(track)) {
     std::vector<int> kept;
     for (int i = 0; i < line.unknowns(); ++i)
-      if (std::find(line.unknown_of[0].begin(), line.unknown_of[0].end(), i) ==
-          line.unknown_of[0].end())
+      if (std::find(line.unknown_of[0][0].begin(), line.unknown_of[0][0].end(), i) ==
+          line.unknown_of[0][0].end())
         kept.push_back(i);
     const Eigen::MatrixXd K(line.stiffness), kept_K = K(kept, kept);
     const Eigen::VectorXd f = combine(track, line, load)(kept);
@@ -76,12 +76,12 @@ Track under_a_wheel(int elements_per_bay) {
 
 double frequency_of_lowest_thickness_mode(const Track& track) {
   for (const Line& line : assemble(track)) {
-    if (line.unknown_of[0][8] < 0) continue;  // the vertical line carries b_z
+    if (line.unknown(0, 0, 8) < 0) continue;  // the vertical line carries b_z
     const Modes found = modes(line);
     // a thickness mode has most of its kinetic energy in b_z (and a_y)
     for (int m = 0; m < found.frequency.size(); ++m) {
       Eigen::VectorXd part = Eigen::VectorXd::Zero(line.unknowns());
-      for (const auto& node : line.unknown_of)
+      for (const auto& node : line.unknown_of[0])
         for (const std::size_t k : {4UL, 8UL}) part[node[k]] = found.shape(node[k], m);
       if (part.dot(line.mass * part) > .5) return found.frequency[m];
     }

@@ -49,9 +49,9 @@ std::vector<double> packed_table(const TimeTable& table) {
 }
 
 std::vector<MovingLoad> loads_of(const Scene& scene) {
-  const Section section = section_of(scene);
   std::vector<MovingLoad> loads;
   for (const LoadScene& l : scene.loads) {
+    const Section section = section_of(scene, l.rail);
     const double never = std::copysign(std::numeric_limits<double>::infinity(), l.speed);
     loads.push_back({.rail = l.rail == Side::right ? 1 : 0,
                      .start = l.start,
@@ -92,11 +92,11 @@ std::vector<Wheelset> wheelsets_of(const Scene& scene) {
   return sets;
 }
 
-Railhead railhead_of(const Scene& scene) {
-  const Section section = section_of(scene);
+Railhead railhead_of(const Scene& scene, Side rail) {
+  const bool right = rail == Side::right && scene.right_rail;
   Railhead head;
-  head.top_z = height_z(Height::head, section);
-  head.crown_radius = scene.rail.crown_radius;
+  head.top_z = height_z(Height::head, section_of(scene, rail));
+  head.crown_radius = (right ? *scene.right_rail : scene.rail).crown_radius;
   return head;
 }
 
@@ -133,7 +133,8 @@ Support support_of(const SupportScene& s, const Section& section, double axis_z)
           .roll_stiffness = s.roll.stiffness,
           .roll_damping = s.roll.damping,
           .height_z = height_z(s.at, section, axis_z),
-          .half_spread = s.half_spread};
+          .half_spread = s.half_spread,
+          .length = s.length};
 }
 
 Sleeper sleeper_of(const SleeperScene& s) {
@@ -142,7 +143,35 @@ Sleeper sleeper_of(const SleeperScene& s) {
   return {.mass = s.mass,
           .roll_inertia = s.roll_inertia,
           .ballast_stiffness = {x.stiffness, y.stiffness, s.ballast_z.stiffness},
-          .ballast_damping = {x.damping, y.damping, s.ballast_z.damping}};
+          .ballast_damping = {x.damping, y.damping, s.ballast_z.damping},
+          .pitch_inertia = s.pitch_inertia,
+          .ballast_length = s.ballast_length};
+}
+
+/// Force in a rail at rest: its own, and what heat makes between ends that hold it, N.
+double axial_force_of(const RailScene& rail, double area) {
+  return rail.axial_force - rail.young * area * (rail.expansion * rail.temperature_rise);
+}
+
+/// The right rail where it differs; its pads reach down to its own foot.
+void add_right_rail(const Scene& scene, bool keep_moments, Track& track) {
+  const RailScene& right = *scene.right_rail;
+  const RailSection found = rail_section_of(scene, Side::right);
+  RailBar bar{beam_section(found), {right.young, right.poisson, right.density}, 0.};
+  if (!keep_moments) bar.section.moments.reset();
+  bar.axial_force = axial_force_of(right, bar.section.area);
+  if (scene.track.reference_line != ReferenceLine::centroid)
+    throw std::invalid_argument(
+        "rails that differ have their nodes on their centroids; accepted is track.reference_line = "
+        "\"centroid\"");
+  track.right = bar;
+  if (!scene.support) return;
+  const double height = height_z(scene.support->at, found.section, track.axis_z);
+  for (int border = 0; border <= track.bays && height != track.support.height_z; ++border) {
+    Seat seat = track.seat(border);
+    seat.pad[1].height_z = height;
+    track.changed_seats[border] = seat;
+  }
 }
 
 }  // namespace
@@ -155,9 +184,9 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.section = beam_section(rail);
   track.material = {scene.rail.young, scene.rail.poisson, scene.rail.density};
   // Without third and fourth moments, which it does not need, a linear element keeps its bits.
-  if (scene.track.model != RailModel::nonlinear && !scene.track.linearised_under_weight &&
-      scene.rail.section_points == 0)
-    track.section.moments.reset();
+  const bool keep_moments = scene.track.model == RailModel::nonlinear ||
+                            scene.track.linearised_under_weight || scene.rail.section_points > 0;
+  if (!keep_moments) track.section.moments.reset();
   track.rule = scene.rail.rule;
   track.axis_z = axis_z_of(scene.track.reference_line, section);
   track.unknowns = scene.track.unknowns;
@@ -169,8 +198,9 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.ends = scene.track.ends;
   if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
-  const double heat = scene.rail.expansion * scene.rail.temperature_rise;  // strain it would make
-  track.axial_force = scene.rail.axial_force - scene.rail.young * track.section.area * heat;
+  track.axial_force = axial_force_of(scene.rail, track.section.area);
+  if (scene.right_rail) add_right_rail(scene, keep_moments, track);
+  change_seats(scene.seat_changes, track);
   refuse_buckled(track);
   if (!scene.track.linearised_under_weight) return track;
   return linearised_under_weight(track, scene.track.gravity ? kGravity : 0.);
@@ -203,12 +233,16 @@ Built::Built(const Scene& scene) try {
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   refuse_unstepped(scene);
   track = track_of(scene);
-  const Railhead head = railhead_of(scene);
+  const Railhead head = railhead_of(scene, Side::left);
   Sensors sensors = sensors_of(scene, track, head);
   columns = columns_of(scene, sensors);
-  packed = std::make_unique<PackedModel>(
-      track, Traffic{loads_of(scene), wheelsets_of(scene), head, std::move(sensors.probes)},
-      options_of(scene));
+  packed = std::make_unique<PackedModel>(track,
+                                         Traffic{.loads = loads_of(scene),
+                                                 .wheelsets = wheelsets_of(scene),
+                                                 .head = head,
+                                                 .probes = std::move(sensors.probes),
+                                                 .right_head = railhead_of(scene, Side::right)},
+                                         options_of(scene));
   if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {

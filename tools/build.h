@@ -30,12 +30,15 @@ BeamSection beam_section(const RailSection& bar);
 /// section's. Those of rectangles are at the scene's Poisson ratio, those of a profile or a section
 /// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
 /// Throws InputError too where the rail's model or rule wants moments and the scene gives none.
-RailSection rail_section_of(const Scene& scene);
-Section section_of(const Scene& scene);
+RailSection rail_section_of(const Scene& scene, Side rail = Side::left);
+Section section_of(const Scene& scene, Side rail = Side::left);
 
 /// Height over the reference line, m, of a place on the section.
 /// @param axis_z  of that line above the centroid, m
 double height_z(Height at, const Section& section, double axis_z = 0.);
+
+/// Height of a rail's axis over the left one's, m: railheads are level.
+double rail_z(const Scene& scene, Side rail);
 
 /// Height of a reference line above the centroid, m.
 double axis_z_of(ReferenceLine line, const Section& section);
@@ -44,6 +47,15 @@ double axis_z_of(ReferenceLine line, const Section& section);
 /// too.
 Track track_of(const Scene& scene);
 Track track_of(const Scene& scene, const RailSection& rail);
+
+/// Makes a scene's changes to the seats of its track.
+void change_seats(const std::vector<SeatChange>& changes, Track& track);
+
+/// The factor of a change's scatter on one side of one seat: even between 1 - width and 1 + width,
+/// the same on every machine. Three rounds of SplitMix64 (Steele, Lea, Flood 2014) over seed,
+/// stream, seat and side; none depends on the others' number or order.
+double scatter_factor(std::uint64_t seed, std::uint64_t stream, int seat, std::size_t side,
+                      double width);
 
 /// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
 /// and support. Throws InputError, in one sentence, for what makes no model (a free rigid mode,

@@ -86,13 +86,21 @@ BeamSection beam_section(const RailSection& bar) {
           .moments = bar.moments};
 }
 
-RailSection rail_section_of(const Scene& scene) {
+RailSection rail_section_of(const Scene& scene, Side rail) {
   const bool nonlinear =
       scene.track.model == RailModel::nonlinear || scene.track.linearised_under_weight;
-  return bar_section(scene.rail, nonlinear, scene.file.string() + ": [rail]");
+  const bool right = rail == Side::right && scene.right_rail;
+  return bar_section(right ? *scene.right_rail : scene.rail, nonlinear,
+                     scene.file.string() + (right ? ": [rail.right]" : ": [rail]"));
 }
 
-Section section_of(const Scene& scene) { return rail_section_of(scene).section; }
+Section section_of(const Scene& scene, Side rail) { return rail_section_of(scene, rail).section; }
+
+double rail_z(const Scene& scene, Side rail) {
+  if (rail == Side::left || !scene.right_rail) return 0.;
+  return height_z(Height::head, section_of(scene)) -
+         height_z(Height::head, section_of(scene, rail));
+}
 
 double height_z(Height at, const Section& section, double axis_z) {
   if (at == Height::axis) return -axis_z;

@@ -28,7 +28,7 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
   double force[kMaxWheels], d[kMaxWheels];
   for (int i = 0; i < c.wheels; ++i) {
     const bool on_rail = c.contact[i].on_rail;
-    hertz[i] = model.wheelset[i / 2].hertz;
+    hertz[i] = model.wheelset[i / 2].hertz[i % 2];
     force[i] = 0.;
     free[i] =
         on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;

@@ -255,6 +255,16 @@ std::filesystem::path Table::path(std::string_view key) const {
   return (file().parent_path() / text).lexically_normal();
 }
 
+std::array<double, 2> Table::number_or_pair(std::string_view key, const Range& accepted) const {
+  const Entry entry = need(key);
+  if (!entry.node->is_array()) {
+    const double value = entry.number(*entry.node, accepted);
+    return {value, value};
+  }
+  const std::vector<double> values = numbers(key, accepted, 2, 2);
+  return {values[0], values[1]};
+}
+
 std::vector<double> Table::numbers(std::string_view key, const Range& accepted, std::size_t least,
                                    std::size_t most) const {
   const Entry entry = need(key);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -66,6 +67,9 @@ class Table {
   [[nodiscard]] std::vector<double> numbers(std::string_view key, const Range& accepted,
                                             std::size_t least = 1,
                                             std::size_t most = 100'000) const;
+  /// Two numbers: one number stands for both, an array has two.
+  [[nodiscard]] std::array<double, 2> number_or_pair(std::string_view key,
+                                                     const Range& accepted) const;
   /// An array of `least` to `most` strings.
   [[nodiscard]] std::vector<std::string> strings(std::string_view key, std::size_t least,
                                                  std::size_t most) const;

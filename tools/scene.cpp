@@ -82,7 +82,7 @@ void check_held(const Table& rail, const Scene& scene) {
                             scene.rail.temperature_rise));
 }
 
-std::optional<SupportScene> read_support(const Table& root) {
+std::optional<SupportScene> read_support(const Table& root, const Scene& scene) {
   const std::optional<Table> given = root.table_if("support");
   if (!given) return std::nullopt;
   const Table& t = *given;
@@ -94,6 +94,7 @@ std::optional<SupportScene> read_support(const Table& root) {
             t.number("damping_roll_n_m_s_per_rad", between(0.0, 1e11), 0.0)};
   s.at = t.choice("at", {"foot", "axis"}, 0) == 0 ? Height::foot : Height::axis;
   s.half_spread = t.number("half_spread_m", between(0.0, 0.5), 0.0);
+  s.length = t.number("length_m", between(0.0, scene.track.bay), 0.0);
   return s;
 }
 
@@ -109,6 +110,12 @@ std::optional<SleeperScene> read_sleeper(const Table& root, const Scene& scene) 
   s.roll_inertia = scene.track.rails == 2 ? t->number("roll_inertia_kg_m2", between(0.0, 1e6))
                                           : t->number("roll_inertia_kg_m2", between(0.0, 1e6), 0.0);
   s.ballast_z = read_spring(*ballast, "z", true);
+  s.pitch_inertia = t->number("pitch_inertia_kg_m2", between(0.0, 1e6), 0.0);
+  s.ballast_length = ballast->number("length_m", between(0.0, 5.0), 0.0);
+  if (s.ballast_length > 0.0 && scene.support->length == 0.0)
+    ballast->refuse("length_m",
+                    "length_m makes the sleeper pitch, but pads that are points do not feel it; "
+                    "accepted with a support.length_m above 0");
   for (auto [axis, spring] : {std::pair("x", &s.ballast_x), std::pair("y", &s.ballast_y)})
     if (ballast->has(fmt::format("stiffness_{}_n_per_m", axis)) ||
         ballast->has(fmt::format("damping_{}_n_s_per_m", axis))) {
@@ -211,10 +218,17 @@ Scene read_track_scene(const Table& root) {
   scene.file = root.file();
   scene.track = read_track(root.table("track"));
   check_size(root.table("track"), scene.track);
-  scene.rail = read_rail(root.table("rail"));
-  check_held(root.table("rail"), scene);
-  scene.support = read_support(root);
+  const Table rail = root.table("rail");
+  scene.rail = read_rail(rail);
+  if (const std::optional<Table> right = rail.table_if("right")) {
+    if (scene.track.rails == 1)
+      right->refuse("", "the track has one rail, the left one; accepted with track.rails = 2");
+    scene.right_rail = read_right_rail(*right, scene.rail);
+  }
+  check_held(rail, scene);
+  scene.support = read_support(root, scene);
   scene.sleeper = read_sleeper(root, scene);
+  scene.seat_changes = read_seat_changes(root, scene);
   if (const std::optional<Table> step = root.table_if("step")) scene.step = read_step(*step);
   scene.condense = read_condense(root);
   scene.statics = read_statics(root);

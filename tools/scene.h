@@ -84,13 +84,45 @@ struct SupportScene {
   Spring x, y, z, roll;
   Height at;           // foot or axis
   double half_spread;  // m; over 0: half of each spring at y = -half_spread and +half_spread
+  double length;       // m along x, over which it is evenly spread; 0: a point
 };
 
 struct SleeperScene {
-  double mass;          // both ends together, kg; one rail rests on half of it
-  double roll_inertia;  // about x, kg m2
-  Spring ballast_z;     // under each end
+  double mass;           // both ends together, kg; one rail rests on half of it
+  double roll_inertia;   // about x, kg m2
+  double pitch_inertia;  // about y, kg m2
+  double
+      ballast_length;  // m along x, over which it is evenly spread; 0: the sleeper does not pitch
+  Spring ballast_z;    // under each end
   std::optional<Spring> ballast_x, ballast_y;  // under each end; none: held in that direction
+};
+
+/// What a change takes away of a seat.
+enum class Missing { nothing, pad, ballast, sleeper };
+
+/// A number of a seat that becomes another one, or a multiple of itself.
+struct SeatValue {
+  double& (*of)(Seat& seat, std::size_t side);
+  double first, last;  // at the first and the last of the seats, linear between
+  bool scales;         // it is a factor on what is there, else it stands in its place
+};
+
+/// Factors drawn evenly from 1 - width to 1 + width: one for each seat and side, on all of `of`.
+struct SeatScatter {
+  std::vector<double& (*)(Seat& seat, std::size_t side)> of;
+  double width;
+  std::uint64_t stream;  // tells draws of one seed apart
+};
+
+/// How some seats differ from [support], [sleeper] and [ballast]. Values, scatter, what is missing,
+/// in this order.
+struct SeatChange {
+  std::vector<int> seats;
+  std::array<bool, 2> sides;  // left, right
+  std::vector<SeatValue> values;
+  std::vector<SeatScatter> scatter;
+  std::uint64_t seed = 0;
+  Missing missing = Missing::nothing;
 };
 
 /// A function of time: 0 before the first row, linear between rows, the last value after.
@@ -174,9 +206,11 @@ struct SensorScene {
 struct Scene {
   std::filesystem::path file;
   TrackScene track;
-  RailScene rail;
+  RailScene rail;                       // of both rails
+  std::optional<RailScene> right_rail;  // of the right one, where it differs
   std::optional<SupportScene> support;  // none: only the ends hold the rails, or nothing
   std::optional<SleeperScene> sleeper;
+  std::vector<SeatChange> seat_changes;  // one after the other
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::optional<StepScene> step;  // none: the scene is not run

@@ -153,6 +153,12 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
                  "on = \"sleeper\", but the scene has no [sleeper]; accepted are \"rail\", "
                  "\"wheelset\"");
       SleeperSensor sleeper{t.integer("sleeper", 0, scene.track.bays), std::nullopt};
+      for (const SeatChange& change : scene.seat_changes)
+        if (change.missing == Missing::sleeper &&
+            std::find(change.seats.begin(), change.seats.end(), sleeper.sleeper) !=
+                change.seats.end())
+          t.refuse("sleeper", fmt::format("sleeper = {} is missing; accepted is one that is there",
+                                          sleeper.sleeper));
       if (t.has("rail")) sleeper.rail = read_side(t, scene);
       sensor.on = sleeper;
       break;

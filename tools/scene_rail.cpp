@@ -36,11 +36,12 @@ RectangleSizes read_rectangles(const Table& t) {
   return r;
 }
 
+constexpr const char* kWays[] = {"profile", "section", "constants", "rectangles", "rectangle"};
+
 /// Exactly one of the five ways to give a section.
 SectionSource read_shape(const Table& rail) {
-  const char* const ways[] = {"profile", "section", "constants", "rectangles", "rectangle"};
   std::string found;
-  for (const char* way : ways) {
+  for (const char* way : kWays) {
     if (!rail.has(way)) continue;
     if (!found.empty())
       rail.refuse(way, fmt::format("{} is given beside {}; exactly one of profile, section, "
@@ -125,6 +126,25 @@ RailScene read_rail(const Table& rail) {
   r.axial_force = rail.number("axial_force_n", between(-1e10, 1e10), 0.0);
   r.temperature_rise = rail.number("temperature_rise_k", between(-300.0, 300.0), 0.0);
   r.expansion = rail.number("expansion_per_k", between(0.0, 1e-3), 1.15e-5);
+  return r;
+}
+
+RailScene read_right_rail(const Table& right, const RailScene& left) {
+  RailScene r = left;
+  for (const char* way : kWays)
+    if (right.has(way)) {
+      r.shape = read_shape(right);
+      r.shear_factor_y = read_override(right, "shear_factor_y");
+      r.shear_factor_z = read_override(right, "shear_factor_z");
+      break;
+    }
+  r.young = right.number("young_pa", between(1e5, 1e13), left.young);
+  r.poisson = right.number("poisson", {-1.0, 0.5, false, false}, left.poisson);
+  r.density = right.number("density_kg_per_m3", between(1.0, 1e5), left.density);
+  r.crown_radius = right.number("crown_radius_m", between(0.01, 10.0), left.crown_radius);
+  r.axial_force = right.number("axial_force_n", between(-1e10, 1e10), left.axial_force);
+  r.temperature_rise =
+      right.number("temperature_rise_k", between(-300.0, 300.0), left.temperature_rise);
   return r;
 }
 

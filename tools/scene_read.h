@@ -20,6 +20,10 @@ const char* key_of_system(const Table& root);
 /// Section, material and rule of [rail] or of a beam.
 BarScene read_bar(const Table& bar);
 RailScene read_rail(const Table& rail);
+/// [rail.right]: what it does not say is as in [rail].
+RailScene read_right_rail(const Table& right, const RailScene& left);
+/// [[support_change]], in the file's order.
+std::vector<SeatChange> read_seat_changes(const Table& root, const Scene& scene);
 /// dt, frame and duration of [step]; the scheme and the start are its reader's.
 StepScene read_times(const Table& step);
 /// How a track's nodes lie in its section: reference_line, the centroid by default.

@@ -17,10 +17,11 @@ struct Direction {
 };
 using Point = std::array<Direction, 3>;
 
-Point point_of(const RailSensor& sensor, const Track& track, double z) {
+/// @param axis_z  of the sensor's rail over the left rail's axis, m
+Point point_of(const RailSensor& sensor, const Track& track, double z, double axis_z) {
   const int rail = sensor.rail == Side::right ? 1 : 0;
   const double y = track.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track.rail_spacing;
-  const std::array<double, 3> rest = {sensor.position, y, z};
+  const std::array<double, 3> rest = {sensor.position, y, axis_z + z};
   Point point;
   for (int d = 0; d < 3; ++d)
     point[static_cast<std::size_t>(d)] = {rest[static_cast<std::size_t>(d)],
@@ -72,10 +73,9 @@ void add_point(const std::string& name, const Point& point, Sensors& sensors) {
 /// Force of a seat on its rail, up positive: its spring and damper on the gap between foot and
 /// sleeper.
 void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
-  const double x = seat * track.bay_length;
-  Probe probe{.displacement = -track.support.stiffness[2], .velocity = -track.support.damping[2]};
-  probe.track.rail = {{{rail, x, 0., track.support.height_z, 2}, 1.}};
-  if (track.sleeper) probe.track.sleeper = {{rail, seat, 2, -1.}};
+  const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
+  Probe probe{.displacement = -pad.stiffness[2], .velocity = -pad.damping[2]};
+  probe.track = pad_gap(track, rail, seat);
   sensors.columns.push_back(fmt::format("support_{}{}.force_z_n", rail == 0 ? "" : "right_", seat));
   sensors.probes.push_back(std::move(probe));
 }
@@ -87,7 +87,10 @@ Sensors sensors_of(const Scene& scene, const Track& track, const Railhead& head)
   Sensors sensors;
   for (const SensorScene& sensor : scene.sensors) {
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
-      add_point(sensor.name, point_of(*rail, track, height_z(rail->at, section)), sensors);
+      add_point(sensor.name,
+                point_of(*rail, track, height_z(rail->at, section_of(scene, rail->rail)),
+                         rail_z(scene, rail->rail)),
+                sensors);
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
       add_point(sensor.name, point_of(*sleeper, track, -section.area.centroid_height), sensors);
     else

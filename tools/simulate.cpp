@@ -170,9 +170,10 @@ std::string place_in_track(const Model& model, std::int32_t unknown) {
     if (unknown < line.first || unknown >= line.first + line.size) continue;
     if (model.condensed != 0)
       return fmt::format("mode {} of the track's line {}", unknown - line.first, l);
-    for (std::int32_t i = 0; i < 9 * (2 * model.elements + 1); ++i)
-      if (line.unknown_of[i] == unknown - line.first)
-        return fmt::format("{} of rail node {}", kNodeUnknowns[i % 9], i / 9);
+    for (const std::int32_t* table : line.unknown_of)
+      for (std::int32_t i = 0; i < 9 * (2 * model.elements + 1); ++i)
+        if (table[i] == unknown - line.first)
+          return fmt::format("{} of rail node {}", kNodeUnknowns[i % 9], i / 9);
     break;
   }
   return unknown < model.bodies ? "a sleeper's motion" : "a wheelset's coordinate";

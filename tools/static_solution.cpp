@@ -16,12 +16,15 @@ namespace {
 /// A scene's track at t = 0 and what acts on it.
 struct Problem {
   Track track;
-  Section section;
+  std::array<Section, 2> section;  // of left and right rail
+  double right_z;                  // of the right rail's axis over the left one's, m
   std::vector<PointForce> forces;
   double gravity;
   double slope_length;  // half the section's height: what makes a slope comparable to a length, m
   NewtonOptions newton;
-  double z(Height at) const { return height_z(at, section, track.axis_z); }
+  double z(int rail, Height at) const {
+    return height_z(at, section[static_cast<std::size_t>(rail)], track.axis_z);
+  }
 };
 
 /// A point before it has moved.
@@ -35,7 +38,7 @@ using Displacement = std::function<double(const Functional&)>;
 
 void add_force(Problem& problem, int rail, double x, Height at, double newton) {
   if (x < 0. || x > problem.track.length()) return;  // it may leave the rail, and has
-  problem.forces.push_back({{rail, x, 0., problem.z(at), 2}, newton});
+  problem.forces.push_back({{rail, x, 0., problem.z(rail, at), 2}, newton});
 }
 
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
@@ -51,8 +54,14 @@ void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) 
 
 Problem problem_of(const Scene& scene) {
   const RailSection rail = rail_section_of(scene);
-  Problem problem{track_of(scene, rail),    rail.section, {}, scene.track.gravity ? kGravity : 0.,
-                  .5 * rail.section.height, scene.statics};
+  const Section right = scene.right_rail ? section_of(scene, Side::right) : rail.section;
+  Problem problem{track_of(scene, rail),
+                  {rail.section, right},
+                  rail_z(scene, Side::right),
+                  {},
+                  scene.track.gravity ? kGravity : 0.,
+                  .5 * rail.section.height,
+                  scene.statics};
   for (const LoadScene& load : scene.loads)
     add_force(problem, load.rail == Side::right ? 1 : 0, load.start, load.at,
               load.force_z * (load.factor ? load.factor->at(0.) : 1.));
@@ -64,9 +73,11 @@ double rail_y(const Track& track, int rail) {
   return track.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track.rail_spacing;
 }
 
-/// @param z  over the reference line; the place's own rest is from the centroid
-Place rail_place(const std::string& name, const Track& track, int rail, double x, double z) {
-  Place place{name, {x, rail_y(track, rail), z + track.axis_z}, {}};
+/// The place's own rest is from the left rail's centroid.
+Place rail_place(const std::string& name, const Problem& problem, int rail, double x, Height at) {
+  const Track& track = problem.track;
+  const double z = problem.z(rail, at), axis = rail == 0 ? 0. : problem.right_z;
+  Place place{name, {x, rail_y(track, rail), axis + (z + track.axis_z)}, {}};
   for (int d = 0; d < 3; ++d)
     place.moves[static_cast<std::size_t>(d)].rail = {{{rail, x, 0., z, d}, 1.}};
   return place;
@@ -76,7 +87,7 @@ Place rail_place(const std::string& name, const Track& track, int rail, double x
 Place sleeper_place(const std::string& name, const Problem& problem, const SleeperSensor& sensor) {
   const Track& track = problem.track;
   const int seat = static_cast<int>(sensor.sleeper);
-  const double foot = height_z(Height::foot, problem.section);
+  const double foot = height_z(Height::foot, problem.section[0]);
   Place place{name, {seat * track.bay_length, 0., foot}, {}};
   const int only = sensor.rail ? (*sensor.rail == Side::right ? 1 : 0) : -1;
   if (only >= 0) place.rest[1] = rail_y(track, only);
@@ -92,8 +103,8 @@ std::vector<Place> sensor_places(const Scene& scene, const Problem& problem) {
   std::vector<Place> places;
   for (const SensorScene& sensor : scene.sensors) {
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
-      places.push_back(rail_place(sensor.name, problem.track, rail->rail == Side::right ? 1 : 0,
-                                  rail->position, problem.z(rail->at)));
+      places.push_back(rail_place(sensor.name, problem, rail->rail == Side::right ? 1 : 0,
+                                  rail->position, rail->at));
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
       places.push_back(sleeper_place(sensor.name, problem, *sleeper));
   }
@@ -106,8 +117,8 @@ std::vector<Place> axis_places(const Problem& problem) {
   const int quarters = 4 * track.elements();
   for (int rail = 0; rail < track.rails; ++rail)
     for (int i = 0; i <= quarters; ++i)
-      places.push_back(rail_place(rail == 0 ? "left" : "right", track, rail,
-                                  track.length() * i / quarters, problem.z(Height::axis)));
+      places.push_back(rail_place(rail == 0 ? "left" : "right", problem, rail,
+                                  track.length() * i / quarters, Height::axis));
   return places;
 }
 
@@ -167,9 +178,10 @@ double linear_residual(const Problem& problem, const Statics& statics,
     for (const PointForce& force : problem.forces)
       load += force.force * point_row(problem.track, line, force.at);
     Eigen::VectorXd scale = Eigen::VectorXd::Ones(line.unknowns());
-    for (const auto& node : line.unknown_of)
-      for (std::size_t k = 3; k < 9; ++k)
-        if (node[k] >= 0) scale[node[k]] = 1. / problem.slope_length;
+    for (const Line::RailUnknowns& rail : line.unknown_of)
+      for (const auto& node : rail)
+        for (std::size_t k = 3; k < 9; ++k)
+          if (node[k] >= 0) scale[node[k]] = 1. / problem.slope_length;
     left += (load - line.stiffness * u[i]).cwiseProduct(scale).squaredNorm();
     size += load.cwiseProduct(scale).squaredNorm();
   }

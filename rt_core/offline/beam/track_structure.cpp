@@ -3,6 +3,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "offline/element/shape.h"
+#include "offline/track/pad.h"
+
 namespace railstep {
 namespace {
 
@@ -10,8 +13,10 @@ using Sparse = Eigen::SparseVector<double>;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// A row of coefficients; what is held (-1) is left out.
-Sparse row_of(int unknowns, const std::vector<std::pair<int, double>>& entries) {
+using Entries = std::vector<std::pair<int, double>>;  // unknown, -1 where held; coefficient
+
+/// A row of coefficients; what is held is left out.
+Sparse row_of(int unknowns, const Entries& entries) {
   Sparse row(unknowns);
   for (const auto& [unknown, factor] : entries)
     if (unknown >= 0 && factor != 0.) row.coeffRef(unknown) += factor;
@@ -23,7 +28,7 @@ Sparse row_of(int unknowns, const std::vector<std::pair<int, double>>& entries) 
 TrackStructure::TrackStructure(const Track& track) : track_(track) {
   if (track.unknowns != Unknowns::full)
     throw std::invalid_argument("a nonlinear rail moves in space: it needs all unknowns");
-  if (!track.section.moments)
+  if (!track.section.moments || (track.right && !track.right->section.moments))
     throw std::invalid_argument("a nonlinear rail wants its section's moments to degree 4");
   if (track.bays < 1 || track.elements_per_bay < 1)
     throw std::invalid_argument("a track needs one bay and one element");
@@ -31,41 +36,47 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
   const auto held = [&](RailEnd end) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);
   };
-  if (track.axial_force != 0. && !(held(track.ends[0]) && held(track.ends[1])))
+  const bool pressed = track.axial_force != 0. || (track.right && track.right->axial_force != 0.);
+  if (pressed && !(held(track.ends[0]) && held(track.ends[1])))
     throw std::invalid_argument(
         "a nonlinear rail under axial force wants both ends held, "
         "clamped where the reference line is off the centroid");
   const int rail_unknowns = 9 * track.nodes() * track.rails;
-  const int unknowns = track.sleeper ? number_sleepers(rail_unknowns) : rail_unknowns;
+  const int unknowns = number_sleepers(rail_unknowns);
   structure_.rest = Eigen::VectorXd::Zero(unknowns);
   structure_.held.assign(index(unknowns), false);
   lay_rails();
   for (int seat = 0; seat <= track.bays; ++seat) {
     for (int rail = 0; rail < track.rails; ++rail) add_seat(rail, seat);
-    if (track.sleeper) add_ballast(seat);
+    add_ballast(seat);
   }
 }
 
 /// Numbers what the sleepers carry, as assemble() does; returns the number of all unknowns.
 int TrackStructure::number_sleepers(int count) {
-  const auto& ballast = track_.sleeper->ballast_stiffness;
   for (int rail = 0; rail < track_.rails; ++rail)
-    sleeper_[index(rail)].assign(index(track_.bays + 1), {-1, -1, -1});
-  for (std::size_t seat = 0; seat < sleeper_[0].size(); ++seat) {
-    if (ballast[1] > 0.) {
-      for (int rail = 0; rail < track_.rails; ++rail) sleeper_[index(rail)][seat][1] = count;
+    sleeper_[index(rail)].assign(index(track_.bays + 1), {-1, -1, -1, -1});
+  for (int seat = 0; seat <= track_.bays; ++seat) {
+    const std::optional<SleeperBody> body = track_.seat(seat).sleeper;
+    if (!body) continue;
+    for (const std::size_t shared : {1UL, 3UL}) {
+      if (!body->moves[shared == 1 ? 1 : 2]) continue;
+      for (int rail = 0; rail < track_.rails; ++rail)
+        sleeper_[index(rail)][index(seat)][shared] = count;
       ++count;
     }
     for (int rail = 0; rail < track_.rails; ++rail) {
-      if (ballast[0] > 0.) sleeper_[index(rail)][seat][0] = count++;
-      sleeper_[index(rail)][seat][2] = count++;
+      if (body->moves[0]) sleeper_[index(rail)][index(seat)][0] = count++;
+      sleeper_[index(rail)][index(seat)][2] = count++;
     }
   }
   return count;
 }
 
 void TrackStructure::lay_rails() {
-  structure_.laws = {beam_element(track_.law(), straight_nodes(track_.element_length()))};
+  const Vector27 element_rest = straight_nodes(track_.element_length());
+  structure_.laws = {beam_element(track_.law(0), element_rest)};
+  if (track_.right) structure_.laws.push_back(beam_element(track_.law(1), element_rest));
   for (int rail = 0; rail < track_.rails; ++rail) {
     const double y = track_.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track_.rail_spacing;
     for (int node = 0; node < track_.nodes(); ++node) {
@@ -75,47 +86,60 @@ void TrackStructure::lay_rails() {
       for (int k = 0; k < 9; ++k)
         structure_.held[index(place(rail, node, k))] = holds(track_, node, k);
     }
-    for (const Structure::Element& element : chain(track_.elements(), rail * track_.nodes()))
+    const int law = track_.right ? rail : 0;
+    for (const Structure::Element& element : chain(track_.elements(), rail * track_.nodes(), law))
       structure_.elements.push_back(element);
   }
 }
 
 /// The springs of one rail on its seat. The top of a rigid sleeper under two rails, y beside the
-/// middle of its left or right end, rises by z_end + y (z_left - z_right)/g.
+/// middle of its left or right end, moves along d by u_end + y (u_left - u_right)/g, d = x or z.
 void TrackStructure::add_seat(int rail, int seat) {
-  const Support& support = track_.support;
-  const int border = seat * 2 * track_.elements_per_bay, n = structure_.unknowns();
-  const bool on_sleeper = track_.sleeper.has_value(), rolls = on_sleeper && track_.rails == 2;
+  const Seat there = track_.seat(seat);
+  const Support& support = there.pad[index(rail)];
+  const bool turns = there.sleeper && track_.rails == 2;
   const double g = track_.rail_spacing;
-  const std::array<int, 3> none = {-1, -1, -1};
-  const std::array<int, 3>& sleeper = on_sleeper ? sleeper_[index(rail)][index(seat)] : none;
-  const int left = rolls ? sleeper_[0][index(seat)][2] : -1;
-  const int right = rolls ? sleeper_[1][index(seat)][2] : -1;
-  const auto add = [&](double stiffness, const std::vector<std::pair<int, double>>& entries) {
-    if (stiffness > 0.) structure_.springs.push_back({row_of(n, entries), stiffness});
+  const std::array<int, 4>& sleeper = sleeper_[index(rail)][index(seat)];
+  const auto end = [&](int side, int d) {
+    return turns ? sleeper_[index(side)][index(seat)][index(d)] : -1;
   };
-  for (const double side : {-1., 1.}) {
-    const double y = side * support.half_spread;
-    for (int d = 0; d < 3; ++d) {
-      std::vector<std::pair<int, double>> gap = {{place(rail, border, d), 1.},
-                                                 {place(rail, border, 3 + d), y},
-                                                 {place(rail, border, 6 + d), support.height_z},
-                                                 {sleeper[index(d)], -1.}};
-      if (d == 2) gap.insert(gap.end(), {{left, -y / g}, {right, y / g}});
-      add(support.stiffness[index(d)] / 2., gap);
+  const auto add = [&](double stiffness, const Entries& entries) {
+    if (stiffness > 0.)
+      structure_.springs.push_back({row_of(structure_.unknowns(), entries), stiffness});
+  };
+  for (const PadPoint& at : pad_points(track_, seat, support.length)) {
+    const auto n = shape(at.xi);
+    const auto rail_moves = [&](int k, double factor, Entries& to) {
+      for (int i = 0; i < 3; ++i)
+        to.emplace_back(place(rail, 2 * at.element + i, k), factor * n[index(i)]);
+    };
+    for (const double side : {-1., 1.}) {
+      const double y = side * support.half_spread;
+      for (int d = 0; d < 3; ++d) {
+        Entries gap = {{sleeper[index(d)], -1.}};
+        rail_moves(d, 1., gap);
+        rail_moves(3 + d, y, gap);
+        rail_moves(6 + d, support.height_z, gap);
+        if (d != 1) gap.insert(gap.end(), {{end(0, d), -y / g}, {end(1, d), y / g}});
+        if (d == 2) gap.emplace_back(sleeper[3], at.offset);
+        add(at.part * support.stiffness[index(d)] / 2., gap);
+      }
     }
+    Entries roll = {{end(0, 2), -1. / g}, {end(1, 2), 1. / g}};
+    rail_moves(5, .5, roll);
+    rail_moves(7, -.5, roll);
+    add(at.part * support.roll_stiffness, roll);
   }
-  add(support.roll_stiffness, {{place(rail, border, 5), .5},
-                               {place(rail, border, 7), -.5},
-                               {left, -1. / g},
-                               {right, 1. / g}});
 }
 
 void TrackStructure::add_ballast(int seat) {
+  const Seat there = track_.seat(seat);
   for (int rail = 0; rail < track_.rails; ++rail)
-    for (int d = 0; d < 3; ++d) {
-      const int unknown = sleeper_[index(rail)][index(seat)][index(d)];
-      const double stiffness = track_.sleeper->ballast_stiffness[index(d)];
+    for (std::size_t d = 0; d < 4; ++d) {
+      const Ballast& ballast = there.ballast[index(rail)];
+      const int unknown = sleeper_[index(rail)][index(seat)][d];
+      const double stiffness = d < 3 ? ballast.stiffness[d]
+                                     : ballast.stiffness[2] * ballast.length * ballast.length / 12.;
       if (unknown >= 0 && stiffness > 0.)
         structure_.springs.push_back({row_of(structure_.unknowns(), {{unknown, 1.}}), stiffness});
     }
@@ -142,28 +166,39 @@ Sparse TrackStructure::row(const Functional& functional) const {
 
 TrackState TrackStructure::state(const Eigen::VectorXd& q) const {
   const Eigen::VectorXd change = q - structure_.rest;
-  TrackState state{change.head(9 * track_.nodes()), Eigen::VectorXd(3 * sleeper_[0].size())};
-  for (int node = 0; node < track_.nodes(); ++node)
-    for (const int sideways : {1, 3, 5, 7}) state.rail[9 * node + sideways] = 0.;
-  Eigen::Index i = 0;
-  for (const auto& unknowns : sleeper_[0])
-    for (const std::size_t d : {0UL, 1UL, 2UL}) {
-      state.sleeper[i++] = unknowns[d] >= 0 && d != 1 ? change[unknowns[d]] : 0.;
-    }
+  const bool symmetric = is_symmetric(track_);
+  TrackState state;
+  for (int rail = 0; rail < track_.rails; ++rail) {
+    const int seen = symmetric ? 0 : rail;
+    Eigen::VectorXd& own = state.rail[index(rail)];
+    own = change.segment(place(seen, 0, 0), 9 * track_.nodes());
+    for (int node = 0; node < track_.nodes() && symmetric; ++node)
+      for (const int sideways : {1, 3, 5, 7}) own[9 * node + sideways] = 0.;
+    Eigen::VectorXd& ends = state.sleeper[index(rail)];
+    ends = Eigen::VectorXd::Zero(4 * (track_.bays + 1));
+    Eigen::Index i = 0;
+    for (const auto& unknowns : sleeper_[index(seen)])
+      for (const std::size_t d : {0UL, 1UL, 2UL, 3UL}) {
+        if (unknowns[d] >= 0 && !(symmetric && d == 1)) ends[i] = change[unknowns[d]];
+        ++i;
+      }
+  }
   return state;
 }
 
 Eigen::VectorXd TrackStructure::weight(double gravity) const {
-  const ElementMatrices element =
-      element_matrices(track_.section, track_.law(), track_.element_length());
-  const double line_weight = track_.material.density * track_.section.area * gravity;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(structure_.unknowns());
   for (int rail = 0; rail < track_.rails; ++rail) {
+    const RailBar bar = track_.bar(rail);
+    const ElementMatrices element =
+        element_matrices(bar.section, track_.law(rail), track_.element_length());
+    const double line_weight = bar.material.density * bar.section.area * gravity;
     for (int e = 0; e < track_.elements(); ++e)
       for (int i = 0; i < 27; ++i)
         force[place(rail, 2 * e + i / 9, i % 9)] -= line_weight * element.line_load[i];
-    for (const auto& sleeper : sleeper_[index(rail)])
-      force[sleeper[2]] -= track_.sleeper->mass / 2. * gravity;
+    for (int seat = 0; seat <= track_.bays; ++seat)
+      if (const int height = sleeper_[index(rail)][index(seat)][2]; height >= 0)
+        force[height] -= track_.seat(seat).sleeper->mass / 2. * gravity;
   }
   return force;
 }

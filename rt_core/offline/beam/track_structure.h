@@ -25,9 +25,9 @@ class TrackStructure {
   /// Throws std::out_of_range off the rail.
   Eigen::SparseVector<double> row(const RailPoint& point) const;
   Eigen::SparseVector<double> row(const Functional& functional) const;
-  /// Where the left rail and the sleepers' left ends stand, in their upright plane: sections that
-  /// are symmetric sag straight down, and what round-off makes beside it would tie vertical to
-  /// lateral motion.
+  /// Where rails and sleepers stand. Of a track that is symmetric, both sides where the left one
+  /// stands in its upright plane: sections sag straight down, and what round-off makes beside it
+  /// would tie vertical to lateral motion.
   TrackState state(const Eigen::VectorXd& q) const;
   /// Nodal forces of the rails' and sleepers' own weight. @param gravity m/s2, > 0 down
   Eigen::VectorXd weight(double gravity = 9.81) const;
@@ -35,8 +35,9 @@ class TrackStructure {
  private:
   Track track_;
   Structure structure_;
-  /// [seats] of each rail; x, y, z of the sleeper's end under it, -1 where held. One y for both.
-  std::array<std::vector<std::array<int, 3>>, 2> sleeper_;
+  /// [seats] of each rail; x, y, z of the sleeper's end under it and its turn about y, -1 where
+  /// held. y and the turn are one for both.
+  std::array<std::vector<std::array<int, 4>>, 2> sleeper_;
 
   int place(int rail, int node, int k) const { return 9 * (rail * track_.nodes() + node) + k; }
   int number_sleepers(int first);

@@ -6,13 +6,11 @@ namespace railstep {
 
 namespace {
 
-/// Unknowns of the end nodes of an element in the line, -1 where held.
-std::vector<int> end_unknowns(const Line& line, const std::vector<int>& carried, int element) {
+/// Unknowns of the end nodes of an element of a rail in the line, -1 where held.
+std::vector<int> end_unknowns(const Line& line, int rail, const Superelement& whole, int element) {
   std::vector<int> result;
   for (const int node : {2 * element, 2 * element + 2})
-    for (const int k : carried)
-      result.push_back(
-          line.unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)]);
+    for (const int k : whole.carried()) result.push_back(line.unknown(rail, node, k));
   return result;
 }
 
@@ -29,43 +27,44 @@ Eigen::MatrixXd gather(const Eigen::MatrixXd& from, const std::vector<int>& unkn
   return result;
 }
 
-/// The line's stiffness with every element's end-node stiffness changed by `change`.
-Eigen::SparseMatrix<double> with_change(const Track& track, const Line& line,
-                                        const std::vector<int>& carried,
-                                        const Eigen::MatrixXd& change) {
-  std::vector<Eigen::Triplet<double>> entries;
+/// Adds a change of every element's end-node stiffness along a rail.
+void add_change(const Track& track, const Line& line, int rail, const Superelement& element,
+                const Eigen::MatrixXd& change, std::vector<Eigen::Triplet<double>>& entries) {
   for (int e = 0; e < track.elements(); ++e) {
-    const std::vector<int> place = end_unknowns(line, carried, e);
+    const std::vector<int> place = end_unknowns(line, rail, element, e);
     for (std::size_t j = 0; j < place.size(); ++j)
       for (std::size_t i = 0; i < place.size(); ++i)
         if (place[i] >= 0 && place[j] >= 0)
           entries.emplace_back(place[i], place[j],
                                change(static_cast<int>(i), static_cast<int>(j)));
   }
-  Eigen::SparseMatrix<double> result(line.unknowns(), line.unknowns());
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result + line.stiffness;
 }
 
 }  // namespace
 
 DividedLine::DividedLine(const Track& track, const Line& line, int parts)
-    : track_(track), line_(line), element_(track, carried_unknowns(line), parts) {
-  if (parts == 1) {
-    factor(line.stiffness);
-    return;
+    : track_(track), line_(line) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const int rail : {0, 1}) {
+    const std::vector<int> carried = carried_unknowns(line, rail);
+    if (carried.empty() || (rail == 1 && line.mirrored)) continue;
+    auto& own = element_[static_cast<std::size_t>(rail)].emplace(track, rail, carried, parts);
+    if (parts == 1) continue;
+    const Superelement whole(track, rail, carried, 1);
+    add_change(track, line, rail, own, own.stiffness() - whole.stiffness(), entries);
   }
-  const Superelement whole(track, element_.carried(), 1);
-  factor(with_change(track, line, element_.carried(), element_.stiffness() - whole.stiffness()));
+  Eigen::SparseMatrix<double> change(line.unknowns(), line.unknowns());
+  change.setFromTriplets(entries.begin(), entries.end());
+  factor(parts == 1 ? line.stiffness : Eigen::SparseMatrix<double>(change + line.stiffness));
 }
 
-/// Held is what Statics takes for held: all pivots above 1e-12 of their diagonal.
+const Superelement& DividedLine::element(int rail) const {
+  return *element_[line_.mirrored ? 0 : static_cast<std::size_t>(rail)];
+}
+
 void DividedLine::factor(const Eigen::SparseMatrix<double>& stiffness) {
   factor_.compute(stiffness);
-  held_ = factor_.info() == Eigen::Success;
-  if (!held_) return;
-  const Eigen::VectorXd diagonal = factor_.permutationP() * Eigen::VectorXd(stiffness.diagonal());
-  held_ = (factor_.vectorD().array() > 1e-12 * diagonal.array()).all();
+  held_ = is_held(factor_, stiffness);
 }
 
 void DividedLine::refuse_free_modes() const {
@@ -74,17 +73,18 @@ void DividedLine::refuse_free_modes() const {
         "residual flexibility needs a track that is held: it has a free rigid mode");
 }
 
-Superelement::Rows DividedLine::port_rows(double z, int points) const {
-  const int parts = element_.parts();
-  Eigen::MatrixXd rows(points + 1, (2 * parts + 1) * static_cast<int>(element_.carried().size()));
+Superelement::Rows DividedLine::port_rows(const Port& port, int points) const {
+  const Superelement& own = element(port.rail);
+  const int parts = own.parts();
+  Eigen::MatrixXd rows(points + 1, (2 * parts + 1) * static_cast<int>(own.carried().size()));
   for (int p = 0; p <= points; ++p)
-    rows.row(p) = element_.row(static_cast<double>(p) * parts / points, 0., z, 2).transpose();
-  return element_.condense(rows);
+    rows.row(p) = own.row(static_cast<double>(p) * parts / points, 0., port.z, 2).transpose();
+  return own.condense(rows);
 }
 
 /// Displacements of the line under unit forces on the end unknowns of an element; [unknowns][2d].
-Eigen::MatrixXd DividedLine::end_columns(int element) const {
-  const std::vector<int> place = end_unknowns(line_, element_.carried(), element);
+Eigen::MatrixXd DividedLine::end_columns(int rail, int at) const {
+  const std::vector<int> place = end_unknowns(line_, rail, element(rail), at);
   Eigen::MatrixXd unit =
       Eigen::MatrixXd::Zero(line_.unknowns(), static_cast<Eigen::Index>(place.size()));
   for (std::size_t j = 0; j < place.size(); ++j)
@@ -92,66 +92,76 @@ Eigen::MatrixXd DividedLine::end_columns(int element) const {
   return factor_.solve(unit);
 }
 
-Eigen::VectorXd DividedLine::under(double a_z, double b_z, int points) const {
+Eigen::VectorXd DividedLine::under(const Port& port, double z, int points) const {
   refuse_free_modes();
-  const Superelement::Rows a = port_rows(a_z, points), b = port_rows(b_z, points);
-  const Eigen::VectorXd held = element_.held(a, b).diagonal();
+  const Superelement& own = element(port.rail);
+  const Superelement::Rows a = port_rows(port, points), b = port_rows({port.rail, z}, points);
+  const Eigen::VectorXd held = own.held(a, b).diagonal();
   Eigen::VectorXd result(track_.elements() * (points + 1));
   for (int e = 0; e < track_.elements(); ++e) {
-    const Eigen::MatrixXd ends = gather(end_columns(e), end_unknowns(line_, element_.carried(), e));
+    const Eigen::MatrixXd ends =
+        gather(end_columns(port.rail, e), end_unknowns(line_, port.rail, own, e));
     for (int p = 0; p <= points; ++p)
       result[e * (points + 1) + p] = a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
   }
   return result;
 }
 
-LineFlexibility::Strip DividedLine::between(double a_z, double b_z, int points) const {
+LineFlexibility::Strip DividedLine::between(const Port& a, const Port& b, int points) const {
   refuse_free_modes();
-  const Superelement::Rows a = port_rows(a_z, points), b = port_rows(b_z, points);
-  return [this, a, b, points, held = element_.held(a, b)](int element) {
-    const Eigen::MatrixXd moved = end_columns(element) * a.ends.transpose();  // [unknowns][points]
+  const Superelement::Rows from = port_rows(a, points), to = port_rows(b, points);
+  const bool same = same_rail(line_, a.rail, b.rail);
+  const Eigen::MatrixXd held = same ? element(a.rail).held(from, to) : Eigen::MatrixXd();
+  return [=, this](int at) {
+    const Eigen::MatrixXd moved =
+        end_columns(a.rail, at) * from.ends.transpose();  // [unknowns][points]
     Eigen::MatrixXd strip(points + 1, track_.elements() * (points + 1));
     for (int e = 0; e < track_.elements(); ++e) {
-      const Eigen::MatrixXd ends = gather(moved, end_unknowns(line_, element_.carried(), e));
-      strip.middleCols(e * (points + 1), points + 1) = (b.ends * ends).transpose();
+      const Eigen::MatrixXd ends = gather(moved, end_unknowns(line_, b.rail, element(b.rail), e));
+      strip.middleCols(e * (points + 1), points + 1) = (to.ends * ends).transpose();
     }
-    strip.middleCols(element * (points + 1), points + 1) += held;
+    if (same) strip.middleCols(at * (points + 1), points + 1) += held;
     return strip;
   };
 }
 
 /// A point of the functional over the divided element that holds it, weighted by its factor and
 /// its rail's part in the line.
-Superelement::Rows DividedLine::rail_row(const Functional::OnRail& point, int element) const {
+Superelement::Rows DividedLine::rail_row(const Functional::OnRail& point, int at_element) const {
   const RailPoint& at = point.at;
-  const double place = at.x / track_.element_length() - element;
-  Eigen::VectorXd row = element_.row(place * element_.parts(), at.y, at.z, at.direction);
-  const std::vector<int>& carried = element_.carried();
+  const Superelement& own = element(at.rail);
+  const double place = at.x / track_.element_length() - at_element;
+  Eigen::VectorXd row = own.row(place * own.parts(), at.y, at.z, at.direction);
+  const std::vector<int>& carried = own.carried();
   for (Eigen::Index i = 0; i < row.size(); ++i) {
     const int k = carried[static_cast<std::size_t>(i) % carried.size()];
     if (flips_in_mirror(line_, at.rail, k)) row[i] = -row[i];
   }
   row *= point.factor * line_.rail_factor[static_cast<std::size_t>(at.rail)];
-  return element_.condense(row.transpose());
+  return own.condense(row.transpose());
 }
 
-Eigen::VectorXd DividedLine::from(double z, const Functional& functional, int points) const {
+Eigen::VectorXd DividedLine::from(const Port& port, const Functional& functional,
+                                  int points) const {
   refuse_free_modes();
-  const Superelement::Rows port = port_rows(z, points);
-  Eigen::VectorXd load = sleeper_load(line_, functional);
+  const Superelement::Rows rows = port_rows(port, points);
+  Eigen::VectorXd load = sleeper_load(track_, line_, functional);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(track_.elements() * (points + 1));
   for (const Functional::OnRail& point : functional.rail) {
-    const int element = element_at(track_, point.at.x);
-    const Superelement::Rows row = rail_row(point, element);
-    const std::vector<int> ends = end_unknowns(line_, element_.carried(), element);
+    if (line_.rail_factor[static_cast<std::size_t>(point.at.rail)] == 0.) continue;
+    const int at = element_at(track_, point.at.x);
+    const Superelement& own = element(point.at.rail);
+    const Superelement::Rows row = rail_row(point, at);
+    const std::vector<int> ends = end_unknowns(line_, point.at.rail, own, at);
     for (std::size_t i = 0; i < ends.size(); ++i)
       if (ends[i] >= 0) load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));
-    result.segment(element * (points + 1), points + 1) += element_.held(port, row).col(0);
+    if (same_rail(line_, port.rail, point.at.rail))
+      result.segment(at * (points + 1), points + 1) += own.held(rows, row).col(0);
   }
   const Eigen::VectorXd moved = factor_.solve(load);
   for (int e = 0; e < track_.elements(); ++e)
     result.segment(e * (points + 1), points + 1) +=
-        port.ends * gather(moved, end_unknowns(line_, element_.carried(), e)).col(0);
+        rows.ends * gather(moved, end_unknowns(line_, port.rail, element(port.rail), e)).col(0);
   return result;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "offline/track/pad.h"
+
 namespace railstep {
 
 namespace {
@@ -31,27 +33,37 @@ void keep(const Eigen::MatrixXd& strip, int e, int elements, PairTable& table) {
       for (int q = 0; q < n; ++q) table.value[place_in(table, e, p, e2, q)] = strip(p, e2 * n + q);
 }
 
+bool carries(const std::vector<int>& carried, int k) {
+  return std::find(carried.begin(), carried.end(), k) != carried.end();
+}
+
 void check_functional(const Track& track, const Functional& functional) {
-  const auto check = [&](int rail, int direction) {
-    if (rail < 0 || rail >= track.rails || direction < 0 || direction > 2)
+  const auto check = [&](int rail, int direction, int most) {
+    if (rail < 0 || rail >= track.rails || direction < 0 || direction > most)
       throw std::out_of_range("a functional names a rail or a direction that the track lacks");
   };
   for (const Functional::OnRail& point : functional.rail) {
-    check(point.at.rail, point.at.direction);
+    check(point.at.rail, point.at.direction, 2);
     (void)element_at(track, point.at.x);
   }
   for (const Functional::OnSleeper& at : functional.sleeper) {
-    check(at.rail, at.direction);
-    if (!track.sleeper || at.seat < 0 || at.seat > track.bays)
+    check(at.rail, at.direction, 3);
+    if (at.seat < 0 || at.seat > track.bays || !track.seat(at.seat).sleeper)
       throw std::out_of_range("a functional names a sleeper that the track lacks");
   }
+}
+
+/// A pad with a length acts on the inner nodes of elements, which a divided line lets follow.
+std::unique_ptr<LineFlexibility> divided_line(const Track& track, const Line& line, int parts) {
+  if (has_long_pads(track)) return std::make_unique<RefinedLine>(track, line, parts);
+  return std::make_unique<DividedLine>(track, line, parts);
 }
 
 }  // namespace
 
 struct ResidualFlexibility::Pair {
   const Line* line;
-  std::vector<int> carried;
+  std::array<std::vector<int>, 2> carried;  // of each rail
   std::unique_ptr<LineFlexibility> exact, model;
 };
 
@@ -65,13 +77,15 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
     throw std::invalid_argument("residual flexibility needs one basis per line, or none");
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const Line& line = lines_[i];
-    const std::vector<int> carried = carried_unknowns(line);
+    const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
+                                                     carried_unknowns(line, 1)};
     // Others no vertical force on y = 0 moves.
-    if (std::none_of(carried.begin(), carried.end(), [](int k) { return k == 2 || k == 8; }))
+    if (!carries(carried[0], 2) && !carries(carried[0], 8) && !carries(carried[1], 2) &&
+        !carries(carried[1], 8))
       continue;
-    Pair pair{&line, carried, std::make_unique<DividedLine>(track_, line, points), nullptr};
+    Pair pair{&line, carried, divided_line(track_, line, points), nullptr};
     if (bases_.empty())
-      pair.model = std::make_unique<DividedLine>(track_, line, 1);
+      pair.model = divided_line(track_, line, 1);
     else
       pair.model = std::make_unique<ReducedLine>(track_, line, bases_[i]);
     pairs_.push_back(std::move(pair));
@@ -82,11 +96,10 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
 double ResidualFlexibility::weight(const Pair& pair, Port port) const {
   if (port.rail < 0 || port.rail >= track_.rails)
     throw std::invalid_argument("residual flexibility is asked on a rail that the track lacks");
-  const auto carries = [&](int k) {
-    return std::find(pair.carried.begin(), pair.carried.end(), k) != pair.carried.end();
-  };
-  const bool moved = carries(2) || (carries(8) && port.z != 0.);
-  return moved ? pair.line->rail_factor[static_cast<std::size_t>(port.rail)] : 0.;
+  const auto rail = static_cast<std::size_t>(port.rail);
+  const bool moved =
+      carries(pair.carried[rail], 2) || (carries(pair.carried[rail], 8) && port.z != 0.);
+  return moved ? pair.line->rail_factor[rail] : 0.;
 }
 
 std::vector<double> ResidualFlexibility::under(Port port) const { return under(port, port.z); }
@@ -96,7 +109,7 @@ std::vector<double> ResidualFlexibility::under(Port port, double z) const {
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, port) * weight(pair, {port.rail, z});
     if (w == 0.) continue;
-    sum += w * (pair.exact->under(port.z, z, points_) - pair.model->under(port.z, z, points_));
+    sum += w * (pair.exact->under(port, z, points_) - pair.model->under(port, z, points_));
   }
   return to_vector(sum);
 }
@@ -105,7 +118,7 @@ std::vector<double> ResidualFlexibility::exact_under(Port port) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, port);
-    if (w != 0.) sum += w * w * pair.exact->under(port.z, port.z, points_);
+    if (w != 0.) sum += w * w * pair.exact->under(port, port.z, points_);
   }
   return to_vector(sum);
 }
@@ -116,8 +129,8 @@ std::vector<double> ResidualFlexibility::from(Port port, const Functional& funct
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, port);
     if (w == 0.) continue;
-    sum += w * (pair.exact->from(port.z, functional, points_) -
-                pair.model->from(port.z, functional, points_));
+    sum += w * (pair.exact->from(port, functional, points_) -
+                pair.model->from(port, functional, points_));
   }
   return to_vector(sum);
 }
@@ -137,8 +150,7 @@ LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points) c
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, a) * weight(pair, b);
     if (w != 0.)
-      parts.push_back(
-          {w, pair.exact->between(a.z, b.z, points), pair.model->between(a.z, b.z, points)});
+      parts.push_back({w, pair.exact->between(a, b, points), pair.model->between(a, b, points)});
   }
   const Eigen::Index rows = points + 1, columns = track_.elements() * (points + 1);
   return [parts, rows, columns](int element) {

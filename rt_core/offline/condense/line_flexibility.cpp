@@ -2,28 +2,28 @@
 
 namespace railstep {
 
-std::vector<int> carried_unknowns(const Line& line) {
+std::vector<int> carried_unknowns(const Line& line, int rail) {
   std::vector<int> found;
   for (int k = 0; k < 9; ++k)
-    if (line.unknown(1, k) >= 0) found.push_back(k);
+    if (line.unknown(rail, 1, k) >= 0) found.push_back(k);
   return found;
 }
 
-int element_at(const Track& track, double x) { return place_on(track, x).element; }
-
-bool flips_in_mirror(const Line& line, int rail, int k) {
-  return line.mirrored && rail == 1 && (k == 1 || k == 3 || k == 5 || k == 7);
+bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
+             const Eigen::SparseMatrix<double>& stiffness) {
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::VectorXd diagonal = factor.permutationP() * Eigen::VectorXd(stiffness.diagonal());
+  return (factor.vectorD().array() > 1e-12 * diagonal.array()).all();
 }
 
-Eigen::VectorXd sleeper_load(const Line& line, const Functional& functional) {
+bool same_rail(const Line& line, int a, int b) { return a == b || line.mirrored; }
+
+int element_at(const Track& track, double x) { return place_on(track, x).element; }
+
+Eigen::VectorXd sleeper_load(const Track& track, const Line& line, const Functional& functional) {
   Eigen::VectorXd load = Eigen::VectorXd::Zero(line.unknowns());
-  for (const Functional::OnSleeper& at : functional.sleeper) {
-    const int unknown = line.sleeper_unknown_of[static_cast<std::size_t>(at.seat)]
-                                               [static_cast<std::size_t>(at.direction)];
-    if (unknown < 0) continue;
-    const double weight = at.factor * line.rail_factor[static_cast<std::size_t>(at.rail)];
-    load[unknown] += flips_in_mirror(line, at.rail, at.direction) ? -weight : weight;
-  }
+  for (const Functional::OnSleeper& at : functional.sleeper)
+    load += at.factor * sleeper_row(track, line, at.rail, at.seat, at.direction);
   return load;
 }
 

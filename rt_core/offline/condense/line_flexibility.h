@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/SparseCholesky>
+#include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "offline/condense/basis.h"
@@ -25,11 +27,12 @@ class LineFlexibility {
   using Strip = std::function<Eigen::MatrixXd(int element)>;
 
   virtual ~LineFlexibility() = default;
-  /// G(x, x) from a port to one above or below it; [elements x (points + 1)], m/N.
-  virtual Eigen::VectorXd under(double a_z, double b_z, int points) const = 0;
-  virtual Strip between(double a_z, double b_z, int points) const = 0;
+  /// G(x, x) from a port to one at height `z` of its rail; [elements x (points + 1)], m/N.
+  virtual Eigen::VectorXd under(const Port& port, double z, int points) const = 0;
+  virtual Strip between(const Port& a, const Port& b, int points) const = 0;
   /// The functional under a unit force of a port at each place; [elements x (points + 1)].
-  virtual Eigen::VectorXd from(double z, const Functional& functional, int points) const = 0;
+  virtual Eigen::VectorXd from(const Port& port, const Functional& functional,
+                               int points) const = 0;
 };
 
 /// The line with every element divided into `parts`, taken at their ends, where the element is
@@ -39,20 +42,45 @@ class DividedLine : public LineFlexibility {
   DividedLine(const Track& track, const Line& line, int parts);
 
   /// These throw std::invalid_argument if the line has a free rigid mode.
-  Eigen::VectorXd under(double a_z, double b_z, int points) const override;
-  Strip between(double a_z, double b_z, int points) const override;
-  Eigen::VectorXd from(double z, const Functional& functional, int points) const override;
+  Eigen::VectorXd under(const Port& port, double z, int points) const override;
+  Strip between(const Port& a, const Port& b, int points) const override;
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
 
  private:
-  Superelement::Rows port_rows(double z, int points) const;
+  const Superelement& element(int rail) const;
+  Superelement::Rows port_rows(const Port& port, int points) const;
   Superelement::Rows rail_row(const Functional::OnRail& point, int element) const;
-  Eigen::MatrixXd end_columns(int element) const;
+  Eigen::MatrixXd end_columns(int rail, int element) const;
   void factor(const Eigen::SparseMatrix<double>& stiffness);
   void refuse_free_modes() const;
 
   const Track& track_;
   const Line& line_;
-  Superelement element_;
+  std::array<std::optional<Superelement>, 2> element_;  // of each rail that the line has
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  bool held_ = false;  // no free rigid mode
+};
+
+/// The same of any track, pads with lengths too, which act on inner nodes: the track with every
+/// element divided is assembled itself. Cost grows with the nodes of the divided track.
+class RefinedLine : public LineFlexibility {
+ public:
+  /// Throws std::invalid_argument if the divided track has no such line.
+  RefinedLine(const Track& track, const Line& line, int parts);
+
+  /// These throw std::invalid_argument if the line has a free rigid mode.
+  Eigen::VectorXd under(const Port& port, double z, int points) const override;
+  Strip between(const Port& a, const Port& b, int points) const override;
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
+
+ private:
+  /// Of a port at the places of one element of the track; [unknowns][points + 1]
+  Eigen::SparseMatrix<double> columns(const Port& port, int element, int points) const;
+  void refuse_free_modes() const;
+
+  Track track_;  // divided
+  int elements_, parts_;
+  Line line_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
   bool held_ = false;  // no free rigid mode
 };
@@ -64,31 +92,34 @@ class ReducedLine : public LineFlexibility {
   /// Throws std::invalid_argument if the basis is not one of the line.
   ReducedLine(const Track& track, const Line& line, const Basis& basis);
 
-  Eigen::VectorXd under(double a_z, double b_z, int points) const override;
-  Strip between(double a_z, double b_z, int points) const override;
-  Eigen::VectorXd from(double z, const Functional& functional, int points) const override;
+  Eigen::VectorXd under(const Port& port, double z, int points) const override;
+  Strip between(const Port& a, const Port& b, int points) const override;
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
 
  private:
   /// shapes / omega at a port's places; [elements x (points + 1)][kept]
-  Eigen::MatrixXd scaled_shapes(int points) const;
+  Eigen::MatrixXd scaled_shapes(int rail, int points) const;
 
   const Track& track_;
   const Line& line_;
   const Basis& basis_;
 };
 
-/// Unknowns of a node that a line carries, from an inner one: ends may hold some of theirs.
-std::vector<int> carried_unknowns(const Line& line);
+/// A factored stiffness is held if all pivots are above 1e-12 of their diagonal, as Statics has it.
+bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
+             const Eigen::SparseMatrix<double>& stiffness);
+
+/// Unknowns of a rail's node that a line carries, from an inner one: ends may hold some of theirs.
+std::vector<int> carried_unknowns(const Line& line, int rail);
+
+/// Whether two rails are one to a line: the same, or mirror images.
+bool same_rail(const Line& line, int a, int b);
 
 /// Element that holds a place of the rail. Throws std::out_of_range off the rail.
 int element_at(const Track& track, double x);
 
-/// Whether unknown k of a node changes sign on that rail: the y components (r_y, a_x, a_z, b_y) of
-/// a mirrored right rail.
-bool flips_in_mirror(const Line& line, int rail, int k);
-
 /// A functional's sleepers as forces on the line; [unknowns]. Directions in which a sleeper is held
 /// add nothing.
-Eigen::VectorXd sleeper_load(const Line& line, const Functional& functional);
+Eigen::VectorXd sleeper_load(const Track& track, const Line& line, const Functional& functional);
 
 }  // namespace railstep

@@ -12,7 +12,7 @@ ReducedLine::ReducedLine(const Track& track, const Line& line, const Basis& basi
     throw std::invalid_argument("a basis for residual flexibility has no free rigid mode");
 }
 
-Eigen::MatrixXd ReducedLine::scaled_shapes(int points) const {
+Eigen::MatrixXd ReducedLine::scaled_shapes(int rail, int points) const {
   const Eigen::MatrixXd scaled = basis_.shapes * basis_.omega.cwiseInverse().asDiagonal();
   Eigen::MatrixXd result =
       Eigen::MatrixXd::Zero(track_.elements() * (points + 1), basis_.omega.size());
@@ -20,28 +20,31 @@ Eigen::MatrixXd ReducedLine::scaled_shapes(int points) const {
     for (int p = 0; p <= points; ++p) {
       const auto n = shape(2. * p / points - 1.);
       for (std::size_t i = 0; i < 3; ++i) {
-        const int height = line_.unknown_of[2 * static_cast<std::size_t>(e) + i][2];
+        const int height = line_.unknown(rail, 2 * e + static_cast<int>(i), 2);
         if (height >= 0) result.row(e * (points + 1) + p) += n[i] * scaled.row(height);
       }
     }
   return result;
 }
 
-Eigen::VectorXd ReducedLine::under(double, double, int points) const {
-  return scaled_shapes(points).rowwise().squaredNorm();
+Eigen::VectorXd ReducedLine::under(const Port& port, double, int points) const {
+  return scaled_shapes(port.rail, points).rowwise().squaredNorm();
 }
 
-LineFlexibility::Strip ReducedLine::between(double, double, int points) const {
-  return [points, shapes = scaled_shapes(points)](int element) -> Eigen::MatrixXd {
-    return shapes.middleRows(element * (points + 1), points + 1) * shapes.transpose();
+LineFlexibility::Strip ReducedLine::between(const Port& a, const Port& b, int points) const {
+  return [points, from = scaled_shapes(a.rail, points),
+          to = scaled_shapes(b.rail, points)](int element) -> Eigen::MatrixXd {
+    return from.middleRows(element * (points + 1), points + 1) * to.transpose();
   };
 }
 
-Eigen::VectorXd ReducedLine::from(double, const Functional& functional, int points) const {
-  Eigen::VectorXd load = sleeper_load(line_, functional);
+Eigen::VectorXd ReducedLine::from(const Port& port, const Functional& functional,
+                                  int points) const {
+  Eigen::VectorXd load = sleeper_load(track_, line_, functional);
   for (const Functional::OnRail& point : functional.rail)
     load += point.factor * point_row(track_, line_, point.at);
-  return scaled_shapes(points) * (basis_.shapes.transpose() * load).cwiseQuotient(basis_.omega);
+  return scaled_shapes(port.rail, points) *
+         (basis_.shapes.transpose() * load).cwiseQuotient(basis_.omega);
 }
 
 }  // namespace railstep

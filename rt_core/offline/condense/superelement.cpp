@@ -8,9 +8,11 @@ namespace railstep {
 namespace {
 
 /// Stiffness of `parts` elements in a row over the carried unknowns, nodes in order.
-Eigen::MatrixXd chain_stiffness(const Track& track, const std::vector<int>& carried, int parts) {
+Eigen::MatrixXd chain_stiffness(const Track& track, int rail, const std::vector<int>& carried,
+                                int parts) {
   const Matrix27 K =
-      element_matrices(track.section, track.law(), track.element_length() / parts).stiffness;
+      element_matrices(track.bar(rail).section, track.law(rail), track.element_length() / parts)
+          .stiffness;
   const int d = static_cast<int>(carried.size());
   Eigen::MatrixXd chain = Eigen::MatrixXd::Zero((2 * parts + 1) * d, (2 * parts + 1) * d);
   for (int part = 0; part < parts; ++part)
@@ -24,9 +26,9 @@ Eigen::MatrixXd chain_stiffness(const Track& track, const std::vector<int>& carr
 
 }  // namespace
 
-Superelement::Superelement(const Track& track, std::vector<int> carried, int parts)
+Superelement::Superelement(const Track& track, int rail, std::vector<int> carried, int parts)
     : parts_(parts), carried_(std::move(carried)) {
-  const Eigen::MatrixXd chain = chain_stiffness(track, carried_, parts);
+  const Eigen::MatrixXd chain = chain_stiffness(track, rail, carried_, parts);
   const int n = static_cast<int>(chain.rows()), d = static_cast<int>(carried_.size());
   for (int i = 0; i < n; ++i) (i < d || i >= n - d ? ends_ : inner_).push_back(i);
   const Eigen::MatrixXd inner_K = chain(inner_, inner_), mixed = chain(inner_, ends_);

@@ -16,9 +16,9 @@ class Superelement {
     Eigen::MatrixXd inner;  // [places][inner unknowns] coefficients of the inner nodes alone
   };
 
-  /// One element of the track divided into `parts`.
+  /// One element of a rail of the track divided into `parts`.
   /// @param carried unknowns of a node, 0 to 8, ascending; d of them
-  Superelement(const Track& track, std::vector<int> carried, int parts);
+  Superelement(const Track& track, int rail, std::vector<int> carried, int parts);
 
   int parts() const { return parts_; }
   const std::vector<int>& carried() const { return carried_; }

@@ -17,11 +17,12 @@ std::int64_t solve(const Band& band) {
 /// Rows of the basis that a point of a rail touches, at most: what a line carries of three nodes.
 std::int64_t carried(const Model& model, const LineModel& line) {
   std::int64_t most = 0;
-  for (std::int32_t node = 0; node < 2 * model.elements + 1; ++node) {
-    std::int64_t here = 0;
-    for (int k = 0; k < 9; ++k) here += line.unknown_of[9 * node + k] >= 0 ? 1 : 0;
-    most = here > most ? here : most;
-  }
+  for (const std::int32_t* table : line.unknown_of)
+    for (std::int32_t node = 0; node < 2 * model.elements + 1; ++node) {
+      std::int64_t here = 0;
+      for (int k = 0; k < 9; ++k) here += table[9 * node + k] >= 0 ? 1 : 0;
+      most = here > most ? here : most;
+    }
   return most;
 }
 

@@ -65,7 +65,8 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.kind = kind_of(load.rail, load.z);
 }
 
-void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset, const Railhead& head) {
+void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
+                               const std::array<Railhead, 2>& heads) {
   if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
   if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
   if (wheelset.forces.size() > static_cast<std::size_t>(kMaxBodyForces))
@@ -86,10 +87,15 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset, con
   packed.tread_half_width = wheelset.tread_half_width;
   packed.start = wheelset.start;
   packed.speed = wheelset.speed;
-  packed.rest_z = head.top_z + wheelset.radius;
-  packed.hertz = hertz_contact(wheelset.radius, head.crown_radius, track.material.young,
-                               track.material.poisson, 1e3)
-                     .constant;
+  packed.rest_z = heads[0].top_z + wheelset.radius;
+  for (const int rail : {0, 1}) {
+    const Railhead& head = heads[static_cast<std::size_t>(rail)];
+    const Material material = track.bar(rail).material;
+    packed.hertz[rail] =
+        hertz_contact(wheelset.radius, head.crown_radius, material.young, material.poisson, 1e3)
+            .constant;
+    packed.kind[rail] = kind_of(rail, head.top_z);
+  }
   packed.guide = wheelset.guide;
   packed.cap = wheelset.cap;
   packed.tolerance = wheelset.tolerance;
@@ -98,7 +104,6 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset, con
   for (const Wheelset::Force& force : wheelset.forces)
     packed.force[packed.forces++] = {
         force.direction, static_cast<std::int32_t>(force.table.size() / 2), keep(force.table)};
-  for (int rail = 0; rail < 2; ++rail) packed.kind[rail] = kind_of(rail, head.top_z);
 }
 
 void PackedModel::set_start(std::vector<double> state) {
@@ -116,9 +121,13 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   model_.element_length = track.element_length();
   model_.rail_y[0] = track.rails == 2 ? track.rail_spacing / 2. : 0.;
   model_.rail_y[1] = -model_.rail_y[0];
-  model_.head_z = traffic.head.top_z;
-  model_.crown_radius = traffic.head.crown_radius;
-  model_.head_half_width = traffic.head.half_width;
+  const std::array<Railhead, 2> heads = {traffic.head, traffic.right_head.value_or(traffic.head)};
+  for (const std::size_t rail : {0u, 1u}) {
+    model_.rail_z[rail] = heads[0].top_z - heads[rail].top_z;
+    model_.head_z[rail] = heads[rail].top_z;
+    model_.crown_radius[rail] = heads[rail].crown_radius;
+    model_.head_half_width[rail] = heads[rail].half_width;
+  }
   model_.condensed = options.modal ? 1 : 0;
   std::vector<Line> lines = assemble(track);
   for (std::size_t i = 0; i < lines.size(); ++i)
@@ -127,7 +136,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (lines_.empty()) throw std::invalid_argument("nothing moves the track");
   model_.bodies = model_.unknowns;
   for (const MovingLoad& load : traffic.loads) add_load(track, load);
-  for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, traffic.head);
+  for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   if (options.gravity != 0.) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);

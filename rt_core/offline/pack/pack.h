@@ -58,9 +58,10 @@ struct Probe {
 struct Traffic {
   std::vector<MovingLoad> loads = {};
   std::vector<Wheelset> wheelsets = {};
-  Railhead head = {};
+  Railhead head = {};  // of both rails
   std::vector<Probe> probes = {};
-  std::vector<int> held = {};  // rails that a multibody system holds on to
+  std::vector<int> held = {};                         // rails that a multibody system holds on to
+  std::optional<Railhead> right_head = std::nullopt;  // of the right rail where it differs
 };
 
 struct PackOptions {
@@ -107,10 +108,12 @@ class PackedModel {
   Diagonals keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded);
   void add_line(const Track& track, PackedLine packed, const PackOptions& options);
   void add_banded(const Line& line, LineModel& packed);
-  void add_condensed(const Track& track, PackedLine& own, LineModel& packed,
-                     const ModalLimit& limit);
+  void add_condensed(PackedLine& own, LineModel& packed, const ModalLimit& limit);
+  template <typename Number>
+  void keep_tables(const Line& line, LineModel& packed, const Number& number);
   void add_load(const Track& track, const MovingLoad& load);
-  void add_wheelset(const Track& track, const Wheelset& wheelset, const Railhead& head);
+  void add_wheelset(const Track& track, const Wheelset& wheelset,
+                    const std::array<Railhead, 2>& heads);
   void add_weight(const Track& track, double gravity);
   void add_probes(const Track& track, const std::vector<Probe>& probes);
   void add_residual(const Track& track, const std::vector<Probe>& probes, int points);

@@ -15,9 +15,20 @@ bool same(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double
   return a.rows() == b.rows() && (a - b).norm() == 0.;
 }
 
+/// Whether one table of unknowns stands for all that a line has of the rails.
+bool has_one_table(const Line& line) {
+  return line.mirrored || line.rail_factor[0] == 0. || line.rail_factor[1] == 0.;
+}
+
+const Line::RailUnknowns& first_table(const Line& line) {
+  return line.unknown_of[static_cast<std::size_t>(line.first_rail())];
+}
+
 bool same_but_for_the_rail(const Line& a, const Line& b) {
+  const bool same_tables = has_one_table(a) && has_one_table(b) ? first_table(a) == first_table(b)
+                                                                : a.unknown_of == b.unknown_of;
   return same(a.stiffness, b.stiffness) && same(a.mass, b.mass) && same(a.damping, b.damping) &&
-         a.unknown_of == b.unknown_of && a.mirrored == b.mirrored;
+         same_tables && a.mirrored == b.mirrored;
 }
 
 /// Real, then imaginary parts, padded with zeros.
@@ -65,6 +76,20 @@ Diagonals PackedModel::keep_diagonals(const Eigen::SparseMatrix<double>& A, int 
   return {padded, count, keep(std::move(offsets)), keep(std::move(values))};
 }
 
+/// @param number  of an unknown k of a node, as the model has it
+template <typename Number>
+void PackedModel::keep_tables(const Line& line, LineModel& packed, const Number& number) {
+  const auto keep_table = [&](const Line::RailUnknowns& table) {
+    std::vector<std::int32_t> unknowns;
+    for (const auto& node : table)
+      for (std::size_t k = 0; k < 9; ++k)
+        unknowns.push_back(node[k] < 0 ? -1 : static_cast<std::int32_t>(number(node[k], k)));
+    return keep(std::move(unknowns));
+  };
+  packed.unknown_of[0] = packed.unknown_of[1] = keep_table(first_table(line));
+  if (!has_one_table(line)) packed.unknown_of[1] = keep_table(line.unknown_of[1]);
+}
+
 void PackedModel::add_banded(const Line& line, LineModel& packed) {
   const Scheme& s = model_.scheme;
   BandFactor factor = factor_band(
@@ -74,15 +99,13 @@ void PackedModel::add_banded(const Line& line, LineModel& packed) {
                  keep(std::move(factor.inverse)), keep(std::move(factor.backward))};
   packed.mass = keep_diagonals(line.mass, packed.size);
   packed.damping = keep_diagonals(line.damping, packed.size);
-  std::vector<std::int32_t> unknowns;
-  for (const auto& node : line.unknown_of)
-    unknowns.insert(unknowns.end(), node.begin(), node.end());
-  packed.unknown_of = keep(std::move(unknowns));
+  keep_tables(line, packed, [](int unknown, std::size_t) { return unknown; });
 }
 
-void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& packed,
-                                const ModalLimit& limit) {
-  own.basis = modal_basis(own.line, limit);
+void PackedModel::add_condensed(PackedLine& own, LineModel& packed, const ModalLimit& limit) {
+  // Of both rails in one line as many as of two.
+  const int rails = has_one_table(own.line) ? 1 : 2;
+  own.basis = modal_basis(own.line, {rails * limit.most, limit.highest_hz});
   own.modes = damped_modes(own.basis, own.line.damping);
   const auto modes = own.modes.rate.size();
   const auto padded = static_cast<std::size_t>((modes + 7) / 8 * 8);
@@ -109,22 +132,18 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
                   0,
                   nullptr};
   std::vector<double> shape;
-  std::vector<std::int32_t> rows;
   std::int32_t count = 0;
-  for (int node = 0; node < track.nodes(); ++node)
-    for (std::size_t k = 0; k < 9; ++k) {
-      const int unknown = own.line.unknown_of[static_cast<std::size_t>(node)][k];
-      // The section's own strain (a_y, b_z) follows at once: it is in the residual flexibility.
-      rows.push_back(unknown < 0 || k == 4 || k == 8 ? -1 : count++);
-      if (rows.back() < 0) continue;
-      const Eigen::VectorXcd row =
-          own.modes.shape.transpose() * own.basis.shapes.row(unknown).transpose();
-      const std::vector<double> values = parts(row, padded);
-      shape.insert(shape.end(), values.begin(), values.end());
-    }
+  keep_tables(own.line, packed, [&](int unknown, std::size_t k) {
+    // The section's own strain (a_y, b_z) follows at once: it is in the residual flexibility.
+    if (k == 4 || k == 8) return -1;
+    const Eigen::VectorXcd row =
+        own.modes.shape.transpose() * own.basis.shapes.row(unknown).transpose();
+    const std::vector<double> values = parts(row, padded);
+    shape.insert(shape.end(), values.begin(), values.end());
+    return static_cast<int>(count++);
+  });
   packed.modal.rows = count;
   packed.modal.shape = keep(std::move(shape));
-  packed.unknown_of = keep(std::move(rows));
 }
 
 void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions& options) {
@@ -137,7 +156,7 @@ void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions
     own.basis = lines_[twin].basis;
     own.modes = lines_[twin].modes;
   } else if (options.modal) {
-    add_condensed(track, own, packed, *options.modal);
+    add_condensed(own, packed, *options.modal);
   } else {
     add_banded(own.line, packed);
   }

@@ -96,7 +96,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     for (const int rail : {0, 1}) {
       const WheelsetModel& w = model.wheelset[b];
       const double x = w.start + w.speed * time;
-      forces.push_back({{rail, x, 0., model.head_z, 2}, -wheel_load(w)});
+      forces.push_back({{rail, x, 0., model.head_z[rail], 2}, -wheel_load(w)});
       ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
     }
   Pose pose{static_lines(packed, statics, forces, gravity), {}};
@@ -109,11 +109,14 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
                                            static_cast<int>(port));
     }
     const WheelsetModel& w = model.wheelset[b];
-    const double approach = std::pow(wheel_load(w) / w.hertz, 2. / 3.);
-    const double roll = (height[0] - height[1]) / (model.rail_y[0] - model.rail_y[1]);
+    const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
+                            std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
+    const double roll =
+        ((height[0] - height[1]) - (into[0] - into[1])) / (model.rail_y[0] - model.rail_y[1]);
     // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
-    const double lifted = .5 * roll * roll * (w.radius + model.crown_radius);
-    const double z = .5 * (height[0] + height[1]) - approach + lifted;
+    const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
+    const double lifted = .5 * roll * roll * (w.radius + crown);
+    const double z = .5 * (height[0] + height[1]) - .5 * (into[0] + into[1]) + lifted;
     pose.wheelsets.push_back({0., 0., z, roll, 0., 0.});
   }
   return pose;

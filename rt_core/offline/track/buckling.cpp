@@ -1,6 +1,7 @@
 #include "offline/track/buckling.h"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -30,18 +31,18 @@ bool is_unstable(const Eigen::SparseMatrix<double>& stiffness) {
   return (factor.vectorD().array() < -1e-12 * size.array()).any();
 }
 
-bool buckles(Track track, double compression) {
-  track.axial_force = -compression;
+/// With both rails' forces `factor` times what they are.
+bool buckles(Track track, double factor) {
+  track.axial_force *= factor;
+  if (track.right) track.right->axial_force *= factor;
   for (const Line& line : assemble(track))
     if (is_unstable(line.stiffness)) return true;
   return false;
 }
 
-}  // namespace
-
-double critical_compression(const Track& track) {
-  double stable = 0., unstable = track.material.young * track.section.area;
-  if (!buckles(track, unstable)) return std::numeric_limits<double>::infinity();
+/// The factor on both rails' forces at which the track buckles, by bisection up to `unstable`.
+double critical_factor(const Track& track, double unstable) {
+  double stable = 0.;
   while (unstable - stable > 1e-12 * unstable) {
     const double middle = .5 * (stable + unstable);
     if (middle <= stable || middle >= unstable) break;
@@ -50,13 +51,30 @@ double critical_compression(const Track& track) {
   return unstable;
 }
 
+}  // namespace
+
+double critical_compression(const Track& track) {
+  Track pressed = track;
+  pressed.axial_force = -1.;
+  if (pressed.right) pressed.right->axial_force = -1.;
+  const double crushing = track.material.young * track.section.area;
+  if (!buckles(pressed, crushing)) return std::numeric_limits<double>::infinity();
+  return critical_factor(pressed, crushing);
+}
+
 void refuse_buckled(const Track& track) {
+  const double left = track.axial_force, right = track.bar(1).axial_force;
   // The bisection's own width, so that the critical force itself is refused.
-  if (!(track.axial_force < 0.) || !buckles(track, -track.axial_force * (1. + 1e-11))) return;
+  if (!(std::min(left, right) < 0.) || !buckles(track, 1. + 1e-11)) return;
   std::ostringstream sentence;
   sentence.precision(7);
-  sentence << "the rails carry a compression of " << -track.axial_force
-           << " N, and the track buckles at " << critical_compression(track) << " N";
+  if (left == right)
+    sentence << "the rails carry a compression of " << -left << " N, and the track buckles at "
+             << critical_compression(track) << " N";
+  else
+    sentence << "the rails carry compressions of " << -left << " N (left) and " << -right
+             << " N (right), and the track buckles at " << critical_factor(track, 1. + 1e-11)
+             << " times these";
   throw std::invalid_argument(sentence.str());
 }
 

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "offline/track/functional.h"
+
 namespace railstep {
 
 namespace {
@@ -13,10 +15,11 @@ std::string place_of(const Line& line, int unknown) {
   static const char* const names[9] = {
       "x position",         "lateral position", "height", "lateral slope a_x", "a_y", "roll a_z",
       "vertical slope b_x", "roll b_y",         "b_z"};
-  for (std::size_t node = 0; node < line.unknown_of.size(); ++node)
-    for (std::size_t k = 0; k < 9; ++k)
-      if (line.unknown_of[node][k] == unknown)
-        return std::string(names[k]) + " of rail node " + std::to_string(node);
+  for (const Line::RailUnknowns& table : line.unknown_of)
+    for (std::size_t node = 0; node < table.size(); ++node)
+      for (std::size_t k = 0; k < 9; ++k)
+        if (table[node][k] == unknown)
+          return std::string(names[k]) + " of rail node " + std::to_string(node);
   return "a sleeper's motion";
 }
 
@@ -70,14 +73,11 @@ double Statics::flexibility(const RailPoint& a, const RailPoint& b) const {
 
 double Statics::support_force(const std::vector<Eigen::VectorXd>& displacement, int rail,
                               int seat) const {
-  const double x = seat * track_.bay_length;
-  double gap = at(displacement, {rail, x, 0., track_.support.height_z, 2});
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    const int sleeper = lines_[i].sleeper_unknown_of[static_cast<std::size_t>(seat)][2];
-    if (sleeper >= 0)
-      gap -= lines_[i].rail_factor[static_cast<std::size_t>(rail)] * displacement[i][sleeper];
-  }
-  return -track_.support.stiffness[2] * gap;
+  const Functional gap = pad_gap(track_, rail, seat);
+  double sum = 0.;
+  for (std::size_t i = 0; i < lines_.size(); ++i)
+    sum += functional_row(track_, lines_[i], gap).dot(displacement[i]);
+  return -track_.seat(seat).pad[static_cast<std::size_t>(rail)].stiffness[2] * sum;
 }
 
 }  // namespace railstep

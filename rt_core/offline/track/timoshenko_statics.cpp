@@ -6,6 +6,7 @@
 #include <string>
 
 #include "offline/element/timoshenko.h"
+#include "offline/track/pad.h"
 
 namespace railstep {
 namespace {
@@ -19,7 +20,8 @@ void check(const Track& track) {
     if (wrong) throw std::invalid_argument(std::string("a Timoshenko beam stands for ") + what);
   };
   refuse(track.rails != 1, "one rail; accepted is track.rails = 1");
-  refuse(track.sleeper.has_value(), "a rail on the ground; accepted without sleepers");
+  refuse(has_sleepers(track), "a rail on the ground; accepted without sleepers");
+  refuse(has_long_pads(track), "a rail on point seats; accepted is support.length_m = 0");
   refuse(track.axial_force != 0., "a rail without axial force");
   refuse(track.axis_z != 0., "its centroid; accepted is track.reference_line = \"centroid\"");
   const ElementRule& rule = track.rule;
@@ -105,11 +107,11 @@ void TimoshenkoStatics::assemble(int unknowns) {
       }
   }
   stiffness_.setFromTriplets(entries.begin(), entries.end());
-  const Support& support = track_.support;
   const auto add = [&](const Eigen::SparseVector<double>& spring, double k) {
     if (k > 0. && spring.nonZeros() > 0) stiffness_ += k * Sparse(spring * spring.transpose());
   };
   for (int seat = 0; seat <= track_.bays; ++seat) {
+    const Support support = track_.seat(seat).pad[0];
     const double x = seat * track_.bay_length, z = support.height_z;
     for (const double side : {-.5, .5})
       for (int d = 0; d < 3; ++d)

@@ -1,10 +1,12 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <array>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "offline/element/matrices.h"
+#include "offline/track/seat.h"
 
 namespace railstep {
 
@@ -19,33 +21,22 @@ enum class RailEnd { free, pinned, clamped };
 /// The ends of every rail, at x = 0 and at x = length.
 using RailEnds = std::array<RailEnd, 2>;
 
-/// Spring-dampers between one rail and what carries it, at each bay border.
-struct Support {
-  std::array<double, 3> stiffness{};  // x, y, z, N/m
-  std::array<double, 3> damping{};    // x, y, z, N s/m
-  double roll_stiffness = 0.;         // N m/rad
-  double roll_damping = 0.;           // N m s/rad
-  double height_z = 0.;               // of the seat above the axis, m
-  double half_spread = 0.;            // a pair of half springs at y = +- this, m
-};
-
-/// Rigid sleeper under both rails on ballast; it moves vertically and rolls, and moves along x or
-/// y only where its ballast has stiffness in that direction (else it is held there).
-struct Sleeper {
-  double mass = 0.;                           // whole, kg
-  double roll_inertia = 0.;                   // about x, also used about z, kg m2
-  std::array<double, 3> ballast_stiffness{};  // x, y, z per end, N/m
-  std::array<double, 3> ballast_damping{};    // x, y, z per end, N s/m
-};
-
-/// Where a track stands under its own weight; all of its rails alike, and none moves sideways.
+/// Where a track stands under its own weight. Of one that is symmetric both sides are the same, and
+/// nothing moves sideways.
 struct TrackState {
-  Eigen::VectorXd rail;     // [9 nodes] change of a rail's unknowns from rest
-  Eigen::VectorXd sleeper;  // [3 seats] displacement of the sleepers' ends, m; empty without
-  double gravity = 0.;      // of that weight, m/s2
+  std::array<Eigen::VectorXd, 2> rail;     // [9 nodes] change of its unknowns from rest
+  std::array<Eigen::VectorXd, 2> sleeper;  // [4 seats] x, y, z of the ends, m, and turn about y
+  double gravity = 0.;                     // of that weight, m/s2
 };
 
-/// A straight track of one rail, or of two alike ones, with uniform supports.
+/// What a rail is made of, and the axial force in it.
+struct RailBar {
+  BeamSection section;
+  Material material;
+  double axial_force = 0.;  // at rest, N, tension positive
+};
+
+/// A straight track of one rail or two, on seats at its bay borders.
 struct Track {
   BeamSection section;
   Material material;
@@ -59,8 +50,13 @@ struct Track {
   int elements_per_bay = 2;
   double rail_spacing = 1.5;  // m
   RailEnds ends = {RailEnd::free, RailEnd::free};
-  Support support;
+  std::optional<RailBar> right;  // the right rail, where it differs from section, material, force
+  Support support;               // of every seat but those changed
   std::optional<Sleeper> sleeper;
+  std::map<int, Seat> changed_seats;  // by bay border; whole, in place of support and sleeper
+  /// Rails that share sleepers and are alike are stepped in mirror coordinates; without them both
+  /// make one line, as those that differ do.
+  bool mirror_coordinates = true;
   /// Where the stiffness is taken (q_s of Eq. 24); none: at rest. linearised_under_weight() makes
   /// one.
   std::optional<TrackState> state;
@@ -69,8 +65,22 @@ struct Track {
   int nodes() const { return 2 * elements() + 1; }
   double element_length() const { return bay_length / elements_per_bay; }
   double length() const { return bays * bay_length; }
-  BeamLaw law() const { return beam_law(section, material, rule, axis_z, axial_force); }
+  /// @param rail  0 left (+y), 1 right
+  RailBar bar(int rail) const {
+    return rail == 1 && right ? *right : RailBar{section, material, axial_force};
+  }
+  BeamLaw law(int rail = 0) const {
+    const RailBar own = bar(rail);
+    return beam_law(own.section, own.material, rule, axis_z, own.axial_force);
+  }
+  Seat seat(int border) const;
 };
+
+/// Whether any seat has a sleeper.
+bool has_sleepers(const Track& track);
+
+/// Whether rails and all seats are alike on the left and on the right.
+bool is_symmetric(const Track& track);
 
 /// Whether the ends of a rail hold unknown k = 0..8 of its node.
 bool holds(const Track& track, int node, int k);
@@ -93,23 +103,36 @@ struct RailPoint {
   int direction;  // 0 x, 1 y, 2 z
 };
 
+/// How a rigid sleeper moves; of the table of a line's unknowns.
+enum SleeperMotion { kAlongX, kAlongY, kAlongZ, kRoll, kYaw, kPitch, kSleeperMotions };
+
 /// One independent part of the track: M a + C v + K u = f with banded matrices.
 ///
-/// Two rails that share sleepers are taken in mirror coordinates (left +- mirrored right)/sqrt 2;
-/// rails that share nothing stand for themselves. Whatever then does not couple (vertical and
-/// lateral motion of a section symmetric in y, say) becomes a line of its own.
+/// Two alike rails that share sleepers are taken in mirror coordinates (left +- mirrored right)
+/// / sqrt 2; rails that differ make one line together; rails that share nothing stand for
+/// themselves. Whatever then does not couple (vertical and lateral motion of a section symmetric
+/// in y, say) becomes a line of its own.
 struct Line {
+  /// [nodes] unknowns of one rail; -1 where not carried.
+  using RailUnknowns = std::vector<std::array<int, 9>>;
+
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
-  std::vector<std::array<int, 9>> unknown_of;            // [nodes]; -1 where not carried
-  std::vector<std::array<int, 3>> sleeper_unknown_of;    // [seats] x, y, z; -1 where held
-  std::array<double, 2> rail_factor;                     // weight of the line in left, right
-  bool mirrored;                                         // right rail: lateral unknowns change sign
+  std::array<RailUnknowns, 2> unknown_of;  // of left and right rail; the same in mirror coordinates
+  /// [seats] of each SleeperMotion, scaled: the ends' mean displacement, or half their difference,
+  /// times sqrt 2 (of one rail, its end's displacement); -1 where held or on another line.
+  std::vector<std::array<int, kSleeperMotions>> sleeper_unknown_of;
+  std::array<double, 2> rail_factor;  // weight of the line in left, right; 0: it lacks that rail
+  bool mirrored;                      // right rail: lateral unknowns change sign
 
   int unknowns() const { return static_cast<int>(stiffness.rows()); }
-  /// Number of coordinate k = 0..8 of a node among the line's unknowns, -1 where not carried.
-  int unknown(int node, int k) const {
-    return unknown_of[static_cast<std::size_t>(node)][static_cast<std::size_t>(k)];
+  /// Number of coordinate k = 0..8 of a rail's node among the line's unknowns, -1 where not
+  /// carried.
+  int unknown(int rail, int node, int k) const {
+    return unknown_of[static_cast<std::size_t>(rail)][static_cast<std::size_t>(node)]
+                     [static_cast<std::size_t>(k)];
   }
+  /// The rail whose unknowns all others' are, or the first of two.
+  int first_rail() const { return rail_factor[0] != 0. ? 0 : 1; }
 };
 
 /// Assembles the track and splits it into independent lines, each numbered along x.
@@ -119,6 +142,16 @@ std::vector<Line> assemble(const Track& track);
 /// Coefficients of the displacement of a material point over the unknowns of one line. Transposed,
 /// it spreads a unit force at that point. Throws std::out_of_range off the rail.
 Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point);
+
+/// Whether unknown k of a node changes sign on that rail: the y components (r_y, a_x, a_z, b_y) of
+/// a mirrored right rail.
+bool flips_in_mirror(const Line& line, int rail, int k);
+
+/// Coefficients of the displacement of a sleeper's end over the unknowns of one line.
+/// @param rail  0 left, 1 right: above that end
+/// @param direction  0 x, 1 y, 2 z, m; 3 turn about y, rad
+Eigen::SparseVector<double> sleeper_row(const Track& track, const Line& line, int rail, int seat,
+                                        int direction);
 
 /// Nodal forces of the rails' and sleepers' own weight on one line. @param gravity m/s2, > 0 down.
 /// Of a track with a state, which is that under its weight: K_r q_s, the constant part of Eq. 24,

@@ -66,11 +66,18 @@ void describe(Archive& a, Model& m, std::int32_t at) {
     line.mass = twin.mass;
     line.damping = twin.damping;
     line.modal = twin.modal;
-    line.unknown_of = twin.unknown_of;
+    for (int rail = 0; rail < 2; ++rail) line.unknown_of[rail] = twin.unknown_of[rail];
     return;
   }
   a.count(line.size, kMostUnknowns);
-  a.integers(line.unknown_of, 9 * (std::int64_t{2} * m.elements + 1));
+  const std::int64_t table = 9 * (std::int64_t{2} * m.elements + 1);
+  std::int32_t second = line.unknown_of[0] != line.unknown_of[1] ? 1 : 0;
+  a.integers(line.unknown_of[0], table);
+  a.count(second, 1);
+  if (second == 0)
+    line.unknown_of[1] = line.unknown_of[0];
+  else
+    a.integers(line.unknown_of[1], table);
   if (m.condensed != 0) return describe(a, line.modal, line.size);
   describe(a, line.step, line.size);
   describe(a, line.mass, line.size);
@@ -92,7 +99,7 @@ void describe(Archive& a, WheelsetModel& w) {
   a.count(w.first, kMostUnknowns);
   for (double& x : w.mass) a.real(x);
   for (double* x : {&w.weight, &w.radius, &w.tread_half_width, &w.start, &w.speed, &w.rest_z,
-                    &w.hertz, &w.tolerance, &w.alpha, &w.beta})
+                    &w.hertz[0], &w.hertz[1], &w.tolerance, &w.alpha, &w.beta})
     a.real(*x);
   std::int32_t guide = static_cast<std::int32_t>(w.guide);
   a.count(guide, 1);
@@ -151,9 +158,11 @@ void describe(Archive& a, Model& m) {
   a.count(m.bodies, m.unknowns);
   a.count(m.steps_per_frame, kMostRows);
   a.integer(m.steps);
-  for (double* x : {&m.element_length, &m.rail_y[0], &m.rail_y[1], &m.head_z, &m.crown_radius,
-                    &m.head_half_width})
-    a.real(*x);
+  a.real(m.element_length);
+  for (double* of_rails : {m.rail_y, m.rail_z, m.head_z, m.crown_radius, m.head_half_width}) {
+    a.real(of_rails[0]);
+    a.real(of_rails[1]);
+  }
   a.reals(m.constant_force, std::int64_t{1 + m.condensed} * m.unknowns);
   for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
   for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);

@@ -55,9 +55,11 @@ struct LineModel {
   Band step;                 // factor of K + kv C + kg M
   Diagonals mass, damping;   // padded to whole panels
   Modal modal;
-  const std::int32_t* unknown_of;  // [nodes][9] unknown, or row of modal.shape; -1: not carried
-  double rail_factor[2];           // weight of the line in left and right rail
-  std::int32_t mirrored;           // right rail: y components change sign
+  /// Of left and right rail, [nodes][9]: unknown, or row of modal.shape; -1: not carried. One table
+  /// for both where they are mirror images and where the line has one rail.
+  const std::int32_t* unknown_of[2];
+  double rail_factor[2];  // weight of the line in left and right rail; 0: it lacks that rail
+  std::int32_t mirrored;  // right rail: y components change sign
 };
 
 /// A prescribed force that runs along a rail.
@@ -88,8 +90,8 @@ struct WheelsetModel {
   double weight;       // N, down; of the wheelset and what it carries
   double radius, tread_half_width;
   double start, speed;  // of the centre, m, m/s
-  double rest_z;        // height of the centre over the rails' axes when it touches, m
-  double hertz;         // C of P = C d^1.5, N/m^1.5
+  double rest_z;        // height of the centre over the left rail's axis when it touches, m
+  double hertz[2];      // C of P = C d^1.5 on left and right rail, N/m^1.5
   Guide guide;
   std::int32_t cap;    // iterations of the augmented Lagrangian
   double tolerance;    // m and rad
@@ -139,9 +141,10 @@ struct Model {
   std::int32_t steps_per_frame;
   double element_length;         // m
   double rail_y[2];              // of the rails' axes, m
-  double head_z;                 // of the railhead's top over the axis, m
-  double crown_radius;           // m
-  double head_half_width;        // m
+  double rail_z[2];              // of the rails' axes over the left one, m: their heads are level
+  double head_z[2];              // of each railhead's top over its rail's axis, m
+  double crown_radius[2];        // m
+  double head_half_width[2];     // m
   const double* constant_force;  // [1 + condensed][unknowns] N, or null: the track's weight
   ResidualModel residual;
   ProbeModel probe;

@@ -98,7 +98,7 @@ void locate_contacts(const Model& model, const State& s, Workspace& w, Coupling&
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], located_on(s, w), c.contact + 2 * b);
   for (int i = 0; i < c.wheels; ++i) {
-    c.hertz[i] = model.wheelset[i / 2].hertz;
+    c.hertz[i] = model.wheelset[i / 2].hertz[i % 2];
     c.place[i] = {model.wheelset[i / 2].kind[i % 2], c.contact[i].row.element, c.contact[i].xi, 0.};
   }
 }
@@ -309,7 +309,8 @@ bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int
     together += row[k] * (row[k] + other[k]) / set.mass[k];
   }
   const double inverse_mass = alone > together ? alone : together;
-  const double depth = 1.25 / (inverse_mass * set.hertz), steps = 10. * model.scheme.dt / 2.9433;
+  const double depth = 1.25 / (inverse_mass * set.hertz[wheel % 2]),
+               steps = 10. * model.scheme.dt / 2.9433;
   return speed > 0. && depth * depth < steps * steps * steps * steps * steps * speed;
 }
 

@@ -20,9 +20,10 @@ double value(const LineModel& line, std::int32_t unknown, const Configuration& a
 template <typename Visit>
 void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcept {
   if (line.rail_factor[row.rail] == 0.) return;
+  const std::int32_t* const table = line.unknown_of[row.rail];
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 9; ++k) {
-      const std::int32_t unknown = line.unknown_of[9 * (2 * row.element + i) + k];
+      const std::int32_t unknown = table[9 * (2 * row.element + i) + k];
       if (unknown < 0 || row.coefficient[i][k] == 0.) continue;
       visit(unknown, weight_of(line, row.rail, k) * row.coefficient[i][k]);
     }
@@ -30,9 +31,9 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
 
 }  // namespace
 
-double nodal_value(const LineModel& line, std::int32_t node, int k,
+double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
                    const Configuration& at) noexcept {
-  const std::int32_t unknown = line.unknown_of[9 * node + k];
+  const std::int32_t unknown = line.unknown_of[rail][9 * node + k];
   return unknown < 0 ? 0. : value(line, unknown, at);
 }
 
@@ -43,7 +44,7 @@ double axis_height(const Model& model, std::int32_t rail, std::int32_t element, 
   for (std::int32_t l = 0; l < model.lines; ++l)
     for (int i = 0; i < 3; ++i)
       sum += shape[i] * weight_of(model.line[l], rail, 2) *
-             nodal_value(model.line[l], 2 * element + i, 2, at);
+             nodal_value(model.line[l], rail, 2 * element + i, 2, at);
   return sum;
 }
 

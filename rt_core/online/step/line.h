@@ -17,8 +17,8 @@ struct Configuration {
   Complex modes;
 };
 
-/// What one of a node's unknowns is on a line, before its weight in a rail; 0 if not carried.
-double nodal_value(const LineModel& line, std::int32_t node, int k,
+/// What unknown k of a rail's node is on a line, before its weight in the rail; 0 if not carried.
+double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
                    const Configuration& at) noexcept;
 
 /// The weight of a line's unknown k in a rail: y components of the mirrored right rail (r_y, a_x,

@@ -15,8 +15,23 @@ struct Window {
   double nodes[9 * kWindowNodes];
 };
 
-/// Displacements of the nodes around x, both rails together: what a line moves of one it moves of
-/// the other, up to sign and weight.
+/// Adds a line's displacements of a window's nodes, of both rails together: what one with one table
+/// moves of one it moves of the other, up to sign and weight.
+void gather_line(const LineModel& line, const Configuration& at, Window* sides) noexcept {
+  const bool one_table = line.unknown_of[1] == line.unknown_of[0];
+  for (int k = 0; k < 9; ++k) {
+    const double weight[2] = {weight_of(line, 0, k), weight_of(line, 1, k)};
+    for (std::int32_t i = 0; i <= 2 * sides[0].elements; ++i) {
+      const std::int32_t node = 2 * sides[0].first + i;
+      const double left = nodal_value(line, 0, node, k, at);
+      const double right = one_table ? left : nodal_value(line, 1, node, k, at);
+      sides[0].nodes[9 * i + k] += weight[0] * left;
+      sides[1].nodes[9 * i + k] += weight[1] * right;
+    }
+  }
+}
+
+/// Displacements of the nodes around x.
 void gather(const Model& model, double x, const Configuration& at, Window* sides) noexcept {
   const double scaled = x / model.element_length - .5;  // 1.2: right half of element 1
   Window window{};
@@ -25,14 +40,7 @@ void gather(const Model& model, double x, const Configuration& at, Window* sides
   if (scaled >= model.elements || window.first > model.elements - window.elements)
     window.first = model.elements - window.elements;
   sides[0] = sides[1] = window;
-  for (std::int32_t i = 0; i <= 2 * window.elements; ++i)
-    for (int k = 0; k < 9; ++k)
-      for (std::int32_t l = 0; l < model.lines; ++l) {
-        const LineModel& line = model.line[l];
-        const double value = nodal_value(line, 2 * window.first + i, k, at);
-        for (int rail = 0; rail < 2; ++rail)
-          sides[rail].nodes[9 * i + k] += weight_of(line, rail, k) * value;
-      }
+  for (std::int32_t l = 0; l < model.lines; ++l) gather_line(model.line[l], at, sides);
 }
 
 /// From displacements to places: rest added.
@@ -41,6 +49,7 @@ void add_rest(const Model& model, int rail, Window& window) noexcept {
     double* q = window.nodes + 9 * i;
     q[0] += .5 * model.element_length * (2 * window.first + i);
     q[1] += model.rail_y[rail];
+    q[2] += model.rail_z[rail];
     q[4] += 1.;
     q[8] += 1.;
   }
@@ -91,7 +100,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
   const double axle[3] = {-sy * cr, cy * cr, sr};
   WheelContact at{};
   at.row.rail = side;
-  const double z_crown = model.head_z - model.crown_radius;
+  const double z_crown = model.head_z[side] - model.crown_radius[side];
   double guess = centre[0] / model.element_length - window.first;
   if (!(guess > 0.)) guess = 0.;
   if (guess > window.elements) guess = window.elements;
@@ -115,9 +124,9 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
   // The crown's material point under the normal: a railhead that is squeezed carries it along.
   const double n_a = dot3(at.normal, q + 3), n_b = dot3(at.normal, q + 6);
   const double length = std::sqrt(n_a * n_a + n_b * n_b);
-  at.y = model.crown_radius * (n_a / length);
-  at.z = z_crown + model.crown_radius * (n_b / length);
-  if (!(std::fabs(at.y) <= model.head_half_width)) at.on_rail = false;
+  at.y = model.crown_radius[side] * (n_a / length);
+  at.z = z_crown + model.crown_radius[side] * (n_b / length);
+  if (!(std::fabs(at.y) <= model.head_half_width[side])) at.on_rail = false;
   fill_row(shape, at);
   // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
   const double arm[3] = {found.along * axle[0], found.along * axle[1], found.along * axle[2]};

@@ -1,0 +1,149 @@
+#include <cmath>
+
+#include "offline/element/shape.h"
+#include "offline/track/assembly.h"
+#include "offline/track/pad.h"
+
+namespace railstep {
+
+namespace {
+
+/// A rigid sleeper of mass m, roll inertia I and rail spacing g in the scaled motions of Line: its
+/// ends' mean height, times sqrt 2, moves m/2; half the difference of their heights, times sqrt 2,
+/// which is g roll/sqrt 2, moves 2I/g^2. So do x and yaw; y and pitch are the mean of both ends. In
+/// mirror coordinates of the rails, sqrt 2 times those of a symmetric (or antisymmetric) left rail,
+/// the end under it moves by just that; in the rails' own by sqrt 1/2 of it, at the right one with
+/// the other sign where the ends differ.
+class SeatRows {
+ public:
+  SeatRows(const Track& track, const Assembly& part, int border, int rail)
+      : line_(part.line),
+        pad_(track.seat(border).pad[static_cast<std::size_t>(rail)]),
+        sleeper_(part.line.sleeper_unknown_of[static_cast<std::size_t>(border)]),
+        rail_(rail),
+        node_(border * 2 * track.elements_per_bay),
+        spacing_(track.rail_spacing),
+        share_(part.rails.size() == 2 ? std::sqrt(.5) : 1.),
+        side_(rail == 0 ? 1. : -1.) {}
+
+  /// What the pad is strained by along d at one of its points, y beside the middle of the rail.
+  Row gap(const PadPoint& at, std::size_t d, double y) const {
+    Row row = rail_moves(at, d, y);
+    const double turned = side_ + 2. * y / spacing_;
+    if (d == 0) push(row, sleeper_[kYaw], -share_ * turned);
+    if (d == 2) push(row, sleeper_[kRoll], -share_ * turned);
+    if (d == 2) push(row, sleeper_[kPitch], share_ * at.offset);
+    push(row, sleeper_[kMean[d]], -share_);
+    return row;
+  }
+  /// What the pad is turned by about x at one of its points.
+  Row roll(const PadPoint& at) const {
+    Row row;
+    for_nodes(at, [&](int node, double shape) {
+      push(row, line_.unknown(rail_, node, 5), .5 * shape);
+      push(row, line_.unknown(rail_, node, 7), -.5 * shape);
+    });
+    push(row, sleeper_[kRoll], -share_ * 2. / spacing_);
+    return row;
+  }
+  /// The sleeper's end on its ballast.
+  Row end(std::size_t d) const {
+    Row row;
+    push(row, sleeper_[kMean[d]], share_);
+    if (d == 0) push(row, sleeper_[kYaw], share_ * side_);
+    if (d == 2) push(row, sleeper_[kRoll], share_ * side_);
+    return row;
+  }
+  /// The turn of the sleeper's end about y.
+  Row pitch() const {
+    Row row;
+    push(row, sleeper_[kPitch], share_);
+    return row;
+  }
+
+ private:
+  static constexpr std::array<std::size_t, 3> kMean = {kAlongX, kAlongY, kAlongZ};
+
+  /// A pad that is a point stands on its border's node.
+  template <typename Visit>
+  void for_nodes(const PadPoint& at, const Visit& visit) const {
+    if (pad_.length == 0.) return visit(node_, 1.);
+    const auto n = shape(at.xi);
+    for (int i = 0; i < 3; ++i) visit(2 * at.element + i, n[static_cast<std::size_t>(i)]);
+  }
+  Row rail_moves(const PadPoint& at, std::size_t d, double y) const {
+    const int k = static_cast<int>(d);
+    Row row;
+    for_nodes(at, [&](int node, double shape) {
+      push(row, line_.unknown(rail_, node, k), shape);
+      push(row, line_.unknown(rail_, node, 3 + k), y * shape);
+      push(row, line_.unknown(rail_, node, 6 + k), pad_.height_z * shape);
+    });
+    return row;
+  }
+
+  const Line& line_;
+  Support pad_;
+  std::array<int, kSleeperMotions> sleeper_;
+  int rail_, node_;
+  double spacing_, share_, side_;
+};
+
+void add_pad(const Track& track, Assembly& part, int border, const SeatRows& rows,
+             const Support& pad) {
+  for (const PadPoint& at : pad_points(track, border, pad.length)) {
+    for (const double side : {-1., 1.})
+      for (std::size_t d = 0; d < 3; ++d) {
+        const Row gap = rows.gap(at, d, side * pad.half_spread);
+        Assembly::add(part.stiffness, gap, at.part * pad.stiffness[d] / 2.);
+        Assembly::add(part.damping, gap, at.part * pad.damping[d] / 2.);
+      }
+    // Rails without roll unknowns leave the sleeper's roll alone; a rail whose end is held does
+    // not.
+    if (track.unknowns != Unknowns::full) continue;
+    const Row roll = rows.roll(at);
+    Assembly::add(part.stiffness, roll, at.part * pad.roll_stiffness);
+    Assembly::add(part.damping, roll, at.part * pad.roll_damping);
+  }
+}
+
+/// Springs and dampers under one end of the sleeper; spread over a length L they hold its pitch by
+/// k L^2/12.
+void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast) {
+  for (std::size_t d = 0; d < 3; ++d) {
+    const Row end = rows.end(d);
+    Assembly::add(part.stiffness, end, ballast.stiffness[d]);
+    Assembly::add(part.damping, end, ballast.damping[d]);
+  }
+  const double arm = ballast.length * ballast.length / 12.;
+  Assembly::add(part.stiffness, rows.pitch(), ballast.stiffness[2] * arm);
+  Assembly::add(part.damping, rows.pitch(), ballast.damping[2] * arm);
+}
+
+/// The sleeper's own inertia.
+void add_body(const Track& track, Assembly& part, int border, const SleeperBody& body) {
+  const double g = track.rail_spacing, turning = 2. * body.roll_inertia / (g * g);
+  const std::array<double, kSleeperMotions> inertia = {
+      body.mass / 2., body.mass / 2., body.mass / 2., turning, turning, body.pitch_inertia / 2.};
+  const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
+  for (std::size_t motion = 0; motion < inertia.size(); ++motion) {
+    Row row;
+    push(row, sleeper[motion], 1.);
+    Assembly::add(part.mass, row, inertia[motion]);
+  }
+}
+
+}  // namespace
+
+void add_seat(const Track& track, Assembly& part, int border) {
+  const Seat seat = track.seat(border);
+  for (const int rail : part.rails) {
+    const auto side = static_cast<std::size_t>(rail);
+    const SeatRows rows(track, part, border, rail);
+    add_pad(track, part, border, rows, seat.pad[side]);
+    if (seat.sleeper) add_ballast(part, rows, seat.ballast[side]);
+  }
+  if (seat.sleeper) add_body(track, part, border, *seat.sleeper);
+}
+
+}  // namespace railstep

@@ -1,0 +1,43 @@
+#pragma once
+// A part of a track on its way into lines. Only assemble.cpp and add_seat.cpp include this.
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// How a part stands to the rails: itself, or the symmetric or antisymmetric mirror coordinate.
+enum class Mirror { none, symmetric, antisymmetric };
+
+/// Coefficients over the unknowns of a part.
+using Row = std::vector<std::pair<int, double>>;
+
+inline void push(Row& row, int unknown, double coefficient) {
+  if (unknown >= 0 && coefficient != 0.) row.emplace_back(unknown, coefficient);
+}
+
+/// A part of the track before it is split: numbering and entries.
+struct Assembly {
+  using Triplets = std::vector<Eigen::Triplet<double>>;
+
+  Mirror mirror;
+  std::vector<int> rails;  // whose unknowns it has; the left rail's stand for both in a mirror
+  Line line = {};
+  int count = 0;
+  Triplets mass = {}, damping = {}, stiffness = {};
+
+  /// Energy factor (row u)^2 / 2.
+  static void add(Triplets& to, const Row& row, double factor) {
+    if (factor == 0.) return;
+    for (const auto& [i, a] : row)
+      for (const auto& [j, b] : row)
+        if (a * b != 0.) to.emplace_back(i, j, factor * a * b);
+  }
+};
+
+/// The springs of the part's rails on a seat, and the sleeper's own mass and ballast.
+void add_seat(const Track& track, Assembly& part, int border);
+
+}  // namespace railstep

@@ -1,0 +1,25 @@
+#pragma once
+#include <vector>
+
+#include "offline/track/track.h"
+
+namespace railstep {
+
+/// A point of a pad that is spread along the rail, and the part of the pad that stands there.
+struct PadPoint {
+  int element;
+  double xi;      // in it
+  double x;       // along the rail, m
+  double offset;  // of it from the seat, m
+  double part;    // of the whole pad; all sum to 1
+};
+
+/// Points by which int k(x) N' N dx of an evenly spread pad is exact: three Gauss points in every
+/// element under it, k = 1/length. What is off an end of the rail is moved under it. A pad of
+/// length 0 is one point at the seat.
+std::vector<PadPoint> pad_points(const Track& track, int border, double length);
+
+/// Whether any pad is longer than a point.
+bool has_long_pads(const Track& track);
+
+}  // namespace railstep

@@ -1,0 +1,66 @@
+#pragma once
+#include <array>
+#include <optional>
+
+namespace railstep {
+
+/// Spring-dampers between one rail and what carries it, at a bay border.
+struct Support {
+  std::array<double, 3> stiffness{};  // x, y, z, N/m
+  std::array<double, 3> damping{};    // x, y, z, N s/m
+  double roll_stiffness = 0.;         // N m/rad
+  double roll_damping = 0.;           // N m s/rad
+  double height_z = 0.;               // of the seat above the axis, m
+  double half_spread = 0.;            // a pair of half springs at y = +- this, m
+  double length = 0.;                 // along x, m: evenly spread over it, what is off the rail's
+                                      // end moved under it; 0: a point
+
+  bool operator==(const Support&) const = default;
+};
+
+/// Rigid sleeper under both rails on ballast, alike at both ends; its height is neglected. It moves
+/// vertically and rolls; along x or y it moves only where its ballast has stiffness in that
+/// direction, and pitches only where its ballast and pads have lengths (else it is held there).
+struct Sleeper {
+  double mass = 0.;                           // whole, kg
+  double roll_inertia = 0.;                   // about x, also used about z, kg m2
+  std::array<double, 3> ballast_stiffness{};  // x, y, z per end, N/m
+  std::array<double, 3> ballast_damping{};    // x, y, z per end, N s/m
+  double pitch_inertia = 0.;                  // about y, kg m2
+  double ballast_length = 0.;                 // along x, m: evenly spread over it
+};
+
+/// Spring-dampers between one end of a sleeper, under its rail, and the ground.
+struct Ballast {
+  std::array<double, 3> stiffness{};  // x, y, z, N/m
+  std::array<double, 3> damping{};    // x, y, z, N s/m
+  double length = 0.;                 // along x, m: evenly spread over it; 0: a point
+
+  bool operator==(const Ballast&) const = default;
+};
+
+/// A sleeper without its ballast.
+struct SleeperBody {
+  double mass = 0.;             // whole, kg
+  double roll_inertia = 0.;     // about x, also used about z, kg m2
+  double pitch_inertia = 0.;    // about y, kg m2
+  std::array<bool, 3> moves{};  // along x (and about z), along y, about y; else it is held there
+
+  bool operator==(const SleeperBody&) const = default;
+};
+
+/// What carries the rails at one bay border: pads on a sleeper, or on the ground.
+struct Seat {
+  std::array<Support, 2> pad{};        // under the left and the right rail
+  std::optional<SleeperBody> sleeper;  // none: the pads stand on the ground
+  std::array<Ballast, 2> ballast{};    // under the sleeper's left and right end
+
+  bool operator==(const Seat&) const = default;
+  /// Whether left and right are alike.
+  bool symmetric() const { return pad[0] == pad[1] && ballast[0] == ballast[1]; }
+};
+
+/// A seat whose two sides are alike.
+Seat seat_of(const Support& pad, const std::optional<Sleeper>& sleeper);
+
+}  // namespace railstep

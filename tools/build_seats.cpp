@@ -1,0 +1,70 @@
+#include "build.h"
+
+namespace railstep {
+namespace {
+
+/// SplitMix64's output function (Steele, Lea, Flood: Fast splittable generators, 2014).
+std::uint64_t mixed(std::uint64_t z) {
+  z += 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+void take_away(Missing what, std::size_t side, Seat& seat) {
+  Support& pad = seat.pad[side];
+  if (what == Missing::pad || what == Missing::sleeper) {
+    pad.stiffness = pad.damping = {};
+    pad.roll_stiffness = pad.roll_damping = 0.;
+  }
+  if (what == Missing::ballast || what == Missing::sleeper) {
+    Ballast& ballast = seat.ballast[side];
+    ballast.stiffness = ballast.damping = {};
+  }
+}
+
+/// @param place  of the seat among the change's, 0 to 1
+void change_side(const SeatChange& change, int border, std::size_t side, double place, Seat& seat) {
+  for (const SeatValue& value : change.values) {
+    const double now = value.first + place * (value.last - value.first);
+    double& number = value.of(seat, side);
+    number = value.scales ? now * number : now;
+  }
+  for (const SeatScatter& scatter : change.scatter) {
+    const double factor = scatter_factor(change.seed, scatter.stream, border, side, scatter.width);
+    for (const auto of : scatter.of) of(seat, side) *= factor;
+  }
+  take_away(change.missing, side, seat);
+}
+
+}  // namespace
+
+double scatter_factor(std::uint64_t seed, std::uint64_t stream, int seat, std::size_t side,
+                      double width) {
+  std::uint64_t bits = mixed(seed);
+  bits = mixed(bits ^ (4 * stream + side));
+  bits = mixed(bits ^ static_cast<std::uint64_t>(seat));
+  const double even = static_cast<double>(bits >> 11) * 0x1p-53;  // 0 to 1
+  return 1. + width * (2. * even - 1.);
+}
+
+void change_seats(const std::vector<SeatChange>& changes, Track& track) {
+  for (const SeatChange& change : changes)
+    for (std::size_t i = 0; i < change.seats.size(); ++i) {
+      const int border = change.seats[i];
+      const double place =
+          change.seats.size() < 2
+              ? 0.
+              : static_cast<double>(i) / static_cast<double>(change.seats.size() - 1);
+      Seat seat = track.seat(border);
+      for (const std::size_t side : {0u, 1u})
+        if (change.sides[side]) change_side(change, border, side, place, seat);
+      track.changed_seats[border] = seat;
+    }
+  // Last, as what came before may still have changed them.
+  for (const SeatChange& change : changes)
+    if (change.missing == Missing::sleeper)
+      for (const int border : change.seats) track.changed_seats[border].sleeper.reset();
+}
+
+}  // namespace railstep
