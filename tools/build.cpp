@@ -48,17 +48,16 @@ std::vector<double> packed_table(const TimeTable& table) {
   return rows;
 }
 
-std::vector<MovingLoad> loads_of(const Scene& scene) {
+std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& sections) {
   std::vector<MovingLoad> loads;
   for (const LoadScene& l : scene.loads) {
-    const Section section = section_of(scene, l.rail);
     const double never = std::copysign(std::numeric_limits<double>::infinity(), l.speed);
     loads.push_back({.rail = l.rail == Side::right ? 1 : 0,
                      .start = l.start,
                      .speed = l.speed,
                      .stop = l.stop.value_or(never),
                      .force = l.force_z,
-                     .z = height_z(l.at, section),
+                     .z = height_z(l.at, section_of(sections, l.rail)),
                      .table = l.factor ? packed_table(*l.factor) : std::vector<double>{}});
   }
   return loads;
@@ -92,10 +91,10 @@ std::vector<Wheelset> wheelsets_of(const Scene& scene) {
   return sets;
 }
 
-Railhead railhead_of(const Scene& scene, Side rail) {
+Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail) {
   const bool right = rail == Side::right && scene.right_rail;
   Railhead head;
-  head.top_z = height_z(Height::head, section_of(scene, rail));
+  head.top_z = height_z(Height::head, section_of(sections, rail));
   head.crown_radius = (right ? *scene.right_rail : scene.rail).crown_radius;
   return head;
 }
@@ -233,16 +232,18 @@ Built::Built(const Scene& scene) try {
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   refuse_unstepped(scene);
   track = track_of(scene);
-  const Railhead head = railhead_of(scene, Side::left);
-  Sensors sensors = sensors_of(scene, track, head);
+  const RailSections sections = sections_of(scene);
+  const Railhead head = railhead_of(scene, sections, Side::left);
+  Sensors sensors = sensors_of(scene, track, sections, head);
   columns = columns_of(scene, sensors);
-  packed = std::make_unique<PackedModel>(track,
-                                         Traffic{.loads = loads_of(scene),
-                                                 .wheelsets = wheelsets_of(scene),
-                                                 .head = head,
-                                                 .probes = std::move(sensors.probes),
-                                                 .right_head = railhead_of(scene, Side::right)},
-                                         options_of(scene));
+  packed = std::make_unique<PackedModel>(
+      track,
+      Traffic{.loads = loads_of(scene, sections),
+              .wheelsets = wheelsets_of(scene),
+              .head = head,
+              .probes = std::move(sensors.probes),
+              .right_head = railhead_of(scene, sections, Side::right)},
+      options_of(scene));
   if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,14 +32,22 @@ BeamSection beam_section(const RailSection& bar);
 /// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
 /// Throws InputError too where the rail's model or rule wants moments and the scene gives none.
 RailSection rail_section_of(const Scene& scene, Side rail = Side::left);
-Section section_of(const Scene& scene, Side rail = Side::left);
 
 /// Height over the reference line, m, of a place on the section.
 /// @param axis_z  of that line above the centroid, m
 double height_z(Height at, const Section& section, double axis_z = 0.);
 
+Section section_of(const Scene& scene);
+
+/// Sections of left and right rail; each is found once.
+using RailSections = std::array<Section, 2>;
+RailSections sections_of(const Scene& scene);
+inline const Section& section_of(const RailSections& sections, Side rail) {
+  return sections[rail == Side::right ? 1 : 0];
+}
+
 /// Height of a rail's axis over the left one's, m: railheads are level.
-double rail_z(const Scene& scene, Side rail);
+double rail_z(const RailSections& sections, Side rail);
 
 /// Height of a reference line above the centroid, m.
 double axis_z_of(ReferenceLine line, const Section& section);

@@ -94,12 +94,15 @@ RailSection rail_section_of(const Scene& scene, Side rail) {
                      scene.file.string() + (right ? ": [rail.right]" : ": [rail]"));
 }
 
-Section section_of(const Scene& scene, Side rail) { return rail_section_of(scene, rail).section; }
+Section section_of(const Scene& scene) { return rail_section_of(scene).section; }
 
-double rail_z(const Scene& scene, Side rail) {
-  if (rail == Side::left || !scene.right_rail) return 0.;
-  return height_z(Height::head, section_of(scene)) -
-         height_z(Height::head, section_of(scene, rail));
+RailSections sections_of(const Scene& scene) {
+  const Section left = section_of(scene);
+  return {left, scene.right_rail ? rail_section_of(scene, Side::right).section : left};
+}
+
+double rail_z(const RailSections& sections, Side rail) {
+  return height_z(Height::head, sections[0]) - height_z(Height::head, section_of(sections, rail));
 }
 
 double height_z(Height at, const Section& section, double axis_z) {

@@ -82,17 +82,18 @@ void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
 
 }  // namespace
 
-Sensors sensors_of(const Scene& scene, const Track& track, const Railhead& head) {
-  const Section section = section_of(scene);
+Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& sections,
+                   const Railhead& head) {
   Sensors sensors;
   for (const SensorScene& sensor : scene.sensors) {
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
       add_point(sensor.name,
-                point_of(*rail, track, height_z(rail->at, section_of(scene, rail->rail)),
-                         rail_z(scene, rail->rail)),
+                point_of(*rail, track, height_z(rail->at, section_of(sections, rail->rail)),
+                         rail_z(sections, rail->rail)),
                 sensors);
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
-      add_point(sensor.name, point_of(*sleeper, track, -section.area.centroid_height), sensors);
+      add_point(sensor.name, point_of(*sleeper, track, height_z(Height::foot, sections[0])),
+                sensors);
     else
       add_point(sensor.name, point_of(std::get<WheelsetSensor>(sensor.on), scene, head), sensors);
   }

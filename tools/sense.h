@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "build.h"
 #include "offline/pack/pack.h"
 #include "scene.h"
 
@@ -20,6 +21,7 @@ struct Sensors {
 };
 
 /// @param head  the railhead of the same track
-Sensors sensors_of(const Scene& scene, const Track& track, const Railhead& head);
+Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& sections,
+                   const Railhead& head);
 
 }  // namespace railstep

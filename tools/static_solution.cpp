@@ -16,8 +16,8 @@ namespace {
 /// A scene's track at t = 0 and what acts on it.
 struct Problem {
   Track track;
-  std::array<Section, 2> section;  // of left and right rail
-  double right_z;                  // of the right rail's axis over the left one's, m
+  RailSections section;
+  double right_z;  // of the right rail's axis over the left one's, m
   std::vector<PointForce> forces;
   double gravity;
   double slope_length;  // half the section's height: what makes a slope comparable to a length, m
@@ -54,10 +54,11 @@ void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) 
 
 Problem problem_of(const Scene& scene) {
   const RailSection rail = rail_section_of(scene);
-  const Section right = scene.right_rail ? section_of(scene, Side::right) : rail.section;
+  const Section right =
+      scene.right_rail ? rail_section_of(scene, Side::right).section : rail.section;
   Problem problem{track_of(scene, rail),
                   {rail.section, right},
-                  rail_z(scene, Side::right),
+                  rail_z({rail.section, right}, Side::right),
                   {},
                   scene.track.gravity ? kGravity : 0.,
                   .5 * rail.section.height,

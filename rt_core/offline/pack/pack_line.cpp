@@ -147,7 +147,9 @@ void PackedModel::add_condensed(PackedLine& own, LineModel& packed, const ModalL
 }
 
 void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions& options) {
-  if (model_.lines == kMaxLines) throw std::invalid_argument("the track falls into too many lines");
+  if (model_.lines == kMaxLines)
+    throw std::invalid_argument(
+        "the track falls into too many lines: under gravity each sleeper without pads is one");
   LineModel packed{};
   std::size_t twin = 0;
   while (twin < lines_.size() && !same_but_for_the_rail(lines_[twin].line, own.line)) ++twin;

@@ -100,23 +100,6 @@ int root(std::vector<int>& parent, int i) {
   return i;
 }
 
-/// Joins what no rail moves, a sleeper that lost its pads, to the first that one moves: it would be
-/// a line by itself, of which a model has few.
-void join_lone_sleepers(const Assembly& part, std::vector<int>& parent) {
-  std::vector<bool> railed(parent.size(), false);
-  for (const Line::RailUnknowns& table : part.line.unknown_of)
-    for (const auto& node : table)
-      for (const int u : node)
-        if (u >= 0) railed[static_cast<std::size_t>(root(parent, u))] = true;
-  const auto first = std::find(railed.begin(), railed.end(), true);
-  if (first == railed.end()) return;
-  for (int i = 0; i < part.count; ++i)
-    if (const int r = root(parent, i); !railed[static_cast<std::size_t>(r)]) {
-      parent[static_cast<std::size_t>(r)] = static_cast<int>(first - railed.begin());
-      railed[static_cast<std::size_t>(r)] = true;
-    }
-}
-
 /// Number of the independent component of each unknown, in order of first appearance.
 std::pair<std::vector<int>, int> components(const Assembly& part) {
   std::vector<int> parent(static_cast<std::size_t>(part.count));
@@ -126,7 +109,6 @@ std::pair<std::vector<int>, int> components(const Assembly& part) {
       const int a = root(parent, t.row()), b = root(parent, t.col());
       parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
     }
-  join_lone_sleepers(part, parent);
   std::vector<int> number(parent.size(), -1);
   int count = 0;
   for (int i = 0; i < part.count; ++i) {

@@ -19,14 +19,14 @@ struct Window {
 /// moves of one it moves of the other, up to sign and weight.
 void gather_line(const LineModel& line, const Configuration& at, Window* sides) noexcept {
   const bool one_table = line.unknown_of[1] == line.unknown_of[0];
+  const std::int32_t first = 2 * sides[0].first, nodes = 2 * sides[0].elements + 1;
   for (int k = 0; k < 9; ++k) {
-    const double weight[2] = {weight_of(line, 0, k), weight_of(line, 1, k)};
-    for (std::int32_t i = 0; i <= 2 * sides[0].elements; ++i) {
-      const std::int32_t node = 2 * sides[0].first + i;
-      const double left = nodal_value(line, 0, node, k, at);
-      const double right = one_table ? left : nodal_value(line, 1, node, k, at);
-      sides[0].nodes[9 * i + k] += weight[0] * left;
-      sides[1].nodes[9 * i + k] += weight[1] * right;
+    const double of_left = weight_of(line, 0, k), of_right = weight_of(line, 1, k);
+    double *left = sides[0].nodes + k, *right = sides[1].nodes + k;
+    for (std::int32_t i = 0; i < nodes; ++i, left += 9, right += 9) {
+      const double value = nodal_value(line, 0, first + i, k, at);
+      *left += of_left * value;
+      *right += of_right * (one_table ? value : nodal_value(line, 1, first + i, k, at));
     }
   }
 }
