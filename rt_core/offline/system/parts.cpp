@@ -226,9 +226,10 @@ std::vector<double> start_velocities(const System& system, const SystemParts& pa
     const std::vector<double> own = over_nodes(beam, system.planar, [&](int n) {
       const Eigen::Matrix<double, 9, 1> rest = node_at_rest(beam, n);
       const Vector3d& w = beam.angular_velocity;
+      const Vector3d arm = rest.head<3>() - beam.start;
       Eigen::Matrix<double, 9, 1> rate;
-      rate << beam.velocity + w.cross(Vector3d(rest.head<3>()) - beam.start),
-          w.cross(Vector3d(rest.segment<3>(3))), w.cross(Vector3d(rest.tail<3>()));
+      rate << beam.velocity + w.cross(arm), w.cross(Vector3d(rest.segment<3>(3))),
+          w.cross(Vector3d(rest.tail<3>()));
       return Eigen::Matrix<double, 9, 1>(rate.cwiseProduct(free_of(beam, n)));
     });
     std::copy(own.begin(), own.end(), v.begin() + parts.beams[b].first);

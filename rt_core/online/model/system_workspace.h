@@ -17,6 +17,7 @@ struct MarkerPose {
 struct Pull {
   double point[3];
   double axis[3][3];
+  bool on_axes;  // else the row pulls on the point alone
 };
 
 /// What Newton's matrix is made of. Stands in the state where it is kept over steps, else in the
