@@ -241,14 +241,4 @@ void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, cons
     pull_on_section(marker, at, pull, row);
 }
 
-Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept {
-  if (marker.kind == PartKind::body)
-    return {system.body[marker.part].first, system.body[marker.part].unknowns};
-  if (marker.kind == PartKind::ground) return {0, 0};
-  if (marker.kind == PartKind::rail) return {system.port[marker.part].first, 9};
-  const BeamChainModel& beam = system.beam[marker.part];
-  const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
-  return {beam.first + width * marker.node, 3 * width};
-}
-
 }  // namespace railstep

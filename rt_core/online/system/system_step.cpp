@@ -155,10 +155,8 @@ void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& work
   for (std::int32_t i = 0; i < 4 * s.bodies; ++i) state.quaternion[i] = w.quaternion[i];
 }
 
-/// Rates of the joint rows, first or second, into `wanted`; 0 for springs. @returns the largest
-double set_rates(const SystemModel& s, double time, int order, const Motions& at,
-                 SystemWorkspace& w) noexcept {
-  double largest = 0.;
+/// First and second rates of the joint rows.
+void set_rates(const SystemModel& s, double time, const Motions& at, SystemWorkspace& w) noexcept {
   MarkerJet a{}, b{};
   std::int32_t at_a = -1, at_b = -1;  // rows of a joint share their markers
   for (std::int32_t r = 0; r < s.joint_rows; ++r) {
@@ -168,17 +166,26 @@ double set_rates(const SystemModel& s, double time, int order, const Motions& at
     const Jet motion =
         row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
     const Jet phi = row_jet(row, a, b, motion);
-    w.wanted[r] = order == 1 ? phi.v : phi.a;
+    w.rate[0][r] = phi.v;
+    w.rate[1][r] = phi.a;
+  }
+  for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) w.rate[0][r] = w.rate[1][r] = 0.;
+}
+
+/// Puts the rates of an order into `wanted`. @returns the largest
+double want_rates(const SystemModel& s, int order, SystemWorkspace& w) noexcept {
+  double largest = 0.;
+  for (std::int32_t r = 0; r < system_rows(s); ++r) {
+    w.wanted[r] = w.rate[order - 1][r];
     if (!(magnitude(w.wanted[r]) <= largest)) largest = magnitude(w.wanted[r]);
   }
-  for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) w.wanted[r] = 0.;
   return largest;
 }
 
 /// Takes from velocities (order 1) or accelerations (2) of the model what joints do not allow, in
 /// the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped.
 /// `second` takes the same change. With accelerations go the forces that belong to them: S is kg M
-/// of a body, so that M g + G' force stays what it was.
+/// of a body, so that M g + G' force stays what it was. The rates stand before and after.
 /// @returns whether they are held
 bool project(const Model& model, double time, int order, const Motions& at, double* rates,
              double* second, double* row_force, SystemWorkspace& w) noexcept {
@@ -186,8 +193,7 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
   const double per_step = 1. / model.scheme.dt;
   const double tolerance = s.joint_tolerance * (order == 1 ? per_step : per_step * per_step);
   for (std::int32_t done = 0;; ++done) {
-    const double largest = set_rates(s, time, order, at, w);
-    if (largest <= tolerance) return true;
+    if (want_rates(s, order, w) <= tolerance) return true;
     if (done == s.projections) return false;
     solve_rows(model, w, false, w.wanted);
     if (row_force != nullptr)
@@ -197,6 +203,7 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
       subtract_row_motion(s, w, w.wanted, taken + s.first);
       subtract_line_motion(model, w.gradient, w.wanted, taken);
     }
+    set_rates(s, time, at, w);
   }
 }
 
@@ -348,6 +355,7 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
   }
   const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
+  set_rates(s, time, at, w);
   const bool velocities = project(model, time, 1, at, state.v, nullptr, nullptr, w);
   const bool accelerations = project(model, time, 2, at, state.g, state.a, state.row_force, w);
   return velocities && accelerations ? Status::ok : Status::cap_reached;
