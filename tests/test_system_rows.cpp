@@ -158,3 +158,41 @@ TEST_CASE("first and second derivatives of all rows along a motion", "[system][r
     if (r < rows.model.system.joint_rows) CHECK(phi.a == Approx(bend[r]).margin(1e-7));
   }
 }
+
+TEST_CASE("beams solved beside their rows' ends have the bits of each alone", "[system][rows]") {
+  const bool planar = GENERATE(false, true);
+  const int ends = GENERATE(1, 3, 4, 6);  // four sides at a time: places left, and none
+  CAPTURE(planar, ends);
+  System system = pendulum_system({}, 5, planar);
+  system.joints.clear();
+  for (int i = 0; i < ends; ++i)
+    system.springs.push_back({.a = beam(0),
+                              .b = ground(),
+                              .point_a = {.06 * i, 0., .01},
+                              .point_b = {.3, 0., .5},
+                              .stiffness = 10.});
+  Rows rows(system);
+  const Model& model = rows.packed.model();
+  const SystemModel& s = model.system;
+  rows.values(rows.random(1e-5, false, 11), kTime);
+  const VectorXd v = rows.random(1., true, 13);
+  part_forces(model, {rows.w.x, v.data(), rows.w.x, v.data(), nullptr}, true, rows.w);
+  std::copy(v.begin(), v.end(), rows.w.residual);
+
+  using Bits = std::vector<double>;
+  const auto change = [&] { return Bits(rows.w.change, rows.w.change + s.unknowns); };
+  const auto solved = [&] {
+    const std::int32_t sides = 4 * beam_groups(s, 0) * s.beam[0].unknowns;
+    return Bits(rows.w.tangent.solved, rows.w.tangent.solved + sides);
+  };
+  solve_parts(model, rows.w);
+  solve_ends(model, false, rows.w);
+  const Bits parts_alone = change(), ends_alone = solved();
+  REQUIRE(*std::max_element(parts_alone.begin(), parts_alone.end()) > 0.);
+  REQUIRE(*std::max_element(ends_alone.begin(), ends_alone.end()) > 0.);
+  std::fill_n(rows.w.change, s.unknowns, 0.);
+  std::fill_n(rows.w.tangent.solved, ends_alone.size(), 1.);
+  solve_ends(model, true, rows.w);
+  CHECK(change() == parts_alone);
+  CHECK(solved() == ends_alone);
+}

@@ -57,7 +57,7 @@ SystemWorkspace workspace_from(const SystemModel& s, Cursor& cursor, double* kep
   for (MarkerPose** part : {&w.pose, &w.start_pose, &w.force_pose}) *part = cursor.poses(s.markers);
   w.gradient = cursor.take(std::int64_t{kMostNodeUnknowns} * s.ends);
   for (double** part : {&w.value, &w.start_value, &w.wanted, &w.spring_lack, &w.velocity_part,
-                        &w.force, &w.scratch})
+                        &w.rate[0], &w.rate[1], &w.force, &w.scratch})
     *part = cursor.take(rows);
   std::int64_t tangents = 0;
   for (std::int32_t i = 0; i < s.beams; ++i)

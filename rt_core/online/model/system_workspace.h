@@ -17,6 +17,7 @@ struct MarkerPose {
 struct Pull {
   double point[3];
   double axis[3][3];
+  bool on_axes;  // else the row pulls on the point alone
 };
 
 /// What Newton's matrix is made of. Stands in the state where it is kept over steps, else in the
@@ -59,6 +60,7 @@ struct SystemWorkspace {
   double* wanted;          // [rows]
   double* spring_lack;     // [rows] of springs: their law less their force, N
   double* velocity_part;   // [rows] of `wanted`, Gear, Gupta, Leimkuhler
+  double* rate[2];         // [rows] of joints: first and second derivative of Phi; of springs 0
   double* force;           // [rows] the iterate
   double* scratch;         // [rows]
   double* tangents;        // of the largest beam

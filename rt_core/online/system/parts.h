@@ -34,6 +34,7 @@ void solve_ports(const SystemModel& system, SystemWorkspace& w) noexcept;
 void solve_parts(const Model& model, SystemWorkspace& w) noexcept;
 
 /// S^-1 g of every end of a row, into tangent.solved.
-void solve_ends(const Model& model, SystemWorkspace& w) noexcept;
+/// @param parts  solve_parts() too, by fewer sweeps than on its own and with the same bits
+void solve_ends(const Model& model, bool parts, SystemWorkspace& w) noexcept;
 
 }  // namespace railstep
