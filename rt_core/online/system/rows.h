@@ -26,7 +26,7 @@ void add_row_forces(const SystemModel& system, const double* gradient, const dou
 void add_row_changes(const SystemModel& system, const double* gradient, const double* change,
                      double* out) noexcept;
 
-/// Factor of G S^-1 G' and the rows' own compliance.
+/// Factor of slope S^-1 gradient' and the rows' own compliance.
 void factor_rows(const Model& model, SystemWorkspace& w) noexcept;
 /// The same in place: x [rows]. @param all  springs too
 void solve_rows(const Model& model, SystemWorkspace& w, bool all, double* x) noexcept;
