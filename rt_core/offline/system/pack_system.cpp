@@ -43,6 +43,20 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
         "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
 }
 
+/// Index 3 has -rho_inf as a double root: with rho_inf = 1 joint forces swing from step to step and
+/// grow (Cardona and Geradin 1989). Projections take that away, and so do rows of velocities.
+void check_damping(const System& system, const SystemOptions& o, const Scheme& c) {
+  const bool index_3 =
+      o.hold == Hold::direct || (o.hold == Hold::augmented_lagrangian && o.projections == 0);
+  if (!index_3 || o.energy_momentum || system.joints.empty()) return;
+  // generalised_alpha: a0 / ag = alpha_f / (1 - alpha_f) = rho_inf
+  if (c.a0 >= (1. - 1e-9) * c.ag)
+    throw std::invalid_argument(
+        "hold = \"direct\", or \"augmented-lagrangian\" without projections, and rho_inf = 1: "
+        "nothing damps the joint forces, which swing from step to step and grow; accepted is "
+        "rho_inf below 1, or another hold");
+}
+
 }  // namespace
 
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
@@ -74,6 +88,7 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
 
 void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track) {
   check(system, options, track == nullptr);
+  check_damping(system, options, model_.scheme);
   SystemParts& parts = memory_->parts;
   add_parts(system, parts);
   add_connections(system, track, parts);
@@ -105,7 +120,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.beta = given ? options.beta : .2 / model_.scheme.dt;
   s.tolerance = options.tolerance;
   s.joint_tolerance = options.joint_tolerance;
-  s.rank_tolerance = options.hold == Hold::augmented_lagrangian ? 1e-15 : 1e-10;
+  s.rank_tolerance = 1e-10;
   s.body = parts.bodies.data();
   s.beam = parts.beams.data();
   s.marker = parts.markers.data();

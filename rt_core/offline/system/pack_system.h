@@ -18,8 +18,8 @@ struct SystemOptions {
   int cap = 20;         // Newton iterations a step
   int projections = 4;  // iterations of a projection of velocities or accelerations
   int keep_steps = 10;  // of Renew::kept
-  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2; 0: 1e9. Where iterations
-  /// of the energy-momentum scheme reach the cap they begin again, once, with 1e-5 of it.
+  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2; 0: 1e9. With the
+  /// energy-momentum scheme it acts only while joint rows depend on each other.
   double penalty = 0.;
   double alpha = 0.;  // Baumgarte, 1/s; both 0: alpha = beta = 1 / (5 dt)
   double beta = 0.;
@@ -34,7 +34,8 @@ class PackedSystem {
   /// The start is that of the parts' positions and velocities; accelerations and joint forces are
   /// in balance with them. Velocities that the joints do not allow are taken out as by an impulse.
   /// Throws std::invalid_argument on what cannot be built: parts without mass, joints of parts that
-  /// do not exist, points off their beam, motion out of a planar system.
+  /// do not exist, points off their beam, motion out of a planar system; direct joints, or without
+  /// projections, with rho_inf = 1.
   PackedSystem(const System& system, const SystemOptions& options);
   /// Beside a linear track in full order that carries no wheelsets, and that the system's joints,
   /// springs and sensors may name; the track gives the scheme and the frames. A rail moves only in

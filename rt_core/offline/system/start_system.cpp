@@ -117,7 +117,7 @@ struct Standing {
     for (std::int32_t r = 0; r < system_rows(model.system); ++r) w.force[r] = 0.;
     Model plain = model;
     plain.scheme.kv = 1.;  // springs have no slope else; what rows want is not used
-    set_rows(plain, 0., w);
+    set_rows(plain, 0., false, w);
   }
   Jet jet(std::int32_t r) const {
     const SystemModel& s = model.system;

@@ -250,6 +250,24 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
   }
 }
 
+double place_ahead(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const double kv = model.scheme.kv, kg = model.scheme.kg;
+  const double time = 2. * (kv + s.alpha) / ((kg + 2. * s.alpha * kv) + s.beta * s.beta);
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.ahead[i] = w.x[i] + time * w.v[i];
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    double change[3], q[4];
+    own_turn(s.body[b], w.v, change);
+    for (double& c : change) c *= time;
+    turned(w.quaternion + 4 * b, change, q);
+    rotation_matrix(q, w.ahead_matrix + 9 * b);
+  }
+  for (std::int32_t m = 0; m < s.markers - s.sensors; ++m)
+    w.ahead_pose[m] = marker_pose(s, s.marker[m], w.ahead, w.ahead_matrix);
+  return time;
+}
+
 std::int32_t part_forces(const Model& model, const SystemStart& start, bool renew,
                          SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;

@@ -76,7 +76,7 @@ Size set_residual(const SystemModel& s, SystemWorkspace& w) noexcept {
 void newton_step(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const std::int32_t rows = system_rows(s);
-  add_row_changes(s, w.gradient, w.change, w.wanted);
+  add_row_changes(s, w.slope, w.change, w.wanted);
   solve_rows(model, w, true, w.wanted);
   for (std::int32_t r = 0; r < rows; ++r) w.force[r] += w.wanted[r];
   subtract_row_motion(s, w, w.wanted, w.change);
@@ -225,16 +225,10 @@ void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& 
     result.redundant_row[i] = t.order[rank + i];
 }
 
-/// Energy-momentum takes a row's gradient at the mean, where Newton's matrix wants that of the end
-/// on one side: at a singular position stiff rows make its iterations diverge. They begin again,
-/// once, with rows so much softer.
-constexpr double kSofter = 1e5;
-
 /// How the iterations go on: what forces lack and what joints want, each against the one before.
 struct Search {
   double residual = __builtin_inf(), wanted = __builtin_inf();
   double step = 0., before = 0.;  // sizes of the last two Newton steps
-  double soft = 1.;               // of the rows' compliance
   bool old = true;                // the matrix is of an earlier step
   bool slow = false;              // one did not halve with a matrix that stood: make it anew
   bool grown = false;  // one grew, far off perhaps, with a matrix of an earlier step: begin again
@@ -252,14 +246,6 @@ struct Search {
     residual = left.residual;
     wanted = left.wanted;
   }
-  bool may_soften(const SystemModel& s) const noexcept {
-    return s.mean != 0 && s.hold == Hold::augmented_lagrangian && soft < kSofter;
-  }
-  /// @returns the iterations that count as done: begun anew
-  std::int32_t soften() noexcept {
-    soft = kSofter;
-    return -1;
-  }
   void begin_again() noexcept {
     residual = wanted = __builtin_inf();
     step = before = 0.;
@@ -275,7 +261,7 @@ Size look(const Model& model, const SystemStart& start, double time, bool renew,
   place_parts(model, start, w);
   part_forces(model, start, renew, w);
   outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, w);
-  const double wanted = set_rows(model, time, w);
+  const double wanted = set_rows(model, time, renew, w);
   Size left = set_residual(s, w);
   left.wanted = wanted;
   result.violation = joint_violation(s, w);
@@ -309,14 +295,13 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     const bool renew = is_renewed(s, w.tangent, done, search.slow);
     const Size left = look(model, start, time, renew, w, result);
     if (done > 0 && is_done(s, w, left, search, result)) break;
-    if (done == s.cap && !search.may_soften(s)) {
+    if (done == s.cap) {
       result.status = Status::cap_reached;
       break;
     }
-    if (done < s.cap) result.iterations = done + 1;
+    result.iterations = done + 1;
     search.compare(left, s.joint_tolerance, renew);
-    if (done == s.cap || search.grown) {
-      if (done == s.cap) done = search.soften();
+    if (search.grown) {
       search.begin_again();
       guess(model, state, workspace, w);
       continue;
@@ -324,7 +309,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     if (renew) {
       search.old = false;
       solve_ends(model, true, w);
-      factor_rows(model, search.soft, w);
+      factor_rows(model, w);
       *w.tangent.age = 1.;
     } else {
       solve_parts(model, w);
@@ -351,7 +336,7 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
   if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
   if (s.renew == Renew::kept) {  // an old direction of the joints would take what they allow
     solve_ends(model, false, w);
-    factor_rows(model, 1., w);
+    factor_rows(model, w);
   }
   const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
