@@ -10,6 +10,7 @@
 
 #include "program.h"
 #include "simulate.h"
+#include "traced.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -21,41 +22,6 @@ const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const std::string kPendulum = kScenes + "double_pendulum.toml",
                   kCrank = kScenes + "slider_crank.toml",
                   kSpring = kScenes + "spring_pendulum.toml";
-
-struct Rows {
-  std::string header;
-  std::vector<std::vector<double>> row;
-};
-
-Rows rows_of(const std::string& csv) {
-  Rows rows;
-  std::istringstream lines(csv);
-  std::string line, cell;
-  std::getline(lines, rows.header);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    rows.row.emplace_back();
-    while (std::getline(cells, cell, ','))
-      rows.row.back().push_back(std::strtod(cell.c_str(), nullptr));
-  }
-  return rows;
-}
-
-/// The trace of a run of the real program.
-Rows traced(const std::string& words) {
-  const auto file = fresh_folder("traced") / "t.csv";
-  const Ran ran = railstep_program("run " + words + " --trace " + file.string());
-  CAPTURE(words, ran.err);
-  REQUIRE(ran.code == 0);
-  return rows_of(text_of(file));
-}
-
-nlohmann::json told(const std::string& words) {
-  const Ran ran = railstep_program("run " + words + " --json");
-  CAPTURE(words, ran.err);
-  REQUIRE(ran.code == 0);
-  return nlohmann::json::parse(ran.out);
-}
 
 /// Columns of the n-th sensor.
 constexpr std::size_t x_of(std::size_t sensor) { return 1 + 7 * sensor; }
@@ -227,7 +193,7 @@ TEST_CASE("bad systems are refused in one sentence with exit 2 and nothing writt
       {kPendulum + " --set 'sensor[1].position_m=[0.5, 0, 0]'", "0.5 m along beam \"upper\""},
       {kPendulum + " --set 'beam[0].material.young_pa=1'", "material"},
       {kPendulum + " --model condensed", "[condense] says something of a track"},
-      {kPendulum + " --set track.bays=1", "are not stepped together"},
+      {kPendulum + " --set track.bays=1", "[track] key 'unknowns' is missing"},
       {kPendulum + " --step 7e-4", "not a whole number of steps"},
       {kCrank + " --set 'body[1].inertia_kg_m2=[1, 1, 3]'", "those of no mass"},
       {kCrank + " --set 'joint[4].polynomial_rad=[0.5, 1]'", "the motion begins at 0.5 rad"},

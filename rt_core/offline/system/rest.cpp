@@ -21,7 +21,16 @@ constexpr int kPatience = 100;            // steps before longer ones are tried
 constexpr int kMostSteps = 40'000;        // of all lengths together
 constexpr double kNoAcceleration = 1e-9;  // m/s2: a ten billionth of weight
 
-enum class Outcome { settled, slow, lost };
+constexpr double kAway = 1e5;  // m: what has gone so far falls
+
+enum class Outcome { settled, slow, lost, away };
+
+/// The largest size among values.
+double largest(const double* values, std::int32_t count) {
+  double most = 0.;
+  for (std::int32_t i = 0; i < count; ++i) most = std::max(most, std::abs(values[i]));
+  return most;
+}
 
 /// A system that is stepped with time held at 0.
 class Still {
@@ -51,6 +60,7 @@ class Still {
       const Status met = advance_frame(model(), state_, workspace_, outputs_);
       if (has(met, Status::cap_reached) || has(met, Status::nonfinite_state)) return Outcome::lost;
       if (from_rest && is_still()) return Outcome::settled;
+      if (largest_place() > kAway) return Outcome::away;
       const double kinetic = system_energy(model(), state_).kinetic;
       at_rest_ = kinetic <= kinetic_;
       kinetic_ = kinetic;
@@ -71,22 +81,22 @@ class Still {
             {state_.row_force, state_.row_force + rows}};
   }
 
-  /// What accelerates most.
+  /// What accelerates most among bodies and beams; the track where all of these stand still.
   std::string restless() const {
     const SystemModel& s = model().system;
-    const auto most = static_cast<std::int32_t>(
-        std::max_element(state_.g, state_.g + model().unknowns,
-                         [](double a, double b) { return std::abs(a) < std::abs(b); }) -
-        state_.g);
+    std::string name = "the track";
+    double most = kNoAcceleration;
+    const auto compare = [&](const char* kind, std::int32_t index, std::int32_t first,
+                             std::int32_t count) {
+      const double own = largest(state_.g + s.first + first, count);
+      if (own > most) name = kind + std::to_string(index);
+      most = std::max(most, own);
+    };
     for (std::int32_t b = 0; b < s.bodies; ++b)
-      if (most - s.first >= s.body[b].first &&
-          most - s.first < s.body[b].first + s.body[b].unknowns)
-        return "body " + std::to_string(b);
+      compare("body ", b, s.body[b].first, s.body[b].unknowns);
     for (std::int32_t b = 0; b < s.beams; ++b)
-      if (most - s.first >= s.beam[b].first &&
-          most - s.first < s.beam[b].first + s.beam[b].unknowns)
-        return "beam " + std::to_string(b);
-    return "the track";
+      compare("beam ", b, s.beam[b].first, s.beam[b].unknowns);
+    return name;
   }
 
  private:
@@ -98,21 +108,15 @@ class Still {
     at_rest_ = true;
   }
   bool is_still() const {
-    double most = 0.;
-    for (std::int32_t i = 0; i < model().unknowns; ++i)
-      most = std::max(most, std::abs(state_.g[i]));
+    const double most = largest(state_.g, model().unknowns);
     return most <= kNoAcceleration || most <= model().scheme.kg * 1e-15 * largest_place();
   }
   double largest_place() const {
     const SystemModel& s = model().system;
-    double place = 0.;
-    for (std::int32_t b = 0; b < s.bodies; ++b)
-      for (const double x : s.body[b].rest) place = std::max(place, std::abs(x));
+    double place = largest(state_.u, model().unknowns);
+    for (std::int32_t b = 0; b < s.bodies; ++b) place = std::max(place, largest(s.body[b].rest, 3));
     for (std::int32_t b = 0; b < s.beams; ++b)
-      for (std::int32_t i = 0; i < s.beam[b].unknowns; ++i)
-        place = std::max(place, std::abs(s.beam[b].rest[i]));
-    for (std::int32_t i = 0; i < model().unknowns; ++i)
-      place = std::max(place, std::abs(state_.u[i]));
+      place = std::max(place, largest(s.beam[b].rest, s.beam[b].unknowns));
     return place;
   }
 
@@ -133,7 +137,7 @@ Rest settle(const StillSystem& make, double shift, std::optional<Rest> from) {
     const bool may_lengthen = dt * kLonger <= longest;
     const Outcome met = still.settle(may_lengthen ? kPatience : left, left);
     if (met == Outcome::settled) return still.rest(false);
-    if (left == 0 || (met == Outcome::lost && dt < kShortestStep))
+    if (left == 0 || met == Outcome::away || (met == Outcome::lost && dt < kShortestStep))
       throw std::invalid_argument("no static equilibrium is found at the start: " +
                                   still.restless() + " does not come to rest");
     if (met == Outcome::lost) {
