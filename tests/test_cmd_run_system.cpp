@@ -85,6 +85,27 @@ TEST_CASE("planar is spatial, for beams and for bodies", "[run]") {
   compare(kCrank);
 }
 
+TEST_CASE("from equilibrium the double pendulum hangs, stretched by its weight", "[run]") {
+  const std::string hanging = kPendulum + " --duration 0.05 --set 'step.start=\"equilibrium\"'";
+  for (const char* hold :
+       {"augmented-lagrangian", "baumgarte", "gear-gupta-leimkuhler", "direct"}) {
+    const Rows trace =
+        traced(hanging + " --set 'joints.hold=\"" + hold + "\"' --set 'joint[0].trace=true'");
+    CAPTURE(hold);
+    // each link by half its own weight, the upper one by all of the lower's too; the Green strain
+    // of these 3e-4 is half their square off, and the weight pulls on what is stretched
+    const double per_weight = 7900. * 9.81 * .4 * .4 / 210e6;
+    CHECK(trace.row[0][z_of(1)] + .4 == Approx(-1.5 * per_weight).epsilon(1e-3));
+    CHECK(trace.row[0][z_of(2)] + .8 == Approx(-2. * per_weight).epsilon(1e-3));
+    CHECK_THAT(trace.row[0][x_of(2)], WithinAbs(0., 1e-9));  // 1e-9 m/s2 over (3 rad/s)^2
+    // B of the hinge is the lower link, 20 x 30 mm
+    const std::size_t force = trace.column("hinge.force_z_n");
+    CHECK(trace.row[0][force] == Approx(7900. * 9.81 * .4 * .02 * .03).epsilon(1e-8));
+    for (const auto& row : trace.row)
+      CHECK_THAT(row[z_of(2)], WithinAbs(trace.row[0][z_of(2)], 1e-11));
+  }
+}
+
 TEST_CASE("a driven slider-crank is where its links put it", "[run]") {
   const Rows trace = traced(kCrank);
   double largest = 0.;

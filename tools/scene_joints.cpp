@@ -99,8 +99,8 @@ Motion read_drive(const Table& t, const std::string& unit) {
 /// Of a joint that may be driven: whether it is.
 bool is_driven(const Table& t, const JointForm& form) {
   if (form.motion == nullptr) return false;
-  const std::string unit = form.motion;
-  return !form.may_stand || t.has("polynomial_" + unit) || t.has("table_" + unit);
+  const std::string unit = form.motion, polynomial = "polynomial_" + unit, table = "table_" + unit;
+  return !form.may_stand || t.has(polynomial) || t.has(table);
 }
 
 /// How far two points are apart where that changes from where they stand by a motion.
