@@ -164,8 +164,7 @@ std::vector<double> rates(const Model& model, const Rest& before, const Rest& af
     const Eigen::AngleAxisd turn(quaternion(before).conjugate() * quaternion(after));
     for (int c = 0; c < 3; ++c)
       if (const std::int32_t k = s.body[b].column[3 + c]; k >= 0)
-        v[static_cast<std::size_t>(s.first + s.body[b].first + k)] =
-            turn.angle() * turn.axis()[c] / time;
+        v.data()[s.first + s.body[b].first + k] = turn.angle() * turn.axis()[c] / time;
   }
   return v;
 }
