@@ -155,24 +155,39 @@ void check_joints(const SystemModel& s, const SystemWorkspace& w, double size) {
                                   std::to_string(w.value[r]));
 }
 
+std::vector<double> start_quaternions(const System& system, const Rest* rest) {
+  if (rest != nullptr) return rest->quaternion;
+  std::vector<double> all;
+  for (const RigidBody& body : system.bodies) {
+    const Eigen::Quaterniond q = body.orientation.normalized();
+    for (const double x : {q.w(), q.x(), q.y(), q.z()}) all.push_back(x);
+  }
+  return all;
+}
+
+/// Displacements of the system's unknowns.
+std::vector<double> start_places(const SystemModel& s, const Rest* rest) {
+  std::vector<double> u(static_cast<std::size_t>(s.unknowns), 0.);
+  if (rest != nullptr) std::copy_n(rest->u.begin() + s.first, s.unknowns, u.begin());
+  return u;
+}
+
+/// As they are given, and as loads carry the rest along; joints are not asked yet.
+std::vector<double> start_rates(const System& system, const SystemParts& parts,
+                                const SystemModel& s, const Rest* rest) {
+  std::vector<double> v = start_velocities(system, parts);
+  if (rest == nullptr) return v;
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += rest->v[static_cast<std::size_t>(s.first) + i];
+  return v;
+}
+
 }  // namespace
 
 SystemStartState start_system(const System& system, const SystemParts& parts, const Model& model,
                               const Rest* rest) {
   const SystemModel& s = model.system;
-  std::vector<double> quaternion, u(static_cast<std::size_t>(s.unknowns), 0.);
-  for (const RigidBody& body : system.bodies) {
-    const Eigen::Quaterniond q = body.orientation.normalized();
-    for (const double x : {q.w(), q.x(), q.y(), q.z()}) quaternion.push_back(x);
-  }
-  std::vector<double> v = start_velocities(system, parts);
-  if (rest != nullptr) {
-    quaternion = rest->quaternion;
-    std::copy_n(rest->u.begin() + s.first, s.unknowns, u.begin());
-    for (std::size_t i = 0; i < v.size(); ++i)
-      v[i] += rest->v[static_cast<std::size_t>(s.first) + i];
-  }
-  Standing at(model, quaternion, u, v);
+  const std::vector<double> quaternion = start_quaternions(system, rest), u = start_places(s, rest);
+  Standing at(model, quaternion, u, start_rates(system, parts, s, rest));
   check_joints(s, at.w, 1.);
   const std::int32_t joints = s.joint_rows, rows = system_rows(s), n = s.unknowns;
   const Mobility mobility(model);
