@@ -109,26 +109,6 @@ Scheme scheme_of(const Scene& scene) {
                                                    : generalised_alpha(step.dt, step.rho_inf);
 }
 
-PackOptions options_of(const Scene& scene) {
-  const StepScene& step = *scene.step;
-  if (step.steps_per_frame > std::numeric_limits<int>::max())
-    throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
-                                 scene.file.string(), step.steps_per_frame,
-                                 std::numeric_limits<int>::max()));
-  PackOptions options{.scheme = scheme_of(scene),
-                      .steps_per_frame = static_cast<int>(step.steps_per_frame),
-                      .residual_flexibility = scene.condense.residual_flexibility,
-                      .gravity = scene.track.gravity ? kGravity : 0.,
-                      .steps = step.steps};
-  if (scene.condense.kind == Condensation::modal) {
-    const double modes =
-        scene.condense.modes_per_bay.value_or(1000.) * static_cast<double>(scene.track.bays);
-    options.modal = {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
-                     scene.condense.highest_hz.value_or(std::numeric_limits<double>::infinity())};
-  }
-  return options;
-}
-
 Support support_of(const SupportScene& s, const Section& section, double axis_z) {
   return {.stiffness = {s.x.stiffness, s.y.stiffness, s.z.stiffness},
           .damping = {s.x.damping, s.y.damping, s.z.damping},
@@ -148,6 +128,26 @@ Sleeper sleeper_of(const SleeperScene& s) {
 }
 
 }  // namespace
+
+PackOptions pack_options_of(const Scene& scene) {
+  const StepScene& step = *scene.step;
+  if (step.steps_per_frame > std::numeric_limits<int>::max())
+    throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
+                                 scene.file.string(), step.steps_per_frame,
+                                 std::numeric_limits<int>::max()));
+  PackOptions options{.scheme = scheme_of(scene),
+                      .steps_per_frame = static_cast<int>(step.steps_per_frame),
+                      .residual_flexibility = scene.condense.residual_flexibility,
+                      .gravity = scene.track.gravity ? kGravity : 0.,
+                      .steps = step.steps};
+  if (scene.condense.kind == Condensation::modal) {
+    const double modes =
+        scene.condense.modes_per_bay.value_or(1000.) * static_cast<double>(scene.track.bays);
+    options.modal = {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
+                     scene.condense.highest_hz.value_or(std::numeric_limits<double>::infinity())};
+  }
+  return options;
+}
 
 Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scene)); }
 
@@ -184,7 +184,7 @@ namespace {
 
 /// The trace's columns in the order in which a frame's outputs are written.
 std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) {
-  std::vector<std::string> columns = {"time_s"};
+  std::vector<std::string> columns;
   for (const LoadScene& load : scene.loads) {
     columns.push_back(load.name + ".x_m");
     columns.push_back(load.name + ".deflection_z_m");
@@ -200,19 +200,24 @@ std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) 
 
 }  // namespace
 
+TracedTraffic traffic_of(const Scene& scene, const Track& track) {
+  const Railhead head = railhead_of(scene);
+  Sensors sensors = sensors_of(scene, track, head);
+  std::vector<std::string> columns = columns_of(scene, sensors);
+  return {{loads_of(scene), wheelsets_of(scene), head, std::move(sensors.probes),
+           irregularities_of(scene)},
+          std::move(columns)};
+}
+
 Built::Built(const Scene& scene) try {
   // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   refuse_unstepped(scene);
   track = track_of(scene);
-  const Railhead head = railhead_of(scene);
-  Sensors sensors = sensors_of(scene, track, head);
-  columns = columns_of(scene, sensors);
-  packed =
-      std::make_unique<PackedModel>(track,
-                                    Traffic{loads_of(scene), wheelsets_of(scene), head,
-                                            std::move(sensors.probes), irregularities_of(scene)},
-                                    options_of(scene));
+  TracedTraffic traced = traffic_of(scene, track);
+  columns = {"time_s"};
+  columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
+  packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
   if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {

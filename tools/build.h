@@ -45,6 +45,16 @@ double axis_z_of(ReferenceLine line, const Section& section);
 Track track_of(const Scene& scene);
 Track track_of(const Scene& scene, const RailSection& rail);
 
+/// What acts on a track, what is read from it, and the columns that this makes in a trace: those of
+/// every load, wheel, sensor and support.
+struct TracedTraffic {
+  Traffic traffic;
+  std::vector<std::string> columns;
+};
+TracedTraffic traffic_of(const Scene& scene, const Track& track);
+/// Throws InputError.
+PackOptions pack_options_of(const Scene& scene);
+
 /// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
 /// and support. Throws InputError, in one sentence, for what makes no model (a free rigid mode,
 /// say) and for what `railstep run` does not step.

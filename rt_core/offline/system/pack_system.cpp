@@ -1,6 +1,7 @@
 #include "offline/system/pack_system.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -57,14 +58,59 @@ void check_damping(const System& system, const SystemOptions& o, const Scheme& c
         "rho_inf below 1, or another hold");
 }
 
+/// By which the equilibrium is looked for: long steps of backward Euler, joints held without
+/// penalty, and all of it as near as round-off lets it.
+SystemOptions still_options(SystemOptions options, double dt) {
+  options.scheme = backward_euler(dt);
+  options.energy_momentum = options.at_rest = false;
+  options.steps_per_frame = 1;
+  options.hold = Hold::direct;
+  options.renew = Renew::every_iteration;
+  options.cap = 40;
+  options.tolerance = 1e-12;
+  options.joint_tolerance = 1e-11;
+  return options;
+}
+
+/// Loads where they are `shift` seconds later.
+Traffic shifted(Traffic traffic, double shift) {
+  for (MovingLoad& load : traffic.loads) load.start += load.speed * shift;
+  return traffic;
+}
+
+std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
+  std::vector<PathOfLoad> all;
+  for (const MovingLoad& load : traffic.loads)
+    all.push_back({load.start, load.speed, track.length()});
+  return all;
+}
+
+/// A track's own start with the lines' part of a rest.
+std::vector<double> lines_at(const Model& track, const Rest& rest) {
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(track)), 0.);
+  const State state = state_on(track, memory.data());
+  std::copy_n(rest.u.begin(), track.unknowns, state.u);
+  std::copy_n(rest.v.begin(), track.unknowns, state.v);
+  return memory;
+}
+
 }  // namespace
+
+const PackedModel* PackedSystem::track() const { return memory_->track.get(); }
 
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
     : memory_(std::make_unique<Memory>()) {
   model_.scheme = options.scheme;
   model_.steps_per_frame = options.steps_per_frame;
   model_.steps = options.steps;
-  build(system, options, nullptr);
+  std::optional<Rest> rest;
+  if (options.at_rest)
+    rest = find_rest(
+        [&](double dt, double) {
+          return std::make_unique<PackedSystem>(system, still_options(options, dt));
+        },
+        {});
+  build(system, options, nullptr, rest);
 }
 
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options, const Track& track,
@@ -82,11 +128,25 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
   Traffic both = traffic;
   for (int rail = 0; rail < track.rails; ++rail) both.held.push_back(rail);
   memory_->track = std::make_unique<PackedModel>(track, both, track_options);
+  std::optional<Rest> rest;
+  if (options.at_rest) {
+    rest = find_rest(
+        [&](double dt, double shift) {
+          PackOptions still = track_options;
+          still.scheme = backward_euler(dt);
+          still.steps_per_frame = 1;
+          return std::make_unique<PackedSystem>(system, still_options(options, dt), track,
+                                                shifted(traffic, shift), still);
+        },
+        paths(track, traffic));
+    memory_->track->set_start(lines_at(memory_->track->model(), *rest));
+  }
   model_ = memory_->track->model();
-  build(system, options, &track);
+  build(system, options, &track, rest);
 }
 
-void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track) {
+void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track,
+                         const std::optional<Rest>& rest) {
   check(system, options, track == nullptr);
   check_damping(system, options, model_.scheme);
   SystemParts& parts = memory_->parts;
@@ -137,7 +197,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   memory_->ports = track_ports(model_);
   s.port_compliance = memory_->ports.compliance.data();
   s.port_shapes = memory_->ports.shapes.data();
-  const SystemStartState start = start_system(system, parts, model_);
+  const SystemStartState start = start_system(system, parts, model_, rest ? &*rest : nullptr);
   const double penalty = options.penalty > 0. ? options.penalty : 1e9;
   for (std::size_t r = 0; r < parts.joint_rows.size(); ++r)
     parts.rows[r].compliance = start.mobility[r] / (model_.scheme.kg * penalty);

@@ -1,8 +1,10 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
+#include "offline/system/rest.h"
 #include "offline/system/system.h"
 #include "online/model/state.h"
 
@@ -26,6 +28,9 @@ struct SystemOptions {
   double tolerance = 1e-8;         // of the forces, over the largest kind of force
   double joint_tolerance = 1e-10;  // m, and 1
   std::int64_t steps = 0;          // of the scene's run
+  /// The start is the static equilibrium under weight, springs, and forces and loads as they are at
+  /// t = 0, with drives at s(0) (rest.h); else all stands as it is given, rails unloaded.
+  bool at_rest = false;
 };
 
 /// A model of a system alone, and the memory its views look into.
@@ -35,7 +40,7 @@ class PackedSystem {
   /// in balance with them. Velocities that the joints do not allow are taken out as by an impulse.
   /// Throws std::invalid_argument on what cannot be built: parts without mass, joints of parts that
   /// do not exist, points off their beam, motion out of a planar system; direct joints, or without
-  /// projections, with rho_inf = 1.
+  /// projections, with rho_inf = 1; no equilibrium where one is asked for.
   PackedSystem(const System& system, const SystemOptions& options);
   /// Beside a linear track in full order that carries no wheelsets, and that the system's joints,
   /// springs and sensors may name; the track gives the scheme and the frames. A rail moves only in
@@ -48,10 +53,13 @@ class PackedSystem {
   ~PackedSystem();
 
   const Model& model() const { return model_; }
+  /// The track by itself, with its matrices; null without one.
+  const PackedModel* track() const;
 
  private:
   struct Memory;
-  void build(const System& system, const SystemOptions& options, const Track* track);
+  void build(const System& system, const SystemOptions& options, const Track* track,
+             const std::optional<Rest>& rest);
   Model model_{};
   std::unique_ptr<Memory> memory_;
 };
