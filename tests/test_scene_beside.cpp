@@ -84,6 +84,8 @@ TEST_CASE("what is not stepped beside bodies is refused by its key", "[scene]") 
     CHECK_THAT(with({option}), Contains(said));
   };
   refused("wheelset=[{name=\"w\"}]", "[[wheelset]] is not stepped beside bodies and beams");
+  refused("irregularity={spectrum=\"ore_low\"}", "irregularity is felt by wheels");
+  refused("defect=[{kind=\"dipped_joint\"}]", "defect is felt by wheels");
   refused("static.tolerance=1e-9", "[static] is of `railstep static`");
   refused("condense.kind=\"modal\"", "kind = \"modal\" is not stepped beside bodies and beams");
   refused("condense={kind=\"full\", modes_per_bay=2}", "modes_per_bay is of a condensed track");
