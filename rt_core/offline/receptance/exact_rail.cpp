@@ -23,13 +23,11 @@ void add(Entries& entries, std::size_t node, const Eigen::MatrixXcd& block) {
 
 }  // namespace
 
-Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, Value seat) {
+Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, const Eigen::Matrix2cd& seat) {
   Eigen::Matrix2cd near = bay.topLeftCorner<2, 2>(), far = bay.bottomRightCorner<2, 2>(),
                    across = bay.topRightCorner<2, 2>();
   for (int i = 0; i < kDoublings; ++i) {
-    Eigen::Matrix2cd joined = far + near;
-    joined(0, 0) += seat;
-    const Eigen::Matrix2cd inverse = joined.inverse();
+    const Eigen::Matrix2cd inverse = (far + seat + near).inverse();
     const Eigen::Matrix2cd change = across * inverse * across.transpose();
     far -= (across.transpose() * inverse * across).eval();
     near -= change;
@@ -80,12 +78,21 @@ std::size_t ExactRailReceptance::node_at(double x) const {
   return static_cast<std::size_t>(node - x_.begin());
 }
 
+Eigen::Matrix2cd ExactRailReceptance::Seat::on_rail() const {
+  Eigen::Matrix2cd stiffness = Eigen::Matrix2cd::Zero();
+  stiffness(0, 0) = has_sleeper ? pad * sleeper / (pad + sleeper) : pad;
+  stiffness(1, 1) = turn;
+  return stiffness;
+}
+
 ExactRailReceptance::Seat ExactRailReceptance::seat(const Part& part, double omega) const {
   const Value pad(track_.support.stiffness[2], omega * track_.support.damping[2]);
-  if (!track_.sleeper) return {pad, 0., false};
+  const Value along(track_.support.stiffness[0], omega * track_.support.damping[0]);
+  const Value turn = along * std::pow(track_.support.height_z, 2);
+  if (!track_.sleeper) return {pad, 0., turn, false};
   const Value ballast(track_.sleeper->ballast_stiffness[2],
                       omega * track_.sleeper->ballast_damping[2]);
-  return {pad, ballast - omega * omega * part.sleeper_mass, true};
+  return {pad, ballast - omega * omega * part.sleeper_mass, turn, true};
 }
 
 /// The rails' coefficients; a sleeper stands for what of it the rail at its seat feels.
@@ -115,7 +122,7 @@ Value ExactRailReceptance::held_rail(const Functional& a, const Functional& b, c
   return sum;
 }
 
-void ExactRailReceptance::add_ends(const Value& seat, double omega, Entries& to) const {
+void ExactRailReceptance::add_ends(const Eigen::Matrix2cd& seat, double omega, Entries& to) const {
   const std::size_t last = x_.size() - 1;
   if (endless_) {
     Eigen::Matrix2cd beyond =
@@ -135,13 +142,12 @@ void ExactRailReceptance::add_ends(const Value& seat, double omega, Entries& to)
   }
 }
 
-Eigen::SparseMatrix<Value> ExactRailReceptance::stiffness(const Value& seat, double omega) const {
+Eigen::SparseMatrix<Value> ExactRailReceptance::stiffness(const Eigen::Matrix2cd& seat,
+                                                          double omega) const {
   Entries entries;
   for (std::size_t i = 0; i + 1 < x_.size(); ++i)
     add(entries, i, beam_dynamic_stiffness(beam_, x_[i + 1] - x_[i], omega));
-  Eigen::Matrix2cd under = Eigen::Matrix2cd::Zero();
-  under(0, 0) = seat;
-  for (int i = 0; i <= track_.bays; ++i) add(entries, node_at(i * track_.bay_length), under);
+  for (int i = 0; i <= track_.bays; ++i) add(entries, node_at(i * track_.bay_length), seat);
   add_ends(seat, omega, entries);
   const auto n = 2 * static_cast<int>(x_.size());
   Eigen::SparseMatrix<Value> result(n, n);

@@ -10,7 +10,9 @@ namespace railstep {
 
 /// Vertical receptance of rails as exact beams between their seats: no mesh. An independent check
 /// of the linear ANCF rail, the answer that Euler-Bernoulli codes give, and that of a track without
-/// end. Rails do not roll, forces act on y = 0 and heights in the section are not told apart.
+/// end. Rails do not roll, forces act on y = 0 and heights in the section are not told apart; pads
+/// below the axis hold the rail's turn by their stiffness along x, against sleepers that stand
+/// still in that direction.
 class ExactRailReceptance : public Receptance {
  public:
   /// @param endless  the track goes on for ever beyond both ends, whatever holds them
@@ -31,14 +33,17 @@ class ExactRailReceptance : public Receptance {
   /// What stands under a rail at one frequency, N/m; without a sleeper the pad's foot stands still.
   struct Seat {
     Value pad, sleeper;
+    Value turn;  // N m/rad
     bool has_sleeper;
-    Value on_rail() const { return has_sleeper ? pad * sleeper / (pad + sleeper) : pad; }
+    /// Over the rail's [w, theta].
+    Eigen::Matrix2cd on_rail() const;
     Value follows() const { return pad / (pad + sleeper); }  // the sleeper, per metre of the rail
   };
   void take_places(const Functional& functional);
   Seat seat(const Part& part, double omega) const;
-  Eigen::SparseMatrix<Value> stiffness(const Value& seat, double omega) const;
-  void add_ends(const Value& seat, double omega, std::vector<Eigen::Triplet<Value>>& to) const;
+  Eigen::SparseMatrix<Value> stiffness(const Eigen::Matrix2cd& seat, double omega) const;
+  void add_ends(const Eigen::Matrix2cd& seat, double omega,
+                std::vector<Eigen::Triplet<Value>>& to) const;
   Eigen::VectorXcd row(const Functional& functional, const Part& part, const Seat& seat) const;
   Value held_rail(const Functional& a, const Functional& b, const Part& part,
                   const Seat& seat) const;
@@ -54,8 +59,8 @@ class ExactRailReceptance : public Receptance {
 
 /// Dynamic stiffness over [w, theta] of what follows a seat along +x: bays and seats for ever,
 /// joined in twos until nothing of the far end is felt.
-/// @param bay  of the beam between two seats  @param seat  N/m
+/// @param bay  of the beam between two seats  @param seat  of a seat, over [w, theta]
 /// Throws std::runtime_error where 2^40 bays are not enough: waves run undamped.
-Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, std::complex<double> seat);
+Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, const Eigen::Matrix2cd& seat);
 
 }  // namespace railstep
