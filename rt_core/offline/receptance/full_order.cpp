@@ -6,20 +6,11 @@
 #include <utility>
 
 #include "offline/receptance/residual_statics.h"
+#include "offline/track/krylov.h"
 
 namespace railstep {
 
-namespace {
-
 using Value = std::complex<double>;
-
-/// K + i omega C - omega^2 M; every frequency has the same pattern.
-Eigen::SparseMatrix<Value> dynamic_stiffness(const Line& line, double omega) {
-  return line.stiffness.cast<Value>() + Value(0., omega) * line.damping.cast<Value>() -
-         Value(omega * omega) * line.mass.cast<Value>();
-}
-
-}  // namespace
 
 Eigen::MatrixXd read_rows(const Track& track, const Line& line, const Transfer& transfer) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(transfer.reads.size()), line.unknowns());
@@ -40,6 +31,7 @@ FullOrderReceptance::FullOrderReceptance(const Track& track, const Transfer& tra
     part->force = force.cast<Value>();
     part->reads = read_rows(track, part->line, transfer);
     if (residual) residual_ += residual_statics(track, part->line, nullptr, transfer);
+    // Every frequency has the same pattern.
     part->factor.analyzePattern(dynamic_stiffness(part->line, 1.));
     parts_.push_back(std::move(part));
   }
@@ -48,7 +40,7 @@ FullOrderReceptance::FullOrderReceptance(const Track& track, const Transfer& tra
 Eigen::VectorXcd FullOrderReceptance::at(double hz) {
   Eigen::VectorXcd sum = residual_.cast<Value>();
   for (const std::unique_ptr<Part>& part : parts_) {
-    part->factor.factorize(dynamic_stiffness(part->line, 2. * M_PI * hz));
+    part->factor.factorize(dynamic_stiffness(part->line, Value(0., 2. * M_PI * hz)));
     if (part->factor.info() != Eigen::Success)
       throw std::runtime_error("the track swings without damping at " + std::to_string(hz) + " Hz");
     const Eigen::VectorXcd moved = part->factor.solve(part->force);
