@@ -263,7 +263,7 @@ TEST_CASE("curves and report are written", "[receptance]") {
   const std::string text = text_of(csv), html = text_of(page);
   CHECK(text.substr(0, text.find('\n')) ==
         "frequency_hz,full.magnitude_m_per_n,full.phase_rad,euler.magnitude_m_per_n,"
-        "euler.phase_rad");
+        "euler.phase_rad,end_effect");
   CHECK(std::count(text.begin(), text.end(), '\n') == 61);
   double hz = 0., magnitude = 0.;
   REQUIRE(std::sscanf(text.c_str() + text.find('\n'), "%lf,%lf", &hz, &magnitude) == 2);

@@ -45,7 +45,7 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST_CASE("set S1 has its published receptances", "[receptance]") {
+TEST_CASE("set S1 has its reference receptances", "[receptance]") {
   // rail-data.md, section 3: nm/N and degrees of the infinite track; 2 % to 900 Hz is its own
   // uncertainty between two models (with 1 degree, the phase of 2 %), 1000 to 1250 Hz is left out.
   struct Row {

@@ -111,10 +111,11 @@ std::string end_warning(const std::vector<double>& hz, const std::vector<double>
   const std::size_t said = std::min<std::size_t>(bands.size(), 3);
   return fmt::format(
       "the track is too short to stand for a long one at {}{}: its ends change the receptance by "
-      "more than {:g} %, by up to {:.2g} % at {:.4g} Hz; more bays are safe",
+      "more than {:g} %, by {} % at {:.4g} Hz; more bays are safe",
       fmt::join(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(said), ", "),
       bands.size() > said ? fmt::format(" and {} more bands", bands.size() - said) : "",
-      100. * kMostEndEffect, 100. * *worst, hz[static_cast<std::size_t>(worst - effect.begin())]);
+      100. * kMostEndEffect, *worst > 1. ? "over 100" : fmt::format("up to {:.2g}", 100. * *worst),
+      hz[static_cast<std::size_t>(worst - effect.begin())]);
 }
 
 void warn(const std::vector<const Sensed*>& points, ReceptanceAnswer& answer) {

@@ -170,11 +170,13 @@ std::string to_csv(const ReceptanceAnswer& answer) {
   std::string text = "frequency_hz";
   for (const ReceptanceCurve* curve : curves_of(answer))
     text += fmt::format(",{0}.magnitude_m_per_n,{0}.phase_rad", curve->name);
+  if (!answer.end_effect.empty()) text += ",end_effect";
   text += '\n';
   for (std::size_t i = 0; i < answer.hz.size(); ++i) {
     text += fmt::format("{:.17g}", answer.hz[i]);
     for (const ReceptanceCurve* curve : curves_of(answer))
       text += fmt::format(",{:.17g},{:.17g}", std::abs(curve->value[i]), phase(curve->value[i]));
+    if (!answer.end_effect.empty()) text += fmt::format(",{:.17g}", answer.end_effect[i]);
     text += '\n';
   }
   return text;

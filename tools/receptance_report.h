@@ -13,7 +13,8 @@ nlohmann::ordered_json to_json(const ReceptanceAnswer& answer);
 /// The frequencies, then resonances, decay rates and warnings.
 std::string to_table(const ReceptanceAnswer& answer);
 
-/// A row a frequency: frequency_hz, then <model>.magnitude_m_per_n and <model>.phase_rad of each.
+/// A row a frequency: frequency_hz, then <model>.magnitude_m_per_n and <model>.phase_rad of each,
+/// and end_effect where there is one.
 std::string to_csv(const ReceptanceAnswer& answer);
 
 /// One self-contained HTML page with plots of magnitude and phase, and of decay rates. Throws

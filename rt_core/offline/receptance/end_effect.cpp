@@ -17,8 +17,10 @@ std::vector<double> end_effect(const Track& track, const Transfer& transfer,
                                const std::vector<std::complex<double>>& answer) {
   FullOrderReceptance other(with_other_ends(track), transfer);
   std::vector<double> change;
-  for (std::size_t i = 0; i < hz.size(); ++i)
-    change.push_back(std::abs(other.at(hz[i])[0] - answer[i]) / std::abs(answer[i]));
+  for (std::size_t i = 0; i < hz.size(); ++i) {
+    const double size = std::abs(answer[i]);  // 0 between motions that nothing couples
+    change.push_back(size > 0. ? std::abs(other.at(hz[i])[0] - answer[i]) / size : 0.);
+  }
   return change;
 }
 

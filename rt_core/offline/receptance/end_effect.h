@@ -12,7 +12,8 @@ namespace railstep {
 Track with_other_ends(const Track& track);
 
 /// What an answer owes to the ends of the track: |H - H'| / |H|, H' with the other ends, at every
-/// frequency. A track without end has 0; of the error against it this is the size, 0.6 to 4 times.
+/// frequency. A track without end has 0; of the error against it this is the size, half to
+/// six times.
 /// @param hz  above 0  @param answer  of the first read on the track as it stands, m/N
 std::vector<double> end_effect(const Track& track, const Transfer& transfer,
                                const std::vector<double>& hz,
