@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "build_irregularity.h"
 #include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
@@ -83,6 +84,7 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   set.beta = w.guide.beta;
   for (const BodyForceScene& force : w.forces)
     set.forces.push_back({force.direction, packed_table(force.force)});
+  set.tread = treads_of(w);
   return set;
 }
 
@@ -209,9 +211,11 @@ Built::Built(const Scene& scene) try {
   const Railhead head = railhead_of(scene);
   Sensors sensors = sensors_of(scene, track, head);
   columns = columns_of(scene, sensors);
-  packed = std::make_unique<PackedModel>(
-      track, Traffic{loads_of(scene), wheelsets_of(scene), head, std::move(sensors.probes)},
-      options_of(scene));
+  packed =
+      std::make_unique<PackedModel>(track,
+                                    Traffic{loads_of(scene), wheelsets_of(scene), head,
+                                            std::move(sensors.probes), irregularities_of(scene)},
+                                    options_of(scene));
   if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::string_view kNames[] = {"vertical", "alignment", "cross_level", "gauge",
                                        "left_z",   "right_z",   "left_y",      "right_y"};
-constexpr std::size_t kOfRails = 4;  // the first of these
+constexpr std::size_t kLargestRecord = std::size_t{64} << 20;  // bytes
+constexpr std::size_t kOfRails = 4;                            // the first of these
 constexpr std::string_view kAccepted =
     "distance_m, and of the track vertical, alignment, cross_level, gauge, or of the rails "
     "left_z, right_z, left_y, right_y, each ending in _m or _mm";
@@ -102,7 +103,7 @@ double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& 
 }  // namespace
 
 RailSignals read_irregularities(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
+  const std::string text = read_text(file, kLargestRecord);
   const std::vector<CsvLine> lines = csv_lines(text, file.string());
   if (lines.empty())
     throw InputError(

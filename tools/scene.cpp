@@ -220,6 +220,8 @@ Scene read_track_scene(const Table& root) {
   scene.statics = read_statics(root);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene);
+  scene.irregularity = read_irregularity(root, scene);
+  scene.defects = read_defects(root, scene);
   scene.sensors = read_sensors(root, scene);
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);

@@ -11,6 +11,7 @@
 #include "offline/section/section.h"
 #include "offline/track/track.h"
 #include "online/model/model.h"
+#include "scene_irregularity.h"
 
 namespace railstep {
 
@@ -134,6 +135,7 @@ struct WheelsetScene {
   bool gravity, may_leave_rail;
   GuideScene guide;
   std::vector<BodyForceScene> forces;
+  std::vector<TreadScene> treads;
 };
 
 struct StepScene {
@@ -179,6 +181,8 @@ struct Scene {
   std::optional<SleeperScene> sleeper;
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
+  std::optional<IrregularityScene> irregularity;
+  std::vector<DefectScene> defects;
   std::optional<StepScene> step;  // none: the scene is not run
   CondenseScene condense;
   NewtonOptions statics;

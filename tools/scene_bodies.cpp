@@ -119,6 +119,7 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
   for (const Table& force : t.tables("force"))
     w.forces.push_back({static_cast<int>(force.choice("direction", {"x", "y", "z"})),
                         read_time_table(force, "table", kForce)});
+  w.treads = read_treads(t, scene, w);
   if (!w.may_leave_rail) check_path(t, scene, w.start, w.speed, std::nullopt);
   return w;
 }

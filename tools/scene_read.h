@@ -28,6 +28,10 @@ ReferenceLine read_reference_line(const Table& t);
 std::string checked_name(const Table& t, std::string_view key, const std::string& name);
 std::vector<LoadScene> read_loads(const Table& root, const Scene& scene);
 std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene);
+std::optional<IrregularityScene> read_irregularity(const Table& root, const Scene& scene);
+std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
+/// [[wheelset.tread]] of a wheelset whose radius and speed are read.
+std::vector<TreadScene> read_treads(const Table& t, const Scene& scene, const WheelsetScene& own);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// Every name of the trace is there once. Throws InputError at the second.
 void check_names(const Table& root, const Scene& scene);

@@ -10,6 +10,8 @@ namespace railstep {
 /// places, height of the left rail over the right one, and how much farther apart they are.
 enum class Geometry { vertical, alignment, cross_level, gauge };
 inline constexpr int kGeometries = 4;
+inline constexpr std::string_view kGeometryNames[kGeometries] = {"vertical", "alignment",
+                                                                 "cross_level", "gauge"};
 
 /// One-sided power spectral density over wave numbers W in rad/m, m2/(rad/m):
 ///   S(W) = factor W^(2 power) / product over its corners c of (W^2 + c^2),

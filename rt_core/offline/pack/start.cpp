@@ -11,6 +11,7 @@
 #include "online/step/residual.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
+#include "online/step/wheel.h"
 
 namespace railstep {
 
@@ -101,14 +102,16 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     }
   Pose pose{static_lines(packed, statics, forces, gravity), {}};
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& w = model.wheelset[b];
+    const double up[3] = {0., 0., 1.}, rolled = w.speed * time, x = w.start + rolled;
     double height[2];
     for (const std::size_t rail : {0u, 1u}) {
       const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
       height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
                      residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
-                                           static_cast<int>(port));
+                                           static_cast<int>(port)) +
+                     irregularity(model, w, static_cast<int>(rail), up, x, rolled).depth;
     }
-    const WheelsetModel& w = model.wheelset[b];
     const double approach = std::pow(wheel_load(w) / w.hertz, 2. / 3.);
     const double roll = (height[0] - height[1]) / (model.rail_y[0] - model.rail_y[1]);
     // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.

@@ -308,6 +308,7 @@ bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int
     alone += row[k] * row[k] / set.mass[k];
     together += row[k] * (row[k] + other[k]) / set.mass[k];
   }
+  speed += c.contact[wheel].rise * s.v[set.first];
   const double inverse_mass = alone > together ? alone : together;
   const double depth = 1.25 / (inverse_mass * set.hertz), steps = 10. * model.scheme.dt / 2.9433;
   return speed > 0. && depth * depth < steps * steps * steps * steps * steps * speed;
