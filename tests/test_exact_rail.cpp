@@ -55,6 +55,7 @@ std::vector<Resonance> resonances(const Track& track, double x) {
   FullOrderReceptance receptance(track, driving(x));
   const std::vector<double> hz = steps(30., 2000., 1.02);
   std::vector<double> magnitude;
+  magnitude.reserve(hz.size());
   for (const double f : hz) magnitude.push_back(std::abs(receptance.at(f)[0]));
   return name_resonances(expected_resonances(track, x), extrema(receptance, hz, magnitude));
 }

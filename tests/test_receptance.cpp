@@ -111,6 +111,7 @@ TEST_CASE("transfer is the same there and back", "[receptance]") {
   const std::vector<Functional> points = {on_rail(3.3, 2, .09), on_rail(4.45, 1, .09, 1),
                                           on_rail(2.71, 1, -.08), on_sleeper(5, 1)};
   std::vector<std::unique_ptr<FullOrderReceptance>> from;
+  from.reserve(points.size());
   for (const Functional& a : points)
     from.push_back(std::make_unique<FullOrderReceptance>(track, Transfer{a, points}));
   for (const double hz : {30., 210., 900.}) {

@@ -30,12 +30,14 @@ std::vector<double> frequencies(const ReceptanceRequest& r) {
   if (r.step_hz && !(span / *r.step_hz < kMostFrequencies))
     throw InputError(fmt::format("--step-hz {:g} makes {:.3g} frequencies; accepted are {}",
                                  *r.step_hz, span / *r.step_hz, kMostFrequencies));
-  std::vector<double> hz;
   const int last =
       r.step_hz ? static_cast<int>(std::ceil(span / *r.step_hz * (1. - 1e-9))) : r.points - 1;
+  std::vector<double> hz;
+  hz.reserve(static_cast<std::size_t>(last) + 1);
   for (int i = 0; i < last; ++i)
-    hz.push_back(r.step_hz ? r.from_hz + i * *r.step_hz
-                           : r.from_hz * std::pow(r.to_hz / r.from_hz, i / double(last)));
+    hz.push_back(r.step_hz
+                     ? r.from_hz + i * *r.step_hz
+                     : r.from_hz * std::pow(r.to_hz / r.from_hz, static_cast<double>(i) / last));
   hz.push_back(r.to_hz);
   return hz;
 }
