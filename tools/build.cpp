@@ -140,13 +140,16 @@ PackOptions pack_options_of(const Scene& scene) {
                       .residual_flexibility = scene.condense.residual_flexibility,
                       .gravity = scene.track.gravity ? kGravity : 0.,
                       .steps = step.steps};
-  if (scene.condense.kind == Condensation::modal) {
-    const double modes =
-        scene.condense.modes_per_bay.value_or(1000.) * static_cast<double>(scene.track.bays);
-    options.modal = {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
-                     scene.condense.highest_hz.value_or(std::numeric_limits<double>::infinity())};
-  }
+  if (scene.condense.kind == Condensation::modal) options.modal = modal_limit_of(scene);
   return options;
+}
+
+ModalLimit modal_limit_of(const Scene& scene) {
+  const CondenseScene& c = scene.condense;
+  const double per_bay = c.modes_per_bay.value_or(c.highest_hz ? 1000. : 1.);
+  const double modes = per_bay * static_cast<double>(scene.track.bays);
+  return {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
+          c.highest_hz.value_or(std::numeric_limits<double>::infinity())};
 }
 
 Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scene)); }

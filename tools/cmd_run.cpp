@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "command.h"
+#include "drawing.h"
 #include "energy.h"
 #include "energy_system.h"
 #include "run_report.h"

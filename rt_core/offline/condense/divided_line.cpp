@@ -135,23 +135,48 @@ Superelement::Rows DividedLine::rail_row(const Functional::OnRail& point, int el
   return element_.condense(row.transpose());
 }
 
-Eigen::VectorXd DividedLine::from(double z, const Functional& functional, int points) const {
-  refuse_free_modes();
-  const Superelement::Rows port = port_rows(z, points);
-  Eigen::VectorXd load = sleeper_load(line_, functional);
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(track_.elements() * (points + 1));
+DividedLine::Spread DividedLine::spread(const Functional& functional) const {
+  Spread result{sleeper_load(line_, functional), {}};
   for (const Functional::OnRail& point : functional.rail) {
     const int element = element_at(track_, point.at.x);
     const Superelement::Rows row = rail_row(point, element);
     const std::vector<int> ends = end_unknowns(line_, element_.carried(), element);
     for (std::size_t i = 0; i < ends.size(); ++i)
-      if (ends[i] >= 0) load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));
-    result.segment(element * (points + 1), points + 1) += element_.held(port, row).col(0);
+      if (ends[i] >= 0) result.load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));
+    result.points.push_back({element, row});
   }
-  const Eigen::VectorXd moved = factor_.solve(load);
+  return result;
+}
+
+Eigen::VectorXd DividedLine::from(double z, const Functional& functional, int points) const {
+  refuse_free_modes();
+  const Superelement::Rows port = port_rows(z, points);
+  const Spread read = spread(functional);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(track_.elements() * (points + 1));
+  for (const Spread::OnElement& point : read.points)
+    result.segment(point.element * (points + 1), points + 1) +=
+        element_.held(port, point.rows).col(0);
+  const Eigen::VectorXd moved = factor_.solve(read.load);
   for (int e = 0; e < track_.elements(); ++e)
     result.segment(e * (points + 1), points + 1) +=
         port.ends * gather(moved, end_unknowns(line_, element_.carried(), e)).col(0);
+  return result;
+}
+
+Eigen::VectorXd DividedLine::flexibility(const std::vector<Functional>& reads,
+                                         const Functional& force) const {
+  refuse_free_modes();
+  const Spread acting = spread(force);
+  const Eigen::VectorXd moved = factor_.solve(acting.load);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(reads.size()));
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    const Spread read = spread(reads[i]);
+    double sum = read.load.dot(moved);
+    for (const Spread::OnElement& a : acting.points)
+      for (const Spread::OnElement& b : read.points)
+        if (a.element == b.element) sum += element_.held(a.rows, b.rows)(0, 0);
+    result[static_cast<Eigen::Index>(i)] = sum;
+  }
   return result;
 }
 

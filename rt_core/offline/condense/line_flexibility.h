@@ -30,6 +30,10 @@ class LineFlexibility {
   virtual Strip between(double a_z, double b_z, int points) const = 0;
   /// The functional under a unit force of a port at each place; [elements x (points + 1)].
   virtual Eigen::VectorXd from(double z, const Functional& functional, int points) const = 0;
+  /// Each of `reads` under a unit force spread by `force`, whatever their directions; m/N. Weights
+  /// of rails are in.
+  virtual Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                                      const Functional& force) const = 0;
 };
 
 /// The line with every element divided into `parts`, taken at their ends, where the element is
@@ -42,8 +46,22 @@ class DividedLine : public LineFlexibility {
   Eigen::VectorXd under(double a_z, double b_z, int points) const override;
   Strip between(double a_z, double b_z, int points) const override;
   Eigen::VectorXd from(double z, const Functional& functional, int points) const override;
+  Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                              const Functional& force) const override;
+  /// Whether the line has no free rigid mode.
+  bool held() const { return held_; }
 
  private:
+  /// A functional over the line: what reaches the elements' end nodes, and its points' own rows.
+  struct Spread {
+    struct OnElement {
+      int element;
+      Superelement::Rows rows;
+    };
+    Eigen::VectorXd load;  // [unknowns]
+    std::vector<OnElement> points;
+  };
+  Spread spread(const Functional& functional) const;
   Superelement::Rows port_rows(double z, int points) const;
   Superelement::Rows rail_row(const Functional::OnRail& point, int element) const;
   Eigen::MatrixXd end_columns(int element) const;
@@ -67,6 +85,8 @@ class ReducedLine : public LineFlexibility {
   Eigen::VectorXd under(double a_z, double b_z, int points) const override;
   Strip between(double a_z, double b_z, int points) const override;
   Eigen::VectorXd from(double z, const Functional& functional, int points) const override;
+  Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                              const Functional& force) const override;
 
  private:
   /// shapes / omega at a port's places; [elements x (points + 1)][kept]
