@@ -37,6 +37,7 @@ constexpr Way kWays[] = {{"augmented_lagrangian", Hold::augmented_lagrangian},
                          {"direct", Hold::direct}};
 
 bool allowed(Hold hold, const NamedScheme& scheme) {
+  if (hold == Hold::direct && scheme.rho == 1.) return false;  // refused: it is not stable
   return scheme.rho <= 1. || hold == Hold::augmented_lagrangian || hold == Hold::direct;
 }
 
@@ -49,7 +50,7 @@ SystemOptions options_of(const Way& way, const NamedScheme& scheme, double dt, i
   o.hold = way.hold;
   o.alpha = o.beta = way.alpha > 0. ? way.alpha : way.alpha_dt / dt;
   o.cap = cap;
-  o.penalty = o.energy_momentum ? 1e4 : 1e9;  // the defaults, for the table to name
+  o.penalty = 1e9;  // the default, for the table to name
   return o;
 }
 

@@ -16,7 +16,8 @@ namespace {
 
 const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 
-/// Small models of both kinds, with loads that have tables, wheelsets, probes and pair tables.
+/// Small models of both kinds, with loads that have tables, wheelsets, irregular rails and wheels,
+/// probes and pair tables.
 std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
   Track track = wheels ? paper_track() : peers_pair(1);
   track.bays = 2;
@@ -33,7 +34,10 @@ std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
     w.radius = .148;
     w.start = 1.2;
     w.forces = {{1, {0., 10., .01, 0.}}};
+    w.tread[1] = fit_signal({0., 1e-5, -1e-5}, 0., .3, true);
     traffic.wheelsets = {w};
+    traffic.irregularities = {{0, 2, fit_signal({0., 1e-5}, 1., .1, false)},
+                              {1, 1, fit_signal({1e-5, 0., 2e-5}, 0., .5, true)}};
     traffic.head = {.1007375, .3, .038};
     traffic.probes = {{.displacement = 1., .wheelset = 0, .coordinate = 2}};
   }
@@ -204,11 +208,11 @@ TEST_CASE("numbers out of range are refused though the sum is right", "[artefact
   Model model;
   REQUIRE(read(good, model).status == LoadStatus::ok);
   REQUIRE(word_of(good, counts) == model.lines);
-  // lines, loads, wheelsets, elements, unknowns, condensed, bodies, steps_per_frame, steps
-  for (std::size_t i = 0; i < 9; ++i)
+  // lines, loads, wheelsets, signals, elements, unknowns, condensed, bodies, steps_per_frame, steps
+  for (std::size_t i = 0; i < 10; ++i)
     for (const std::int64_t value : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(),
                                      word_of(good, counts + 8 * i) + 1}) {
-      if (value > 0 && i >= 7) continue;  // more steps are a run like another
+      if (value > 0 && i >= 8) continue;  // more steps are a run like another
       Block bad = good;
       put_word(bad, counts + 8 * i, value);
       sign(bad);

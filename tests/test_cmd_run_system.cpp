@@ -10,6 +10,7 @@
 
 #include "program.h"
 #include "simulate.h"
+#include "traced.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -21,41 +22,6 @@ const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const std::string kPendulum = kScenes + "double_pendulum.toml",
                   kCrank = kScenes + "slider_crank.toml",
                   kSpring = kScenes + "spring_pendulum.toml";
-
-struct Rows {
-  std::string header;
-  std::vector<std::vector<double>> row;
-};
-
-Rows rows_of(const std::string& csv) {
-  Rows rows;
-  std::istringstream lines(csv);
-  std::string line, cell;
-  std::getline(lines, rows.header);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    rows.row.emplace_back();
-    while (std::getline(cells, cell, ','))
-      rows.row.back().push_back(std::strtod(cell.c_str(), nullptr));
-  }
-  return rows;
-}
-
-/// The trace of a run of the real program.
-Rows traced(const std::string& words) {
-  const auto file = fresh_folder("traced") / "t.csv";
-  const Ran ran = railstep_program("run " + words + " --trace " + file.string());
-  CAPTURE(words, ran.err);
-  REQUIRE(ran.code == 0);
-  return rows_of(text_of(file));
-}
-
-nlohmann::json told(const std::string& words) {
-  const Ran ran = railstep_program("run " + words + " --json");
-  CAPTURE(words, ran.err);
-  REQUIRE(ran.code == 0);
-  return nlohmann::json::parse(ran.out);
-}
 
 /// Columns of the n-th sensor.
 constexpr std::size_t x_of(std::size_t sensor) { return 1 + 7 * sensor; }
@@ -117,6 +83,27 @@ TEST_CASE("planar is spatial, for beams and for bodies", "[run]") {
   };
   compare(kPendulum);
   compare(kCrank);
+}
+
+TEST_CASE("from equilibrium the double pendulum hangs, stretched by its weight", "[run]") {
+  const std::string hanging = kPendulum + " --duration 0.05 --set 'step.start=\"equilibrium\"'";
+  for (const char* hold :
+       {"augmented-lagrangian", "baumgarte", "gear-gupta-leimkuhler", "direct"}) {
+    const Rows trace =
+        traced(hanging + " --set 'joints.hold=\"" + hold + "\"' --set 'joint[0].trace=true'");
+    CAPTURE(hold);
+    // each link by half its own weight, the upper one by all of the lower's too; the Green strain
+    // of these 3e-4 is half their square off, and the weight pulls on what is stretched
+    const double per_weight = 7900. * 9.81 * .4 * .4 / 210e6;
+    CHECK(trace.row[0][z_of(1)] + .4 == Approx(-1.5 * per_weight).epsilon(1e-3));
+    CHECK(trace.row[0][z_of(2)] + .8 == Approx(-2. * per_weight).epsilon(1e-3));
+    CHECK_THAT(trace.row[0][x_of(2)], WithinAbs(0., 1e-9));  // 1e-9 m/s2 over (3 rad/s)^2
+    // B of the hinge is the lower link, 20 x 30 mm
+    const std::size_t force = trace.column("hinge.force_z_n");
+    CHECK(trace.row[0][force] == Approx(7900. * 9.81 * .4 * .02 * .03).epsilon(1e-8));
+    for (const auto& row : trace.row)
+      CHECK_THAT(row[z_of(2)], WithinAbs(trace.row[0][z_of(2)], 1e-11));
+  }
 }
 
 TEST_CASE("a driven slider-crank is where its links put it", "[run]") {
@@ -227,10 +214,11 @@ TEST_CASE("bad systems are refused in one sentence with exit 2 and nothing writt
       {kPendulum + " --set 'sensor[1].position_m=[0.5, 0, 0]'", "0.5 m along beam \"upper\""},
       {kPendulum + " --set 'beam[0].material.young_pa=1'", "material"},
       {kPendulum + " --model condensed", "[condense] says something of a track"},
-      {kPendulum + " --set track.bays=1", "are not stepped together"},
+      {kPendulum + " --set track.bays=1", "[track] key 'unknowns' is missing"},
       {kPendulum + " --step 7e-4", "not a whole number of steps"},
       {kCrank + " --set 'body[1].inertia_kg_m2=[1, 1, 3]'", "those of no mass"},
       {kCrank + " --set 'joint[4].polynomial_rad=[0.5, 1]'", "the motion begins at 0.5 rad"},
+      {kCrank + " --set 'joints.hold=\"direct\"' --set step.rho_inf=1.0", "nothing damps"},
       {kSpring + " --set 'spring[0].between=[\"bob\", \"bob\"]'", "twice"},
   };
   for (const auto& c : cases) {

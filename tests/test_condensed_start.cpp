@@ -142,3 +142,26 @@ TEST_CASE("condensed: a start in motion has the velocity of the static shape tha
   }
   CHECK(velocity[0] * velocity[1] < 0.);  // up behind the load, down before it
 }
+
+TEST_CASE("a start in motion at the rail's end is as one just behind it", "[start]") {
+  const Track track = peers_pair(1);
+  const RailPoint at{0, .6, 0., 0., 2};
+  const auto velocity_at = [&](double x, double speed, const PackOptions& options) {
+    const Traffic traffic{
+        .loads = {{.start = x, .speed = speed, .stop = speed > 0. ? 9.3 : .3, .force = -50e3}},
+        .probes = {{.velocity = 1., .track = {.rail = {{at, 1.}}}}}};
+    ModelRun run = in_equilibrium(track, traffic, options);
+    double velocity;
+    read_probes(run.model(), run.state, run.outputs, &velocity);
+    return velocity;
+  };
+  // within the end's element the shape is a parabola over the force's place: over 1e-4 m of 0.6 m
+  // its slope changes by 1e-3 at most, as neither slope passes 0 there
+  for (const PackOptions& options : {full_order(1e-3), condensed(track, 1000., 1e-3)}) {
+    const double inside = velocity_at(1e-4, 30., options);
+    CHECK(std::abs(inside) > 1e-3);
+    CHECK_THAT(velocity_at(0., 30., options), WithinRel(inside, 1e-3));
+  }
+  const double end = 16 * .6, inside = velocity_at(end - 1e-4, -30., full_order(1e-3));
+  CHECK_THAT(velocity_at(end, -30., full_order(1e-3)), Catch::WithinAbs(inside, 1e-6));
+}

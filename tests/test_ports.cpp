@@ -18,8 +18,13 @@ using Real = long double;
 
 struct Case {
   int n;
-  std::vector<double> W, C, d_free;
+  std::vector<double> W;
+  std::vector<PortLaw> law;
+  std::vector<double> d_free;
 };
+
+/// Which laws a random case has.
+enum class Laws { contacts, springs, both };
 
 double log_uniform(double low, double high, std::mt19937& random) {
   return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
@@ -28,7 +33,7 @@ double log_uniform(double low, double high, std::mt19937& random) {
 /// W = B B' of a random rank (so often singular) plus, half the time, a small diagonal, of about
 /// 1e-11 m/N to `softest`. A wheel on a rail has w C sqrt(d) of 0.1 to 10; here it runs from 1e-5
 /// to 1e3 for 1e-8 m/N and to 1e4 for 1e-7 m/N.
-Case random_case(int n, double softest, std::mt19937& random) {
+Case random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::contacts) {
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<int> coin(0, 1), rank(1, n);
   Case c{n, std::vector<double>(static_cast<std::size_t>(n * n), 0.0), {}, {}};
@@ -45,19 +50,31 @@ Case random_case(int n, double softest, std::mt19937& random) {
       c.W.data()[i * n + j] = compliance * sum / columns + (i == j ? own : 0.0);
     }
   for (int i = 0; i < n; ++i) {
-    c.C.push_back(log_uniform(1e9, 1e12, random));
+    const bool spring = laws == Laws::springs || (laws == Laws::both && coin(random));
+    if (spring) {
+      const double jump = (coin(random) ? 1 : -1) * log_uniform(1e1, 1e5, random);
+      c.law.push_back({0.0, log_uniform(1e6, 1e10, random), coin(random) ? jump : 0.0});
+    } else {
+      c.law.push_back({log_uniform(1e9, 1e12, random), 0.0, 0.0});
+    }
     c.d_free.push_back((coin(random) ? 1 : -1) * log_uniform(1e-6, 1e-2, random));
   }
   return c;
 }
 
-/// Root of d + w C d^1.5 = d_free by bisection, in long double.
-Real bisect(Real w, Real C, Real d_free) {
+Real force_of(const PortLaw& law, Real d) {
+  if (d <= 0) return 0;
+  if (law.hertz > 0.) return law.hertz * d * std::sqrt(d);
+  return std::max(law.slope * d + law.jump * std::min<Real>(1, d / kJumpDepth), Real{0});
+}
+
+/// Root of d + w f(d) = d_free by bisection, in long double.
+Real bisect(Real w, const PortLaw& law, Real d_free) {
   if (d_free <= 0) return d_free;
   Real low = 0, high = d_free;
   for (int i = 0; i < 200; ++i) {
     const Real middle = (low + high) / 2;
-    (middle + w * C * middle * std::sqrt(middle) < d_free ? low : high) = middle;
+    (middle + w * force_of(law, middle) < d_free ? low : high) = middle;
   }
   return (low + high) / 2;
 }
@@ -73,8 +90,7 @@ std::vector<Real> gauss_seidel(const Case& c) {
       Real others = c.d_free[i];
       for (std::size_t j = 0; j < n; ++j)
         if (j != i) others -= c.W[i * n + j] * f[j];
-      const Real d = bisect(c.W[i * n + i], c.C[i], others);
-      const Real force = d > 0 ? c.C[i] * d * std::sqrt(d) : 0;
+      const Real force = force_of(c.law[i], bisect(c.W[i * n + i], c.law[i], others));
       change = std::max(change, std::abs(force - f[i]));
       largest = std::max(largest, force);
       f[i] = force;
@@ -93,10 +109,10 @@ TEST_CASE("a lone port agrees with bisection in long double", "[ports]") {
   for (int i = 0; i < 3000; ++i) {
     const Case c = random_case(1, 1e-7, random);
     double f = 0.0, d = 0.0;
-    const PortResult got = solve_ports(1, c.W.data(), c.C.data(), c.d_free.data(), &f, &d);
+    const PortResult got = solve_ports(1, c.W.data(), c.law.data(), c.d_free.data(), &f, &d);
     REQUIRE(got.status == PortStatus::converged);
     most = std::max(most, got.iterations);
-    const double want = static_cast<double>(bisect(c.W[0], c.C[0], c.d_free[0]));
+    const double want = static_cast<double>(bisect(c.W[0], c.law[0], c.d_free[0]));
     // d + w C d^1.5 rises at least with slope 1 and its residual is held to 1e-12 of twice d_free.
     CHECK(std::abs(d - want) <= 2e-12 * std::abs(c.d_free[0]));
     worst = std::max(worst, std::abs(d - want) / std::abs(c.d_free[0]));
@@ -131,15 +147,16 @@ double length(const Case& c, const std::vector<T>& f) {
 }
 
 TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
+  const Laws laws = GENERATE(Laws::contacts, Laws::springs, Laws::both);
   std::mt19937 random(2);
   int most = 0, compared = 0, histogram[kPortSweeps + 1] = {};
   double worst = 0.0;
   for (int i = 0; i < 9600; ++i) {
-    const Case c = random_case(1 + i % 8, 1e-8, random);
+    const Case c = random_case(1 + i % 8, 1e-8, random, laws);
     const auto n = static_cast<std::size_t>(c.n);
     std::vector<double> f(n, 0.0), d(n);
     const PortResult got =
-        solve_ports(c.n, c.W.data(), c.C.data(), c.d_free.data(), f.data(), d.data());
+        solve_ports(c.n, c.W.data(), c.law.data(), c.d_free.data(), f.data(), d.data());
     REQUIRE(got.status == PortStatus::converged);
     ++histogram[got.iterations];
     most = std::max(most, got.iterations);
@@ -150,7 +167,11 @@ TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
     if (want.empty()) continue;
     ++compared;
     for (std::size_t k = 0; k < n; ++k) {
-      const double exact = static_cast<double>(std::pow(std::cbrt(want[k] / c.C[k]), 2));
+      // A law's force and penetration, whichever tells the answers apart less.
+      const Real by_force = std::abs(want[k] - static_cast<Real>(f[k])) * c.W[k * n + k];
+      worst = std::max(worst, static_cast<double>(by_force) / length(c, want));
+      if (!(c.law[k].hertz > 0.)) continue;
+      const double exact = static_cast<double>(std::pow(std::cbrt(want[k] / c.law[k].hertz), 2));
       worst = std::max(worst, std::abs(std::max(d[k], 0.0) - exact) / length(c, want));
     }
   }
@@ -172,7 +193,7 @@ TEST_CASE("an extreme case is solved or says how far it came", "[ports]") {
     for (int cap : {0, 2, 8}) {
       std::vector<double> f(n, 0.0), d(n);
       const PortResult got =
-          solve_ports(c.n, c.W.data(), c.C.data(), c.d_free.data(), f.data(), d.data(), cap);
+          solve_ports(c.n, c.W.data(), c.law.data(), c.d_free.data(), f.data(), d.data(), cap);
       CHECK(got.iterations <= cap);
       CHECK((got.status == PortStatus::converged) ==
             (got.residual <= kPortTolerance * length(c, f)));
@@ -194,7 +215,7 @@ TEST_CASE("the last forces are a start: at the answer no iteration is left", "[p
     const auto n = static_cast<std::size_t>(c.n);
     std::vector<double> f(n, 0.0), d(n), again;
     const auto solve = [&] {
-      return solve_ports(c.n, c.W.data(), c.C.data(), c.d_free.data(), f.data(), d.data());
+      return solve_ports(c.n, c.W.data(), c.law.data(), c.d_free.data(), f.data(), d.data());
     };
     REQUIRE(solve().status == PortStatus::converged);
     again = f;
@@ -209,19 +230,72 @@ TEST_CASE("the last forces are a start: at the answer no iteration is left", "[p
   CHECK(warm < cold);
 }
 
+TEST_CASE("a lone spring and damper is solved in one iteration, from any start", "[ports]") {
+  std::mt19937 random(5);
+  for (int i = 0; i < 3000; ++i) {
+    const Case c = random_case(1, 1e-7, random, Laws::springs);
+    for (const double start : {0.0, 1e2, 1e6}) {
+      double f = start, d = 0.0;
+      const PortResult got = solve_ports(1, c.W.data(), c.law.data(), c.d_free.data(), &f, &d);
+      REQUIRE(got.status == PortStatus::converged);
+      CHECK(got.iterations <= (start > 0.0 ? 4 : 1));
+      const double want = static_cast<double>(bisect(c.W[0], c.law[0], c.d_free[0]));
+      CHECK(std::abs(d - want) <= 2e-12 * std::abs(c.d_free[0]));
+    }
+  }
+}
+
+TEST_CASE("a row of one-sided supports is solved within the cap, step after step", "[ports]") {
+  // 40 seats under a stiff beam: compliance falls with distance, a load wanders over them and lifts
+  // some. Each answer is the next one's start.
+  const int n = 40;
+  std::vector<double> W(n * n), d_free(n), f(n, 0.0), d(n);
+  std::vector<PortLaw> law(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double s = std::abs(i - j) * .6 / .9;
+      W.data()[n * i + j] = 2e-8 * std::exp(-s) * (std::cos(s) + std::sin(s));
+    }
+  int most = 0, opened = 0, turns = 0;
+  for (int step = 0; step < 800; ++step) {
+    for (int i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double s = std::abs(.05 * step - i) * .6 / .9;
+      const double load = 8e4 * std::exp(-s) * (std::cos(s) + std::sin(s)) + 1e4;
+      d_free[k] = 2e-8 * load - (i % 7 == 3 ? 3e-4 : 0.);  // some hang
+      law[k] = {0., 5e7, 8e4 * (d[k] > 0. ? -.05 : .05)};
+    }
+    const PortResult got = solve_ports(n, W.data(), law.data(), d_free.data(), f.data(), d.data());
+    CHECK(got.status == PortStatus::converged);
+    most = std::max(most, got.iterations);
+    turns += got.iterations;
+    for (const double force : f) opened += force == 0.0 ? 1 : 0;
+  }
+  INFO("most iterations " << most << ", mean " << turns / 800. << ", open " << opened);
+  CHECK(opened > 800);
+  CHECK(most <= kPortSweeps);
+}
+
 TEST_CASE("a number that is none gives no force and says so", "[ports]") {
   const double bad = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (double x : {bad, inf, -inf})
-    for (int place = 0; place < 8; ++place) {
-      double in[8] = {1e-9, 1e-10, 1e-10, 1e-9, 1e11, 1e11, 1e-4, 1e-4};
+    for (int place = 0; place < 10; ++place) {
+      double in[10] = {1e-9, 1e-10, 1e-10, 1e-9, 1e-4, 1e-4, 1e11, 0.0, 0.0, 0.0};
       in[place] = x;
+      const PortLaw law[2] = {{in[6], in[7], in[8]}, {0.0, 1e8, in[9]}};
       double f[2] = {1.0, 1.0}, d[2];
-      CHECK(solve_ports(2, in, in + 4, in + 6, f, d).status == PortStatus::bad_input);
+      CHECK(solve_ports(2, in, law, in + 4, f, d).status == PortStatus::bad_input);
       for (int k = 0; k < 2; ++k) CHECK((f[k] == 0.0 && d[k] == 0.0));
     }
   // A start that is none is no start, not an error.
-  const double W = 1e-9, C = 1e11, d_free = 1e-4;
+  for (const PortLaw none : {PortLaw{0., 0., 0.}, PortLaw{-1e9, 1e6, 0.}, PortLaw{0., -1e6, 0.}}) {
+    const double W = 1e-9, d_free = 1e-4;
+    double f = 1.0, d = 0.0;
+    CHECK(solve_ports(1, &W, &none, &d_free, &f, &d).status == PortStatus::bad_input);
+  }
+  const double W = 1e-9, d_free = 1e-4;
+  const PortLaw C = {1e11, 0.0, 0.0};
   for (double start : {bad, inf, -1.0}) {
     double f = start, d = bad, cold = 0.0, d_cold;
     CHECK(solve_ports(1, &W, &C, &d_free, &f, &d).status == PortStatus::converged);
@@ -230,9 +304,11 @@ TEST_CASE("a number that is none gives no force and says so", "[ports]") {
   }
   // Too large to square: still finite.
   const double huge = 1e300;
+  const PortLaw hard = {huge, 0.0, 0.0};
   double f = 0.0, d = 0.0;
-  CHECK(solve_ports(1, &huge, &huge, &huge, &f, &d).status == PortStatus::cap_reached);
+  CHECK(solve_ports(1, &huge, &hard, &huge, &f, &d).status == PortStatus::cap_reached);
   CHECK((std::isfinite(f) && std::isfinite(d)));
   double many[(kPorts + 1) * (kPorts + 1)] = {}, forces[kPorts + 1] = {}, depths[kPorts + 1] = {};
-  CHECK(solve_ports(kPorts + 1, many, many, many, forces, depths).status == PortStatus::bad_input);
+  const PortLaw laws[kPorts + 1] = {};
+  CHECK(solve_ports(kPorts + 1, many, laws, many, forces, depths).status == PortStatus::bad_input);
 }

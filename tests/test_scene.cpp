@@ -264,7 +264,7 @@ TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]")
   const std::string documented = read_text(source / "config/README.md");
   std::size_t count = 0;
   for (const char* name : {"scene.cpp", "scene_rail.cpp", "scene_bodies.cpp", "scene_system.cpp",
-                           "scene_parts.cpp", "scene_joints.cpp"})
+                           "scene_parts.cpp", "scene_joints.cpp", "scene_beside.cpp"})
     for (const std::string& key : quoted_keys(read_text(source / "tools" / name))) {
       if (key.size() == 1) continue;  // an axis, whose full keys are checked below
       INFO(key);

@@ -224,6 +224,13 @@ TEST_CASE("what a kind of joint has and has not", "[scene]") {
   CHECK_THAT(joint(at + "kind=\"distance\", other_point_m=[0, 0, 0]"),
              Contains("no distance is held at 0"));
   CHECK(joint(at + "kind=\"distance\", other_point_m=[0, 0, -1]") == "accepted");
+  const std::string apart = at + "kind=\"distance\", other_point_m=[0, 0, -1], ";
+  CHECK(joint(apart + "polynomial_m=[0, 0.1]") == "accepted");
+  CHECK_THAT(joint(apart + "polynomial_m=[1, 0.1]"), Contains("the motion begins at 1 m"));
+  CHECK_THAT(joint(apart + "table_m=[[0, 0], [1, -1.5]]"),
+             Contains("table_m shortens a distance of 1 m by 1.5 m; accepted is what leaves some"));
+  CHECK_THAT(joint(apart + "polynomial_rad=[0, 1]"),
+             Contains("a distance joint has no polynomial_"));
   CHECK_THAT(joint(at + "kind=\"universal\", axis=[1, 0, 0], other_axis=[1, 1, 0]"),
              Contains("other_axis stands at 45 degrees to axis"));
   CHECK(joint(at + "kind=\"universal\", axis=[1, 0, 0], other_axis=[0, 2, 0]") == "accepted");
@@ -292,18 +299,20 @@ TEST_CASE("a planar system has nothing across its plane", "[scene]") {
              Contains("a cylindrical joint leaves the plane"));
 }
 
-TEST_CASE("a track and a system keep apart", "[scene]") {
-  const std::string said = with("moving_load", {"body=[]"});
-  CHECK_THAT(said, Contains("[body] and [track] in one scene are not stepped together"));
+TEST_CASE("a scene without a track has nothing of one", "[scene]") {
+  CHECK_THAT(with("moving_load", {"body=[]"}), Contains("neither a [[body]] nor a [[beam]]"));
   CHECK_THAT(with(kPendulum, {"support.stiffness_z_n_per_m=1"}),
              Contains("[support] says something of a track, and the scene has none"));
   CHECK_THAT(with(kPendulum, {"condense.kind=\"modal\""}), Contains("[condense] says something"));
   CHECK_THAT(with(kPendulum, {"beam=[]", "joint=[]", "sensor=[]"}),
              Contains("neither a [[body]] nor a [[beam]]"));
-  CHECK_THROWS_WITH(
-      read_scene(shipped(kPendulum)),
-      Contains("double_pendulum.toml") &&
-          Contains("the key beam makes this a scene of bodies and beams, which run alone takes"));
+  CHECK_THAT(with(kPendulum, {"sensor[0].on=\"rail\""}),
+             Contains("on has \"rail\", which is unknown; accepted are \"upper\", \"lower\""));
+  for (const std::string& name : {kPendulum, std::string("exciter_on_track")})
+    CHECK_THROWS_WITH(
+        read_scene(shipped(name)),
+        Contains(name + ".toml") &&
+            Contains("makes this a scene of bodies and beams, which run alone takes"));
   CHECK(std::holds_alternative<Scene>(read_any_scene(shipped("moving_load"))));
 }
 
@@ -315,7 +324,8 @@ TEST_CASE("a system's [step]", "[scene]") {
                       "\"energy-momentum\""));
   CHECK_THAT(with("moving_load", {"step.scheme=\"energy-momentum\""}),
              Contains("accepted are \"generalised-alpha\", \"backward-euler\""));
-  CHECK_THAT(with(kPendulum, {"step.start=\"equilibrium\""}), Contains("unknown key 'start'"));
+  CHECK(system_scene(kPendulum).step.start == Start::released);
+  CHECK(system_scene(kPendulum, {"step.start=\"equilibrium\""}).step.start == Start::equilibrium);
   CHECK_THAT(with(kPendulum, {"step.frame_s=0.003"}), Contains("whole frames"));
   CHECK_THAT(with(kPendulum, {"step.dt_s=0"}), Contains("dt_s = 0 is out of range"));
   CHECK_THAT(with(kPendulum, {"beam[0].rectangel.height_m=1"}), Contains("rectangel"));

@@ -64,16 +64,21 @@ struct Passed {
   double uneven = 0.;  // of the rods' directions, largest
   double violation = 0.;
   int iterations = 0;
+  int capped = 0;  // steps
   Status seen = Status::ok;
 };
 
-Passed pass(int count, double t, const Vector3d& B, const SystemOptions& options) {
-  SystemRun r(four_bars(count, 2. * std::atan(1.), -1.), options);
+Passed pass(int count, double t, const Vector3d& B, const SystemOptions& options,
+            double rate = -1.) {
+  SystemRun r(four_bars(count, 2. * std::atan(1.), rate), options);
   Passed p;
   const double energy = r.energy();
   const auto steps = std::llround(t / options.scheme.dt);
   for (std::int64_t i = 0; i < steps; ++i) {
+    r.seen = Status::ok;
     r.frame();
+    p.seen = p.seen | r.seen;
+    p.capped += has(r.seen, Status::cap_reached) ? 1 : 0;
     p.energy = std::max(p.energy, std::abs(r.energy() - energy));
     if (i % 20 != 0) continue;
     for (int k = 1; k <= count; ++k)
@@ -82,7 +87,6 @@ Passed pass(int count, double t, const Vector3d& B, const SystemOptions& options
   p.error = (r.point_of_body(0, Vector3d(0., 0., 1.)) - B).norm();
   p.violation = r.violation;
   p.iterations = r.iterations;
-  p.seen = r.seen;
   return p;
 }
 
@@ -111,16 +115,40 @@ TEST_CASE("two four-bars go through their singular position for 10 s", "[system]
   CHECK(ten.uneven < std::sqrt(2. * ten.violation) + 1e-8);
 }
 
-TEST_CASE("energy-momentum takes two four-bars through their singular position", "[system]") {
-  // Once. Rows that its iterations soften there leave 1e-6 J now, and up to 1e-2 J in 10 s, where
-  // the rods pass slower.
-  const std::vector<Vector3d> own = known(2, {0., 1.});
-  const Passed p = pass(2, 1., own[1], sharp(energy_momentum(1e-3)));
-  INFO("B errs by " << p.error << " m, energy " << p.energy << " J, violation " << p.violation);
+TEST_CASE("energy-momentum takes four-bars through their singular positions for 10 s", "[system]") {
+  const auto [count, dt] = GENERATE(
+      table<int, double>({{1, 1e-3}, {2, 1e-3}, {3, 1e-3}, {6, 1e-3}, {2, 2.5e-4}, {6, 5e-4}}));
+  SystemOptions options{.scheme = energy_momentum(dt), .energy_momentum = true};
+  options.hold = GENERATE(Hold::augmented_lagrangian, Hold::direct);
+  const std::vector<Vector3d> own = known(count, {0., 10.});
+  const Passed p = pass(count, 10., own[1], options);
+  INFO("B errs by " << p.error << " m, energy " << p.energy << " J, uneven " << p.uneven
+                    << ", violation " << p.violation << ", iterations " << p.iterations);
   CHECK(!has(p.seen, Status::nonfinite_state));
-  CHECK(p.error < 1e-3);
+  CHECK(!has(p.seen, Status::redundant_joint));
+  // Round-off of places, 1e-15 m, is 1e-15 / s where a step ends s from a singular position, and kg
+  // m of that in the forces: their tolerance is out of reach below 1e-6, one step in 1e4 and fewer.
+  CHECK(p.capped < 1e-4 * 10. / dt);
   CHECK(p.energy < 1e-3);  // H21
-  CHECK(p.violation < 1e-6);
+  CHECK(p.violation < options.joint_tolerance);
+  // Second order: the phase's error grows with time, .1 rad of 70 in 10 s at 1 ms and most.
+  CHECK(p.error < .1 * (dt / 1e-3) * (dt / 1e-3) + 1e-3);
+  CHECK(p.uneven < std::sqrt(2. * p.violation) + 1e-8);
+}
+
+TEST_CASE("Baumgarte takes four-bars through their singular positions for 10 s", "[system]") {
+  // Rates at which Newton's matrix without the gradient's change over a step was lost.
+  const double rate = GENERATE(-1., -1.1, -1.23, -1.51, -1.7);
+  const int count = GENERATE(2, 3);
+  SystemOptions options{.scheme = generalised_alpha(1e-3, .9), .hold = Hold::baumgarte};
+  const Passed p = pass(count, 10., Vector3d::Zero(), options, rate);
+  INFO("energy " << p.energy << " J, uneven " << p.uneven << ", violation " << p.violation
+                 << ", iterations " << p.iterations);
+  CHECK(p.seen == Status::ok);
+  // Not H21: it holds accelerations, and joints stay open by the scheme's error of them, h^2 w^4 r
+  // / 12 over beta^2 = 1 / (5 h)^2: 25 h^4 w^4 / 12 at 7 rad/s.
+  const double open = 25. * 1e-12 * std::pow(7., 4) / 12.;
+  CHECK(p.violation < 100. * open);
 }
 
 TEST_CASE("forty four-bars go through their singular position", "[system]") {

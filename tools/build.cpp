@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "build_irregularity.h"
 #include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
@@ -82,6 +83,7 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   set.beta = w.guide.beta;
   for (const BodyForceScene& force : w.forces)
     set.forces.push_back({force.direction, packed_table(force.force)});
+  set.tread = treads_of(w);
   return set;
 }
 
@@ -104,26 +106,6 @@ Scheme scheme_of(const Scene& scene) {
   if (scene.condense.kind == Condensation::modal) return held_force(step.dt, step.rho_inf);
   return step.scheme == TimeScheme::backward_euler ? backward_euler(step.dt)
                                                    : generalised_alpha(step.dt, step.rho_inf);
-}
-
-PackOptions options_of(const Scene& scene) {
-  const StepScene& step = *scene.step;
-  if (step.steps_per_frame > std::numeric_limits<int>::max())
-    throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
-                                 scene.file.string(), step.steps_per_frame,
-                                 std::numeric_limits<int>::max()));
-  PackOptions options{.scheme = scheme_of(scene),
-                      .steps_per_frame = static_cast<int>(step.steps_per_frame),
-                      .residual_flexibility = scene.condense.residual_flexibility,
-                      .gravity = scene.track.gravity ? kGravity : 0.,
-                      .steps = step.steps};
-  if (scene.condense.kind == Condensation::modal) {
-    const double modes =
-        scene.condense.modes_per_bay.value_or(1000.) * static_cast<double>(scene.track.bays);
-    options.modal = {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
-                     scene.condense.highest_hz.value_or(std::numeric_limits<double>::infinity())};
-  }
-  return options;
 }
 
 Support support_of(const SupportScene& s, const Section& section, double axis_z) {
@@ -175,6 +157,29 @@ void add_right_rail(const Scene& scene, bool keep_moments, Track& track) {
 
 }  // namespace
 
+PackOptions pack_options_of(const Scene& scene) {
+  const StepScene& step = *scene.step;
+  if (step.steps_per_frame > std::numeric_limits<int>::max())
+    throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
+                                 scene.file.string(), step.steps_per_frame,
+                                 std::numeric_limits<int>::max()));
+  PackOptions options{.scheme = scheme_of(scene),
+                      .steps_per_frame = static_cast<int>(step.steps_per_frame),
+                      .residual_flexibility = scene.condense.residual_flexibility,
+                      .gravity = scene.track.gravity ? kGravity : 0.,
+                      .steps = step.steps};
+  if (scene.condense.kind == Condensation::modal) options.modal = modal_limit_of(scene);
+  return options;
+}
+
+ModalLimit modal_limit_of(const Scene& scene) {
+  const CondenseScene& c = scene.condense;
+  const double per_bay = c.modes_per_bay.value_or(c.highest_hz ? 1000. : 1.);
+  const double modes = per_bay * static_cast<double>(scene.track.bays);
+  return {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
+          c.highest_hz.value_or(std::numeric_limits<double>::infinity())};
+}
+
 Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scene)); }
 
 Track track_of(const Scene& scene, const RailSection& rail) try {
@@ -211,7 +216,7 @@ namespace {
 
 /// The trace's columns in the order in which a frame's outputs are written.
 std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) {
-  std::vector<std::string> columns = {"time_s"};
+  std::vector<std::string> columns;
   for (const LoadScene& load : scene.loads) {
     columns.push_back(load.name + ".x_m");
     columns.push_back(load.name + ".deflection_z_m");
@@ -227,23 +232,29 @@ std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) 
 
 }  // namespace
 
+TracedTraffic traffic_of(const Scene& scene, const Track& track) {
+  const RailSections sections = sections_of(scene);
+  const Railhead head = railhead_of(scene, sections, Side::left);
+  Sensors sensors = sensors_of(scene, track, sections, head);
+  std::vector<std::string> columns = columns_of(scene, sensors);
+  return {{.loads = loads_of(scene, sections),
+           .wheelsets = wheelsets_of(scene),
+           .head = head,
+           .probes = std::move(sensors.probes),
+           .irregularities = irregularities_of(scene),
+           .right_head = railhead_of(scene, sections, Side::right)},
+          std::move(columns)};
+}
+
 Built::Built(const Scene& scene) try {
   // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   refuse_unstepped(scene);
   track = track_of(scene);
-  const RailSections sections = sections_of(scene);
-  const Railhead head = railhead_of(scene, sections, Side::left);
-  Sensors sensors = sensors_of(scene, track, sections, head);
-  columns = columns_of(scene, sensors);
-  packed = std::make_unique<PackedModel>(
-      track,
-      Traffic{.loads = loads_of(scene, sections),
-              .wheelsets = wheelsets_of(scene),
-              .head = head,
-              .probes = std::move(sensors.probes),
-              .right_head = railhead_of(scene, sections, Side::right)},
-      options_of(scene));
+  TracedTraffic traced = traffic_of(scene, track);
+  columns = {"time_s"};
+  columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
+  packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
   if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
 } catch (const std::invalid_argument& error) {

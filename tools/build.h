@@ -66,6 +66,20 @@ void change_seats(const std::vector<SeatChange>& changes, Track& track);
 double scatter_factor(std::uint64_t seed, std::uint64_t stream, int seat, std::size_t side,
                       double width);
 
+/// What acts on a track, what is read from it, and the columns that this makes in a trace: those of
+/// every load, wheel, sensor and support.
+struct TracedTraffic {
+  Traffic traffic;
+  std::vector<std::string> columns;
+};
+TracedTraffic traffic_of(const Scene& scene, const Track& track);
+/// Throws InputError.
+PackOptions pack_options_of(const Scene& scene);
+
+/// How many modes a scene's condensed lines keep; of a scene of full order one per bay, unless it
+/// says otherwise.
+ModalLimit modal_limit_of(const Scene& scene);
+
 /// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
 /// and support. Throws InputError, in one sentence, for what makes no model (a free rigid mode,
 /// say) and for what `railstep run` does not step.

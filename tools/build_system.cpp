@@ -39,6 +39,7 @@ SystemOptions options_of(const SystemScene& scene) {
   options.energy_momentum = scene.step.scheme == TimeScheme::energy_momentum;
   options.steps_per_frame = static_cast<int>(scene.step.steps_per_frame);
   options.steps = scene.step.steps;
+  options.at_rest = scene.step.start == Start::equilibrium;
   return options;
 }
 
@@ -52,13 +53,35 @@ System system_of(const SystemScene& scene) {
   return system;
 }
 
+namespace {
+
+std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& system,
+                                        std::vector<std::string>& columns) {
+  if (!scene.track) return std::make_unique<PackedSystem>(system, options_of(scene));
+  const Track track = track_of(*scene.track);
+  const TracedTraffic traced = traffic_of(*scene.track, track);
+  columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
+  return std::make_unique<PackedSystem>(system, options_of(scene), track, traced.traffic,
+                                        pack_options_of(*scene.track));
+}
+
+}  // namespace
+
 BuiltSystem::BuiltSystem(const SystemScene& scene) try
-    : names(scene.names), system(system_of(scene)) {
+    : names(scene.names), traced(scene.traced), system(system_of(scene)) {
+  // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
+  Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   columns = {"time_s"};
+  packed = packed_of(scene, system, columns);
   for (const std::string& sensor : names.sensors)
     for (const char* quantity : kSensorQuantities)
       columns.push_back(fmt::format("{}.{}", sensor, quantity));
-  packed = std::make_unique<PackedSystem>(system, options_of(scene));
+  for (const int joint : traced.joints)
+    for (const char* quantity : kJointQuantities)
+      columns.push_back(
+          fmt::format("{}.{}", names.joints[static_cast<std::size_t>(joint)], quantity));
+  for (const int spring : traced.springs)
+    columns.push_back(fmt::format("{}.force_n", names.springs[static_cast<std::size_t>(spring)]));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "command.h"
+#include "drawing.h"
 #include "energy.h"
 #include "energy_system.h"
 #include "run_report.h"
@@ -99,7 +100,7 @@ std::optional<EnergyBalance> balance_of_run(const Simulation& run, const RunReco
   if (!has_energies(run) || record.first_bad_unknown >= 0) return std::nullopt;
   const auto after = [&bar, frames](std::int64_t done) { bar(frames + done); };
   const EnergyBalance found = run.system() != nullptr
-                                  ? balance_of(run.model(), frames, after)
+                                  ? balance_of(*run.system()->packed, frames, after)
                                   : balance_of(*run.packed(), run.model(), frames, after);
   if (found.hash != state_hash(run.model(), run.state))
     throw std::runtime_error("a second run of the same model ended in another state");

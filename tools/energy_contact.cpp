@@ -24,11 +24,12 @@ constexpr int kTurns = 10;
 /// Forces of the wheels by d + W f = d_free, W = G between wheels. Where G is below 0, which it may
 /// be by itself, it acts through the force of the turn before.
 void press(const Model& model, StandingContacts& c, RailForce* port, int ports) {
-  double W[kMaxWheels * kMaxWheels], hertz[kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
+  double W[kMaxWheels * kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
+  PortLaw law[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
   for (int i = 0; i < c.wheels; ++i) {
     const bool on_rail = c.contact[i].on_rail;
-    hertz[i] = model.wheelset[i / 2].hertz[i % 2];
+    law[i] = {model.wheelset[i / 2].hertz[i % 2], 0., 0.};
     force[i] = 0.;
     free[i] =
         on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;
@@ -45,12 +46,12 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
   for (int turn = 0; turn < kTurns; ++turn) {
     double shifted[kMaxWheels];
     for (int i = 0; i < c.wheels; ++i) shifted[i] = free[i] - negative[i] * force[i];
-    static_cast<void>(solve_ports(c.wheels, W, hertz, shifted, force, d));  // as good as it gets
+    static_cast<void>(solve_ports(c.wheels, W, law, shifted, force, d));  // as good as it gets
   }
   for (int i = 0; i < c.wheels; ++i) {
     port[c.loads + i].force = -force[i];
     const double depth = std::max(d[i], 0.);
-    c.hertz += .4 * hertz[i] * depth * depth * std::sqrt(depth);
+    c.hertz += .4 * law[i].hertz * depth * depth * std::sqrt(depth);
   }
 }
 

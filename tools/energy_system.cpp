@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "online/step/step.h"
 #include "online/system/rotation.h"
@@ -110,15 +111,50 @@ void SystemAccount::follow(const State& state) {
   add_drives(now);
   add_dampers(now);
   last_ = std::move(now);
-  const SystemEnergy& e = last_.stored;
-  turned_over_ = std::max({turned_over_, e.kinetic + e.strain + e.springs, std::abs(e.potential),
-                           std::abs(work_), dissipated_});
-  if (std::abs(imbalance()) > std::abs(largest_)) largest_ = imbalance();
 }
 
-EnergyBalance balance_of(const Model& model, std::int64_t frames,
+namespace {
+
+/// The accounts of a system and of its track together.
+class JoinedAccount {
+ public:
+  JoinedAccount(const PackedSystem& packed, const Model& model, const State& start)
+      : system_(model, start) {
+    if (packed.track() != nullptr) track_.emplace(*packed.track(), model, start);
+  }
+
+  void follow(const State& now) {
+    system_.follow(now);
+    if (track_) track_->follow(now);
+    note();
+  }
+
+  /// Of the largest size so far, over the largest energy turned over.
+  double imbalance() const { return turned_over_ > 0. ? largest_ / turned_over_ : 0.; }
+
+ private:
+  void note() {
+    const StoredEnergy line = track_ ? track_->stored() : StoredEnergy{};
+    const EnergyFlow flow = track_ ? track_->flow() : EnergyFlow{};
+    const SystemEnergy& e = system_.stored();
+    turned_over_ = std::max({turned_over_, line.total() + e.kinetic + e.strain + e.springs,
+                             std::abs(e.potential), std::abs(system_.work()), std::abs(flow.loads),
+                             std::abs(flow.weight), system_.dissipated() + flow.dissipated});
+    const double missing = system_.imbalance() + (track_ ? track_->imbalance() : 0.);
+    if (std::abs(missing) > std::abs(largest_)) largest_ = missing;
+  }
+
+  SystemAccount system_;
+  std::optional<EnergyAccount> track_;
+  double turned_over_ = 0., largest_ = 0.;
+};
+
+}  // namespace
+
+EnergyBalance balance_of(const PackedSystem& packed, std::int64_t frames,
                          const std::function<void(std::int64_t)>& after) {
-  Model single = model;
+  Model single = packed.model();
+  const std::int32_t steps_per_frame = single.steps_per_frame;
   single.steps_per_frame = 1;
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(single)));
   std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(single)));
@@ -126,16 +162,16 @@ EnergyBalance balance_of(const Model& model, std::int64_t frames,
   Workspace workspace = workspace_on(single, scratch.data());
   Outputs outputs{};
   reset(single, state);
-  SystemAccount account(single, state);
+  JoinedAccount account(packed, single, state);
   for (std::int64_t frame = 0; frame < frames; ++frame) {
-    for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {
+    for (std::int32_t n = 0; n < steps_per_frame; ++n) {
       static_cast<void>(advance_frame(single, state, workspace, outputs));  // the run told of it
       account.follow(state);
     }
     if (after) after(frame + 1);
   }
-  const double loss = account.turned_over() > 0. ? -account.largest() / account.turned_over() : 0.;
-  return {std::abs(loss), loss, state_hash(single, state)};
+  const double missing = account.imbalance();
+  return {std::abs(missing), -missing, state_hash(single, state)};
 }
 
 }  // namespace railstep

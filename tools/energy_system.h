@@ -4,6 +4,7 @@
 
 #include "energy.h"
 #include "offline/system/energy.h"
+#include "offline/system/pack_system.h"
 #include "online/system/marker.h"
 
 namespace railstep {
@@ -26,11 +27,11 @@ class SystemAccount {
 
   /// Stored - stored at the start - work + dissipated, J.
   double imbalance() const { return last_.stored.total() - start_ - work_ + dissipated_; }
-  /// Largest over the run's steps so far of: stored energy without weight's, weight's work in size,
-  /// work in size, dissipation; J.
-  double turned_over() const { return turned_over_; }
-  /// The imbalance of the largest size over the steps so far.
-  double largest() const { return largest_; }
+  const SystemEnergy& stored() const { return last_.stored; }
+  /// Of forces and drives since the start, J.
+  double work() const { return work_; }
+  /// By dampers since the start, J.
+  double dissipated() const { return dissipated_; }
 
  private:
   struct Standing {  // a state, as far as a step's means ask for it
@@ -46,13 +47,17 @@ class SystemAccount {
 
   const Model& model_;
   Standing last_;
-  double start_, work_ = 0., dissipated_ = 0., turned_over_ = 0., largest_ = 0.;
+  double start_, work_ = 0., dissipated_ = 0.;
 };
 
-/// Steps a system's run again from its model's start, one step a frame, with an account beside it.
-/// The loss is what is missing in the balance, so its size is the error.
+/// Steps a system's run again from its model's start, one step a frame, with an account beside it,
+/// and one of its track (EnergyAccount). What joints and springs do to rails stands in both, with
+/// opposite signs, so that the sum balances: joints do no work, springs store and take theirs by
+/// the way of both their ends. The loss is what is missing in the balance, so its size is the
+/// error; it is over the largest, over the steps, of: stored energy without weight's, the work of
+/// each kind (weight's of parts, of the track) in size, dissipation.
 /// @param after  called after every frame of the model with the number of frames done; may be empty
-EnergyBalance balance_of(const Model& model, std::int64_t frames,
+EnergyBalance balance_of(const PackedSystem& packed, std::int64_t frames,
                          const std::function<void(std::int64_t)>& after = {});
 
 }  // namespace railstep

@@ -104,9 +104,9 @@ class Table {
 
 inline constexpr std::size_t kLargestFile = 1u << 20;  // bytes
 
-/// Reads a text file whole. Throws InputError where it is missing, a folder, empty or over
-/// kLargestFile.
-std::string read_text(const std::filesystem::path& file);
+/// Reads a text file whole. Throws InputError where it is missing, a folder, empty or longer than
+/// `most` bytes.
+std::string read_text(const std::filesystem::path& file, std::size_t most = kLargestFile);
 
 /// Parses a TOML file, then applies `overrides`, each "key.path=value" with a TOML value and
 /// name[i] for the i-th entry of an array, as if written in the file; their errors name the option.

@@ -78,21 +78,21 @@ void check_depth(std::string_view text, const std::string& name) {
 
 }  // namespace
 
-std::string read_text(const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& file, std::size_t most) {
   const std::string name = file.string();
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     throw InputError(fmt::format("{}: is a folder; a file is accepted", name));
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(fmt::format("{}: cannot be opened; a readable file is accepted", name));
-  std::string text(kLargestFile + 1, '\0');
+  std::string text(most + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (in.bad()) throw InputError(fmt::format("{}: cannot be read", name));
-  if (text.size() > kLargestFile)
-    throw InputError(
-        fmt::format("{}: is longer than {} bytes; at most 1 MiB is accepted", name, kLargestFile));
-  if (text.empty()) throw InputError(fmt::format("{}: is empty; a TOML file is accepted", name));
+  if (text.size() > most)
+    throw InputError(fmt::format("{}: is longer than {} bytes; at most {} MiB is accepted", name,
+                                 most, most >> 20));
+  if (text.empty()) throw InputError(fmt::format("{}: is empty; a file of text is accepted", name));
   return text;
 }
 

@@ -1,60 +1,15 @@
 #include "run_report.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
-#include <stdexcept>
 
-#include "write.h"
+#include "drawing.h"
 
 namespace railstep {
 namespace {
-
-constexpr const char* kStyle =
-    "body{font:15px/1.5 sans-serif;max-width:960px;margin:2em auto;padding:0 1em}"
-    "svg{width:100%;height:auto}td,th{text-align:left;padding-right:2em}";
-
-/// A file of its own in the temporary folder, gone at the end of the scope.
-class ScriptFile {
- public:
-  explicit ScriptFile(const std::string& text)
-      : name_((std::filesystem::temp_directory_path() / "railstep-XXXXXX").string()) {
-    const int descriptor = mkstemp(name_.data());
-    if (descriptor < 0) throw std::runtime_error("no temporary file can be made for gnuplot");
-    close(descriptor);
-    std::FILE* out = std::fopen(name_.c_str(), "wb");
-    if (out) std::fwrite(text.data(), 1, text.size(), out);
-    if (!out || std::fclose(out) != 0)
-      throw std::runtime_error("the temporary file for gnuplot cannot be written");
-  }
-  ScriptFile(const ScriptFile&) = delete;
-  ScriptFile& operator=(const ScriptFile&) = delete;
-  ~ScriptFile() { std::remove(name_.c_str()); }
-  const std::string& name() const { return name_; }
-
- private:
-  std::string name_;
-};
-
-/// What gnuplot draws of a script, from its <svg> on. The script's text stays out of the shell.
-std::string drawn(const std::string& script) {
-  const ScriptFile file(script);
-  std::FILE* in = popen(fmt::format("gnuplot '{}'", file.name()).c_str(), "r");
-  if (!in) throw std::runtime_error("gnuplot cannot be started");
-  std::string svg;
-  char buffer[4096];
-  for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, in)) > 0;)
-    svg.append(buffer, got);
-  const std::size_t start = svg.find("<svg");
-  if (pclose(in) != 0 || start == std::string::npos)
-    throw std::runtime_error("gnuplot failed to draw the report");
-  return svg.substr(start);
-}
 
 /// A plot over time of the trace's columns that end in one quantity.
 struct Plot {
@@ -196,18 +151,7 @@ std::string histogram_script(const RunRecord& record) {
       data);
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
-
 }  // namespace
-
-void need_gnuplot() {
-  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-    throw std::runtime_error("--report draws with gnuplot, which is not installed");
-}
 
 std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record) {
   std::string status;
@@ -227,7 +171,7 @@ std::string run_report(const std::string& title, const Simulation& run, const Ru
       "</tr>\n<tr><td>{3}</td><td>{4:.6g}</td><td>{5:.3g}</td><td>{6:.3g}</td><td>{7:.3g}</td>"
       "</tr>\n</table>\n{8}{9}<h2>Wall time of a frame</h2>\n"
       "{10}\n</body>\n</html>\n",
-      escaped(title), kStyle, status, record.frame_us.size(), run.model().scheme.dt,
+      escaped(title), kReportStyle, status, record.frame_us.size(), run.model().scheme.dt,
       quantile(record.frame_us, .5), quantile(record.frame_us, .99), quantile(record.frame_us, 1.),
       system_plots(run, record) + all_curves(run.columns(), record), shapes,
       drawn(histogram_script(record)));

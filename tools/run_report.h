@@ -5,9 +5,6 @@
 
 namespace railstep {
 
-/// Throws std::runtime_error, in one sentence, where gnuplot cannot be run.
-void need_gnuplot();
-
 /// One self-contained HTML page: rails under loads and wheels, wheel-rail forces and sensors over
 /// time, the deformed rails at a few times, and a histogram of the frames' wall times; of a system
 /// the paths of its sensors and the residual of its joints. Needs a

@@ -138,17 +138,6 @@ std::int64_t whole_steps(const Table& t, std::string_view key, double time, doub
   return static_cast<std::int64_t>(steps);
 }
 
-StepScene read_step(const Table& t) {
-  StepScene s = read_times(t);
-  s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.6);
-  s.scheme = t.choice("scheme", {"generalised-alpha", "backward-euler"}, 0) == 0
-                 ? TimeScheme::generalised_alpha
-                 : TimeScheme::backward_euler;
-  s.start =
-      t.choice("start", {"equilibrium", "released"}, 0) == 0 ? Start::equilibrium : Start::released;
-  return s;
-}
-
 CondenseScene read_condense(const Table& root) {
   CondenseScene c{Condensation::full, std::nullopt, std::nullopt, true};
   const std::optional<Table> t = root.table_if("condense");
@@ -204,6 +193,27 @@ StepScene read_times(const Table& t) {
   return s;
 }
 
+StepScene read_track_step(const Table& t) {
+  StepScene s = read_times(t);
+  s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.6);
+  s.scheme = t.choice("scheme", {"generalised-alpha", "backward-euler"}, 0) == 0
+                 ? TimeScheme::generalised_alpha
+                 : TimeScheme::backward_euler;
+  s.start =
+      t.choice("start", {"equilibrium", "released"}, 0) == 0 ? Start::equilibrium : Start::released;
+  return s;
+}
+
+void check_frames(const Table& t, const StepScene& s) {
+  if (s.steps % s.steps_per_frame != 0)
+    t.refuse("duration_s",
+             "the run is written in whole frames; accepted is a duration_s that is a "
+             "multiple of frame_s");
+  if (s.steps_per_frame > std::numeric_limits<int>::max())
+    t.refuse("frame_s", fmt::format("a frame of {} steps is too long; accepted are {}",
+                                    s.steps_per_frame, std::numeric_limits<int>::max()));
+}
+
 Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Table root = read_toml(file, overrides);
   const std::int64_t schema = root.integer("schema", 1, std::numeric_limits<std::int64_t>::max());
@@ -213,8 +223,7 @@ Table open_scene(const std::filesystem::path& file, const std::vector<std::strin
   return root;
 }
 
-Scene read_track_scene(const Table& root) {
-  Scene scene;
+void read_rails(const Table& root, Scene& scene) {
   scene.file = root.file();
   scene.track = read_track(root.table("track"));
   check_size(root.table("track"), scene.track);
@@ -229,11 +238,18 @@ Scene read_track_scene(const Table& root) {
   scene.support = read_support(root, scene);
   scene.sleeper = read_sleeper(root, scene);
   scene.seat_changes = read_seat_changes(root, scene);
-  if (const std::optional<Table> step = root.table_if("step")) scene.step = read_step(*step);
+}
+
+Scene read_track_scene(const Table& root) {
+  Scene scene;
+  read_rails(root, scene);
+  if (const std::optional<Table> step = root.table_if("step")) scene.step = read_track_step(*step);
   scene.condense = read_condense(root);
   scene.statics = read_statics(root);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene);
+  scene.irregularity = read_irregularity(root, scene);
+  scene.defects = read_defects(root, scene);
   scene.sensors = read_sensors(root, scene);
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);

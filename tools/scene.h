@@ -11,6 +11,7 @@
 #include "offline/section/section.h"
 #include "offline/track/track.h"
 #include "online/model/model.h"
+#include "scene_irregularity.h"
 
 namespace railstep {
 
@@ -166,6 +167,7 @@ struct WheelsetScene {
   bool gravity, may_leave_rail;
   GuideScene guide;
   std::vector<BodyForceScene> forces;
+  std::vector<TreadScene> treads;
 };
 
 struct StepScene {
@@ -213,6 +215,8 @@ struct Scene {
   std::vector<SeatChange> seat_changes;  // one after the other
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
+  std::optional<IrregularityScene> irregularity;
+  std::vector<DefectScene> defects;
   std::optional<StepScene> step;  // none: the scene is not run
   CondenseScene condense;
   NewtonOptions statics;

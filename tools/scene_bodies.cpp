@@ -119,6 +119,7 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
   for (const Table& force : t.tables("force"))
     w.forces.push_back({static_cast<int>(force.choice("direction", {"x", "y", "z"})),
                         read_time_table(force, "table", kForce)});
+  w.treads = read_treads(t, scene, w);
   if (!w.may_leave_rail) check_path(t, scene, w.start, w.speed, std::nullopt);
   return w;
 }
@@ -133,6 +134,24 @@ WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
   t.refuse("wheelset",
            fmt::format("wheelset = \"{}\" is unknown; {}", name,
                        known.empty() ? "the scene has no wheelset" : "accepted are " + known));
+}
+
+}  // namespace
+
+std::string checked_name(const Table& t, std::string_view key, const std::string& name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
+    t.refuse(key, fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
+                              "and -",
+                              key, name.substr(0, 64)));
+  if (name.starts_with("support_"))
+    t.refuse(key, fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
+                              "does not start with support_",
+                              key, name));
+  return name;
 }
 
 SensorScene read_sensor(const Table& t, const Scene& scene) {
@@ -167,24 +186,6 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
       sensor.on = read_wheelset_sensor(t, scene);
   }
   return sensor;
-}
-
-}  // namespace
-
-std::string checked_name(const Table& t, std::string_view key, const std::string& name) {
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  };
-  if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
-    t.refuse(key, fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
-                              "and -",
-                              key, name.substr(0, 64)));
-  if (name.starts_with("support_"))
-    t.refuse(key, fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
-                              "does not start with support_",
-                              key, name));
-  return name;
 }
 
 std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {

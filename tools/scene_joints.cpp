@@ -17,6 +17,7 @@ struct JointForm {
   JointKind kind;
   Axis axis;
   const char* motion = nullptr;  // unit of what drives it
+  bool may_stand = false;        // without being driven
 };
 constexpr JointForm kForms[] = {
     {"spherical", JointKind::spherical, Axis::none},
@@ -24,7 +25,7 @@ constexpr JointForm kForms[] = {
     {"prismatic", JointKind::prismatic, Axis::slide},
     {"cylindrical", JointKind::cylindrical, Axis::both},
     {"fixed", JointKind::fixed, Axis::none},
-    {"distance", JointKind::distance, Axis::none},
+    {"distance", JointKind::distance, Axis::none, "m", true},
     {"point-on-line", JointKind::point_on_line, Axis::slide},
     {"point-on-plane", JointKind::point_on_plane, Axis::slide},
     {"universal", JointKind::universal, Axis::both},
@@ -41,8 +42,8 @@ const JointForm& read_form(const Table& t) {
 /// `between`: two parts that differ.
 std::array<Part, 2> read_between(const Table& t, const SystemScene& scene) {
   const std::vector<std::string> names = t.strings("between", 2, 2);
-  const Part a = read_part(t, "between", names[0], scene, true);
-  const Part b = read_part(t, "between", names[1], scene, true);
+  const Part a = read_part(t, "between", names[0], scene, Naming::held);
+  const Part b = read_part(t, "between", names[1], scene, Naming::held);
   if (names[0] == names[1])
     t.refuse("between", fmt::format("between has \"{}\" twice; accepted are two parts", names[0]));
   return {a, b};
@@ -95,6 +96,25 @@ Motion read_drive(const Table& t, const std::string& unit) {
   return motion;
 }
 
+/// Of a joint that may be driven: whether it is.
+bool is_driven(const Table& t, const JointForm& form) {
+  if (form.motion == nullptr) return false;
+  const std::string unit = form.motion, polynomial = "polynomial_" + unit, table = "table_" + unit;
+  return !form.may_stand || t.has(polynomial) || t.has(table);
+}
+
+/// How far two points are apart where that changes from where they stand by a motion.
+Motion around_length(const Table& t, Motion change, double length) {
+  if (change.table.empty()) change.polynomial[0] = length;
+  for (std::array<double, 2>& row : change.table)
+    if ((row[1] += length) <= 0.)
+      t.refuse("table_m",
+               fmt::format("table_m shortens a distance of {:.6g} m by {:.6g} m; accepted "
+                           "is what leaves some of it",
+                           length, length - row[1]));
+  return change;
+}
+
 /// Keys that other kinds of joint have.
 void refuse_foreign(const Table& t, const JointForm& form) {
   const auto refuse = [&](const char* key, bool wanted) {
@@ -143,7 +163,9 @@ Joint read_joint(const Table& t, const SystemScene& scene) {
     j.other_axis = read_direction(t, "other_axis", false);
     check_square(t, "other_axis", j.other_axis, "axis", j.axis);
   }
-  if (form.motion) j.motion = read_drive(t, form.motion);
+  if (is_driven(t, form)) j.motion = read_drive(t, form.motion);
+  if (is_driven(t, form) && form.kind == JointKind::distance)
+    j.motion = around_length(t, j.motion, (j.other_point - j.point).norm());
   return j;
 }
 
@@ -184,7 +206,7 @@ Motion read_force_over_time(const Table& t, const std::string& constant, const s
 void read_force(const Table& t, SystemScene& scene) {
   const bool planar = scene.system.planar;
   auto& force = scene.system.forces.emplace_back();
-  force.on = read_part(t, "on", t.string("on"), scene, false);
+  force.on = read_part(t, "on", t.string("on"), scene, Naming::driven);
   force.moment = t.has("moment_n_m") || t.has("polynomial_n_m") || t.has("table_n_m");
   if (force.moment) {
     for (const char* key : {"force_n", "polynomial_n", "table_n", "point_m"})
@@ -207,13 +229,24 @@ void read_force(const Table& t, SystemScene& scene) {
 void read_joints(const Table& root, SystemScene& scene, NameBook& names) {
   for (const Table& t : root.tables("joint")) {
     scene.names.joints.push_back(names.claim(t));
+    if (t.boolean("trace", false))
+      scene.traced.joints.push_back(static_cast<int>(scene.system.joints.size()));
     scene.system.joints.push_back(read_joint(t, scene));
   }
 }
 
-void read_springs(const Table& root, SystemScene& scene) {
-  for (const Table& t : root.tables("spring"))
+void read_springs(const Table& root, SystemScene& scene, NameBook& names) {
+  for (const Table& t : root.tables("spring")) {
+    scene.names.springs.push_back(t.has("name") ? names.claim(t) : "");
+    if (t.boolean("trace", false)) {
+      if (!t.has("name"))
+        t.refuse("trace",
+                 "trace = true wants a name for the spring's column, and key 'name' is "
+                 "missing");
+      scene.traced.springs.push_back(static_cast<int>(scene.system.springs.size()));
+    }
     scene.system.springs.push_back(read_spring_damper(t, scene));
+  }
 }
 
 void read_forces(const Table& root, SystemScene& scene) {
@@ -222,9 +255,14 @@ void read_forces(const Table& root, SystemScene& scene) {
 
 void read_system_sensors(const Table& root, SystemScene& scene, NameBook& names) {
   for (const Table& t : root.tables("sensor")) {
-    scene.names.sensors.push_back(names.claim(t));
+    const std::string name = names.claim(t), on = t.string("on");
+    if (scene.track && (on == "rail" || on == "sleeper")) {
+      scene.track->sensors.push_back(read_sensor(t, *scene.track));
+      continue;
+    }
+    scene.names.sensors.push_back(name);
     SystemSensor sensor;
-    sensor.on = read_part(t, "on", t.string("on"), scene, false);
+    sensor.on = read_part(t, "on", on, scene, Naming::sensed);
     const auto index = static_cast<std::size_t>(sensor.on.index);
     if (sensor.on.kind == Part::Kind::body && !t.has("position_m"))
       sensor.point = scene.system.bodies[index].position;

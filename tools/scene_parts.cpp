@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "scene_read.h"
@@ -117,16 +118,31 @@ std::string NameBook::claim(const Table& t) {
   return name;
 }
 
+namespace {
+
+/// A body's or a beam's. Beside a track a sensor's `on` tells it from rails and sleepers.
+std::string claim_part(const Table& t, const SystemScene& scene, NameBook& names) {
+  std::string name = names.claim(t);
+  for (const char* kept : {"rail", "sleeper", "wheelset"})
+    if (scene.track && name == kept)
+      t.refuse("name", fmt::format("name = \"{}\" is what a sensor of a track is on; accepted is "
+                                   "another",
+                                   name));
+  return name;
+}
+
+}  // namespace
+
 void read_bodies(const Table& root, SystemScene& scene, NameBook& names) {
   for (const Table& t : root.tables("body")) {
-    scene.names.bodies.push_back(names.claim(t));
+    scene.names.bodies.push_back(claim_part(t, scene, names));
     scene.system.bodies.push_back(read_body(t, scene.system.planar));
   }
 }
 
 void read_beams(const Table& root, SystemScene& scene, NameBook& names) {
   for (const Table& t : root.tables("beam")) {
-    scene.names.beams.push_back(names.claim(t));
+    scene.names.beams.push_back(claim_part(t, scene, names));
     scene.system.beams.push_back(read_beam(t, scene.system.planar));
     scene.bars.push_back({read_bar(t), read_reference_line(t)});
     if (std::holds_alternative<Section>(scene.bars.back().bar.shape))
@@ -138,9 +154,10 @@ void read_beams(const Table& root, SystemScene& scene, NameBook& names) {
 }
 
 Part read_part(const Table& t, std::string_view key, const std::string& name,
-               const SystemScene& scene, bool ground_too) {
-  if (ground_too && name == "ground") return ground();
-  std::string known = ground_too ? "\"ground\"" : "";
+               const SystemScene& scene, Naming naming) {
+  const bool held = naming == Naming::held;
+  if (held && name == "ground") return ground();
+  std::string known = held ? "\"ground\"" : "";
   const auto list = [&](const std::vector<std::string>& names) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (names[i] == name) return static_cast<int>(i);
@@ -150,30 +167,57 @@ Part read_part(const Table& t, std::string_view key, const std::string& name,
   };
   if (const int i = list(scene.names.bodies); i >= 0) return body(i);
   if (const int i = list(scene.names.beams); i >= 0) return beam(i);
-  const bool rail = name.starts_with("rail ");
-  t.refuse(key,
-           fmt::format("{} has \"{}\", which is {}; accepted are {}", key, name.substr(0, 64),
-                       rail ? "the rail of a track, and the scene has none" : "unknown", known));
+  const int rails = scene.track ? scene.track->track.rails : 0;
+  if (held && rails > 0)
+    if (const int i = list(rails == 2 ? std::vector<std::string>{"rail left", "rail right"}
+                                      : std::vector<std::string>{"rail left"});
+        i >= 0)
+      return rail(i);
+  if (naming == Naming::sensed && rails > 0) known += ", \"rail\", \"sleeper\"";
+  const char* what = "unknown";
+  if (name.starts_with("rail "))
+    what = rails == 0                 ? "the rail of a track, and the scene has none"
+           : held                     ? "a rail that the track has not"
+           : naming == Naming::driven ? "a rail, on which a force is a [[load]]"
+                                      : "a rail, on which a sensor has on = \"rail\" and rail";
+  t.refuse(key, fmt::format("{} has \"{}\", which is {}; accepted are {}", key, name.substr(0, 64),
+                            what, known));
 }
+
+namespace {
+
+/// Where a point lies in a bar: along it, and beside its line.
+void check_reach(const Table& t, std::string_view key, const std::string& bar,
+                 const Eigen::Vector3d& local, double length, const SectionSource& shape) {
+  // 1e-9 of the length forgives the rounding of decimals.
+  if (local.x() < -1e-9 * length || local.x() > length * (1. + 1e-9))
+    t.refuse(key, fmt::format("{} is at {:.6g} m along {}; accepted is 0 to {:.6g} m", key,
+                              local.x(), bar, length));
+  const double across = std::hypot(local.y(), local.z());
+  const double most = extent(shape);
+  if (across > most)
+    t.refuse(key, fmt::format("{} is {:.6g} m beside {}; accepted is at most {:.6g} m, what its "
+                              "section measures",
+                              key, across, bar, most));
+}
+
+}  // namespace
 
 Eigen::Vector3d read_point(const Table& t, std::string_view key, const Part& part,
                            const SystemScene& scene) {
   Eigen::Vector3d point = read_in_plane(t, key, kPlace, scene.system.planar);
-  if (part.kind != Part::Kind::beam) return point;
   const auto index = static_cast<std::size_t>(part.index);
-  const FlexibleBeam& b = scene.system.beams[index];
-  const Eigen::Vector3d local = b.axes.transpose() * (point - b.start);
-  const std::string& name = scene.names.beams[index];
-  // 1e-9 of the length forgives the rounding of decimals.
-  if (local.x() < -1e-9 * b.length || local.x() > b.length * (1. + 1e-9))
-    t.refuse(key, fmt::format("{} is at {:.6g} m along beam \"{}\"; accepted is 0 to {:.6g} m", key,
-                              local.x(), name, b.length));
-  const double across = std::hypot(local.y(), local.z());
-  const double most = extent(scene.bars[index].bar.shape);
-  if (across > most)
-    t.refuse(key, fmt::format("{} is {:.6g} m beside beam \"{}\"; accepted is at most {:.6g} m, "
-                              "what its section measures",
-                              key, across, name, most));
+  if (part.kind == Part::Kind::beam) {
+    const FlexibleBeam& b = scene.system.beams[index];
+    check_reach(t, key, fmt::format("beam \"{}\"", scene.names.beams[index]),
+                b.axes.transpose() * (point - b.start), b.length, scene.bars[index].bar.shape);
+  } else if (part.kind == Part::Kind::rail) {
+    const TrackScene& track = scene.track->track;
+    const double side = track.rails == 1 ? 0. : (index == 0 ? .5 : -.5) * track.rail_spacing;
+    check_reach(t, key, index == 0 ? "the left rail" : "the right rail",
+                point - Eigen::Vector3d(0., side, 0.), track.length(), scene.track->rail.shape);
+    point.x() = std::clamp(point.x(), 0., track.length());
+  }
   return point;
 }
 

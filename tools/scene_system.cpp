@@ -36,17 +36,12 @@ StepScene read_step(const Table& t) {
   constexpr TimeScheme kSchemes[] = {TimeScheme::generalised_alpha, TimeScheme::backward_euler,
                                      TimeScheme::energy_momentum};
   StepScene s = read_times(t);
-  s.start = Start::released;
+  s.start =
+      t.choice("start", {"equilibrium", "released"}, 1) == 0 ? Start::equilibrium : Start::released;
   s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.9);
   s.scheme =
       kSchemes[t.choice("scheme", {"generalised-alpha", "backward-euler", "energy-momentum"}, 0)];
-  if (s.steps % s.steps_per_frame != 0)
-    t.refuse("duration_s",
-             "the run is written in whole frames; accepted is a duration_s that is a "
-             "multiple of frame_s");
-  if (s.steps_per_frame > std::numeric_limits<int>::max())
-    t.refuse("frame_s", fmt::format("a frame of {} steps is too long; accepted are {}",
-                                    s.steps_per_frame, std::numeric_limits<int>::max()));
+  check_frames(t, s);
   return s;
 }
 
@@ -95,15 +90,20 @@ SystemScene read_system_scene(const Table& root) {
   SystemScene scene;
   NameBook names;
   scene.file = root.file();
-  refuse_track_keys(root);
+  if (!root.has("track")) refuse_track_keys(root);
   read_whole(root, scene.system);
-  scene.step = read_step(root.table("step"));
   scene.options = read_hold(root);
+  if (root.has("track")) {
+    scene.track = read_track_beside(root, scene, names);
+    scene.step = *scene.track->step;
+  } else {
+    scene.step = read_step(root.table("step"));
+  }
   read_bodies(root, scene, names);
   read_beams(root, scene, names);
   check_count(root, scene.system);
   read_joints(root, scene, names);
-  read_springs(root, scene);
+  read_springs(root, scene, names);
   read_forces(root, scene);
   read_system_sensors(root, scene, names);
   root.finish();
@@ -113,15 +113,8 @@ SystemScene read_system_scene(const Table& root) {
 }  // namespace
 
 const char* key_of_system(const Table& root) {
-  const bool track = root.has("track");
-  for (const char* key : kSystemKeys) {
-    if (!root.has(key)) continue;
-    if (track)
-      root.refuse(key, fmt::format("[{}] and [track] in one scene are not stepped together; "
-                                   "accepted is either bodies and beams, or a track",
-                                   key));
-    return key;
-  }
+  for (const char* key : kSystemKeys)
+    if (root.has(key)) return key;
   return nullptr;
 }
 

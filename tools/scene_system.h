@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,26 +16,32 @@ struct BeamBar {
   ReferenceLine line;
 };
 
-/// Names of a system's things, in the order in which it has them.
+/// Names of a system's things, in the order in which it has them. A spring may be without.
 struct SystemNames {
-  std::vector<std::string> bodies, beams, joints, sensors;
+  std::vector<std::string> bodies, beams, joints, springs, sensors;
 };
 
-/// One scene of bodies, beams and joints without a track, every number checked and in SI.
+/// Joints and springs whose forces the trace has, by index.
+struct TracedForces {
+  std::vector<int> joints, springs;
+};
+
+/// One scene of bodies, beams and joints, alone or beside a track, every number checked and in SI.
 /// config/README.md, "Systems", has it key by key.
 struct SystemScene {
   std::filesystem::path file;
-  System system;              // beams without section, material, rule and axis
-  std::vector<BeamBar> bars;  // [beams] of which these come
+  std::optional<Scene> track;  // with loads, sensors on rails and sleepers, and the step
+  System system;               // beams without section, material, rule and axis
+  std::vector<BeamBar> bars;   // [beams] of which these come
   SystemNames names;
+  TracedForces traced;
   SystemOptions options{};  // without scheme and steps, which `step` has
   StepScene step{};
 };
 
 using AnyScene = std::variant<Scene, SystemScene>;
 
-/// Reads and checks a scene of either kind. Throws InputError, also where a scene has both a track
-/// and bodies or beams.
+/// Reads and checks a scene of either kind. Throws InputError.
 AnyScene read_any_scene(const std::filesystem::path& file,
                         const std::vector<std::string>& overrides = {});
 

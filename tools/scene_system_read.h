@@ -19,19 +19,29 @@ class NameBook {
   std::map<std::string, std::string> owner_;  // name -> the table that gave it first
 };
 
+/// The track of a scene that has a system too, its loads and its step. Throws InputError at what is
+/// not stepped beside bodies.
+Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names);
+
 void read_bodies(const Table& root, SystemScene& scene, NameBook& names);
 void read_beams(const Table& root, SystemScene& scene, NameBook& names);
 
-/// The part of that name; the ground where it is accepted. Throws InputError, naming all there are.
+/// What a key names.
+enum class Naming {
+  held,    // of joints and springs: the ground, bodies, beams and rails
+  driven,  // of forces: bodies and beams
+  sensed   // of sensors: the same; what is on a track has other keys
+};
+/// The part of that name. Throws InputError, naming all there are.
 Part read_part(const Table& t, std::string_view key, const std::string& name,
-               const SystemScene& scene, bool ground_too);
-/// A point of a part, at rest; on a beam within its length and not farther from its line than the
-/// section is large.
+               const SystemScene& scene, Naming naming);
+/// A point of a part, at rest; on a beam or a rail within its length and not farther from its line
+/// than the section is large.
 Eigen::Vector3d read_point(const Table& t, std::string_view key, const Part& part,
                            const SystemScene& scene);
 
 void read_joints(const Table& root, SystemScene& scene, NameBook& names);
-void read_springs(const Table& root, SystemScene& scene);
+void read_springs(const Table& root, SystemScene& scene, NameBook& names);
 void read_forces(const Table& root, SystemScene& scene);
 void read_system_sensors(const Table& root, SystemScene& scene, NameBook& names);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,10 @@ struct Sensors {
 /// @param head  the railhead of the same track
 Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& sections,
                    const Railhead& head);
+
+/// Displacement of a sensor on a rail or a sleeper over the track; 0 x, 1 y, 2 z. None on a
+/// wheelset.
+std::optional<Functional> functional_of(const SensorScene& sensor, const Scene& scene,
+                                        const Track& track, int direction);
 
 }  // namespace railstep

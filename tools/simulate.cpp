@@ -50,6 +50,18 @@ void append_sensors(const Simulation& run, std::vector<double>& row) {
   }
 }
 
+/// kJointQuantities of traced joints, then the pull of traced springs.
+void append_forces(const Simulation& run, std::vector<double>& row) {
+  const TracedForces& traced = run.system()->traced;
+  for (const int joint : traced.joints) {
+    const JointForce f = joint_force(run.model(), run.state, joint);
+    row.insert(row.end(), f.force, f.force + 3);
+    row.insert(row.end(), f.moment, f.moment + 3);
+  }
+  for (const int spring : traced.springs)
+    row.push_back(run.state.row_force[run.model().system.joint_rows + spring]);
+}
+
 void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
   const Model& model = run.model();
   row.assign({static_cast<double>(run.state.steps) * model.scheme.dt});
@@ -64,7 +76,9 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
   const std::size_t probes = row.size();
   row.resize(probes + static_cast<std::size_t>(model.probe.count));
   read_probes(model, run.state, outputs, row.data() + probes);
-  if (run.system() != nullptr) append_sensors(run, row);
+  if (run.system() == nullptr) return;
+  append_sensors(run, row);
+  append_forces(run, row);
 }
 
 /// Axes of the rails that the model's lines carry.
@@ -197,13 +211,18 @@ std::string place_in_system(const SystemModel& system, const SystemNames& names,
     return fmt::format("{} of node {} of beam \"{}\"", kNodeUnknowns[which], at / width,
                        names.beams[static_cast<std::size_t>(b)]);
   }
+  for (std::int32_t p = 0; p < system.ports; ++p)
+    if (unknown >= system.port[p].first && unknown < system.port[p].first + 9)
+      return fmt::format("a place of the {} rail that a joint or spring pulls at",
+                         system.port[p].rail == 0 ? "left" : "right");
   return "padding of the system";
 }
 
 }  // namespace
 
 std::string unknown_place(const Simulation& run, std::int32_t unknown) {
-  if (run.system() == nullptr) return place_in_track(run.model(), unknown);
+  if (run.system() == nullptr || unknown < run.model().system.first)
+    return place_in_track(run.model(), unknown);
   const SystemModel& system = run.model().system;
   return place_in_system(system, run.system()->names, unknown - system.first);
 }

@@ -141,27 +141,53 @@ Superelement::Rows DividedLine::rail_row(const Functional::OnRail& point, int at
   return own.condense(row.transpose());
 }
 
+DividedLine::Spread DividedLine::spread(const Functional& functional) const {
+  Spread result{sleeper_load(track_, line_, functional), {}};
+  for (const Functional::OnRail& point : functional.rail) {
+    const int rail = point.at.rail;
+    if (line_.rail_factor[static_cast<std::size_t>(rail)] == 0.) continue;
+    const int at = element_at(track_, point.at.x);
+    const Superelement::Rows row = rail_row(point, at);
+    const std::vector<int> ends = end_unknowns(line_, rail, element(rail), at);
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      if (ends[i] >= 0) result.load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));
+    result.points.push_back({rail, at, row});
+  }
+  return result;
+}
+
 Eigen::VectorXd DividedLine::from(const Port& port, const Functional& functional,
                                   int points) const {
   refuse_free_modes();
+  const Superelement& own = element(port.rail);
   const Superelement::Rows rows = port_rows(port, points);
-  Eigen::VectorXd load = sleeper_load(track_, line_, functional);
+  const Spread read = spread(functional);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(track_.elements() * (points + 1));
-  for (const Functional::OnRail& point : functional.rail) {
-    if (line_.rail_factor[static_cast<std::size_t>(point.at.rail)] == 0.) continue;
-    const int at = element_at(track_, point.at.x);
-    const Superelement& own = element(point.at.rail);
-    const Superelement::Rows row = rail_row(point, at);
-    const std::vector<int> ends = end_unknowns(line_, point.at.rail, own, at);
-    for (std::size_t i = 0; i < ends.size(); ++i)
-      if (ends[i] >= 0) load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));
-    if (same_rail(line_, port.rail, point.at.rail))
-      result.segment(at * (points + 1), points + 1) += own.held(rows, row).col(0);
-  }
-  const Eigen::VectorXd moved = factor_.solve(load);
+  for (const Spread::OnElement& point : read.points)
+    if (same_rail(line_, port.rail, point.rail))
+      result.segment(point.element * (points + 1), points + 1) += own.held(rows, point.rows).col(0);
+  const Eigen::VectorXd moved = factor_.solve(read.load);
   for (int e = 0; e < track_.elements(); ++e)
     result.segment(e * (points + 1), points + 1) +=
-        rows.ends * gather(moved, end_unknowns(line_, port.rail, element(port.rail), e)).col(0);
+        rows.ends * gather(moved, end_unknowns(line_, port.rail, own, e)).col(0);
+  return result;
+}
+
+Eigen::VectorXd DividedLine::flexibility(const std::vector<Functional>& reads,
+                                         const Functional& force) const {
+  refuse_free_modes();
+  const Spread acting = spread(force);
+  const Eigen::VectorXd moved = factor_.solve(acting.load);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(reads.size()));
+  for (std::size_t i = 0; i < reads.size(); ++i) {
+    const Spread read = spread(reads[i]);
+    double sum = read.load.dot(moved);
+    for (const Spread::OnElement& a : acting.points)
+      for (const Spread::OnElement& b : read.points)
+        if (a.element == b.element && same_rail(line_, a.rail, b.rail))
+          sum += element(a.rail).held(a.rows, b.rows)(0, 0);
+    result[static_cast<Eigen::Index>(i)] = sum;
+  }
   return result;
 }
 

@@ -53,12 +53,6 @@ void check_functional(const Track& track, const Functional& functional) {
   }
 }
 
-/// A pad with a length acts on the inner nodes of elements, which a divided line lets follow.
-std::unique_ptr<LineFlexibility> divided_line(const Track& track, const Line& line, int parts) {
-  if (has_long_pads(track)) return std::make_unique<RefinedLine>(track, line, parts);
-  return std::make_unique<DividedLine>(track, line, parts);
-}
-
 }  // namespace
 
 struct ResidualFlexibility::Pair {
@@ -83,9 +77,9 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
     if (!carries(carried[0], 2) && !carries(carried[0], 8) && !carries(carried[1], 2) &&
         !carries(carried[1], 8))
       continue;
-    Pair pair{&line, carried, divided_line(track_, line, points), nullptr};
+    Pair pair{&line, carried, exact_line(track_, line, points), nullptr};
     if (bases_.empty())
-      pair.model = divided_line(track_, line, 1);
+      pair.model = exact_line(track_, line, 1);
     else
       pair.model = std::make_unique<ReducedLine>(track_, line, bases_[i]);
     pairs_.push_back(std::move(pair));

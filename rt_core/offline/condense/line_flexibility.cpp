@@ -1,5 +1,7 @@
 #include "offline/condense/line_flexibility.h"
 
+#include "offline/track/pad.h"
+
 namespace railstep {
 
 std::vector<int> carried_unknowns(const Line& line, int rail) {
@@ -14,6 +16,11 @@ bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
   if (factor.info() != Eigen::Success) return false;
   const Eigen::VectorXd diagonal = factor.permutationP() * Eigen::VectorXd(stiffness.diagonal());
   return (factor.vectorD().array() > 1e-12 * diagonal.array()).all();
+}
+
+std::unique_ptr<LineFlexibility> exact_line(const Track& track, const Line& line, int parts) {
+  if (has_long_pads(track)) return std::make_unique<RefinedLine>(track, line, parts);
+  return std::make_unique<DividedLine>(track, line, parts);
 }
 
 bool same_rail(const Line& line, int a, int b) { return a == b || line.mirrored; }

@@ -2,6 +2,7 @@
 #include <Eigen/SparseCholesky>
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,12 @@ class LineFlexibility {
   /// The functional under a unit force of a port at each place; [elements x (points + 1)].
   virtual Eigen::VectorXd from(const Port& port, const Functional& functional,
                                int points) const = 0;
+  /// Each of `reads` under a unit force spread by `force`, whatever their directions; m/N. Weights
+  /// of rails are in.
+  virtual Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                                      const Functional& force) const = 0;
+  /// Whether the line has no free rigid mode; the queries want that.
+  virtual bool held() const { return true; }
 };
 
 /// The line with every element divided into `parts`, taken at their ends, where the element is
@@ -45,8 +52,21 @@ class DividedLine : public LineFlexibility {
   Eigen::VectorXd under(const Port& port, double z, int points) const override;
   Strip between(const Port& a, const Port& b, int points) const override;
   Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
+  Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                              const Functional& force) const override;
+  bool held() const override { return held_; }
 
  private:
+  /// A functional over the line: what reaches the elements' end nodes, and its points' own rows.
+  struct Spread {
+    struct OnElement {
+      int rail, element;
+      Superelement::Rows rows;
+    };
+    Eigen::VectorXd load;  // [unknowns]
+    std::vector<OnElement> points;
+  };
+  Spread spread(const Functional& functional) const;
   const Superelement& element(int rail) const;
   Superelement::Rows port_rows(const Port& port, int points) const;
   Superelement::Rows rail_row(const Functional::OnRail& point, int element) const;
@@ -72,6 +92,9 @@ class RefinedLine : public LineFlexibility {
   Eigen::VectorXd under(const Port& port, double z, int points) const override;
   Strip between(const Port& a, const Port& b, int points) const override;
   Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
+  Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                              const Functional& force) const override;
+  bool held() const override { return held_; }
 
  private:
   /// Of a port at the places of one element of the track; [unknowns][points + 1]
@@ -95,6 +118,8 @@ class ReducedLine : public LineFlexibility {
   Eigen::VectorXd under(const Port& port, double z, int points) const override;
   Strip between(const Port& a, const Port& b, int points) const override;
   Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
+  Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                              const Functional& force) const override;
 
  private:
   /// shapes / omega at a port's places; [elements x (points + 1)][kept]
@@ -113,6 +138,10 @@ bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
 std::vector<int> carried_unknowns(const Line& line, int rail);
 
 /// Whether two rails are one to a line: the same, or mirror images.
+/// The line as exactly as with that many parts of every element. A pad with a length acts on the
+/// inner nodes of elements, which a divided line lets follow.
+std::unique_ptr<LineFlexibility> exact_line(const Track& track, const Line& line, int parts);
+
 bool same_rail(const Line& line, int a, int b);
 
 /// Element that holds a place of the rail. Throws std::out_of_range off the rail.

@@ -47,4 +47,17 @@ Eigen::VectorXd ReducedLine::from(const Port& port, const Functional& functional
          (basis_.shapes.transpose() * load).cwiseQuotient(basis_.omega);
 }
 
+Eigen::VectorXd ReducedLine::flexibility(const std::vector<Functional>& reads,
+                                         const Functional& force) const {
+  const auto moved = [&](const Functional& one) -> Eigen::VectorXd {
+    const Eigen::VectorXd row(functional_row(track_, line_, one));
+    return (basis_.shapes.transpose() * row).cwiseQuotient(basis_.omega);
+  };
+  const Eigen::VectorXd acting = moved(force);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(reads.size()));
+  for (std::size_t i = 0; i < reads.size(); ++i)
+    result[static_cast<Eigen::Index>(i)] = moved(reads[i]).dot(acting);
+  return result;
+}
+
 }  // namespace railstep

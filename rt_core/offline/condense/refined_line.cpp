@@ -103,4 +103,15 @@ Eigen::VectorXd RefinedLine::from(const Port& port, const Functional& functional
   return result;
 }
 
+Eigen::VectorXd RefinedLine::flexibility(const std::vector<Functional>& reads,
+                                         const Functional& force) const {
+  refuse_free_modes();
+  const Eigen::VectorXd load(functional_row(track_, line_, force));
+  const Eigen::VectorXd moved = factor_.solve(load);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(reads.size()));
+  for (std::size_t i = 0; i < reads.size(); ++i)
+    result[static_cast<Eigen::Index>(i)] = functional_row(track_, line_, reads[i]).dot(moved);
+  return result;
+}
+
 }  // namespace railstep

@@ -7,6 +7,7 @@
 #include <complex>
 
 #include "offline/beam/linearise.h"
+#include "offline/track/krylov.h"
 #include "offline/track/statics.h"
 #include "online/step/residual.h"
 
@@ -27,10 +28,8 @@ void add_receptances(const Track& track, const Line& line, const std::vector<Rai
     moved += rows.back().norm();
   }
   if (moved == 0.) return;
-  const Eigen::SparseMatrix<Value> dynamic = line.stiffness.cast<Value>() +
-                                             Value(0., omega) * line.damping.cast<Value>() -
-                                             Value(omega * omega) * line.mass.cast<Value>();
-  const Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor(dynamic);
+  const Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor(
+      dynamic_stiffness(line, Value(0., omega)));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::VectorXcd load = Eigen::VectorXd(rows[i]).cast<Value>();
     sums[i] += (load.transpose() * factor.solve(load))(0, 0);

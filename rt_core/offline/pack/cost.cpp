@@ -69,7 +69,8 @@ std::int64_t contact(const Model& model, std::int64_t wheels) {
     if (model.wheelset[i].guide == Guide::augmented_lagrangian && model.wheelset[i].cap > turns)
       turns = model.wheelset[i].cap;
   const std::int64_t newton = wheels * wheels * wheels / 3 + 12 * wheels * wheels + 40 * wheels;
-  const std::int64_t locate = wheels * kLocateSteps * 300;
+  const std::int64_t signals = wheels * (1 + std::int64_t{model.signals}) * 50;
+  const std::int64_t locate = wheels * kLocateSteps * 300 + signals;
   return locate + turns * (kPortSweeps * newton + 60 * wheels);
 }
 

@@ -17,6 +17,12 @@ const std::int32_t* PackedModel::keep(std::vector<std::int32_t> values) {
       ->data();
 }
 
+SignalModel PackedModel::keep(const Signal& signal) {
+  SignalModel model = signal.model();
+  if (model.intervals > 0) model.coefficient = keep(signal.coefficient);
+  return model;
+}
+
 namespace {
 
 /// Whether a force on a rail, at a place that is no node, reaches a line.
@@ -65,6 +71,17 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.kind = kind_of(load.rail, load.z);
 }
 
+void PackedModel::add_irregularity(const Track& track, const RailIrregularity& irregularity) {
+  if (model_.signals == kMaxSignals)
+    throw std::invalid_argument("more than 32 irregularities and defects of the rails");
+  if (irregularity.rail < 0 || irregularity.rail >= track.rails)
+    throw std::invalid_argument("an irregularity of a rail that the track does not have");
+  if (irregularity.direction != 1 && irregularity.direction != 2)
+    throw std::invalid_argument("an irregularity is lateral or vertical");
+  model_.signal[model_.signals++] = {irregularity.rail, irregularity.direction,
+                                     keep(irregularity.signal)};
+}
+
 void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
                                const std::array<Railhead, 2>& heads) {
   if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
@@ -104,6 +121,7 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   for (const Wheelset::Force& force : wheelset.forces)
     packed.force[packed.forces++] = {
         force.direction, static_cast<std::int32_t>(force.table.size() / 2), keep(force.table)};
+  for (const std::size_t rail : {0u, 1u}) packed.tread[rail] = keep(wheelset.tread[rail]);
 }
 
 void PackedModel::set_start(std::vector<double> state) {
@@ -136,6 +154,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (lines_.empty()) throw std::invalid_argument("nothing moves the track");
   model_.bodies = model_.unknowns;
   for (const MovingLoad& load : traffic.loads) add_load(track, load);
+  for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   if (options.gravity != 0.) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);

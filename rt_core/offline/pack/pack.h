@@ -5,6 +5,7 @@
 
 #include "offline/condense/flexibility.h"
 #include "offline/condense/modal.h"
+#include "offline/irregularity/signal.h"
 #include "offline/track/functional.h"
 #include "online/model/state.h"
 
@@ -36,6 +37,14 @@ struct Wheelset {
     std::vector<double> table;  // t (s), N, t, N, ...
   };
   std::vector<Force> forces = {};
+  std::array<Signal, 2> tread = {};  // of the left and right wheel, over the distance rolled
+};
+
+/// An irregularity or a defect of a rail.
+struct RailIrregularity {
+  int rail;       // 0 left, 1 right
+  int direction;  // 1 y, 2 z
+  Signal signal;
 };
 
 /// The railhead that wheels meet.
@@ -60,6 +69,7 @@ struct Traffic {
   std::vector<Wheelset> wheelsets = {};
   Railhead head = {};  // of both rails
   std::vector<Probe> probes = {};
+  std::vector<RailIrregularity> irregularities = {};
   std::vector<int> held = {};                         // rails that a multibody system holds on to
   std::optional<Railhead> right_head = std::nullopt;  // of the right rail where it differs
 };
@@ -112,6 +122,8 @@ class PackedModel {
   template <typename Number>
   void keep_tables(const Line& line, LineModel& packed, const Number& number);
   void add_load(const Track& track, const MovingLoad& load);
+  SignalModel keep(const Signal& signal);
+  void add_irregularity(const Track& track, const RailIrregularity& irregularity);
   void add_wheelset(const Track& track, const Wheelset& wheelset,
                     const std::array<Railhead, 2>& heads);
   void add_weight(const Track& track, double gravity);

@@ -11,6 +11,7 @@
 #include "online/step/residual.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
+#include "online/step/wheel.h"
 
 namespace railstep {
 
@@ -101,14 +102,16 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     }
   Pose pose{static_lines(packed, statics, forces, gravity), {}};
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& w = model.wheelset[b];
+    const double up[3] = {0., 0., 1.}, rolled = w.speed * time, x = w.start + rolled;
     double height[2];
     for (const std::size_t rail : {0u, 1u}) {
       const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
       height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
                      residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
-                                           static_cast<int>(port));
+                                           static_cast<int>(port)) +
+                     irregularity(model, w, static_cast<int>(rail), up, x, rolled).depth;
     }
-    const WheelsetModel& w = model.wheelset[b];
     const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
                             std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
     const double roll =
@@ -137,6 +140,26 @@ void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
   }
 }
 
+/// Times around 0, s, between which the static shape's velocity is taken: at an end of the rail
+/// only on the side where all that stands on it still does.
+struct Window {
+  double from, to;
+};
+Window window(const Model& model, double length) {
+  constexpr double dt = 1e-6;  // s; the shape's change over it is far above rounding, and linear
+  Window w{-dt, dt};
+  const auto narrow = [&](double x, double speed) {
+    const auto is_on = [&](double t) { return x + speed * t >= 0. && x + speed * t <= length; };
+    if (is_on(0.) && !is_on(w.from)) w.from = 0.;
+    if (is_on(0.) && !is_on(w.to)) w.to = 0.;
+  };
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    narrow(place(model, model.load[i], 0).x, model.load[i].speed);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    narrow(model.wheelset[b].start, model.wheelset[b].speed);
+  return w;
+}
+
 }  // namespace
 
 std::vector<double> start_released(const PackedModel& packed) {
@@ -156,19 +179,20 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
   State state = state_on(model, memory.data());
   const Statics statics(track);
   const Pose at = equilibrium(statics, packed, gravity, 0.);
-  const double dt = 1e-6;  // s; the shape's change over it is far above rounding, and linear
-  const Pose later = equilibrium(statics, packed, gravity, dt);
-  const Pose before = equilibrium(statics, packed, gravity, -dt);
+  const Window w = window(model, track.length());
+  const Pose later = equilibrium(statics, packed, gravity, w.to);
+  const Pose before = equilibrium(statics, packed, gravity, w.from);
+  const double span = w.to > w.from ? w.to - w.from : 1.;  // s; without one there is no difference
   for (std::size_t l = 0; l < packed.lines().size(); ++l) {
-    put(packed.lines()[l], model.line[l], at.lines[l],
-        (later.lines[l] - before.lines[l]) / (2. * dt), state);
+    put(packed.lines()[l], model.line[l], at.lines[l], (later.lines[l] - before.lines[l]) / span,
+        state);
   }
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const std::size_t set = static_cast<std::size_t>(b);
     for (std::size_t k = 0; k < 6; ++k) {
       state.u[model.wheelset[b].first + static_cast<int>(k)] = at.wheelsets[set][k];
       state.v[model.wheelset[b].first + static_cast<int>(k)] +=
-          (later.wheelsets[set][k] - before.wheelsets[set][k]) / (2. * dt);
+          (later.wheelsets[set][k] - before.wheelsets[set][k]) / span;
     }
     for (int i = 0; i < 2; ++i) state.wheel_force[2 * b + i] = wheel_load(model.wheelset[b]);
   }

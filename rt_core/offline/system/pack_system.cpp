@@ -1,6 +1,7 @@
 #include "offline/system/pack_system.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -43,14 +44,73 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
         "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
 }
 
+/// Index 3 has -rho_inf as a double root: with rho_inf = 1 joint forces swing from step to step and
+/// grow (Cardona and Geradin 1989). Projections take that away, and so do rows of velocities.
+void check_damping(const System& system, const SystemOptions& o, const Scheme& c) {
+  const bool index_3 =
+      o.hold == Hold::direct || (o.hold == Hold::augmented_lagrangian && o.projections == 0);
+  if (!index_3 || o.energy_momentum || system.joints.empty()) return;
+  // generalised_alpha: a0 / ag = alpha_f / (1 - alpha_f) = rho_inf
+  if (c.a0 >= (1. - 1e-9) * c.ag)
+    throw std::invalid_argument(
+        "hold = \"direct\", or \"augmented-lagrangian\" without projections, and rho_inf = 1: "
+        "nothing damps the joint forces, which swing from step to step and grow; accepted is "
+        "rho_inf below 1, or another hold");
+}
+
+/// By which the equilibrium is looked for: long steps of backward Euler, joints held without
+/// penalty, and all of it as near as round-off lets it.
+SystemOptions still_options(SystemOptions options, double dt) {
+  options.scheme = backward_euler(dt);
+  options.energy_momentum = options.at_rest = false;
+  options.steps_per_frame = 1;
+  options.hold = Hold::direct;
+  options.renew = Renew::every_iteration;
+  options.cap = 40;
+  options.tolerance = 1e-12;
+  options.joint_tolerance = 1e-11;
+  return options;
+}
+
+/// Loads where they are `shift` seconds later.
+Traffic shifted(Traffic traffic, double shift) {
+  for (MovingLoad& load : traffic.loads) load.start += load.speed * shift;
+  return traffic;
+}
+
+std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
+  std::vector<PathOfLoad> all;
+  for (const MovingLoad& load : traffic.loads)
+    all.push_back({load.start, load.speed, track.length()});
+  return all;
+}
+
+/// A track's own start with the lines' part of a rest.
+std::vector<double> lines_at(const Model& track, const Rest& rest) {
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(track)), 0.);
+  const State state = state_on(track, memory.data());
+  std::copy_n(rest.u.begin(), track.unknowns, state.u);
+  std::copy_n(rest.v.begin(), track.unknowns, state.v);
+  return memory;
+}
+
 }  // namespace
+
+const PackedModel* PackedSystem::track() const { return memory_->track.get(); }
 
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
     : memory_(std::make_unique<Memory>()) {
   model_.scheme = options.scheme;
   model_.steps_per_frame = options.steps_per_frame;
   model_.steps = options.steps;
-  build(system, options, nullptr);
+  std::optional<Rest> rest;
+  if (options.at_rest)
+    rest = find_rest(
+        [&](double dt, double) {
+          return std::make_unique<PackedSystem>(system, still_options(options, dt));
+        },
+        {});
+  build(system, options, nullptr, rest);
 }
 
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options, const Track& track,
@@ -68,12 +128,27 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
   Traffic both = traffic;
   for (int rail = 0; rail < track.rails; ++rail) both.held.push_back(rail);
   memory_->track = std::make_unique<PackedModel>(track, both, track_options);
+  std::optional<Rest> rest;
+  if (options.at_rest) {
+    rest = find_rest(
+        [&](double dt, double shift) {
+          PackOptions still = track_options;
+          still.scheme = backward_euler(dt);
+          still.steps_per_frame = 1;
+          return std::make_unique<PackedSystem>(system, still_options(options, dt), track,
+                                                shifted(traffic, shift), still);
+        },
+        paths(track, traffic));
+    memory_->track->set_start(lines_at(memory_->track->model(), *rest));
+  }
   model_ = memory_->track->model();
-  build(system, options, &track);
+  build(system, options, &track, rest);
 }
 
-void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track) {
+void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track,
+                         const std::optional<Rest>& rest) {
   check(system, options, track == nullptr);
+  check_damping(system, options, model_.scheme);
   SystemParts& parts = memory_->parts;
   add_parts(system, parts);
   add_connections(system, track, parts);
@@ -105,7 +180,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.beta = given ? options.beta : .2 / model_.scheme.dt;
   s.tolerance = options.tolerance;
   s.joint_tolerance = options.joint_tolerance;
-  s.rank_tolerance = options.hold == Hold::augmented_lagrangian ? 1e-15 : 1e-10;
+  s.rank_tolerance = 1e-10;
   s.body = parts.bodies.data();
   s.beam = parts.beams.data();
   s.marker = parts.markers.data();
@@ -122,7 +197,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   memory_->ports = track_ports(model_);
   s.port_compliance = memory_->ports.compliance.data();
   s.port_shapes = memory_->ports.shapes.data();
-  const SystemStartState start = start_system(system, parts, model_);
+  const SystemStartState start = start_system(system, parts, model_, rest ? &*rest : nullptr);
   const double penalty = options.penalty > 0. ? options.penalty : 1e9;
   for (std::size_t r = 0; r < parts.joint_rows.size(); ++r)
     parts.rows[r].compliance = start.mobility[r] / (model_.scheme.kg * penalty);

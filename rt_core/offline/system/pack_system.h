@@ -1,8 +1,10 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
+#include "offline/system/rest.h"
 #include "offline/system/system.h"
 #include "online/model/state.h"
 
@@ -18,14 +20,17 @@ struct SystemOptions {
   int cap = 20;         // Newton iterations a step
   int projections = 4;  // iterations of a projection of velocities or accelerations
   int keep_steps = 10;  // of Renew::kept
-  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2; 0: 1e9. Where iterations
-  /// of the energy-momentum scheme reach the cap they begin again, once, with 1e-5 of it.
+  /// Augmented Lagrangian, over each joint row's own mass at rest / dt^2; 0: 1e9. With the
+  /// energy-momentum scheme it acts only while joint rows depend on each other.
   double penalty = 0.;
   double alpha = 0.;  // Baumgarte, 1/s; both 0: alpha = beta = 1 / (5 dt)
   double beta = 0.;
   double tolerance = 1e-8;         // of the forces, over the largest kind of force
   double joint_tolerance = 1e-10;  // m, and 1
   std::int64_t steps = 0;          // of the scene's run
+  /// The start is the static equilibrium under weight, springs, and forces and loads as they are at
+  /// t = 0, with drives at s(0) (rest.h); else all stands as it is given, rails unloaded.
+  bool at_rest = false;
 };
 
 /// A model of a system alone, and the memory its views look into.
@@ -34,7 +39,8 @@ class PackedSystem {
   /// The start is that of the parts' positions and velocities; accelerations and joint forces are
   /// in balance with them. Velocities that the joints do not allow are taken out as by an impulse.
   /// Throws std::invalid_argument on what cannot be built: parts without mass, joints of parts that
-  /// do not exist, points off their beam, motion out of a planar system.
+  /// do not exist, points off their beam, motion out of a planar system; direct joints, or without
+  /// projections, with rho_inf = 1; no equilibrium where one is asked for.
   PackedSystem(const System& system, const SystemOptions& options);
   /// Beside a linear track in full order that carries no wheelsets, and that the system's joints,
   /// springs and sensors may name; the track gives the scheme and the frames. A rail moves only in
@@ -47,10 +53,13 @@ class PackedSystem {
   ~PackedSystem();
 
   const Model& model() const { return model_; }
+  /// The track by itself, with its matrices; null without one.
+  const PackedModel* track() const;
 
  private:
   struct Memory;
-  void build(const System& system, const SystemOptions& options, const Track* track);
+  void build(const System& system, const SystemOptions& options, const Track* track,
+             const std::optional<Rest>& rest);
   Model model_{};
   std::unique_ptr<Memory> memory_;
 };

@@ -224,11 +224,13 @@ std::vector<double> start_velocities(const System& system, const SystemParts& pa
   for (std::size_t b = 0; b < parts.beams.size(); ++b) {
     const FlexibleBeam& beam = system.beams[b];
     const std::vector<double> own = over_nodes(beam, system.planar, [&](int n) {
-      const Eigen::Matrix<double, 9, 1> rest = node_at_rest(beam, n);
+      Eigen::Matrix<double, 9, 1> lever = node_at_rest(beam, n);
+      lever.head<3>() -= beam.start;
       const Vector3d& w = beam.angular_velocity;
       Eigen::Matrix<double, 9, 1> rate;
-      rate << beam.velocity + w.cross(Vector3d(rest.head<3>()) - beam.start),
-          w.cross(Vector3d(rest.segment<3>(3))), w.cross(Vector3d(rest.tail<3>()));
+      for (int field = 0; field < 9; field += 3)
+        rate.segment<3>(field) = w.cross(Vector3d(lever.segment<3>(field)));
+      rate.head<3>() += beam.velocity;
       return Eigen::Matrix<double, 9, 1>(rate.cwiseProduct(free_of(beam, n)));
     });
     std::copy(own.begin(), own.end(), v.begin() + parts.beams[b].first);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <stdexcept>
 
 #include "online/model/beam_chain.h"
@@ -92,12 +93,13 @@ class Mobility {
 /// The system as it stands at the start, in the online workspace.
 struct Standing {
   Model model;
-  std::vector<double> memory, quaternion, zero, v;
+  std::vector<double> memory, quaternion, zero, u, v;
   SystemWorkspace w;
   SystemStart start;
 
-  Standing(const Model& from, std::vector<double> q, std::vector<double> rates)
-      : model(from), quaternion(std::move(q)), v(std::move(rates)) {
+  Standing(const Model& from, std::vector<double> q, std::vector<double> places,
+           std::vector<double> rates)
+      : model(from), quaternion(std::move(q)), u(std::move(places)), v(std::move(rates)) {
     SystemModel& s = model.system;
     model.scheme.kv = model.scheme.kg = 0.;  // so that the velocities are v, accelerations 0
     s.mean = 0;
@@ -106,7 +108,8 @@ struct Standing {
                   0.);
     zero.assign(static_cast<std::size_t>(s.unknowns), 0.);
     w = system_workspace_on(s, memory.data(), nullptr);
-    start = {zero.data(), v.data(), zero.data(), v.data(), quaternion.data()};
+    std::copy(u.begin(), u.end(), w.x);
+    start = {u.data(), v.data(), u.data(), v.data(), quaternion.data()};
     place();
   }
   void place() {
@@ -117,12 +120,12 @@ struct Standing {
     for (std::int32_t r = 0; r < system_rows(model.system); ++r) w.force[r] = 0.;
     Model plain = model;
     plain.scheme.kv = 1.;  // springs have no slope else; what rows want is not used
-    set_rows(plain, 0., w);
+    set_rows(plain, 0., false, w);
   }
   Jet jet(std::int32_t r) const {
     const SystemModel& s = model.system;
     const RowModel& row = s.row[r];
-    const Motions at{zero.data(), v.data(), zero.data(), w.matrix};
+    const Motions at{u.data(), v.data(), zero.data(), w.matrix};
     const Jet motion =
         row.motion >= 0 ? motion_at(s.motion[row.motion], 0.) : Jet{row.offset, 0., 0.};
     return row_jet(row, marker_jet(s, s.marker[row.a], at), marker_jet(s, s.marker[row.b], at),
@@ -152,16 +155,39 @@ void check_joints(const SystemModel& s, const SystemWorkspace& w, double size) {
                                   std::to_string(w.value[r]));
 }
 
-}  // namespace
-
-SystemStartState start_system(const System& system, const SystemParts& parts, const Model& model) {
-  const SystemModel& s = model.system;
-  std::vector<double> quaternion;
+std::vector<double> start_quaternions(const System& system, const Rest* rest) {
+  if (rest != nullptr) return rest->quaternion;
+  std::vector<double> all;
   for (const RigidBody& body : system.bodies) {
     const Eigen::Quaterniond q = body.orientation.normalized();
-    for (const double x : {q.w(), q.x(), q.y(), q.z()}) quaternion.push_back(x);
+    for (const double x : {q.w(), q.x(), q.y(), q.z()}) all.push_back(x);
   }
-  Standing at(model, quaternion, start_velocities(system, parts));
+  return all;
+}
+
+/// Displacements of the system's unknowns.
+std::vector<double> start_places(const SystemModel& s, const Rest* rest) {
+  std::vector<double> u(static_cast<std::size_t>(s.unknowns), 0.);
+  if (rest != nullptr) std::copy_n(rest->u.begin() + s.first, s.unknowns, u.begin());
+  return u;
+}
+
+/// As they are given, and as loads carry the rest along; joints are not asked yet.
+std::vector<double> start_rates(const System& system, const SystemParts& parts,
+                                const SystemModel& s, const Rest* rest) {
+  std::vector<double> v = start_velocities(system, parts);
+  if (rest == nullptr) return v;
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += rest->v[static_cast<std::size_t>(s.first) + i];
+  return v;
+}
+
+}  // namespace
+
+SystemStartState start_system(const System& system, const SystemParts& parts, const Model& model,
+                              const Rest* rest) {
+  const SystemModel& s = model.system;
+  const std::vector<double> quaternion = start_quaternions(system, rest), u = start_places(s, rest);
+  Standing at(model, quaternion, u, start_rates(system, parts, s, rest));
   check_joints(s, at.w, 1.);
   const std::int32_t joints = s.joint_rows, rows = system_rows(s), n = s.unknowns;
   const Mobility mobility(model);
@@ -186,14 +212,17 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
         throw std::invalid_argument("joint " + std::to_string(s.row[r].joint) +
                                     ": no velocities at the start suit it and the others");
   }
-  VectorXd spring_force = VectorXd::Zero(rows);
+  VectorXd spring_force = VectorXd::Zero(rows),
+           fresh_force = spring_force;  // that no rest balances
   for (std::int32_t r = joints; r < rows; ++r) {
     const Jet phi = at.jet(r);
     spring_force[r] = s.row[r].stiffness * phi.x + s.row[r].damping * phi.v;
+    fresh_force[r] = spring_force[r] - (rest != nullptr ? s.row[r].stiffness * phi.x : 0.);
   }
-  VectorXd force = vector(at.w.outer, n) - vector(at.w.inertia, n) - vector(at.w.elastic, n);
+  VectorXd force = -vector(at.w.inertia, n);
+  if (rest == nullptr) force = vector(at.w.outer, n) + force - vector(at.w.elastic, n);
   VectorXd pulled = VectorXd::Zero(n);
-  add_row_forces(s, at.w.gradient, spring_force.data(), pulled.data());
+  add_row_forces(s, at.w.gradient, fresh_force.data(), pulled.data());
   force = (force - pulled).cwiseProduct(is_free);
   VectorXd wanted = VectorXd::Zero(joints);
   const VectorXd loose = mobility * force;
@@ -205,12 +234,16 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
   result.state.assign(static_cast<std::size_t>(state_doubles(model)), 0.);
   State state = state_on(model, result.state.data());
   for (std::int32_t i = 0; i < n; ++i) {
+    state.u[s.first + i] = u[static_cast<std::size_t>(i)];
     state.v[s.first + i] = at.v[static_cast<std::size_t>(i)];
     state.a[s.first + i] = state.g[s.first + i] = a[i];
   }
   for (std::size_t k = 0; k < quaternion.size(); ++k) state.quaternion[k] = quaternion[k];
   for (std::int32_t r = 0; r < rows; ++r)
-    state.row_force[r] = r < joints ? multiplier[r] : spring_force[r];
+    state.row_force[r] = r >= joints ? spring_force[r]
+                         : rest == nullptr
+                             ? multiplier[r]
+                             : rest->row_force[static_cast<std::size_t>(r)] + multiplier[r];
   for (std::int32_t r = 0; r < joints; ++r) result.mobility.push_back(W(r, r));
   return result;
 }

@@ -17,14 +17,16 @@ void add_unit_force(const Model& model, const RailPortModel& port, int k, double
   for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], row, 1., force);
 }
 
-/// Accelerations of lines under the forces that move the ports: g = kg S^-1 B' f, where kg C f are
-/// the ports' own. @param g  of all unknowns
-void add_port_accelerations(const Model& model, double* g) {
+/// What the forces that move the ports make of the lines: kg S^-1 B' f onto them, where kg C f is
+/// by how much the ports' own values differ from the lines'. @param g  rates of all unknowns
+void add_port_motion(const Model& model, double* g) {
   const SystemModel& s = model.system;
   const Eigen::Index n = 9 * s.ports;
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::MatrixXd C = Eigen::Map<const Square>(s.port_compliance, n, n);
-  const Eigen::Map<const Eigen::VectorXd> moved(g + s.first + s.port[0].first, n);
+  Eigen::VectorXd moved(n);
+  read_ports(model, g, moved.data());
+  moved = Eigen::Map<const Eigen::VectorXd>(g + s.first + s.port[0].first, n) - moved;
   const Eigen::VectorXd f = C.completeOrthogonalDecomposition().solve(moved);
   for (Eigen::Index i = 0; i < n; ++i)
     for (std::int32_t k = 0; k < model.bodies; ++k)
@@ -75,8 +77,7 @@ void WidenedTrack::put_start(const Model& track, const Model& both,
     all.a[i] = all.g[i] = own.g[i];
   }
   if (both.system.ports == 0) return;
-  add_port_accelerations(both, all.a);
-  add_port_accelerations(both, all.g);
+  for (double* rates : {all.v, all.a, all.g}) add_port_motion(both, rates);
   const std::int32_t at = both.system.first + both.system.port[0].first;
   for (double* values : {all.u, all.v, all.a, all.g}) read_ports(both, values, values + at);
 }

@@ -17,8 +17,8 @@ class WidenedTrack {
  public:
   /// @param own  unknowns of the system
   void widen(std::int32_t own, Model& model);
-  /// Puts the track's own start into that of both; accelerations of its lines are those by which
-  /// the ports already move. @param start  state of `both`
+  /// Puts the track's own start into that of both; to velocities and accelerations of its lines
+  /// come those by which the ports already move. @param start  state of `both`
   void put_start(const Model& track, const Model& both, std::vector<double>& start) const;
 
  private:

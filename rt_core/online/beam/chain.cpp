@@ -71,21 +71,27 @@ template <int W>
 void chain_inertia(const Chain& chain, const double* g, double* force) noexcept {
   constexpr int b = W == 9 ? 6 : 3, position = W == 9 ? 3 : 2;
   const double scale = 1. / (30. * chain.beam.per_length);
+  double mass[W];
+  for (int i = 0; i < W; ++i) mass[i] = chain.mass[field_of<W>(i)];
   for (int e = 0; e < chain.elements; ++e) {
     double Q[3][W];
     for (int n = 0; n < 3; ++n) {
       const double* at = g + (2 * e + n) * W;
-      for (int i = 0; i < W; ++i) Q[n][i] = chain.mass[field_of<W>(i)] * at[i];
+#pragma omp simd
+      for (int i = 0; i < W; ++i) Q[n][i] = mass[i] * at[i];
+      if (chain.mass[3] == 0.) continue;  // the axis is through the centroids
       for (int i = 0; i < position; ++i) {
         Q[n][i] += chain.mass[3] * at[b + i];
         Q[n][b + i] += chain.mass[3] * at[i];
       }
     }
-    for (int m = 0; m < 3; ++m)
+    for (int m = 0; m < 3; ++m) {
+      double* to = force + (2 * e + m) * W;
+#pragma omp simd
       for (int i = 0; i < W; ++i)
-        force[(2 * e + m) * W + i] +=
-            scale * ((kMassPairs[m][0] * Q[0][i] + kMassPairs[m][1] * Q[1][i]) +
-                     kMassPairs[m][2] * Q[2][i]);
+        to[i] += scale * ((kMassPairs[m][0] * Q[0][i] + kMassPairs[m][1] * Q[1][i]) +
+                          kMassPairs[m][2] * Q[2][i]);
+    }
   }
 }
 

@@ -28,10 +28,51 @@ double penetration(double force, double C) noexcept {
   return root * root;
 }
 
+double larger(double a, double b) noexcept { return a > b ? a : b; }
+
+double force_at(const PortLaw& law, double d) noexcept {
+  if (!(d > 0.0)) return 0.0;
+  if (law.hertz > 0.0) return law.hertz * d * std::sqrt(d);
+  const double part = d < kJumpDepth ? d / kJumpDepth : 1.0;
+  return larger(law.slope * d + law.jump * part, 0.0);
+}
+
+/// df/dd where there is a force.
+double stiffness_at(const PortLaw& law, double d) noexcept {
+  if (law.hertz > 0.0) return 1.5 * law.hertz * std::sqrt(d);
+  return d < kJumpDepth ? law.slope + law.jump / kJumpDepth : law.slope;
+}
+
+/// Force where the jump is all there; below 0: there is none before slope d outweighs it.
+double knee(const PortLaw& law) noexcept { return law.slope * kJumpDepth + law.jump; }
+
+/// The penetration of a force > 0; at 0 that from which on there is one.
+double depth_of(const PortLaw& law, double force) noexcept {
+  if (law.hertz > 0.0) return penetration(force, law.hertz);
+  const double at_knee = knee(law);
+  if (at_knee > 0.0 && force <= at_knee) return force / at_knee * kJumpDepth;
+  return (force - law.jump) / law.slope;
+}
+
+/// A lone port's penetration under d_free > 0: of a contact exact for w C sqrt(d) small and large
+/// and 14 % low between, of a spring exact.
+double lone_depth(const PortLaw& law, double d_free, double w) noexcept {
+  if (law.hertz > 0.0) {
+    const double root = cube_root(w * law.hertz * std::sqrt(d_free));
+    return d_free / (1.0 + root * root);
+  }
+  const double first = d_free / (1.0 + w * larger(knee(law), 0.0) / kJumpDepth);
+  if (first < kJumpDepth) return first;
+  const double second = (d_free - w * law.jump) / (1.0 + w * law.slope);
+  return second < d_free ? second : d_free;
+}
+
 /// The problem, and one iterate with all that follows from it.
 struct Problem {
   int n;
-  const double *W, *C, *d_free;
+  const double* W;
+  const PortLaw* law;
+  const double* d_free;
 };
 
 struct Point {
@@ -42,7 +83,7 @@ struct Point {
 void evaluate(const Problem& p, Point& x) noexcept {
   x.residual = 0.0;
   x.scale = 0.0;
-  for (int i = 0; i < p.n; ++i) x.f[i] = x.d[i] > 0.0 ? p.C[i] * x.d[i] * std::sqrt(x.d[i]) : 0.0;
+  for (int i = 0; i < p.n; ++i) x.f[i] = force_at(p.law[i], x.d[i]);
   for (int i = 0; i < p.n; ++i) {
     double sum = 0.0, size = std::fabs(p.d_free[i]);
     for (int j = 0; j < p.n; ++j) {
@@ -50,8 +91,8 @@ void evaluate(const Problem& p, Point& x) noexcept {
       sum += term;
       size += std::fabs(term);
     }
-    // A port out of contact has its gap in closed form.
-    if (!(x.d[i] > 0.0) && p.d_free[i] - sum <= 0.0) x.d[i] = p.d_free[i] - sum;
+    // A port without force has its gap in closed form.
+    if (x.f[i] == 0.0 && force_at(p.law[i], p.d_free[i] - sum) == 0.0) x.d[i] = p.d_free[i] - sum;
     x.F[i] = x.d[i] + sum - p.d_free[i];
     // Written so that NaN counts as large.
     if (!(std::fabs(x.F[i]) <= x.residual)) x.residual = std::fabs(x.F[i]);
@@ -62,14 +103,9 @@ void evaluate(const Problem& p, Point& x) noexcept {
 /// Gradient of the convex function along a step in f, at x: negative while it goes down.
 double slope(const Problem& p, const Point& x, const double* step) noexcept {
   double sum = 0.0;
-  for (int i = 0; i < p.n; ++i) sum += (x.d[i] > 0.0 ? x.F[i] : x.F[i] - x.d[i]) * step[i];
+  for (int i = 0; i < p.n; ++i)
+    sum += (x.f[i] > 0.0 ? x.F[i] : x.F[i] - x.d[i] + depth_of(p.law[i], 0.0)) * step[i];
   return sum;
-}
-
-/// A lone port's penetration: exact for w C sqrt(d) small and large, 14 % low between.
-double lone_penetration(double d_free, double w, double C) noexcept {
-  const double root = cube_root(w * C * std::sqrt(d_free));
-  return d_free / (1.0 + root * root);
 }
 
 /// delta = -(I + W K)^-1 F, K = df/dd, through the symmetric I + sqrt(K) W sqrt(K).
@@ -89,20 +125,22 @@ void newton_step(const Problem& p, const Point& x, const double* K, double* delt
   }
 }
 
-/// The next penetrations. In d the step of a lone port ends above the answer, in f below, by
-/// p : 1 with p = W_ii K_i; weighted by 1 : p the quadratic errors cancel.
+/// The next penetrations: back from Newton's step to the law, on the line along which the port
+/// alone gives way. Of a spring that is exact. Of a contact, the step of a lone port ends above the
+/// answer in d, and below in f, by p : 1 with p = W_ii K_i; weighted by 1 : p the quadratic errors
+/// cancel.
 void advance(const Problem& p, const Point& x, const double* K, const double* delta,
              double* d) noexcept {
   for (int i = 0; i < p.n; ++i) {
-    const double w = p.W[i * p.n + i];
-    if (K[i] > 0.0) {
+    const double w = p.W[i * p.n + i], next = x.d[i] + delta[i];
+    const double force = x.f[i] + K[i] * delta[i];
+    if (K[i] > 0.0 && p.law[i].hertz > 0.0) {
       const double weight = w * K[i];
-      const double force = x.f[i] + K[i] * delta[i];
-      const double by_force = force > 0.0 ? penetration(force, p.C[i]) : 0.0;
-      d[i] = (x.d[i] + delta[i] + weight * by_force) / (1.0 + weight);
+      const double by_force = force > 0.0 ? penetration(force, p.law[i].hertz) : 0.0;
+      d[i] = (next + weight * by_force) / (1.0 + weight);
     } else {
-      const double next = x.d[i] + delta[i];  // free penetration of an entering port
-      d[i] = next > 0.0 ? lone_penetration(next, w, p.C[i]) : next;
+      const double free = next + w * force;
+      d[i] = free > 0.0 ? lone_depth(p.law[i], free, w) : free;
     }
   }
 }
@@ -116,7 +154,7 @@ constexpr double kOvershoot = 1000.0;
 /// One globalised iteration x -> next.
 void iterate(const Problem& p, const Point& x, Point& next) noexcept {
   double K[kPorts], delta[kPorts], step[kPorts];
-  for (int i = 0; i < p.n; ++i) K[i] = x.d[i] > 0.0 ? 1.5 * p.C[i] * std::sqrt(x.d[i]) : 0.0;
+  for (int i = 0; i < p.n; ++i) K[i] = x.f[i] > 0.0 ? stiffness_at(p.law[i], x.d[i]) : 0.0;
   newton_step(p, x, K, delta);
   advance(p, x, K, delta, next.d);
   evaluate(p, next);
@@ -128,16 +166,22 @@ void iterate(const Problem& p, const Point& x, Point& next) noexcept {
     const double part = before / (before - after);
     for (int i = 0; i < p.n; ++i) {
       const double force = x.f[i] + part * step[i];
-      next.d[i] = force > 0.0 ? penetration(force, p.C[i]) : next.d[i] < 0.0 ? next.d[i] : 0.0;
+      next.d[i] = force > 0.0 ? depth_of(p.law[i], force) : next.d[i] < 0.0 ? next.d[i] : 0.0;
     }
     evaluate(p, next);
   }
 }
 
+bool is_law(const PortLaw& law) noexcept {
+  if (!std::isfinite(law.hertz) || !std::isfinite(law.slope) || !std::isfinite(law.jump))
+    return false;
+  return law.hertz > 0.0 || (law.hertz == 0.0 && law.slope > 0.0);
+}
+
 bool usable(const Problem& p) noexcept {
   if (p.n < 0 || p.n > kPorts) return false;
   for (int i = 0; i < p.n; ++i) {
-    if (!std::isfinite(p.d_free[i]) || !std::isfinite(p.C[i]) || !(p.C[i] > 0.0)) return false;
+    if (!std::isfinite(p.d_free[i]) || !is_law(p.law[i])) return false;
     if (!(p.W[i * p.n + i] >= 0.0)) return false;
     for (int j = 0; j < p.n; ++j)
       if (!std::isfinite(p.W[i * p.n + j])) return false;
@@ -151,8 +195,8 @@ void start(const Problem& p, const double* last, Point& x) noexcept {
   for (int i = 0; i < p.n; ++i) {
     double free = p.d_free[i];
     for (int j = 0; j < p.n; ++j) free -= p.W[i * p.n + j] * x.f[j];
-    x.d[i] = x.f[i] > 0.0 ? penetration(x.f[i], p.C[i])
-             : free > 0.0 ? lone_penetration(free, p.W[i * p.n + i], p.C[i])
+    x.d[i] = x.f[i] > 0.0 ? depth_of(p.law[i], x.f[i])
+             : free > 0.0 ? lone_depth(p.law[i], free, p.W[i * p.n + i])
                           : free;
   }
   evaluate(p, x);
@@ -162,30 +206,35 @@ bool done(const Point& x) noexcept { return x.residual <= kPortTolerance * x.sca
 
 }  // namespace
 
-PortResult solve_ports(int n, const double* W, const double* C, const double* d_free, double* f,
+PortResult solve_ports(int n, const double* W, const PortLaw* law, const double* d_free, double* f,
                        double* d, int cap) noexcept {
-  const Problem p{n, W, C, d_free};
+  const Problem p{n, W, law, d_free};
   if (!usable(p)) {
     for (int i = 0; i < n && i < kPorts; ++i) f[i] = d[i] = 0.0;
     return {PortStatus::bad_input, 0, 0.0};
   }
   cap = cap < 0 ? 0 : cap > kPortSweeps ? kPortSweeps : cap;
-  Point x{}, best{}, next{};
-  evaluate(p, best);  // no force at all is always finite
-  start(p, f, x);
+  Point points[3];
+  Point *x = points, *best = points + 1, *next = points + 2;
+  for (int i = 0; i < n; ++i) best->d[i] = 0.0;
+  evaluate(p, *best);  // no force at all is always finite
+  start(p, f, *x);
   int iterations = 0;
-  while (!done(x) && iterations < cap) {
-    iterate(p, x, next);
-    if (x.residual < best.residual) best = x;
+  while (!done(*x) && iterations < cap) {
+    iterate(p, *x, *next);
+    Point* const free = x->residual < best->residual ? best : x;
+    if (free == best) best = x;
     x = next;
+    next = free;
     ++iterations;
   }
-  if (x.residual < best.residual || done(x)) best = x;
+  if (x->residual < best->residual || done(*x)) best = x;
   for (int i = 0; i < n; ++i) {
-    f[i] = best.f[i];
-    d[i] = best.d[i];
+    f[i] = best->f[i];
+    d[i] = best->d[i];
   }
-  return {done(best) ? PortStatus::converged : PortStatus::cap_reached, iterations, best.residual};
+  return {done(*best) ? PortStatus::converged : PortStatus::cap_reached, iterations,
+          best->residual};
 }
 
 }  // namespace railstep

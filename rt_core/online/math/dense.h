@@ -39,9 +39,9 @@ inline double dot(const double* x, const double* y, int n) noexcept {
   return lane_sum(sum);
 }
 
-inline constexpr int kSmall = 16;  // largest system of solve_small()
+inline constexpr int kSmall = 48;  // largest system of solve_small()
 
-/// Solves A x = b by LDL' without pivoting, n <= 16, A symmetric positive definite.
+/// Solves A x = b by LDL' without pivoting, n <= 48, A symmetric positive definite.
 ///
 /// @param A  [n][n], lower triangle read; overwritten by L below and 1/D on the diagonal
 /// @param b  [n], b in, x out

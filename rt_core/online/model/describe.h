@@ -95,6 +95,15 @@ void describe(Archive& a, LoadModel& l) {
 }
 
 template <typename Archive>
+void describe(Archive& a, SignalModel& s) {
+  a.real(s.start);
+  a.real(s.step);
+  a.count(s.intervals, kMostSamples);
+  a.count(s.periodic, 1);
+  a.reals(s.coefficient, s.intervals == 0 ? 0 : std::int64_t{s.intervals} + 3);
+}
+
+template <typename Archive>
 void describe(Archive& a, WheelsetModel& w) {
   a.count(w.first, kMostUnknowns);
   for (double& x : w.mass) a.real(x);
@@ -113,6 +122,7 @@ void describe(Archive& a, WheelsetModel& w) {
     a.reals(f.table, std::int64_t{2} * f.points);
   }
   for (std::int32_t& kind : w.kind) a.count(kind, kMaxPortKinds - 1);
+  for (SignalModel& tread : w.tread) describe(a, tread);
 }
 
 template <typename Archive>
@@ -152,6 +162,7 @@ void describe(Archive& a, Model& m) {
   a.count(m.lines, kMaxLines);
   a.count(m.loads, kMaxLoads);
   a.count(m.wheelsets, kMaxWheelsets);
+  a.count(m.signals, kMaxSignals);
   a.count(m.elements, kMostElements);
   a.count(m.unknowns, kMostUnknowns);
   a.count(m.condensed, 1);
@@ -167,6 +178,11 @@ void describe(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
   for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);
   for (std::int32_t i = 0; i < m.wheelsets; ++i) describe(a, m.wheelset[i]);
+  for (std::int32_t i = 0; i < m.signals; ++i) {
+    a.count(m.signal[i].rail, 1);
+    a.count(m.signal[i].direction, 2);
+    describe(a, m.signal[i].signal);
+  }
   describe(a, m.residual, m.elements);
   describe(a, m.probe, m);
   a.reals(m.start, state_doubles(m));

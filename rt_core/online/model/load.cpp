@@ -88,11 +88,15 @@ bool line_holds(const Model& m, const LineModel& line) noexcept {
          diagonals_hold(line.mass) && diagonals_hold(line.damping);
 }
 
+bool signal_holds(const SignalModel& s) noexcept {
+  return s.intervals == 0 || (s.step > 0. && s.coefficient != nullptr);
+}
+
 bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
   if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
   for (std::int32_t i = 0; i < w.forces; ++i)
     if (w.force[i].points < 1 || w.force[i].table == nullptr) return false;
-  return true;
+  return signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
 }
 
 bool residual_holds(const Model& m) noexcept {
@@ -129,6 +133,8 @@ bool holds(const Model& m) noexcept {
     if (m.load[i].table_points > 0 && m.load[i].table == nullptr) return false;
   for (std::int32_t i = 0; i < m.wheelsets; ++i)
     if (!wheelset_holds(m, m.wheelset[i])) return false;
+  for (std::int32_t i = 0; i < m.signals; ++i)
+    if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
   return residual_holds(m) && probes_hold(m);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 
+#include "online/contact/signal.h"
 #include "online/math/band.h"
 #include "online/math/diagonals.h"
 #include "online/math/modes.h"
@@ -13,6 +14,7 @@ inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxWheels = 2 * kMaxWheelsets;
 inline constexpr int kMaxBodyForces = 4;
+inline constexpr int kMaxSignals = 32;   // irregularities and defects of the rails
 inline constexpr int kMaxPortKinds = 4;  // rails and heights at which vertical forces act
 
 // What a model may not exceed; a block that claims more is refused.
@@ -21,6 +23,7 @@ inline constexpr std::int64_t kMostUnknowns = 1 << 26;
 inline constexpr std::int64_t kMostRows = 1 << 22;  // of tables, probes and shapes
 inline constexpr std::int64_t kMostEntries = 1 << 28;
 inline constexpr std::int64_t kMostPairPoints = 64;
+inline constexpr std::int64_t kMostSamples = 1 << 26;  // of an irregularity
 inline constexpr std::int64_t kMostGuideTurns = 1000;
 
 /// Coefficients of a one-step scheme with constant matrices, made offline. With g the true
@@ -79,6 +82,12 @@ struct BodyForce {
   const double* table;             // [points][2]  s, N; linear between, constant outside
 };
 
+/// How far a railhead lies off its straight line, over the place along it.
+struct RailSignal {
+  std::int32_t rail, direction;  // 0 left, 1 right; 1 y, 2 z
+  SignalModel signal;
+};
+
 enum class Guide : std::int32_t { augmented_lagrangian, baumgarte };
 
 /// A rigid wheelset on both rails: coordinates x, y, z of its centre from its start, then roll,
@@ -99,6 +108,8 @@ struct WheelsetModel {
   std::int32_t forces;
   BodyForce force[kMaxBodyForces];
   std::int32_t kind[2];  // of port on left and right rail, for the residual flexibility
+  SignalModel tread[2];  // of the left and right wheel: radius more than `radius`, over the
+                         // distance rolled
 };
 
 /// Residual flexibility between ports of two kinds: of the first in element e at point p, of the
@@ -134,7 +145,7 @@ struct ProbeModel {
 /// Everything a step needs; immutable, may be shared by threads.
 struct Model {
   Scheme scheme;
-  std::int32_t lines, loads, wheelsets, elements;
+  std::int32_t lines, loads, wheelsets, signals, elements;
   std::int32_t unknowns;   // of all lines, padded, 8 per wheelset, and the system's
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
   std::int32_t bodies;     // first unknown behind the lines
@@ -153,6 +164,7 @@ struct Model {
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];
+  RailSignal signal[kMaxSignals];
   SystemModel system;
 };
 

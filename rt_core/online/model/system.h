@@ -125,7 +125,7 @@ struct SystemModel {
   double alpha, beta;        // Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0, 1/s
   double tolerance;          // of the forces, over the largest kind of force
   double joint_tolerance;    // m, and 1
-  double rank_tolerance;     // direct: a pivot below it times its own diagonal is redundant
+  double rank_tolerance;     // a rigid row's pivot below it times its own diagonal is redundant
   const RigidBodyModel* body;
   const BeamChainModel* beam;
   const MarkerModel* marker;

@@ -56,8 +56,14 @@ SystemWorkspace workspace_from(const SystemModel& s, Cursor& cursor, double* kep
   w.centre = cursor.take(3LL * s.bodies);
   for (MarkerPose** part : {&w.pose, &w.start_pose, &w.force_pose}) *part = cursor.poses(s.markers);
   w.gradient = cursor.take(std::int64_t{kMostNodeUnknowns} * s.ends);
+  if (s.hold == Hold::baumgarte) {
+    w.ahead = cursor.take(n);
+    w.ahead_matrix = cursor.take(9LL * s.bodies);
+    w.ahead_pose = cursor.poses(s.markers);
+  }
+  w.slope = has_slopes(s) ? cursor.take(std::int64_t{kMostNodeUnknowns} * s.ends) : w.gradient;
   for (double** part : {&w.value, &w.start_value, &w.wanted, &w.spring_lack, &w.velocity_part,
-                        &w.force, &w.scratch})
+                        &w.rate[0], &w.rate[1], &w.force, &w.scratch})
     *part = cursor.take(rows);
   std::int64_t tangents = 0;
   for (std::int32_t i = 0; i < s.beams; ++i)

@@ -17,6 +17,7 @@ struct MarkerPose {
 struct Pull {
   double point[3];
   double axis[3][3];
+  bool on_axes;  // else the row pulls on the point alone
 };
 
 /// What Newton's matrix is made of. Stands in the state where it is kept over steps, else in the
@@ -54,11 +55,16 @@ struct SystemWorkspace {
   MarkerPose* start_pose;  // [markers]
   MarkerPose* force_pose;  // [markers] where forces are taken: the end, or the mean of both
   double* gradient;        // [ends][kMostNodeUnknowns] of a row in the unknowns that its end moves
+  double* ahead;           // [unknowns] Baumgarte: displacements ahead of the step's end
+  double* ahead_matrix;    // [bodies][9]
+  MarkerPose* ahead_pose;  // [markers]
+  double* slope;           // [ends][kMostNodeUnknowns] of `wanted`; mostly `gradient` itself
   double* value;           // [rows] Phi at the end
   double* start_value;     // [rows] of springs, energy-momentum
   double* wanted;          // [rows]
   double* spring_lack;     // [rows] of springs: their law less their force, N
   double* velocity_part;   // [rows] of `wanted`, Gear, Gupta, Leimkuhler
+  double* rate[2];         // [rows] of joints: first and second derivative of Phi; of springs 0
   double* force;           // [rows] the iterate
   double* scratch;         // [rows]
   double* tangents;        // of the largest beam
@@ -67,6 +73,10 @@ struct SystemWorkspace {
 
 inline std::int32_t system_rows(const SystemModel& s) noexcept {
   return s.joint_rows + s.spring_rows;
+}
+/// Whether what a step asks of a row changes with x otherwise than by the gradient that pulls.
+inline bool has_slopes(const SystemModel& s) noexcept {
+  return s.mean != 0 || s.hold == Hold::baumgarte;
 }
 inline std::int32_t beam_width(const BeamChainModel& beam) noexcept {
   return beam.planar != 0 ? kPlanarUnknowns : 9;

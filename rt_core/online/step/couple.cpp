@@ -25,7 +25,7 @@ struct Coupling {
   RailForce place[kMaxWheels];        // of the contacts
   double loaded[kMaxWheels];          // residual displacement there by the loads, m
   double W[kMaxWheels * kMaxWheels];  // m/N
-  double hertz[kMaxWheels];
+  PortLaw law[kMaxWheels];
   double track_free[kMaxWheels];        // penetration from the track and the frozen geometry
   double compliance[kMaxWheelsets][6];  // of the coordinates, m/N or rad/(N m)
   double free[kMaxWheelsets][6];        // coordinates without wheel forces and multipliers
@@ -98,7 +98,7 @@ void locate_contacts(const Model& model, const State& s, Workspace& w, Coupling&
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], located_on(s, w), c.contact + 2 * b);
   for (int i = 0; i < c.wheels; ++i) {
-    c.hertz[i] = model.wheelset[i / 2].hertz[i % 2];
+    c.law[i] = {model.wheelset[i / 2].hertz[i % 2], 0., 0.};
     c.place[i] = {model.wheelset[i / 2].kind[i % 2], c.contact[i].row.element, c.contact[i].xi, 0.};
   }
 }
@@ -241,7 +241,7 @@ PortResult contacts(const Model& model, const State& s, Coupling& c) noexcept {
       d_free[i] -= model.scheme.theta * c.contact[i].body_row[k] * p;
     }
   }
-  return solve_ports(c.wheels, c.W, c.hertz, d_free, c.force, c.penetration);
+  return solve_ports(c.wheels, c.W, c.law, d_free, c.force, c.penetration);
 }
 
 /// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
@@ -308,6 +308,7 @@ bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int
     alone += row[k] * row[k] / set.mass[k];
     together += row[k] * (row[k] + other[k]) / set.mass[k];
   }
+  speed += c.contact[wheel].rise * s.v[set.first];
   const double inverse_mass = alone > together ? alone : together;
   const double depth = 1.25 / (inverse_mass * set.hertz[wheel % 2]),
                steps = 10. * model.scheme.dt / 2.9433;

@@ -134,7 +134,10 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
   cross(arm, at.normal, lever);
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
-  at.penetration = w.radius - gap;
+  const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+  const Irregularity off = irregularity(model, w, side, at.normal, x, p[0]);
+  at.penetration = (w.radius - gap) + off.depth;
+  at.rise = off.rise;
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
   at.body_row[3] = cy * lever[0] + sy * lever[1];
   at.body_row[4] = 0.;  // the normal meets the axle: no torque about it
@@ -143,6 +146,20 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
 }
 
 }  // namespace
+
+Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int side,
+                          const double* normal, double x, double rolled) noexcept {
+  const SignalValue tread = signal_at(wheelset.tread[side], rolled);
+  Irregularity sum{tread.value, tread.slope};
+  for (std::int32_t i = 0; i < model.signals; ++i) {
+    const RailSignal& rail = model.signal[i];
+    if (rail.rail != side) continue;
+    const SignalValue at = signal_at(rail.signal, x);
+    sum.depth += normal[rail.direction] * at.value;
+    sum.rise += normal[rail.direction] * at.slope;
+  }
+  return sum;
+}
 
 void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
                    WheelContact* sides) noexcept {

@@ -16,7 +16,18 @@ struct WheelContact {
   RailRow row;         // displacement of that material point along the normal
   double penetration;  // of that configuration, m; negative is a gap
   double body_row[6];  // d(gap)/d(coordinates) of the wheelset
+  double rise;         // of the penetration by irregularities, per metre that the wheelset goes on
 };
+
+/// What irregularities add to the penetration along a normal, m, and its rise over x. To first
+/// order: the normal is that of the true shapes.
+/// @param x       of the contact along the rail, m
+/// @param rolled  distance that the wheel has gone, m
+struct Irregularity {
+  double depth, rise;
+};
+Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int side,
+                          const double* normal, double x, double rolled) noexcept;
 
 /// Finds the contacts of a wheelset's left and right wheel.
 /// @param at     displacements of track and bodies at which to look

@@ -10,6 +10,8 @@ double* row(const Pivoted& f, std::int32_t i) noexcept {
   return f.matrix + static_cast<std::ptrdiff_t>(f.n) * i;
 }
 
+double magnitude(double x) noexcept { return __builtin_fabs(x); }
+
 void swap(double& a, double& b) noexcept {
   const double t = a;
   a = b;
@@ -31,7 +33,8 @@ void exchange(const Pivoted& f, std::int32_t i, std::int32_t k) noexcept {
 std::int32_t largest(const Pivoted& f, std::int32_t k) noexcept {
   std::int32_t best = k;
   for (std::int32_t i = k + 1; i < f.leading; ++i)
-    if (row(f, i)[i] * f.scale[best] > row(f, best)[best] * f.scale[i]) best = i;
+    if (magnitude(row(f, i)[i]) * f.scale[best] > magnitude(row(f, best)[best]) * f.scale[i])
+      best = i;
   return best;
 }
 
@@ -58,12 +61,12 @@ bool used(const Pivoted& f, std::int32_t k, std::int32_t end) noexcept {
 void factor_pivoted(Pivoted& f, double tolerance) noexcept {
   for (std::int32_t i = 0; i < f.n; ++i) {
     f.order[i] = i;
-    f.scale[i] = row(f, i)[i];
+    f.scale[i] = magnitude(row(f, i)[i]);
   }
   f.rank = f.leading;
   for (std::int32_t k = 0; k < f.leading; ++k) {
     exchange(f, k, largest(f, k));
-    if (row(f, k)[k] <= tolerance * f.scale[k]) {  // of NaN there is no rank
+    if (magnitude(row(f, k)[k]) <= tolerance * f.scale[k]) {  // of NaN there is no rank
       f.rank = k;
       break;
     }
@@ -81,8 +84,8 @@ void solve_pivoted(const Pivoted& f, bool all, double* x, double* scratch) noexc
   }
   for (std::int32_t k = end - 1; k >= 0; --k) {
     if (!used(f, k, end)) continue;
+    for (std::int32_t i = k + 1; i < end; ++i) scratch[k] -= row(f, k)[i] * scratch[i];
     scratch[k] /= row(f, k)[k];
-    for (std::int32_t i = k + 1; i < end; ++i) scratch[k] -= row(f, i)[k] * scratch[i];
   }
   for (std::int32_t k = 0; k < f.n; ++k) x[f.order[k]] = scratch[k];
 }

@@ -3,18 +3,21 @@
 
 namespace railstep {
 
-/// Factor of a symmetric matrix, L D L', pivots taken where most of a diagonal is left: first among
-/// the leading rows, then the others as they come. What is left of the leading ones below
-/// tolerance times its own diagonal depends on the rows before and is left out (its solution is 0).
+/// Factor L U of a matrix that is symmetric, or nearly so: pivots from the diagonal, the one of
+/// which most is left first, among the leading rows, then the others as they come. What is left of
+/// the leading ones below tolerance times its own diagonal depends on the rows before and is left
+/// out (its solution is 0). Both sides of a matrix over rows may differ (slope S^-1 gradient');
+/// what is left for rows that nearly depend on each other is then still near plus or minus a
+/// definite one.
 struct Pivoted {
-  double* matrix;       // [n][n] in, L under and D on the diagonal out
-  double* scale;        // [n] diagonal before
+  double* matrix;       // [n][n] in, L under and U on and above the diagonal out
+  double* scale;        // [n] diagonal before, its magnitude
   std::int32_t* order;  // [n] row at each place
   std::int32_t n, leading;
   std::int32_t rank;  // of the leading rows
 };
 
-/// Fills `order` and `rank`, and the matrix's both triangles in, its factor out. n^3 / 3 flops.
+/// Fills `order` and `rank`; the matrix in, its factor out. 2 n^3 / 3 flops.
 void factor_pivoted(Pivoted& f, double tolerance) noexcept;
 
 /// Solves in place. @param x  [n] @param scratch  [n] @param all  else of the leading rows alone,

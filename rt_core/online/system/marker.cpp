@@ -6,20 +6,31 @@ namespace railstep {
 
 namespace {
 
+/// Which of a node's nine its k-th unknown is.
+template <bool kPlanar>
+constexpr int of_nine(int k) noexcept {
+  return kPlanar ? kPlanarOf[k] : k;
+}
+template <bool kPlanar>
+inline constexpr int kWidth = kPlanar ? kPlanarUnknowns : 9;
+
+template <bool kPlanar>
+void interpolate(const MarkerModel& marker, const double* nodes, double* out) noexcept {
+  constexpr int W = kWidth<kPlanar>;
+  const double* node = nodes + std::ptrdiff_t{W} * marker.node;
+  for (int k = 0; k < W; ++k)
+    out[of_nine<kPlanar>(k)] = (marker.value[0] * node[k] + marker.value[1] * node[W + k]) +
+                               marker.value[2] * node[2 * W + k];
+}
+
 /// r, a, b at a beam's marker from nodal values of one kind.
 /// @param nodes  of the beam
 /// @param out    [3][3] r, a, b
 void interpolate(const BeamChainModel& beam, const MarkerModel& marker, const double* nodes,
                  double out[3][3]) noexcept {
-  const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
-  double full[9] = {};
-  for (int n = 0; n < 3; ++n) {
-    const double* node = nodes + static_cast<std::ptrdiff_t>(width) * (marker.node + n);
-    for (int k = 0; k < width; ++k)
-      full[beam.planar != 0 ? kPlanarOf[k] : k] += marker.value[n] * node[k];
-  }
-  for (int f = 0; f < 3; ++f)
-    for (int c = 0; c < 3; ++c) out[f][c] = full[3 * f + c];
+  if (beam.planar == 0) return interpolate<false>(marker, nodes, out[0]);
+  for (int k = 0; k < 9; ++k) out[k / 3][k % 3] = 0.;
+  interpolate<true>(marker, nodes, out[0]);
 }
 
 /// What a port's nine are.
@@ -141,7 +152,7 @@ void pull_on_body(const RigidBodyModel& body, const MarkerPose& at, const double
   double lever[3], part[3], moment[3], own[3];
   for (int c = 0; c < 3; ++c) lever[c] = at.point[c] - centre[c];
   cross(lever, pull.point, moment);
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; pull.on_axes && k < 3; ++k) {
     cross(at.axis[k], pull.axis[k], part);
     for (int c = 0; c < 3; ++c) moment[c] += part[c];
   }
@@ -152,39 +163,47 @@ void pull_on_body(const RigidBodyModel& body, const MarkerPose& at, const double
   }
 }
 
-/// A pull as forces on the r, a, b of a section.
-void pull_on_section(const MarkerModel& marker, const MarkerPose& at, const Pull& pull,
-                     double* on) noexcept {
+/// Adds what a pull on the axes does to the a and b of a section.
+void add_axes_pull(const MarkerModel& marker, const MarkerPose& at, const Pull& pull,
+                   double* on) noexcept {
   double normal[3] = {}, a[3] = {}, b[3] = {}, part[3];
   for (int k = 0; k < 3; ++k)
     for (int c = 0; c < 3; ++c) {
       normal[c] += marker.frame[3 * k] * pull.axis[k][c];
       a[c] += marker.frame[3 * k + 1] * at.axis[k][c];  // the frame's transpose gives a, b back
       b[c] += marker.frame[3 * k + 2] * at.axis[k][c];
-    }
-  for (int c = 0; c < 3; ++c) {
-    on[c] = pull.point[c];
-    on[3 + c] = marker.position[1] * pull.point[c];
-    on[6 + c] = marker.position[2] * pull.point[c];
-    for (int k = 0; k < 3; ++k) {
       on[3 + c] += marker.frame[3 * k + 1] * pull.axis[k][c];
       on[6 + c] += marker.frame[3 * k + 2] * pull.axis[k][c];
     }
-  }
   cross(b, normal, part);  // n . (da x b) = da . (b x n)
   for (int c = 0; c < 3; ++c) on[3 + c] += part[c];
   cross(normal, a, part);  // n . (a x db) = db . (n x a)
   for (int c = 0; c < 3; ++c) on[6 + c] += part[c];
 }
 
+/// A pull as forces on the r, a, b of a section.
+void pull_on_section(const MarkerModel& marker, const MarkerPose& at, const Pull& pull,
+                     double* on) noexcept {
+  for (int c = 0; c < 3; ++c) {
+    on[c] = pull.point[c];
+    on[3 + c] = marker.position[1] * pull.point[c];
+    on[6 + c] = marker.position[2] * pull.point[c];
+  }
+  if (pull.on_axes) add_axes_pull(marker, at, pull, on);
+}
+
+template <bool kPlanar>
+void spread(const MarkerModel& marker, const double* on, double* row) noexcept {
+  constexpr int W = kWidth<kPlanar>;
+  for (int n = 0; n < 3; ++n)
+    for (int k = 0; k < W; ++k) row[W * n + k] = marker.value[n] * on[of_nine<kPlanar>(k)];
+}
+
 void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const MarkerPose& at,
                   const Pull& pull, double* row) noexcept {
   double on[9];
   pull_on_section(marker, at, pull, on);
-  const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
-  for (int n = 0; n < 3; ++n)
-    for (int k = 0; k < width; ++k)
-      row[width * n + k] = marker.value[n] * on[beam.planar != 0 ? kPlanarOf[k] : k];
+  beam.planar != 0 ? spread<true>(marker, on, row) : spread<false>(marker, on, row);
 }
 
 }  // namespace
@@ -220,16 +239,6 @@ void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, cons
     pull_on_beam(system.beam[marker.part], marker, at, pull, row);
   else if (marker.kind == PartKind::rail)
     pull_on_section(marker, at, pull, row);
-}
-
-Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept {
-  if (marker.kind == PartKind::body)
-    return {system.body[marker.part].first, system.body[marker.part].unknowns};
-  if (marker.kind == PartKind::ground) return {0, 0};
-  if (marker.kind == PartKind::rail) return {system.port[marker.part].first, 9};
-  const BeamChainModel& beam = system.beam[marker.part];
-  const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
-  return {beam.first + width * marker.node, 3 * width};
 }
 
 }  // namespace railstep

@@ -51,6 +51,20 @@ void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, cons
 struct Reach {
   std::int32_t first, count;
 };
-Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept;
+inline Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept {
+  switch (marker.kind) {
+    case PartKind::beam: {
+      const BeamChainModel& beam = system.beam[marker.part];
+      return {beam.first + beam_width(beam) * marker.node, 3 * beam_width(beam)};
+    }
+    case PartKind::body:
+      return {system.body[marker.part].first, system.body[marker.part].unknowns};
+    case PartKind::rail:
+      return {system.port[marker.part].first, 9};
+    case PartKind::ground:
+      break;
+  }
+  return {0, 0};
+}
 
 }  // namespace railstep

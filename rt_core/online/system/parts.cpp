@@ -122,11 +122,29 @@ void solve_body(const RigidBodyModel& body, double per_kg, const double* force,
     if (body.column[3 + c] >= 0) out[body.column[3 + c]] = turned[c];
 }
 
+/// change = -residual, of bodies -S^-1 residual.
+void start_change(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const double per_kg = 1. / model.scheme.kg;
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.change[i] = -w.residual[i];
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    double* const own = w.change + s.body[b].first;
+    double force[6];
+    for (std::int32_t k = 0; k < s.body[b].unknowns; ++k) force[k] = own[k];
+    solve_body(s.body[b], per_kg, force, own);
+  }
+}
+
+/// S^-1 g of the ends on a beam, four side by side. What else is to be solved goes along where the
+/// last four are not full.
+/// @param other  [unknowns] in and out; null for none
 void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor, double* solved,
-                     const double* gradient) noexcept {
+                     const double* gradient, double* other) noexcept {
   const BeamChainModel& beam = s.beam[b];
   const std::int32_t first = s.part_end[s.bodies + b], ends = part_ends(s, s.bodies + b);
-  for (std::int32_t i = 0; i < beam_groups(s, b) * 4 * beam.unknowns; ++i) solved[i] = 0.;
+  const std::int32_t groups = beam_groups(s, b);
+  for (std::int32_t i = 0; i < groups * 4 * beam.unknowns; ++i) solved[i] = 0.;
   for (std::int32_t e = 0; e < ends; ++e) {
     const EndModel& end = s.end[first + e];
     const RowModel& row = s.row[end.row];
@@ -136,8 +154,16 @@ void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor,
       lane[4 * (at.first - beam.first + k)] =
           gradient[std::ptrdiff_t{kMostNodeUnknowns} * (first + e) + k];
   }
-  for (std::int32_t g = 0; g < beam_groups(s, b); ++g)
+  const bool along = other != nullptr && ends % 4 != 0;
+  double* const lane = along ? solved + 4LL * beam.unknowns * (groups - 1) + 3 : nullptr;
+  for (std::int32_t i = 0; along && i < beam.unknowns; ++i) lane[4LL * i] = other[i];
+  for (std::int32_t g = 0; g < groups; ++g)
     beam_solve(beam, factor, solved + 4LL * beam.unknowns * g);
+  for (std::int32_t i = 0; along && i < beam.unknowns; ++i) {
+    other[i] = lane[4LL * i];
+    lane[4LL * i] = 0.;
+  }
+  if (other != nullptr && !along) beam_solve_one(beam, factor, other);
 }
 
 /// y += C f of all ports.
@@ -224,6 +250,24 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
   }
 }
 
+double place_ahead(const Model& model, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const double kv = model.scheme.kv, kg = model.scheme.kg;
+  const double time = 2. * (kv + s.alpha) / ((kg + 2. * s.alpha * kv) + s.beta * s.beta);
+#pragma omp simd
+  for (std::int32_t i = 0; i < s.unknowns; ++i) w.ahead[i] = w.x[i] + time * w.v[i];
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    double change[3], q[4];
+    own_turn(s.body[b], w.v, change);
+    for (double& c : change) c *= time;
+    turned(w.quaternion + 4 * b, change, q);
+    rotation_matrix(q, w.ahead_matrix + 9 * b);
+  }
+  for (std::int32_t m = 0; m < s.markers - s.sensors; ++m)
+    w.ahead_pose[m] = marker_pose(s, s.marker[m], w.ahead, w.ahead_matrix);
+  return time;
+}
+
 std::int32_t part_forces(const Model& model, const SystemStart& start, bool renew,
                          SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
@@ -267,15 +311,7 @@ void solve_ports(const SystemModel& s, SystemWorkspace& w) noexcept {
 
 void solve_parts(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
-  const double per_kg = 1. / model.scheme.kg;
-#pragma omp simd
-  for (std::int32_t i = 0; i < s.unknowns; ++i) w.change[i] = -w.residual[i];
-  for (std::int32_t b = 0; b < s.bodies; ++b) {
-    double* const own = w.change + s.body[b].first;
-    double force[6];
-    for (std::int32_t k = 0; k < s.body[b].unknowns; ++k) force[k] = own[k];
-    solve_body(s.body[b], per_kg, force, own);
-  }
+  start_change(model, w);
   const double* factor = w.tangent.factor;
   for (std::int32_t b = 0; b < s.beams; ++b) {
     const BeamChainModel& beam = s.beam[b];
@@ -285,8 +321,9 @@ void solve_parts(const Model& model, SystemWorkspace& w) noexcept {
   if (s.ports > 0) solve_ports(s, w);
 }
 
-void solve_ends(const Model& model, SystemWorkspace& w) noexcept {
+void solve_ends(const Model& model, bool parts, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
+  if (parts) start_change(model, w);
   double* solved = w.tangent.solved;
   for (std::int32_t b = 0; b < s.bodies; ++b)
     for (std::int32_t e = s.part_end[b]; e < s.part_end[b + 1]; ++e, solved += 6)
@@ -294,13 +331,15 @@ void solve_ends(const Model& model, SystemWorkspace& w) noexcept {
                  w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * e, solved);
   const double* factor = w.tangent.factor;
   for (std::int32_t b = 0; b < s.beams; ++b) {
-    solve_beam_ends(s, b, factor, solved, w.gradient);
+    double* const change = parts ? w.change + s.beam[b].first : nullptr;
+    solve_beam_ends(s, b, factor, solved, w.gradient, change);
     solved += 4LL * beam_groups(s, b) * s.beam[b].unknowns;
     factor += beam_factor_doubles(s.beam[b]);
   }
   const std::int32_t track = s.bodies + s.beams;
   for (std::int32_t e = s.part_end[track]; e < s.part_end[track + 1]; ++e)
     solved += solve_track_end(s, e, w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * e, solved);
+  if (parts && s.ports > 0) solve_ports(s, w);
 }
 
 }  // namespace railstep

@@ -19,6 +19,14 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
 /// Poses at the step's start, which the mean of both ends needs.
 void place_start(const Model& model, const SystemStart& start, SystemWorkspace& w) noexcept;
 
+/// Baumgarte: places ahead of the iterate by (2 kv + 2 alpha) / (kg + 2 alpha kv + beta^2), a time
+/// of about a step. A change d of x is one of kv d in velocity and kg d in acceleration, and
+/// changes Phi'' + 2 alpha Phi' + beta^2 Phi by
+/// (kg + 2 alpha kv + beta^2) G d + (2 kv + 2 alpha) G' d + G'' d,
+/// G' and G'' the gradient's rates: up to a step's square, the gradient at that place.
+/// @returns the time, s
+double place_ahead(const Model& model, SystemWorkspace& w) noexcept;
+
 /// Elastic and inertia forces of all parts; with `renew` the factors of the beams' matrices too.
 /// @returns pivots that were not positive
 std::int32_t part_forces(const Model& model, const SystemStart& start, bool renew,
@@ -34,6 +42,7 @@ void solve_ports(const SystemModel& system, SystemWorkspace& w) noexcept;
 void solve_parts(const Model& model, SystemWorkspace& w) noexcept;
 
 /// S^-1 g of every end of a row, into tangent.solved.
-void solve_ends(const Model& model, SystemWorkspace& w) noexcept;
+/// @param parts  solve_parts() too, by fewer sweeps than on its own and with the same bits
+void solve_ends(const Model& model, bool parts, SystemWorkspace& w) noexcept;
 
 }  // namespace railstep

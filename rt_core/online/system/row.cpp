@@ -98,6 +98,7 @@ void row_pulls(const RowModel& row, const MarkerPose& a, const MarkerPose& b, do
         along[c] = a.axis[row.i][c];
         on_a.axis[row.i][c] = d[c];
       }
+      on_a.on_axes = true;
       break;
     case RowKind::square: {
       const CosSin turn = row.motion < 0 ? CosSin{1., 0.} : cos_sin(s);
@@ -108,6 +109,7 @@ void row_pulls(const RowModel& row, const MarkerPose& a, const MarkerPose& b, do
         on_a.axis[row.l][c] -= turn.sin * b.axis[row.j][c];
         on_b.axis[row.j][c] -= turn.sin * a.axis[row.l][c];
       }
+      on_a.on_axes = on_b.on_axes = true;
       return;
     }
     case RowKind::distance:

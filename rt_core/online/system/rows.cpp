@@ -1,5 +1,6 @@
 #include "online/system/rows.h"
 
+#include "online/system/rotation.h"
 #include "online/system/row.h"
 
 namespace railstep {
@@ -71,6 +72,53 @@ void set_gradient(const SystemModel& s, std::int32_t r, double motion, const std
               w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * end[side]);
 }
 
+/// Forces on a body's turn D of the step, R1 = R0 cay(D), from moments at the step's end in the
+/// body's axes at its start: T' moment, as dR1 R1' = R0 [T dD]x R0' with
+/// T = (1 + [D]x / 2) / (1 + |D|^2 / 4) (Hairer, Lubich, Wanner 2006, IV.8.3).
+void turn_to_cayley(const RigidBodyModel& body, const double* x, double* row) noexcept {
+  double moment[3] = {}, D[3] = {}, part[3];
+  for (int c = 0; c < 3; ++c)
+    if (const std::int32_t k = body.column[3 + c]; k >= 0) {
+      moment[c] = row[k];
+      D[c] = x[body.first + k];
+    }
+  cross(D, moment, part);
+  for (int c = 0; c < 3; ++c)
+    if (const std::int32_t k = body.column[3 + c]; k >= 0)
+      row[k] = (moment[c] - .5 * part[c]) / (1. + .25 * dot(D, D));
+}
+
+/// What Newton's step changes `wanted` by, where that is not the gradient that pulls: the gradient
+/// at the step's end (energy-momentum), or of joint rows ahead of it (Baumgarte, place_ahead).
+/// @param motion  at the same time
+void set_slope(const SystemModel& s, std::int32_t r, double motion, const std::int32_t* end,
+               SystemWorkspace& w) noexcept {
+  const RowModel& row = s.row[r];
+  const bool mean = s.mean != 0, ahead = !mean && r < s.joint_rows;
+  const MarkerPose* const pose = ahead ? w.ahead_pose : w.pose;
+  const double* const x = ahead ? w.ahead : w.x;
+  const double* const matrix = mean ? w.start_matrix : ahead ? w.ahead_matrix : w.matrix;
+  Pull pull[2];
+  row_pulls(row, pose[row.a], pose[row.b], row_length(pose[row.a], pose[row.b]), motion, pull[0],
+            pull[1]);
+  for (int side = 0; side < 2; ++side) {
+    if (end[side] < 0) continue;
+    const std::int32_t m = side == 0 ? row.a : row.b;
+    const MarkerModel& on = s.marker[m];
+    double* const out = w.slope + std::ptrdiff_t{kMostNodeUnknowns} * end[side];
+    if (on.kind != PartKind::body) {
+      pull_on_unknowns(s, on, pose[m], nullptr, nullptr, pull[side], out);
+      continue;
+    }
+    const RigidBodyModel& body = s.body[on.part];
+    double centre[3];
+    for (int c = 0; c < 3; ++c)
+      centre[c] = body.rest[c] + (body.column[c] >= 0 ? x[body.first + body.column[c]] : 0.);
+    pull_on_unknowns(s, on, pose[m], centre, matrix + 9 * on.part, pull[side], out);
+    if (mean) turn_to_cayley(body, x, out);
+  }
+}
+
 double lanes_dot(const double* g, const double* solved, std::int32_t stride,
                  std::int32_t count) noexcept {
   double sum = 0.;
@@ -86,11 +134,53 @@ void add_part(const SystemModel& s, std::int32_t part, std::int32_t stride,
   const std::int32_t rows = system_rows(s);
   for (std::int32_t e = s.part_end[part]; e < s.part_end[part + 1]; ++e) {
     const Reach at = reach(s, marker_of(s, s.end[e]));
-    const double* g = w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * e;
+    const double* g = w.slope + std::ptrdiff_t{kMostNodeUnknowns} * e;
     double* const row = w.tangent.compliance + std::ptrdiff_t{rows} * s.end[e].row;
     for (std::int32_t f = s.part_end[part]; f < s.part_end[part + 1]; ++f)
       row[s.end[f].row] += lanes_dot(g, lane(f, at.first), stride, at.count);
   }
+}
+
+/// Of pivots of rows with a compliance: round-off alone.
+constexpr double kYieldingRank = 1e-15;
+
+/// Factor of slope S^-1 gradient' and the rows' own compliance.
+/// @param yields  joint rows have one too
+void factor_yielding(const Model& model, bool yields, SystemWorkspace& w) noexcept {
+  const SystemModel& s = model.system;
+  const std::int32_t rows = system_rows(s);
+  for (std::int32_t i = 0; i < rows * rows; ++i) w.tangent.compliance[i] = 0.;
+  const double* solved = w.tangent.solved;
+  for (std::int32_t b = 0; b < s.bodies; ++b) {
+    add_part(s, b, 1, w, [&](std::int32_t f, std::int32_t first) {
+      return solved + 6 * (f - s.part_end[b]) + (first - s.body[b].first);
+    });
+    solved += std::ptrdiff_t{6} * part_ends(s, b);
+  }
+  for (std::int32_t b = 0; b < s.beams; ++b) {
+    const BeamChainModel& beam = s.beam[b];
+    const std::int32_t part = s.bodies + b;
+    add_part(s, part, 4, w, [&](std::int32_t f, std::int32_t first) {
+      const std::int32_t own = f - s.part_end[part];
+      return solved + std::ptrdiff_t{4} * beam.unknowns * (own / 4) + own % 4 +
+             4 * (first - beam.first);
+    });
+    solved += std::ptrdiff_t{4} * beam_groups(s, b) * beam.unknowns;
+  }
+  const std::int32_t track = s.bodies + s.beams;
+  add_part(s, track, 1, w, [&](std::int32_t f, std::int32_t first) {
+    return solved + std::ptrdiff_t{9} * s.ports * (f - s.part_end[track]) +
+           (first - s.port[0].first);
+  });
+  for (std::int32_t r = 0; r < rows; ++r)
+    w.tangent.compliance[std::ptrdiff_t{rows} * r + r] += r >= s.joint_rows
+                                                              ? 1. / spring_slope(model, s.row[r])
+                                                          : yields ? s.row[r].compliance
+                                                                   : 0.;
+  *w.tangent.rank = 0.;
+  Pivoted f = pivoted(s, w.tangent);
+  factor_pivoted(f, yields ? kYieldingRank : s.rank_tolerance);
+  *w.tangent.rank = f.rank;
 }
 
 }  // namespace
@@ -112,14 +202,17 @@ double spring_slope(const Model& model, const RowModel& row) noexcept {
                                 : row.stiffness + row.damping * model.scheme.kv;
 }
 
-double set_rows(const Model& model, double time, SystemWorkspace& w) noexcept {
+double set_rows(const Model& model, double time, bool renew, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   double largest = 0.;
+  const bool slopes = has_slopes(s) && (renew || s.renew == Renew::kept);
+  const double ahead = slopes && s.hold == Hold::baumgarte ? place_ahead(model, w) : 0.;
   for (std::int32_t r = 0; r < system_rows(s); ++r) {
     const RowModel& row = s.row[r];
     const Jet motion = motion_of(s, row, time);
     w.value[r] = row_value(row, w.pose[row.a], w.pose[row.b], motion.x);
     set_gradient(s, r, motion.x, row.end, w);
+    if (slopes) set_slope(s, r, motion.x + ahead * motion.v, row.end, w);
     if (r < s.joint_rows) {
       w.velocity_part[r] = w.wanted[r] = joint_wanted(model, row, w, w.value[r], motion);
       if (!(magnitude(w.wanted[r]) <= largest)) largest = magnitude(w.wanted[r]);
@@ -157,42 +250,13 @@ void add_row_changes(const SystemModel& system, const double* gradient, const do
   }
 }
 
-void factor_rows(const Model& model, double soft, SystemWorkspace& w) noexcept {
+void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
-  const std::int32_t rows = system_rows(s);
-  for (std::int32_t i = 0; i < rows * rows; ++i) w.tangent.compliance[i] = 0.;
-  const double* solved = w.tangent.solved;
-  for (std::int32_t b = 0; b < s.bodies; ++b) {
-    add_part(s, b, 1, w, [&](std::int32_t f, std::int32_t first) {
-      return solved + 6 * (f - s.part_end[b]) + (first - s.body[b].first);
-    });
-    solved += std::ptrdiff_t{6} * part_ends(s, b);
-  }
-  for (std::int32_t b = 0; b < s.beams; ++b) {
-    const BeamChainModel& beam = s.beam[b];
-    const std::int32_t part = s.bodies + b;
-    add_part(s, part, 4, w, [&](std::int32_t f, std::int32_t first) {
-      const std::int32_t own = f - s.part_end[part];
-      return solved + std::ptrdiff_t{4} * beam.unknowns * (own / 4) + own % 4 +
-             4 * (first - beam.first);
-    });
-    solved += std::ptrdiff_t{4} * beam_groups(s, b) * beam.unknowns;
-  }
-  const std::int32_t track = s.bodies + s.beams;
-  add_part(s, track, 1, w, [&](std::int32_t f, std::int32_t first) {
-    return solved + std::ptrdiff_t{9} * s.ports * (f - s.part_end[track]) +
-           (first - s.port[0].first);
-  });
   const bool yields = s.hold == Hold::augmented_lagrangian;
-  for (std::int32_t r = 0; r < rows; ++r)
-    w.tangent.compliance[std::ptrdiff_t{rows} * r + r] += r >= s.joint_rows
-                                                              ? 1. / spring_slope(model, s.row[r])
-                                                          : yields ? soft * s.row[r].compliance
-                                                                   : 0.;
-  *w.tangent.rank = 0.;
-  Pivoted f = pivoted(s, w.tangent);
-  factor_pivoted(f, s.rank_tolerance);
-  *w.tangent.rank = f.rank;
+  factor_yielding(model, yields && s.mean == 0, w);
+  // Where a step goes through a singular position G S^-1 G_m' has pivots below zero, that a
+  // compliance near them brings to zero: it is for rows that depend on each other alone.
+  if (yields && s.mean != 0 && *w.tangent.rank < s.joint_rows) factor_yielding(model, true, w);
 }
 
 void solve_rows(const Model& model, SystemWorkspace& w, bool all, double* x) noexcept {

@@ -12,7 +12,8 @@ void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t m
 
 /// Values and gradients of all rows at the iterate, and what Newton's step is to bring of each, m:
 /// `wanted`, without the parts' own change. @returns the largest of these, over joint rows
-double set_rows(const Model& model, double time, SystemWorkspace& w) noexcept;
+/// @param renew  the matrix is made anew here: slopes go with it, and stand as long within a step
+double set_rows(const Model& model, double time, bool renew, SystemWorkspace& w) noexcept;
 
 /// Largest |Phi| of the joint rows.
 double joint_violation(const SystemModel& system, const SystemWorkspace& w) noexcept;
@@ -25,9 +26,8 @@ void add_row_forces(const SystemModel& system, const double* gradient, const dou
 void add_row_changes(const SystemModel& system, const double* gradient, const double* change,
                      double* out) noexcept;
 
-/// Factor of G S^-1 G' and the rows' own compliance.
-/// @param soft  by which the joint rows' own compliance is larger than it is given
-void factor_rows(const Model& model, double soft, SystemWorkspace& w) noexcept;
+/// Factor of slope S^-1 gradient' and the rows' own compliance.
+void factor_rows(const Model& model, SystemWorkspace& w) noexcept;
 /// The same in place: x [rows]. @param all  springs too
 void solve_rows(const Model& model, SystemWorkspace& w, bool all, double* x) noexcept;
 

@@ -16,17 +16,17 @@ SystemStart start_of(const Model& model, const State& s, const Workspace& w) noe
 
 double square_root(double x) noexcept { return __builtin_sqrt(x); }
 
-/// Norm of forces, moments of slopes and turns over lengths of their parts, N.
-double force_norm(const SystemModel& s, const double* force) noexcept {
+/// Squared norm of forces, moments of slopes and turns over lengths of their parts, N2.
+struct Square {
   double sum[kLanes] = {};
-  for (std::int32_t i = 0; i < s.unknowns; i += kLanes)  // whole panels
+  void add(const double* force, const double* per_length) noexcept {
 #pragma omp simd
     for (int l = 0; l < kLanes; ++l) {
-      const double f = force[i + l] * s.per_length[i + l];
+      const double f = force[l] * per_length[l];
       sum[l] += f * f;
     }
-  return square_root(lane_sum(sum));
-}
+  }
+};
 
 /// Where the iterations begin: the scheme's step with the last accelerations.
 void guess(const Model& model, const State& state, const Workspace& workspace,
@@ -50,25 +50,33 @@ struct Size {
 Size set_residual(const SystemModel& s, SystemWorkspace& w) noexcept {
   for (std::int32_t i = 0; i < s.unknowns; ++i) w.residual[i] = 0.;
   add_row_forces(s, w.gradient, w.force, w.residual);
-  double scale = force_norm(s, w.residual);
-  for (const double* kind : {w.inertia, w.elastic, w.outer})
-    if (const double own = force_norm(s, kind); own > scale) scale = own;
+  Square rows, inertia, elastic, outer, all;
+  for (std::int32_t i = 0; i < s.unknowns; i += kLanes) {  // whole panels
+    const double* per_length = s.per_length + i;
+    rows.add(w.residual + i, per_length);
+    inertia.add(w.inertia + i, per_length);
+    elastic.add(w.elastic + i, per_length);
+    outer.add(w.outer + i, per_length);
 #pragma omp simd
-  for (std::int32_t i = 0; i < s.unknowns; ++i)
-    w.residual[i] += (w.inertia[i] + w.elastic[i]) - w.outer[i];
-  double sum = 0.;
+    for (int l = 0; l < kLanes; ++l)
+      w.residual[i + l] += (w.inertia[i + l] + w.elastic[i + l]) - w.outer[i + l];
+    all.add(w.residual + i, per_length);
+  }
+  double scale = lane_sum(rows.sum);
+  for (const Square* kind : {&inertia, &elastic, &outer})
+    if (const double own = lane_sum(kind->sum); own > scale) scale = own;
+  double sum = lane_sum(all.sum);
   for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r)
     sum += w.spring_lack[r] * w.spring_lack[r];
-  const double own = force_norm(s, w.residual);
-  return {square_root(own * own + sum), scale, 0.};
+  return {square_root(sum), square_root(scale), 0.};
 }
 
 /// One Newton step with the matrix that stands: row forces, then displacements.
+/// @param w  its change that of the parts without rows
 void newton_step(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const std::int32_t rows = system_rows(s);
-  solve_parts(model, w);
-  add_row_changes(s, w.gradient, w.change, w.wanted);
+  add_row_changes(s, w.slope, w.change, w.wanted);
   solve_rows(model, w, true, w.wanted);
   for (std::int32_t r = 0; r < rows; ++r) w.force[r] += w.wanted[r];
   subtract_row_motion(s, w, w.wanted, w.change);
@@ -147,10 +155,8 @@ void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& work
   for (std::int32_t i = 0; i < 4 * s.bodies; ++i) state.quaternion[i] = w.quaternion[i];
 }
 
-/// Rates of the joint rows, first or second, into `wanted`; 0 for springs. @returns the largest
-double set_rates(const SystemModel& s, double time, int order, const Motions& at,
-                 SystemWorkspace& w) noexcept {
-  double largest = 0.;
+/// First and second rates of the joint rows.
+void set_rates(const SystemModel& s, double time, const Motions& at, SystemWorkspace& w) noexcept {
   MarkerJet a{}, b{};
   std::int32_t at_a = -1, at_b = -1;  // rows of a joint share their markers
   for (std::int32_t r = 0; r < s.joint_rows; ++r) {
@@ -160,17 +166,26 @@ double set_rates(const SystemModel& s, double time, int order, const Motions& at
     const Jet motion =
         row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
     const Jet phi = row_jet(row, a, b, motion);
-    w.wanted[r] = order == 1 ? phi.v : phi.a;
+    w.rate[0][r] = phi.v;
+    w.rate[1][r] = phi.a;
+  }
+  for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) w.rate[0][r] = w.rate[1][r] = 0.;
+}
+
+/// Puts the rates of an order into `wanted`. @returns the largest
+double want_rates(const SystemModel& s, int order, SystemWorkspace& w) noexcept {
+  double largest = 0.;
+  for (std::int32_t r = 0; r < system_rows(s); ++r) {
+    w.wanted[r] = w.rate[order - 1][r];
     if (!(magnitude(w.wanted[r]) <= largest)) largest = magnitude(w.wanted[r]);
   }
-  for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) w.wanted[r] = 0.;
   return largest;
 }
 
 /// Takes from velocities (order 1) or accelerations (2) of the model what joints do not allow, in
 /// the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped.
 /// `second` takes the same change. With accelerations go the forces that belong to them: S is kg M
-/// of a body, so that M g + G' force stays what it was.
+/// of a body, so that M g + G' force stays what it was. The rates stand before and after.
 /// @returns whether they are held
 bool project(const Model& model, double time, int order, const Motions& at, double* rates,
              double* second, double* row_force, SystemWorkspace& w) noexcept {
@@ -178,8 +193,7 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
   const double per_step = 1. / model.scheme.dt;
   const double tolerance = s.joint_tolerance * (order == 1 ? per_step : per_step * per_step);
   for (std::int32_t done = 0;; ++done) {
-    const double largest = set_rates(s, time, order, at, w);
-    if (largest <= tolerance) return true;
+    if (want_rates(s, order, w) <= tolerance) return true;
     if (done == s.projections) return false;
     solve_rows(model, w, false, w.wanted);
     if (row_force != nullptr)
@@ -189,6 +203,7 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
       subtract_row_motion(s, w, w.wanted, taken + s.first);
       subtract_line_motion(model, w.gradient, w.wanted, taken);
     }
+    set_rates(s, time, at, w);
   }
 }
 
@@ -210,16 +225,10 @@ void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& 
     result.redundant_row[i] = t.order[rank + i];
 }
 
-/// Energy-momentum takes a row's gradient at the mean, where Newton's matrix wants that of the end
-/// on one side: at a singular position stiff rows make its iterations diverge. They begin again,
-/// once, with rows so much softer.
-constexpr double kSofter = 1e5;
-
 /// How the iterations go on: what forces lack and what joints want, each against the one before.
 struct Search {
   double residual = __builtin_inf(), wanted = __builtin_inf();
   double step = 0., before = 0.;  // sizes of the last two Newton steps
-  double soft = 1.;               // of the rows' compliance
   bool old = true;                // the matrix is of an earlier step
   bool slow = false;              // one did not halve with a matrix that stood: make it anew
   bool grown = false;  // one grew, far off perhaps, with a matrix of an earlier step: begin again
@@ -237,14 +246,6 @@ struct Search {
     residual = left.residual;
     wanted = left.wanted;
   }
-  bool may_soften(const SystemModel& s) const noexcept {
-    return s.mean != 0 && s.hold == Hold::augmented_lagrangian && soft < kSofter;
-  }
-  /// @returns the iterations that count as done: begun anew
-  std::int32_t soften() noexcept {
-    soft = kSofter;
-    return -1;
-  }
   void begin_again() noexcept {
     residual = wanted = __builtin_inf();
     step = before = 0.;
@@ -260,7 +261,7 @@ Size look(const Model& model, const SystemStart& start, double time, bool renew,
   place_parts(model, start, w);
   part_forces(model, start, renew, w);
   outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, w);
-  const double wanted = set_rows(model, time, w);
+  const double wanted = set_rows(model, time, renew, w);
   Size left = set_residual(s, w);
   left.wanted = wanted;
   result.violation = joint_violation(s, w);
@@ -294,23 +295,24 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     const bool renew = is_renewed(s, w.tangent, done, search.slow);
     const Size left = look(model, start, time, renew, w, result);
     if (done > 0 && is_done(s, w, left, search, result)) break;
-    if (done == s.cap && !search.may_soften(s)) {
+    if (done == s.cap) {
       result.status = Status::cap_reached;
       break;
     }
-    if (done < s.cap) result.iterations = done + 1;
+    result.iterations = done + 1;
     search.compare(left, s.joint_tolerance, renew);
-    if (done == s.cap || search.grown) {
-      if (done == s.cap) done = search.soften();
+    if (search.grown) {
       search.begin_again();
       guess(model, state, workspace, w);
       continue;
     }
     if (renew) {
       search.old = false;
-      solve_ends(model, w);
-      factor_rows(model, search.soft, w);
+      solve_ends(model, true, w);
+      factor_rows(model, w);
       *w.tangent.age = 1.;
+    } else {
+      solve_parts(model, w);
     }
     newton_step(model, w);
     search.before = search.step;
@@ -333,11 +335,12 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
       if (const std::int32_t k = s.body[b].column[c]; k >= 0) u[s.body[b].first + k] = 0.;
   if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
   if (s.renew == Renew::kept) {  // an old direction of the joints would take what they allow
-    solve_ends(model, w);
-    factor_rows(model, 1., w);
+    solve_ends(model, false, w);
+    factor_rows(model, w);
   }
   const Motions at{u, state.v + s.first, state.g + s.first, w.matrix};
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
+  set_rates(s, time, at, w);
   const bool velocities = project(model, time, 1, at, state.v, nullptr, nullptr, w);
   const bool accelerations = project(model, time, 2, at, state.g, state.a, state.row_force, w);
   return velocities && accelerations ? Status::ok : Status::cap_reached;

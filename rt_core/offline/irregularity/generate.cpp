@@ -1,0 +1,65 @@
+#include "offline/irregularity/generate.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "offline/irregularity/random.h"
+#include "offline/irregularity/turn.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr double kTwoPi = 6.28318530717958647692;
+
+struct Waves {
+  std::int64_t first, last, samples;
+};
+
+Waves waves_of(const GenerateOptions& o) {
+  if (!(o.shortest > 0.) || !(o.longest >= o.shortest) || !(o.length >= o.longest) ||
+      !(o.patch >= 0.))
+    throw std::invalid_argument(
+        "wavelengths want 0 < shortest <= longest <= length, and a patch of 0 m or more");
+  // Whole numbers of waves are kept where rounding leaves a quotient beside them.
+  const double low = o.length / o.longest, high = o.length / o.shortest;
+  if (!(high * kSamplesPerWave * (high - low) < kMostGenerated))
+    throw std::invalid_argument("more waves and samples than are generated in seconds");
+  const Waves waves = {static_cast<std::int64_t>(std::ceil(low * (1. - 1e-12))),
+                       static_cast<std::int64_t>(std::floor(high * (1. + 1e-12))),
+                       kSamplesPerWave * static_cast<std::int64_t>(std::ceil(high))};
+  if (waves.last < waves.first) throw std::invalid_argument("no whole wave lies in the band");
+  return waves;
+}
+
+/// What a mean over the patch leaves of a wave.
+double patch_factor(double wave_number, double patch) {
+  const double half = .5 * wave_number * patch;
+  return half > 0. ? turn(half / kTwoPi).sine / half : 1.;
+}
+
+}  // namespace
+
+Signal generate(const Spectrum& spectrum, const GenerateOptions& options, std::uint64_t stream) {
+  const Waves waves = waves_of(options);
+  const std::int64_t n = waves.samples;
+  std::vector<Turn> circle;  // of k / n
+  for (std::int64_t k = 0; k < n; ++k)
+    circle.push_back(turn(static_cast<double>(k) / static_cast<double>(n)));
+  std::vector<double> value(static_cast<std::size_t>(n), 0.);
+  const double step = kTwoPi / options.length;
+  for (std::int64_t wave = waves.first; wave <= waves.last; ++wave) {
+    const double number = static_cast<double>(wave) * step;
+    const double amplitude =
+        std::sqrt(2. * spectrum.at(number) * step) * patch_factor(number, options.patch);
+    const Turn phase = turn(uniform(options.seed, stream, static_cast<std::uint64_t>(wave)));
+    const double c = amplitude * phase.cosine, s = amplitude * phase.sine;
+    for (std::int64_t k = 0, at = 0; k < n; ++k, at = (at + wave) % n) {
+      const Turn& t = circle[static_cast<std::size_t>(at)];
+      value[static_cast<std::size_t>(k)] += c * t.cosine - s * t.sine;
+    }
+  }
+  return fit_signal(value, 0., options.length / static_cast<double>(n), true);
+}
+
+}  // namespace railstep

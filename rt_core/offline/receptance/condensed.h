@@ -1,0 +1,33 @@
+#pragma once
+#include <vector>
+
+#include "offline/condense/modal.h"
+#include "offline/receptance/receptance.h"
+
+namespace railstep {
+
+/// Receptance of the condensed track: every line that the force moves in its damped modes, the sum
+/// of shape shape' / (i omega - rate) / 2 and of the conjugates, and what the modes miss statically
+/// (residual_statics()).
+class CondensedReceptance : public Receptance {
+ public:
+  /// @param limit  of each line
+  /// @param residual  false leaves out what the modes miss
+  /// Throws std::invalid_argument as modal_basis() and damped_modes() do.
+  CondensedReceptance(const Track& track, const Transfer& transfer, const ModalLimit& limit,
+                      bool residual = true);
+  Eigen::VectorXcd at(double hz) override;
+  /// Coordinates kept, of all lines that the force moves.
+  int kept() const;
+
+ private:
+  struct Part {
+    Eigen::VectorXcd rate;   // [modes]
+    Eigen::MatrixXcd gains;  // [reads][modes], read of the shape times its part of the force
+    int kept;
+  };
+  Eigen::VectorXd residual_;  // [reads] m/N
+  std::vector<Part> parts_;
+};
+
+}  // namespace railstep

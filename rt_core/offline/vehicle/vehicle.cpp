@@ -1,0 +1,96 @@
+#include "offline/vehicle/vehicle.h"
+
+#include <Eigen/LU>
+#include <stdexcept>
+
+namespace railstep {
+
+namespace {
+
+/// First coordinate of each body, and their number.
+std::vector<int> coordinates(const Vehicle& vehicle) {
+  std::vector<int> first = {0};
+  for (const Vehicle::Body& body : vehicle.bodies)
+    first.push_back(first.back() + (body.pitch_inertia > 0. ? 2 : 1));
+  return first;
+}
+
+/// Height of a body's point over the coordinates.
+Eigen::VectorXd row(const Vehicle& vehicle, const std::vector<int>& first, int body, double place) {
+  const auto b = static_cast<std::size_t>(body);
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(first.back());
+  r[first[b]] = 1.;
+  if (vehicle.bodies[b].pitch_inertia > 0.) r[first[b] + 1] = vehicle.bodies[b].place - place;
+  return r;
+}
+
+void check(const Vehicle& vehicle) {
+  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  const auto is_body = [&](int body) {
+    return body >= 0 && body < static_cast<int>(vehicle.bodies.size());
+  };
+  if (vehicle.bodies.empty() || vehicle.wheels.empty())
+    refuse("a vehicle has a body and a wheel or more");
+  for (const Vehicle::Body& body : vehicle.bodies) {
+    if (!(body.mass > 0.)) refuse("a vehicle's bodies have masses above 0");
+    if (!(body.pitch_inertia >= 0.)) refuse("a pitch inertia is 0 or more");
+  }
+  for (const Vehicle::Suspension& s : vehicle.suspensions) {
+    if (!is_body(s.upper) || !is_body(s.lower) || s.upper == s.lower)
+      refuse("a suspension is between two bodies of its vehicle");
+    if (!(s.stiffness >= 0.) || !(s.damping >= 0.))
+      refuse("a suspension's stiffness and damping are 0 or more");
+  }
+  for (const Vehicle::Wheel& wheel : vehicle.wheels)
+    if (!is_body(wheel.body) || !(wheel.radius > 0.))
+      refuse("a wheel has a body of its vehicle and a radius above 0");
+}
+
+}  // namespace
+
+VehicleMatrices vehicle_matrices(const Vehicle& vehicle, double gravity) {
+  check(vehicle);
+  const std::vector<int> first = coordinates(vehicle);
+  const int n = first.back(), wheels = static_cast<int>(vehicle.wheels.size());
+  VehicleMatrices m;
+  m.mass = m.damping = m.stiffness = Eigen::MatrixXd::Zero(n, n);
+  m.weight = Eigen::VectorXd::Zero(n);
+  m.wheels = Eigen::MatrixXd::Zero(wheels, n);
+  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    const Vehicle::Body& body = vehicle.bodies[b];
+    m.mass(first[b], first[b]) = body.mass;
+    m.weight[first[b]] = body.mass * gravity;
+    if (body.pitch_inertia > 0.) m.mass(first[b] + 1, first[b] + 1) = body.pitch_inertia;
+  }
+  for (const Vehicle::Suspension& s : vehicle.suspensions) {
+    const Eigen::VectorXd stretch =
+        row(vehicle, first, s.upper, s.place) - row(vehicle, first, s.lower, s.place);
+    m.stiffness += s.stiffness * stretch * stretch.transpose();
+    m.damping += s.damping * stretch * stretch.transpose();
+  }
+  for (int w = 0; w < wheels; ++w) {
+    const Vehicle::Wheel& wheel = vehicle.wheels[static_cast<std::size_t>(w)];
+    m.wheels.row(w) = row(vehicle, first, wheel.body, wheel.place).transpose();
+  }
+  return m;
+}
+
+VehicleRest vehicle_at_rest(const VehicleMatrices& m) {
+  const Eigen::Index n = m.mass.rows(), wheels = m.wheels.rows();
+  // Forces over the stiffest spring keep the pivots alike.
+  const double scale =
+      m.stiffness.diagonal().maxCoeff() > 0. ? m.stiffness.diagonal().maxCoeff() : 1.;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n + wheels, n + wheels);
+  A.topLeftCorner(n, n) = m.stiffness / scale;
+  A.topRightCorner(n, wheels) = -m.wheels.transpose();
+  A.bottomLeftCorner(wheels, n) = m.wheels;
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n + wheels);
+  b.head(n) = -m.weight / scale;
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
+  if (!lu.isInvertible())
+    throw std::invalid_argument("a vehicle's springs and wheels leave it a free motion");
+  const Eigen::VectorXd x = lu.solve(b);
+  return {x.head(n), scale * x.tail(wheels)};
+}
+
+}  // namespace railstep

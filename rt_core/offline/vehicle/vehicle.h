@@ -1,0 +1,53 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace railstep {
+
+/// A vehicle that bounces and pitches over one rail: rigid bodies on springs and dampers, wheels on
+/// the rail. Places are along x from the vehicle's origin, positive ahead.
+struct Vehicle {
+  struct Body {
+    double mass;                // kg
+    double pitch_inertia = 0.;  // about y through its centre, kg m2; 0: it does not pitch
+    double place = 0.;          // of its centre, m
+  };
+  /// A spring and a damper, upright, side by side.
+  struct Suspension {
+    int upper, lower;  // bodies
+    double place;      // m
+    double stiffness;  // N/m
+    double damping;    // N s/m
+  };
+  /// Where a body rests on the rail.
+  struct Wheel {
+    int body;
+    double place;   // m
+    double radius;  // m
+  };
+  std::vector<Body> bodies;
+  std::vector<Suspension> suspensions;
+  std::vector<Wheel> wheels;
+};
+
+/// M q'' + C q' + K q = B' f - weight, q = each body's centre z (up) and then its pitch
+/// (right-handed about y: ahead goes down) if it has one; B q are the wheels' z, f the rail's
+/// forces on them, up.
+struct VehicleMatrices {
+  Eigen::MatrixXd mass, damping, stiffness;  // [n][n]
+  Eigen::VectorXd weight;                    // [n] N
+  Eigen::MatrixXd wheels;                    // B [wheels][n]
+};
+
+/// Throws std::invalid_argument on no bodies or wheels, masses not above 0, names of bodies that
+/// are none, and on stiffness, damping or pitch inertia below 0.
+VehicleMatrices vehicle_matrices(const Vehicle& vehicle, double gravity = 9.81);
+
+/// Where the vehicle stands on a level, rigid rail: q and the rail's forces on its wheels, N.
+/// Throws std::invalid_argument where springs and wheels leave a motion free.
+struct VehicleRest {
+  Eigen::VectorXd displacement, force;
+};
+VehicleRest vehicle_at_rest(const VehicleMatrices& matrices);
+
+}  // namespace railstep

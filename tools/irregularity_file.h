@@ -1,0 +1,15 @@
+#pragma once
+#include <filesystem>
+
+#include "offline/irregularity/rails.h"
+
+namespace railstep {
+
+/// Irregularities from a text file of columns: a first line of names, then rows at equal distances.
+/// `distance_m`, and at least one of vertical, alignment, cross_level, gauge (of the track), or of
+/// left_z, right_z, left_y, right_y (of the rails), each with its unit: `_m` or `_mm`.
+/// Throws InputError, with the line, on anything else, on both kinds together, on fewer than four
+/// rows, and on distances that do not rise by the same step within 1e-3 of it.
+RailSignals read_irregularities(const std::filesystem::path& file);
+
+}  // namespace railstep

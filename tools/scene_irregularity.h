@@ -1,0 +1,48 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "offline/irregularity/generate.h"
+
+namespace railstep {
+
+inline constexpr double kContactPatch =
+    .012;  // m, the length that irregularities are averaged over
+
+/// [irregularity]: a track's record, or a signal made of a named spectrum.
+struct IrregularityScene {
+  std::filesystem::path file;  // empty: generated
+  std::string spectrum;
+  std::vector<Geometry> geometries;
+  GenerateOptions options;  // of a file, its patch alone
+};
+
+enum class DefectKind { dipped_joint, corrugation };
+
+/// [[defect]] of one rail or of both.
+struct DefectScene {
+  DefectKind kind;
+  std::array<bool, 2> on;              // left, right
+  double at, depth, ramp;              // of a dipped joint, m
+  double from, to, length, amplitude;  // of a corrugation, m; its wavelength
+  double patch;                        // m
+};
+
+enum class TreadKind { fresh_flat, rounded_flat, out_of_round };
+
+/// [[wheelset.tread]]: what a wheel lacks of being round, on one wheel or on both.
+struct TreadScene {
+  TreadKind kind;
+  std::array<bool, 2> on;  // left, right
+  double first;            // distance rolled when its middle first is below, m
+  double length, depth;    // of a flat, m
+  int order;               // of an out-of-round wheel, waves a turn
+  double amplitude;        // of it, m
+  double patch;            // m
+};
+
+}  // namespace railstep
