@@ -105,8 +105,12 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
 std::optional<Functional> functional_of(const SensorScene& sensor, const Scene& scene,
                                         const Track& track, int direction) {
   const auto d = static_cast<std::size_t>(direction);
-  if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
-    return point_of(*rail, track, height_z(rail->at, section_of(scene)))[d].track;
+  if (const auto* rail = std::get_if<RailSensor>(&sensor.on)) {
+    const RailSections sections = sections_of(scene);
+    return point_of(*rail, track, height_z(rail->at, section_of(sections, rail->rail)),
+                    rail_z(sections, rail->rail))[d]
+        .track;
+  }
   if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
     return point_of(*sleeper, track, 0.)[d].track;
   return std::nullopt;
