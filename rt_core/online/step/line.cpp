@@ -9,13 +9,6 @@ Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
   return {re, re + modal.count};
 }
 
-/// Displacement of an unknown, as the line numbers it.
-double value(const LineModel& line, std::int32_t unknown, const Configuration& at) noexcept {
-  if (line.modal.count == 0) return at.u[line.first + unknown];
-  return modes_dot(shape_of(line.modal, unknown),
-                   {at.modes.re + line.first, at.modes.im + line.first}, line.modal.count);
-}
-
 /// Calls visit(unknown, weight) for what a line carries of a row.
 template <typename Visit>
 void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcept {
@@ -31,10 +24,17 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
 
 }  // namespace
 
+double unknown_value(const LineModel& line, std::int32_t unknown,
+                     const Configuration& at) noexcept {
+  if (line.modal.count == 0) return at.u[line.first + unknown];
+  return modes_dot(shape_of(line.modal, unknown),
+                   {at.modes.re + line.first, at.modes.im + line.first}, line.modal.count);
+}
+
 double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
                    const Configuration& at) noexcept {
   const std::int32_t unknown = line.unknown_of[rail][9 * node + k];
-  return unknown < 0 ? 0. : value(line, unknown, at);
+  return unknown < 0 ? 0. : unknown_value(line, unknown, at);
 }
 
 double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
@@ -51,7 +51,7 @@ double axis_height(const Model& model, std::int32_t rail, std::int32_t element, 
 double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept {
   double sum = 0.;
   for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
-    sum += weight * value(line, unknown, at);
+    sum += weight * unknown_value(line, unknown, at);
   });
   return sum;
 }

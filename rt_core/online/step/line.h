@@ -17,6 +17,9 @@ struct Configuration {
   Complex modes;
 };
 
+/// Displacement of an unknown, as the line's tables number it.
+double unknown_value(const LineModel& line, std::int32_t unknown, const Configuration& at) noexcept;
+
 /// What unknown k of a rail's node is on a line, before its weight in the rail; 0 if not carried.
 double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
                    const Configuration& at) noexcept;

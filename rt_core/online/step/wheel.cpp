@@ -18,17 +18,22 @@ struct Window {
 /// Adds a line's displacements of a window's nodes, of both rails together: what one with one table
 /// moves of one it moves of the other, up to sign and weight.
 void gather_line(const LineModel& line, const Configuration& at, Window* sides) noexcept {
-  const bool one_table = line.unknown_of[1] == line.unknown_of[0];
-  const std::int32_t first = 2 * sides[0].first, nodes = 2 * sides[0].elements + 1;
+  const std::int32_t from = 18 * sides[0].first, nodes = 2 * sides[0].elements + 1;
+  const std::int32_t* left = line.unknown_of[0] + from;
+  const std::int32_t* right = line.unknown_of[1] + from;
+  double of_left[9], of_right[9];
   for (int k = 0; k < 9; ++k) {
-    const double of_left = weight_of(line, 0, k), of_right = weight_of(line, 1, k);
-    double *left = sides[0].nodes + k, *right = sides[1].nodes + k;
-    for (std::int32_t i = 0; i < nodes; ++i, left += 9, right += 9) {
-      const double value = nodal_value(line, 0, first + i, k, at);
-      *left += of_left * value;
-      *right += of_right * (one_table ? value : nodal_value(line, 1, first + i, k, at));
-    }
+    of_left[k] = weight_of(line, 0, k);
+    of_right[k] = weight_of(line, 1, k);
   }
+  for (std::int32_t i = 0; i < nodes; ++i)
+    for (int k = 0; k < 9; ++k) {
+      const std::int32_t a = left[9 * i + k], b = right[9 * i + k];
+      const double moved = a < 0 ? 0. : unknown_value(line, a, at);
+      if (a >= 0) sides[0].nodes[9 * i + k] += of_left[k] * moved;
+      if (b >= 0)
+        sides[1].nodes[9 * i + k] += of_right[k] * (a == b ? moved : unknown_value(line, b, at));
+    }
 }
 
 /// Displacements of the nodes around x.
