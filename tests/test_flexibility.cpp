@@ -81,7 +81,7 @@ TEST_CASE("sides that differ, pads with lengths: model and residual make the fin
         const double z = kind == Kind::full ? b.z : 0.;
         compare(table.at(e, p, e, 4), at_point({b.rail, place(coarse, e, 4), 0., b.z, 2}),
                 at_point({b.rail, place(coarse, e, 4), 0., z, 2}));
-        compare(read[static_cast<std::size_t>(e * (kPoints + 1) + p)], pad, pad);
+        compare(read.data()[e * (kPoints + 1) + p], pad, pad);
       }
   }
   CAPTURE(static_cast<int>(kind), missing / largest);
