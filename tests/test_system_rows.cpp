@@ -134,9 +134,9 @@ TEST_CASE("gradients of all rows are those of their values", "[system][rows]") {
   Rows rows(all_joints(GENERATE(false, true)));
   const VectorXd x = rows.random(.1, false, 3);
   rows.values(x, kTime);
-  std::vector<VectorXd> gradient;
+  std::vector<VectorXd> gradient(static_cast<std::size_t>(rows.count()));
   for (std::int32_t r = 0; r < rows.count(); ++r)
-    gradient.push_back(rows.over_unknowns(rows.w.gradient, r));
+    gradient[static_cast<std::size_t>(r)] = rows.over_unknowns(rows.w.gradient, r);
   double worst = 0.;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const VectorXd slope = column(x, i, [&](const VectorXd& p) { return rows.values(p, kTime); });
