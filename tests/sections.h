@@ -19,6 +19,16 @@ inline BeamSection section_f() {
 inline const Rectangles<double> kSectionF = {{.1380985536, .02522171327, .07720505094},
                                              {.020996636, .13308941227, .03165145173}};
 
+/// R60 as rail-data.md's benchmarks have it, section 3.
+inline BeamSection r60_section() {
+  return {.area = 7670e-6,
+          .inertia_y = 3038.3e-8,
+          .inertia_z = 512e-8,
+          .torsion = 221e-8,
+          .shear_factor_y = .4,
+          .shear_factor_z = .4};
+}
+
 /// Rectangle of the peers' moving-load scene, 231.9 mm high and 37.5 mm wide, k = .8497 for both
 /// directions, J by the series of Saint-Venant.
 inline BeamSection peers_rectangle() {

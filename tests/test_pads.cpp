@@ -8,6 +8,7 @@
 #include "offline/element/shape.h"
 #include "offline/track/pad.h"
 #include "offline/track/statics.h"
+#include "sections.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinRel;
@@ -19,12 +20,7 @@ Track s1(int bays, int elements_per_bay, double pad_length) {
   Track t;
   t.rails = 1;
   t.unknowns = Unknowns::vertical;
-  t.section = {.area = 7670e-6,
-               .inertia_y = 3038.3e-8,
-               .inertia_z = 512e-8,
-               .torsion = 221e-8,
-               .shear_factor_y = .4,
-               .shear_factor_z = .4};
+  t.section = r60_section();
   t.bays = bays;
   t.elements_per_bay = elements_per_bay;
   t.support.stiffness = {0., 0., 200e6};

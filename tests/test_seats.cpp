@@ -35,12 +35,7 @@ Track s1_rail() {
   Track t;
   t.rails = 1;
   t.unknowns = Unknowns::vertical;
-  t.section = {.area = 7670e-6,
-               .inertia_y = 3038.3e-8,
-               .inertia_z = 512e-8,
-               .torsion = 221e-8,
-               .shear_factor_y = .4,
-               .shear_factor_z = .4};
+  t.section = r60_section();
   t.bays = 40;
   t.support.stiffness = {0., 0., 200e6};
   t.sleeper = Sleeper{300., 169., {0., 0., 50e6}, {0., 0., 80e3}};

@@ -261,12 +261,7 @@ TEST_CASE("set S1: static deflection and seat forces", "[statics]") {
   Track t;
   t.rails = 1;
   t.unknowns = Unknowns::vertical;
-  t.section = {.area = 7670e-6,
-               .inertia_y = 3038.3e-8,
-               .inertia_z = 512e-8,
-               .torsion = 221e-8,
-               .shear_factor_y = .4,
-               .shear_factor_z = .4};
+  t.section = r60_section();
   t.material.density = 7850.;
   t.bays = 40;
   t.elements_per_bay = 2;

@@ -61,8 +61,7 @@ Track track_of(const Scene& scene, const RailSection& rail);
 void change_seats(const std::vector<SeatChange>& changes, Track& track);
 
 /// The factor of a change's scatter on one side of one seat: even between 1 - width and 1 + width,
-/// the same on every machine. Three rounds of SplitMix64 (Steele, Lea, Flood 2014) over seed,
-/// stream, seat and side; none depends on the others' number or order.
+/// the same on every machine, by random.h's uniform() over seed, stream and side, and seat.
 double scatter_factor(std::uint64_t seed, std::uint64_t stream, int seat, std::size_t side,
                       double width);
 

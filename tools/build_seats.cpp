@@ -1,15 +1,8 @@
 #include "build.h"
+#include "offline/irregularity/random.h"
 
 namespace railstep {
 namespace {
-
-/// SplitMix64's output function (Steele, Lea, Flood: Fast splittable generators, 2014).
-std::uint64_t mixed(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
 
 void take_away(Missing what, std::size_t side, Seat& seat) {
   Support& pad = seat.pad[side];
@@ -41,10 +34,7 @@ void change_side(const SeatChange& change, int border, std::size_t side, double 
 
 double scatter_factor(std::uint64_t seed, std::uint64_t stream, int seat, std::size_t side,
                       double width) {
-  std::uint64_t bits = mixed(seed);
-  bits = mixed(bits ^ (4 * stream + side));
-  bits = mixed(bits ^ static_cast<std::uint64_t>(seat));
-  const double even = static_cast<double>(bits >> 11) * 0x1p-53;  // 0 to 1
+  const double even = uniform(seed, 4 * stream + side, static_cast<std::uint64_t>(seat));
   return 1. + width * (2. * even - 1.);
 }
 
