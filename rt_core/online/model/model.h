@@ -168,4 +168,7 @@ struct Model {
   SystemModel system;
 };
 
+/// Wheels on the rails: left and right of each wheelset in turn.
+inline std::int32_t wheel_count(const Model& model) noexcept { return 2 * model.wheelsets; }
+
 }  // namespace railstep
