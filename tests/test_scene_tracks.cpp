@@ -166,13 +166,15 @@ TEST_CASE("transition_zone: uneven ballast is as even ballast far from where it 
   CHECK(shaken(zone) > shaken(soft) + .02);
 }
 
-TEST_CASE("struck, heated and changing tracks: energies balance below 1e-3", "[scenes]") {
-  const std::string name = GENERATE("impact_hammer", "heated_track", "transition_zone");
+TEST_CASE("struck, heated, changing and irregular tracks: energies balance below 1e-3",
+          "[scenes]") {
+  const std::string name = GENERATE("impact_hammer", "heated_track", "transition_zone",
+                                    "dipped_joint", "wheel_flat", "corrugation");
   const Scene scene = read_scene(kScenes + name + ".toml");
   const Built built(scene);
   const Model& model = built.packed->model();
   const EnergyBalance found =
-      balance_of(*built.packed, model, model.steps / model.steps_per_frame / 8);
+      balance_of(*built.packed, model, model.steps / model.steps_per_frame / 4);
   CAPTURE(name, found.error);
   CHECK(std::abs(found.error) < 1e-3);
 }

@@ -19,7 +19,8 @@ void locate_contacts(const Model& model, const State& s, Workspace& w, Coupling&
     w.scaled[i] = s.u[i] + ahead * s.v[i];
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
-    find_contacts(model, set, located_on(s, w), c.contact + 2 * b);
+    const double further = (model.scheme.theta * model.scheme.dt - ahead) * s.v[set.first];
+    find_contacts(model, set, located_on(s, w), c.contact + 2 * b, further);
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
       c.law[i] = {set.hertz[side], 0., 0.};

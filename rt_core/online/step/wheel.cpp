@@ -91,18 +91,19 @@ void interpolate_nodes(const Window& window, RailPlace place, const double* shap
   for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
 }
 
-/// Row of the material point (y, z) along the normal.
-void fill_row(const double* shape, WheelContact& at) noexcept {
+/// Row of the material point (y, z) along the normal. An irregular rail that is drawn along brings
+/// up the height that its steel had behind: its row leans back by the slope.
+void fill_row(const double* shape, double slope, WheelContact& at) noexcept {
   const double lever[3] = {1., at.y, at.z};
+  const double along[3] = {at.normal[0] - slope, at.normal[1], at.normal[2]};
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k)
-      at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * at.normal[k % 3]);
+    for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
 }
 
 /// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
 /// then the material point of the railhead under the normal.
 WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
-                          const Configuration& now, const Window& window) noexcept {
+                          const Configuration& now, double ahead, const Window& window) noexcept {
   const double* const p = now.u + w.first;
   const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
   const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
@@ -136,17 +137,21 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   at.y = model.crown_radius[side] * (n_a / length);
   at.z = z_crown + model.crown_radius[side] * (n_b / length);
   if (!(std::fabs(at.y) <= model.head_half_width[side])) at.on_rail = false;
-  fill_row(shape, at);
+  const double arm[3] = {found.along * axle[0], found.along * axle[1], found.along * axle[2]};
+  // Irregularities are those of the steel right under the axle. The nearest point lies aside of it
+  // by the radius times the rail's slope; read there, they would do work as the rail bends, which
+  // contact at the true shapes' nearest points does not.
+  const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length +
+                   (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
+  const Irregularity off = irregularity(model, w, side, at.normal, x + ahead, p[0] + ahead);
+  fill_row(shape, off.rail_rise, at);
   at.turn = .5 * (q[5] - q[7]);
   const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
   // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
-  const double arm[3] = {found.along * axle[0], found.along * axle[1], found.along * axle[2]};
   double lever[3], gap = 0.;
   cross(arm, at.normal, lever);
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
-  const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
-  const Irregularity off = irregularity(model, w, side, at.normal, x, p[0]);
   at.penetration = (w.radius - gap) + off.depth + higher;
   at.rise = off.rise;
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
@@ -161,25 +166,26 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
 Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int side,
                           const double* normal, double x, double rolled) noexcept {
   const SignalValue tread = signal_at(wheelset.tread[side], rolled);
-  Irregularity sum{tread.value, tread.slope};
+  Irregularity sum{tread.value, tread.slope, 0.};
   for (std::int32_t i = 0; i < model.signals; ++i) {
     const RailSignal& rail = model.signal[i];
     if (rail.rail != side) continue;
     const SignalValue at = signal_at(rail.signal, x);
     sum.depth += normal[rail.direction] * at.value;
-    sum.rise += normal[rail.direction] * at.slope;
+    sum.rail_rise += normal[rail.direction] * at.slope;
   }
+  sum.rise += sum.rail_rise;
   return sum;
 }
 
 void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
-                   WheelContact* sides) noexcept {
+                   WheelContact* sides, double ahead) noexcept {
   const double* p = at.u + wheelset.first;
   Window windows[2];
   gather(model, wheelset.start + p[0], at, windows);
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
-    sides[side] = find_contact(model, wheelset, side, at, windows[side]);
+    sides[side] = find_contact(model, wheelset, side, at, ahead, windows[side]);
   }
 }
 

@@ -26,6 +26,7 @@ struct WheelContact {
 /// @param rolled  distance that the wheel has gone, m
 struct Irregularity {
   double depth, rise;
+  double rail_rise;  // the part of the rise that is the rail's, which goes along with its steel
 };
 Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int side,
                           const double* normal, double x, double rolled) noexcept;
@@ -33,7 +34,8 @@ Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int
 /// Finds the contacts of a wheelset's left and right wheel.
 /// @param at     displacements of track and bodies at which to look
 /// @param sides  [2] left, right
+/// @param ahead  m, by how much the irregularities under them are those of a place further on
 void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
-                   WheelContact* sides) noexcept;
+                   WheelContact* sides, double ahead = 0.) noexcept;
 
 }  // namespace railstep
