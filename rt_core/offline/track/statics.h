@@ -34,6 +34,8 @@ class Statics {
   double flexibility(const RailPoint& a, const RailPoint& b) const;
   /// Force of seat `seat` on its rail along z, N, up positive.
   double support_force(const std::vector<Eigen::VectorXd>& displacement, int rail, int seat) const;
+  /// The forces and the weight over each line's unknowns.
+  std::vector<Eigen::VectorXd> loads(const std::vector<PointForce>& forces, double gravity) const;
   /// What is left of the load in each line: f - K u, and what one-sided supports press.
   std::vector<Eigen::VectorXd> unbalanced(const std::vector<Eigen::VectorXd>& displacement,
                                           const std::vector<PointForce>& forces,
@@ -47,8 +49,6 @@ class Statics {
   const std::vector<Line>& lines() const { return lines_; }
 
  private:
-  std::vector<Eigen::VectorXd> loads(const std::vector<PointForce>& forces, double gravity) const;
-
   Track track_;
   std::vector<Line> lines_;
   std::vector<FixedPort> ports_;
