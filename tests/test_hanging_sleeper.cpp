@@ -1,6 +1,7 @@
 // The scene of hanging sleepers by the program: trace, statics, energy, and what is refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 
 #include "build.h"
@@ -63,21 +64,31 @@ TEST_CASE("two axles over hanging sleepers keep the balance of energy", "[suppor
 }
 
 TEST_CASE("pads that do not pull have their force in the trace", "[supports]") {
-  // The weight of 0.6 m of rail presses a pad with 355 N, and 5 kN lift it by some 75 N at most
-  // (rail-data.md: 1.5 % two seats beyond): pads that do not pull are springs then.
+  // The weight of 0.6 m of rail presses a pad with 350 N, and 2 kN lift it by 60 N at most
+  // (rail-data.md: 1.5 % of each of the axles): pads that do not pull are springs then.
   std::string both = kScene + " --set track.gravity=true --set step.duration_s=0.05";
-  for (int i = 0; i < 4; ++i) both += " --set load[" + std::to_string(i) + "].force_z_n=-5e3";
-  const Rows springs = traced(both);
-  const Rows pads = traced(both +
-                           " --set 'support_change=[{from=14, to=16, ballast.gap_m=0.5e-3}, "
-                           "{from=8, to=12, support.unilateral=true}]'");
-  for (const int seat : {9, 10, 11}) {
-    const std::size_t c = springs.column("support_" + std::to_string(seat) + ".force_z_n");
-    double most = 0.;
-    for (const auto& row : springs.row) most = std::max(most, row[c]);
-    CHECK(most > 1e3);
-    for (std::size_t r = 0; r < springs.row.size(); ++r)
-      CHECK_THAT(pads.row[r][c], WithinAbs(springs.row[r][c], 1e-6 * most));
+  for (int i = 0; i < 4; ++i) both += " --set load[" + std::to_string(i) + "].force_z_n=-2e3";
+  const std::string pads =
+      " --set 'support_change=[{from=14, to=16, ballast.gap_m=0.5e-3}, "
+      "{from=8, to=12, support.unilateral=true}]'";
+  // Without the residual flexibility both are one discrete problem; with it a port's force misses
+  // what a load inside an element does beyond the mesh, 1e-3 of its flexibility on two elements
+  // per bay (flexibility.h).
+  for (const bool residual : {false, true}) {
+    const std::string words =
+        both + " --set condense.residual_flexibility=" + (residual ? "true" : "false");
+    const Rows a = traced(words), b = traced(words + pads);
+    for (const int seat : {9, 10, 11}) {
+      const std::size_t c = a.column("support_" + std::to_string(seat) + ".force_z_n");
+      double most = 0., difference = 0.;
+      for (std::size_t r = 0; r < a.row.size(); ++r) {
+        most = std::max(most, a.row[r][c]);
+        difference = std::max(difference, std::abs(b.row[r][c] - a.row[r][c]));
+      }
+      CAPTURE(residual, seat, difference / most);
+      CHECK(most > 800.);
+      CHECK(difference < (residual ? 1e-3 : 1e-6) * most);
+    }
   }
 }
 
@@ -117,11 +128,7 @@ TEST_CASE("what a track cannot do with springs that do not pull is said", "[supp
   refused(run + "ballast.gap_m=-1e-3", "gap_m");
   refused(run + "support_change[0].ballast.gap_m=0.2", "gap_m");
   refused(run + "support.length_m=0.1 --set support.unilateral=true", "a length of 0");
-  refused(run +
-              "track.bays=6 --set load=[] --set track.gravity=true --set "
-              "sensor=[] --set support_change=[] --set ballast.unilateral=true --set "
-              "condense.kind='\"modal\"'",
-          "free rigid mode");
+  refused(run + "ballast.unilateral=true --set condense.kind='\"modal\"'", "free rigid mode");
   refused(run +
               "'stop=[{name=\"a\", rail=\"left\", position_m=9.0, direction=\"y\", "
               "side=\"left\", stiffness_n_per_m=1e8}]'",
