@@ -165,9 +165,9 @@ void step_condensed(benchmark::State& run) {
   compare(run, scene, fine_step, Unknowns::vertical);
 }
 
-/// Seats that do not pull, the first of args of them from a quarter of the track on, beside the
-/// same track with springs; args are bays, seats and whether condensed. Over springs that nearly
-/// always press, so the error's reference is theirs.
+/// Seats that do not pull, from a quarter of the track on; args are bays, seats and whether
+/// condensed. The rail has no weight here, so they lift before and behind the load: the difference
+/// from springs says how much, it is no error.
 void step_fixed_ports(benchmark::State& run) {
   const int bays = static_cast<int>(run.range(0)), seats = static_cast<int>(run.range(1));
   Track track = peers_track(bays, 2, 1, Unknowns::vertical);
