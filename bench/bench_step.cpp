@@ -165,6 +165,27 @@ void step_condensed(benchmark::State& run) {
   compare(run, scene, fine_step, Unknowns::vertical);
 }
 
+/// Seats that do not pull, from a quarter of the track on; args are bays, seats and whether
+/// condensed. The rail has no weight here, so they lift before and behind the load: the difference
+/// from springs says how much, it is no error.
+void step_fixed_ports(benchmark::State& run) {
+  const int bays = static_cast<int>(run.range(0)), seats = static_cast<int>(run.range(1));
+  Track track = peers_track(bays, 2, 1, Unknowns::vertical);
+  std::optional<ModalLimit> modal;
+  if (run.range(2) != 0) modal = ModalLimit{bays, 1e9};
+  MovingLoadRun springs(track, kStep, 1, modal);
+  for (int i = 0; i < seats; ++i) {
+    Seat seat = track.seat(bays / 4 + i);
+    seat.pad[0].unilateral = true;
+    track.changed_seats[bays / 4 + i] = seat;
+  }
+  MovingLoadRun scene(track, kStep, 1, modal);
+  const std::vector<double> z = scene.deflections(), want = springs.deflections();
+  for (auto _ : run) scene.frame();
+  run.counters["difference_from_springs"] = largest_error(z, want, kStartUp);
+  run.counters["unknowns"] = scene.unknowns();
+}
+
 constexpr int kTimed = 100'000;  // steps
 
 BENCHMARK(step_vertical)
@@ -181,6 +202,10 @@ BENCHMARK(step_full)->ArgName("elements")->RangeMultiplier(4)->Range(4, 256)->It
 BENCHMARK(step_condensed)
     ->ArgNames({"bays", "modes_per_100_bays"})
     ->ArgsProduct({{4, 16, 64, 256}, {25, 50, 100}})
+    ->Iterations(kTimed);
+BENCHMARK(step_fixed_ports)
+    ->ArgNames({"bays", "seats", "condensed"})
+    ->ArgsProduct({{40}, {0, 1, 4, 16}, {0, 1}})
     ->Iterations(kTimed);
 
 }  // namespace

@@ -115,7 +115,9 @@ Support support_of(const SupportScene& s, const Section& section, double axis_z)
           .roll_damping = s.roll.damping,
           .height_z = height_z(s.at, section, axis_z),
           .half_spread = s.half_spread,
-          .length = s.length};
+          .length = s.length,
+          .unilateral = s.unilateral,
+          .gap = s.gap};
 }
 
 Sleeper sleeper_of(const SleeperScene& s) {
@@ -126,7 +128,20 @@ Sleeper sleeper_of(const SleeperScene& s) {
           .ballast_stiffness = {x.stiffness, y.stiffness, s.ballast_z.stiffness},
           .ballast_damping = {x.damping, y.damping, s.ballast_z.damping},
           .pitch_inertia = s.pitch_inertia,
-          .ballast_length = s.ballast_length};
+          .ballast_length = s.ballast_length,
+          .ballast_unilateral = s.ballast_unilateral,
+          .ballast_gap = s.ballast_gap};
+}
+
+Stop stop_of(const StopScene& s, const Section& section, double axis_z) {
+  return {.rail = s.rail == Side::right ? 1 : 0,
+          .x = s.position,
+          .z = height_z(s.at, section, axis_z),
+          .direction = s.direction,
+          .side = s.side,
+          .gap = s.gap,
+          .stiffness = s.spring.stiffness,
+          .damping = s.spring.damping};
 }
 
 /// Force in a rail at rest: its own, and what heat makes between ends that hold it, N.
@@ -205,6 +220,11 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.axial_force = axial_force_of(scene.rail, track.section.area);
   if (scene.right_rail) add_right_rail(scene, keep_moments, track);
   change_seats(scene.seat_changes, track);
+  for (const StopScene& stop : scene.stops) {
+    const bool own = stop.rail == Side::right && scene.right_rail;
+    track.stops.push_back(
+        stop_of(stop, own ? rail_section_of(scene, Side::right).section : section, track.axis_z));
+  }
   refuse_buckled(track);
   if (!scene.track.linearised_under_weight) return track;
   return linearised_under_weight(track, scene.track.gravity ? kGravity : 0.);

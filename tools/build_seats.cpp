@@ -23,6 +23,8 @@ void change_side(const SeatChange& change, int border, std::size_t side, double 
     double& number = value.of(seat, side);
     number = value.scales ? now * number : now;
   }
+  seat.pad[side].unilateral = change.pad_unilateral.value_or(seat.pad[side].unilateral);
+  seat.ballast[side].unilateral = change.ballast_unilateral.value_or(seat.ballast[side].unilateral);
   for (const SeatScatter& scatter : change.scatter) {
     const double factor = scatter_factor(change.seed, scatter.stream, border, side, scatter.width);
     for (const auto of : scatter.of) of(seat, side) *= factor;

@@ -59,6 +59,10 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
                                         std::vector<std::string>& columns) {
   if (!scene.track) return std::make_unique<PackedSystem>(system, options_of(scene));
   const Track track = track_of(*scene.track);
+  if (!fixed_ports(track).empty())
+    throw std::invalid_argument(
+        "supports that do not pull, or have a gap, are not stepped beside bodies and beams; "
+        "accepted are a scene without gap_m and unilateral, or a track alone");
   const TracedTraffic traced = traffic_of(*scene.track, track);
   columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
   return std::make_unique<PackedSystem>(system, options_of(scene), track, traced.traffic,

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "online/step/closing.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
 
@@ -44,6 +45,10 @@ EnergyAccount::Standing EnergyAccount::stand(const State& state) const {
   at.state.steps = state.steps;
   for (const LineEnergy& line : lines_) at.lines.push_back(line.motion(at.state));
   at.contacts = standing_contacts(model_, at.state);
+  for (std::int32_t j = 0; j < model_.fixed.count; ++j) {
+    at.depth.push_back(closing(model_, j, at.state.u, at.state.v) - model_.fixed.gap[j]);
+    at.speed.push_back(closing_speed(model_, j, at.state));
+  }
   return at;
 }
 
@@ -61,6 +66,8 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
   }
   sum.hertz = at.contacts.hertz;
   sum.residual = at.contacts.residual;
+  for (std::size_t j = 0; j < at.depth.size(); ++j)
+    sum.ports += .5 * model_.fixed.stiffness[j] * std::pow(std::max(0., at.depth[j]), 2);
   return sum;
 }
 
@@ -71,6 +78,7 @@ void EnergyAccount::follow(const State& state) {
   add_loads(now);
   if (model_.wheelsets > 0) add_contacts(now);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) add_wheelset(now, b);
+  for (std::int32_t j = 0; j < model_.fixed.count; ++j) add_port(now, j);
   if (first_ && model_.condensed == 0) add_start(now);
   last_ = std::move(now);  // its views stay: a vector's memory moves with it
   first_ = false;
@@ -111,6 +119,23 @@ void EnergyAccount::add_contacts(const Standing& now) {
     sum += wheel_force(now, i) * (after.approach[i] - before.approach[i]);
   }
   flow_.loss += sum;
+}
+
+void EnergyAccount::add_port(const Standing& now, std::int32_t j) {
+  const auto i = static_cast<std::size_t>(j);
+  const double k = model_.fixed.stiffness[j], theta = model_.scheme.theta;
+  const double d0 = last_.depth[i], d1 = now.depth[i];
+  const double f0 = last_.state.port_force[j], f1 = now.state.port_force[j];
+  const auto spring = [&](double d) { return k * std::max(0., d); };
+  const bool held = model_.condensed != 0;
+  const double work = (held ? f1 : .5 * (f0 + f1)) * (d1 - d0);
+  const double dissipated =
+      held ? work - spring(theta * d1 + (1. - theta) * d0) * (d1 - d0)
+           : .5 * model_.scheme.dt *
+                 ((f0 - spring(d0)) * last_.speed[i] + (f1 - spring(d1)) * now.speed[i]);
+  const double kept = .5 * (spring(d1) * std::max(0., d1) - spring(d0) * std::max(0., d0));
+  flow_.dissipated += dissipated;
+  flow_.loss += work - kept - dissipated;
 }
 
 /// Force of the scheme on a wheel over the step, N.
@@ -187,6 +212,10 @@ void EnergyAccount::add_start(const Standing& now) {
   for (int i = 0; i < wheel_count(model_); ++i)
     for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
       spread(model_.line[l], last_.contacts.contact[i].row, -s.wheel_force[i], f.data());
+  const FixedPortModel& fixed = model_.fixed;
+  for (std::int32_t j = 0; j < fixed.count; ++j)
+    for (std::int32_t k = fixed.start[j]; k < fixed.start[j + 1]; ++k)
+      f[static_cast<std::size_t>(fixed.index[k])] -= s.port_force[j] * fixed.value[k];
   for (std::size_t l = 0; l < lines_.size(); ++l)
     flow_.loss +=
         .5 * lines_[l].unbalanced(last_.lines[l], f.data()).dot(now.lines[l].u - last_.lines[l].u);

@@ -13,8 +13,9 @@ struct StoredEnergy {
   double strain = 0.;    // of lines
   double hertz = 0.;     // sum 2/5 C d^2.5
   double residual = 0.;  // F' G_res F / 2
+  double ports = 0.;     // of one-sided springs, k max(0, d)^2 / 2
   double forward = 0.;  // of kinetic: what the guided motion alone makes, m (v^2 - (v - speed)^2)/2
-  double total() const { return kinetic + strain + hertz + residual; }
+  double total() const { return kinetic + strain + hertz + residual + ports; }
 };
 
 /// Energy that passed since the start, J.
@@ -49,6 +50,9 @@ struct EnergyFlow {
 ///   - dU, a the approach and f = (f0 + f1)/2, or the force held over the step. With W = 0 that is
 ///   (f0 + f1)/2 (d1 - d0) - V(d1) + V(d0), or V'(d_theta)(d1 - d0) - V(d1) + V(d0), d_theta =
 ///   theta d1 + (1 - theta) d0: the discrete gradient's miss;
+/// - of one-sided springs, by their forces and depths d as those of contacts: f dd - d(V) - what
+///   the damper took, with what of f is not k max(0, d) its force: trapezoidal in f d', or where
+///   forces are held over the step (f - V'(d_theta)) (d1 - d0);
 /// - of the first step, du' (f - M g - C v - K u)/2 at the start: a state that does not meet the
 ///   equation of motion (a load that appears suddenly, a moving start) with the acceleration 0.
 ///
@@ -81,12 +85,14 @@ class EnergyAccount {
     State state;
     std::vector<LineMotion> lines;
     StandingContacts contacts;
+    std::vector<double> depth, speed;  // of one-sided springs, m, m/s
   };
   Standing stand(const State& state) const;
   StoredEnergy stored(const Standing& at) const;
   void add_lines(const Standing& now);
   void add_loads(const Standing& now);
   void add_contacts(const Standing& now);
+  void add_port(const Standing& now, std::int32_t j);
   void add_wheelset(const Standing& now, std::int32_t b);
   double wheel_force(const Standing& now, int wheel) const;
   double passage_work(const Standing& now, std::int32_t b) const;

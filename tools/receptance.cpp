@@ -14,6 +14,7 @@
 #include "offline/receptance/end_effect.h"
 #include "offline/receptance/exact_rail.h"
 #include "offline/receptance/full_order.h"
+#include "offline/track/fixed_port.h"
 #include "sense.h"
 
 namespace railstep {
@@ -193,7 +194,7 @@ std::string label(const Sensed& point) {
 }
 
 ReceptanceAnswer solve(const ReceptanceRequest& request, const Scene& scene) {
-  const Track track = track_of(scene);
+  const Track track = linear_about_rest(track_of(scene));
   const Sensed force = sensed(scene, track, request.at, request.direction);
   const Sensed read =
       sensed(scene, track, request.to.empty() ? request.at : request.to,

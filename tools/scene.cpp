@@ -96,6 +96,8 @@ std::optional<SupportScene> read_support(const Table& root, const Scene& scene) 
   s.at = t.choice("at", {"foot", "axis"}, 0) == 0 ? Height::foot : Height::axis;
   s.half_spread = t.number("half_spread_m", between(0.0, 0.5), 0.0);
   s.length = t.number("length_m", between(0.0, scene.track.bay), 0.0);
+  s.unilateral = t.boolean("unilateral", false);
+  s.gap = t.number("gap_m", between(0.0, 0.1), 0.0);
   return s;
 }
 
@@ -113,6 +115,8 @@ std::optional<SleeperScene> read_sleeper(const Table& root, const Scene& scene) 
   s.ballast_z = read_spring(*ballast, "z", true);
   s.pitch_inertia = t->number("pitch_inertia_kg_m2", between(0.0, 1e6), 0.0);
   s.ballast_length = ballast->number("length_m", between(0.0, 5.0), 0.0);
+  s.ballast_unilateral = ballast->boolean("unilateral", false);
+  s.ballast_gap = ballast->number("gap_m", between(0.0, 0.1), 0.0);
   if (s.ballast_length > 0.0 && scene.support->length == 0.0)
     ballast->refuse("length_m",
                     "length_m makes the sleeper pitch, but pads that are points do not feel it; "
@@ -247,6 +251,7 @@ Scene read_track_scene(const Table& root) {
   if (const std::optional<Table> step = root.table_if("step")) scene.step = read_track_step(*step);
   scene.condense = read_condense(root);
   scene.statics = read_statics(root);
+  scene.stops = read_stops(root, scene);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene);
   scene.irregularity = read_irregularity(root, scene);

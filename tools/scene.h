@@ -86,6 +86,8 @@ struct SupportScene {
   Height at;           // foot or axis
   double half_spread;  // m; over 0: half of each spring at y = -half_spread and +half_spread
   double length;       // m along x, over which it is evenly spread; 0: a point
+  bool unilateral;     // z presses and does not pull
+  double gap;          // of z, m
 };
 
 struct SleeperScene {
@@ -96,6 +98,8 @@ struct SleeperScene {
       ballast_length;  // m along x, over which it is evenly spread; 0: the sleeper does not pitch
   Spring ballast_z;    // under each end
   std::optional<Spring> ballast_x, ballast_y;  // under each end; none: held in that direction
+  bool ballast_unilateral;                     // ballast_z presses and does not pull
+  double ballast_gap;                          // of ballast_z, m
 };
 
 /// What a change takes away of a seat.
@@ -121,9 +125,22 @@ struct SeatChange {
   std::vector<int> seats;
   std::array<bool, 2> sides;  // left, right
   std::vector<SeatValue> values;
+  std::optional<bool> pad_unilateral, ballast_unilateral;
   std::vector<SeatScatter> scatter;
   std::uint64_t seed = 0;
   Missing missing = Missing::nothing;
+};
+
+/// What a rail's point meets and does not pull at.
+struct StopScene {
+  std::string name;
+  Side rail;
+  double position;  // m
+  int direction;    // 1 y, 2 z
+  double side;      // 1 or -1: met on the way along + or - of it
+  Height at;
+  double gap;  // m
+  Spring spring;
 };
 
 /// A function of time: 0 before the first row, linear between rows, the last value after.
@@ -213,6 +230,7 @@ struct Scene {
   std::optional<SupportScene> support;  // none: only the ends hold the rails, or nothing
   std::optional<SleeperScene> sleeper;
   std::vector<SeatChange> seat_changes;  // one after the other
+  std::vector<StopScene> stops;
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::optional<IrregularityScene> irregularity;

@@ -217,7 +217,7 @@ void check_names(const Table& root, const Scene& scene) {
                                 name, first->second));
   };
   const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
-             sensors = root.tables("sensor");
+             sensors = root.tables("sensor"), stops = root.tables("stop");
   for (std::size_t i = 0; i < loads.size(); ++i)
     claim(traced, loads[i], "name", scene.loads[i].name);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -225,6 +225,8 @@ void check_names(const Table& root, const Scene& scene) {
     for (const std::string& wheel : scene.wheelsets[i].wheels)
       claim(traced, bodies[i], "wheels", wheel);
   }
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    claim(traced, stops[i], "name", scene.stops[i].name);
   for (std::size_t i = 0; i < sensors.size(); ++i)
     claim(traced, sensors[i], "name", scene.sensors[i].name);
 }

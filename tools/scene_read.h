@@ -25,6 +25,7 @@ RailScene read_rail(const Table& rail);
 RailScene read_right_rail(const Table& right, const RailScene& left);
 /// [[support_change]], in the file's order.
 std::vector<SeatChange> read_seat_changes(const Table& root, const Scene& scene);
+std::vector<StopScene> read_stops(const Table& root, const Scene& scene);
 /// dt, frame and duration of [step]; the scheme and the start are its reader's.
 StepScene read_times(const Table& step);
 /// [step] of a scene with a track.

@@ -45,6 +45,8 @@ const Property kProperties[] = {
      [](Seat& s, std::size_t i) -> double& { return s.pad[i].half_spread; }},
     {"support", "length_m", Kind::other, between(0.0, 5.0),
      [](Seat& s, std::size_t i) -> double& { return s.pad[i].length; }},
+    {"support", "gap_m", Kind::other, between(0.0, 0.1),
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].gap; }},
     {"sleeper", "mass_kg", Kind::other, between(0.0, 1e5),
      [](Seat& s, std::size_t) -> double& { return s.sleeper->mass; }},
     {"sleeper", "roll_inertia_kg_m2", Kind::other, between(0.0, 1e6),
@@ -65,6 +67,8 @@ const Property kProperties[] = {
      [](Seat& s, std::size_t i) -> double& { return s.ballast[i].damping[2]; }},
     {"ballast", "length_m", Kind::other, between(0.0, 5.0),
      [](Seat& s, std::size_t i) -> double& { return s.ballast[i].length; }},
+    {"ballast", "gap_m", Kind::other, between(0.0, 0.1),
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].gap; }},
 };
 
 /// `from` to `to`, or a list; without either all of them.
@@ -158,6 +162,8 @@ void read_part(const Table& change_table, const char* name, const Scene& scene,
     add_value(t, property.key, property.accepted, {property.of}, false, change);
   }
   if (std::string_view(name) == "sleeper") return;
+  if (t.has("unilateral"))
+    (of_sleeper ? change.ballast_unilateral : change.pad_unilateral) = t.boolean("unilateral");
   const Range factor = between(0.0, 1e6);
   const std::vector<Of> stiffness = all_of(name, Kind::stiffness),
                         damping = all_of(name, Kind::damping);

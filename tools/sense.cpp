@@ -70,12 +70,29 @@ void add_point(const std::string& name, const Point& point, Sensors& sensors) {
   add("vz_m_per_s", 2, {.velocity = 1.});
 }
 
+/// The forces of a track's one-sided springs that `chosen` picks.
+template <typename Chosen>
+Probe press_of(const Track& track, const Chosen& chosen) {
+  const std::vector<FixedPort> ports = fixed_ports(track);
+  Probe probe;
+  for (std::size_t j = 0; j < ports.size(); ++j)
+    if (chosen(ports[j])) probe.ports.push_back({static_cast<int>(j), 1.});
+  return probe;
+}
+
 /// Force of a seat on its rail, up positive: its spring and damper on the gap between foot and
 /// sleeper.
 void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
   const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
-  Probe probe{.displacement = -pad.stiffness[2], .velocity = -pad.damping[2]};
-  probe.track = pad_gap(track, rail, seat);
+  Probe probe;
+  if (pad.one_sided()) {
+    probe = press_of(track, [&](const FixedPort& port) {
+      return port.of == FixedPort::Of::pad && port.rail == rail && port.seat == seat;
+    });
+  } else {
+    probe = {.displacement = -pad.stiffness[2], .velocity = -pad.damping[2]};
+    probe.track = pad_gap(track, rail, seat);
+  }
   sensors.columns.push_back(fmt::format("support_{}{}.force_z_n", rail == 0 ? "" : "right_", seat));
   sensors.probes.push_back(std::move(probe));
 }
@@ -99,6 +116,12 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
   }
   for (int rail = 0; rail < track.rails && scene.trace_supports; ++rail)
     for (int seat = 0; seat <= track.bays; ++seat) add_support(rail, seat, track, sensors);
+  for (std::size_t i = 0; i < scene.stops.size(); ++i) {
+    sensors.columns.push_back(scene.stops[i].name + ".force_n");
+    sensors.probes.push_back(press_of(track, [&](const FixedPort& port) {
+      return port.of == FixedPort::Of::stop && port.stop == static_cast<int>(i);
+    }));
+  }
   return sensors;
 }
 

@@ -173,18 +173,18 @@ StaticSolution solve_nonlinear(const Problem& problem, const Asked& asked) {
 double linear_residual(const Problem& problem, const Statics& statics,
                        const std::vector<Eigen::VectorXd>& u) {
   double left = 0., size = 0.;
+  const std::vector<Eigen::VectorXd> unbalanced =
+      statics.unbalanced(u, problem.forces, problem.gravity);
+  const std::vector<Eigen::VectorXd> loads = statics.loads(problem.forces, problem.gravity);
   for (std::size_t i = 0; i < u.size(); ++i) {
     const Line& line = statics.lines()[i];
-    Eigen::VectorXd load = weight(problem.track, line, problem.gravity);
-    for (const PointForce& force : problem.forces)
-      load += force.force * point_row(problem.track, line, force.at);
     Eigen::VectorXd scale = Eigen::VectorXd::Ones(line.unknowns());
     for (const Line::RailUnknowns& rail : line.unknown_of)
       for (const auto& node : rail)
         for (std::size_t k = 3; k < 9; ++k)
           if (node[k] >= 0) scale[node[k]] = 1. / problem.slope_length;
-    left += (load - line.stiffness * u[i]).cwiseProduct(scale).squaredNorm();
-    size += load.cwiseProduct(scale).squaredNorm();
+    left += unbalanced[i].cwiseProduct(scale).squaredNorm();
+    size += loads[i].cwiseProduct(scale).squaredNorm();
   }
   return size > 0. ? std::sqrt(left / size) : std::sqrt(left);
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "offline/element/shape.h"
+#include "offline/track/fixed_port.h"
 #include "offline/track/pad.h"
 
 namespace railstep {
@@ -32,6 +33,10 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
     throw std::invalid_argument("a nonlinear rail wants its section's moments to degree 4");
   if (track.bays < 1 || track.elements_per_bay < 1)
     throw std::invalid_argument("a track needs one bay and one element");
+  if (!fixed_ports(track).empty())
+    throw std::invalid_argument(
+        "a nonlinear rail, and one linearised under its weight, stands on seats that pull too; "
+        "accepted without gap_m, unilateral and [[stop]]");
   // A pin off the centroid does not hold the moment of a force through it.
   const auto held = [&](RailEnd end) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);

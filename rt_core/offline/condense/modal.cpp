@@ -89,10 +89,16 @@ Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A) {
   return result;
 }
 
-/// What the static shapes of the dampers add to shapes that are kept; orthonormal over the mass.
-Eigen::MatrixXd damper_shapes(const Line& line, const Eigen::MatrixXd& kept) {
+/// What the static shapes of the dampers and of other rows add to shapes that are kept; orthonormal
+/// over the mass.
+Eigen::MatrixXd local_shapes(const Line& line, const Eigen::MatrixXd& kept,
+                             const Eigen::SparseMatrix<double>& rows) {
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
-  Eigen::MatrixXd shapes = factor.solve(filled_columns(line.damping));
+  const Eigen::MatrixXd dampers = filled_columns(line.damping), others = filled_columns(rows);
+  Eigen::MatrixXd forces(line.unknowns(), dampers.cols() + others.cols());
+  forces.leftCols(dampers.cols()) = dampers;
+  forces.rightCols(others.cols()) = others;
+  Eigen::MatrixXd shapes = factor.solve(forces);
   if (shapes.cols() == 0) return shapes;
   const auto norms = [&]() -> Eigen::VectorXd {
     return shapes.cwiseProduct(line.mass * shapes).colwise().sum().cwiseSqrt().transpose();
@@ -118,7 +124,8 @@ Eigen::MatrixXd damper_shapes(const Line& line, const Eigen::MatrixXd& kept) {
 
 }  // namespace
 
-Basis modal_basis(const Line& line, const ModalLimit& limit) {
+Basis modal_basis(const Line& line, const ModalLimit& limit,
+                  const Eigen::SparseMatrix<double>& rows) {
   if (line.unknowns() > kMostModalUnknowns)
     throw std::invalid_argument("modes of a line of " + std::to_string(line.unknowns()) +
                                 " unknowns; accepted are " + std::to_string(kMostModalUnknowns) +
@@ -131,7 +138,7 @@ Basis modal_basis(const Line& line, const ModalLimit& limit) {
         "a condensed track is held in every direction in which it is moved: this one has a free "
         "rigid mode");
   const Eigen::MatrixXd kept = lowest.shape.leftCols(count);
-  const Eigen::MatrixXd added = damper_shapes(line, kept);
+  const Eigen::MatrixXd added = local_shapes(line, kept, rows);
   Eigen::MatrixXd both(line.unknowns(), kept.cols() + added.cols());
   both << kept, added;
   if (both.cols() == 0)

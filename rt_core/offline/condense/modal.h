@@ -16,9 +16,13 @@ struct ModalLimit {
 /// made orthogonal: a damper is strained by what modes leave out, and without those shapes it would
 /// be blind to it (11 to 27 % of the deflection under a load with dampers of 29e6 N s/m). A
 /// Galerkin basis: no energy is made, whatever it leaves out.
+/// The same shapes of `rows` are kept, so that the model answers a force along a row, and any force
+/// there, with the line's own statics.
+/// @param rows  [unknowns][rows] where local forces act; may have no columns
 /// Throws std::invalid_argument on a free rigid mode (below 1e-3 Hz), which has no static answer,
 /// and on lines of more than kMostModalUnknowns.
-Basis modal_basis(const Line& line, const ModalLimit& limit);
+Basis modal_basis(const Line& line, const ModalLimit& limit,
+                  const Eigen::SparseMatrix<double>& rows = {});
 
 /// A dense solution takes some n^3 10 flops and n^2 16 bytes.
 inline constexpr int kMostModalUnknowns = 4000;

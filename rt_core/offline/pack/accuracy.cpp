@@ -90,8 +90,8 @@ struct Asked {
 
 double static_error(const Track& track, const PackedModel& packed) {
   const int points = packed.model().residual.points > 0 ? packed.model().residual.points : 16;
-  const Statics exact(
-      refined(track, 2 * points));  // exact at its end nodes, half-way of the tables
+  // Exact at its end nodes, half-way of the tables.
+  const Statics exact(refined(all_open(track), 2 * points));
   std::vector<double> places;
   for (const int bay : {0, track.bays / 2, track.bays - 1})
     for (int element = 0; element < track.elements_per_bay; ++element)
@@ -110,7 +110,7 @@ double static_error(const Track& track, const PackedModel& packed) {
 }
 
 double receptance_error(const Track& track, const PackedModel& packed) {
-  const Track fine = refined(track, 2);
+  const Track fine = refined(all_open(track), 2);
   const std::vector<Line> lines = assemble(fine);
   const int bay = track.bays / 2;
   const Asked asked(packed, {(bay + .5) * track.bay_length, bay * track.bay_length});

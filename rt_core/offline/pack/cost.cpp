@@ -31,7 +31,8 @@ std::int64_t banded(const Model& model, const LineModel& line, std::int64_t whee
   const std::int64_t products = 2 * n * (line.mass.count + std::int64_t{line.damping.count});
   const std::int64_t vectors = (22 + 2 * wheels) * n;  // predict, correct, forces of wheels
   const std::int64_t rows = 2 * kElementRow * (model.loads + wheels * (wheels + 3));
-  return products + vectors + rows + (1 + wheels) * solve(line.step);
+  const std::int64_t fixed = 2 * n * model.fixed.count;  // their forces; rows are counted once
+  return products + vectors + rows + fixed + (1 + wheels) * solve(line.step);
 }
 
 std::int64_t condensed(const Model& model, const LineModel& line, std::int64_t wheels) {
@@ -41,7 +42,8 @@ std::int64_t condensed(const Model& model, const LineModel& line, std::int64_t w
   const std::int64_t rows = wheels * 3 * k * 4 * n, responses = wheels * 6 * n;
   const std::int64_t products = (wheels * (wheels + 1) / 2 + 2 * wheels) * 4 * n;
   const std::int64_t moved = wheels * 4 * n, heights = wheels * 3 * 4 * n;
-  return 22 * n + loads + seen + rows + responses + products + moved + heights;
+  const std::int64_t ports = model.fixed.count * (12 + 4 * wheels) * n;  // depths, W, forces
+  return 22 * n + ports + loads + seen + rows + responses + products + moved + heights;
 }
 
 // Of a table at one place: weights of a cubic, four products with their sum, and the force times
@@ -63,15 +65,18 @@ std::int64_t residual_frame(const Model& model, std::int64_t wheels) {
 
 /// Locating, the capped solve of all ports and the guides' turns.
 std::int64_t contact(const Model& model, std::int64_t wheels) {
-  if (wheels == 0) return 0;
+  const std::int64_t ports = wheels + model.fixed.count;
+  if (ports == 0) return 0;
   std::int64_t turns = 1;
   for (std::int32_t i = 0; i < model.wheelsets; ++i)
     if (model.wheelset[i].guide == Guide::augmented_lagrangian && model.wheelset[i].cap > turns)
       turns = model.wheelset[i].cap;
-  const std::int64_t newton = wheels * wheels * wheels / 3 + 12 * wheels * wheels + 40 * wheels;
+  const std::int64_t newton = ports * ports * ports / 3 + 12 * ports * ports + 40 * ports;
   const std::int64_t signals = wheels * (1 + std::int64_t{model.signals}) * 50;
   const std::int64_t locate = wheels * kLocateSteps * 300 + signals;
-  return locate + turns * (kPortSweeps * newton + 60 * wheels);
+  const std::int64_t rows = 8 * model.fixed.entries + 20 * std::int64_t{model.fixed.count} +
+                            wheels * model.fixed.count * 3 * kElementRow * model.lines;
+  return locate + rows + turns * (kPortSweeps * newton + 60 * wheels);
 }
 
 }  // namespace

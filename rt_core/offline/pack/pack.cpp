@@ -31,6 +31,15 @@ bool reaches(const Track& track, const Line& line, int rail, double y, double z,
   return point_row(track, line, {rail, x, y, z, direction}).norm() > 0.;
 }
 
+/// How far a line closes each of the track's fixed ports; [unknowns][ports].
+Eigen::SparseMatrix<double> closing_of(const Track& track, const Line& line) {
+  const std::vector<FixedPort> ports = fixed_ports(track);
+  Eigen::SparseMatrix<double> closing(line.unknowns(), static_cast<Eigen::Index>(ports.size()));
+  for (std::size_t j = 0; j < ports.size(); ++j)
+    closing.col(static_cast<Eigen::Index>(j)) = closing_row(track, line, ports[j]);
+  return closing;
+}
+
 bool is_moved(const Track& track, const Line& line, const Traffic& traffic, double gravity) {
   for (const MovingLoad& load : traffic.loads)
     if (reaches(track, line, load.rail, 0., load.z, 2)) return true;
@@ -148,14 +157,17 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   }
   model_.condensed = options.modal ? 1 : 0;
   std::vector<Line> lines = assemble(track);
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    if (is_moved(track, lines[i], traffic, options.gravity))
-      add_line(track, {std::move(lines[i]), i, {}, {}}, options);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    Eigen::SparseMatrix<double> closing = closing_of(track, lines[i]);
+    if (closing.norm() > 0. || is_moved(track, lines[i], traffic, options.gravity))
+      add_line(track, {std::move(lines[i]), i, std::move(closing), {}, {}}, options);
+  }
   if (lines_.empty()) throw std::invalid_argument("nothing moves the track");
   model_.bodies = model_.unknowns;
   for (const MovingLoad& load : traffic.loads) add_load(track, load);
   for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
+  add_fixed_ports(track);
   if (options.gravity != 0.) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);

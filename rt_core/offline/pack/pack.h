@@ -6,7 +6,7 @@
 #include "offline/condense/flexibility.h"
 #include "offline/condense/modal.h"
 #include "offline/irregularity/signal.h"
-#include "offline/track/functional.h"
+#include "offline/track/fixed_port.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -61,6 +61,11 @@ struct Probe {
   double displacement = 0., velocity = 0.;  // factors
   Functional track = {};
   int wheelset = -1, coordinate = 0;  // of a probe on a wheelset; 0 x, 1 y, 2 z
+  struct Press {
+    int port;       // among fixed_ports() of the track
+    double factor;  // of its force
+  };
+  std::vector<Press> ports = {};
 };
 
 /// What acts on a track, and what is read from it.
@@ -87,15 +92,16 @@ struct PackOptions {
 /// A line of the track as the model carries it.
 struct PackedLine {
   Line line;
-  std::size_t index;  // among those of assemble(track)
-  Basis basis;        // of a condensed line
-  DampedModes modes;  // of a condensed line
+  std::size_t index;                    // among those of assemble(track)
+  Eigen::SparseMatrix<double> closing;  // [unknowns][fixed ports] of the track
+  Basis basis;                          // of a condensed line
+  DampedModes modes;                    // of a condensed line
 };
 
 /// A model with the memory its views look into. Not copied: the views would look into the original.
 ///
-/// Lines that neither a load, a wheel nor the weight can move are left out. Lines with the same
-/// matrices (two rails that share nothing) share their factor or modes.
+/// Lines that neither a load, a wheel, the weight nor a one-sided support can move are left out.
+/// Lines with the same matrices (two rails that share nothing) share their factor or modes.
 class PackedModel {
  public:
   /// The start is set to rest, unloaded; set_start() gives another.
@@ -123,6 +129,9 @@ class PackedModel {
   void keep_tables(const Line& line, LineModel& packed, const Number& number);
   void add_load(const Track& track, const MovingLoad& load);
   SignalModel keep(const Signal& signal);
+  void add_fixed_ports(const Track& track);
+  void add_port_rows();
+  void add_port_shapes();
   void add_irregularity(const Track& track, const RailIrregularity& irregularity);
   void add_wheelset(const Track& track, const Wheelset& wheelset,
                     const std::array<Railhead, 2>& heads);

@@ -105,7 +105,7 @@ void PackedModel::add_banded(const Line& line, LineModel& packed) {
 void PackedModel::add_condensed(PackedLine& own, LineModel& packed, const ModalLimit& limit) {
   // Of both rails in one line as many as of two.
   const int rails = has_one_table(own.line) ? 1 : 2;
-  own.basis = modal_basis(own.line, {rails * limit.most, limit.highest_hz});
+  own.basis = modal_basis(own.line, {rails * limit.most, limit.highest_hz}, own.closing);
   own.modes = damped_modes(own.basis, own.line.damping);
   const auto modes = own.modes.rate.size();
   const auto padded = static_cast<std::size_t>((modes + 7) / 8 * 8);
@@ -152,7 +152,9 @@ void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions
         "the track falls into too many lines: under gravity each sleeper without pads is one");
   LineModel packed{};
   std::size_t twin = 0;
-  while (twin < lines_.size() && !same_but_for_the_rail(lines_[twin].line, own.line)) ++twin;
+  while (twin < lines_.size() && !(same_but_for_the_rail(lines_[twin].line, own.line) &&
+                                   (!options.modal || same(lines_[twin].closing, own.closing))))
+    ++twin;
   if (twin < lines_.size()) {
     packed = model_.line[twin];
     own.basis = lines_[twin].basis;

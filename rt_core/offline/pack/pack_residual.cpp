@@ -107,6 +107,8 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
       entry(at, probe.displacement);
       entry(model_.unknowns + at, probe.velocity);
     }
+    for (const Probe::Press& press : probe.ports)
+      entry(2 * model_.unknowns + press.port, press.factor);
     start.push_back(static_cast<std::int32_t>(index.size()));
     rest.push_back(probe.rest);
   }
@@ -137,13 +139,18 @@ void PackedModel::clip(int points, std::vector<double>& under) {
 
 void PackedModel::add_residual(const Track& track, const std::vector<Probe>& probes, int points) {
   if (kinds_.empty()) return;
+  // What is one-sided without a gap mostly presses: then its force is not one that the tables know
+  // of, and they are those of the track in which it is a spring. A condensed track is held without.
+  const bool condensed = model_.condensed != 0;
+  const Track reference = condensed ? track : linear_about_rest(track);
+  const std::vector<Line> all = assemble(reference);
   std::vector<Line> lines;
   std::vector<Basis> bases;
   for (const PackedLine& own : lines_) {
-    lines.push_back(own.line);
-    if (model_.condensed != 0) bases.push_back(own.basis);
+    lines.push_back(all[own.index]);
+    if (condensed) bases.push_back(own.basis);
   }
-  const ResidualFlexibility residual(track, lines, bases, points);
+  const ResidualFlexibility residual(reference, lines, bases, points);
   std::vector<double> under, axis;
   for (const Port& port : kinds_) {
     append(under, residual.under(port));

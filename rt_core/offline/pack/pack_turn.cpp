@@ -13,11 +13,11 @@ constexpr int kTurnPoints = 4;  // intervals per element of the levers' table
 /// its pad makes, for all places of the force at once. Lines that are free are left out.
 class SeatShares {
  public:
-  SeatShares(const Track& track, const std::vector<PackedLine>& lines)
+  SeatShares(const Track& track, const std::vector<Line>& lines)
       : track_(track), lines_(lines), factor_(lines.size()), held_(lines.size()) {
     for (std::size_t l = 0; l < lines_.size(); ++l) {
-      factor_[l].compute(lines_[l].line.stiffness);
-      held_[l] = is_held(factor_[l], lines_[l].line.stiffness);
+      factor_[l].compute(lines_[l].stiffness);
+      held_[l] = is_held(factor_[l], lines_[l].stiffness);
     }
   }
   /// Height of the rail's axis over x, m/N, as a unit force opens the pad.
@@ -26,7 +26,7 @@ class SeatShares {
     Shape(const SeatShares& shares, int rail, int seat) : shares_(shares), rail_(rail) {
       const Functional gap = pad_gap(shares.track_, rail, seat);
       for (std::size_t l = 0; l < shares.lines_.size(); ++l) {
-        const Line& line = shares.lines_[l].line;
+        const Line& line = shares.lines_[l];
         const Eigen::VectorXd row(functional_row(shares.track_, line, gap));
         moved_.emplace_back(shares.held_[l] ? Eigen::VectorXd(shares.factor_[l].solve(row))
                                             : Eigen::VectorXd::Zero(row.size()));
@@ -35,8 +35,7 @@ class SeatShares {
     double operator()(double x) const {
       double sum = 0.;
       for (std::size_t l = 0; l < moved_.size(); ++l)
-        sum +=
-            point_row(shares_.track_, shares_.lines_[l].line, {rail_, x, 0., 0., 2}).dot(moved_[l]);
+        sum += point_row(shares_.track_, shares_.lines_[l], {rail_, x, 0., 0., 2}).dot(moved_[l]);
       return sum;
     }
 
@@ -48,7 +47,7 @@ class SeatShares {
 
  private:
   const Track& track_;
-  const std::vector<PackedLine>& lines_;
+  const std::vector<Line>& lines_;
   std::vector<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
   std::vector<bool> held_;
 };
@@ -67,6 +66,7 @@ std::vector<double> levers(const Track& track, const SeatShares& shares, int rai
       static_cast<std::size_t>(track.elements()) * kTurnSeats * (kTurnPoints + 1), 0.);
   for (int seat = 0; seat <= track.bays; ++seat) {
     const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
+    if (pad.one_sided()) continue;  // over a gap
     const SeatShares::Shape shape(shares, rail, seat);
     for (int s = 0; s < kTurnSeats; ++s) {
       const int bay = seat - s + (kTurnSeats / 2 - 1);
@@ -89,9 +89,14 @@ void PackedModel::add_turn(const Track& track) {
   SeatTurnModel& turn = model_.turn;
   turn.elements_per_bay = track.elements_per_bay;
   turn.points = kTurnPoints;
-  const SeatShares shares(track, lines_);
-  turn.lever[0] = keep(levers(track, shares, 0));
-  turn.lever[1] = is_symmetric(track) ? turn.lever[0] : keep(levers(track, shares, 1));
+  // What does not pull and has no gap mostly presses, as a spring.
+  const Track reference = linear_about_rest(track);
+  const std::vector<Line> all = assemble(reference);
+  std::vector<Line> lines;
+  for (const PackedLine& own : lines_) lines.push_back(all[own.index]);
+  const SeatShares shares(reference, lines);
+  turn.lever[0] = keep(levers(reference, shares, 0));
+  turn.lever[1] = is_symmetric(track) ? turn.lever[0] : keep(levers(reference, shares, 1));
 }
 
 }  // namespace railstep

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "offline/track/statics.h"
+#include "online/contact/ports.h"
+#include "online/step/closing.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/step.h"
@@ -39,6 +41,38 @@ RailPoint seen(const Model& model, RailPoint at) {
   return at;
 }
 
+/// Displacements of each line of a condensed model under its fixed ports' forces too.
+void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines) {
+  const FixedPortModel& fixed = packed.model().fixed;
+  const Eigen::Index n = fixed.count;
+  // Rows over the lines' coordinates, and what they move: K = omega^2.
+  std::vector<Eigen::MatrixXd> rows, moved;
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd free = -Eigen::Map<const Eigen::VectorXd>(fixed.gap, n);
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    rows.push_back(own.basis.shapes.transpose() * own.closing);
+    moved.push_back(own.basis.omega.cwiseAbs2().cwiseInverse().asDiagonal() * rows.back());
+    W += rows.back().transpose() * moved.back();
+    free += rows.back().transpose() * lines[l];
+  }
+  std::array<PortLaw, kMaxFixedPorts> law;
+  std::array<double, kMaxFixedPorts> force{}, depth{};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
+    law[j] = {0., std::max(fixed.stiffness[j], 1e-9), 0.};  // a damper alone carries nothing
+  constexpr int kMostSolves = 20;  // of 8 iterations each, where a step's solve takes one
+  PortStatus met = PortStatus::cap_reached;
+  for (int turn = 0; turn < kMostSolves && met != PortStatus::converged; ++turn)
+    met = solve_ports(static_cast<int>(n), W.data(), law.data(), free.data(), force.data(),
+                      depth.data())
+              .status;
+  if (met != PortStatus::converged)
+    throw std::invalid_argument(
+        "no equilibrium was found: the one-sided supports open and close without end");
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    lines[l] -= moved[l] * Eigen::Map<const Eigen::VectorXd>(force.data(), n);
+}
+
 /// Static displacements of each line of the model: its unknowns, or its coordinates if condensed.
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
                                           const std::vector<PointForce>& forces, double gravity) {
@@ -56,6 +90,7 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
     lines.push_back((own.basis.shapes.transpose() * load)
                         .cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
   }
+  if (packed.model().fixed.count > 0) press_ports(packed, lines);
   return lines;
 }
 
@@ -140,6 +175,16 @@ void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
   }
 }
 
+/// Forces of the fixed ports where the lines stand and move.
+void put_port_forces(const Model& model, State& state) {
+  for (std::int32_t j = 0; j < model.fixed.count; ++j) {
+    const double depth = closing(model, j, state.u, state.v) - model.fixed.gap[j];
+    const double force =
+        model.fixed.stiffness[j] * depth + model.fixed.damping[j] * closing_speed(model, j, state);
+    state.port_force[j] = depth > 0. ? std::max(force, 0.) : 0.;
+  }
+}
+
 /// Times around 0, s, between which the static shape's velocity is taken: at an end of the rail
 /// only on the side where all that stands on it still does.
 struct Window {
@@ -196,6 +241,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
     }
     for (int i = 0; i < 2; ++i) state.wheel_force[2 * b + i] = wheel_load(model.wheelset[b]);
   }
+  put_port_forces(model, state);
   return memory;
 }
 

@@ -99,6 +99,10 @@ void add_pad(const Track& track, Assembly& part, int border, const SeatRows& row
     for (const double side : {-1., 1.})
       for (std::size_t d = 0; d < 3; ++d) {
         const Row gap = rows.gap(at, d, side * pad.half_spread);
+        if (d == 2 && pad.one_sided()) {
+          Assembly::tie(part.stiffness, gap);
+          continue;
+        }
         Assembly::add(part.stiffness, gap, at.part * pad.stiffness[d] / 2.);
         Assembly::add(part.damping, gap, at.part * pad.damping[d] / 2.);
       }
@@ -116,6 +120,10 @@ void add_pad(const Track& track, Assembly& part, int border, const SeatRows& row
 void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast) {
   for (std::size_t d = 0; d < 3; ++d) {
     const Row end = rows.end(d);
+    if (d == 2 && ballast.one_sided()) {
+      Assembly::tie(part.stiffness, end);
+      continue;
+    }
     Assembly::add(part.stiffness, end, ballast.stiffness[d]);
     Assembly::add(part.damping, end, ballast.damping[d]);
   }

@@ -173,6 +173,33 @@ void split(const Assembly& part, std::array<double, 2> factor, std::vector<Line>
   }
 }
 
+/// What stands on one side of a seat, where any of it is one-sided.
+void check_one_sided(const Seat& seat, std::size_t side) {
+  const Support& pad = seat.pad[side];
+  const Ballast& ballast = seat.ballast[side];
+  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  if (!(pad.gap >= 0.) || !(ballast.gap >= 0.)) refuse("a gap under a rail is at least 0");
+  if (pad.one_sided() && pad.length > 0.)
+    refuse("a pad that does not pull is a point; accepted is a length of 0");
+  if (!seat.sleeper || !ballast.one_sided()) return;
+  if (ballast.length > 0.)
+    refuse("ballast that does not pull is a point; accepted is a length of 0");
+  if (pad.one_sided() && seat.sleeper->mass == 0.)
+    refuse(
+        "a sleeper of 0 kg between a pad and ballast that both do not pull is held by nothing "
+        "where both are open; accepted is a mass above 0");
+}
+
+void check_stop(const Track& track, const Stop& stop) {
+  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  if (stop.rail < 0 || stop.rail >= track.rails) refuse("a stop on a rail that is not there");
+  if (stop.direction != 1 && stop.direction != 2) refuse("a stop acts along y or z");
+  if (std::abs(stop.side) != 1. || !(stop.gap >= 0.))
+    refuse("a stop's side is 1 or -1, its gap at least 0");
+  if (!(stop.stiffness >= 0.) || !(stop.damping >= 0.))
+    refuse("a stop's stiffness and damping are at least 0");
+}
+
 void check(const Track& track) {
   const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
   if (track.bays < 1 || track.elements_per_bay < 1) refuse("a track needs one bay and one element");
@@ -185,6 +212,10 @@ void check(const Track& track) {
     for (const Support& pad : track.seat(border).pad)
       if (!(pad.length >= 0.) || pad.length > track.bay_length)
         refuse("a pad's length is at least 0 and at most the bay's");
+  for (int border = 0; border <= track.bays; ++border)
+    for (std::size_t side = 0; side < static_cast<std::size_t>(track.rails); ++side)
+      check_one_sided(track.seat(border), side);
+  for (const Stop& stop : track.stops) check_stop(track, stop);
 }
 
 }  // namespace
@@ -199,7 +230,8 @@ Seat seat_of(const Support& pad, const std::optional<Sleeper>& sleeper) {
                   sleeper->roll_inertia,
                   sleeper->pitch_inertia,
                   {k[0] > 0., k[1] > 0., pad.length > 0. && sleeper->ballast_length > 0.}};
-  const Ballast ballast{k, sleeper->ballast_damping, sleeper->ballast_length};
+  const Ballast ballast{k, sleeper->ballast_damping, sleeper->ballast_length,
+                        sleeper->ballast_unilateral, sleeper->ballast_gap};
   seat.ballast = {ballast, ballast};
   return seat;
 }

@@ -35,6 +35,11 @@ struct Assembly {
       for (const auto& [j, b] : row)
         if (a * b != 0.) to.emplace_back(i, j, factor * a * b);
   }
+  /// Entries of 0: keeps in one line what a one-sided spring couples.
+  static void tie(Triplets& to, const Row& row) {
+    for (const auto& [i, a] : row)
+      for (const auto& [j, b] : row) to.emplace_back(i, j, 0.);
+  }
 };
 
 /// The springs of the part's rails on a seat, and the sleeper's own mass and ballast.

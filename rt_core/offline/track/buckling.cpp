@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "offline/track/fixed_port.h"
+
 namespace railstep {
 
 namespace {
@@ -62,7 +64,8 @@ double critical_compression(const Track& track) {
   return critical_factor(pressed, crushing);
 }
 
-void refuse_buckled(const Track& track) {
+void refuse_buckled(const Track& given) {
+  const Track track = linear_about_rest(given);
   const double left = track.axial_force, right = track.bar(1).axial_force;
   // The bisection's own width, so that the critical force itself is refused.
   if (!(std::min(left, right) < 0.) || !buckles(track, 1. + 1e-11)) return;

@@ -14,7 +14,10 @@ struct Support {
   double half_spread = 0.;            // a pair of half springs at y = +- this, m
   double length = 0.;                 // along x, m: evenly spread over it, what is off the rail's
                                       // end moved under it; 0: a point
+  bool unilateral = false;            // along z it presses and does not pull; a point then
+  double gap = 0.;                    // m, by which it is short along z; above 0: unilateral
 
+  bool one_sided() const { return unilateral || gap > 0.; }
   bool operator==(const Support&) const = default;
 };
 
@@ -28,6 +31,8 @@ struct Sleeper {
   std::array<double, 3> ballast_damping{};    // x, y, z per end, N s/m
   double pitch_inertia = 0.;                  // about y, kg m2
   double ballast_length = 0.;                 // along x, m: evenly spread over it
+  bool ballast_unilateral = false;            // as Ballast
+  double ballast_gap = 0.;                    // m
 };
 
 /// Spring-dampers between one end of a sleeper, under its rail, and the ground.
@@ -35,7 +40,10 @@ struct Ballast {
   std::array<double, 3> stiffness{};  // x, y, z, N/m
   std::array<double, 3> damping{};    // x, y, z, N s/m
   double length = 0.;                 // along x, m: evenly spread over it; 0: a point
+  bool unilateral = false;            // along z it presses and does not pull; a point then
+  double gap = 0.;                    // m, between it and the sleeper; above 0: unilateral
 
+  bool one_sided() const { return unilateral || gap > 0.; }
   bool operator==(const Ballast&) const = default;
 };
 

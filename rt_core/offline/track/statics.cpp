@@ -38,9 +38,11 @@ void refuse_free_modes(const Line& line,
 
 }  // namespace
 
-Statics::Statics(const Track& track) : track_(track), lines_(assemble(track_)) {
+Statics::Statics(const Track& track)
+    : track_(track), lines_(assemble(track_)), ports_(fixed_ports(track_)) {
+  if (!ports_.empty()) one_sided_ = std::make_unique<OneSided>(track_, lines_, ports_);
   factors_ = std::vector<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(lines_.size());
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
+  for (std::size_t i = 0; i < lines_.size() && ports_.empty(); ++i) {
     factors_[i].compute(lines_[i].stiffness);
     if (factors_[i].info() != Eigen::Success)
       throw std::invalid_argument("the track's stiffness cannot be factored");
@@ -48,16 +50,41 @@ Statics::Statics(const Track& track) : track_(track), lines_(assemble(track_)) {
   }
 }
 
-std::vector<Eigen::VectorXd> Statics::solve(const std::vector<PointForce>& forces,
+std::vector<Eigen::VectorXd> Statics::loads(const std::vector<PointForce>& forces,
                                             double gravity) const {
   std::vector<Eigen::VectorXd> result;
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(lines_[i].unknowns());
-    if (gravity != 0.) load += weight(track_, lines_[i], gravity);
-    for (const PointForce& f : forces) load += f.force * point_row(track_, lines_[i], f.at);
-    result.push_back(factors_[i].solve(load));
+  for (const Line& line : lines_) {
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(line.unknowns());
+    if (gravity != 0.) load += weight(track_, line, gravity);
+    for (const PointForce& f : forces) load += f.force * point_row(track_, line, f.at);
+    result.push_back(std::move(load));
   }
   return result;
+}
+
+std::vector<Eigen::VectorXd> Statics::solve(const std::vector<PointForce>& forces,
+                                            double gravity) const {
+  std::vector<Eigen::VectorXd> result = loads(forces, gravity);
+  if (one_sided_) return one_sided_->solve(result);
+  for (std::size_t i = 0; i < lines_.size(); ++i) result[i] = factors_[i].solve(result[i]).eval();
+  return result;
+}
+
+std::vector<double> Statics::port_forces(const std::vector<Eigen::VectorXd>& displacement) const {
+  return one_sided_ ? one_sided_->forces(displacement) : std::vector<double>{};
+}
+
+std::vector<Eigen::VectorXd> Statics::unbalanced(const std::vector<Eigen::VectorXd>& displacement,
+                                                 const std::vector<PointForce>& forces,
+                                                 double gravity) const {
+  std::vector<Eigen::VectorXd> left = loads(forces, gravity);
+  const std::vector<double> pressed = port_forces(displacement);
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    left[i] -= lines_[i].stiffness * displacement[i];
+    for (std::size_t j = 0; j < ports_.size(); ++j)
+      left[i] -= pressed[j] * closing_row(track_, lines_[i], ports_[j]);
+  }
+  return left;
 }
 
 double Statics::at(const std::vector<Eigen::VectorXd>& displacement, const RailPoint& point) const {
@@ -73,6 +100,14 @@ double Statics::flexibility(const RailPoint& a, const RailPoint& b) const {
 
 double Statics::support_force(const std::vector<Eigen::VectorXd>& displacement, int rail,
                               int seat) const {
+  if (track_.seat(seat).pad[static_cast<std::size_t>(rail)].one_sided()) {
+    const std::vector<double> pressed = port_forces(displacement);
+    double force = 0.;
+    for (std::size_t j = 0; j < ports_.size(); ++j)
+      if (ports_[j].of == FixedPort::Of::pad && ports_[j].rail == rail && ports_[j].seat == seat)
+        force += pressed[j];
+    return force;
+  }
   const Functional gap = pad_gap(track_, rail, seat);
   double sum = 0.;
   for (std::size_t i = 0; i < lines_.size(); ++i)

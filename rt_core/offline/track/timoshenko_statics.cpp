@@ -6,6 +6,7 @@
 #include <string>
 
 #include "offline/element/timoshenko.h"
+#include "offline/track/fixed_port.h"
 #include "offline/track/pad.h"
 
 namespace railstep {
@@ -22,6 +23,8 @@ void check(const Track& track) {
   refuse(track.rails != 1, "one rail; accepted is track.rails = 1");
   refuse(has_sleepers(track), "a rail on the ground; accepted without sleepers");
   refuse(has_long_pads(track), "a rail on point seats; accepted is support.length_m = 0");
+  refuse(!fixed_ports(track).empty(),
+         "a rail on seats that pull too; accepted without gap_m, unilateral and [[stop]]");
   refuse(track.axial_force != 0., "a rail without axial force");
   refuse(track.axis_z != 0., "its centroid; accepted is track.reference_line = \"centroid\"");
   const ElementRule& rule = track.rule;

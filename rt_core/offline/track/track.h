@@ -38,6 +38,18 @@ struct RailBar {
   double axial_force = 0.;  // at rest, N, tension positive
 };
 
+/// A spring and damper that a rail's point meets once it has gone `gap` towards it, and that does
+/// not pull.
+struct Stop {
+  int rail = 0;
+  double x = 0., z = 0.;  // of the point, along the rail and above the axis, m
+  int direction = 1;      // 1 y, 2 z
+  double side = 1.;       // 1: met on the way along +y or +z, -1: along - of it
+  double gap = 0.;        // m, of the unloaded straight track
+  double stiffness = 0.;  // N/m
+  double damping = 0.;    // N s/m
+};
+
 /// A straight track of one rail or two, on seats at its bay borders.
 struct Track {
   BeamSection section;
@@ -56,6 +68,7 @@ struct Track {
   Support support;               // of every seat but those changed
   std::optional<Sleeper> sleeper;
   std::map<int, Seat> changed_seats;  // by bay border; whole, in place of support and sleeper
+  std::vector<Stop> stops;
   /// Rails that share sleepers and are alike are stepped in mirror coordinates; without them both
   /// make one line, as those that differ do.
   bool mirror_coordinates = true;
@@ -110,7 +123,8 @@ struct RailPoint {
 /// How a rigid sleeper moves; of the table of a line's unknowns.
 enum SleeperMotion { kAlongX, kAlongY, kAlongZ, kRoll, kYaw, kPitch, kSleeperMotions };
 
-/// One independent part of the track: M a + C v + K u = f with banded matrices.
+/// One independent part of the track: M a + C v + K u = f with banded matrices. What is one-sided
+/// (fixed_port.h) is in none of them, but what it would couple stays in one line.
 ///
 /// Two alike rails that share sleepers are taken in mirror coordinates (left +- mirrored right)
 /// / sqrt 2; rails that differ make one line together; rails that share nothing stand for

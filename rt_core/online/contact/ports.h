@@ -4,7 +4,7 @@
 
 namespace railstep {
 
-inline constexpr int kPorts = 48;      // most ports of one solve
+inline constexpr int kPorts = 64;      // most ports of one solve
 inline constexpr int kPortSweeps = 8;  // most Newton iterations
 
 enum class PortStatus : std::uint8_t {
@@ -41,7 +41,7 @@ inline constexpr double kPortTolerance = 1e-12;
 /// unique. Newton on the active set; its step is taken partly in d and partly in f, weighted so
 /// that a lone contact converges cubically, and shortened if it runs far past the minimum on its
 /// line. A lone spring and damper is solved in one.
-/// @param n       ports, 0 to 48
+/// @param n       ports, 0 to 64
 /// @param W       [n][n] compliance, m/N, symmetric, positive semidefinite
 /// @param law     [n]
 /// @param d_free  [n] penetrations without port forces, m

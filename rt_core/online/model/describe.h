@@ -166,6 +166,25 @@ void describe(Archive& a, ProbeModel& p, const Model& m) {
 }
 
 template <typename Archive>
+void describe(Archive& a, FixedPortModel& p, const Model& m) {
+  a.count(p.count, kMaxFixedPorts);
+  if (p.count == 0) return;
+  a.reals(p.stiffness, p.count);
+  a.reals(p.damping, p.count);
+  a.reals(p.gap, p.count);
+  if (m.condensed != 0) {
+    a.reals(p.shape, std::int64_t{2} * p.count * m.bodies);
+  } else {
+    a.count(p.entries, kMostEntries);
+    a.integers(p.start, p.count + 1);
+    a.integers(p.index, p.entries);
+    a.reals(p.value, p.entries);
+  }
+  a.reals(p.response, std::int64_t{1 + m.condensed} * p.count * m.bodies);
+  a.reals(p.compliance, std::int64_t{p.count} * p.count);
+}
+
+template <typename Archive>
 void describe(Archive& a, Model& m) {
   describe(a, m.scheme);
   a.count(m.lines, kMaxLines);
@@ -195,6 +214,7 @@ void describe(Archive& a, Model& m) {
   describe(a, m.residual, m.elements);
   describe(a, m.turn, m.elements);
   describe(a, m.probe, m);
+  describe(a, m.fixed, m);
   a.reals(m.start, state_doubles(m));
 }
 

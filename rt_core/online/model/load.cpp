@@ -123,9 +123,20 @@ bool probes_hold(const Model& m) noexcept {
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
   for (std::int32_t i = 0; i < p.count; ++i)
     if (p.start[i] > p.start[i + 1]) return false;
-  return within(p.index, p.entries, 0, std::int64_t{2} * m.unknowns - 1) &&
-         within(p.table, p.count, -1, p.tables - 1) && (p.count == 0 || p.rest) &&
-         (p.entries == 0 || p.value);
+  const std::int64_t values = std::int64_t{2} * m.unknowns + m.fixed.count;
+  return within(p.index, p.entries, 0, values - 1) && within(p.table, p.count, -1, p.tables - 1) &&
+         (p.count == 0 || p.rest) && (p.entries == 0 || p.value);
+}
+
+bool fixed_ports_hold(const Model& m) noexcept {
+  const FixedPortModel& p = m.fixed;
+  if (p.count == 0) return true;
+  if (!p.stiffness || !p.damping || !p.gap || !p.response || !p.compliance) return false;
+  if (m.condensed != 0) return p.shape != nullptr;
+  if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
+  for (std::int32_t i = 0; i < p.count; ++i)
+    if (p.start[i] > p.start[i + 1]) return false;
+  return within(p.index, p.entries, 0, m.bodies - 1) && (p.entries == 0 || p.value);
 }
 
 /// What a step takes for granted beyond the counts.
@@ -140,7 +151,7 @@ bool holds(const Model& m) noexcept {
     if (!wheelset_holds(m, m.wheelset[i])) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
-  return residual_holds(m) && turn_holds(m.turn) && probes_hold(m);
+  return residual_holds(m) && turn_holds(m.turn) && probes_hold(m) && fixed_ports_hold(m);
 }
 
 bool same_bytes(const unsigned char* a, const void* b, int n) noexcept {

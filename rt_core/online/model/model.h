@@ -14,9 +14,10 @@ inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxWheels = 2 * kMaxWheelsets;
 inline constexpr int kMaxBodyForces = 4;
-inline constexpr int kMaxSignals = 32;   // irregularities and defects of the rails
-inline constexpr int kTurnSeats = 6;     // around a wheel, half of them on each side of its bay
-inline constexpr int kMaxPortKinds = 4;  // rails and heights at which vertical forces act
+inline constexpr int kMaxSignals = 32;     // irregularities and defects of the rails
+inline constexpr int kMaxFixedPorts = 32;  // one-sided springs of the track
+inline constexpr int kTurnSeats = 6;       // around a wheel, half of them on each side of its bay
+inline constexpr int kMaxPortKinds = 4;    // rails and heights at which vertical forces act
 
 // What a model may not exceed; a block that claims more is refused.
 inline constexpr std::int64_t kMostElements = 100'000;
@@ -146,12 +147,32 @@ struct ProbeModel {
   std::int32_t count;
   const std::int32_t* start;  // [count + 1] of each row among index and value
   std::int32_t entries;
-  const std::int32_t* index;  // [entries] into u, then v, of the state: 0 to 2 unknowns
-  const double* value;        // [entries] per m or per m/s
+  const std::int32_t* index;  // [entries] into u, v, then the fixed ports' forces of the state
+  const double* value;        // [entries] per m, per m/s or per N
   const double* rest;         // [count]
   const std::int32_t* table;  // [count] of its residual, -1: none
   std::int32_t tables;
   const double* residual;  // [tables][kinds][elements][points + 1] per N, or null
+};
+
+/// One-sided springs and dampers that stand still: supports that do not pull, gaps, stops. Of each
+/// a row gives how far the lines close it, and its force acts on them along the negative row.
+struct FixedPortModel {
+  std::int32_t count;
+  const double* stiffness;  // [count] N/m
+  const double* damping;    // [count] N s/m
+  const double* gap;        // [count] m
+  /// Of banded lines, over their unknowns.
+  std::int32_t entries;
+  const std::int32_t* start;  // [count + 1] of each row among index and value
+  const std::int32_t* index;  // [entries]
+  const double* value;        // [entries]
+  /// Of condensed lines: row' shape, real and imaginary parts; null otherwise.
+  const double* shape;  // [count][2][bodies] kg^-1/2
+  /// What a unit force along the row makes of the lines at the step's end, S^-1 row; of condensed
+  /// lines held_force shape, real and imaginary parts.
+  const double* response;    // [count][1 + condensed][bodies]
+  const double* compliance;  // [count][count] theta row response, m/N
 };
 
 /// Everything a step needs; immutable, may be shared by threads.
@@ -172,6 +193,7 @@ struct Model {
   ResidualModel residual;
   SeatTurnModel turn;
   ProbeModel probe;
+  FixedPortModel fixed;
   const double* start;  // [state_doubles] state at step 0
   std::int64_t steps;   // of the scene's run
   LineModel line[kMaxLines];

@@ -16,6 +16,7 @@ struct State {
   double* a;            // [unknowns] the scheme's acceleration
   double* g;            // [unknowns] true acceleration
   double* wheel_force;  // [wheels] N, of the last step: where the contact solve starts
+  double* port_force;   // [fixed ports] N, the same of what stands still; 0: open
   double* multiplier;   // [2 wheelsets] of the guide along x, N, and about z, N m; the
                         // force on the wheelset is its negative
   double* quaternion;   // [system.bodies][4] body axes to ground
@@ -59,7 +60,7 @@ struct Outputs {
 };
 
 inline std::int64_t state_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + wheel_count(model) + 2LL * model.wheelsets +
+  return 4LL * model.unknowns + wheel_count(model) + model.fixed.count + 2LL * model.wheelsets +
          system_state_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
@@ -72,7 +73,8 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
 inline State state_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns;
   double* const wheels = memory + 4 * n;
-  double* const guides = wheels + wheel_count(model);
+  double* const ports = wheels + wheel_count(model);
+  double* const guides = ports + model.fixed.count;
   double* const system = guides + 2LL * model.wheelsets;
   double* const rows = system + 4LL * model.system.bodies;
   return {0,
@@ -81,6 +83,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           memory + 2 * n,
           memory + 3 * n,
           wheels,
+          ports,
           guides,
           system,
           rows,

@@ -1,5 +1,6 @@
 #include "online/step/couple.h"
 
+#include "online/step/fixed_port.h"
 #include "online/step/load.h"
 #include "online/step/track_response.h"
 #include "online/step/turn.h"
@@ -51,7 +52,7 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
                   (track_compliance(model, w, c, i, j) + wheelset_compliance(c, i, j)) +
               (i == j ? residual_under(model, c.place[i])
                       : residual_between(model, c.place[j], c.place[i]));
-      c.W[i * c.wheels + j] = c.W[j * c.wheels + i] = sum;
+      c.W[i * c.ports + j] = c.W[j * c.ports + i] = sum;
     }
 }
 
@@ -66,14 +67,15 @@ void track_penetration(const Model& model, const State& s, const Workspace& w,
   }
 }
 
-/// Contacts for given multipliers.
-PortResult contacts(const Model& model, const State& s, Coupling& c) noexcept {
-  double d_free[kMaxWheels];
-  for (int i = 0; i < c.wheels; ++i) {
+/// Ports for given multipliers.
+PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
+  double d_free[kPorts];
+  for (int i = 0; i < c.ports; ++i) {
     d_free[i] = c.track_free[i];
-    if (c.contact[i].on_rail) d_free[i] -= model.scheme.theta * free_lift(model, s, c, i);
+    if (i < c.wheels && c.contact[i].on_rail)
+      d_free[i] -= model.scheme.theta * free_lift(model, s, c, i);
   }
-  return solve_ports(c.wheels, c.W, c.law, d_free, c.force, c.penetration);
+  return solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
 }
 
 /// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
@@ -82,7 +84,7 @@ void solve_coupled(const Model& model, double time, State& s, Workspace& w, Coup
   const std::int32_t cap = guide_turns(model);
   bool settled = false, solved = false;
   for (std::int32_t turn = 0; turn < cap && !settled; ++turn) {
-    const PortResult ports = contacts(model, s, c);
+    const PortResult ports = solve(model, s, c);
     solved = ports.status == PortStatus::converged;
     if (ports.iterations > result.iterations) result.iterations = ports.iterations;
     result.violation = 0.;
@@ -115,6 +117,7 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   CoupleResult result{};
   Coupling c;
   c.wheels = wheel_count(model);
+  c.ports = c.wheels + model.fixed.count;
   const double time = static_cast<double>(step) * model.scheme.dt;
   locate_contacts(model, state, w, c);
   find_loaded(model, step, c);
@@ -122,9 +125,11 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   respond(model, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);
+  if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
   solve_coupled(model, time, state, w, c, result);
   move_track(model, w, c);
+  if (model.fixed.count > 0) press_fixed_ports(model, c, state, w);
   publish_wheels(model, c, state, result);
   return result;
 }

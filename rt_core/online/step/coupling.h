@@ -14,16 +14,17 @@ struct FreeWheelset {
 /// A step's coupled problem: where the track and what stands on it would be without contact, and
 /// how both give way under contact forces.
 struct Coupling {
-  int wheels;
+  int wheels, ports;  // ports: the wheels, then the fixed ones
   WheelContact contact[kMaxWheels];
-  RailForce place[kMaxWheels];        // of the contacts
-  double loaded[kMaxWheels];          // residual displacement there by the loads, m
-  double W[kMaxWheels * kMaxWheels];  // m/N
-  PortLaw law[kMaxWheels];
-  double track_free[kMaxWheels];  // penetration from the track and the frozen geometry, m
+  RailForce place[kMaxWheels];  // of the contacts
+  double loaded[kMaxWheels];    // residual displacement there by the loads, m
   FreeWheelset wheelset[kMaxWheelsets];
-  double force[kMaxWheels];        // N
-  double penetration[kMaxWheels];  // m
+  double W[kPorts * kPorts];  // [ports][ports] m/N
+  PortLaw law[kPorts];
+  double track_free[kPorts];   // penetration from the track and the frozen geometry, m
+  double force[kPorts];        // N
+  double penetration[kPorts];  // m
 };
+static_assert(kMaxWheels + kMaxFixedPorts <= kPorts);
 
 }  // namespace railstep

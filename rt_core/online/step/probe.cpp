@@ -5,6 +5,17 @@
 
 namespace railstep {
 
+namespace {
+
+/// Entry of u, then v, then the fixed ports' forces.
+double value_at(const Model& model, const State& state, std::int32_t at) noexcept {
+  if (at < model.unknowns) return state.u[at];
+  at -= model.unknowns;
+  return at < model.unknowns ? state.v[at] : state.port_force[at - model.unknowns];
+}
+
+}  // namespace
+
 void read_probes(const Model& model, const State& state, const Outputs& outputs,
                  double* value) noexcept {
   const FloatMode flushed_to_zero;
@@ -15,7 +26,7 @@ void read_probes(const Model& model, const State& state, const Outputs& outputs,
     double sum = 0.;
     for (std::int32_t k = probe.start[i]; k < probe.start[i + 1]; ++k) {
       const std::int32_t at = probe.index[k];
-      sum += probe.value[k] * (at < model.unknowns ? state.u[at] : state.v[at - model.unknowns]);
+      sum += probe.value[k] * value_at(model, state, at);
     }
     value[i] = probe.rest[i] + (sum + residual_of_probe(model, i, forces, count));
   }

@@ -140,7 +140,7 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs)
     for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], state, w);
   else
     add_inertia(model, w);
-  if (wheel_count(model) > 0)
+  if (wheel_count(model) > 0 || model.fixed.count > 0)
     collect(model, state, couple(model, state.steps + 1, state, w), outputs);
   else if (model.condensed == 0)
     solve_bands(model, w);

@@ -59,15 +59,19 @@ void respond(const Model& model, Workspace& w, const Coupling& c) noexcept {
     solve_bands(model, w, c);
 }
 
-double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
-                        int j) noexcept {
-  const double* unit = w.solved + static_cast<std::ptrdiff_t>(j + 1) * model.unknowns;
-  const double* imaginary = w.imaginary + static_cast<std::ptrdiff_t>(j + 1) * model.unknowns;
-  if (model.condensed != 0) return modes_dot(row_of(model, w, i), {unit, imaginary}, model.bodies);
+double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
+                   const double* re, const double* im) noexcept {
+  if (model.condensed != 0) return modes_dot(row_of(model, w, i), {re, im}, model.bodies);
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    sum += motion(model.line[l], c.contact[i].row, {unit, {}});
+    sum += motion(model.line[l], c.contact[i].row, {re, {}});
   return sum;
+}
+
+double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
+                        int j) noexcept {
+  const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(j + 1) * model.unknowns;
+  return track_under(model, w, c, i, w.solved + unit, w.imaginary + unit);
 }
 
 double track_motion(const Model& model, const State& s, const Workspace& w, const Coupling& c,

@@ -17,6 +17,10 @@ void respond(const Model& model, Workspace& w, const Coupling& c) noexcept;
 double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
                         int j) noexcept;
 
+/// Displacement under wheel `i` where the lines are moved by `re` and, condensed, `im`; [bodies].
+double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
+                   const double* re, const double* im) noexcept;
+
 /// Displacement under wheel `i`, without contact forces, from where the contact was located.
 double track_motion(const Model& model, const State& s, const Workspace& w, const Coupling& c,
                     int i) noexcept;

@@ -1,0 +1,101 @@
+#include <stdexcept>
+#include <string>
+
+#include "offline/pack/pack.h"
+#include "online/step/closing.h"
+
+namespace railstep {
+
+void PackedModel::add_fixed_ports(const Track& track) {
+  const std::vector<FixedPort> ports = fixed_ports(track);
+  if (ports.empty()) return;
+  if (ports.size() > static_cast<std::size_t>(kMaxFixedPorts))
+    throw std::invalid_argument(
+        "the track has " + std::to_string(ports.size()) +
+        " one-sided springs (stops, and pads and ballast that do not pull or have a gap, a pad "
+        "with a half spread as two); accepted are " +
+        std::to_string(kMaxFixedPorts));
+  FixedPortModel& fixed = model_.fixed;
+  std::vector<double> stiffness, damping, gap;
+  for (const FixedPort& port : ports) {
+    stiffness.push_back(port.stiffness);
+    damping.push_back(port.damping);
+    gap.push_back(port.gap);
+  }
+  fixed.count = static_cast<std::int32_t>(ports.size());
+  fixed.stiffness = keep(std::move(stiffness));
+  fixed.damping = keep(std::move(damping));
+  fixed.gap = keep(std::move(gap));
+  if (model_.condensed != 0)
+    add_port_shapes();
+  else
+    add_port_rows();
+  // theta row response; the lower half stands for both, as rounding makes them differ.
+  const auto n = static_cast<std::size_t>(fixed.count);
+  std::vector<double> compliance(n * n);
+  const std::ptrdiff_t part = model_.bodies, stride = (1 + model_.condensed) * part;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double* response = fixed.response + static_cast<std::ptrdiff_t>(j) * stride;
+      compliance[i * n + j] = compliance[j * n + i] =
+          model_.scheme.theta *
+          closing(model_, static_cast<std::int32_t>(i), response, response + part);
+    }
+  fixed.compliance = keep(std::move(compliance));
+}
+
+/// Of banded lines: sparse rows, and S^-1 row by the step's own factors.
+void PackedModel::add_port_rows() {
+  FixedPortModel& fixed = model_.fixed;
+  const auto n = static_cast<std::size_t>(model_.bodies);
+  std::vector<std::int32_t> start = {0}, index;
+  std::vector<double> value, response(static_cast<std::size_t>(fixed.count) * n, 0.);
+  for (std::int32_t j = 0; j < fixed.count; ++j) {
+    double* const own = response.data() + static_cast<std::size_t>(j) * n;
+    for (std::size_t l = 0; l < lines_.size(); ++l) {
+      const LineModel& line = model_.line[l];
+      using Entry = Eigen::SparseMatrix<double>::InnerIterator;
+      for (Entry entry(lines_[l].closing, j); entry; ++entry) {
+        index.push_back(line.first + static_cast<std::int32_t>(entry.row()));
+        value.push_back(entry.value());
+        own[index.back()] = value.back();
+      }
+      solve_band<1>(line.step, own + line.first, 0);
+    }
+    start.push_back(static_cast<std::int32_t>(index.size()));
+  }
+  fixed.entries = start.back();
+  fixed.start = keep(std::move(start));
+  fixed.index = keep(std::move(index));
+  fixed.value = keep(std::move(value));
+  fixed.response = keep(std::move(response));
+}
+
+/// Of condensed lines: the modes' share in each row, and what a force held over a step makes of
+/// them.
+void PackedModel::add_port_shapes() {
+  FixedPortModel& fixed = model_.fixed;
+  const auto n = static_cast<std::size_t>(model_.bodies);
+  std::vector<double> shape(static_cast<std::size_t>(fixed.count) * 2 * n, 0.), response = shape;
+  for (std::int32_t j = 0; j < fixed.count; ++j) {
+    const std::size_t at = static_cast<std::size_t>(j) * 2 * n;
+    for (std::size_t l = 0; l < lines_.size(); ++l) {
+      const LineModel& line = model_.line[l];
+      const PackedLine& own = lines_[l];
+      const Eigen::VectorXd row = own.basis.shapes.transpose() * own.closing.col(j);
+      const Eigen::VectorXcd modal = own.modes.shape.transpose() * row;
+      for (Eigen::Index k = 0; k < modal.size(); ++k) {
+        const std::size_t re = at + static_cast<std::size_t>(line.first + k);
+        shape[re] = modal[k].real();
+        shape[re + n] = modal[k].imag();
+      }
+      const std::size_t re = at + static_cast<std::size_t>(line.first), im = re + n;
+      modes_multiply(line.modal.held_force, {shape.data() + re, shape.data() + im},
+                     response.data() + re, response.data() + im, line.size);
+    }
+  }
+  fixed.shape = keep(std::move(shape));
+  fixed.response = keep(std::move(response));
+}
+
+}  // namespace railstep

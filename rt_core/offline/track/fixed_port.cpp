@@ -1,0 +1,119 @@
+#include "offline/track/fixed_port.h"
+
+#include <utility>
+
+#include "offline/track/pad.h"
+
+namespace railstep {
+
+namespace {
+
+/// How far a rail comes down on its seat y beside its middle. The sleeper's top there moves by
+/// u_end + y (u_left - u_right)/g.
+Functional pad_closing(const Track& track, int rail, int seat, double y) {
+  const Seat there = track.seat(seat);
+  const Support& pad = there.pad[static_cast<std::size_t>(rail)];
+  const PadPoint at = pad_points(track, seat, 0.).front();
+  Functional closing;
+  closing.rail.push_back({{rail, at.x, y, pad.height_z, 2}, -1.});
+  if (!there.sleeper) return closing;
+  closing.sleeper.push_back({rail, seat, 2, 1.});
+  if (track.rails == 2 && y != 0.) {
+    closing.sleeper.push_back({0, seat, 2, y / track.rail_spacing});
+    closing.sleeper.push_back({1, seat, 2, -y / track.rail_spacing});
+  }
+  return closing;
+}
+
+void add_pad(const Track& track, int rail, int seat, std::vector<FixedPort>& ports) {
+  const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
+  if (!pad.one_sided() || pad.stiffness[2] + pad.damping[2] == 0.) return;
+  const int halves = pad.half_spread > 0. ? 2 : 1;
+  for (int half = 0; half < halves; ++half) {
+    const double y = half == 0 ? pad.half_spread : -pad.half_spread;
+    ports.push_back({.closing = pad_closing(track, rail, seat, y),
+                     .stiffness = pad.stiffness[2] / halves,
+                     .damping = pad.damping[2] / halves,
+                     .gap = pad.gap,
+                     .of = FixedPort::Of::pad,
+                     .rail = rail,
+                     .seat = seat});
+  }
+}
+
+void add_ballast(const Track& track, int rail, int seat, std::vector<FixedPort>& ports) {
+  const Seat there = track.seat(seat);
+  const Ballast& ballast = there.ballast[static_cast<std::size_t>(rail)];
+  if (!there.sleeper || !ballast.one_sided()) return;
+  if (ballast.stiffness[2] + ballast.damping[2] == 0.) return;
+  ports.push_back({.closing = {.rail = {}, .sleeper = {{rail, seat, 2, -1.}}},
+                   .stiffness = ballast.stiffness[2],
+                   .damping = ballast.damping[2],
+                   .gap = ballast.gap,
+                   .of = FixedPort::Of::ballast,
+                   .rail = rail,
+                   .seat = seat});
+}
+
+/// Does `change` to the pad and the ballast of every side of every seat.
+template <typename Change>
+void change_sides(Track& track, const Change& change) {
+  for (int border = 0; border <= track.bays; ++border) {
+    const Seat before = track.seat(border);
+    Seat after = before;
+    for (const std::size_t side : {0u, 1u}) {
+      change(after.pad[side]);
+      change(after.ballast[side]);
+    }
+    if (!(after == before)) track.changed_seats[border] = after;
+  }
+}
+
+}  // namespace
+
+std::vector<FixedPort> fixed_ports(const Track& track) {
+  std::vector<FixedPort> ports;
+  for (int rail = 0; rail < track.rails; ++rail)
+    for (int seat = 0; seat <= track.bays; ++seat) {
+      add_pad(track, rail, seat, ports);
+      add_ballast(track, rail, seat, ports);
+    }
+  for (std::size_t i = 0; i < track.stops.size(); ++i) {
+    const Stop& stop = track.stops[i];
+    if (stop.stiffness + stop.damping == 0.) continue;
+    ports.push_back(
+        {.closing = {.rail = {{{stop.rail, stop.x, 0., stop.z, stop.direction}, stop.side}},
+                     .sleeper = {}},
+         .stiffness = stop.stiffness,
+         .damping = stop.damping,
+         .gap = stop.gap,
+         .of = FixedPort::Of::stop,
+         .rail = stop.rail,
+         .stop = static_cast<int>(i)});
+  }
+  return ports;
+}
+
+Eigen::SparseVector<double> closing_row(const Track& track, const Line& line,
+                                        const FixedPort& port) {
+  return functional_row(track, line, port.closing);
+}
+
+Track linear_about_rest(Track track) {
+  change_sides(track, [](auto& spring) {
+    if (spring.gap == 0.) spring.unilateral = false;
+  });
+  track.stops.clear();
+  return track;
+}
+
+Track all_open(Track track) {
+  change_sides(track, [](auto& spring) {
+    if (!spring.one_sided()) return;
+    spring.stiffness[2] = spring.damping[2] = 0.;
+  });
+  track.stops.clear();
+  return track;
+}
+
+}  // namespace railstep
