@@ -200,6 +200,7 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.elements_per_bay = scene.track.elements_per_bay;
   track.rail_spacing = scene.track.rail_spacing;
   track.ends = scene.track.ends;
+  track.end_zone_bays = scene.track.end_zone_bays;
   if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
   track.axial_force = axial_force_of(scene.rail, track.section.area);

@@ -92,7 +92,9 @@ Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A) {
 /// What the static shapes of the dampers add to shapes that are kept; orthonormal over the mass.
 Eigen::MatrixXd damper_shapes(const Line& line, const Eigen::MatrixXd& kept) {
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
-  Eigen::MatrixXd shapes = factor.solve(filled_columns(line.damping));
+  // Zones at the ends have as many dampers as unknowns, each too weak to have a shape of its own.
+  const Eigen::SparseMatrix<double> of_seats = line.damping - line.end_damping;
+  Eigen::MatrixXd shapes = factor.solve(filled_columns(of_seats));
   if (shapes.cols() == 0) return shapes;
   const auto norms = [&]() -> Eigen::VectorXd {
     return shapes.cwiseProduct(line.mass * shapes).colwise().sum().cwiseSqrt().transpose();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "offline/track/assembly.h"
+#include "offline/track/end_zone.h"
 #include "offline/track/track.h"
 
 namespace railstep {
@@ -67,6 +68,7 @@ void add_elements(const Track& track, int rail, Assembly& part) {
       element_matrices(track.bar(rail).section, track.law(rail), track.element_length());
   for (int e = 0; e < track.elements(); ++e) {
     if (track.state) element.stiffness = stiffness_at(track, *track.state, rail, e);
+    const double taken = end_damping_rate(track, rail, e);
     std::array<int, 27> place;
     for (int i = 0; i < 27; ++i)
       place[static_cast<std::size_t>(i)] = part.line.unknown(rail, 2 * e + i / 9, i % 9);
@@ -78,6 +80,8 @@ void add_elements(const Track& track, int rail, Assembly& part) {
         if (element.mass(i, j) != 0.) part.mass.emplace_back(row, column, element.mass(i, j));
         if (element.stiffness(i, j) != 0.)
           part.stiffness.emplace_back(row, column, element.stiffness(i, j));
+        if (taken * element.mass(i, j) != 0.)
+          part.end_damping.emplace_back(row, column, taken * element.mass(i, j));
       }
   }
 }
@@ -86,6 +90,7 @@ Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails
   Assembly part{mirror, std::move(rails)};
   number(track, part);
   for (const int rail : part.rails) add_elements(track, rail, part);
+  part.damping = part.end_damping;
   for (int seat = 0; seat <= track.bays; ++seat) add_seat(track, part, seat);
   if (mirror != Mirror::none) part.line.unknown_of[1] = part.line.unknown_of[0];
   return part;
@@ -155,6 +160,7 @@ void split(const Assembly& part, std::array<double, 2> factor, std::vector<Line>
     Line line = part.line;
     line.mass = select(part.mass, place, n);
     line.damping = select(part.damping, place, n);
+    line.end_damping = select(part.end_damping, place, n);
     line.stiffness = select(part.stiffness, place, n);
     line.mirrored = part.mirror != Mirror::none;
     renumber(line.sleeper_unknown_of, place);
@@ -172,6 +178,8 @@ void check(const Track& track) {
   if (track.rails != 1 && track.rails != 2) refuse("a track has one rail or two");
   if (!(track.bay_length > 0.) || !(track.rail_spacing > 0.))
     refuse("bay length and rail spacing are above zero");
+  if (end_zones(track) * track.end_zone_bays > track.bays)
+    refuse("the zones of non-reflecting ends do not fit on the track");
   for (const auto& [border, seat] : track.changed_seats)
     if (border < 0 || border > track.bays) refuse("a changed seat stands at no bay border");
   for (int border = 0; border <= track.bays; ++border)

@@ -27,6 +27,7 @@ struct Assembly {
   Line line = {};
   int count = 0;
   Triplets mass = {}, damping = {}, stiffness = {};
+  Triplets end_damping = {};  // these are in damping too
 
   /// Energy factor (row u)^2 / 2.
   static void add(Triplets& to, const Row& row, double factor) {

@@ -15,11 +15,15 @@ enum class Unknowns { full, vertical };
 
 /// What holds a rail's end node. Pinned: its position (all three), so that the rail carries axial
 /// force, and its roll (a_z and b_y); the slopes a_x and b_x of bending stay free. Clamped: all
-/// nine.
-enum class RailEnd { free, pinned, clamped };
+/// nine. Non-reflecting: nothing, but the rail's last bays are damped (end_zone.h) so that waves
+/// which run towards the end do not come back.
+enum class RailEnd { free, pinned, clamped, non_reflecting };
 
 /// The ends of every rail, at x = 0 and at x = length.
 using RailEnds = std::array<RailEnd, 2>;
+
+/// Bays of the zone before a non-reflecting end, where nothing else is said.
+inline constexpr int kEndZoneBays = 16;
 
 /// Where a track stands under its own weight. Of one that is symmetric both sides are the same, and
 /// nothing moves sideways.
@@ -50,6 +54,7 @@ struct Track {
   int elements_per_bay = 2;
   double rail_spacing = 1.5;  // m
   RailEnds ends = {RailEnd::free, RailEnd::free};
+  int end_zone_bays = kEndZoneBays;  // damped bays before each non-reflecting end
   std::optional<RailBar> right;  // the right rail, where it differs from section, material, force
   Support support;               // of every seat but those changed
   std::optional<Sleeper> sleeper;
@@ -117,6 +122,7 @@ struct Line {
   using RailUnknowns = std::vector<std::array<int, 9>>;
 
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
+  Eigen::SparseMatrix<double> end_damping;  // what of damping is spread over zones at the ends
   std::array<RailUnknowns, 2> unknown_of;  // of left and right rail; the same in mirror coordinates
   /// [seats] of each SleeperMotion, scaled: the ends' mean displacement, or half their difference,
   /// times sqrt 2 (of one rail, its end's displacement); -1 where held or on another line.
