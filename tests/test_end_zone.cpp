@@ -131,6 +131,7 @@ TEST_CASE("the check of the ends sees what a zone leaves", "[ends]") {
   ExactRailReceptance endless(track, transfer, BeamTheory::timoshenko, true);
   const std::vector<double> hz = {900., 950., 1000., 1030., 1100., 1200., 1300.};
   std::vector<Value> answer;
+  answer.reserve(hz.size());
   for (const double f : hz) answer.push_back(receptance.at(f)[0]);
   const std::vector<double> effect = end_effect(track, transfer, hz, answer);
   int seen = 0;

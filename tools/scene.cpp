@@ -104,6 +104,17 @@ void check_held(const Table& rail, const Scene& scene) {
                             scene.rail.temperature_rise));
 }
 
+/// gauge_m in the place of rail_spacing_m.
+void read_gauge(const Table& track, Scene& scene) {
+  if (!track.has("gauge_m")) return;
+  const double gauge = track.number("gauge_m", between(0.3, 3.0));
+  if (track.has("rail_spacing_m"))
+    track.refuse("gauge_m", "gauge_m beside rail_spacing_m; one of them is accepted");
+  if (scene.track.rails == 1)
+    track.refuse("gauge_m", "gauge_m, but the track has one rail; accepted with rails = 2");
+  scene.track.rail_spacing = spacing_of_gauge(track, scene, gauge);
+}
+
 std::optional<SupportScene> read_support(const Table& root, const Scene& scene) {
   const std::optional<Table> given = root.table_if("support");
   if (!given) return std::nullopt;
@@ -256,7 +267,9 @@ void read_rails(const Table& root, Scene& scene) {
       right->refuse("", "the track has one rail, the left one; accepted with track.rails = 2");
     scene.right_rail = read_right_rail(*right, scene.rail);
   }
+  read_gauge(root.table("track"), scene);
   check_held(rail, scene);
+  scene.joints = read_joints(root, rail, scene);
   scene.support = read_support(root, scene);
   scene.sleeper = read_sleeper(root, scene);
   scene.seat_changes = read_seat_changes(root, scene);

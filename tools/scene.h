@@ -214,6 +214,7 @@ struct Scene {
   std::optional<SupportScene> support;  // none: only the ends hold the rails, or nothing
   std::optional<SleeperScene> sleeper;
   std::vector<SeatChange> seat_changes;  // one after the other
+  std::vector<RailJoint> joints;
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::optional<IrregularityScene> irregularity;

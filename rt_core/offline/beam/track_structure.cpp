@@ -32,6 +32,9 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
     throw std::invalid_argument("a nonlinear rail wants its section's moments to degree 4");
   if (track.bays < 1 || track.elements_per_bay < 1)
     throw std::invalid_argument("a track needs one bay and one element");
+  if (!track.joints.empty())
+    throw std::invalid_argument(
+        "a nonlinear rail has no joints; accepted is track.model = \"linearised\"");
   // A pin off the centroid does not hold the moment of a force through it.
   const auto held = [&](RailEnd end) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);

@@ -53,6 +53,7 @@ LongerTrack with_longer_zones(const Track& track, const Transfer& transfer) {
     const auto changed = track.changed_seats.find(std::clamp(border - before, 0, track.bays));
     if (changed != track.changed_seats.end()) longer.changed_seats[border] = changed->second;
   }
+  for (RailJoint& joint : longer.joints) joint.x += before * track.bay_length;
   return {longer, moved(transfer, before * track.bay_length, before)};
 }
 

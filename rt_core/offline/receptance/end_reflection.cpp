@@ -56,9 +56,11 @@ Matrix for_ever(Matrix part) {
 }
 
 void check(const Track& track) {
-  if (!track.changed_seats.empty() || track.right || has_long_pads(track) || track.state)
+  if (!track.changed_seats.empty() || track.right || has_long_pads(track) || track.state ||
+      !track.joints.empty())
     throw std::invalid_argument(
-        "the reflection of an end is that of a uniform track at rest: seats and rails alike, pads "
+        "the reflection of an end is that of a uniform track at rest: seats and rails alike, no "
+        "joints, pads "
         "that are points");
   if (track.ends[1] != RailEnd::free && track.ends[1] != RailEnd::non_reflecting)
     throw std::invalid_argument("the reflection of a far end that is held is not asked for");
@@ -93,7 +95,8 @@ EndReflection::EndReflection(const Track& track, const Line& line, int direction
   mirror_.resize(static_cast<Eigen::Index>(carried_.size()));
   for (std::size_t i = 0; i < carried_.size(); ++i)
     mirror_[static_cast<Eigen::Index>(i)] = carried_[i] % 3 == 0 ? -1. : 1.;
-  element_ = element_matrices(track.bar(rail).section, track.law(rail), track.element_length());
+  const BeamSection section = track.bar(rail).section;
+  element_ = element_matrices(section, track.law(rail), track.element_length());
   zone_ = track.bays - (track.ends[1] == RailEnd::free ? 1 : track.end_zone_bays);
 }
 
@@ -169,7 +172,7 @@ Reflection EndReflection::at(double hz) const {
   const Matrix last = part.bottomRightCorner(d, d) + ahead;
   const Matrix next = -last.partialPivLu().solve(part.topRightCorner(d, d).transpose());
   const Eigen::ComplexEigenSolver<Matrix> waves(next);
-  const Matrix shapes = waves.eigenvectors();
+  const Matrix& shapes = waves.eigenvectors();
   const Eigen::PartialPivLU<Matrix> split(shapes);
   const Eigen::VectorXcd sent =
       split.solve((ahead + behind).partialPivLu().solve(Eigen::VectorXcd::Unit(d, driven_)));

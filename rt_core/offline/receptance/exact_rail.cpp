@@ -44,8 +44,9 @@ ExactRailReceptance::ExactRailReceptance(const Track& track, const Transfer& tra
     : track_(track), transfer_(transfer), beam_(bending_beam(track, theory)), endless_(endless) {
   if (track.axial_force != 0. || track.axis_z != 0.)
     throw std::invalid_argument("the exact beam carries no axial force and is on the centroid");
-  if (!track.changed_seats.empty() || track.right || has_long_pads(track))
-    throw std::invalid_argument("the exact beam stands on points, all seats and both rails alike");
+  if (!track.changed_seats.empty() || track.right || has_long_pads(track) || !track.joints.empty())
+    throw std::invalid_argument(
+        "the exact beam stands on points, all seats and both rails alike, without joints");
   for (int i = 0; i <= track.bays; ++i) x_.push_back(i * track.bay_length);
   take_places(transfer.force);
   for (const Functional& read : transfer.reads) take_places(read);

@@ -1,5 +1,6 @@
 #pragma once
-// A part of a track on its way into lines. Only assemble.cpp and add_seat.cpp include this.
+// A part of a track on its way into lines. Only assemble.cpp, joint.cpp and add_seat.cpp include
+// this.
 #include <array>
 #include <utility>
 #include <vector>
@@ -37,6 +38,12 @@ struct Assembly {
         if (a * b != 0.) to.emplace_back(i, j, factor * a * b);
   }
 };
+
+/// Numbers the rail's end ahead of a joint at the node, if there is one.
+void number_cut(const Track& track, Assembly& part, int rail, int node);
+
+/// The springs of a rail's joints.
+void add_joints(const Track& track, Assembly& part, int rail);
 
 /// The springs of the part's rails on a seat, and the sleeper's own mass and ballast.
 void add_seat(const Track& track, Assembly& part, int border);

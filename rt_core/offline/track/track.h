@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "offline/element/matrices.h"
+#include "offline/track/joint.h"
 #include "offline/track/seat.h"
 
 namespace railstep {
@@ -59,6 +60,7 @@ struct Track {
   Support support;               // of every seat but those changed
   std::optional<Sleeper> sleeper;
   std::map<int, Seat> changed_seats;  // by bay border; whole, in place of support and sleeper
+  std::vector<RailJoint> joints;      // where rails are cut
   /// Rails that share sleepers and are alike are stepped in mirror coordinates; without them both
   /// make one line, as those that differ do.
   bool mirror_coordinates = true;
@@ -84,7 +86,7 @@ struct Track {
 /// Whether any seat has a sleeper.
 bool has_sleepers(const Track& track);
 
-/// Whether rails and all seats are alike on the left and on the right.
+/// Whether rails, their joints and all seats are alike on the left and on the right.
 bool is_symmetric(const Track& track);
 
 /// Whether the ends of a rail hold unknown k = 0..8 of its node.
@@ -124,6 +126,9 @@ struct Line {
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
   Eigen::SparseMatrix<double> end_damping;  // what of damping is spread over zones at the ends
   std::array<RailUnknowns, 2> unknown_of;  // of left and right rail; the same in mirror coordinates
+  /// Of each rail, by node where it is cut: the unknowns of the end ahead, which begins the next
+  /// element; those of the end behind are the node's own.
+  std::array<std::map<int, std::array<int, 9>>, 2> cuts;
   /// [seats] of each SleeperMotion, scaled: the ends' mean displacement, or half their difference,
   /// times sqrt 2 (of one rail, its end's displacement); -1 where held or on another line.
   std::vector<std::array<int, kSleeperMotions>> sleeper_unknown_of;
@@ -136,6 +141,16 @@ struct Line {
   int unknown(int rail, int node, int k) const {
     return unknown_of[static_cast<std::size_t>(rail)][static_cast<std::size_t>(node)]
                      [static_cast<std::size_t>(k)];
+  }
+  /// The same of the end ahead where the rail is cut.
+  int unknown_ahead(int rail, int node, int k) const {
+    const auto& cut = cuts[static_cast<std::size_t>(rail)];
+    const auto at = cut.empty() ? cut.end() : cut.find(node);
+    return at == cut.end() ? unknown(rail, node, k) : at->second[static_cast<std::size_t>(k)];
+  }
+  /// The same of node i = 0..2 of an element.
+  int element_unknown(int rail, int element, int i, int k) const {
+    return i == 0 ? unknown_ahead(rail, 2 * element, k) : unknown(rail, 2 * element + i, k);
   }
   /// The rail whose unknowns all others' are, or the first of two.
   int first_rail() const { return rail_factor[0] != 0. ? 0 : 1; }
