@@ -54,7 +54,8 @@ void gather(const Model& model, double x, const Configuration& at, Window* sides
 void add_rest(const Model& model, int rail, Window& window) noexcept {
   for (std::int32_t i = 0; i < 3 * window.elements; ++i) {
     double* q = window.nodes + 9 * i;
-    q[0] += .5 * model.element_length * (2 * (window.first + i / 3) + i % 3);
+    const std::int32_t node = 2 * (window.first + i / 3) + i % 3;
+    q[0] += .5 * model.element_length * node;
     q[1] += model.rail_y[rail];
     q[2] += model.rail_z[rail];
     q[4] += 1.;
