@@ -68,5 +68,5 @@ TEST_CASE("a gauge wants two rails with heads, and stands alone", "[gauge]") {
   refused("receptance_s1.toml", {"track.gauge_m=1.435"}, "one rail");
   refused("receptance_s1.toml",
           {"track.gauge_m=1.435", "track.rails=2", "sleeper.roll_inertia_kg_m2=75.0"}, "14 mm");
-  refused("moving_load.toml", {"track.gauge_m=1435"}, "1.435");
+  refused("moving_load.toml", {"track.gauge_m=1435"}, "millimetres");
 }

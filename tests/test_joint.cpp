@@ -93,34 +93,51 @@ TEST_CASE("a beam with a hinge spring bends as the closed form", "[joint]") {
     }
 }
 
+namespace {
+
+/// What the sag and the kink of a joint under a load miss of those of two beams on a foundation.
+struct Missed {
+  double sag, kink;
+};
+
+/// Timoshenko's beam on an elastic foundation, w = a1 e^(k1 x) + a2 e^(k2 x) on x > 0, under half
+/// the force, with M = EI theta' = 2 k theta at the hinge; springs each `step` for the foundation.
+Missed missed_on_foundation(double k, double step) {
+  const double P = 50e3, bed = 50e6, x = 10.;
+  const int seat = static_cast<int>(std::round(x / step));
+  Track track = bare(2 * seat, step, 2, {});
+  track.support.stiffness[2] = bed * step;
+  track.joints = {hinge(x, k)};
+  const Statics statics(track);
+  const std::vector<Eigen::VectorXd> u = statics.solve({{axis(x), -P}});
+  const BendingBeam beam = bending_beam(track, BeamTheory::timoshenko);
+  const Foundation wave(beam, bed, 0.);
+  Eigen::Matrix2cd at_zero;
+  Eigen::Vector2cd turn;
+  for (int i = 0; i < 2; ++i) {
+    const auto kappa = wave.kappa[static_cast<std::size_t>(i)];
+    turn[i] = kappa - bed * beam.shear_softness / kappa;
+    at_zero.col(i) << beam.stiffness * kappa * turn[i] - 2. * k * turn[i], -bed / kappa;
+  }
+  const Eigen::Vector2cd a = at_zero.inverse() * Eigen::Vector2cd(0., .5 * P);
+  const double kink = 2. * (a[0] * turn[0] + a[1] * turn[1]).real();
+  const double turned =
+      slope(statics, u[0], 4 * seat, true) - slope(statics, u[0], 4 * seat, false);
+  return {statics.at(u, axis(x)) / -std::fabs(a.sum().real()) - 1., std::fabs(turned / kink) - 1.};
+}
+
+}  // namespace
+
 TEST_CASE("a joint on a foundation sags as two halves with a spring", "[joint]") {
-  // Timoshenko's beam on an elastic foundation, w = a1 e^(k1 x) + a2 e^(k2 x) on x > 0, under half
-  // the force, with M = EI theta' = 2 k theta at the hinge. Springs each 50 mm stand for the
-  // foundation: 1e-3 (tests/test_receptance has 2e-3 for waves).
-  const double P = 50e3, seat = 2.5e6, step = .05;
+  // Springs for a foundation are the trapezoidal rule: an error of (lambda step)^2 = 3e-3 of it,
+  // with lambda = (bed/4EI)^(1/4) = 1.1 1/m, and a quarter of that at half the step; 10 % for the
+  // next order.
   for (const double k : {0., 1e5, 1e6, 1e8}) {
-    Track track = bare(400, step, 2, {});
-    track.support.stiffness[2] = seat;
-    const double x = 200 * step;
-    track.joints = {hinge(x, k)};
-    const Statics statics(track);
-    const std::vector<Eigen::VectorXd> u = statics.solve({{axis(x), -P}});
-    const BendingBeam beam = bending_beam(track, BeamTheory::timoshenko);
-    const Foundation wave(beam, seat / step, 0.);
-    Eigen::Matrix2cd at_zero;
-    Eigen::Vector2cd turn;
-    const double b = -seat / step * beam.shear_softness;
-    for (int i = 0; i < 2; ++i) {
-      const auto kappa = wave.kappa[static_cast<std::size_t>(i)];
-      turn[i] = kappa + b / kappa;
-      at_zero.col(i) << beam.stiffness * kappa * turn[i] - 2. * k * turn[i], -seat / step / kappa;
-    }
-    const Eigen::Vector2cd a = at_zero.inverse() * Eigen::Vector2cd(0., .5 * P);
-    const double want = a.sum().real(), jump = 2. * (a[0] * turn[0] + a[1] * turn[1]).real();
-    CAPTURE(k, want, jump);
-    CHECK_THAT(statics.at(u, axis(x)), WithinRel(-std::fabs(want), 1e-3));
-    const double turned = slope(statics, u[0], 800, true) - slope(statics, u[0], 800, false);
-    CHECK_THAT(std::fabs(turned), WithinRel(std::fabs(jump), 2e-3));
+    const Missed coarse = missed_on_foundation(k, .05), fine = missed_on_foundation(k, .025);
+    CAPTURE(k, coarse.sag, coarse.kink, fine.sag, fine.kink);
+    CHECK(std::fabs(coarse.sag) < 3e-3);
+    CHECK(std::fabs(coarse.kink) < 3e-3);
+    CHECK_THAT(fine.sag / coarse.sag, WithinRel(.25, .1));
   }
 }
 
@@ -144,7 +161,8 @@ TEST_CASE("a stiff joint is no joint", "[joint]") {
     return sag(cut) / uncut - 1.;
   };
   CHECK(excess(1e7) > 0.);
-  CHECK_THAT(excess(1e9) / excess(1e8), WithinRel(.1, .02));
+  // a/(k + b), b the stiffness of what the joint stands in: at 1e8 it is 4 % off 1/k, at 1e9 0.4 %.
+  CHECK_THAT(excess(1e10) / excess(1e9), WithinRel(.1, .01));
   CHECK(std::fabs(excess(1e12)) < 1e-5);
   // In space fishplates leave the ends' own strains free: 1e-3 of the axis' sag is what that makes.
   Track space = ballasted(8, 2);
@@ -216,7 +234,8 @@ TEST_CASE("a joint in both rails is the same in mirror coordinates", "[joint]") 
 
 TEST_CASE("residual flexibility knows the cut", "[joint]") {
   // Static receptance with what elements miss inside them, against eight times as many elements at
-  // whose nodes the points are: 1e-6 as on an uncut rail (tests/test_flexibility).
+  // whose nodes the points are: 1e-5 for quadratic elements under a long pad, which the division
+  // follows only where a point asks for four parts of an element or more (x = 1.725, 1.875).
   Track coarse = bare(6, .6, 2, {});
   coarse.support.stiffness[2] = 30e6;
   coarse.joints = {hinge(1.8, 1e5)};
@@ -227,6 +246,7 @@ TEST_CASE("residual flexibility knows the cut", "[joint]") {
     fine.elements_per_bay = 16;
     for (const double x : {1.65, 1.725, 1.8, 1.875})
       for (const double y : {1.65, 1.875, 2.1}) {
+        if (length > 0. && x != 1.725 && y != 1.875) continue;
         CAPTURE(length, x, y);
         const Transfer at{rail_point(axis(x)), {rail_point(axis(y))}};
         const double want = FullOrderReceptance(fine, at).at(0.)[0].real();
