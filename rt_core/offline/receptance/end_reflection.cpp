@@ -67,6 +67,12 @@ void check(const Track& track) {
   if (track.bays < 3) throw std::invalid_argument("a wave needs three bays or more");
 }
 
+/// Sections that do not strain: b_y = -a_z.
+void tie_roll(Matrix27& matrix) {
+  for (int node = 0; node < 27; node += 9) matrix.col(node + 5) -= matrix.col(node + 7).eval();
+  for (int node = 0; node < 27; node += 9) matrix.row(node + 5) -= matrix.row(node + 7).eval();
+}
+
 /// Entries of K + i omega C - omega^2 M at unknowns of a line.
 Matrix dynamic_block(const Line& line, const std::vector<int>& unknowns, double omega) {
   const auto n = static_cast<Eigen::Index>(unknowns.size());
@@ -97,6 +103,10 @@ EndReflection::EndReflection(const Track& track, const Line& line, int direction
     mirror_[static_cast<Eigen::Index>(i)] = carried_[i] % 3 == 0 ? -1. : 1.;
   const BeamSection section = track.bar(rail).section;
   element_ = element_matrices(section, track.law(rail), track.element_length());
+  if (line.rigid_section) {
+    tie_roll(element_.stiffness);
+    tie_roll(element_.mass);
+  }
   zone_ = track.bays - (track.ends[1] == RailEnd::free ? 1 : track.end_zone_bays);
 }
 

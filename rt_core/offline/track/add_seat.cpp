@@ -39,8 +39,8 @@ class SeatRows {
   Row roll(const PadPoint& at) const {
     Row row;
     for_nodes(at, [&](int node, double shape) {
-      push(row, line_.element_unknown(rail_, at.element, node, 5), .5 * shape);
-      push(row, line_.element_unknown(rail_, at.element, node, 7), -.5 * shape);
+      push_node(row, at.element, node, 5, .5 * shape);
+      push_node(row, at.element, node, 7, -.5 * shape);
     });
     push(row, sleeper_[kRoll], -share_ * 2. / spacing_);
     return row;
@@ -70,13 +70,18 @@ class SeatRows {
     const auto n = shape(at.xi);
     for (int i = 0; i < 3; ++i) visit(i, n[static_cast<std::size_t>(i)]);
   }
+  /// The left rail's unknowns stand for both in a mirror: none changes sign there.
+  void push_node(Row& row, int element, int node, int k, double coefficient) const {
+    const int unknown = line_.element_unknown(rail_, element, node, k);
+    push(row, unknown, sign_of(line_, 0, k) * coefficient);
+  }
   Row rail_moves(const PadPoint& at, std::size_t d, double y) const {
     const int k = static_cast<int>(d);
     Row row;
     for_nodes(at, [&](int node, double shape) {
-      push(row, line_.element_unknown(rail_, at.element, node, k), shape);
-      push(row, line_.element_unknown(rail_, at.element, node, 3 + k), y * shape);
-      push(row, line_.element_unknown(rail_, at.element, node, 6 + k), pad_.height_z * shape);
+      push_node(row, at.element, node, k, shape);
+      push_node(row, at.element, node, 3 + k, y * shape);
+      push_node(row, at.element, node, 6 + k, pad_.height_z * shape);
     });
     return row;
   }
@@ -99,7 +104,7 @@ void add_pad(const Track& track, Assembly& part, int border, const SeatRows& row
       }
     // Rails without roll unknowns leave the sleeper's roll alone; a rail whose end is held does
     // not.
-    if (track.unknowns != Unknowns::full) continue;
+    if (track.unknowns == Unknowns::vertical) continue;
     const Row roll = rows.roll(at);
     Assembly::add(part.stiffness, roll, at.part * pad.roll_stiffness);
     Assembly::add(part.damping, roll, at.part * pad.roll_damping);

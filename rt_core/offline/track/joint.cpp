@@ -20,8 +20,9 @@ Row jump(const Line& line, int rail, int node, int k, double factor) {
   Row row;
   const int behind = line.unknown(rail, node, k), ahead = line.unknown_ahead(rail, node, k);
   if (behind == ahead) return row;  // shared
-  push(row, ahead, factor);
-  push(row, behind, -factor);
+  const double signed_factor = sign_of(line, 0, k) * factor;
+  push(row, ahead, signed_factor);
+  push(row, behind, -signed_factor);
   return row;
 }
 
@@ -80,8 +81,10 @@ void number_cut(const Track& track, Assembly& part, int rail, int node) {
   auto& ahead = part.line.cuts[static_cast<std::size_t>(rail)][node];
   for (int k = 0; k < 9; ++k) {
     const int behind = part.line.unknown(rail, node, k);
+    if (part.line.rigid_section && k == 7) continue;  // one unknown with 5
     ahead[static_cast<std::size_t>(k)] = behind < 0 || is_shared(*joint, k) ? behind : part.count++;
   }
+  if (part.line.rigid_section) ahead[7] = ahead[5];
 }
 
 void add_joints(const Track& track, Assembly& part, int rail) {

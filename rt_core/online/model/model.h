@@ -62,8 +62,9 @@ struct LineModel {
   /// table for both where they are mirror images and where the line has one rail. Elements share
   /// their border's unknowns where the rail is not cut.
   const std::int32_t* unknown_of[2];
-  double rail_factor[2];  // weight of the line in left and right rail; 0: it lacks that rail
-  std::int32_t mirrored;  // right rail: y components change sign
+  double rail_factor[2];       // weight of the line in left and right rail; 0: it lacks that rail
+  std::int32_t mirrored;       // right rail: y components change sign
+  std::int32_t rigid_section;  // a_z and b_y are one unknown, the roll a_z
 };
 
 /// A prescribed force that runs along a rail.
