@@ -315,7 +315,7 @@ TEST_CASE("a scene's joints are checked", "[joint]") {
           "4.2 and 4.8");
   for (const std::string model : {"nonlinear", "timoshenko"})
     refused(kJoint + "--set 'track.model=\"" + model +
-                "\"' --set track.rails=1 --set "
+                "\"' --set track.rails=1 --set support.half_spread_m=0.05 --set "
                 "'load=[]' --set track.unknowns='\"full\"'",
             "joints");
   refused("--set 'rail_joint=[{x_m=9.6, bending_vertical_stiffness_n_m_per_rad=1}]'", "at an end");
