@@ -8,6 +8,7 @@
 
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
+#include "online/step/line.h"
 #include "online/step/residual.h"
 #include "online/step/step.h"
 #include "sections.h"
@@ -65,7 +66,7 @@ struct Drop {
   double wheel(const double* of) const { return of[model().wheelset[0].first + 2]; }
   /// Of the left rail's node under the wheel.
   double rail(const double* of, int node) const {
-    return of[model().line[0].first + model().line[0].unknown_of[0][9 * node + 2]];
+    return of[model().line[0].first + model().line[0].unknown_of[0][table_place(node, 2)]];
   }
 
   void step() {

@@ -55,7 +55,7 @@ ModelRun mass_under(double force, double damping, const Scheme& scheme) {
 void lift(ModelRun& run, double u) {
   const LineModel& line = run.model().line[0];
   for (int node = 0; node < 3; ++node) {
-    const auto i = line.first + line.unknown_of[0][9 * node + 2];
+    const auto i = line.first + line.unknown_of[0][table_place(node, 2)];
     run.state.u[i] = u;
     run.state.a[i] = run.state.g[i] = -3e7 / 150. * u;
   }

@@ -11,6 +11,7 @@
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
 #include "offline/track/statics.h"
+#include "online/step/line.h"
 #include "online/step/step.h"
 #include "sections.h"
 
@@ -66,7 +67,7 @@ struct Crossing {
   /// Down positive, m; the middle is a node for every mesh.
   double midspan() const {
     const LineModel& line = model().line[0];
-    return -state.u[line.first + line.unknown_of[0][9 * track.elements() + 2]];
+    return -state.u[line.first + line.unknown_of[0][table_place(track.elements(), 2)]];
   }
   double under_load() const { return -outputs.load_deflection[0]; }
 };

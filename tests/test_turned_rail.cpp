@@ -98,7 +98,7 @@ class Linear {
         const auto value = [&](int which) {
           return line.rail_factor[0] == 0.
                      ? 0.
-                     : weight_of(line, 0, which) * nodal_value(line, 0, 2 * element + i, which, at);
+                     : weight_of(line, 0, which) * nodal_value(line, 0, element, i, which, at);
         };
         sum += shape[i] * (k == 5 ? .5 * (value(5) - value(7)) : value(k));
       }
@@ -180,7 +180,7 @@ TEST_CASE("the row of a turned rail is the slope of how it lies", "[turn]") {
       for (int k = 0; k < 9 && model.line[l].rail_factor[0] != 0.; ++k)
         for (int i = 0; i < 3; ++i)
           q[k] += shape[i] * weight_of(model.line[l], 0, k) *
-                  nodal_value(model.line[l], 0, 2 * element + i, k, at);
+                  nodal_value(model.line[l], 0, element, i, k, at);
     const double turn = .5 * (q[5] - q[7]);
     keep_section(q);
     row = {0, element, {}};
@@ -223,7 +223,7 @@ TEST_CASE("a rail rolled past its linear form says so, and not before", "[turn]"
     for (std::int32_t node = 0; node < 2 * model.elements + 1; ++node)
       for (const int k : {5, 7}) {
         const LineModel& line = model.line[l];
-        const std::int32_t unknown = line.unknown_of[0][9 * node + k];
+        const std::int32_t unknown = line.unknown_of[0][table_place(node, k)];
         if (line.rail_factor[0] == 0. || unknown < 0) continue;
         run.state.u[line.first + unknown] = (k == 5 ? roll : -roll) / line.rail_factor[0];
       }

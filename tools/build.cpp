@@ -144,8 +144,12 @@ Stop stop_of(const StopScene& s, const Section& section, double axis_z) {
           .damping = s.spring.damping};
 }
 
-/// Force in a rail at rest: its own, and what heat makes between ends that hold it, N.
-double axial_force_of(const RailScene& rail, double area) {
+/// Force in a rail at rest: its own, and what heat makes between ends that hold it, N. Gaps of
+/// joints pass none.
+double axial_force_of(const RailScene& rail, double area, int side,
+                      const std::vector<RailJoint>& joints) {
+  for (const RailJoint& joint : joints)
+    if (joint.rails[static_cast<std::size_t>(side)]) return 0.;
   return rail.axial_force - rail.young * area * (rail.expansion * rail.temperature_rise);
 }
 
@@ -155,7 +159,7 @@ void add_right_rail(const Scene& scene, bool keep_moments, Track& track) {
   const RailSection found = rail_section_of(scene, Side::right);
   RailBar bar{beam_section(found), {right.young, right.poisson, right.density}, 0.};
   if (!keep_moments) bar.section.moments.reset();
-  bar.axial_force = axial_force_of(right, bar.section.area);
+  bar.axial_force = axial_force_of(right, bar.section.area, 1, scene.joints);
   if (scene.track.reference_line != ReferenceLine::centroid)
     throw std::invalid_argument(
         "rails that differ have their nodes on their centroids; accepted is track.reference_line = "
@@ -215,9 +219,11 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.elements_per_bay = scene.track.elements_per_bay;
   track.rail_spacing = scene.track.rail_spacing;
   track.ends = scene.track.ends;
+  track.end_zone_bays = scene.track.end_zone_bays;
   if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
-  track.axial_force = axial_force_of(scene.rail, track.section.area);
+  track.axial_force = axial_force_of(scene.rail, track.section.area, 0, scene.joints);
+  track.joints = scene.joints;
   if (scene.right_rail) add_right_rail(scene, keep_moments, track);
   change_seats(scene.seat_changes, track);
   for (const StopScene& stop : scene.stops) {

@@ -15,6 +15,7 @@
 #include "offline/receptance/exact_rail.h"
 #include "offline/receptance/full_order.h"
 #include "offline/track/fixed_port.h"
+#include "offline/track/end_zone.h"
 #include "sense.h"
 
 namespace railstep {
@@ -99,7 +100,8 @@ ReceptanceCurve curve_of(const std::string& name, Receptance& model,
 }
 
 /// Stretches of frequency over which the ends are felt too much, in words.
-std::string end_warning(const std::vector<double>& hz, const std::vector<double>& effect) {
+std::string end_warning(const std::vector<double>& hz, const std::vector<double>& effect,
+                        bool zones) {
   std::vector<std::string> bands;
   for (std::size_t i = 0; i < hz.size(); ++i) {
     if (!(effect[i] > kMostEndEffect)) continue;
@@ -114,16 +116,17 @@ std::string end_warning(const std::vector<double>& hz, const std::vector<double>
   const std::size_t said = std::min<std::size_t>(bands.size(), 3);
   return fmt::format(
       "the track is too short to stand for a long one at {}{}: its ends change the receptance by "
-      "more than {:g} %, by {} % at {:.4g} Hz; more bays are safe",
+      "more than {:g} %, by {} % at {:.4g} Hz; {} are safe",
       fmt::join(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(said), ", "),
       bands.size() > said ? fmt::format(" and {} more bands", bands.size() - said) : "",
       100. * kMostEndEffect, *worst > 1. ? "over 100" : fmt::format("up to {:.2g}", 100. * *worst),
-      hz[static_cast<std::size_t>(worst - effect.begin())]);
+      hz[static_cast<std::size_t>(worst - effect.begin())],
+      zones ? "more bays and more end_zone_bays" : "more bays");
 }
 
-void warn(const std::vector<const Sensed*>& points, ReceptanceAnswer& answer) {
+void warn(const std::vector<const Sensed*>& points, bool zones, ReceptanceAnswer& answer) {
   if (!answer.end_effect.empty()) {
-    const std::string ends = end_warning(answer.hz, answer.end_effect);
+    const std::string ends = end_warning(answer.hz, answer.end_effect, zones);
     if (!ends.empty()) answer.warnings.push_back(ends);
   }
   for (const Sensed* point : points) {
@@ -178,6 +181,20 @@ void add_decay(const ReceptanceRequest& request, const Scene& scene, const Track
         fmt::join(short_of, ", "), answer.decay_distance.back()));
 }
 
+/// Of the line that the force moves most.
+void add_reflection(const Track& track, const Sensed& force, ReceptanceAnswer& answer) {
+  const std::vector<Line> lines = assemble(track);
+  const Line* moved = nullptr;
+  double most = 0.;
+  for (const Line& line : lines) {
+    const double size = functional_row(track, line, force.on).norm();
+    if (size > most) moved = &line;
+    most = std::max(most, size);
+  }
+  const EndReflection end(track, *moved, force.direction);
+  for (const double f : answer.hz) answer.reflection.push_back(end.at(f));
+}
+
 void add_resonances(const Track& track, const RailPoint& at, Receptance& model,
                     ReceptanceAnswer& answer) {
   std::vector<double> magnitude;
@@ -218,7 +235,8 @@ ReceptanceAnswer solve(const ReceptanceRequest& request, const Scene& scene) {
   const RailPoint* at = rail_of(force);
   const bool driving = read.sensor == force.sensor && read.direction == force.direction;
   if (driving && at != nullptr && force.direction == 2) add_resonances(track, *at, *model, answer);
-  warn({&force, &read}, answer);
+  if (request.reflection) add_reflection(track, force, answer);
+  warn({&force, &read}, end_zones(track) > 0, answer);
   if (request.decay) add_decay(request, scene, track, force, answer);
   return answer;
 }

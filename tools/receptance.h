@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "offline/receptance/decay_rate.h"
+#include "offline/receptance/end_reflection.h"
 #include "offline/receptance/resonances.h"
 
 namespace railstep {
@@ -21,6 +22,7 @@ struct ReceptanceRequest {
   bool condensed;                       // the model that answers, else full order
   std::vector<std::string> beside;      // "full", "condensed", "euler", "endless"
   bool decay;                           // rates along the rail
+  bool reflection;                      // of the far end
 };
 
 /// One model's receptance over the frequencies.
@@ -38,7 +40,8 @@ struct ReceptanceAnswer {
   std::vector<Resonance> resonances;   // of vertical driving points of a rail
   std::vector<double> decay_distance;  // m; empty where no rates are asked for
   std::vector<DecayRate> decay;
-  std::vector<std::string> warnings;  // sentences
+  std::vector<Reflection> reflection;  // of the far end, at the frequencies; empty: not asked for
+  std::vector<std::string> warnings;   // sentences
 };
 
 /// An end effect above this is a warning.

@@ -141,6 +141,10 @@ nlohmann::ordered_json to_json(const ReceptanceAnswer& answer) {
       decay["upper_bound"].push_back(!rate.suitable);
     }
   }
+  for (const Reflection& end : answer.reflection) {
+    json["reflection"].push_back(end.back);
+    json["wave_decay_per_bay"].push_back(end.decay);
+  }
   json["warnings"] = answer.warnings;
   return json;
 }
@@ -150,6 +154,7 @@ std::string to_table(const ReceptanceAnswer& answer) {
                                  answer.read, answer.force);
   for (const ReceptanceCurve& curve : answer.beside)
     text += fmt::format("  {:>24}", long_name(curve.name));
+  if (!answer.reflection.empty()) text += "  reflection";
   text += '\n';
   for (std::size_t i = 0; i < answer.hz.size(); ++i) {
     const std::complex<double>& value = answer.curve.value[i];
@@ -157,6 +162,7 @@ std::string to_table(const ReceptanceAnswer& answer) {
         fmt::format("{:13.6g}  {:14.6g}  {:10.5f}", answer.hz[i], std::abs(value), phase(value));
     for (const ReceptanceCurve& curve : answer.beside)
       text += fmt::format("  {:>13.6g} {:10.5f}", std::abs(curve.value[i]), phase(curve.value[i]));
+    if (!answer.reflection.empty()) text += fmt::format("  {:10.3g}", answer.reflection[i].back);
     text += '\n';
   }
   for (const Resonance& one : answer.resonances) text += resonance_line(one) + '\n';
@@ -171,12 +177,16 @@ std::string to_csv(const ReceptanceAnswer& answer) {
   for (const ReceptanceCurve* curve : curves_of(answer))
     text += fmt::format(",{0}.magnitude_m_per_n,{0}.phase_rad", curve->name);
   if (!answer.end_effect.empty()) text += ",end_effect";
+  if (!answer.reflection.empty()) text += ",reflection,wave_decay_per_bay";
   text += '\n';
   for (std::size_t i = 0; i < answer.hz.size(); ++i) {
     text += fmt::format("{:.17g}", answer.hz[i]);
     for (const ReceptanceCurve* curve : curves_of(answer))
       text += fmt::format(",{:.17g},{:.17g}", std::abs(curve->value[i]), phase(curve->value[i]));
     if (!answer.end_effect.empty()) text += fmt::format(",{:.17g}", answer.end_effect[i]);
+    if (!answer.reflection.empty())
+      text +=
+          fmt::format(",{:.17g},{:.17g}", answer.reflection[i].back, answer.reflection[i].decay);
     text += '\n';
   }
   return text;

@@ -13,9 +13,29 @@ namespace {
 
 /// One word for both ends, or a pair [x = 0, x = length].
 RailEnds read_ends(const Table& t) {
-  constexpr RailEnd kEnds[] = {RailEnd::free, RailEnd::pinned, RailEnd::clamped};
-  const auto ends = t.choices("ends", {"free", "pinned", "clamped"}, 2, 0);
+  constexpr RailEnd kEnds[] = {RailEnd::free, RailEnd::pinned, RailEnd::clamped,
+                               RailEnd::non_reflecting};
+  const auto ends = t.choices("ends", {"free", "pinned", "clamped", "non-reflecting"}, 2, 0);
   return {kEnds[ends[0]], kEnds[ends[1]]};
+}
+
+/// Bays of the zone before a non-reflecting end; the zones of both ends lie on the track.
+int read_end_zone(const Table& t, const TrackScene& track) {
+  const std::int64_t zones =
+      std::count(track.ends.begin(), track.ends.end(), RailEnd::non_reflecting);
+  if (zones == 0) {
+    if (t.has("end_zone_bays"))
+      t.refuse("end_zone_bays",
+               "end_zone_bays, but no end is \"non-reflecting\"; accepted beside one that is");
+    return kEndZoneBays;
+  }
+  const auto bays = static_cast<int>(t.integer("end_zone_bays", 1, 10'000, kEndZoneBays));
+  if (zones * bays > track.bays)
+    t.refuse("end_zone_bays",
+             fmt::format("{} zone{} of {} bays before non-reflecting ends, but bays = {}; accepted "
+                         "is end_zone_bays = {} or less, or more bays",
+                         zones, zones > 1 ? "s" : "", bays, track.bays, track.bays / zones));
+  return bays;
 }
 
 TrackScene read_track(const Table& t) {
@@ -28,6 +48,7 @@ TrackScene read_track(const Table& t) {
   track.elements_per_bay = static_cast<int>(t.integer("elements_per_bay", 1, 1000, 2));
   track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
   track.ends = read_ends(t);
+  track.end_zone_bays = read_end_zone(t, track);
   track.gravity = t.boolean("gravity", false);
   constexpr RailModel kModels[] = {RailModel::linearised, RailModel::nonlinear,
                                    RailModel::timoshenko};
@@ -79,8 +100,20 @@ void check_held(const Table& rail, const Scene& scene) {
   if (scene.rail.temperature_rise != 0.0 && (ends[0] == RailEnd::free || ends[1] == RailEnd::free))
     rail.refuse("temperature_rise_k",
                 fmt::format("temperature_rise_k = {:.15g}, but a free end lets the rail grow; "
-                            "accepted is 0, or track.ends that are pinned or clamped",
+                            "accepted is 0, or track.ends that are pinned, clamped or "
+                            "non-reflecting",
                             scene.rail.temperature_rise));
+}
+
+/// gauge_m in the place of rail_spacing_m.
+void read_gauge(const Table& track, Scene& scene) {
+  if (!track.has("gauge_m")) return;
+  const double gauge = track.number("gauge_m", between(0.3, 3.0));
+  if (track.has("rail_spacing_m"))
+    track.refuse("gauge_m", "gauge_m beside rail_spacing_m; one of them is accepted");
+  if (scene.track.rails == 1)
+    track.refuse("gauge_m", "gauge_m, but the track has one rail; accepted with rails = 2");
+  scene.track.rail_spacing = spacing_of_gauge(track, scene, gauge);
 }
 
 std::optional<SupportScene> read_support(const Table& root, const Scene& scene) {
@@ -239,7 +272,9 @@ void read_rails(const Table& root, Scene& scene) {
       right->refuse("", "the track has one rail, the left one; accepted with track.rails = 2");
     scene.right_rail = read_right_rail(*right, scene.rail);
   }
+  read_gauge(root.table("track"), scene);
   check_held(rail, scene);
+  scene.joints = read_joints(root, rail, scene);
   scene.support = read_support(root, scene);
   scene.sleeper = read_sleeper(root, scene);
   scene.seat_changes = read_seat_changes(root, scene);

@@ -51,7 +51,8 @@ struct TrackScene {
   int elements_per_bay;
   double rail_spacing;  // between the rails' centres, m
   RailEnds ends;
-  bool gravity;  // on the rails
+  int end_zone_bays;  // damped bays before each non-reflecting end
+  bool gravity;       // on the rails
   RailModel model;
   bool linearised_under_weight;  // the stiffness is taken where weight and preload leave the track
   ReferenceLine reference_line;
@@ -231,6 +232,7 @@ struct Scene {
   std::optional<SleeperScene> sleeper;
   std::vector<SeatChange> seat_changes;  // one after the other
   std::vector<StopScene> stops;
+  std::vector<RailJoint> joints;
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::optional<IrregularityScene> irregularity;

@@ -26,6 +26,11 @@ RailScene read_right_rail(const Table& right, const RailScene& left);
 /// [[support_change]], in the file's order.
 std::vector<SeatChange> read_seat_changes(const Table& root, const Scene& scene);
 std::vector<StopScene> read_stops(const Table& root, const Scene& scene);
+/// [[rail_joint]] of a scene whose rails are read. Refuses force that a gap does not carry.
+std::vector<RailJoint> read_joints(const Table& root, const Table& rail, const Scene& scene);
+/// Distance of the rails' centres whose heads' inner faces are `gauge` apart, 14 mm below the
+/// running surface, m. Throws InputError where a rail's section has no head.
+double spacing_of_gauge(const Table& track, const Scene& scene, double gauge);
 /// dt, frame and duration of [step]; the scheme and the start are its reader's.
 StepScene read_times(const Table& step);
 /// [step] of a scene with a track.

@@ -189,9 +189,9 @@ std::string place_in_track(const Model& model, std::int32_t unknown) {
     if (model.condensed != 0)
       return fmt::format("mode {} of the track's line {}", unknown - line.first, l);
     for (const std::int32_t* table : line.unknown_of)
-      for (std::int32_t i = 0; i < 9 * (2 * model.elements + 1); ++i)
+      for (std::int32_t i = 0; i < 27 * model.elements; ++i)
         if (table[i] == unknown - line.first)
-          return fmt::format("{} of rail node {}", kNodeUnknowns[i % 9], i / 9);
+          return fmt::format("{} of rail node {}", kNodeUnknowns[i % 9], 2 * (i / 27) + i % 27 / 9);
     break;
   }
   return unknown < model.bodies ? "a sleeper's motion" : "a wheelset's coordinate";

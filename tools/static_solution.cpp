@@ -183,6 +183,10 @@ double linear_residual(const Problem& problem, const Statics& statics,
       for (const auto& node : rail)
         for (std::size_t k = 3; k < 9; ++k)
           if (node[k] >= 0) scale[node[k]] = 1. / problem.slope_length;
+    for (const auto& cuts : line.cuts)
+      for (const auto& [node, ahead] : cuts)
+        for (std::size_t k = 3; k < 9; ++k)
+          if (ahead[k] >= 0) scale[ahead[k]] = 1. / problem.slope_length;
     left += unbalanced[i].cwiseProduct(scale).squaredNorm();
     size += loads[i].cwiseProduct(scale).squaredNorm();
   }

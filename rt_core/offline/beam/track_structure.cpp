@@ -37,6 +37,9 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
     throw std::invalid_argument(
         "a nonlinear rail, and one linearised under its weight, stands on seats that pull too; "
         "accepted without gap_m, unilateral and [[stop]]");
+  if (!track.joints.empty())
+    throw std::invalid_argument(
+        "a nonlinear rail has no joints; accepted is track.model = \"linearised\"");
   // A pin off the centroid does not hold the moment of a force through it.
   const auto held = [&](RailEnd end) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);

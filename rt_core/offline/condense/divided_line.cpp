@@ -9,8 +9,9 @@ namespace {
 /// Unknowns of the end nodes of an element of a rail in the line, -1 where held.
 std::vector<int> end_unknowns(const Line& line, int rail, const Superelement& whole, int element) {
   std::vector<int> result;
-  for (const int node : {2 * element, 2 * element + 2})
-    for (const int k : whole.carried()) result.push_back(line.unknown(rail, node, k));
+  for (const int end : {0, 2})
+    for (const int k : whole.carried())
+      result.push_back(line.element_unknown(rail, element, end, k));
   return result;
 }
 

@@ -94,7 +94,9 @@ Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A) {
 Eigen::MatrixXd local_shapes(const Line& line, const Eigen::MatrixXd& kept,
                              const Eigen::SparseMatrix<double>& rows) {
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
-  const Eigen::MatrixXd dampers = filled_columns(line.damping), others = filled_columns(rows);
+  // Zones at the ends have as many dampers as unknowns, each too weak to have a shape of its own.
+  const Eigen::SparseMatrix<double> of_seats = line.damping - line.end_damping;
+  const Eigen::MatrixXd dampers = filled_columns(of_seats), others = filled_columns(rows);
   Eigen::MatrixXd forces(line.unknowns(), dampers.cols() + others.cols());
   forces.leftCols(dampers.cols()) = dampers;
   forces.rightCols(others.cols()) = others;

@@ -20,7 +20,7 @@ Eigen::MatrixXd ReducedLine::scaled_shapes(int rail, int points) const {
     for (int p = 0; p <= points; ++p) {
       const auto n = shape(2. * p / points - 1.);
       for (std::size_t i = 0; i < 3; ++i) {
-        const int height = line_.unknown(rail, 2 * e + static_cast<int>(i), 2);
+        const int height = line_.element_unknown(rail, e, static_cast<int>(i), 2);
         if (height >= 0) result.row(e * (points + 1) + p) += n[i] * scaled.row(height);
       }
     }

@@ -8,7 +8,7 @@ namespace railstep {
 namespace {
 
 constexpr std::int64_t kElementRow = 27;  // unknowns of an element's nodes
-constexpr std::int64_t kSeenNodes = 5;    // of the two elements that a wheel looks at
+constexpr std::int64_t kSeenNodes = 6;    // of the two elements that a wheel looks at, at a joint
 
 std::int64_t solve(const Band& band) {
   return std::int64_t{band.panels} * (32 * std::int64_t{band.left} + 128);
@@ -18,7 +18,7 @@ std::int64_t solve(const Band& band) {
 std::int64_t carried(const Model& model, const LineModel& line) {
   std::int64_t most = 0;
   for (const std::int32_t* table : line.unknown_of)
-    for (std::int32_t node = 0; node < 2 * model.elements + 1; ++node) {
+    for (std::int32_t node = 0; node < 3 * model.elements; ++node) {
       std::int64_t here = 0;
       for (int k = 0; k < 9; ++k) here += table[9 * node + k] >= 0 ? 1 : 0;
       most = here > most ? here : most;

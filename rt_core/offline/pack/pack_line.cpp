@@ -20,13 +20,25 @@ bool has_one_table(const Line& line) {
   return line.mirrored || line.rail_factor[0] == 0. || line.rail_factor[1] == 0.;
 }
 
-const Line::RailUnknowns& first_table(const Line& line) {
-  return line.unknown_of[static_cast<std::size_t>(line.first_rail())];
+/// Unknowns of a rail by element and node of it, [elements][3].
+Line::RailUnknowns table_of(const Line& line, int rail) {
+  const int elements = static_cast<int>(line.unknown_of[0].size()) / 2;
+  Line::RailUnknowns table;
+  for (int e = 0; e < elements; ++e)
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 9; ++k) {
+        if (k == 0) table.emplace_back();
+        table.back()[static_cast<std::size_t>(k)] = line.element_unknown(rail, e, i, k);
+      }
+  return table;
 }
 
+Line::RailUnknowns first_table(const Line& line) { return table_of(line, line.first_rail()); }
+
 bool same_but_for_the_rail(const Line& a, const Line& b) {
-  const bool same_tables = has_one_table(a) && has_one_table(b) ? first_table(a) == first_table(b)
-                                                                : a.unknown_of == b.unknown_of;
+  const bool same_tables = has_one_table(a) && has_one_table(b)
+                               ? first_table(a) == first_table(b)
+                               : a.unknown_of == b.unknown_of && a.cuts == b.cuts;
   return same(a.stiffness, b.stiffness) && same(a.mass, b.mass) && same(a.damping, b.damping) &&
          same_tables && a.mirrored == b.mirrored;
 }
@@ -87,7 +99,7 @@ void PackedModel::keep_tables(const Line& line, LineModel& packed, const Number&
     return keep(std::move(unknowns));
   };
   packed.unknown_of[0] = packed.unknown_of[1] = keep_table(first_table(line));
-  if (!has_one_table(line)) packed.unknown_of[1] = keep_table(line.unknown_of[1]);
+  if (!has_one_table(line)) packed.unknown_of[1] = keep_table(table_of(line, 1));
 }
 
 void PackedModel::add_banded(const Line& line, LineModel& packed) {
@@ -133,14 +145,16 @@ void PackedModel::add_condensed(PackedLine& own, LineModel& packed, const ModalL
                   nullptr};
   std::vector<double> shape;
   std::int32_t count = 0;
+  std::map<int, int> row_of;  // elements share their borders' rows
   keep_tables(own.line, packed, [&](int unknown, std::size_t k) {
     // The section's own strain (a_y, b_z) follows at once: it is in the residual flexibility.
     if (k == 4 || k == 8) return -1;
+    if (const auto known = row_of.find(unknown); known != row_of.end()) return known->second;
     const Eigen::VectorXcd row =
         own.modes.shape.transpose() * own.basis.shapes.row(unknown).transpose();
     const std::vector<double> values = parts(row, padded);
     shape.insert(shape.end(), values.begin(), values.end());
-    return static_cast<int>(count++);
+    return row_of[unknown] = static_cast<int>(count++);
   });
   packed.modal.rows = count;
   packed.modal.shape = keep(std::move(shape));

@@ -44,8 +44,9 @@ ExactRailReceptance::ExactRailReceptance(const Track& track, const Transfer& tra
     : track_(track), transfer_(transfer), beam_(bending_beam(track, theory)), endless_(endless) {
   if (track.axial_force != 0. || track.axis_z != 0.)
     throw std::invalid_argument("the exact beam carries no axial force and is on the centroid");
-  if (!track.changed_seats.empty() || track.right || has_long_pads(track))
-    throw std::invalid_argument("the exact beam stands on points, all seats and both rails alike");
+  if (!track.changed_seats.empty() || track.right || has_long_pads(track) || !track.joints.empty())
+    throw std::invalid_argument(
+        "the exact beam stands on points, all seats and both rails alike, without joints");
   for (int i = 0; i <= track.bays; ++i) x_.push_back(i * track.bay_length);
   take_places(transfer.force);
   for (const Functional& read : transfer.reads) take_places(read);
@@ -127,22 +128,20 @@ Value ExactRailReceptance::held_rail(const Functional& a, const Functional& b, c
 }
 
 void ExactRailReceptance::add_ends(const Eigen::Matrix2cd& seat, double omega, Entries& to) const {
-  const std::size_t last = x_.size() - 1;
-  if (endless_) {
-    Eigen::Matrix2cd beyond =
-        endless_stiffness(beam_dynamic_stiffness(beam_, track_.bay_length, omega), seat);
-    add(to, last, beyond);
-    beyond(0, 1) = -beyond(0, 1);  // seen along -x slopes change sign
-    beyond(1, 0) = -beyond(1, 0);
-    add(to, 0, beyond);
-    return;
-  }
-  // Held unknowns: a spring far stiffer than all else.
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
-    Eigen::Matrix2cd held = Eigen::Matrix2cd::Zero();
-    if (track_.ends[end] != RailEnd::free) held(0, 0) = 1e20;
-    if (track_.ends[end] == RailEnd::clamped) held(1, 1) = 1e20;
-    add(to, end == 0 ? 0 : last, held);
+    const RailEnd kind = endless_ ? RailEnd::non_reflecting : track_.ends[end];
+    Eigen::Matrix2cd beyond = Eigen::Matrix2cd::Zero();
+    if (kind == RailEnd::non_reflecting) {
+      beyond = endless_stiffness(beam_dynamic_stiffness(beam_, track_.bay_length, omega), seat);
+      if (end == 0) {  // seen along -x slopes change sign
+        beyond(0, 1) = -beyond(0, 1);
+        beyond(1, 0) = -beyond(1, 0);
+      }
+    } else {  // held unknowns: a spring far stiffer than all else
+      if (kind != RailEnd::free) beyond(0, 0) = 1e20;
+      if (kind == RailEnd::clamped) beyond(1, 1) = 1e20;
+    }
+    add(to, end == 0 ? 0 : x_.size() - 1, beyond);
   }
 }
 

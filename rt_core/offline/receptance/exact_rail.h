@@ -15,7 +15,8 @@ namespace railstep {
 /// still in that direction.
 class ExactRailReceptance : public Receptance {
  public:
-  /// @param endless  the track goes on for ever beyond both ends, whatever holds them
+  /// @param endless  the track goes on for ever beyond both ends, whatever holds them; it always
+  ///                 does beyond non-reflecting ones
   /// Throws std::invalid_argument on directions other than z, axial force and a reference line off
   /// the centroid; std::out_of_range on points off the track.
   ExactRailReceptance(const Track& track, const Transfer& transfer, BeamTheory theory,

@@ -21,7 +21,6 @@ class SeatRows {
         pad_(track.seat(border).pad[static_cast<std::size_t>(rail)]),
         sleeper_(part.line.sleeper_unknown_of[static_cast<std::size_t>(border)]),
         rail_(rail),
-        node_(border * 2 * track.elements_per_bay),
         spacing_(track.rail_spacing),
         share_(part.rails.size() == 2 ? std::sqrt(.5) : 1.),
         side_(rail == 0 ? 1. : -1.) {}
@@ -40,8 +39,8 @@ class SeatRows {
   Row roll(const PadPoint& at) const {
     Row row;
     for_nodes(at, [&](int node, double shape) {
-      push_node(row, node, 5, .5 * shape);
-      push_node(row, node, 7, -.5 * shape);
+      push_node(row, at.element, node, 5, .5 * shape);
+      push_node(row, at.element, node, 7, -.5 * shape);
     });
     push(row, sleeper_[kRoll], -share_ * 2. / spacing_);
     return row;
@@ -64,24 +63,25 @@ class SeatRows {
  private:
   static constexpr std::array<std::size_t, 3> kMean = {kAlongX, kAlongY, kAlongZ};
 
-  /// A pad that is a point stands on its border's node.
+  /// Nodes of the element that a point of the pad presses; a pad that is a point stands on one.
   template <typename Visit>
   void for_nodes(const PadPoint& at, const Visit& visit) const {
-    if (pad_.length == 0.) return visit(node_, 1.);
+    if (pad_.length == 0.) return visit(at.xi < 0. ? 0 : 2, 1.);
     const auto n = shape(at.xi);
-    for (int i = 0; i < 3; ++i) visit(2 * at.element + i, n[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i) visit(i, n[static_cast<std::size_t>(i)]);
   }
   /// The left rail's unknowns stand for both in a mirror: none changes sign there.
-  void push_node(Row& row, int node, int k, double coefficient) const {
-    push(row, line_.unknown(rail_, node, k), sign_of(line_, 0, k) * coefficient);
+  void push_node(Row& row, int element, int node, int k, double coefficient) const {
+    const int unknown = line_.element_unknown(rail_, element, node, k);
+    push(row, unknown, sign_of(line_, 0, k) * coefficient);
   }
   Row rail_moves(const PadPoint& at, std::size_t d, double y) const {
     const int k = static_cast<int>(d);
     Row row;
     for_nodes(at, [&](int node, double shape) {
-      push_node(row, node, k, shape);
-      push_node(row, node, 3 + k, y * shape);
-      push_node(row, node, 6 + k, pad_.height_z * shape);
+      push_node(row, at.element, node, k, shape);
+      push_node(row, at.element, node, 3 + k, y * shape);
+      push_node(row, at.element, node, 6 + k, pad_.height_z * shape);
     });
     return row;
   }
@@ -89,7 +89,7 @@ class SeatRows {
   const Line& line_;
   Support pad_;
   std::array<int, kSleeperMotions> sleeper_;
-  int rail_, node_;
+  int rail_;
   double spacing_, share_, side_;
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "offline/track/assembly.h"
+#include "offline/track/end_zone.h"
 #include "offline/track/track.h"
 
 namespace railstep {
@@ -44,14 +45,16 @@ void number(const Track& track, Assembly& part) {
   part.line.sleeper_unknown_of.assign(static_cast<std::size_t>(track.bays) + 1,
                                       {-1, -1, -1, -1, -1, -1});
   for (int node = 0; node < nodes; ++node) {
-    for (const int rail : part.rails)
+    for (const int rail : part.rails) {
       for (const int k : carried(track.unknowns))
         if (!holds(track, node, k))
           part.line.unknown_of[static_cast<std::size_t>(rail)][static_cast<std::size_t>(node)]
                               [static_cast<std::size_t>(k)] = part.count++;
+    }
     if (part.line.rigid_section)
       for (Line::RailUnknowns& table : part.line.unknown_of)
         table[static_cast<std::size_t>(node)][7] = table[static_cast<std::size_t>(node)][5];
+    for (const int rail : part.rails) number_cut(track, part, rail, node);
     if (node % per_bay == 0) number_sleeper(track, node / per_bay, part);
   }
 }
@@ -71,9 +74,10 @@ void add_elements(const Track& track, int rail, Assembly& part) {
       element_matrices(track.bar(rail).section, track.law(rail), track.element_length());
   for (int e = 0; e < track.elements(); ++e) {
     if (track.state) element.stiffness = stiffness_at(track, *track.state, rail, e);
+    const double taken = end_damping_rate(track, rail, e);
     std::array<int, 27> place;
     for (int i = 0; i < 27; ++i)
-      place[static_cast<std::size_t>(i)] = part.line.unknown(rail, 2 * e + i / 9, i % 9);
+      place[static_cast<std::size_t>(i)] = part.line.element_unknown(rail, e, i / 9, i % 9);
     for (int j = 0; j < 27; ++j)
       for (int i = 0; i < 27; ++i) {
         const int row = place[static_cast<std::size_t>(i)],
@@ -84,6 +88,9 @@ void add_elements(const Track& track, int rail, Assembly& part) {
           part.mass.emplace_back(row, column, sign * element.mass(i, j));
         if (element.stiffness(i, j) != 0.)
           part.stiffness.emplace_back(row, column, sign * element.stiffness(i, j));
+        if (taken * element.mass(i, j) == 0.) continue;
+        part.end_damping.emplace_back(row, column, sign * taken * element.mass(i, j));
+        part.damping.push_back(part.end_damping.back());
       }
   }
 }
@@ -92,9 +99,15 @@ Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails
   Assembly part{mirror, std::move(rails)};
   part.line.rigid_section = track.unknowns == Unknowns::rigid_section;
   number(track, part);
-  for (const int rail : part.rails) add_elements(track, rail, part);
+  for (const int rail : part.rails) {
+    add_elements(track, rail, part);
+    add_joints(track, part, rail);
+  }
   for (int seat = 0; seat <= track.bays; ++seat) add_seat(track, part, seat);
-  if (mirror != Mirror::none) part.line.unknown_of[1] = part.line.unknown_of[0];
+  if (mirror != Mirror::none) {
+    part.line.unknown_of[1] = part.line.unknown_of[0];
+    part.line.cuts[1] = part.line.cuts[0];
+  }
   return part;
 }
 
@@ -140,10 +153,14 @@ Eigen::SparseMatrix<double> select(const Assembly::Triplets& entries, const std:
 }
 
 template <std::size_t N>
+void renumber(std::array<int, N>& unknowns, const std::vector<int>& place) {
+  for (int& u : unknowns)
+    if (u >= 0) u = place[static_cast<std::size_t>(u)];
+}
+
+template <std::size_t N>
 void renumber(std::vector<std::array<int, N>>& table, const std::vector<int>& place) {
-  for (auto& unknowns : table)
-    for (int& u : unknowns)
-      if (u >= 0) u = place[static_cast<std::size_t>(u)];
+  for (auto& unknowns : table) renumber(unknowns, place);
 }
 
 bool carries(const Line::RailUnknowns& table) {
@@ -162,11 +179,13 @@ void split(const Assembly& part, std::array<double, 2> factor, std::vector<Line>
     Line line = part.line;
     line.mass = select(part.mass, place, n);
     line.damping = select(part.damping, place, n);
+    line.end_damping = select(part.end_damping, place, n);
     line.stiffness = select(part.stiffness, place, n);
     line.mirrored = part.mirror != Mirror::none;
     renumber(line.sleeper_unknown_of, place);
     for (const std::size_t rail : {0u, 1u}) {
       renumber(line.unknown_of[rail], place);
+      for (auto& [node, ahead] : line.cuts[rail]) renumber(ahead, place);
       line.rail_factor[rail] = carries(line.unknown_of[rail]) ? factor[rail] : 0.;
     }
     lines.push_back(std::move(line));
@@ -206,6 +225,9 @@ void check(const Track& track) {
   if (track.rails != 1 && track.rails != 2) refuse("a track has one rail or two");
   if (!(track.bay_length > 0.) || !(track.rail_spacing > 0.))
     refuse("bay length and rail spacing are above zero");
+  check_joints(track);
+  if (end_zones(track) * track.end_zone_bays > track.bays)
+    refuse("the zones of non-reflecting ends do not fit on the track");
   for (const auto& [border, seat] : track.changed_seats)
     if (border < 0 || border > track.bays) refuse("a changed seat stands at no bay border");
   for (int border = 0; border <= track.bays; ++border)
@@ -248,7 +270,8 @@ bool has_sleepers(const Track& track) {
 }
 
 bool is_symmetric(const Track& track) {
-  return !track.right &&
+  const auto alike = [](const RailJoint& joint) { return joint.rails[0] == joint.rails[1]; };
+  return !track.right && std::all_of(track.joints.begin(), track.joints.end(), alike) &&
          std::all_of(track.changed_seats.begin(), track.changed_seats.end(),
                      [](const auto& changed) { return changed.second.symmetric(); });
 }

@@ -1,5 +1,6 @@
 #pragma once
-// A part of a track on its way into lines. Only assemble.cpp and add_seat.cpp include this.
+// A part of a track on its way into lines. Only assemble.cpp, joint.cpp and add_seat.cpp include
+// this.
 #include <array>
 #include <utility>
 #include <vector>
@@ -27,6 +28,7 @@ struct Assembly {
   Line line = {};
   int count = 0;
   Triplets mass = {}, damping = {}, stiffness = {};
+  Triplets end_damping = {};  // these are in damping too
 
   /// Energy factor (row u)^2 / 2.
   static void add(Triplets& to, const Row& row, double factor) {
@@ -41,6 +43,12 @@ struct Assembly {
       for (const auto& [j, b] : row) to.emplace_back(i, j, 0.);
   }
 };
+
+/// Numbers the rail's end ahead of a joint at the node, if there is one.
+void number_cut(const Track& track, Assembly& part, int rail, int node);
+
+/// The springs of a rail's joints.
+void add_joints(const Track& track, Assembly& part, int rail);
 
 /// The springs of the part's rails on a seat, and the sleeper's own mass and ballast.
 void add_seat(const Track& track, Assembly& part, int border);

@@ -28,7 +28,7 @@ double bending_moment(const Track& track, const std::vector<Line>& lines,
   double turn = 0.;  // d(b_x)/d(xi)
   for (std::size_t l = 0; l < lines.size(); ++l)
     for (int i = 0; i < 3; ++i) {
-      const int unknown = lines[l].unknown(rail, 2 * element + i, kTurn);
+      const int unknown = lines[l].element_unknown(rail, element, i, kTurn);
       if (unknown >= 0)
         turn += lines[l].rail_factor[static_cast<std::size_t>(rail)] *
                 slope[static_cast<std::size_t>(i)] * displacement[l][unknown];

@@ -13,7 +13,7 @@ Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
   Eigen::SparseVector<double> row(line.unknowns());
   for (int i = 0; i < 27; ++i) {
     const int k = i % 9;
-    const int unknown = line.unknown(point.rail, 2 * element + i / 9, k);
+    const int unknown = line.element_unknown(point.rail, element, i / 9, k);
     if (unknown < 0 || local[i] == 0. || factor == 0.) continue;
     row.coeffRef(unknown) += factor * (sign_of(line, point.rail, k) * local[i]);
   }
@@ -71,7 +71,7 @@ void add_rail_weight(const Track& track, const Line& line, int rail, double fact
       element_matrices(bar.section, track.law(rail), track.element_length());
   for (int e = 0; e < track.elements(); ++e)
     for (int i = 0; i < 27; ++i) {
-      const int unknown = line.unknown(rail, 2 * e + i / 9, i % 9);
+      const int unknown = line.element_unknown(rail, e, i / 9, i % 9);
       if (unknown >= 0) force[unknown] -= factor * element.line_load[i];
     }
 }

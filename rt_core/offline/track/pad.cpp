@@ -6,11 +6,21 @@
 
 namespace railstep {
 
+namespace {
+
+constexpr double kBehind = 1e-9;  // of an element: where the rail behind a joint ends
+
+}  // namespace
+
 std::vector<PadPoint> pad_points(const Track& track, int border, double length) {
   const double seat = border * track.bay_length, step = track.element_length();
   const int first_after = border * track.elements_per_bay;  // element right of the seat
   if (length == 0.) {
     const bool last = first_after == track.elements();
+    const int node = 2 * first_after;
+    if (joint_at(track, 0, node) != nullptr || joint_at(track, 1, node) != nullptr)
+      return {{first_after - 1, 1., seat - kBehind * step, 0., .5},
+              {first_after, -1., seat, 0., .5}};
     return {{last ? first_after - 1 : first_after, last ? 1. : -1., seat, 0., 1.}};
   }
   const double from = std::max(-.5 * length, -seat);

@@ -16,7 +16,8 @@ struct PadPoint {
 
 /// Points by which int k(x) N' N dx of an evenly spread pad is exact: three Gauss points in every
 /// element under it, k = 1/length. What is off an end of the rail is moved under it. A pad of
-/// length 0 is one point at the seat.
+/// length 0 is one point at the seat, or half of it stands under either end of a rail that is cut
+/// there.
 std::vector<PadPoint> pad_points(const Track& track, int border, double length);
 
 /// Whether any pad is longer than a point.

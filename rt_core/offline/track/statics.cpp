@@ -20,6 +20,11 @@ std::string place_of(const Line& line, int unknown) {
       for (std::size_t k = 0; k < 9; ++k)
         if (table[node][k] == unknown)
           return std::string(names[k]) + " of rail node " + std::to_string(node);
+  for (const auto& cuts : line.cuts)
+    for (const auto& [node, ahead] : cuts)
+      for (std::size_t k = 0; k < 9; ++k)
+        if (ahead[k] == unknown)
+          return std::string(names[k]) + " ahead of the joint at rail node " + std::to_string(node);
   return "a sleeper's motion";
 }
 

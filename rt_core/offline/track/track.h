@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "offline/element/matrices.h"
+#include "offline/track/joint.h"
 #include "offline/track/seat.h"
 
 namespace railstep {
@@ -17,11 +18,15 @@ enum class Unknowns { full, rigid_section, vertical };
 
 /// What holds a rail's end node. Pinned: its position (all three), so that the rail carries axial
 /// force, and its roll (a_z and b_y); the slopes a_x and b_x of bending stay free. Clamped: all
-/// nine.
-enum class RailEnd { free, pinned, clamped };
+/// nine. Non-reflecting: nothing, but the rail's last bays are damped (end_zone.h) so that waves
+/// which run towards the end do not come back.
+enum class RailEnd { free, pinned, clamped, non_reflecting };
 
 /// The ends of every rail, at x = 0 and at x = length.
 using RailEnds = std::array<RailEnd, 2>;
+
+/// Bays of the zone before a non-reflecting end, where nothing else is said.
+inline constexpr int kEndZoneBays = 16;
 
 /// Where a track stands under its own weight. Of one that is symmetric both sides are the same, and
 /// nothing moves sideways.
@@ -64,11 +69,13 @@ struct Track {
   int elements_per_bay = 2;
   double rail_spacing = 1.5;  // m
   RailEnds ends = {RailEnd::free, RailEnd::free};
+  int end_zone_bays = kEndZoneBays;  // damped bays before each non-reflecting end
   std::optional<RailBar> right;  // the right rail, where it differs from section, material, force
   Support support;               // of every seat but those changed
   std::optional<Sleeper> sleeper;
   std::map<int, Seat> changed_seats;  // by bay border; whole, in place of support and sleeper
   std::vector<Stop> stops;
+  std::vector<RailJoint> joints;  // where rails are cut
   /// Rails that share sleepers and are alike are stepped in mirror coordinates; without them both
   /// make one line, as those that differ do.
   bool mirror_coordinates = true;
@@ -96,7 +103,7 @@ struct Track {
 /// Whether any seat has a sleeper.
 bool has_sleepers(const Track& track);
 
-/// Whether rails and all seats are alike on the left and on the right.
+/// Whether rails, their joints and all seats are alike on the left and on the right.
 bool is_symmetric(const Track& track);
 
 /// Whether the ends of a rail hold unknown k = 0..8 of its node.
@@ -135,7 +142,11 @@ struct Line {
   using RailUnknowns = std::vector<std::array<int, 9>>;
 
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
+  Eigen::SparseMatrix<double> end_damping;  // what of damping is spread over zones at the ends
   std::array<RailUnknowns, 2> unknown_of;  // of left and right rail; the same in mirror coordinates
+  /// Of each rail, by node where it is cut: the unknowns of the end ahead, which begins the next
+  /// element; those of the end behind are the node's own.
+  std::array<std::map<int, std::array<int, 9>>, 2> cuts;
   /// [seats] of each SleeperMotion, scaled: the ends' mean displacement, or half their difference,
   /// times sqrt 2 (of one rail, its end's displacement); -1 where held or on another line.
   std::vector<std::array<int, kSleeperMotions>> sleeper_unknown_of;
@@ -149,6 +160,16 @@ struct Line {
   int unknown(int rail, int node, int k) const {
     return unknown_of[static_cast<std::size_t>(rail)][static_cast<std::size_t>(node)]
                      [static_cast<std::size_t>(k)];
+  }
+  /// The same of the end ahead where the rail is cut.
+  int unknown_ahead(int rail, int node, int k) const {
+    const auto& cut = cuts[static_cast<std::size_t>(rail)];
+    const auto at = cut.empty() ? cut.end() : cut.find(node);
+    return at == cut.end() ? unknown(rail, node, k) : at->second[static_cast<std::size_t>(k)];
+  }
+  /// The same of node i = 0..2 of an element.
+  int element_unknown(int rail, int element, int i, int k) const {
+    return i == 0 ? unknown_ahead(rail, 2 * element, k) : unknown(rail, 2 * element + i, k);
   }
   /// The rail whose unknowns all others' are, or the first of two.
   int first_rail() const { return rail_factor[0] != 0. ? 0 : 1; }

@@ -32,7 +32,7 @@ Frame frame(const RailShape& rail, RailPlace at) noexcept {
   const double N[3] = {-0.5 * xi * (1.0 - xi), (1.0 - xi) * (1.0 + xi), 0.5 * xi * (1.0 + xi)};
   const double N1[3] = {xi - 0.5, -2.0 * xi, xi + 0.5};
   const double N2[3] = {1.0, -2.0, 1.0};
-  const double* node = rail.nodes + 18 * static_cast<std::int64_t>(at.element);
+  const double* node = rail.nodes + static_cast<std::int64_t>(rail.stride) * at.element;
   return {blend(node, N),      blend(node + 3, N),  blend(node + 6, N), blend(node, N1),
           blend(node + 3, N1), blend(node + 6, N1), blend(node, N2),    blend(node + 6, N2)};
 }

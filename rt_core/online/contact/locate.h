@@ -8,7 +8,9 @@ namespace railstep {
 /// r(xi, y, z) = sum N_i(xi) (r_i + y a_i + z b_i), N = -xi(1-xi)/2, 1-xi^2, xi(1+xi)/2.
 struct RailShape {
   int elements;         // >= 1
-  const double* nodes;  // [2 elements + 1][9]: r (m), a, b (1); element e has 2e, 2e+1, 2e+2
+  const double* nodes;  // r (m), a, b (1) of each node: [2 elements + 1][9], element e has 2e to
+                        // 2e + 2; or [elements][3][9], where they need not join
+  int stride = 18;      // doubles from an element to the next: 18, or 27
 };
 
 /// A place on the rail's axis; xi in [-1, 1].

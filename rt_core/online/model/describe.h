@@ -71,7 +71,7 @@ void describe(Archive& a, Model& m, std::int32_t at) {
     return;
   }
   a.count(line.size, kMostUnknowns);
-  const std::int64_t table = 9 * (std::int64_t{2} * m.elements + 1);
+  const std::int64_t table = std::int64_t{27} * m.elements;
   std::int32_t second = line.unknown_of[0] != line.unknown_of[1] ? 1 : 0;
   a.integers(line.unknown_of[0], table);
   a.count(second, 1);

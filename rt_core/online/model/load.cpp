@@ -73,7 +73,7 @@ bool line_holds(const Model& m, const LineModel& line) noexcept {
   if (line.size % kLanes != 0 || line.first + line.size > m.bodies) return false;
   const std::int64_t most = (m.condensed != 0 ? line.modal.rows : line.size) - 1;
   for (const std::int32_t* table : line.unknown_of)
-    if (!within(table, 9 * (std::int64_t{2} * m.elements + 1), -1, most)) return false;
+    if (!within(table, std::int64_t{27} * m.elements, -1, most)) return false;
   if (m.condensed != 0)
     return line.size == 0 ||
            (line.modal.rate.re && line.modal.rate.im && line.modal.keep.re && line.modal.keep.im &&

@@ -60,8 +60,9 @@ struct LineModel {
   Band step;                 // factor of K + kv C + kg M
   Diagonals mass, damping;   // padded to whole panels
   Modal modal;
-  /// Of left and right rail, [nodes][9]: unknown, or row of modal.shape; -1: not carried. One table
-  /// for both where they are mirror images and where the line has one rail.
+  /// Of left and right rail, [elements][3][9]: unknown, or row of modal.shape; -1: not carried. One
+  /// table for both where they are mirror images and where the line has one rail. Elements share
+  /// their border's unknowns where the rail is not cut.
   const std::int32_t* unknown_of[2];
   double rail_factor[2];       // weight of the line in left and right rail; 0: it lacks that rail
   std::int32_t mirrored;       // right rail: y components change sign

@@ -16,13 +16,13 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
   const std::int32_t* const table = line.unknown_of[row.rail];
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 9; ++k) {
-      const std::int32_t unknown = table[9 * (2 * row.element + i) + k];
+      const std::int32_t unknown = table[27 * row.element + 9 * i + k];
       if (unknown < 0 || row.coefficient[i][k] == 0.) continue;
       visit(unknown, weight_of(line, row.rail, k) * row.coefficient[i][k]);
     }
   for (std::int32_t s = 0; s < row.seats; ++s)
     for (int k = 5; k <= 7; k += 2) {
-      const std::int32_t unknown = table[9 * row.seat[s] + k];
+      const std::int32_t unknown = table[table_place(row.seat[s], k)];
       if (unknown >= 0)
         visit(unknown, (k == 5 ? .5 : -.5) * weight_of(line, row.rail, k) * row.lever[s]);
     }
@@ -37,9 +37,9 @@ double unknown_value(const LineModel& line, std::int32_t unknown,
                    {at.modes.re + line.first, at.modes.im + line.first}, line.modal.count);
 }
 
-double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
+double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t element, int i, int k,
                    const Configuration& at) noexcept {
-  const std::int32_t unknown = line.unknown_of[rail][9 * node + k];
+  const std::int32_t unknown = line.unknown_of[rail][27 * element + 9 * i + k];
   return unknown < 0 ? 0. : unknown_value(line, unknown, at);
 }
 
@@ -50,7 +50,7 @@ double axis_height(const Model& model, std::int32_t rail, std::int32_t element, 
   for (std::int32_t l = 0; l < model.lines; ++l)
     for (int i = 0; i < 3; ++i)
       sum += shape[i] * weight_of(model.line[l], rail, 2) *
-             nodal_value(model.line[l], rail, 2 * element + i, 2, at);
+             nodal_value(model.line[l], rail, element, i, 2, at);
   return sum;
 }
 

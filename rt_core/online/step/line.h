@@ -5,7 +5,7 @@ namespace railstep {
 
 /// Displacement of a material point of one rail in one direction, over the nodes of its element and
 /// the turns (a_z - b_y)/2 of its section over the seats around it:
-///   sum coefficient[i][k] q_k(node 2 element + i) + sum lever[s] turn(node seat[s]),
+///   sum coefficient[i][k] q_k(node i) + sum lever[s] turn(node seat[s]),
 /// q = [r, a, b] in the rail's own axes.
 struct RailRow {
   std::int32_t rail, element;
@@ -14,6 +14,13 @@ struct RailRow {
   std::int32_t seat[kTurnSeats] = {};
   double lever[kTurnSeats] = {};  // m
 };
+
+/// Place in a rail's table of unknown k of a node, counted from 0 along the rail; of one that two
+/// elements have, as the end of the first.
+inline std::int32_t table_place(std::int32_t node, int k) noexcept {
+  const std::int32_t element = node > 0 ? (node - 1) / 2 : 0;
+  return 27 * element + 9 * (node - 2 * element) + k;
+}
 
 /// Displacements at which to look: u [unknowns] of banded lines and bodies, modes of condensed
 /// lines.
@@ -25,8 +32,9 @@ struct Configuration {
 /// Displacement of an unknown, as the line's tables number it.
 double unknown_value(const LineModel& line, std::int32_t unknown, const Configuration& at) noexcept;
 
-/// What unknown k of a rail's node is on a line, before its weight in the rail; 0 if not carried.
-double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t node, int k,
+/// What unknown k of node i = 0..2 of a rail's element is on a line, before its weight in the rail;
+/// 0 if not carried.
+double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t element, int i, int k,
                    const Configuration& at) noexcept;
 
 /// The weight of a line's unknown k in a rail: y components of the mirrored right rail (r_y, a_x,

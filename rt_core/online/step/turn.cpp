@@ -6,15 +6,16 @@ namespace railstep {
 
 namespace {
 
-/// Turn of a node's section, rad.
+/// Turn of a node's section, rad; where the rail is cut, of the end behind.
 double node_turn(const Model& model, std::int32_t rail, std::int32_t node,
                  const Configuration& at) noexcept {
+  const std::int32_t element = node > 0 ? (node - 1) / 2 : 0, i = node - 2 * element;
   double turn = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     if (line.rail_factor[rail] == 0.) continue;
-    turn += .5 * weight_of(line, rail, 5) * nodal_value(line, rail, node, 5, at);
-    turn -= .5 * weight_of(line, rail, 7) * nodal_value(line, rail, node, 7, at);
+    turn += .5 * weight_of(line, rail, 5) * nodal_value(line, rail, element, i, 5, at);
+    turn -= .5 * weight_of(line, rail, 7) * nodal_value(line, rail, element, i, 7, at);
   }
   return turn;
 }

@@ -9,18 +9,18 @@ namespace railstep {
 namespace {
 
 constexpr int kWindow = 2;  // elements that the search sees: the wheel's and the nearest other
-constexpr int kWindowNodes = 2 * kWindow + 1;
+constexpr int kWindowNodes = 3 * kWindow;  // elements on both sides of a joint share none
 
 struct Window {
   std::int32_t first;  // element
   std::int32_t elements;
-  double nodes[9 * kWindowNodes];
+  double nodes[9 * kWindowNodes];  // [elements][3][9]
 };
 
 /// Adds a line's displacements of a window's nodes, of both rails together: what one with one table
 /// moves of one it moves of the other, up to sign and weight.
 void gather_line(const LineModel& line, const Configuration& at, Window* sides) noexcept {
-  const std::int32_t from = 18 * sides[0].first, nodes = 2 * sides[0].elements + 1;
+  const std::int32_t from = 27 * sides[0].first, nodes = 3 * sides[0].elements;
   const std::int32_t* left = line.unknown_of[0] + from;
   const std::int32_t* right = line.unknown_of[1] + from;
   double of_left[9], of_right[9];
@@ -28,13 +28,15 @@ void gather_line(const LineModel& line, const Configuration& at, Window* sides) 
     of_left[k] = weight_of(line, 0, k);
     of_right[k] = weight_of(line, 1, k);
   }
+  double moved_left[9] = {}, moved_right[9] = {};  // of the node before: borders are shared
   for (std::int32_t i = 0; i < nodes; ++i)
     for (int k = 0; k < 9; ++k) {
-      const std::int32_t a = left[9 * i + k], b = right[9 * i + k];
-      const double moved = a < 0 ? 0. : unknown_value(line, a, at);
-      if (a >= 0) sides[0].nodes[9 * i + k] += of_left[k] * moved;
-      if (b >= 0)
-        sides[1].nodes[9 * i + k] += of_right[k] * (a == b ? moved : unknown_value(line, b, at));
+      const std::int32_t j = 9 * i + k, a = left[j], b = right[j];
+      const bool same = i > 0 && a == left[j - 9] && b == right[j - 9];
+      if (!same) moved_left[k] = a < 0 ? 0. : unknown_value(line, a, at);
+      if (!same) moved_right[k] = b < 0 ? 0. : a == b ? moved_left[k] : unknown_value(line, b, at);
+      if (a >= 0) sides[0].nodes[j] += of_left[k] * moved_left[k];
+      if (b >= 0) sides[1].nodes[j] += of_right[k] * moved_right[k];
     }
 }
 
@@ -52,9 +54,10 @@ void gather(const Model& model, double x, const Configuration& at, Window* sides
 
 /// From displacements to places: rest added.
 void add_rest(const Model& model, int rail, Window& window) noexcept {
-  for (std::int32_t i = 0; i <= 2 * window.elements; ++i) {
+  for (std::int32_t i = 0; i < 3 * window.elements; ++i) {
     double* q = window.nodes + 9 * i;
-    q[0] += .5 * model.element_length * (2 * window.first + i);
+    const std::int32_t node = 2 * (window.first + i / 3) + i % 3;
+    q[0] += .5 * model.element_length * node;
     q[1] += model.rail_y[rail];
     q[2] += model.rail_z[rail];
     q[4] += 1.;
@@ -87,7 +90,7 @@ double dot3(const double* a, const double* b) noexcept {
 /// Interpolates [r, a, b] at a place of the window.
 void interpolate_nodes(const Window& window, RailPlace place, const double* shape,
                        double* q) noexcept {
-  const double* n = window.nodes + 18 * place.element;
+  const double* n = window.nodes + 27 * place.element;
   for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
 }
 
@@ -117,7 +120,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   RailPlace start{static_cast<int>(guess), 0.};
   start.xi = 2. * (guess - start.element) - 1.;
   const WheelOnRail found =
-      locate_wheel({window.elements, window.nodes}, centre, axle, z_crown, start);
+      locate_wheel({window.elements, window.nodes, 27}, centre, axle, z_crown, start);
   at.cap_reached = found.status == LocateStatus::cap_reached;
   at.on_rail = found.status == LocateStatus::found || at.cap_reached;
   if (std::fabs(std::fabs(found.along) - std::fabs(model.rail_y[side])) > w.tread_half_width)

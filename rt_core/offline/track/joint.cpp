@@ -1,0 +1,105 @@
+#include "offline/track/joint.h"
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "offline/track/assembly.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr double kOnBorder = 1e-9;  // of an element, what decimal lengths may miss it by
+
+constexpr int kVertical = 6, kLateral = 3;  // b_x, a_x: slopes of bending
+
+/// What the rail's end ahead does over the one behind, in unknown k of the node.
+Row jump(const Line& line, int rail, int node, int k, double factor) {
+  Row row;
+  const int behind = line.unknown(rail, node, k), ahead = line.unknown_ahead(rail, node, k);
+  if (behind == ahead) return row;  // shared
+  const double signed_factor = sign_of(line, 0, k) * factor;
+  push(row, ahead, signed_factor);
+  push(row, behind, -signed_factor);
+  return row;
+}
+
+bool is_shared(const RailJoint& joint, int k) {
+  if (k < 3) return std::isinf(joint.stiffness[static_cast<std::size_t>(k)]);
+  if (k == kVertical) return std::isinf(joint.turn_stiffness[1]);
+  return k == kLateral && std::isinf(joint.turn_stiffness[2]);
+}
+
+void add_spring(Assembly& part, const Row& row, double stiffness, double damping) {
+  if (row.empty()) return;
+  Assembly::add(part.stiffness, row, stiffness);
+  Assembly::add(part.damping, row, damping);
+}
+
+}  // namespace
+
+int joint_node(const Track& track, const RailJoint& joint) {
+  const double place = joint.x / track.element_length(), border = std::round(place);
+  if (!(std::fabs(place - border) <= kOnBorder))
+    throw std::invalid_argument("a rail is cut at a border of its elements");
+  if (border < 1. || border > track.elements() - 1.)
+    throw std::invalid_argument("a rail is cut between its ends");
+  return 2 * static_cast<int>(border);
+}
+
+const RailJoint* joint_at(const Track& track, int rail, int node) {
+  for (const RailJoint& joint : track.joints)
+    if (joint.rails[static_cast<std::size_t>(rail)] && joint_node(track, joint) == node)
+      return &joint;
+  return nullptr;
+}
+
+void check_joints(const Track& track) {
+  std::set<std::pair<int, int>> cut;
+  for (const RailJoint& joint : track.joints) {
+    for (int rail = 0; rail < track.rails; ++rail)
+      if (joint.rails[static_cast<std::size_t>(rail)] &&
+          !cut.insert({rail, joint_node(track, joint)}).second)
+        throw std::invalid_argument("a rail has two joints at one place");
+    for (const auto* values :
+         {&joint.stiffness, &joint.damping, &joint.turn_stiffness, &joint.turn_damping})
+      for (const double value : *values)
+        if (!(value >= 0.))
+          throw std::invalid_argument("a joint's stiffness and damping are at least 0");
+    if (std::isinf(joint.turn_stiffness[0]))
+      throw std::invalid_argument("a joint's stiffness against twist is finite");
+  }
+  if (track.state && !track.joints.empty())
+    throw std::invalid_argument("a rail with joints is linearised at rest");
+}
+
+void number_cut(const Track& track, Assembly& part, int rail, int node) {
+  const RailJoint* joint = joint_at(track, rail, node);
+  if (joint == nullptr) return;
+  auto& ahead = part.line.cuts[static_cast<std::size_t>(rail)][node];
+  for (int k = 0; k < 9; ++k) {
+    const int behind = part.line.unknown(rail, node, k);
+    if (part.line.rigid_section && k == 7) continue;  // one unknown with 5
+    ahead[static_cast<std::size_t>(k)] = behind < 0 || is_shared(*joint, k) ? behind : part.count++;
+  }
+  if (part.line.rigid_section) ahead[7] = ahead[5];
+}
+
+void add_joints(const Track& track, Assembly& part, int rail) {
+  for (const RailJoint& joint : track.joints) {
+    if (!joint.rails[static_cast<std::size_t>(rail)]) continue;
+    const int node = joint_node(track, joint);
+    const auto row = [&](int k, double factor) { return jump(part.line, rail, node, k, factor); };
+    for (std::size_t d = 0; d < 3; ++d)
+      add_spring(part, row(static_cast<int>(d), 1.), joint.stiffness[d], joint.damping[d]);
+    Row twist = row(5, .5);  // (a_z - b_y)/2
+    for (const auto& term : row(7, -.5)) twist.push_back(term);
+    add_spring(part, twist, joint.turn_stiffness[0], joint.turn_damping[0]);
+    add_spring(part, row(kVertical, 1.), joint.turn_stiffness[1], joint.turn_damping[1]);
+    add_spring(part, row(kLateral, 1.), joint.turn_stiffness[2], joint.turn_damping[2]);
+  }
+}
+
+}  // namespace railstep

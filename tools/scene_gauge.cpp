@@ -1,0 +1,65 @@
+#include <fmt/core.h>
+
+#include "offline/section/outline.h"
+#include "offline/section/rectangles.h"
+#include "profile.h"
+#include "scene_read.h"
+#include "section_file.h"
+
+namespace railstep {
+namespace {
+
+constexpr double kBelowTop = 0.014;  // m, where the gauge is measured
+
+std::optional<double> width_of(const Outline& outline) {
+  return length_inside(polygon(outline, kChordTolerance), 1, outline.height - kBelowTop,
+                       -outline.height, outline.height);
+}
+
+std::optional<double> width_of(const std::array<double, 3>& widths,
+                               const std::array<double, 3>& heights) {
+  double below = kBelowTop;
+  for (int i = 2; i >= 0; --i) {
+    const auto part = static_cast<std::size_t>(i);
+    if (below < heights[part]) return widths[part];
+    below -= heights[part];
+  }
+  return std::nullopt;
+}
+
+/// Of the head where the gauge is measured, m; none: the scene gives constants alone.
+struct HeadWidth {
+  std::optional<double> operator()(const ProfileFile& file) const {
+    return width_of(read_profile(file.path).outline);
+  }
+  std::optional<double> operator()(const SectionFile& file) const {
+    const std::optional<Rectangles<double>> shape = read_dimensions(file.path);
+    return shape ? width_of(shape->width, shape->height) : std::nullopt;
+  }
+  std::optional<double> operator()(const RectangleSizes& r) const {
+    return width_of({r.foot_width, r.web_width, r.head_width},
+                    {r.foot_height, r.web_height, r.head_height});
+  }
+  std::optional<double> operator()(const RectangleSize& r) const {
+    return width_of({r.width, r.width, r.width}, {0.0, 0.0, r.height});
+  }
+  std::optional<double> operator()(const Section&) const { return std::nullopt; }
+};
+
+double head_width(const Table& track, const BarScene& bar) {
+  const std::optional<double> width = std::visit(HeadWidth{}, bar.shape);
+  if (!width)
+    track.refuse("gauge_m",
+                 "gauge_m is measured between the heads, 14 mm below their tops, of which the "
+                 "section says nothing; accepted is rail_spacing_m, or a rail with a shape");
+  return *width;
+}
+
+}  // namespace
+
+double spacing_of_gauge(const Table& track, const Scene& scene, double gauge) {
+  const RailScene& right = scene.right_rail ? *scene.right_rail : scene.rail;
+  return gauge + 0.5 * (head_width(track, scene.rail) + head_width(track, right));
+}
+
+}  // namespace railstep
