@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "offline/track/statics.h"
+#include "online/model/course.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/step.h"
@@ -87,7 +88,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const LoadModel& load = model.load[i];
     const PlacedLoad at = place(model, load, 0);
-    const double x = at.x + load.speed * time;
+    const double x = at.place + load.speed * time;
     if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
     forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
     ports.push_back(rail_force(model, load.kind, x, at.force));
@@ -110,7 +111,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
       height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
                      residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
                                            static_cast<int>(port)) +
-                     irregularity(model, w, static_cast<int>(rail), up, x, rolled).depth;
+                     irregularity(model, w, static_cast<int>(rail), up, x + passed(model, 0), rolled).depth;
     }
     const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
                             std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
@@ -154,7 +155,7 @@ Window window(const Model& model, double length) {
     if (is_on(0.) && !is_on(w.to)) w.to = 0.;
   };
   for (std::int32_t i = 0; i < model.loads; ++i)
-    narrow(place(model, model.load[i], 0).x, model.load[i].speed);
+    narrow(place(model, model.load[i], 0).place, model.load[i].speed);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     narrow(model.wheelset[b].start, model.wheelset[b].speed);
   return w;

@@ -4,6 +4,7 @@
 
 #include "online/math/sha256.h"
 #include "online/model/describe.h"
+#include "online/model/course.h"
 
 namespace railstep {
 
@@ -69,8 +70,20 @@ bool within(const std::int32_t* values, std::int64_t n, std::int64_t least,
   return true;
 }
 
+bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
+  if (e.bays == 0) return true;
+  constexpr std::int64_t kMostBaysAPeriod = std::int64_t{1} << 40;
+  return e.bay_elements > 0 && std::int64_t{e.bays} * e.bay_elements == elements &&
+         e.bay_length > 0. && e.origin >= 0. && e.course.period > 0 && e.course.bays >= 0 &&
+         e.course.bays < kMostBaysAPeriod && e.course.advance >= 0 && e.course.advance < kBay;
+}
+
 bool line_holds(const Model& m, const LineModel& line) noexcept {
   if (line.size % kLanes != 0 || line.first + line.size > m.bodies) return false;
+  if (m.endless.bays > 0 && line.size > 0 &&
+      !(within(line.shift.from, line.size, 0, line.size - 1) && line.shift.own &&
+        line.shift.other && line.shift.fill))
+    return false;
   const std::int64_t most = (m.condensed != 0 ? line.modal.rows : line.size) - 1;
   for (const std::int32_t* table : line.unknown_of)
     if (!within(table, 9 * (std::int64_t{2} * m.elements + 1), -1, most)) return false;
@@ -119,13 +132,14 @@ bool probes_hold(const Model& m) noexcept {
   for (std::int32_t i = 0; i < p.count; ++i)
     if (p.start[i] > p.start[i + 1]) return false;
   return within(p.index, p.entries, 0, std::int64_t{2} * m.unknowns - 1) &&
-         within(p.table, p.count, -1, p.tables - 1) && (p.count == 0 || p.rest) &&
+         within(p.table, p.count, -1, p.tables - 1) && (p.count == 0 || (p.rest && p.along)) &&
          (p.entries == 0 || p.value);
 }
 
 /// What a step takes for granted beyond the counts.
 bool holds(const Model& m) noexcept {
   if (m.lines < 1 || m.elements < 1 || m.steps_per_frame < 1 || m.start == nullptr) return false;
+  if (!endless_holds(m.endless, m.elements)) return false;
   if (!(m.element_length > 0.) || m.bodies % kLanes != 0 || m.steps < 0) return false;
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_holds(m, m.line[i])) return false;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "online/contact/ports.h"
+#include "online/model/course.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/table.h"
@@ -33,8 +34,11 @@ struct Coupling {
   double penetration[kMaxWheels];
 };
 
-double target(const WheelsetModel& w, int guided, double time) noexcept {
-  return guided == 0 ? w.speed * time : 0.;
+/// Of a guided coordinate at a step's end; x counts from the start, or from the last bay border.
+double target(const Model& model, const WheelsetModel& w, int guided, std::int64_t step) noexcept {
+  if (guided != 0) return 0.;
+  return model.endless.bays == 0 ? w.speed * (static_cast<double>(step) * model.scheme.dt)
+                                 : within_bay(model, step);
 }
 
 /// Forces other than contact and guide: weight, tables and the gyroscopic terms of an axisymmetric
@@ -53,8 +57,9 @@ void applied_force(const WheelsetModel& w, double time, const double* p, const d
 
 /// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
 /// guide does not give way at all: g = [x'' - 2 alpha (v - x') - beta^2 (u - x)] at the step's end.
-void free_bodies(const Model& model, double time, const Workspace& w, Coupling& c) noexcept {
+void free_bodies(const Model& model, std::int64_t step, const Workspace& w, Coupling& c) noexcept {
   const double kg = model.scheme.kg, kv = model.scheme.kv;
+  const double time = static_cast<double>(step) * model.scheme.dt;
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     const double* p = w.u_star + set.first;
@@ -66,7 +71,7 @@ void free_bodies(const Model& model, double time, const Workspace& w, Coupling& 
       c.free[b][k] = p[k] + c.compliance[b][k] * force[k];
     }
     for (const int k : kGuided) {
-      const double goal = target(set, k, time), rate = k == 0 ? set.speed : 0.;
+      const double goal = target(model, set, k, step), rate = k == 0 ? set.speed : 0.;
       if (set.guide == Guide::augmented_lagrangian) {
         // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
         const double penalty = kPenalty * kg * set.mass[k];
@@ -83,20 +88,22 @@ void free_bodies(const Model& model, double time, const Workspace& w, Coupling& 
   }
 }
 
-Configuration located_on(const State& s, const Workspace& w) noexcept {
-  return {w.scaled, {s.u, s.v}};
+Configuration located_on(const Model& model, std::int64_t step, const State& s,
+                         const Workspace& w) noexcept {
+  return {w.scaled, {s.u, s.v}, passed(model, step)};
 }
 
 /// Contacts where the forces of the step act: on u + dt v of bodies and banded lines at its end; in
 /// the middle of it where forces are held, with condensed lines as they stand (their fastest rates
 /// are far above 1/dt).
-void locate_contacts(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
+void locate_contacts(const Model& model, std::int64_t step, const State& s, Workspace& w,
+                     Coupling& c) noexcept {
   const double ahead = (model.condensed != 0 ? .5 : 1.) * model.scheme.dt;
 #pragma omp simd
   for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    find_contacts(model, model.wheelset[b], located_on(s, w), c.contact + 2 * b);
+    find_contacts(model, model.wheelset[b], located_on(model, step, s, w), c.contact + 2 * b);
   for (int i = 0; i < c.wheels; ++i) {
     c.law[i] = {model.wheelset[i / 2].hertz[i % 2], 0., 0.};
     c.place[i] = {model.wheelset[i / 2].kind[i % 2], c.contact[i].row.element, c.contact[i].xi, 0.};
@@ -192,7 +199,7 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
 /// Penetration that the track alone would leave: the located one, moved from where it was located.
 void track_penetration(const Model& model, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
-  const Configuration seen = located_on(s, w);
+  const Configuration seen = located_on(model, s.steps + 1, s, w);
   for (int i = 0; i < c.wheels; ++i) {
     const WheelContact& at = c.contact[i];
     c.track_free[i] = -1.;  // off the rail: far away
@@ -245,7 +252,7 @@ PortResult contacts(const Model& model, const State& s, Coupling& c) noexcept {
 }
 
 /// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
-void solve_coupled(const Model& model, double time, State& s, Workspace& w, Coupling& c,
+void solve_coupled(const Model& model, std::int64_t step, State& s, Workspace& w, Coupling& c,
                    CoupleResult& result) noexcept {
   std::int32_t cap = 1;
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
@@ -264,7 +271,7 @@ void solve_coupled(const Model& model, double time, State& s, Workspace& w, Coup
       move_body(set, b, c, s.multiplier + 2 * b, p);
       for (int i = 0; i < 2; ++i) {
         const int k = kGuided[i];
-        const double miss = p[k] - target(set, k, time);
+        const double miss = p[k] - target(model, set, k, step);
         if (std::fabs(miss) > result.violation) result.violation = std::fabs(miss);
         if (set.guide != Guide::augmented_lagrangian) continue;
         s.multiplier[2 * b + i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
@@ -337,10 +344,9 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   CoupleResult result{};
   Coupling c;
   c.wheels = 2 * model.wheelsets;
-  const double time = static_cast<double>(step) * model.scheme.dt;
-  locate_contacts(model, state, w, c);
+  locate_contacts(model, step, state, w, c);
   find_loaded(model, step, c);
-  free_bodies(model, time, w, c);
+  free_bodies(model, step, w, c);
   if (model.condensed != 0)
     respond_modes(model, w, c);
   else
@@ -348,7 +354,7 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   compliance(model, w, c);
   track_penetration(model, state, w, c);
   for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
-  solve_coupled(model, time, state, w, c, result);
+  solve_coupled(model, step, state, w, c, result);
   move_track(model, w, c);
   publish_wheels(model, c, state, result);
   return result;

@@ -15,6 +15,7 @@ struct RailRow {
 struct Configuration {
   const double* u;
   Complex modes;
+  double passed = 0.;  // m, from the elements' x to the distance along a track without end
 };
 
 /// Displacement of an unknown, as the line's tables number it.

@@ -98,8 +98,9 @@ void fill_row(const double* shape, WheelContact& at) noexcept {
 
 /// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
 /// then the material point of the railhead under the normal.
+/// @param passed  m, Configuration's
 WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, const double* p,
-                          const Window& window) noexcept {
+                          const Window& window, double passed) noexcept {
   const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
   const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
   const double axle[3] = {-sy * cr, cy * cr, sr};
@@ -140,7 +141,8 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
   const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
-  const Irregularity off = irregularity(model, w, side, at.normal, x, p[0]);
+  const double rolled = (passed + model.endless.origin) + p[0];
+  const Irregularity off = irregularity(model, w, side, at.normal, x + passed, rolled);
   at.penetration = (w.radius - gap) + off.depth;
   at.rise = off.rise;
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
@@ -173,7 +175,7 @@ void find_contacts(const Model& model, const WheelsetModel& wheelset, const Conf
   gather(model, wheelset.start + p[0], at, windows);
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
-    sides[side] = find_contact(model, wheelset, side, p, windows[side]);
+    sides[side] = find_contact(model, wheelset, side, p, windows[side], at.passed);
   }
 }
 
