@@ -73,8 +73,8 @@ TEST_CASE("a step back by a bay turns each wave's coordinates") {
     for (Eigen::Index k = 0; k < z.size(); ++k)
       z[k] = {std::cos(1. + 3. * static_cast<double>(k)), std::sin(2. + static_cast<double>(k))};
     for (Eigen::Index k = 0; k < z.size(); ++k)
-      turned[k] = waves.cosine[k] * z[k] +
-                  waves.sine[k] * z[waves.partner[static_cast<std::size_t>(k)]];
+      turned[k] =
+          waves.cosine[k] * z[k] + waves.sine[k] * z[waves.partner[static_cast<std::size_t>(k)]];
     const Eigen::VectorXd here = (shape * z).real(), back = (shape * turned).real();
     const double scale = here.cwiseAbs().maxCoeff();
     for (int node = 0; node + 4 < ring.nodes(); ++node)

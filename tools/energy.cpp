@@ -184,7 +184,7 @@ void EnergyAccount::add_start(const Standing& now) {
   const State& s = last_.state;
   std::vector<double> f(static_cast<std::size_t>(model_.unknowns));
   forces(model_, s.steps, f.data(), nullptr);
-  for (int i = 0; i < 2 * model_.wheelsets; ++i)
+  for (int i = 0; i < wheel_count(model_); ++i)
     for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
       spread(model_.line[l], last_.contacts.contact[i].row, -s.wheel_force[i], f.data());
   for (std::size_t l = 0; l < lines_.size(); ++l)

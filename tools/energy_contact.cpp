@@ -60,7 +60,7 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
 StandingContacts standing_contacts(const Model& model, const State& state) {
   StandingContacts c{};
   c.loads = model.loads;
-  c.wheels = 2 * model.wheelsets;
+  c.wheels = wheel_count(model);
   const Configuration at{state.u, {state.u, state.v}};
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)

@@ -69,7 +69,7 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
     row.push_back(outputs.load_x[i]);
     row.push_back(outputs.load_deflection[i]);
   }
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
     row.insert(row.end(),
                {outputs.wheel_force[i], outputs.wheel_force_mean[i], outputs.wheel_force_peak[i],
                 outputs.wheel_impulse[i], outputs.wheel_gap[i], outputs.wheel_rail_z[i]});

@@ -71,11 +71,10 @@ std::vector<CellUnknown> mirrored_cell(const Track& ring, const Line& line) {
       cell.push_back({sleeper[motion], sleeper[motion], false, true,
                       flips_along(static_cast<SleeperMotion>(motion)) ? -1. : 1.});
   for (CellUnknown& own : cell)
-    own.mirror = static_cast<int>(std::find_if(cell.begin(), cell.end(),
-                                               [&](const CellUnknown& other) {
-                                                 return other.at == own.mirror;
-                                               }) -
-                                  cell.begin());
+    own.mirror = static_cast<int>(
+        std::find_if(cell.begin(), cell.end(),
+                     [&](const CellUnknown& other) { return other.at == own.mirror; }) -
+        cell.begin());
   return cell;
 }
 
@@ -96,8 +95,8 @@ class Blocks {
   }
   /// T' A(k) T, real where T turns every vector until it is its own conjugate image.
   Eigen::MatrixXd real(std::complex<double> step, const Eigen::MatrixXcd& T) const {
-    const Eigen::MatrixXcd A = std::conj(step) * block_[0] +
-                               block_[1].cast<std::complex<double>>() + step * block_[2];
+    const Eigen::MatrixXcd A =
+        std::conj(step) * block_[0] + block_[1].cast<std::complex<double>>() + step * block_[2];
     const Eigen::MatrixXcd turned = T.adjoint() * A * T;
     if (!(turned.imag().norm() <= 1e-9 * turned.norm()))
       throw std::invalid_argument("a bay of a ring is not its own mirror image about its seat");
@@ -156,9 +155,8 @@ Eigen::VectorXd softness(const Line& line) {
 /// How many modes each of the systems of one k keeps: the lowest of all together.
 std::vector<int> shares(const std::vector<Line>& systems, const ModalLimit& limit) {
   std::vector<std::pair<double, std::size_t>> all;
-  const double least = std::isfinite(limit.highest_hz)
-                           ? std::pow(2. * M_PI * limit.highest_hz, -2)
-                           : 0.;
+  const double least =
+      std::isfinite(limit.highest_hz) ? std::pow(2. * M_PI * limit.highest_hz, -2) : 0.;
   for (std::size_t s = 0; s < systems.size(); ++s)
     for (const double soft : softness(systems[s]))
       if (soft > 1e-30 && soft >= least) all.emplace_back(-soft, s);

@@ -23,7 +23,8 @@ struct RingModes {
 };
 
 /// @param limit  of the ring: of every k at most limit.most / track.bays modes, rounded
-/// Throws std::invalid_argument on a free rigid mode, and on a bay that is not its own mirror image.
+/// Throws std::invalid_argument on a free rigid mode, and on a bay that is not its own mirror
+/// image.
 RingModes ring_modes(const Track& ring, const Line& line, const ModalLimit& limit);
 
 }  // namespace railstep

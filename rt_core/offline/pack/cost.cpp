@@ -77,7 +77,7 @@ std::int64_t contact(const Model& model, std::int64_t wheels) {
 }  // namespace
 
 std::int64_t flops_per_frame(const Model& model) {
-  const std::int64_t wheels = 2 * std::int64_t{model.wheelsets};
+  const std::int64_t wheels = std::int64_t{wheel_count(model)};
   std::int64_t step = contact(model, wheels) + residual_step(model, wheels);
   for (std::int32_t l = 0; l < model.lines; ++l)
     step += model.condensed != 0 ? condensed(model, model.line[l], wheels)

@@ -16,7 +16,7 @@ std::vector<int> ports_of(const Model& model, std::size_t kinds) {
   std::vector<int> count(kinds, 0);
   for (std::int32_t i = 0; i < model.loads; ++i)
     ++count[static_cast<std::size_t>(model.load[i].kind)];
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
     ++count[static_cast<std::size_t>(model.wheelset[i / 2].kind[i % 2])];
   return count;
 }
@@ -126,7 +126,7 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
 /// half of what the lines give way within a step.
 void PackedModel::clip(int points, std::vector<double>& under) {
   const std::size_t places = under.size() / kinds_.size();
-  for (std::int32_t wheel = 0; wheel < 2 * model_.wheelsets; ++wheel) {
+  for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
     const auto kind = static_cast<std::size_t>(model_.wheelset[wheel / 2].kind[wheel % 2]);
     const std::vector<double> lines = step_compliance(model_, kinds_[kind], points);
     for (std::size_t i = 0; i < places; ++i) {

@@ -108,10 +108,11 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     double height[2];
     for (const std::size_t rail : {0u, 1u}) {
       const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
-      height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
-                     residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
-                                           static_cast<int>(port)) +
-                     irregularity(model, w, static_cast<int>(rail), up, x + passed(model, 0), rolled).depth;
+      height[rail] =
+          height_of(statics.track(), packed, pose.lines, forces[port].at) +
+          residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
+                                static_cast<int>(port)) +
+          irregularity(model, w, static_cast<int>(rail), up, x + passed(model, 0), rolled).depth;
     }
     const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
                             std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};

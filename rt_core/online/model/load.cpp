@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "online/math/sha256.h"
-#include "online/model/describe.h"
 #include "online/model/course.h"
+#include "online/model/describe.h"
 
 namespace railstep {
 

@@ -179,7 +179,7 @@ struct Model {
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
   std::int32_t bodies;     // first unknown behind the lines
   std::int32_t steps_per_frame;
-  double element_length;         // m
+  double element_length;  // m
   Endless endless;
   double rail_y[2];              // of the rails' axes, m
   double rail_z[2];              // of the rails' axes over the left one, m: their heads are level
@@ -197,5 +197,8 @@ struct Model {
   RailSignal signal[kMaxSignals];
   SystemModel system;
 };
+
+/// Wheels on the rails: left and right of each wheelset in turn.
+inline std::int32_t wheel_count(const Model& model) noexcept { return 2 * model.wheelsets; }
 
 }  // namespace railstep

@@ -15,7 +15,7 @@ struct State {
   double* v;            // [unknowns] velocity
   double* a;            // [unknowns] the scheme's acceleration
   double* g;            // [unknowns] true acceleration
-  double* wheel_force;  // [2 wheelsets] N, of the last step: where the contact solve starts
+  double* wheel_force;  // [wheels] N, of the last step: where the contact solve starts
   double* multiplier;   // [2 wheelsets] of the guide along x, N, and about z, N m; the
                         // force on the wheelset is its negative
   double* quaternion;   // [system.bodies][4] body axes to ground
@@ -26,13 +26,13 @@ struct State {
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
-  double* u_star;  // [unknowns]
-  double* v_star;  // [unknowns]
-  double* scaled;  // [unknowns]
-  double* solved;  // [1 + 2 wheelsets][unknowns] right-hand side of the track without wheels, then
-                   // of a unit force at each wheel; after the solve, the displacements
+  double* u_star;     // [unknowns]
+  double* v_star;     // [unknowns]
+  double* scaled;     // [unknowns]
+  double* solved;     // [1 + wheels][unknowns] right-hand side of the track without wheels, then
+                      // of a unit force at each wheel; after the solve, the displacements
   double* imaginary;  // the same of condensed lines; solved is their real part
-  double* row;        // [2 wheelsets][2][unknowns] of condensed lines: shape under each wheel
+  double* row;        // [wheels][2][unknowns] of condensed lines: shape under each wheel
   double* system;     // system/workspace.h
 };
 
@@ -61,10 +61,11 @@ struct Outputs {
 };
 
 inline std::int64_t state_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + 4LL * model.wheelsets + system_state_doubles(model.system);
+  return 4LL * model.unknowns + wheel_count(model) + 2LL * model.wheelsets +
+         system_state_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
-  const std::int64_t wheels = 2LL * model.wheelsets;
+  const std::int64_t wheels = wheel_count(model);
   return (4 + wheels + model.condensed * (1 + 3 * wheels)) * model.unknowns +
          system_workspace_doubles(model.system);
 }
@@ -73,7 +74,8 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
 inline State state_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns;
   double* const wheels = memory + 4 * n;
-  double* const system = wheels + 4LL * model.wheelsets;
+  double* const guides = wheels + wheel_count(model);
+  double* const system = guides + 2LL * model.wheelsets;
   double* const rows = system + 4LL * model.system.bodies;
   return {0,
           memory,
@@ -81,13 +83,13 @@ inline State state_on(const Model& model, double* memory) noexcept {
           memory + 2 * n,
           memory + 3 * n,
           wheels,
-          wheels + 2LL * model.wheelsets,
+          guides,
           system,
           rows,
           model.system.renew == Renew::kept ? rows + system_rows(model.system) : nullptr};
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
-  const std::int64_t n = model.unknowns, solved = (1 + 2LL * model.wheelsets) * n;
+  const std::int64_t n = model.unknowns, solved = (1 + wheel_count(model)) * n;
   double* const condensed = memory + 3 * n + solved;
   double* const row = condensed + model.condensed * solved;
   return {memory,
@@ -96,7 +98,7 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           memory + 3 * n,
           condensed,
           row,
-          row + model.condensed * 2LL * 2LL * model.wheelsets * n};
+          row + model.condensed * 2LL * wheel_count(model) * n};
 }
 
 /// Puts the model's start into a state: step 0.

@@ -32,7 +32,7 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
   for (std::int32_t i = 0; i < model.loads; ++i)
     forces[count++] =
         rail_force(model, model.load[i].kind, outputs.load_place[i], outputs.load_force[i]);
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
     forces[count++] = rail_force(model, model.wheelset[i / 2].kind[i % 2], outputs.wheel_place[i],
                                  -outputs.wheel_force[i]);
   return count;

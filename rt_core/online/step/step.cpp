@@ -106,7 +106,7 @@ void start_frame(const Model& model, Outputs& out) noexcept {
   out.iterations = 0;
   out.force_residual = 0.;
   out.redundant_rows = 0;
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
     out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
 }
 
@@ -115,7 +115,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
   out.status = out.status | met.status;
   if (met.violation > out.constraint_violation) out.constraint_violation = met.violation;
   if (met.iterations > out.iterations) out.iterations = met.iterations;
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     const double force = s.wheel_force[i];
     out.wheel_force[i] = force;
     out.wheel_impulse[i] += force * model.scheme.dt;
@@ -146,7 +146,7 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs)
     for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], state, w);
   else
     add_inertia(model, w);
-  if (model.wheelsets > 0)
+  if (wheel_count(model) > 0)
     collect(model, state, couple(model, state.steps + 1, state, w), outputs);
   else if (model.condensed == 0)
     solve_bands(model, w);
@@ -199,13 +199,14 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < model.loads; ++i)
     outputs.load_deflection[i] += residual_displacement(model, force, count, i);
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     const RailForce& own = force[model.loads + i];
     outputs.wheel_rail_z[i] = 0.;
     if (!outputs.wheel_on_rail[i]) continue;
-    outputs.wheel_rail_z[i] = axis_height(model, i % 2, own.element, own.xi, standing(model, state)) +
-                              residual_displacement(model, force, count, model.loads + i) +
-                              own.force * (residual_axis(model, own) - residual_under(model, own));
+    outputs.wheel_rail_z[i] =
+        axis_height(model, i % 2, own.element, own.xi, standing(model, state)) +
+        residual_displacement(model, force, count, model.loads + i) +
+        own.force * (residual_axis(model, own) - residual_under(model, own));
   }
   outputs.first_bad_unknown = first_bad(model, state);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
@@ -230,7 +231,7 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
   publish(model, state, outputs);
   RailForce force[kMaxLoads + kMaxWheels];
   const int count = rail_forces(model, outputs, force);
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
     outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+#include "online/contact/ports.h"
+#include "online/step/residual.h"
+#include "online/step/wheel.h"
+
+namespace railstep {
+
+/// A wheelset's six coordinates in a step, before wheel forces and multipliers.
+struct FreeWheelset {
+  double compliance[6];  // m/N or rad/(N m)
+  double free[6];
+};
+
+/// A step's coupled problem: where the track and what stands on it would be without contact, and
+/// how both give way under contact forces.
+struct Coupling {
+  int wheels;
+  WheelContact contact[kMaxWheels];
+  RailForce place[kMaxWheels];        // of the contacts
+  double loaded[kMaxWheels];          // residual displacement there by the loads, m
+  double W[kMaxWheels * kMaxWheels];  // m/N
+  PortLaw law[kMaxWheels];
+  double track_free[kMaxWheels];  // penetration from the track and the frozen geometry, m
+  FreeWheelset wheelset[kMaxWheelsets];
+  double force[kMaxWheels];        // N
+  double penetration[kMaxWheels];  // m
+};
+
+}  // namespace railstep

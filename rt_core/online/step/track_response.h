@@ -1,0 +1,28 @@
+#pragma once
+#include "online/model/course.h"
+#include "online/step/coupling.h"
+
+namespace railstep {
+
+/// Configuration at which the contacts of a step are located.
+inline Configuration located_on(const Model& model, const State& s, const Workspace& w) noexcept {
+  return {w.scaled, {s.u, s.v}, passed(model, s.steps + 1)};
+}
+
+/// Solves banded lines for their own right-hand side (in workspace.solved[0]) and all lines for a
+/// unit force at each wheel that is on its rail (solved[1 + wheel]); of condensed lines the force
+/// is held over the step.
+void respond(const Model& model, Workspace& w, const Coupling& c) noexcept;
+
+/// Displacement under wheel `i` of the track moved by unit forces at wheel `j`, at the step's end.
+double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
+                        int j) noexcept;
+
+/// Displacement under wheel `i`, without contact forces, from where the contact was located.
+double track_motion(const Model& model, const State& s, const Workspace& w, const Coupling& c,
+                    int i) noexcept;
+
+/// Displacements of the track under the wheel forces: free, and what each force adds.
+void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,40 @@
+#pragma once
+#include "online/step/coupling.h"
+
+namespace railstep {
+
+// Wheelsets in a step's coupled problem. The left and right wheel of wheelset b are wheels 2 b and
+// 2 b + 1 of the model.
+
+/// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
+/// guide does not give way at all: g = [x'' - 2 alpha (v - x') - beta^2 (u - x)] at the step's end.
+void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
+                    Coupling& c) noexcept;
+
+/// What a unit force at wheel j adds to the approach of wheel i through a wheelset that bears both.
+double wheelset_compliance(const Coupling& c, int i, int j) noexcept;
+
+/// Penetration that frozen geometry and the wheelset's place at the step's start leave of wheel i:
+/// what the coordinates at the step's end take off is left out.
+double wheelset_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
+                       int i) noexcept;
+
+/// How far wheel i goes from its rail over the step without contact forces.
+double free_lift(const Model& model, const State& s, const Coupling& c, int i) noexcept;
+
+/// Most turns of the guides' augmented Lagrangian around the contacts.
+std::int32_t guide_turns(const Model& model) noexcept;
+
+/// Moves the wheelsets under the contact forces and corrects the guides' multipliers.
+/// @param violation  raised to the largest of the guides, m or rad
+/// @returns whether every guide is kept to its tolerance
+bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& w,
+                    const Coupling& c, double& violation) noexcept;
+
+/// Whether a wheel that closes now on its rail will have left it within 10 steps. A mass m that
+/// meets a Hertz contact C at speed v stays for T = 2.9433 (5 m / 4 C)^0.4 v^-0.2 (Goldsmith,
+/// Impact, 1960), here with the rail taken as rigid (one that gives way holds the wheel for longer)
+/// and the smaller of the masses that the wheel has alone and together with the set's other one.
+bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int wheel) noexcept;
+
+}  // namespace railstep
