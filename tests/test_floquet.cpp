@@ -5,7 +5,6 @@
 
 #include "endless.h"
 #include "offline/condense/floquet.h"
-#include "offline/track/modes.h"
 #include "offline/track/statics.h"
 
 using namespace railstep;
