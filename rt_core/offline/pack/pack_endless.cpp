@@ -1,7 +1,11 @@
+#include <algorithm>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include "offline/pack/course.h"
 #include "offline/pack/pack.h"
+#include "offline/track/decay_length.h"
 #include "offline/track/statics.h"
 
 namespace railstep {
@@ -31,6 +35,15 @@ std::pair<double, double> span_of(const Traffic& traffic) {
   return span;
 }
 
+std::string too_short(const Track& track, double span, double decay) {
+  std::ostringstream text;
+  text << (track.ring ? "the ring" : "the window") << " of a track without end is "
+       << track.length() << " m long; accepted are " << span << " m of traffic and "
+       << (track.ring ? "a decay length of " : "on either side a decay length of ") << decay
+       << " m: more bays";
+  return text.str();
+}
+
 }  // namespace
 
 void PackedModel::add_endless(const Track& track, const Traffic& traffic,
@@ -43,9 +56,13 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   Endless& e = model_.endless;
   e = {track.bays, track.elements_per_bay, bay, options.endless->behind * bay,
        course_of(speed_of(traffic) * options.scheme.dt / bay)};
-  // A step looks a bay around; the rest is the scene's to judge.
-  if (e.origin + first < bay || e.origin + last + 2. * bay > track.length())
-    throw std::invalid_argument("the ring or window is shorter than what runs on it");
+  // What runs goes on by up to a bay before the track is passed on. The ends of a window are to
+  // stay at rest; on a ring the traffic is not to meet itself.
+  const double decay = decay_length(track), behind = e.origin + first,
+               before = track.length() - (e.origin + last + bay);
+  const bool room = track.ring ? behind + before >= decay && behind >= bay && before >= bay
+                               : behind >= decay && before >= decay;
+  if (!room) throw std::invalid_argument(too_short(track, (last - first + bay), decay));
 }
 
 BayShift PackedModel::ring_shift(const RingModes& ring, int padded) {
