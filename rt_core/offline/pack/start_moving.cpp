@@ -178,6 +178,11 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
   else
     settle_window(carried, memory);
   stand_up(model, carried, memory);
+  // Wheels press anew in every step; only loads were there before it.
+  if (model.condensed != 0) {
+    State state = state_on(model, memory.data());
+    forces(model, 0, state.a, state.g);
+  }
   return memory;
 }
 
