@@ -32,6 +32,9 @@ bool flips_along(SleeperMotion motion) {
   return motion == kAlongX || motion == kYaw || motion == kPitch;
 }
 
+/// Whether unknown k of a node is one of its own: b_y of a section that does not strain is its a_z.
+bool is_own(const Line& line, int k) { return !(line.rigid_section && k == 7); }
+
 /// The unknowns of every bay, in the same order; [bays][unknowns of a bay].
 std::vector<std::vector<int>> cells_of(const Track& ring, const Line& line) {
   const int per_bay = 2 * ring.elements_per_bay;
@@ -44,7 +47,8 @@ std::vector<std::vector<int>> cells_of(const Track& ring, const Line& line) {
     for (const int rail : {0, 1}) {
       if (rail == 1 && line.mirrored) continue;
       for (int node = 0; node < per_bay; ++node)
-        for (int k = 0; k < 9; ++k) add(line.unknown(rail, bay * per_bay + node, k));
+        for (int k = 0; k < 9; ++k)
+          if (is_own(line, k)) add(line.unknown(rail, bay * per_bay + node, k));
     }
     for (const int unknown : line.sleeper_unknown_of[static_cast<std::size_t>(bay)]) add(unknown);
   }
@@ -61,7 +65,7 @@ std::vector<CellUnknown> mirrored_cell(const Track& ring, const Line& line) {
       for (int k = 0; k < 9; ++k) {
         const int unknown = line.unknown(rail, node, k);
         const int image = line.unknown(rail, node == 0 ? 0 : per_bay - node, k);
-        if (unknown >= 0)
+        if (unknown >= 0 && is_own(line, k))
           cell.push_back({unknown, image, node != 0, node == 0, flips_along(k) ? -1. : 1.});
       }
   }

@@ -12,8 +12,8 @@ namespace railstep {
 
 namespace {
 
-constexpr std::int64_t kMostSteps = std::int64_t{1} << 20;  // of a passage, and of a window's all
-constexpr double kSettled = 1e-10;  // of the largest displacement, from passage to passage
+constexpr std::int64_t kMostSteps = std::int64_t{1} << 20;  // of a passage, and of all
+constexpr double kSettled = 1e-9;  // of the largest displacement, from passage to passage
 
 /// A wheel as the force with which it stands.
 LoadModel load_of(const Model& model, const WheelsetModel& w, int side) {
@@ -29,21 +29,34 @@ LoadModel load_of(const Model& model, const WheelsetModel& w, int side) {
   return load;
 }
 
-/// The model with constant forces in place of all that runs: its loads, then its wheels.
-Model with_forces(const Model& model) {
-  Model carried = model;
-  carried.steps_per_frame = 1;
-  for (std::int32_t i = 0; i < carried.loads; ++i) {
-    LoadModel& load = carried.load[i];
+/// The model with forces that stay as they are at the start, on an even track.
+Model evened(const Model& model) {
+  Model even = model;
+  even.steps_per_frame = 1;
+  even.signals = 0;
+  for (std::int32_t i = 0; i < even.loads; ++i) {
+    LoadModel& load = even.load[i];
     if (load.table_points > 0) load.force *= table_value(load.table, load.table_points, 0.);
     load.table_points = 0;
     load.stop = std::numeric_limits<double>::infinity();
   }
+  for (std::int32_t b = 0; b < even.wheelsets; ++b) {
+    WheelsetModel& w = even.wheelset[b];
+    w.weight = 2. * wheel_load(w);
+    w.forces = 0;
+    w.tread[0] = w.tread[1] = {};
+  }
+  return even;
+}
+
+/// The same with forces in place of wheels, behind its loads.
+Model with_forces(const Model& even) {
+  Model carried = even;
   if (carried.loads + 2 * carried.wheelsets > kMaxLoads)
     throw std::invalid_argument("a start on the move takes 32 loads and wheels at most");
-  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+  for (std::int32_t b = 0; b < even.wheelsets; ++b)
     for (const int side : {0, 1})
-      carried.load[carried.loads++] = load_of(model, model.wheelset[b], side);
+      carried.load[carried.loads++] = load_of(even, even.wheelset[b], side);
   carried.wheelsets = 0;
   return carried;
 }
@@ -110,28 +123,39 @@ void settle_ring(const Model& carried, std::vector<double>& memory) {
   }
 }
 
-void settle_window(const Model& carried, std::vector<double>& memory) {
-  const std::int64_t period = carried.endless.course.period;
-  const auto lines = static_cast<std::size_t>(carried.bodies);
-  Passage passage(carried, memory);
+/// Largest change of the model's displacements in a passage, and the largest of the lines, m. A
+/// wheelset's way along x is its guide's.
+std::pair<double, double> change_of(const Model& model, const std::vector<double>& before,
+                                    const std::vector<double>& after) {
+  double change = 0., size = 0.;
+  const auto take = [&](std::int32_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    change = std::max(change, std::abs(after[at] - before[at]));
+  };
+  for (std::int32_t i = 0; i < model.bodies; ++i) {
+    take(i);
+    size = std::max(size, std::abs(before[static_cast<std::size_t>(i)]));
+  }
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    for (int k = 1; k < 6; ++k) take(model.wheelset[b].first + k);
+  return {change, size};
+}
+
+/// Passes bays until every passage is as the one before.
+void settle(const Model& even, std::vector<double>& memory) {
+  const std::int64_t period = even.endless.course.period;
+  Passage passage(even, memory);
   for (std::int64_t steps = period; steps <= kMostSteps; steps += period) {
     const std::vector<double> before = passage.memory();
     passage.go(period);
-    double change = 0., size = 0.;
-    for (std::size_t i = 0; i < lines; ++i) {
-      change = std::max(change, std::abs(passage.memory()[i] - before[i]));
-      size = std::max(size, std::abs(before[i]));
-    }
+    const auto [change, size] = change_of(even, before, passage.memory());
     if (!(change <= kSettled * size)) continue;
-    const std::size_t n = static_cast<std::size_t>(carried.unknowns);
-    for (const std::size_t field : {0u, 1u, 2u, 3u})  // u, v, a, g
-      std::copy_n(passage.memory().begin() + static_cast<std::ptrdiff_t>(field * n), lines,
-                  memory.begin() + static_cast<std::ptrdiff_t>(field * n));
+    memory = passage.memory();
     return;
   }
   throw std::invalid_argument(
-      "the window does not settle into a moving steady state; accepted is step.start = "
-      "\"equilibrium\", or a condensed track");
+      "the track does not settle into a moving steady state; accepted is step.start = "
+      "\"equilibrium\"");
 }
 
 /// Wheelsets on the track as it moves; rates by differences over the first steps.
@@ -170,19 +194,21 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
     throw std::invalid_argument(
         "no number of steps is a whole number of bays; accepted is a speed at which one is, or "
         "step.start = \"equilibrium\"");
-  const Model carried = with_forces(model);
-  std::vector<double> memory =
-      model.condensed != 0 ? start_released(packed) : start_in_equilibrium(track, packed, gravity);
-  if (model.condensed != 0)
-    settle_ring(carried, memory);
-  else
-    settle_window(carried, memory);
-  stand_up(model, carried, memory);
-  // Wheels press anew in every step; only loads were there before it.
-  if (model.condensed != 0) {
-    State state = state_on(model, memory.data());
-    forces(model, 0, state.a, state.g);
+  const Model even = evened(model);
+  if (model.condensed == 0) {
+    std::vector<double> memory = start_in_equilibrium(track, packed, gravity);
+    settle(even, memory);
+    return memory;
   }
+  const Model carried = with_forces(even);
+  std::vector<double> memory = start_released(packed);
+  settle_ring(carried, memory);
+  if (model.wheelsets == 0) return memory;
+  stand_up(even, carried, memory);
+  // Wheels press anew in every step; only loads were there before it.
+  State state = state_on(model, memory.data());
+  forces(model, 0, state.a, state.g);
+  settle(even, memory);
   return memory;
 }
 
