@@ -86,9 +86,9 @@ TEST_CASE("a wheelset on a ring or a window is heard as on a long track of a fin
 }
 
 TEST_CASE("a wheelset starts on the move without a jolt") {
-  // Its force swings with the bays; of a start that is not its steady state, free swings are left.
-  // The start takes the wheel's static force, so it leaves what the swing of the force itself
-  // makes: within a tenth of the swing of a start in static equilibrium.
+  // Its force swings with the bays, at the start as later: settled to 1e-9 of the displacement
+  // under it, 4e-13 m, which is 4e-4 N of the contact's 1e9 N/m, 1e-8 of the force; what a start in
+  // static equilibrium leaves is there to be seen.
   const Track ring = ring_of(endless_track(24, 2, 2));
   const auto strayed = [&](const std::vector<double>& start, ModelRun& run) {
     run.packed->set_start(start);
@@ -100,7 +100,8 @@ TEST_CASE("a wheelset starts on the move without a jolt") {
   const double moving = strayed(start_moving(ring, *run.packed, 0.), run);
   const double still = strayed(start_in_equilibrium(ring, *run.packed, 0.), run);
   CAPTURE(moving, still);
-  CHECK(moving < .5 * still);
+  CHECK(moving < 1e-7);
+  CHECK(still > 1e-3);
 }
 
 TEST_CASE("a joint at a kilometre is met once, not once a turn of the ring") {
