@@ -90,8 +90,11 @@ void EnergyAccount::pass_on(std::int64_t step) {
   for (std::size_t l = 0; l < lines_.size(); ++l) last_.lines[l] = lines_[l].motion(last_.state);
   for (int i = 0; i < last_.contacts.loads; ++i)
     last_.contacts.load[i].row.element -= e.bay_elements;
-  for (int i = 0; i < last_.contacts.wheels; ++i)
-    last_.contacts.contact[i].row.element -= e.bay_elements;
+  for (int i = 0; i < last_.contacts.wheels; ++i) {
+    RailRow& row = last_.contacts.contact[i].row;
+    row.element -= e.bay_elements;
+    for (std::int32_t s = 0; s < row.seats; ++s) row.seat[s] -= 2 * e.bay_elements;
+  }
 }
 
 void EnergyAccount::add_lines(const Standing& now) {

@@ -2,6 +2,7 @@
 
 #include "online/step/load.h"
 #include "online/step/track_response.h"
+#include "online/step/turn.h"
 #include "online/step/wheelset.h"
 
 namespace railstep {
@@ -101,6 +102,7 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
     result.x[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
     result.on_rail[i] = at.on_rail;
     if (!at.on_rail) result.status = result.status | Status::off_rail;
+    if (at.turn * at.turn > kLargeTurnSquared) result.status = result.status | Status::large_turn;
     if (at.cap_reached) result.status = result.status | Status::cap_reached;
     if (c.force[i] <= 0.) result.status = result.status | Status::contact_lost;
   }
