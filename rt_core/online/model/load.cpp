@@ -72,10 +72,9 @@ bool within(const std::int32_t* values, std::int64_t n, std::int64_t least,
 
 bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
   if (e.bays == 0) return true;
-  constexpr std::int64_t kMostBaysAPeriod = std::int64_t{1} << 40;
   return e.bay_elements > 0 && std::int64_t{e.bays} * e.bay_elements == elements &&
          e.bay_length > 0. && e.origin >= 0. && e.course.period > 0 && e.course.bays >= 0 &&
-         e.course.bays < kMostBaysAPeriod && e.course.advance >= 0 && e.course.advance < kBay;
+         e.course.bays <= e.course.period && e.course.advance >= 0 && e.course.advance < kBay;
 }
 
 bool line_holds(const Model& m, const LineModel& line) noexcept {
