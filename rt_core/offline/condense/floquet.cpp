@@ -216,6 +216,7 @@ class Builder {
     std::vector<Eigen::MatrixXcd> parts = {T};
     if (alone) parts = {of_class(T, false), of_class(T, true)};
     std::vector<Line> systems;
+    systems.reserve(parts.size());
     for (const Eigen::MatrixXcd& part : parts)
       systems.push_back(small_line(mass_.real(phase(t), part), damping_.real(phase(t), part),
                                    stiffness_.real(phase(t), part)));
