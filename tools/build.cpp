@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "build_endless.h"
 #include "build_irregularity.h"
 #include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
@@ -188,6 +189,7 @@ PackOptions pack_options_of(const Scene& scene) {
                       .gravity = scene.track.gravity ? kGravity : 0.,
                       .steps = step.steps};
   if (scene.condense.kind == Condensation::modal) options.modal = modal_limit_of(scene);
+  if (scene.track.endless) options.endless = EndlessTrack{bays_behind(scene)};
   return options;
 }
 
@@ -220,6 +222,7 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.rail_spacing = scene.track.rail_spacing;
   track.ends = scene.track.ends;
   track.end_zone_bays = scene.track.end_zone_bays;
+  track.ring = scene.track.endless;
   if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
   track.axial_force = axial_force_of(scene.rail, track.section.area, 0, scene.joints);
@@ -277,12 +280,15 @@ Built::Built(const Scene& scene) try {
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   refuse_unstepped(scene);
   track = track_of(scene);
+  if (scene.condense.kind == Condensation::full) track.ring = false;  // a window, which has ends
   TracedTraffic traced = traffic_of(scene, track);
   columns = {"time_s"};
   columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
   packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
+  const double gravity = scene.track.gravity ? kGravity : 0.;
   if (scene.step->start == Start::equilibrium)
-    packed->set_start(start_in_equilibrium(track, *packed, scene.track.gravity ? kGravity : 0.));
+    packed->set_start(start_in_equilibrium(track, *packed, gravity));
+  if (scene.step->start == Start::moving) packed->set_start(start_moving(track, *packed, gravity));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }

@@ -5,7 +5,9 @@
 #include <iterator>
 #include <utility>
 
+#include "online/model/course.h"
 #include "online/step/closing.h"
+#include "online/step/follow.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
 
@@ -73,6 +75,7 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
 
 void EnergyAccount::follow(const State& state) {
   Standing now = stand(state);
+  pass_on(now.state.steps);
   stored_ = stored(now);
   add_lines(now);
   add_loads(now);
@@ -83,6 +86,23 @@ void EnergyAccount::follow(const State& state) {
   last_ = std::move(now);  // its views stay: a vector's memory moves with it
   first_ = false;
   note();
+}
+
+/// On a track without end, puts what stood at the step's start where it stands after a border.
+void EnergyAccount::pass_on(std::int64_t step) {
+  const Endless& e = model_.endless;
+  if (e.bays == 0 || gone_at(e.course, step).bays == gone_at(e.course, step - 1).bays) return;
+  std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(model_)));
+  Workspace workspace = workspace_on(model_, scratch.data());
+  follow_traffic(model_, step, last_.state, workspace);
+  for (std::size_t l = 0; l < lines_.size(); ++l) last_.lines[l] = lines_[l].motion(last_.state);
+  for (int i = 0; i < last_.contacts.loads; ++i)
+    last_.contacts.load[i].row.element -= e.bay_elements;
+  for (int i = 0; i < last_.contacts.wheels; ++i) {
+    RailRow& row = last_.contacts.contact[i].row;
+    row.element -= e.bay_elements;
+    for (std::int32_t s = 0; s < row.seats; ++s) row.seat[s] -= 2 * e.bay_elements;
+  }
 }
 
 void EnergyAccount::add_lines(const Standing& now) {
@@ -154,7 +174,8 @@ double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
     std::vector<double> u(at.state.u, at.state.u + model_.unknowns);
     u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
     WheelContact moved[2];
-    find_contacts(model_, w, {u.data(), {at.state.u, at.state.v}}, moved);
+    find_contacts(model_, w, {u.data(), {at.state.u, at.state.v}, passed(model_, now.state.steps)},
+                  moved);
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
       if (!moved[side].on_rail || !at.contacts.contact[i].on_rail) continue;

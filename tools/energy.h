@@ -89,6 +89,7 @@ class EnergyAccount {
   };
   Standing stand(const State& state) const;
   StoredEnergy stored(const Standing& at) const;
+  void pass_on(std::int64_t step);
   void add_lines(const Standing& now);
   void add_loads(const Standing& now);
   void add_contacts(const Standing& now);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "online/contact/ports.h"
+#include "online/model/course.h"
 
 namespace railstep {
 namespace {
@@ -61,7 +62,7 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
   StandingContacts c{};
   c.loads = model.loads;
   c.wheels = wheel_count(model);
-  const Configuration at{state.u, {state.u, state.v}};
+  const Configuration at{state.u, {state.u, state.v}, passed(model, state.steps)};
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], at, c.contact + 2 * b);

@@ -229,7 +229,7 @@ ReceptanceAnswer solve(const ReceptanceRequest& request, const Scene& scene) {
   answer.curve = curve_of(name, *model, answer.hz);
   for (const std::string& other : request.beside)
     if (other != name) answer.beside.push_back(curve(other));
-  if (scene.support)
+  if (scene.support && !track.ring)  // a ring has no ends
     answer.end_effect = end_effect(track, transfer, answer.hz,
                                    request.condensed ? curve("full").value : answer.curve.value);
   const RailPoint* at = rail_of(force);

@@ -38,8 +38,18 @@ int read_end_zone(const Table& t, const TrackScene& track) {
   return bays;
 }
 
+/// A track without end is taken at rest, and has no ends.
+void check_endless(const Table& t, const TrackScene& track) {
+  if (track.ends != RailEnds{})
+    t.refuse("ends", "a track without end has no ends to hold; accepted is \"free\"");
+  if (track.model != RailModel::linearised)
+    t.refuse("model", "accepted with length = \"endless\" is model = \"linearised\"");
+  if (track.linearised_under_weight)
+    t.refuse("linearised_at", "accepted with length = \"endless\" is linearised_at = \"rest\"");
+}
+
 TrackScene read_track(const Table& t) {
-  TrackScene track;
+  TrackScene track{};
   constexpr Unknowns kUnknowns[] = {Unknowns::full, Unknowns::rigid_section, Unknowns::vertical};
   track.unknowns = kUnknowns[t.choice("unknowns", {"full", "rigid-section", "vertical"})];
   track.rails = static_cast<int>(t.integer("rails", 1, 2, 2));
@@ -49,6 +59,7 @@ TrackScene read_track(const Table& t) {
   track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
   track.ends = read_ends(t);
   track.end_zone_bays = read_end_zone(t, track);
+  if (t.has("length")) track.endless = t.choice("length", {"endless"}) == 0;
   track.gravity = t.boolean("gravity", false);
   constexpr RailModel kModels[] = {RailModel::linearised, RailModel::nonlinear,
                                    RailModel::timoshenko};
@@ -67,6 +78,7 @@ TrackScene read_track(const Table& t) {
     t.refuse("reference_line",
              "off the centroid nodes move along x as the rail bends; accepted is reference_line = "
              "\"centroid\", or unknowns = \"full\"");
+  if (track.endless) check_endless(t, track);
   return track;
 }
 
@@ -237,8 +249,8 @@ StepScene read_track_step(const Table& t) {
   s.scheme = t.choice("scheme", {"generalised-alpha", "backward-euler"}, 0) == 0
                  ? TimeScheme::generalised_alpha
                  : TimeScheme::backward_euler;
-  s.start =
-      t.choice("start", {"equilibrium", "released"}, 0) == 0 ? Start::equilibrium : Start::released;
+  constexpr Start kStarts[] = {Start::equilibrium, Start::released, Start::moving};
+  s.start = kStarts[t.choice("start", {"equilibrium", "released", "moving"}, 0)];
   return s;
 }
 
@@ -278,12 +290,26 @@ void read_rails(const Table& root, Scene& scene) {
   scene.support = read_support(root, scene);
   scene.sleeper = read_sleeper(root, scene);
   scene.seat_changes = read_seat_changes(root, scene);
+  if (!scene.track.endless) return;
+  if (scene.support && scene.support->length > 0.)
+    root.table("support").refuse(
+        "length_m", "the pads of a track without end are points; accepted is length_m = 0");
+  if (!scene.seat_changes.empty())
+    root.table("track").refuse(
+        "length",
+        "the seats of a track without end are alike; accepted without [[support_change]]");
 }
 
 Scene read_track_scene(const Table& root) {
   Scene scene;
   read_rails(root, scene);
-  if (const std::optional<Table> step = root.table_if("step")) scene.step = read_track_step(*step);
+  if (const std::optional<Table> step = root.table_if("step")) {
+    scene.step = read_track_step(*step);
+    if (scene.step->start == Start::moving && !scene.track.endless)
+      step->refuse("start",
+                   "start = \"moving\" wants a track that goes on as it is; accepted with "
+                   "track.length = \"endless\"");
+  }
   scene.condense = read_condense(root);
   scene.statics = read_statics(root);
   scene.stops = read_stops(root, scene);
@@ -294,6 +320,10 @@ Scene read_track_scene(const Table& root) {
   scene.sensors = read_sensors(root, scene);
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);
+  if (scene.trace_supports && scene.track.endless)
+    output->refuse("supports",
+                   "the supports of a track without end pass under its traffic; accepted are "
+                   "sensors, which follow it bay by bay");
   root.finish();
   check_names(root, scene);
   return scene;

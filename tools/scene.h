@@ -18,7 +18,7 @@ namespace railstep {
 enum class Height { axis, head, foot };  // where in the section a force acts or a sensor sits
 enum class Side { left, right };         // left is +y
 enum class TimeScheme { generalised_alpha, backward_euler, energy_momentum };
-enum class Start { equilibrium, released };
+enum class Start { equilibrium, released, moving };
 enum class GuideMethod { augmented_lagrangian, baumgarte };
 enum class Condensation { full, modal };
 enum class RailModel { linearised, nonlinear, timoshenko };
@@ -47,6 +47,7 @@ struct TrackScene {
   Unknowns unknowns;
   int rails;          // 1 (on y = 0) or 2 (left on y = +rail_spacing / 2)
   std::int64_t bays;  // per rail; supports stand at the bays + 1 bay borders
+  bool endless;       // bays are those of the ring or window under the traffic
   double bay;         // m
   int elements_per_bay;
   double rail_spacing;  // between the rails' centres, m

@@ -59,6 +59,10 @@ StepScene read_step(const Table& t) {
 }
 
 void check_model(const Table& t, const TrackScene& track) {
+  if (track.endless)
+    t.refuse("length",
+             "bodies and beams stand still, and a track without end goes on under its "
+             "traffic; accepted beside them is a track with ends");
   if (track.model != RailModel::linearised)
     t.refuse("model", fmt::format("model = \"{}\" is not stepped; accepted beside bodies and beams "
                                   "is \"linearised\"",

@@ -42,6 +42,7 @@ TimeTable read_time_table(const Table& t, std::string_view key, const Range& acc
 /// Refuses a path that runs off the rail before the end of the run, or before `stop`.
 void check_path(const Table& t, const Scene& scene, double start, double speed,
                 const std::optional<double>& stop) {
+  if (scene.track.endless) return;
   const double length = scene.track.length();
   double end = start + speed * scene.duration();
   if (stop) end = speed >= 0.0 ? std::min(end, *stop) : std::max(end, *stop);
@@ -65,7 +66,7 @@ LoadScene read_load(const Table& t, const Scene& scene) {
   load.at = t.choice("at", {"axis", "head"}, 0) == 0 ? Height::axis : Height::head;
   if (t.has("table")) load.factor = read_time_table(t, "table", between(-1e6, 1e6));
   if (t.has("stop_m")) {
-    load.stop = t.number("stop_m", between(0.0, length));
+    load.stop = t.number("stop_m", between(0.0, scene.track.endless ? 1e12 : length));
     if ((*load.stop - load.start) * load.speed <= 0.0)
       t.refuse("stop_m", fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
                                      "is a place the load moves to",

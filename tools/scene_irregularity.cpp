@@ -14,6 +14,7 @@ namespace {
 constexpr double kTwoPi = 6.28318530717958647692;
 const Range kPatch = between(0.0, 0.5);
 const Range kHeight = between(-0.1, 0.1);
+constexpr double kEndlessPeriod = 1000.;  // m
 
 /// One of the two, or both.
 std::array<bool, 2> read_sides(const Table& t, std::string_view key, const Scene& scene) {
@@ -87,8 +88,9 @@ void read_generated(const Table& t, const Scene& scene, IrregularityScene& own) 
   o.seed = static_cast<std::uint64_t>(t.integer("seed", 0, INT64_MAX, 1));
   o.shortest = t.number("shortest_wavelength_m", between(0.01, 1e3), 3.0);
   o.longest = t.number("longest_wavelength_m", between(o.shortest, 1e3), 25.0);
-  o.length =
-      t.number("period_m", between(o.longest, 1e6), std::max(scene.track.length(), 4. * o.longest));
+  o.length = t.number(
+      "period_m", between(o.longest, 1e6),
+      std::max(scene.track.endless ? kEndlessPeriod : scene.track.length(), 4. * o.longest));
   check_wave(t, "shortest_wavelength_m", o.shortest, fastest(scene), scene);
 }
 
@@ -120,7 +122,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
                                                                     : DefectKind::corrugation;
     d.on = read_sides(t, "rail", scene);
     d.patch = t.number("contact_patch_m", kPatch, kContactPatch);
-    const Range on_rail = between(0.0, scene.track.length());
+    const Range on_rail = between(0.0, scene.track.endless ? 1e9 : scene.track.length());
     if (d.kind == DefectKind::dipped_joint) {
       d.at = t.number("at_m", on_rail);
       d.depth = t.number("depth_m", kHeight);

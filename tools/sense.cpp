@@ -3,15 +3,18 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <stdexcept>
 
 #include "build.h"
+#include "build_endless.h"
 
 namespace railstep {
 namespace {
 
 /// One direction of a sensor: where it rests and what moves it.
 struct Direction {
-  double rest = 0.;
+  double rest = 0.;   // m; x along the track's elements
+  double moved = 0.;  // of what the traffic takes along, at the start
   Functional track;
   int wheelset = -1;
 };
@@ -24,8 +27,8 @@ Point point_of(const RailSensor& sensor, const Track& track, double z, double ax
   const std::array<double, 3> rest = {sensor.position, y, axis_z + z};
   Point point;
   for (int d = 0; d < 3; ++d)
-    point[static_cast<std::size_t>(d)] = {rest[static_cast<std::size_t>(d)],
-                                          {.rail = {{{rail, sensor.position, 0., z, d}, 1.}}}};
+    point[static_cast<std::size_t>(d)] = {
+        rest[static_cast<std::size_t>(d)], 0., {.rail = {{{rail, sensor.position, 0., z, d}, 1.}}}};
   return point;
 }
 
@@ -46,10 +49,12 @@ Point point_of(const SleeperSensor& sensor, const Track& track, double z) {
   return point;
 }
 
-Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Railhead& head) {
+Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Railhead& head,
+               double origin) {
   const WheelsetScene& w = scene.wheelsets[sensor.wheelset];
   Point point;
-  point[0].rest = w.start;
+  point[0].rest = origin + w.start;
+  point[0].moved = origin;
   point[2].rest = head.top_z + w.radius;
   for (Direction& direction : point) direction.wheelset = static_cast<int>(sensor.wheelset);
   return point;
@@ -65,8 +70,11 @@ void add_point(const std::string& name, const Point& point, Sensors& sensors) {
     sensors.probes.push_back(std::move(probe));
   };
   for (std::size_t d = 0; d < 3; ++d)
-    add(fmt::format("{}_m", axes[d]), d, {.rest = point[d].rest, .displacement = 1.});
-  for (std::size_t d = 0; d < 3; ++d) add(fmt::format("d{}_m", axes[d]), d, {.displacement = 1.});
+    add(fmt::format("{}_m", axes[d]), d,
+        {.rest = point[d].rest, .displacement = 1., .along = d == 0});
+  for (std::size_t d = 0; d < 3; ++d)
+    add(fmt::format("d{}_m", axes[d]), d,
+        {.rest = point[d].moved, .displacement = 1., .along = d == 0 && point[d].wheelset >= 0});
   add("vz_m_per_s", 2, {.velocity = 1.});
 }
 
@@ -97,12 +105,32 @@ void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
   sensors.probes.push_back(std::move(probe));
 }
 
+/// From a scene's places to those of a ring or window, whose x = 0 lies some bays on.
+void move_on(SensorScene& sensor, int behind, const Track& track) {
+  const auto refuse = [&](const std::string& place) {
+    throw std::invalid_argument(
+        fmt::format("sensor \"{}\" is at {}, beyond the {} bays of the ring or window that lie "
+                    "ahead of x = 0",
+                    sensor.name, place, track.bays - behind));
+  };
+  if (auto* rail = std::get_if<RailSensor>(&sensor.on)) {
+    rail->position += behind * track.bay_length;
+    if (rail->position > (1. + 1e-12) * track.length())
+      refuse(fmt::format("{:.6g} m", rail->position - behind * track.bay_length));
+  } else if (auto* sleeper = std::get_if<SleeperSensor>(&sensor.on)) {
+    sleeper->sleeper += behind;
+    if (sleeper->sleeper > track.bays) refuse(fmt::format("sleeper {}", sleeper->sleeper - behind));
+  }
+}
+
 }  // namespace
 
 Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& sections,
                    const Railhead& head) {
   Sensors sensors;
-  for (const SensorScene& sensor : scene.sensors) {
+  const int behind = scene.track.endless ? bays_behind(scene) : 0;
+  for (SensorScene sensor : scene.sensors) {
+    move_on(sensor, behind, track);
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
       add_point(sensor.name,
                 point_of(*rail, track, height_z(rail->at, section_of(sections, rail->rail)),
@@ -112,7 +140,10 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
       add_point(sensor.name, point_of(*sleeper, track, height_z(Height::foot, sections[0])),
                 sensors);
     else
-      add_point(sensor.name, point_of(std::get<WheelsetSensor>(sensor.on), scene, head), sensors);
+      add_point(
+          sensor.name,
+          point_of(std::get<WheelsetSensor>(sensor.on), scene, head, behind * track.bay_length),
+          sensors);
   }
   for (int rail = 0; rail < track.rails && scene.trace_supports; ++rail)
     for (int seat = 0; seat <= track.bays; ++seat) add_support(rail, seat, track, sensors);

@@ -71,7 +71,7 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.row[2] = 1.;
   packed.row[8] = load.z;
   packed.rail = load.rail;
-  packed.start = load.start;
+  packed.start = model_.endless.origin + load.start;
   packed.speed = load.speed;
   packed.stop = load.stop;
   packed.force = load.force;
@@ -111,7 +111,7 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   packed.weight = wheelset.weight;
   packed.radius = wheelset.radius;
   packed.tread_half_width = wheelset.tread_half_width;
-  packed.start = wheelset.start;
+  packed.start = model_.endless.origin + wheelset.start;
   packed.speed = wheelset.speed;
   packed.rest_z = heads[0].top_z + wheelset.radius;
   for (const int rail : {0, 1}) {
@@ -156,6 +156,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
     model_.head_half_width[rail] = heads[rail].half_width;
   }
   model_.condensed = options.modal ? 1 : 0;
+  if (options.endless) add_endless(track, traffic, options);
   std::vector<Line> lines = assemble(track);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     Eigen::SparseMatrix<double> closing = closing_of(track, lines[i]);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "offline/condense/flexibility.h"
+#include "offline/condense/floquet.h"
 #include "offline/condense/modal.h"
 #include "offline/irregularity/signal.h"
 #include "offline/track/fixed_port.h"
@@ -66,6 +67,8 @@ struct Probe {
     double factor;  // of its force
   };
   std::vector<Press> ports = {};
+  bool along = false;                 // a place along the track, which traffic without end takes
+                                      // with it
 };
 
 /// What acts on a track, and what is read from it.
@@ -79,6 +82,14 @@ struct Traffic {
   std::optional<Railhead> right_head = std::nullopt;  // of the right rail where it differs
 };
 
+/// A track without end under traffic of one speed, at least 0: a ring where lines are condensed
+/// (Track::ring), a window in full order. Places of loads and wheelsets count from the bay border
+/// `behind`; what else names a place of the track names one of its bays as they stand at the start,
+/// and follows the traffic by whole bays.
+struct EndlessTrack {
+  int behind;  // bays of the track before x = 0
+};
+
 struct PackOptions {
   Scheme scheme;  // of banded lines and bodies; condensed lines are stepped exactly
   int steps_per_frame = 1;
@@ -87,6 +98,7 @@ struct PackOptions {
   double gravity = 0.;       // m/s2 on rails and sleepers; 0: their weight is left off
   std::optional<ModalLimit> modal = std::nullopt;  // of each line; none: full order
   std::int64_t steps = 0;                          // of the scene's run
+  std::optional<EndlessTrack> endless = std::nullopt;
 };
 
 /// A line of the track as the model carries it.
@@ -123,8 +135,12 @@ class PackedModel {
   const std::int32_t* keep(std::vector<std::int32_t> values);
   Diagonals keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded);
   void add_line(const Track& track, PackedLine packed, const PackOptions& options);
-  void add_banded(const Line& line, LineModel& packed);
-  void add_condensed(PackedLine& own, LineModel& packed, const ModalLimit& limit);
+  void add_banded(const Track& track, const Line& line, LineModel& packed, double gravity);
+  void add_condensed(const Track& track, PackedLine& own, LineModel& packed,
+                     const ModalLimit& limit);
+  void add_endless(const Track& track, const Traffic& traffic, const PackOptions& options);
+  BayShift ring_shift(const RingModes& ring, int padded);
+  BayShift window_shift(const Track& track, const Line& line, int padded, double gravity);
   template <typename Number>
   void keep_tables(const Line& line, LineModel& packed, const Number& number);
   void add_load(const Track& track, const MovingLoad& load);

@@ -102,7 +102,8 @@ void PackedModel::keep_tables(const Line& line, LineModel& packed, const Number&
   if (!has_one_table(line)) packed.unknown_of[1] = keep_table(table_of(line, 1));
 }
 
-void PackedModel::add_banded(const Line& line, LineModel& packed) {
+void PackedModel::add_banded(const Track& track, const Line& line, LineModel& packed,
+                             double gravity) {
   const Scheme& s = model_.scheme;
   BandFactor factor = factor_band(
       Eigen::SparseMatrix<double>(line.stiffness + s.kv * line.damping + s.kg * line.mass));
@@ -111,14 +112,24 @@ void PackedModel::add_banded(const Line& line, LineModel& packed) {
                  keep(std::move(factor.inverse)), keep(std::move(factor.backward))};
   packed.mass = keep_diagonals(line.mass, packed.size);
   packed.damping = keep_diagonals(line.damping, packed.size);
+  if (model_.endless.bays > 0) packed.shift = window_shift(track, line, packed.size, gravity);
   keep_tables(line, packed, [](int unknown, std::size_t) { return unknown; });
 }
 
-void PackedModel::add_condensed(PackedLine& own, LineModel& packed, const ModalLimit& limit) {
+void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& packed,
+                                const ModalLimit& limit) {
   // Of both rails in one line as many as of two.
   const int rails = has_one_table(own.line) ? 1 : 2;
-  own.basis = modal_basis(own.line, {rails * limit.most, limit.highest_hz}, own.closing);
-  own.modes = damped_modes(own.basis, own.line.damping);
+  const ModalLimit most{rails * limit.most, limit.highest_hz};
+  RingModes ring;
+  if (track.ring) {
+    ring = ring_modes(track, own.line, most);
+    own.basis = ring.basis;
+    own.modes = ring.modes;
+  } else {
+    own.basis = modal_basis(own.line, most, own.closing);
+    own.modes = damped_modes(own.basis, own.line.damping);
+  }
   const auto modes = own.modes.rate.size();
   const auto padded = static_cast<std::size_t>((modes + 7) / 8 * 8);
   const double dt = model_.scheme.dt;
@@ -135,6 +146,7 @@ void PackedModel::add_condensed(PackedLine& own, LineModel& packed, const ModalL
     return Complex{re, re + padded};
   };
   packed.size = static_cast<std::int32_t>(padded);
+  if (track.ring) packed.shift = ring_shift(ring, packed.size);
   packed.modal = {packed.size,
                   complex(own.modes.rate),
                   complex(keep_rate),
@@ -174,9 +186,9 @@ void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions
     own.basis = lines_[twin].basis;
     own.modes = lines_[twin].modes;
   } else if (options.modal) {
-    add_condensed(own, packed, *options.modal);
+    add_condensed(track, own, packed, *options.modal);
   } else {
-    add_banded(own.line, packed);
+    add_banded(track, own.line, packed, options.gravity);
   }
   packed.first = model_.unknowns;
   packed.twin = static_cast<std::int32_t>(twin);

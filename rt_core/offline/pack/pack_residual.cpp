@@ -119,6 +119,9 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
   model_.probe.index = keep(std::move(index));
   model_.probe.value = keep(std::move(value));
   model_.probe.rest = keep(std::move(rest));
+  std::vector<std::int32_t> along;
+  for (const Probe& probe : probes) along.push_back(probe.along ? 1 : 0);
+  model_.probe.along = keep(std::move(along));
 }
 
 /// A contact needs a rail that gives way under it: where wheels stand, G_res takes no more than

@@ -8,6 +8,7 @@
 
 #include "offline/track/statics.h"
 #include "online/contact/ports.h"
+#include "online/model/course.h"
 #include "online/step/closing.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
@@ -18,22 +19,6 @@
 namespace railstep {
 
 namespace {
-
-/// Vertical force at t = 0 on a wheel of a wheelset on its rails, N: no force acts on roll, so both
-/// carry half.
-double wheel_load(const WheelsetModel& w) {
-  double vertical = w.weight;
-  for (std::int32_t i = 0; i < w.forces; ++i) {
-    const double force = table_value(w.force[i].table, w.force[i].points, 0.);
-    if (w.force[i].direction == 2) vertical -= force;
-    if (w.force[i].direction == 1 && force != 0.)
-      throw std::invalid_argument(
-          "no equilibrium: a lateral force acts on a wheelset at the start and nothing holds it");
-  }
-  if (!(vertical > 0.))
-    throw std::invalid_argument("no equilibrium in contact: nothing presses a wheelset down");
-  return vertical / 2.;
-}
 
 /// A point as ports see it: those of condensed lines leave out the section's own strain.
 RailPoint seen(const Model& model, RailPoint at) {
@@ -122,7 +107,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const LoadModel& load = model.load[i];
     const PlacedLoad at = place(model, load, 0);
-    const double x = at.x + load.speed * time;
+    const double x = at.place + load.speed * time;
     if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
     forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
     ports.push_back(rail_force(model, load.kind, x, at.force));
@@ -139,23 +124,16 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
     const double up[3] = {0., 0., 1.}, rolled = w.speed * time, x = w.start + rolled;
-    double height[2];
+    std::array<double, 2> height;
     for (const std::size_t rail : {0u, 1u}) {
       const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
-      height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
-                     residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
-                                           static_cast<int>(port)) +
-                     irregularity(model, w, static_cast<int>(rail), up, x, rolled).depth;
+      height[rail] =
+          height_of(statics.track(), packed, pose.lines, forces[port].at) +
+          residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
+                                static_cast<int>(port)) +
+          irregularity(model, w, static_cast<int>(rail), up, x + passed(model, 0), rolled).depth;
     }
-    const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
-                            std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
-    const double roll =
-        ((height[0] - height[1]) - (into[0] - into[1])) / (model.rail_y[0] - model.rail_y[1]);
-    // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
-    const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
-    const double lifted = .5 * roll * roll * (w.radius + crown);
-    const double z = .5 * (height[0] + height[1]) - .5 * (into[0] + into[1]) + lifted;
-    pose.wheelsets.push_back({0., 0., z, roll, 0., 0.});
+    pose.wheelsets.push_back(standing_wheelset(model, w, height));
   }
   return pose;
 }
@@ -199,13 +177,40 @@ Window window(const Model& model, double length) {
     if (is_on(0.) && !is_on(w.to)) w.to = 0.;
   };
   for (std::int32_t i = 0; i < model.loads; ++i)
-    narrow(place(model, model.load[i], 0).x, model.load[i].speed);
+    narrow(place(model, model.load[i], 0).place, model.load[i].speed);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     narrow(model.wheelset[b].start, model.wheelset[b].speed);
   return w;
 }
 
 }  // namespace
+
+double wheel_load(const WheelsetModel& w) {
+  double vertical = w.weight;
+  for (std::int32_t i = 0; i < w.forces; ++i) {
+    const double force = table_value(w.force[i].table, w.force[i].points, 0.);
+    if (w.force[i].direction == 2) vertical -= force;
+    if (w.force[i].direction == 1 && force != 0.)
+      throw std::invalid_argument(
+          "no equilibrium: a lateral force acts on a wheelset at the start and nothing holds it");
+  }
+  if (!(vertical > 0.))
+    throw std::invalid_argument("no equilibrium in contact: nothing presses a wheelset down");
+  return vertical / 2.;
+}
+
+std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& w,
+                                        const std::array<double, 2>& height) {
+  const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
+                          std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
+  const double roll =
+      ((height[0] - height[1]) - (into[0] - into[1])) / (model.rail_y[0] - model.rail_y[1]);
+  // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
+  const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
+  const double lifted = .5 * roll * roll * (w.radius + crown);
+  const double z = .5 * (height[0] + height[1]) - .5 * (into[0] + into[1]) + lifted;
+  return {0., 0., z, roll, 0., 0.};
+}
 
 std::vector<double> start_released(const PackedModel& packed) {
   const Model& model = packed.model();

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+
 #include "offline/pack/pack.h"
 #include "online/model/state.h"
 
@@ -16,5 +18,24 @@ std::vector<double> start_released(const PackedModel& packed);
 /// wheel, or if a force pushes a wheelset where nothing holds it (laterally).
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
                                          double gravity);
+
+/// The state at step 0 of a track without end in its moving steady state: it is as a bay later,
+/// and a bay later again. Loads and wheels press with the force they have at the start, wheels with
+/// their static one, on an even track. Of a ring under loads exact, wave by wave, from one passage
+/// of the model itself: with z1 = k^n z0 + r turned by the bays gone, z1 = z0. Wheelsets, and a
+/// window, then pass bays until each is as the one before to 1e-9.
+/// @returns state_doubles() values
+/// Throws std::invalid_argument as start_in_equilibrium(), where the track has ends, where no whole
+/// number of steps up to 2^20 is a whole number of bays, and where nothing settles.
+std::vector<double> start_moving(const Track& track, const PackedModel& packed, double gravity);
+
+/// Vertical force at t = 0 on a wheel of a wheelset on its rails, N: no force acts on roll, so both
+/// carry half. Throws std::invalid_argument where it has none, or a lateral force.
+double wheel_load(const WheelsetModel& wheelset);
+
+/// Coordinates of a wheelset that stands on its rails, pressed by its wheel_load().
+/// @param height  of the railheads' tops over rest under the left and the right wheel, m
+std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& wheelset,
+                                        const std::array<double, 2>& height);
 
 }  // namespace railstep

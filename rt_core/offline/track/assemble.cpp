@@ -44,7 +44,7 @@ void number(const Track& track, Assembly& part) {
     table.assign(static_cast<std::size_t>(nodes), {-1, -1, -1, -1, -1, -1, -1, -1, -1});
   part.line.sleeper_unknown_of.assign(static_cast<std::size_t>(track.bays) + 1,
                                       {-1, -1, -1, -1, -1, -1});
-  for (int node = 0; node < nodes; ++node) {
+  for (int node = 0; node < nodes - (track.ring ? 1 : 0); ++node) {
     for (const int rail : part.rails) {
       for (const int k : carried(track.unknowns))
         if (!holds(track, node, k))
@@ -57,6 +57,9 @@ void number(const Track& track, Assembly& part) {
     for (const int rail : part.rails) number_cut(track, part, rail, node);
     if (node % per_bay == 0) number_sleeper(track, node / per_bay, part);
   }
+  if (!track.ring) return;
+  for (Line::RailUnknowns& table : part.line.unknown_of) table.back() = table.front();
+  part.line.sleeper_unknown_of.back() = part.line.sleeper_unknown_of.front();
 }
 
 /// K_r of Eq. 24 of one element where the track stands.
@@ -103,7 +106,7 @@ Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails
     add_elements(track, rail, part);
     add_joints(track, part, rail);
   }
-  for (int seat = 0; seat <= track.bays; ++seat) add_seat(track, part, seat);
+  for (int seat = 0; seat < track.seats(); ++seat) add_seat(track, part, seat);
   if (mirror != Mirror::none) {
     part.line.unknown_of[1] = part.line.unknown_of[0];
     part.line.cuts[1] = part.line.cuts[0];
@@ -219,6 +222,17 @@ void check_stop(const Track& track, const Stop& stop) {
     refuse("a stop's stiffness and damping are at least 0");
 }
 
+void check_ring(const Track& track) {
+  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  if (track.bays < 3) refuse("a ring has three bays or more");
+  if (track.ends != RailEnds{}) refuse("a ring has no ends to be held");
+  if (!track.changed_seats.empty()) refuse("the seats of a ring are alike");
+  if (track.support.length != 0.) refuse("the pads of a ring are points");
+  if (!track.joints.empty()) refuse("the rails of a ring are not cut");
+  if (!fixed_ports(track).empty()) refuse("the seats of a ring pull too, and it has no stops");
+  if (track.state) refuse("a ring is taken at rest, not where its weight leaves it");
+}
+
 void check(const Track& track) {
   const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
   if (track.bays < 1 || track.elements_per_bay < 1) refuse("a track needs one bay and one element");
@@ -228,6 +242,7 @@ void check(const Track& track) {
   check_joints(track);
   if (end_zones(track) * track.end_zone_bays > track.bays)
     refuse("the zones of non-reflecting ends do not fit on the track");
+  if (track.ring) check_ring(track);
   for (const auto& [border, seat] : track.changed_seats)
     if (border < 0 || border > track.bays) refuse("a changed seat stands at no bay border");
   for (int border = 0; border <= track.bays; ++border)

@@ -94,7 +94,7 @@ Eigen::VectorXd weight(const Track& track, const Line& line, double gravity) {
                       line.rail_factor[static_cast<std::size_t>(rail)] * per_metre(rail), force);
   }
   const double share = track.rails == 2 ? std::sqrt(2.) : 1.;
-  for (int seat = 0; seat <= track.bays; ++seat) {
+  for (int seat = 0; seat < track.seats(); ++seat) {
     const int height = line.sleeper_unknown_of[static_cast<std::size_t>(seat)][kAlongZ];
     if (height >= 0) force[height] -= share * track.seat(seat).sleeper->mass / 2. * gravity;
   }

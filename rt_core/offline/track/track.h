@@ -70,6 +70,9 @@ struct Track {
   double rail_spacing = 1.5;  // m
   RailEnds ends = {RailEnd::free, RailEnd::free};
   int end_zone_bays = kEndZoneBays;  // damped bays before each non-reflecting end
+  /// The last bay border is the first: a track without ends, whatever runs on it runs round. Its
+  /// seats are alike, its pads points; x goes from 0 to length() all the same.
+  bool ring = false;
   std::optional<RailBar> right;  // the right rail, where it differs from section, material, force
   Support support;               // of every seat but those changed
   std::optional<Sleeper> sleeper;
@@ -85,6 +88,8 @@ struct Track {
 
   int elements() const { return bays * elements_per_bay; }
   int nodes() const { return 2 * elements() + 1; }
+  /// Bay borders with a seat of their own.
+  int seats() const { return ring ? bays : bays + 1; }
   double element_length() const { return bay_length / elements_per_bay; }
   double length() const { return bays * bay_length; }
   /// @param rail  0 left (+y), 1 right

@@ -50,6 +50,24 @@ void describe(Archive& a, Modal& m, int size) {
   a.reals(m.shape, std::int64_t{2} * m.rows * size);
 }
 
+template <typename Archive>
+void describe(Archive& a, BayShift& s, int size) {
+  a.integers(s.from, size);
+  a.reals(s.own, size);
+  a.reals(s.other, size);
+  a.reals(s.fill, size);
+}
+
+template <typename Archive>
+void describe(Archive& a, Endless& e) {
+  a.count(e.bays, kMostElements);
+  if (e.bays == 0) return;
+  a.count(e.bay_elements, kMostElements);
+  a.real(e.bay_length);
+  a.real(e.origin);
+  for (std::int64_t* i : {&e.course.period, &e.course.bays, &e.course.advance}) a.integer(*i);
+}
+
 /// Line `at`; one with a twin has its matrices or modes.
 template <typename Archive>
 void describe(Archive& a, Model& m, std::int32_t at) {
@@ -67,10 +85,12 @@ void describe(Archive& a, Model& m, std::int32_t at) {
     line.mass = twin.mass;
     line.damping = twin.damping;
     line.modal = twin.modal;
+    line.shift = twin.shift;
     for (int rail = 0; rail < 2; ++rail) line.unknown_of[rail] = twin.unknown_of[rail];
     return;
   }
   a.count(line.size, kMostUnknowns);
+  if (m.endless.bays > 0) describe(a, line.shift, line.size);
   const std::int64_t table = std::int64_t{27} * m.elements;
   std::int32_t second = line.unknown_of[0] != line.unknown_of[1] ? 1 : 0;
   a.integers(line.unknown_of[0], table);
@@ -159,6 +179,7 @@ void describe(Archive& a, ProbeModel& p, const Model& m) {
   a.integers(p.index, p.entries);
   a.reals(p.value, p.entries);
   a.reals(p.rest, p.count);
+  a.integers(p.along, p.count);
   a.integers(p.table, p.count);
   a.count(p.tables, kMostRows);
   const std::int64_t table = std::int64_t{m.residual.kinds} * m.elements * (m.residual.points + 1);
@@ -198,6 +219,7 @@ void describe(Archive& a, Model& m) {
   a.count(m.steps_per_frame, kMostRows);
   a.integer(m.steps);
   a.real(m.element_length);
+  describe(a, m.endless);
   for (double* of_rails : {m.rail_y, m.rail_z, m.head_z, m.crown_radius, m.head_half_width}) {
     a.real(of_rails[0]);
     a.real(of_rails[1]);

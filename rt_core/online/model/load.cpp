@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "online/math/sha256.h"
+#include "online/model/course.h"
 #include "online/model/describe.h"
 
 namespace railstep {
@@ -69,8 +70,19 @@ bool within(const std::int32_t* values, std::int64_t n, std::int64_t least,
   return true;
 }
 
+bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
+  if (e.bays == 0) return true;
+  return e.bay_elements > 0 && std::int64_t{e.bays} * e.bay_elements == elements &&
+         e.bay_length > 0. && e.origin >= 0. && e.course.period > 0 && e.course.bays >= 0 &&
+         e.course.bays <= e.course.period && e.course.advance >= 0 && e.course.advance < kBay;
+}
+
 bool line_holds(const Model& m, const LineModel& line) noexcept {
   if (line.size % kLanes != 0 || line.first + line.size > m.bodies) return false;
+  if (m.endless.bays > 0 && line.size > 0 &&
+      !(within(line.shift.from, line.size, 0, line.size - 1) && line.shift.own &&
+        line.shift.other && line.shift.fill))
+    return false;
   const std::int64_t most = (m.condensed != 0 ? line.modal.rows : line.size) - 1;
   for (const std::int32_t* table : line.unknown_of)
     if (!within(table, std::int64_t{27} * m.elements, -1, most)) return false;
@@ -125,7 +137,7 @@ bool probes_hold(const Model& m) noexcept {
     if (p.start[i] > p.start[i + 1]) return false;
   const std::int64_t values = std::int64_t{2} * m.unknowns + m.fixed.count;
   return within(p.index, p.entries, 0, values - 1) && within(p.table, p.count, -1, p.tables - 1) &&
-         (p.count == 0 || p.rest) && (p.entries == 0 || p.value);
+         (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value);
 }
 
 bool fixed_ports_hold(const Model& m) noexcept {
@@ -142,6 +154,7 @@ bool fixed_ports_hold(const Model& m) noexcept {
 /// What a step takes for granted beyond the counts.
 bool holds(const Model& m) noexcept {
   if (m.lines < 1 || m.elements < 1 || m.steps_per_frame < 1 || m.start == nullptr) return false;
+  if (!endless_holds(m.endless, m.elements)) return false;
   if (!(m.element_length > 0.) || m.bodies % kLanes != 0 || m.steps < 0) return false;
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_holds(m, m.line[i])) return false;

@@ -39,6 +39,31 @@ struct Scheme {
   double theta;  // contact forces follow the penetration theta d1 + (1 - theta) d0; 1: at the end
 };
 
+/// How far the traffic of a track without end has gone at a step, exactly. Fractions count bays by
+/// 2^-62: n steps are n / period times `bays` whole ones, and n % period steps of `advance`.
+struct Course {
+  std::int64_t period;   // steps after which it has gone whole bays, or more steps than are made
+  std::int64_t bays;     // gone in a period
+  std::int64_t advance;  // of a step, below a bay
+};
+
+/// A track without end. Whatever moves along it goes at one speed; the model's elements stand still
+/// under it for a bay, then what they hold is passed on by one bay to the rear.
+struct Endless {
+  std::int32_t bays;          // of the model's elements; 0: the track has ends
+  std::int32_t bay_elements;  // elements of a bay
+  double bay_length;          // m
+  double origin;              // of the elements' x, over which x = 0 stands at the start, m
+  Course course;
+};
+
+/// What a line is one bay further on, of every unknown i: x[i] becomes
+/// own[i] x[i] + other[i] x[from[i]], in u, v, a and g alike, and in u `fill[i]` more.
+struct BayShift {
+  const std::int32_t* from;  // [size]
+  const double *own, *other, *fill;
+};
+
 /// A condensed line: complex modes z' = rate z + q, with q = shape' f of the forces on it and
 /// displacement Re shape z (both without conjugation), stepped exactly:
 ///   z1 = keep z0 + old_force q0 + new_force q1   for q linear in time,
@@ -60,6 +85,7 @@ struct LineModel {
   Band step;                 // factor of K + kv C + kg M
   Diagonals mass, damping;   // padded to whole panels
   Modal modal;
+  BayShift shift;            // of a track without end
   /// Of left and right rail, [elements][3][9]: unknown, or row of modal.shape; -1: not carried. One
   /// table for both where they are mirror images and where the line has one rail. Elements share
   /// their border's unknowns where the rail is not cut.
@@ -73,7 +99,8 @@ struct LineModel {
 struct LoadModel {
   double row[9];              // of a node: position, y slope, z slope; gives the loaded point's z
   std::int32_t rail;          // 0 left, 1 right
-  double start, speed, stop;  // m, m/s, m; taken off beyond stop
+  double start, speed, stop;  // m, m/s, m; taken off beyond stop; start of a track without end: of
+                              // the elements' x
   double force;               // N along z, up positive
   std::int32_t table_points;  // 0: constant
   const double* table;        // [table_points][2]  s, factor; linear between, constant outside
@@ -102,7 +129,8 @@ struct WheelsetModel {
   double mass[6];      // kg, kg, kg, roll, spin, yaw inertia kg m2
   double weight;       // N, down; of the wheelset and what it carries
   double radius, tread_half_width;
-  double start, speed;  // of the centre, m, m/s
+  double start, speed;  // of the centre, m, m/s; start of a track without end: of the elements' x,
+                        // from which the coordinate x then counts the way within a bay
   double rest_z;        // height of the centre over the left rail's axis when it touches, m
   double hertz[2];      // C of P = C d^1.5 on left and right rail, N/m^1.5
   Guide guide;
@@ -151,6 +179,7 @@ struct ProbeModel {
   const std::int32_t* index;  // [entries] into u, v, then the fixed ports' forces of the state
   const double* value;        // [entries] per m, per m/s or per N
   const double* rest;         // [count]
+  const std::int32_t* along;  // [count] 1: a place along the rail, which the traffic takes with it
   const std::int32_t* table;  // [count] of its residual, -1: none
   std::int32_t tables;
   const double* residual;  // [tables][kinds][elements][points + 1] per N, or null
@@ -184,7 +213,8 @@ struct Model {
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
   std::int32_t bodies;     // first unknown behind the lines
   std::int32_t steps_per_frame;
-  double element_length;         // m
+  double element_length;  // m
+  Endless endless;
   double rail_y[2];              // of the rails' axes, m
   double rail_z[2];              // of the rails' axes over the left one, m: their heads are level
   double head_z[2];              // of each railhead's top over its rail's axis, m

@@ -42,6 +42,7 @@ struct Outputs {
   Status status;
   std::int32_t first_bad_unknown;       // -1: all finite
   double load_x[kMaxLoads];             // m; where the load is, or was when taken off
+  double load_place[kMaxLoads];         // the same along the model's elements, m
   double load_deflection[kMaxLoads];    // of the loaded point, m, up positive
   double load_force[kMaxLoads];         // N, up positive
   double wheel_force[kMaxWheels];       // N on the wheel, up positive, at the frame's end
@@ -51,6 +52,7 @@ struct Outputs {
   double wheel_gap[kMaxWheels];         // m, negative in contact; where the force was taken
   bool wheel_on_rail[kMaxWheels];
   double wheel_x[kMaxWheels];       // of the contact along the undeformed rail, m
+  double wheel_place[kMaxWheels];   // the same along the model's elements, m
   double wheel_rail_z[kMaxWheels];  // displacement of the rail's axis under it, m
   double constraint_violation;      // largest of the frame, m or rad
   std::int32_t iterations;          // largest of the frame, of contact, joint and Newton solves

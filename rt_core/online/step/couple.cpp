@@ -21,7 +21,7 @@ void locate_contacts(const Model& model, const State& s, Workspace& w, Coupling&
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     const double further = (model.scheme.theta * model.scheme.dt - ahead) * s.v[set.first];
-    find_contacts(model, set, located_on(s, w), c.contact + 2 * b, further);
+    find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b, further);
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
       c.law[i] = {set.hertz[side], 0., 0.};
@@ -79,7 +79,7 @@ PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
 }
 
 /// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
-void solve_coupled(const Model& model, double time, State& s, Workspace& w, Coupling& c,
+void solve_coupled(const Model& model, std::int64_t step, State& s, Workspace& w, Coupling& c,
                    CoupleResult& result) noexcept {
   const std::int32_t cap = guide_turns(model);
   bool settled = false, solved = false;
@@ -88,7 +88,7 @@ void solve_coupled(const Model& model, double time, State& s, Workspace& w, Coup
     solved = ports.status == PortStatus::converged;
     if (ports.iterations > result.iterations) result.iterations = ports.iterations;
     result.violation = 0.;
-    settled = move_wheelsets(model, time, s, w, c, result.violation);
+    settled = move_wheelsets(model, step, s, w, c, result.violation);
     if (turn + 1 > result.iterations) result.iterations = turn + 1;
   }
   if (!settled || !solved) result.status = result.status | Status::cap_reached;
@@ -118,16 +118,15 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   Coupling c;
   c.wheels = wheel_count(model);
   c.ports = c.wheels + model.fixed.count;
-  const double time = static_cast<double>(step) * model.scheme.dt;
   locate_contacts(model, state, w, c);
   find_loaded(model, step, c);
-  free_wheelsets(model, time, w, c);
+  free_wheelsets(model, step, w, c);
   respond(model, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
-  solve_coupled(model, time, state, w, c, result);
+  solve_coupled(model, step, state, w, c, result);
   move_track(model, w, c);
   if (model.fixed.count > 0) press_fixed_ports(model, c, state, w);
   publish_wheels(model, c, state, result);

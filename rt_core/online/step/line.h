@@ -27,6 +27,7 @@ inline std::int32_t table_place(std::int32_t node, int k) noexcept {
 struct Configuration {
   const double* u;
   Complex modes;
+  double passed = 0.;  // m, from the elements' x to the distance along a track without end
 };
 
 /// Displacement of an unknown, as the line's tables number it.

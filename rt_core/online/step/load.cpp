@@ -1,5 +1,6 @@
 #include "online/step/load.h"
 
+#include "online/model/course.h"
 #include "online/step/table.h"
 
 namespace railstep {
@@ -7,8 +8,13 @@ namespace railstep {
 PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) noexcept {
   const double time = static_cast<double>(step) * model.scheme.dt;
   PlacedLoad at{};
-  at.x = load.start + load.speed * time;
-  const double scaled = at.x / model.element_length;
+  if (model.endless.bays == 0) {
+    at.x = at.place = load.start + load.speed * time;
+  } else {
+    at.place = load.start + within_bay(model, step);
+    at.x = passed(model, step) + at.place;
+  }
+  const double scaled = at.place / model.element_length;
   at.on_rail = scaled >= 0. && scaled <= model.elements;
   if (!at.on_rail) return at;
   at.row.rail = load.rail;

@@ -6,6 +6,7 @@ namespace railstep {
 /// Where a load stands at a step, over the undeformed rail, and what it weighs.
 struct PlacedLoad {
   double x;      // m
+  double place;  // the same along the model's elements, m
   double force;  // N, 0 when taken off
   double xi;
   bool on_rail;

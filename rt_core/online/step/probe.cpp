@@ -1,5 +1,6 @@
 #include "online/step/probe.h"
 
+#include "online/model/course.h"
 #include "online/step/float_mode.h"
 #include "online/step/residual.h"
 
@@ -22,6 +23,7 @@ void read_probes(const Model& model, const State& state, const Outputs& outputs,
   RailForce forces[kMaxLoads + kMaxWheels];
   const int count = rail_forces(model, outputs, forces);
   const ProbeModel& probe = model.probe;
+  const double gone = passed(model, state.steps);
   for (std::int32_t i = 0; i < probe.count; ++i) {
     double sum = 0.;
     for (std::int32_t k = probe.start[i]; k < probe.start[i + 1]; ++k) {
@@ -29,6 +31,7 @@ void read_probes(const Model& model, const State& state, const Outputs& outputs,
       sum += probe.value[k] * value_at(model, state, at);
     }
     value[i] = probe.rest[i] + (sum + residual_of_probe(model, i, forces, count));
+    if (probe.along[i] != 0) value[i] += gone;
   }
 }
 

@@ -31,9 +31,9 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
   int count = 0;
   for (std::int32_t i = 0; i < model.loads; ++i)
     forces[count++] =
-        rail_force(model, model.load[i].kind, outputs.load_x[i], outputs.load_force[i]);
+        rail_force(model, model.load[i].kind, outputs.load_place[i], outputs.load_force[i]);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    forces[count++] = rail_force(model, model.wheelset[i / 2].kind[i % 2], outputs.wheel_x[i],
+    forces[count++] = rail_force(model, model.wheelset[i / 2].kind[i % 2], outputs.wheel_place[i],
                                  -outputs.wheel_force[i]);
   return count;
 }

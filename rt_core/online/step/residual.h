@@ -10,7 +10,7 @@ struct RailForce {
   double force;  // N, up positive
 };
 
-/// An element and its xi for a place along the undeformed rail, m; clipped to the rail.
+/// An element and its xi for a place along the model's elements, m; clipped to them.
 RailForce rail_force(const Model& model, std::int32_t kind, double x, double force) noexcept;
 
 /// Vertical forces of all loads, then all wheels, as published.

@@ -1,7 +1,9 @@
 #include "online/step/step.h"
 
+#include "online/model/course.h"
 #include "online/step/couple.h"
 #include "online/step/float_mode.h"
+#include "online/step/follow.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/wheel.h"
@@ -11,7 +13,9 @@ namespace railstep {
 
 namespace {
 
-Configuration standing(const State& s) noexcept { return {s.u, {s.u, s.v}}; }
+Configuration standing(const Model& model, const State& s) noexcept {
+  return {s.u, {s.u, s.v}, passed(model, s.steps)};
+}
 
 /// u*, v*: where the scheme goes without this step's acceleration, of bodies and banded lines.
 void predict(const Model& model, const State& s, Workspace& w) noexcept {
@@ -118,7 +122,8 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
     out.wheel_force_mean[i] = out.wheel_impulse[i] / (model.scheme.dt * model.steps_per_frame);
     if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
     out.wheel_gap[i] = met.gap[i];
-    out.wheel_x[i] = met.x[i];
+    out.wheel_x[i] = met.x[i] + passed(model, s.steps + 1);
+    out.wheel_place[i] = met.x[i];
     out.wheel_on_rail[i] = met.on_rail[i];
   }
 }
@@ -134,6 +139,7 @@ void collect(const SystemResult& met, Outputs& out) noexcept {
 }
 
 void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
+  follow_traffic(model, state.steps + 1, state, w);
   predict(model, state, w);
   forces(model, state.steps + 1, w.solved, w.imaginary);
   if (model.condensed != 0)
@@ -184,8 +190,9 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const PlacedLoad at = place(model, model.load[i], state.steps);
     outputs.load_x[i] = at.x;
+    outputs.load_place[i] = at.place;
     outputs.load_force[i] = at.force;
-    outputs.load_deflection[i] = at.on_rail ? deflection(model, at, standing(state)) : 0.;
+    outputs.load_deflection[i] = at.on_rail ? deflection(model, at, standing(model, state)) : 0.;
     if (!at.on_rail) outputs.status = outputs.status | Status::off_rail;
   }
   RailForce force[kMaxLoads + kMaxWheels];
@@ -196,9 +203,10 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     const RailForce& own = force[model.loads + i];
     outputs.wheel_rail_z[i] = 0.;
     if (!outputs.wheel_on_rail[i]) continue;
-    outputs.wheel_rail_z[i] = axis_height(model, i % 2, own.element, own.xi, standing(state)) +
-                              residual_displacement(model, force, count, model.loads + i) +
-                              own.force * (residual_axis(model, own) - residual_under(model, own));
+    outputs.wheel_rail_z[i] =
+        axis_height(model, i % 2, own.element, own.xi, standing(model, state)) +
+        residual_displacement(model, force, count, model.loads + i) +
+        own.force * (residual_axis(model, own) - residual_under(model, own));
   }
   outputs.first_bad_unknown = first_bad(model, state);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
@@ -208,7 +216,7 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
   start_frame(model, outputs);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     WheelContact sides[2];
-    find_contacts(model, model.wheelset[b], standing(state), sides);
+    find_contacts(model, model.wheelset[b], standing(model, state), sides);
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
       const WheelContact& at = sides[side];
@@ -216,7 +224,8 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
           state.wheel_force[i];
       outputs.wheel_gap[i] = -at.penetration;
       outputs.wheel_on_rail[i] = at.on_rail;
-      outputs.wheel_x[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+      outputs.wheel_place[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+      outputs.wheel_x[i] = outputs.wheel_place[i] + passed(model, state.steps);
     }
   }
   publish(model, state, outputs);

@@ -76,7 +76,7 @@ double track_compliance(const Model& model, const Workspace& w, const Coupling& 
 
 double track_motion(const Model& model, const State& s, const Workspace& w, const Coupling& c,
                     int i) noexcept {
-  const Configuration seen = located_on(s, w);
+  const Configuration seen = located_on(model, s, w);
   if (model.condensed != 0)
     return modes_dot(row_of(model, w, i), {w.solved, w.imaginary}, model.bodies) -
            modes_dot(row_of(model, w, i), seen.modes, model.bodies);

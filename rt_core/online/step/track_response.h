@@ -1,11 +1,12 @@
 #pragma once
+#include "online/model/course.h"
 #include "online/step/coupling.h"
 
 namespace railstep {
 
 /// Configuration at which the contacts of a step are located.
-inline Configuration located_on(const State& s, const Workspace& w) noexcept {
-  return {w.scaled, {s.u, s.v}};
+inline Configuration located_on(const Model& model, const State& s, const Workspace& w) noexcept {
+  return {w.scaled, {s.u, s.v}, passed(model, s.steps + 1)};
 }
 
 /// Solves banded lines for their own right-hand side (in workspace.solved[0]) and all lines for a

@@ -146,7 +146,9 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   // contact at the true shapes' nearest points does not.
   const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length +
                    (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
-  const Irregularity off = irregularity(model, w, side, at.normal, x + ahead, p[0] + ahead);
+  const double rolled = (now.passed + model.endless.origin) + p[0];
+  const Irregularity off =
+      irregularity(model, w, side, at.normal, (x + now.passed) + ahead, rolled + ahead);
   fill_row(shape, off.rail_rise, at);
   at.turn = .5 * (q[5] - q[7]);
   const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);

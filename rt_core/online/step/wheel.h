@@ -22,7 +22,7 @@ struct WheelContact {
 
 /// What irregularities add to the penetration along a normal, m, and its rise over x. To first
 /// order: the normal is that of the true shapes.
-/// @param x       of the contact along the rail, m
+/// @param x       of the contact along the track, m
 /// @param rolled  distance that the wheel has gone, m
 struct Irregularity {
   double depth, rise;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "online/model/course.h"
 #include "online/step/couple.h"
 #include "online/step/table.h"
 
@@ -15,8 +16,11 @@ constexpr int kGuided[2] = {0, 5};  // x and yaw
 /// leaves 1/(1 + this) of the violation.
 constexpr double kPenalty = 1e3;
 
-double target(const WheelsetModel& w, int guided, double time) noexcept {
-  return guided == 0 ? w.speed * time : 0.;
+/// Of a guided coordinate at a step's end; x counts from the start, or from the last bay border.
+double target(const Model& model, const WheelsetModel& w, int guided, std::int64_t step) noexcept {
+  if (guided != 0) return 0.;
+  return model.endless.bays == 0 ? w.speed * (static_cast<double>(step) * model.scheme.dt)
+                                 : within_bay(model, step);
 }
 
 /// Forces other than contact and guide: weight, tables and the gyroscopic terms of an axisymmetric
@@ -51,8 +55,10 @@ void move_body(const WheelsetModel& set, int b, const Coupling& c, const double*
 
 }  // namespace
 
-void free_wheelsets(const Model& model, double time, const Workspace& w, Coupling& c) noexcept {
+void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
+                    Coupling& c) noexcept {
   const double kg = model.scheme.kg, kv = model.scheme.kv;
+  const double time = static_cast<double>(step) * model.scheme.dt;
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     const double* p = w.u_star + set.first;
@@ -64,7 +70,7 @@ void free_wheelsets(const Model& model, double time, const Workspace& w, Couplin
       c.wheelset[b].free[k] = p[k] + c.wheelset[b].compliance[k] * force[k];
     }
     for (const int k : kGuided) {
-      const double goal = target(set, k, time), rate = k == 0 ? set.speed : 0.;
+      const double goal = target(model, set, k, step), rate = k == 0 ? set.speed : 0.;
       if (set.guide == Guide::augmented_lagrangian) {
         // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
         const double penalty = kPenalty * kg * set.mass[k];
@@ -121,8 +127,8 @@ std::int32_t guide_turns(const Model& model) noexcept {
   return cap;
 }
 
-bool move_wheelsets(const Model& model, double time, State& s, Workspace& w, const Coupling& c,
-                    double& violation) noexcept {
+bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& w,
+                    const Coupling& c, double& violation) noexcept {
   bool settled = true;
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
@@ -130,7 +136,7 @@ bool move_wheelsets(const Model& model, double time, State& s, Workspace& w, con
     move_body(set, b, c, s.multiplier + 2 * b, p);
     for (int i = 0; i < 2; ++i) {
       const int k = kGuided[i];
-      const double miss = p[k] - target(set, k, time);
+      const double miss = p[k] - target(model, set, k, step);
       if (std::fabs(miss) > violation) violation = std::fabs(miss);
       if (set.guide != Guide::augmented_lagrangian) continue;
       s.multiplier[2 * b + i] += kPenalty * model.scheme.kg * set.mass[k] * miss;

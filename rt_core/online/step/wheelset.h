@@ -8,7 +8,8 @@ namespace railstep {
 
 /// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
 /// guide does not give way at all: g = [x'' - 2 alpha (v - x') - beta^2 (u - x)] at the step's end.
-void free_wheelsets(const Model& model, double time, const Workspace& w, Coupling& c) noexcept;
+void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
+                    Coupling& c) noexcept;
 
 /// What a unit force at wheel j adds to the approach of wheel i through a wheelset that bears both.
 double wheelset_compliance(const Coupling& c, int i, int j) noexcept;
@@ -27,8 +28,8 @@ std::int32_t guide_turns(const Model& model) noexcept;
 /// Moves the wheelsets under the contact forces and corrects the guides' multipliers.
 /// @param violation  raised to the largest of the guides, m or rad
 /// @returns whether every guide is kept to its tolerance
-bool move_wheelsets(const Model& model, double time, State& s, Workspace& w, const Coupling& c,
-                    double& violation) noexcept;
+bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& w,
+                    const Coupling& c, double& violation) noexcept;
 
 /// Whether a wheel that closes now on its rail will have left it within 10 steps. A mass m that
 /// meets a Hertz contact C at speed v stays for T = 2.9433 (5 m / 4 C)^0.4 v^-0.2 (Goldsmith,

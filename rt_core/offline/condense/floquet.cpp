@@ -1,0 +1,308 @@
+#include "offline/condense/floquet.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+#include "offline/irregularity/turn.h"
+
+namespace railstep {
+
+namespace {
+
+/// e^(2 pi i t), the same bits on every machine.
+std::complex<double> phase(double t) {
+  const Turn at = turn(t);
+  return {at.cosine, at.sine};
+}
+
+/// One unknown of a bay, and its mirror image about the seat at the bay's start.
+struct CellUnknown {
+  int at;        // among the line's unknowns, in bay 0; later bays follow at equal steps
+  int mirror;    // index of its image among the cell's
+  bool is_next;  // the image lies a bay further back: nodes between the seats
+  bool on_seat;  // it is its own image, at the bay's start
+  double sign;   // of the image: -1 along x
+};
+
+bool flips_along(int k) { return k == 0 || k == 3 || k == 6; }  // r_x, a_x, b_x
+bool flips_along(SleeperMotion motion) {
+  return motion == kAlongX || motion == kYaw || motion == kPitch;
+}
+
+/// Whether unknown k of a node is one of its own: b_y of a section that does not strain is its a_z.
+bool is_own(const Line& line, int k) { return !(line.rigid_section && k == 7); }
+
+/// The unknowns of every bay, in the same order; [bays][unknowns of a bay].
+std::vector<std::vector<int>> cells_of(const Track& ring, const Line& line) {
+  const int per_bay = 2 * ring.elements_per_bay;
+  std::vector<std::vector<int>> cells(static_cast<std::size_t>(ring.bays));
+  for (int bay = 0; bay < ring.bays; ++bay) {
+    std::vector<int>& cell = cells[static_cast<std::size_t>(bay)];
+    const auto add = [&](int unknown) {
+      if (unknown >= 0) cell.push_back(unknown);
+    };
+    for (const int rail : {0, 1}) {
+      if (rail == 1 && line.mirrored) continue;
+      for (int node = 0; node < per_bay; ++node)
+        for (int k = 0; k < 9; ++k)
+          if (is_own(line, k)) add(line.unknown(rail, bay * per_bay + node, k));
+    }
+    for (const int unknown : line.sleeper_unknown_of[static_cast<std::size_t>(bay)]) add(unknown);
+  }
+  return cells;
+}
+
+/// The unknowns of bay 0 with their images, in the order of cells_of().
+std::vector<CellUnknown> mirrored_cell(const Track& ring, const Line& line) {
+  const int per_bay = 2 * ring.elements_per_bay;
+  std::vector<CellUnknown> cell;
+  for (const int rail : {0, 1}) {
+    if (rail == 1 && line.mirrored) continue;
+    for (int node = 0; node < per_bay; ++node)
+      for (int k = 0; k < 9; ++k) {
+        const int unknown = line.unknown(rail, node, k);
+        const int image = line.unknown(rail, node == 0 ? 0 : per_bay - node, k);
+        if (unknown >= 0 && is_own(line, k))
+          cell.push_back({unknown, image, node != 0, node == 0, flips_along(k) ? -1. : 1.});
+      }
+  }
+  const auto& sleeper = line.sleeper_unknown_of[0];
+  for (std::size_t motion = 0; motion < sleeper.size(); ++motion)
+    if (sleeper[motion] >= 0)
+      cell.push_back({sleeper[motion], sleeper[motion], false, true,
+                      flips_along(static_cast<SleeperMotion>(motion)) ? -1. : 1.});
+  for (CellUnknown& own : cell)
+    own.mirror = static_cast<int>(
+        std::find_if(cell.begin(), cell.end(),
+                     [&](const CellUnknown& other) { return other.at == own.mirror; }) -
+        cell.begin());
+  return cell;
+}
+
+/// A(k) = sum A_d e^(i k d) of the blocks between bay 0 and its neighbours.
+class Blocks {
+ public:
+  Blocks(const Eigen::SparseMatrix<double>& A, const std::vector<std::vector<int>>& cells) {
+    const std::size_t n = cells[0].size();
+    const std::size_t bay[3] = {cells.size() - 1, 0, 1};
+    for (int d = 0; d < 3; ++d) {
+      Eigen::MatrixXd& block = block_[d];
+      block.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+          block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+              A.coeff(cells[0][i], cells[bay[d]][j]);
+    }
+  }
+  /// T' A(k) T, real where T turns every vector until it is its own conjugate image.
+  Eigen::MatrixXd real(std::complex<double> step, const Eigen::MatrixXcd& T) const {
+    const Eigen::MatrixXcd A =
+        std::conj(step) * block_[0] + block_[1].cast<std::complex<double>>() + step * block_[2];
+    const Eigen::MatrixXcd turned = T.adjoint() * A * T;
+    if (!(turned.imag().norm() <= 1e-9 * turned.norm()))
+      throw std::invalid_argument("a bay of a ring is not its own mirror image about its seat");
+    return .5 * (turned.real() + turned.real().transpose());
+  }
+
+ private:
+  Eigen::MatrixXd block_[3];
+};
+
+/// Columns that mirroring and conjugating leave as they are, a unitary basis. At k = 0 and k = pi
+/// each is real or imaginary.
+Eigen::MatrixXcd turned_basis(const std::vector<CellUnknown>& cell, double m_over_n) {
+  const std::complex<double> i(0., 1.), half = phase(.5 * m_over_n), whole = phase(m_over_n);
+  const auto n = static_cast<Eigen::Index>(cell.size());
+  Eigen::MatrixXcd T = Eigen::MatrixXcd::Zero(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const CellUnknown& own = cell[static_cast<std::size_t>(j)];
+    const Eigen::Index image = own.mirror;
+    if (image == j) {
+      const std::complex<double> at = own.on_seat ? 1. : half;
+      T(j, j) = own.sign > 0. ? at : i * at;
+    } else if (j < image) {
+      const double part = std::sqrt(.5);
+      T(j, j) = part;
+      T(image, j) = own.sign * part * whole;
+      T(j, image) = i * part;
+      T(image, image) = -i * own.sign * part * whole;
+    }
+  }
+  return T;
+}
+
+/// One real system of a wave number: some columns of T, and the modes they make.
+struct Wave {
+  Eigen::MatrixXcd T;
+  Basis basis;
+  DampedModes modes;
+};
+
+Line small_line(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen::MatrixXd& K) {
+  Line line{};
+  line.mass = M.sparseView();
+  line.damping = C.sparseView(1., 0.);
+  line.stiffness = K.sparseView();
+  return line;
+}
+
+/// Eigenvalues 1/omega^2, which a massless unknown leaves finite.
+Eigen::VectorXd softness(const Line& line) {
+  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(
+             Eigen::MatrixXd(line.mass), Eigen::MatrixXd(line.stiffness), Eigen::EigenvaluesOnly)
+      .eigenvalues();
+}
+
+/// How many modes each of the systems of one k keeps: the lowest of all together.
+std::vector<int> shares(const std::vector<Line>& systems, const ModalLimit& limit) {
+  std::vector<std::pair<double, std::size_t>> all;
+  const double least =
+      std::isfinite(limit.highest_hz) ? std::pow(2. * M_PI * limit.highest_hz, -2) : 0.;
+  for (std::size_t s = 0; s < systems.size(); ++s)
+    for (const double soft : softness(systems[s]))
+      if (soft > 1e-30 && soft >= least) all.emplace_back(-soft, s);
+  std::sort(all.begin(), all.end());
+  std::vector<int> count(systems.size(), 0);
+  for (std::size_t i = 0; i < all.size() && i < static_cast<std::size_t>(limit.most); ++i)
+    ++count[all[i].second];
+  return count;
+}
+
+/// Columns of T that are real (or imaginary) at k = 0 and k = pi.
+Eigen::MatrixXcd of_class(const Eigen::MatrixXcd& T, bool imaginary) {
+  std::vector<Eigen::Index> chosen;
+  for (Eigen::Index j = 0; j < T.cols(); ++j)
+    if ((T.col(j).real().norm() < T.col(j).imag().norm()) == imaginary) chosen.push_back(j);
+  Eigen::MatrixXcd result(T.rows(), static_cast<Eigen::Index>(chosen.size()));
+  for (std::size_t j = 0; j < chosen.size(); ++j)
+    result.col(static_cast<Eigen::Index>(j)) = T.col(chosen[j]);
+  return result;
+}
+
+/// Builds a ring's modes wave by wave.
+class Builder {
+ public:
+  Builder(const Track& ring, const Line& line, const ModalLimit& limit)
+      : bays_(ring.bays),
+        unknowns_(line.unknowns()),
+        limit_{static_cast<int>(std::lround(static_cast<double>(limit.most) / ring.bays)),
+               limit.highest_hz},
+        cells_(cells_of(ring, line)),
+        cell_(mirrored_cell(ring, line)),
+        mass_(line.mass, cells_),
+        damping_(line.damping, cells_),
+        stiffness_(line.stiffness, cells_) {}
+
+  RingModes build() {
+    for (int m = 0; 2 * m <= bays_; ++m) add(m);
+    return gathered();
+  }
+
+ private:
+  struct Placed {  // a wave on the ring: its real or its imaginary part
+    Basis basis;   // shapes over the ring
+    DampedModes modes;
+    int partner;  // among the placed
+    std::complex<double> turn;
+  };
+
+  void add(int m) {
+    const double t = static_cast<double>(m) / bays_;
+    const Eigen::MatrixXcd T = turned_basis(cell_, t);
+    const bool alone = m == 0 || 2 * m == bays_;
+    std::vector<Eigen::MatrixXcd> parts = {T};
+    if (alone) parts = {of_class(T, false), of_class(T, true)};
+    std::vector<Line> systems;
+    systems.reserve(parts.size());
+    for (const Eigen::MatrixXcd& part : parts)
+      systems.push_back(small_line(mass_.real(phase(t), part), damping_.real(phase(t), part),
+                                   stiffness_.real(phase(t), part)));
+    const std::vector<int> count = shares(systems, limit_);
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+      if (count[s] == 0 && systems[s].damping.norm() == 0.) continue;
+      const ModalLimit own{count[s], std::numeric_limits<double>::infinity()};
+      Wave wave{parts[s], modal_basis(systems[s], own), {}};
+      wave.modes = damped_modes(wave.basis, systems[s].damping);
+      const int first = static_cast<int>(placed_.size());
+      if (alone) {
+        place(wave, m, s == 1, std::sqrt(1. / bays_), first);
+      } else {
+        place(wave, m, false, std::sqrt(2. / bays_), first + 1);
+        place(wave, m, true, std::sqrt(2. / bays_), first);
+      }
+    }
+  }
+
+  void place(const Wave& wave, int m, bool imaginary, double scale, int partner) {
+    Placed own{{wave.basis.omega, Eigen::MatrixXd::Zero(unknowns_, wave.basis.omega.size())},
+               wave.modes,
+               partner,
+               phase(static_cast<double>(m) / bays_)};
+    if (imaginary) own.turn = std::conj(own.turn);
+    const Eigen::MatrixXcd x = wave.T * wave.basis.shapes;
+    for (int bay = 0; bay < bays_; ++bay) {
+      const std::int64_t turned = static_cast<std::int64_t>(m) * bay % bays_;
+      const Eigen::MatrixXcd at = x * phase(static_cast<double>(turned) / bays_);
+      const std::vector<int>& cell = cells_[static_cast<std::size_t>(bay)];
+      for (std::size_t i = 0; i < cell.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        own.basis.shapes.row(cell[i]) =
+            scale * (imaginary ? Eigen::MatrixXd(at.imag()) : Eigen::MatrixXd(at.real())).row(row);
+      }
+    }
+    placed_.push_back(std::move(own));
+  }
+
+  RingModes gathered() const {
+    Eigen::Index kept = 0, modes = 0;
+    std::vector<int> first;  // mode of each of the placed
+    for (const Placed& own : placed_) {
+      first.push_back(static_cast<int>(modes));
+      kept += own.basis.omega.size();
+      modes += own.modes.rate.size();
+    }
+    RingModes all;
+    all.basis = {Eigen::VectorXd(kept), Eigen::MatrixXd(unknowns_, kept)};
+    all.modes = {Eigen::VectorXcd(modes), Eigen::MatrixXcd::Zero(kept, modes),
+                 Eigen::MatrixXd::Zero(kept, kept)};
+    all.cosine.resize(modes);
+    all.sine.resize(modes);
+    Eigen::Index row = 0, column = 0;
+    for (const Placed& own : placed_) {
+      const Eigen::Index rows = own.basis.omega.size(), columns = own.modes.rate.size();
+      all.basis.omega.segment(row, rows) = own.basis.omega;
+      all.basis.shapes.middleCols(row, rows) = own.basis.shapes;
+      all.modes.rate.segment(column, columns) = own.modes.rate;
+      all.modes.shape.block(row, column, rows, columns) = own.modes.shape;
+      all.modes.damping.block(row, row, rows, rows) = own.modes.damping;
+      // u(b + 1): Re e^(ik) (Re, Im) of x e^(ikb), the sine's part with the other sign
+      all.cosine.segment(column, columns).setConstant(own.turn.real());
+      all.sine.segment(column, columns).setConstant(own.turn.imag());
+      for (Eigen::Index k = 0; k < columns; ++k)
+        all.partner.push_back(first[static_cast<std::size_t>(own.partner)] + static_cast<int>(k));
+      row += rows;
+      column += columns;
+    }
+    for (std::size_t k = 0; k < all.partner.size(); ++k)
+      if (all.partner[k] == static_cast<int>(k)) all.sine[static_cast<Eigen::Index>(k)] = 0.;
+    return all;
+  }
+
+  int bays_, unknowns_;
+  ModalLimit limit_;
+  std::vector<std::vector<int>> cells_;
+  std::vector<CellUnknown> cell_;
+  Blocks mass_, damping_, stiffness_;
+  std::vector<Placed> placed_;
+};
+
+}  // namespace
+
+RingModes ring_modes(const Track& ring, const Line& line, const ModalLimit& limit) {
+  return Builder(ring, line, limit).build();
+}
+
+}  // namespace railstep

@@ -1,0 +1,11 @@
+#pragma once
+#include "online/model/model.h"
+
+namespace railstep {
+
+/// The course of traffic that goes `bays_per_step` a step, 0 to below 1. Where that is p/q to its
+/// own rounding, q at most 2^20, it goes p bays in q steps to the bit; else in 2^-62 of a bay.
+/// Throws std::invalid_argument at 1 bay a step and beyond.
+Course course_of(double bays_per_step);
+
+}  // namespace railstep

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "offline/pack/course.h"
+#include "offline/pack/pack.h"
+#include "offline/track/decay_length.h"
+#include "offline/track/statics.h"
+
+namespace railstep {
+
+namespace {
+
+/// The one speed of all that runs, m/s.
+double speed_of(const Traffic& traffic) {
+  std::vector<double> speeds;
+  for (const MovingLoad& load : traffic.loads) speeds.push_back(load.speed);
+  for (const Wheelset& set : traffic.wheelsets) speeds.push_back(set.speed);
+  for (const double speed : speeds)
+    if (speed != speeds[0])
+      throw std::invalid_argument("on a track without end all loads and wheelsets have one speed");
+  return speeds.empty() ? 0. : speeds[0];
+}
+
+/// From the farthest place behind to that ahead, m, x = 0 included.
+std::pair<double, double> span_of(const Traffic& traffic) {
+  std::pair<double, double> span{0., 0.};
+  const auto take = [&](double x) {
+    span.first = std::min(span.first, x);
+    span.second = std::max(span.second, x);
+  };
+  for (const MovingLoad& load : traffic.loads) take(load.start);
+  for (const Wheelset& set : traffic.wheelsets) take(set.start);
+  return span;
+}
+
+std::string too_short(const Track& track, double span, double decay) {
+  std::ostringstream text;
+  text << (track.ring ? "the ring" : "the window") << " of a track without end is "
+       << track.length() << " m long; accepted are " << span << " m of traffic and "
+       << (track.ring ? "a decay length of " : "on either side a decay length of ") << decay
+       << " m: more bays";
+  return text.str();
+}
+
+}  // namespace
+
+void PackedModel::add_endless(const Track& track, const Traffic& traffic,
+                              const PackOptions& options) {
+  if (track.ring != options.modal.has_value())
+    throw std::invalid_argument(
+        "a track without end is a ring where it is condensed, and a window in full order");
+  const double bay = track.bay_length;
+  const auto [first, last] = span_of(traffic);
+  Endless& e = model_.endless;
+  e = {track.bays, track.elements_per_bay, bay, options.endless->behind * bay,
+       course_of(speed_of(traffic) * options.scheme.dt / bay)};
+  // What runs goes on by up to a bay before the track is passed on. The ends of a window are to
+  // stay at rest; on a ring the traffic is not to meet itself.
+  const double decay = decay_length(track), behind = e.origin + first,
+               before = track.length() - (e.origin + last + bay);
+  const bool room = track.ring ? behind + before >= decay && behind >= bay && before >= bay
+                               : behind >= decay && before >= decay;
+  if (!room) throw std::invalid_argument(too_short(track, (last - first + bay), decay));
+}
+
+BayShift PackedModel::ring_shift(const RingModes& ring, int padded) {
+  const auto n = static_cast<std::size_t>(padded);
+  std::vector<std::int32_t> from(n, 0);
+  std::vector<double> own(n, 0.), other(n, 0.);
+  for (std::size_t k = 0; k < ring.partner.size(); ++k) {
+    from[k] = ring.partner[k];
+    own[k] = ring.cosine[static_cast<Eigen::Index>(k)];
+    other[k] = ring.sine[static_cast<Eigen::Index>(k)];
+  }
+  return {keep(std::move(from)), keep(std::move(own)), keep(std::move(other)),
+          keep(std::vector<double>(n, 0.))};
+}
+
+namespace {
+
+/// The unknown a bay ahead of each of a line's, itself where there is none.
+std::vector<std::int32_t> next_bay(const Track& track, const Line& line, std::size_t padded) {
+  std::vector<std::int32_t> from(padded);
+  for (std::size_t i = 0; i < padded; ++i) from[i] = static_cast<std::int32_t>(i);
+  const auto link = [&](int here, int ahead) {
+    if (here >= 0 && ahead >= 0) from[static_cast<std::size_t>(here)] = ahead;
+  };
+  const int per_bay = 2 * track.elements_per_bay;
+  for (const int rail : {0, 1})
+    for (int node = 0; node + per_bay < track.nodes(); ++node)
+      for (int k = 0; k < 9; ++k)
+        link(line.unknown(rail, node, k), line.unknown(rail, node + per_bay, k));
+  for (std::size_t seat = 0; seat + 1 < line.sleeper_unknown_of.size(); ++seat)
+    for (std::size_t motion = 0; motion < kSleeperMotions; ++motion)
+      link(line.sleeper_unknown_of[seat][motion], line.sleeper_unknown_of[seat + 1][motion]);
+  return from;
+}
+
+/// Where a line's weight leaves it; padded.
+Eigen::VectorXd rest_of(const Track& track, const Line& line, std::size_t padded, double gravity) {
+  Eigen::VectorXd rest = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(padded));
+  if (gravity == 0.) return rest;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
+  rest.head(line.unknowns()) = factor.solve(weight(track, line, gravity));
+  return rest;
+}
+
+}  // namespace
+
+/// Displacements from rest under the weight are passed on; the bay at the front comes in at rest.
+BayShift PackedModel::window_shift(const Track& track, const Line& line, int padded,
+                                   double gravity) {
+  const auto n = static_cast<std::size_t>(padded);
+  std::vector<std::int32_t> from = next_bay(track, line, n);
+  const Eigen::VectorXd rest = rest_of(track, line, n, gravity);
+  std::vector<double> other(n, 0.), fill(n, 0.);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool moves = from[i] != static_cast<std::int32_t>(i);
+    other[i] = moves ? 1. : 0.;
+    fill[i] = rest[static_cast<Eigen::Index>(i)] - (moves ? rest[from[i]] : 0.);
+  }
+  return {keep(std::move(from)), keep(std::vector<double>(n, 0.)), keep(std::move(other)),
+          keep(std::move(fill))};
+}
+
+}  // namespace railstep

@@ -1,0 +1,38 @@
+#pragma once
+#include "online/model/model.h"
+
+namespace railstep {
+
+inline constexpr std::int64_t kBay = std::int64_t{1} << 62;  // a bay in a Course's fractions
+
+/// Whole bays gone at a step, and the part of the next one in 2^-62.
+struct Gone {
+  std::int64_t bays, part;
+};
+
+/// Of a step >= 0; without rounding. Cannot overflow: a remainder of 2^62 steps at most, each less
+/// than a bay, is below 2^124.
+inline Gone gone_at(const Course& course, std::int64_t step) noexcept {
+  __extension__ using Wide = unsigned __int128;
+  const std::int64_t periods = step / course.period, rest = step % course.period;
+  const Wide parts = static_cast<Wide>(rest) * static_cast<Wide>(course.advance);
+  return {periods * course.bays + static_cast<std::int64_t>(parts >> 62),
+          static_cast<std::int64_t>(parts & static_cast<Wide>(kBay - 1))};
+}
+
+/// Of the traffic within its bay at a step, m: 0 to below bay_length, or 0 on a track with ends.
+inline double within_bay(const Model& model, std::int64_t step) noexcept {
+  if (model.endless.bays == 0) return 0.;
+  // The leading 53 bits, so that the quotient is below 1.
+  const std::int64_t part = gone_at(model.endless.course, step).part >> 9;
+  return static_cast<double>(part) * 0x1p-53 * model.endless.bay_length;
+}
+
+/// What to add to a place along the model's elements for the distance along the track, m.
+inline double passed(const Model& model, std::int64_t step) noexcept {
+  const Endless& e = model.endless;
+  if (e.bays == 0) return 0.;
+  return static_cast<double>(gone_at(e.course, step).bays) * e.bay_length - e.origin;
+}
+
+}  // namespace railstep

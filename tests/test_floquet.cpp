@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "endless.h"
+#include "offline/condense/floquet.h"
+#include "offline/track/statics.h"
+
+using namespace railstep;
+
+namespace {
+
+/// All directions, two rails, so that lines couple bending, twist and stretch.
+Track full_ring(int bays) {
+  Track t = ring_of(endless_track(bays, 2, 2));
+  t.unknowns = Unknowns::full;
+  t.support.stiffness = {50e6, 50e6, 120e6};
+  t.support.damping = {10e3, 10e3, 30e3};
+  t.support.roll_stiffness = .3e6;
+  t.support.height_z = -.085;
+  t.sleeper = Sleeper{300., 169., {20e6, 20e6, 50e6}, {30e3, 30e3, 80e3}};
+  return t;
+}
+
+double largest(const Eigen::MatrixXd& A) { return A.size() == 0 ? 0. : A.cwiseAbs().maxCoeff(); }
+
+}  // namespace
+
+TEST_CASE("waves of all wave numbers have the frequencies of the whole ring") {
+  // two ways to the eigenvalues of one matrix; lowest omega^2 over highest is 1e-7, rounding 1e-16
+  // of the highest: 1e-9 of omega^2, 1e-8 with room
+  for (const int bays : {7, 8})
+    for (const Track& ring : {ring_of(endless_track(bays, 2)), full_ring(bays)})
+      for (const Line& line : assemble(ring)) {
+        const Modes whole = modes(line);
+        const RingModes waves =
+            ring_modes(ring, line, {6 * bays, std::numeric_limits<double>::infinity()});
+        std::vector<double> hz;
+        for (const double omega : waves.basis.omega) hz.push_back(omega / (2. * M_PI));
+        std::sort(hz.begin(), hz.end());
+        // the lowest two of every wave number are pure; dampers' shapes mix with the others
+        REQUIRE(hz.size() >= static_cast<std::size_t>(bays));
+        for (std::size_t i = 0; i < static_cast<std::size_t>(bays); ++i)
+          CHECK(std::abs(hz[i] / whole.frequency[static_cast<Eigen::Index>(i)] - 1.) < 1e-8);
+      }
+}
+
+TEST_CASE("ring modes are normal over the ring's own mass and stiffness") {
+  const Track ring = full_ring(6);
+  for (const Line& line : assemble(ring)) {
+    const RingModes waves = ring_modes(ring, line, {18, std::numeric_limits<double>::infinity()});
+    const Eigen::MatrixXd& S = waves.basis.shapes;
+    const Eigen::VectorXd square = waves.basis.omega.cwiseAbs2();
+    const Eigen::Index n = square.size();
+    // rounding, times the condition of K over the kept shapes (below 1e6)
+    CHECK(largest(S.transpose() * (line.mass * S) - Eigen::MatrixXd::Identity(n, n)) < 1e-10);
+    CHECK(largest(S.transpose() * (line.stiffness * S) - Eigen::MatrixXd(square.asDiagonal())) <
+          1e-9 * square.maxCoeff());
+    // the damping couples no two waves: what the small systems have is all there is
+    CHECK(largest(S.transpose() * (line.damping * S) - waves.modes.damping) <
+          1e-9 * std::max(1., largest(waves.modes.damping)));
+  }
+}
+
+TEST_CASE("a step back by a bay turns each wave's coordinates") {
+  const Track ring = full_ring(6);
+  for (const Line& line : assemble(ring)) {
+    const RingModes waves = ring_modes(ring, line, {18, std::numeric_limits<double>::infinity()});
+    const Eigen::MatrixXcd shape = waves.basis.shapes * waves.modes.shape;
+    Eigen::VectorXcd z(waves.modes.rate.size()), turned(z.size());
+    for (Eigen::Index k = 0; k < z.size(); ++k)
+      z[k] = {std::cos(1. + 3. * static_cast<double>(k)), std::sin(2. + static_cast<double>(k))};
+    for (Eigen::Index k = 0; k < z.size(); ++k)
+      turned[k] =
+          waves.cosine[k] * z[k] + waves.sine[k] * z[waves.partner[static_cast<std::size_t>(k)]];
+    const Eigen::VectorXd here = (shape * z).real(), back = (shape * turned).real();
+    const double scale = here.cwiseAbs().maxCoeff();
+    for (int node = 0; node + 4 < ring.nodes(); ++node)
+      for (int k = 0; k < 9; ++k)
+        if (const int at = line.unknown(line.first_rail(), node, k); at >= 0) {
+          const int ahead = line.unknown(line.first_rail(), node + 4, k);
+          CHECK(std::abs(back[at] - here[ahead]) < 1e-12 * scale);  // sums of 60 terms
+        }
+  }
+}
