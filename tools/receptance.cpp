@@ -14,8 +14,8 @@
 #include "offline/receptance/end_effect.h"
 #include "offline/receptance/exact_rail.h"
 #include "offline/receptance/full_order.h"
-#include "offline/track/fixed_port.h"
 #include "offline/track/end_zone.h"
+#include "offline/track/fixed_port.h"
 #include "sense.h"
 
 namespace railstep {

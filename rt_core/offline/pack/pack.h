@@ -67,8 +67,8 @@ struct Probe {
     double factor;  // of its force
   };
   std::vector<Press> ports = {};
-  bool along = false;                 // a place along the track, which traffic without end takes
-                                      // with it
+  bool along = false;  // a place along the track, which traffic without end takes
+                       // with it
 };
 
 /// What acts on a track, and what is read from it.

@@ -6,6 +6,7 @@
 
 #include "offline/track/assembly.h"
 #include "offline/track/end_zone.h"
+#include "offline/track/fixed_port.h"
 #include "offline/track/track.h"
 
 namespace railstep {

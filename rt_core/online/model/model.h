@@ -85,7 +85,7 @@ struct LineModel {
   Band step;                 // factor of K + kv C + kg M
   Diagonals mass, damping;   // padded to whole panels
   Modal modal;
-  BayShift shift;            // of a track without end
+  BayShift shift;  // of a track without end
   /// Of left and right rail, [elements][3][9]: unknown, or row of modal.shape; -1: not carried. One
   /// table for both where they are mirror images and where the line has one rail. Elements share
   /// their border's unknowns where the rail is not cut.
