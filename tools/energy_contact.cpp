@@ -13,8 +13,7 @@ int ports_of(const Model& model, StandingContacts& c, RailForce* port) {
   for (int i = 0; i < c.loads; ++i)
     port[i] = {model.load[i].kind, c.load[i].row.element, c.load[i].xi, c.load[i].force};
   for (int i = 0; i < c.wheels; ++i)
-    port[c.loads + i] = {model.wheelset[i / 2].kind[i % 2], c.contact[i].row.element,
-                         c.contact[i].xi, 0.};
+    port[c.loads + i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
   return c.loads + c.wheels;
 }
 

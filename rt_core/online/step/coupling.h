@@ -22,8 +22,9 @@ struct Coupling {
   PortLaw law[kMaxWheels];
   double track_free[kMaxWheels];  // penetration from the track and the frozen geometry, m
   FreeWheelset wheelset[kMaxWheelsets];
-  double force[kMaxWheels];        // N
-  double penetration[kMaxWheels];  // m
+  double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
+  double force[kMaxWheels];                           // N
+  double penetration[kMaxWheels];                     // m
 };
 
 }  // namespace railstep

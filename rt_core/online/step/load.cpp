@@ -1,13 +1,15 @@
 #include "online/step/load.h"
 
+#include "online/math/wave.h"
 #include "online/step/table.h"
+#include "online/step/travel.h"
 
 namespace railstep {
 
 PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) noexcept {
   const double time = static_cast<double>(step) * model.scheme.dt;
   PlacedLoad at{};
-  at.x = load.start + load.speed * time;
+  at.x = load.start + travelled(load.travel, time).distance;
   const double scaled = at.x / model.element_length;
   at.on_rail = scaled >= 0. && scaled <= model.elements;
   if (!at.on_rail) return at;
@@ -21,8 +23,10 @@ PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) n
     for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * load.row[k];
   const double factor =
       load.table_points == 0 ? 1. : table_value(load.table, load.table_points, time);
-  const bool taken_off = load.speed >= 0. ? at.x > load.stop : at.x < load.stop;
+  const bool taken_off = load.travel.speed >= 0. ? at.x > load.stop : at.x < load.stop;
   at.force = taken_off ? 0. : load.force * factor;
+  if (load.amplitude != 0. && !taken_off)
+    at.force += load.amplitude * sine_of_turns(load.frequency * time + load.phase);
   return at;
 }
 

@@ -4,6 +4,7 @@
 #include "online/step/float_mode.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
+#include "online/step/vehicle.h"
 #include "online/step/wheel.h"
 #include "online/system/system_step.h"
 
@@ -196,9 +197,10 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     const RailForce& own = force[model.loads + i];
     outputs.wheel_rail_z[i] = 0.;
     if (!outputs.wheel_on_rail[i]) continue;
-    outputs.wheel_rail_z[i] = axis_height(model, i % 2, own.element, own.xi, standing(state)) +
-                              residual_displacement(model, force, count, model.loads + i) +
-                              own.force * (residual_axis(model, own) - residual_under(model, own));
+    outputs.wheel_rail_z[i] =
+        axis_height(model, wheel_rail(model, i), own.element, own.xi, standing(state)) +
+        residual_displacement(model, force, count, model.loads + i) +
+        own.force * (residual_axis(model, own) - residual_under(model, own));
   }
   outputs.first_bad_unknown = first_bad(model, state);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
@@ -206,24 +208,25 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
 
 void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept {
   start_frame(model, outputs);
-  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
-    WheelContact sides[2];
-    find_contacts(model, model.wheelset[b], standing(state), sides);
-    for (int side = 0; side < 2; ++side) {
-      const int i = 2 * b + side;
-      const WheelContact& at = sides[side];
-      outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
-          state.wheel_force[i];
-      outputs.wheel_gap[i] = -at.penetration;
-      outputs.wheel_on_rail[i] = at.on_rail;
-      outputs.wheel_x[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
-    }
+  WheelContact contact[kMaxWheels];
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    find_contacts(model, model.wheelset[b], standing(state), contact + 2 * b);
+  const double time = static_cast<double>(state.steps) * model.scheme.dt;
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    find_vehicle_contacts(model, model.vehicle[v], time, standing(state), contact);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
+    outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
+        state.wheel_force[i];
+    outputs.wheel_gap[i] = -contact[i].penetration;
+    outputs.wheel_on_rail[i] = contact[i].on_rail;
+    outputs.wheel_x[i] = contact[i].x;
   }
   publish(model, state, outputs);
   RailForce force[kMaxLoads + kMaxWheels];
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
+    if (outputs.wheel_on_rail[i])
+      outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
 }
 
 }  // namespace railstep

@@ -139,9 +139,10 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
   cross(arm, at.normal, lever);
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
-  const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
-  const Irregularity off = irregularity(model, w, side, at.normal, x, p[0]);
+  at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+  const Irregularity off = irregularity(model, w.tread[side], side, at.normal, at.x, p[0]);
   at.penetration = (w.radius - gap) + off.depth;
+  at.irregular = off.depth;
   at.rise = off.rise;
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
   at.body_row[3] = cy * lever[0] + sy * lever[1];
@@ -152,16 +153,16 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
 
 }  // namespace
 
-Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int side,
+Irregularity irregularity(const Model& model, const SignalModel& tread, int rail,
                           const double* normal, double x, double rolled) noexcept {
-  const SignalValue tread = signal_at(wheelset.tread[side], rolled);
-  Irregularity sum{tread.value, tread.slope};
+  const SignalValue round = signal_at(tread, rolled);
+  Irregularity sum{round.value, round.slope};
   for (std::int32_t i = 0; i < model.signals; ++i) {
-    const RailSignal& rail = model.signal[i];
-    if (rail.rail != side) continue;
-    const SignalValue at = signal_at(rail.signal, x);
-    sum.depth += normal[rail.direction] * at.value;
-    sum.rise += normal[rail.direction] * at.slope;
+    const RailSignal& own = model.signal[i];
+    if (own.rail != rail) continue;
+    const SignalValue at = signal_at(own.signal, x);
+    sum.depth += normal[own.direction] * at.value;
+    sum.rise += normal[own.direction] * at.slope;
   }
   return sum;
 }
