@@ -8,6 +8,7 @@
 #include "model_run.h"
 #include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
+#include "offline/vehicle/kinds.h"
 #include "sections.h"
 
 using namespace railstep;
@@ -101,4 +102,84 @@ TEST_CASE("Yang and Yau's sprung mass has its figure", "[vehicle]") {
   }
   CHECK_THAT(largest.value, WithinRel(2.4073e-3, 5e-4));
   CHECK_THAT(largest.at, WithinAbs(.4123, 1e-3));
+}
+
+namespace {
+
+/// Largest and last of the differences between a run and the modal solution that goes with it, over
+/// a crossing from the ground to the ground.
+struct Compared {
+  double midspan = 0., force = 0., body = 0.;  // largest difference: m, N, m
+  double largest_midspan = 0., static_force = 0., largest_body = 0.;
+};
+
+Compared crossing(const Track& beam, const RunningVehicle& v, int modes, double dt, double until) {
+  ModelRun run = from_rest(beam, {.vehicles = {v}}, {.scheme = generalised_alpha(dt, 1.)});
+  const double k = v.contact == WheelContactKind::linear ? v.stiffness : 1e10;
+  ModalCrossing exact(beam, modes, v.vehicle, v.start, v.speed, k, v.damping);
+  Compared c;
+  c.static_force = run.state.wheel_force[0];
+  const double rest = run.state.u[run.model().vehicle[0].first];
+  while (run.time() < until) {
+    run.step();
+    exact.step(dt);
+    const double body = run.state.u[run.model().vehicle[0].first];
+    const Eigen::VectorXd force = exact.forces();
+    c.midspan = std::max(c.midspan, std::abs(midspan(run) + exact.midspan()));
+    c.largest_midspan = std::max(c.largest_midspan, std::abs(exact.midspan()));
+    c.body = std::max(c.body, std::abs(body - exact.body(0)));
+    c.largest_body = std::max(c.largest_body, std::abs(exact.body(0) - rest));
+    for (int i = 0; i < force.size(); ++i)
+      c.force = std::max(c.force, std::abs(run.outputs.wheel_force[i] - force[i]));
+  }
+  return c;
+}
+
+/// The Manchester benchmark's, of one rail.
+const BogieData kBogie{.frame_mass = 1307.5,
+                       .frame_inertia = 738.,
+                       .wheel_mass = 906.5,
+                       .wheelbase = 2.56,
+                       .axles = 2,
+                       .primary_stiffness = 1.22e6,
+                       .primary_damping = 4e3,
+                       .carried = 8000.};
+const CarData kCar{.bogie = {1307.5, 738., 906.5, 2.56, 2, 1.22e6, 4e3},
+                   .body_mass = 16000.,
+                   .body_inertia = 9.85e5,
+                   .bogie_distance = 19.,
+                   .secondary_stiffness = 4.3e5,
+                   .secondary_damping = 2e4};
+
+RunningVehicle on_springs(const Vehicle& vehicle, double start, double speed, double k, double c) {
+  RunningVehicle v;
+  v.vehicle = vehicle;
+  v.start = start;
+  v.speed = speed;
+  v.contact = WheelContactKind::linear;
+  v.stiffness = k;
+  v.damping = c;
+  return v;
+}
+
+}  // namespace
+
+TEST_CASE("vehicles cross a beam from ground to ground as the modal solution says", "[vehicle]") {
+  const Vehicle frame = bogie(kBogie).vehicle, whole = car(kCar).vehicle;
+  struct Case {
+    RunningVehicle vehicle;
+    double until;
+  };
+  const Case cases[] = {{on_springs(point_mass(5750.).vehicle, -1., 30., 1595e3, 3e4), 27. / 30.},
+                        {on_springs(frame, -2., 50., 1e8, 0.), 30. / 50.},
+                        {on_springs(frame, -2., 50., 1e8, 1e5), 30. / 50.},
+                        {on_springs(whole, -12., 60., 1e8, 1e5), 50. / 60.}};
+  for (const Case& c : cases) {
+    const Compared found = crossing(bridge(32), c.vehicle, 20, 2e-4, c.until);
+    UNSCOPED_INFO("midspan " << found.midspan / found.largest_midspan << " of "
+                             << found.largest_midspan << " body " << found.body / found.largest_body
+                             << " of " << found.largest_body << " force "
+                             << found.force / found.static_force << " of " << found.static_force);
+    CHECK(found.midspan < 0.);
+  }
 }

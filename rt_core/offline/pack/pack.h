@@ -47,8 +47,6 @@ struct Wheelset {
   std::array<Signal, 2> tread = {};  // of the left and right wheel, over the distance rolled
 };
 
-enum class WheelContactKind { hertz, linear, bonded };
-
 /// A vehicle over one rail, as a scene gives it.
 struct RunningVehicle {
   Vehicle vehicle = {};

@@ -4,6 +4,7 @@
 
 #include "offline/contact/hertz.h"
 #include "offline/pack/pack.h"
+#include "offline/pack/travel_rows.h"
 #include "online/step/table.h"
 #include "online/step/travel.h"
 
@@ -48,10 +49,11 @@ double first_speed(const MovingLoad& load) {
   return table_value(load.speeds.data(), static_cast<std::int32_t>(load.speeds.size() / 2), 0.);
 }
 
-TravelModel PackedModel::keep_travel(double speed, const std::vector<double>& speeds) {
-  if (speeds.empty()) return {speed, 0, nullptr};
-  std::vector<double> rows;
-  double largest = 0.;
+TravelTable travel_table(double speed, const std::vector<double>& speeds) {
+  TravelTable made{{}, speed};
+  if (speeds.empty()) return made;
+  made.speed = 0.;
+  std::vector<double>& rows = made.rows;
   for (std::size_t i = 0; i < speeds.size(); i += 2) {
     const double t = speeds[i], v = speeds[i + 1];
     double gone = 0.;
@@ -61,12 +63,18 @@ TravelModel PackedModel::keep_travel(double speed, const std::vector<double>& sp
       gone = last[2] + .5 * (t - last[0]) * (last[1] + v);
     }
     rows.insert(rows.end(), {t, v, gone});
-    if (std::abs(v) > std::abs(largest)) largest = v;
+    if (std::abs(v) > std::abs(made.speed)) made.speed = v;
   }
-  const auto count = static_cast<std::int32_t>(rows.size() / 3);
-  const double at_zero = travelled({largest, count, rows.data()}, 0.).distance;
+  const double at_zero = travelled(made.model(), 0.).distance;
   for (std::size_t i = 2; i < rows.size(); i += 3) rows[i] -= at_zero;
-  return {largest, count, keep(std::move(rows))};
+  return made;
+}
+
+TravelModel PackedModel::keep_travel(double speed, const std::vector<double>& speeds) {
+  TravelTable made = travel_table(speed, speeds);
+  TravelModel packed = made.model();
+  packed.table = packed.rows == 0 ? nullptr : keep(std::move(made.rows));
+  return packed;
 }
 
 void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,

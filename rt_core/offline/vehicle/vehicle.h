@@ -4,6 +4,10 @@
 
 namespace railstep {
 
+/// How wheels hold on to the rail: by Hertz; by a spring and a damper that pull too; or so that
+/// they never leave it.
+enum class WheelContactKind { hertz, linear, bonded };
+
 /// A vehicle that bounces and pitches over one rail: rigid bodies on springs and dampers, wheels on
 /// the rail. Places are along x from the vehicle's origin, positive ahead.
 struct Vehicle {

@@ -3,6 +3,7 @@
 #include "online/step/load.h"
 #include "online/step/track_response.h"
 #include "online/step/vehicle.h"
+#include "online/step/vehicle_contact.h"
 #include "online/step/wheelset.h"
 
 namespace railstep {

@@ -4,7 +4,7 @@
 #include "online/step/float_mode.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
-#include "online/step/vehicle.h"
+#include "online/step/vehicle_contact.h"
 #include "online/step/wheel.h"
 #include "online/system/system_step.h"
 

@@ -1,9 +1,9 @@
 #include "online/step/vehicle.h"
 
-#include "online/step/load.h"
 #include "online/step/strike.h"
 #include "online/step/track_response.h"
 #include "online/step/travel.h"
+#include "online/step/vehicle_contact.h"
 
 namespace railstep {
 
@@ -37,31 +37,6 @@ void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
 /// At what part of the step the equation of motion holds.
 double held_at(const Model& model) noexcept { return model.condensed != 0 ? .5 : 1.; }
 
-/// Displacement of the track under a wheel that is on its rail.
-double under(const Model& model, const RailRow& row, const Configuration& at) noexcept {
-  double sum = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], row, at);
-  return sum;
-}
-
-/// The row of the rail's vertical displacement in the contact, or of its slope along x.
-void fill_row(const Model& model, WheelContact& at, const double* shape) noexcept {
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k)
-      at.row.coefficient[i][k] = k == 2   ? shape[i]
-                                 : k == 8 ? model.head_z[at.row.rail] * shape[i]
-                                          : 0.;
-}
-
-double slope_under(const Model& model, const WheelContact& at, const Configuration& seen) noexcept {
-  const double per_metre = 2. / model.element_length;
-  const double slope[3] = {(at.xi - .5) * per_metre, -2. * at.xi * per_metre,
-                           (at.xi + .5) * per_metre};
-  WheelContact along = at;
-  fill_row(model, along, slope);
-  return under(model, along.row, seen);
-}
-
 /// What the forces of the step before, at their new places, move the rail under a wheel by the
 /// residual flexibility.
 double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
@@ -93,56 +68,19 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
   if (model.condensed != 0) {
     const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
     double d0 = at.irregular + missed - dot(row, s.u + v.first, v.size);
-    if (at.on_rail) d0 += under(model, at.row, seen);
+    if (at.on_rail) d0 += rail_height(model, at.row, seen);
     return {per_metre, passing - per_metre * d0};
   }
   double d_star = at.irregular + missed - dot(row, w.u_star + v.first, v.size);
   double rate = -dot(row, w.v_star + v.first, v.size);
   if (at.on_rail) {
-    d_star += under(model, at.row, {w.u_star, {}});
-    rate += under(model, at.row, {w.v_star, {}});
+    d_star += rail_height(model, at.row, {w.u_star, {}});
+    rate += rail_height(model, at.row, {w.v_star, {}});
   }
   return {model.scheme.kv, passing + rate - model.scheme.kv * d_star};
 }
 
 }  // namespace
-
-void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, double time,
-                           const Configuration& at, WheelContact* contact) noexcept {
-  const double gone = travelled(vehicle.travel, time).distance;
-  const double up[3] = {0., 0., 1.};
-  for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
-    const VehicleWheel& wheel = model.vehicle_wheel[vehicle.first_wheel + k];
-    WheelContact& found = contact[2 * model.wheelsets + vehicle.first_wheel + k];
-    found = WheelContact{};
-    found.x = vehicle.start + gone + wheel.place;
-    found.row.rail = wheel.rail;
-    found.normal[2] = 1.;
-    found.z = model.head_z[wheel.rail];
-    const double scaled = found.x / model.element_length;
-    found.on_rail = scaled >= 0. && scaled <= model.elements;
-    found.on_ground = !found.on_rail;
-    double height = 0.;
-    if (found.on_rail) {
-      found.row.element = static_cast<std::int32_t>(scaled);
-      if (found.row.element == model.elements) found.row.element = model.elements - 1;
-      found.xi = 2. * (scaled - found.row.element) - 1.;
-      double shape[3];
-      shape_functions(found.xi, shape);
-      fill_row(model, found, shape);
-      height = under(model, found.row, at);
-      const Irregularity off = irregularity(model, wheel.tread, wheel.rail, up, found.x, gone);
-      found.irregular = off.depth;
-      found.rise = off.rise;
-    } else {
-      const SignalValue tread = signal_at(wheel.tread, gone);
-      found.irregular = tread.value;
-      found.rise = tread.slope;
-    }
-    found.penetration = height + found.irregular -
-                        dot(vehicle.row + k * vehicle.size, at.u + vehicle.first, vehicle.size);
-  }
-}
 
 void free_vehicles(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept {
   const double kg = model.scheme.kg, kv = model.scheme.kv, held = held_at(model);

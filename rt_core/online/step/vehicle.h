@@ -5,13 +5,6 @@ namespace railstep {
 
 // Vehicles in a step's coupled problem. Their wheels stand behind those of the wheelsets.
 
-/// Finds the contacts of a vehicle's wheels: upright, over the place that the time says. A wheel
-/// off the rail stands on the ground at the height of the rail's axis at rest.
-/// @param at       displacements of track and vehicles at which to look
-/// @param contact  [wheels] of the model; those of the vehicle are written
-void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, double time,
-                           const Configuration& at, WheelContact* contact) noexcept;
-
 /// Where each vehicle goes without contact:
 ///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 - weight.
 void free_vehicles(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
