@@ -91,6 +91,7 @@ struct ModalCrossing {
   double start, speed, stiffness, damping;  // of each contact
   Newmark run;
   double time = 0.;
+  int steps = 0;
 
   ModalCrossing(const Track& beam, int count, const Vehicle& what, double from, double v, double k,
                 double c = 0.)
@@ -119,7 +120,7 @@ struct ModalCrossing {
     return r;
   }
   void step(double dt) {
-    time += dt;
+    time = ++steps * dt;
     const Eigen::Index n = modes.count(), own = m.weight.size();
     const Eigen::MatrixXd row = rows(0), along = rows(1);
     Eigen::MatrixXd M = Eigen::MatrixXd::Identity(n + own, n + own);

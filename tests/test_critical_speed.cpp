@@ -1,11 +1,10 @@
 // A force near the critical speed of a rail on seats so close that they are a bed.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "model_run.h"
 #include "offline/pack/scheme.h"
-#include "offline/pack/start.h"
 #include "offline/track/statics.h"
 #include "sections.h"
 
@@ -27,37 +26,49 @@ Track bed(int bays) {
   return t;
 }
 
+/// A table that grows from 0 to 1 by half a cosine over a time: what rings as a force appears
+/// leaves it slowly near critical speed.
+std::vector<double> soft(double time) {
+  std::vector<double> rows;
+  for (int i = 0; i <= 40; ++i) {
+    rows.push_back(time * i / 40.);
+    rows.push_back(.5 - .5 * std::cos(M_PI * i / 40.));
+  }
+  return rows;
+}
+
+/// Mean deflection under the force over the last 5 m of its way, over the static one.
+double ratio_at(double speed, int bays) {
+  const Track track = bed(bays);
+  const double dt = .1 / speed / 3., way = track.length() - 20.;
+  ModelRun run(track,
+               {.loads = {{.start = 10.05,
+                           .speed = speed,
+                           .stop = track.length(),
+                           .force = -1e5,
+                           .table = soft(.8 * way / speed)}}},
+               {.scheme = generalised_alpha(dt, .6)});
+  double sum = 0.;
+  int count = 0;
+  while (run.time() * speed < way) {
+    run.step();
+    if (run.time() * speed < way - 5.) continue;
+    sum += run.outputs.load_deflection[0];
+    ++count;
+  }
+  const RailPoint middle{0, .5 * track.length() + .05, 0., 0., 2};
+  return sum / count / (-1e5 * Statics(bed(bays)).flexibility(middle, middle));
+}
+
 }  // namespace
 
 TEST_CASE("deflections below critical speed have their ratios to the static one", "[load]") {
   const double critical = 754.04;  // m/s, R9
   const double ratios[][2] = {{.25, 1.0329}, {.5, 1.1553}, {.75, 1.5138}, {.9, 2.2986}};
   for (const auto& [part, want] : ratios) {
-    const int bays = part < .8 ? 600 : 2000;
-    const Track track = bed(bays);
-    const double speed = part * critical, dt = .1 / speed / 8.;
-    auto packed = std::make_unique<PackedModel>(
-        track,
-        Traffic{.loads = {{.start = 10.05, .speed = speed, .stop = track.length(), .force = -1e5}}},
-        PackOptions{.scheme = generalised_alpha(dt, .6)});
-    packed->set_start(start_in_equilibrium(track, *packed, 0.));
-    ModelRun run(std::move(packed));
-    publish_start(run.model(), run.state, run.outputs);
-    const double still = run.outputs.load_deflection[0];
-    double least = 0., most = -1e9;  // over a bay, once the start has radiated away
-    const double end = (track.length() - 20.) / speed;
-    double sum = 0.;
-    int count = 0;
-    while (run.time() < end) {
-      run.step();
-      if (run.time() < end - 10. / speed) continue;
-      const double ratio = run.outputs.load_deflection[0] / still;
-      least = std::min(least == 0. ? ratio : least, ratio);
-      most = std::max(most, ratio);
-      sum += ratio;
-      ++count;
-    }
-    UNSCOPED_INFO(part << ": " << least << " to " << most << " mean " << sum / count);
-    CHECK(std::abs(sum / count / want - 1.) < .01);  // H14
+    const double found = ratio_at(part * critical, part < .8 ? 600 : 1600);
+    CAPTURE(part);
+    UNSCOPED_INFO(part << " of critical speed: " << found);
+    CHECK(std::abs(found / want - 1.) < .01);  // H14
   }
 }

@@ -58,8 +58,8 @@ Case random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::
     } else {
       c.law.push_back({log_uniform(1e9, 1e12, random), 0.0, 0.0});
     }
-    if (laws == Laws::pulling && coin(random))  // up to what bonds a wheel
-      c.law.back() = {0.0, log_uniform(1e6, 1e15, random),
+    if (laws == Laws::pulling && coin(random))
+      c.law.back() = {0.0, log_uniform(1e6, 1e10, random),
                       (coin(random) ? 1 : -1) * log_uniform(1e1, 1e5, random), true};
     c.d_free.push_back((coin(random) ? 1 : -1) * log_uniform(1e-6, 1e-2, random));
   }
@@ -247,6 +247,29 @@ TEST_CASE("a lone spring and damper is solved in one iteration, from any start",
       CHECK(got.iterations <= (start > 0.0 ? 4 : 1));
       const double want = static_cast<double>(bisect(c.W[0], c.law[0], c.d_free[0]));
       CHECK(std::abs(d - want) <= 2e-12 * std::abs(c.d_free[0]));
+    }
+  }
+}
+
+TEST_CASE("bonded ports hold what is under them, pulling where they must", "[ports]") {
+  // W f = d_free but for 1e15 N/m, a part of 1e-6 of the softest W and of 1e-4 of the hardest here.
+  std::mt19937 random(6);
+  for (int i = 0; i < 1000; ++i) {
+    Case c = random_case(1 + i % 8, 1e-8, random);
+    const auto n = static_cast<std::size_t>(c.n);
+    for (std::size_t k = 0; k < n; ++k) {
+      c.law[k] = {0.0, 1e15, 0.0, true};
+      c.W[k * n + k] += 1e-9;
+    }
+    std::vector<double> f(n, 0.0), d(n);
+    const PortResult got =
+        solve_ports(c.n, c.W.data(), c.law.data(), c.d_free.data(), f.data(), d.data());
+    REQUIRE(got.status == PortStatus::converged);
+    CHECK(got.iterations <= 2);  // linear: one, and one for its rounding
+    for (std::size_t k = 0; k < n; ++k) {
+      // what is left of a penetration: f / 1e15
+      CHECK(std::abs(d[k] - f[k] / 1e15) <= 1e-12 * length(c, f));
+      CHECK(std::abs(d[k]) <= 1e-6 * length(c, f));
     }
   }
 }
