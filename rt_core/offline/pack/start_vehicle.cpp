@@ -60,8 +60,8 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
   for (Eigen::Index i = 0; i < wheels; ++i)
     if (model.vehicle_wheel[i].contact.hertz > 0. && !(force[i] > 0.))
       throw std::invalid_argument("no equilibrium in contact: nothing presses a vehicle down");
-  bool settled = false;
-  for (int turn = 0; turn < kTurns && !settled; ++turn) {
+  bool settled = false, lifted_off = false;
+  for (int turn = 0; turn < kTurns && !settled && !lifted_off; ++turn) {
     Eigen::MatrixXd A(n + wheels, n + wheels);
     Eigen::VectorXd b(n + wheels);
     A.topLeftCorner(n, n) = all.stiffness / stiff;
@@ -91,6 +91,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       if (lifted || std::abs(taken - force[i]) > 1e-10 * force.cwiseAbs().maxCoeff())
         settled = false;
       force[i] = taken;
+      if (taken < 1e-9 * std::abs(all.weight.sum()) && lifted) lifted_off = true;
     }
   }
   if (!settled)
