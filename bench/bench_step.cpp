@@ -152,6 +152,7 @@ void step(benchmark::State& run, Unknowns unknowns) {
 }
 
 void step_vertical(benchmark::State& run) { step(run, Unknowns::vertical); }
+void step_rigid_section(benchmark::State& run) { step(run, Unknowns::rigid_section); }
 void step_full(benchmark::State& run) { step(run, Unknowns::full); }
 
 /// Condensed from two elements per bay; args are bays and modes per hundred bays. Lines that the
@@ -167,6 +168,11 @@ void step_condensed(benchmark::State& run) {
 constexpr int kTimed = 100'000;  // steps
 
 BENCHMARK(step_vertical)
+    ->ArgName("elements")
+    ->RangeMultiplier(4)
+    ->Range(4, 256)
+    ->Iterations(kTimed);
+BENCHMARK(step_rigid_section)
     ->ArgName("elements")
     ->RangeMultiplier(4)
     ->Range(4, 256)

@@ -17,14 +17,15 @@
 #include "energy_system.h"
 #include "run_report.h"
 #include "simulate.h"
+#include "vtk_record.h"
 #include "write.h"
 
 namespace railstep {
 namespace {
 
 struct RunOptions {
-  std::string input, trace, report;  // input: a scene or a model
-  std::string model;                 // full, condensed; empty: as the scene says
+  std::string input, trace, report, vtk;  // input: a scene or a model
+  std::string model;                      // full, condensed; empty: as the scene says
   std::vector<std::string> overrides;
   std::optional<double> step, duration;  // s
   bool json = false;
@@ -160,26 +161,47 @@ Exit verdict(const Simulation& run, const RunRecord& record) {
   return has(record.status, Status::nonfinite_state) ? Exit::not_reached : Exit::done;
 }
 
+/// What a run of a track leaves for ParaView, where it is asked for.
+std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
+                                    const Simulation& run, std::int64_t frames) {
+  if (o.vtk.empty()) return std::nullopt;
+  const Scene* const track = scene == nullptr ? nullptr : std::get_if<Scene>(scene);
+  if (track == nullptr)
+    throw InputError(fmt::format(
+        "--vtk draws rails, sleepers and wheels; accepted is a scene of a track without bodies, "
+        "and {} is none",
+        o.input));
+  return std::make_optional<VtkRecord>(*track, run, o.vtk, frames);
+}
+
 Exit run(const RunOptions& o) {
   if (!o.trace.empty() && o.trace == o.report)
     throw InputError(fmt::format("--trace and --report both name {}", o.trace));
   const bool artefact = is_artefact(o.input);
   if (artefact) refuse_changes(o);
+  const std::optional<AnyScene> scene =
+      artefact ? std::nullopt : std::make_optional<AnyScene>(scene_of(o));
   const auto simulation = artefact ? std::make_unique<Simulation>(std::filesystem::path(o.input))
-                                   : simulation_of(scene_of(o));
+                                   : simulation_of(*scene);
   const std::int64_t frames = frames_of(o, artefact, simulation->model());
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
+  std::optional<VtkRecord> vtk = vtk_record(o, scene ? &*scene : nullptr, *simulation, frames);
+  if (vtk) vtk->frame(0);
   RunRecord record;
   std::optional<EnergyBalance> energy;
   {
     Progress bar(has_energies(*simulation) ? 2 * frames : frames);
     record = simulate(*simulation, frames, trace ? &*trace : nullptr, !o.report.empty(),
-                      [&bar](std::int64_t done) { bar(done); });
+                      [&](std::int64_t done) {
+                        bar(done);
+                        if (vtk) vtk->frame(done);
+                      });
     energy = balance_of_run(*simulation, record, frames, bar);
   }
   if (trace) trace->finish();
+  if (vtk) vtk->finish();
   if (!o.report.empty())
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
@@ -203,6 +225,8 @@ Command add_run(CLI::App& app) {
   sub->add_option("--duration", o->duration, "simulated time, s, instead of the scene's");
   sub->add_option("--trace", o->trace, "write a row a frame (CSV)");
   sub->add_option("--report", o->report, "write a page with plots (HTML; needs gnuplot)");
+  sub->add_option("--vtk", o->vtk,
+                  "write rails, sleepers and wheels at 101 times into this folder, for ParaView");
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

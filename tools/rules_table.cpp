@@ -19,6 +19,8 @@ std::string coupling_place(Coupling coupling) {
       return "centroid";
     case Coupling::axis:
       return "reference line";
+    case Coupling::none:
+      return "none";
     case Coupling::section:
       break;
   }

@@ -20,8 +20,8 @@ RailEnds read_ends(const Table& t) {
 
 TrackScene read_track(const Table& t) {
   TrackScene track;
-  track.unknowns =
-      t.choice("unknowns", {"full", "vertical"}) == 0 ? Unknowns::full : Unknowns::vertical;
+  constexpr Unknowns kUnknowns[] = {Unknowns::full, Unknowns::rigid_section, Unknowns::vertical};
+  track.unknowns = kUnknowns[t.choice("unknowns", {"full", "rigid-section", "vertical"})];
   track.rails = static_cast<int>(t.integer("rails", 1, 2, 2));
   track.bays = t.integer("bays", 1, std::int64_t{1} << 53);
   track.bay = t.number("bay_m", between(0.05, 5.0));
@@ -32,17 +32,17 @@ TrackScene read_track(const Table& t) {
   constexpr RailModel kModels[] = {RailModel::linearised, RailModel::nonlinear,
                                    RailModel::timoshenko};
   track.model = kModels[t.choice("model", {"linearised", "nonlinear", "timoshenko"}, 0)];
-  if (track.model == RailModel::nonlinear && track.unknowns == Unknowns::vertical)
+  if (track.model == RailModel::nonlinear && track.unknowns != Unknowns::full)
     t.refuse("model",
              "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
              "unknowns = \"full\"");
   track.linearised_under_weight = t.choice("linearised_at", {"rest", "weight"}, 0) == 1;
-  if (track.linearised_under_weight && track.unknowns == Unknowns::vertical)
+  if (track.linearised_under_weight && track.unknowns != Unknowns::full)
     t.refuse("linearised_at",
              "linearised_at = \"weight\" couples sag and stretch; accepted with "
              "unknowns = \"full\"");
   track.reference_line = read_reference_line(t);
-  if (track.reference_line != ReferenceLine::centroid && track.unknowns == Unknowns::vertical)
+  if (track.reference_line != ReferenceLine::centroid && track.unknowns != Unknowns::full)
     t.refuse("reference_line",
              "off the centroid nodes move along x as the rail bends; accepted is reference_line = "
              "\"centroid\", or unknowns = \"full\"");
@@ -55,9 +55,10 @@ void check_size(const Table& t, const TrackScene& track) {
   const double elements = static_cast<double>(track.rails) * static_cast<double>(track.bays) *
                           static_cast<double>(track.elements_per_bay);
   if (elements <= static_cast<double>(kMostElements)) return;
-  const bool full = track.unknowns == Unknowns::full;
-  const double unknowns = elements * (full ? 18.0 : 4.0);  // two nodes an element
-  const double bandwidth = full ? 54.0 : 12.0;
+  constexpr double kPerNode[] = {9.0, 6.0, 2.0};  // full, rigid section, vertical
+  const double per_node = kPerNode[static_cast<int>(track.unknowns)];
+  const double unknowns = elements * 2.0 * per_node;  // two nodes an element
+  const double bandwidth = 6.0 * per_node;
   t.refuse("bays",
            fmt::format("bays = {} makes {:.0f} elements, about {:.3g} bytes; accepted are "
                        "at most {} elements",

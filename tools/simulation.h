@@ -29,6 +29,8 @@ class Simulation {
   const std::vector<std::byte>& block() const { return block_; }
   /// What the block was made of, matrices and all; null for a model file, which carries none.
   const PackedModel* packed() const { return built_ ? built_->packed.get() : nullptr; }
+  /// Of a scene of a track alone: where packed() is not null.
+  const Track& track() const { return built_->track; }
   /// The system that is stepped, with its names; null where it is a track.
   const BuiltSystem* system() const { return system_.get(); }
   /// Of a trace: time_s, then those of every load, wheel, sensor and support.

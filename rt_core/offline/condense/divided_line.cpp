@@ -135,7 +135,7 @@ Superelement::Rows DividedLine::rail_row(const Functional::OnRail& point, int at
   const std::vector<int>& carried = own.carried();
   for (Eigen::Index i = 0; i < row.size(); ++i) {
     const int k = carried[static_cast<std::size_t>(i) % carried.size()];
-    if (flips_in_mirror(line_, at.rail, k)) row[i] = -row[i];
+    row[i] *= sign_of(line_, at.rail, k);
   }
   row *= point.factor * line_.rail_factor[static_cast<std::size_t>(at.rail)];
   return own.condense(row.transpose());

@@ -7,7 +7,7 @@ namespace railstep {
 std::vector<int> carried_unknowns(const Line& line, int rail) {
   std::vector<int> found;
   for (int k = 0; k < 9; ++k)
-    if (line.unknown(rail, 1, k) >= 0) found.push_back(k);
+    if (line.unknown(rail, 1, k) >= 0 && !(line.rigid_section && k == 7)) found.push_back(k);
   return found;
 }
 

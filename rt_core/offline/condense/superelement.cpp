@@ -7,12 +7,30 @@ namespace railstep {
 
 namespace {
 
+/// Coefficients over nodes whose sections do not strain: b_y = -a_z.
+void tie_sections(Eigen::Ref<Vector27, 0, Eigen::InnerStride<>> row) {
+  for (int node = 0; node < 27; node += 9) row[node + 5] -= row[node + 7];
+}
+
+Vector27 carried_row(const Track& track, double xi, double y, double z, int direction) {
+  Vector27 row = point_row(xi, y, z, direction);
+  if (track.unknowns == Unknowns::rigid_section) tie_sections(row);
+  return row;
+}
+
+/// Over what an element of the track carries.
+Matrix27 stiffness(const Track& track, int rail, double length) {
+  Matrix27 K = element_matrices(track.bar(rail).section, track.law(rail), length).stiffness;
+  if (track.unknowns != Unknowns::rigid_section) return K;
+  for (int i = 0; i < 27; ++i) tie_sections(K.col(i));
+  for (int i = 0; i < 27; ++i) tie_sections(K.row(i).transpose());
+  return K;
+}
+
 /// Stiffness of `parts` elements in a row over the carried unknowns, nodes in order.
 Eigen::MatrixXd chain_stiffness(const Track& track, int rail, const std::vector<int>& carried,
                                 int parts) {
-  const Matrix27 K =
-      element_matrices(track.bar(rail).section, track.law(rail), track.element_length() / parts)
-          .stiffness;
+  const Matrix27 K = stiffness(track, rail, track.element_length() / parts);
   const int d = static_cast<int>(carried.size());
   Eigen::MatrixXd chain = Eigen::MatrixXd::Zero((2 * parts + 1) * d, (2 * parts + 1) * d);
   for (int part = 0; part < parts; ++part)
@@ -27,7 +45,7 @@ Eigen::MatrixXd chain_stiffness(const Track& track, int rail, const std::vector<
 }  // namespace
 
 Superelement::Superelement(const Track& track, int rail, std::vector<int> carried, int parts)
-    : parts_(parts), carried_(std::move(carried)) {
+    : track_(track), parts_(parts), carried_(std::move(carried)) {
   const Eigen::MatrixXd chain = chain_stiffness(track, rail, carried_, parts);
   const int n = static_cast<int>(chain.rows()), d = static_cast<int>(carried_.size());
   for (int i = 0; i < n; ++i) (i < d || i >= n - d ? ends_ : inner_).push_back(i);
@@ -40,7 +58,7 @@ Superelement::Superelement(const Track& track, int rail, std::vector<int> carrie
 Eigen::VectorXd Superelement::row(double place, double y, double z, int direction) const {
   const int d = static_cast<int>(carried_.size());
   const int part = std::min(static_cast<int>(place), parts_ - 1);
-  const Vector27 local = point_row(2. * (place - part) - 1., y, z, direction);
+  const Vector27 local = carried_row(track_, 2. * (place - part) - 1., y, z, direction);
   Eigen::VectorXd result = Eigen::VectorXd::Zero((2 * parts_ + 1) * d);
   for (int i = 0; i < 3 * d; ++i)
     result[2 * part * d + i] = local[9 * (i / d) + carried_[static_cast<std::size_t>(i % d)]];

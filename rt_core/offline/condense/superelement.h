@@ -17,7 +17,9 @@ class Superelement {
   };
 
   /// One element of a rail of the track divided into `parts`.
-  /// @param carried unknowns of a node, 0 to 8, ascending; d of them
+  /// @param track  must outlive it
+  /// @param carried unknowns of a node, 0 to 8, ascending; d of them. Of a section that does not
+  ///                strain 5 is its roll, and 7 is not among them
   Superelement(const Track& track, int rail, std::vector<int> carried, int parts);
 
   int parts() const { return parts_; }
@@ -36,6 +38,7 @@ class Superelement {
   Eigen::MatrixXd held(const Rows& a, const Rows& b) const;
 
  private:
+  const Track& track_;
   int parts_;
   std::vector<int> carried_, ends_, inner_;
   Eigen::LDLT<Eigen::MatrixXd> factor_;  // of the inner nodes' stiffness

@@ -182,6 +182,7 @@ void add_uncoupled(const Sum& sum, const BeamLaw& law, const std::array<StrainRo
 
 /// Dv = c [2 nu 1 1; 1 2 nu 1; 1 1 2 nu].
 void add_coupling(const Sum& sum, const BeamLaw& law, const std::array<StrainRow, 6>& rows) {
+  if (law.rule.coupling == Coupling::none) return;
   const double nu = law.material.poisson;
   const double c = law.material.young * nu / ((1. + nu) * (1. - 2. * nu));
   if (law.rule.coupling == Coupling::section) {

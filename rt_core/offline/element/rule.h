@@ -14,7 +14,8 @@ struct Material {
 enum class Coupling {
   centroid,  // on the axis through the centroid, wherever the reference line lies
   axis,      // on the reference line, as Eq. 18 reads
-  section    // over the section: the unsplit law, which locks (Poisson locking)
+  section,   // over the section: the unsplit law, which locks (Poisson locking)
+  none       // left out: for sections that cannot strain, which it would stiffen
 };
 
 /// How the shear strains 2E12 and 2E13 are weighted over the section.

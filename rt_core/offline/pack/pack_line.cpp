@@ -168,6 +168,7 @@ void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions
     packed.rail_factor[rail] =
         rail < track.rails ? own.line.rail_factor[static_cast<std::size_t>(rail)] : 0.;
   packed.mirrored = own.line.mirrored ? 1 : 0;
+  packed.rigid_section = own.line.rigid_section ? 1 : 0;
   model_.unknowns += packed.size;
   model_.line[model_.lines++] = packed;
   lines_.push_back(std::move(own));

@@ -40,8 +40,8 @@ class SeatRows {
   Row roll(const PadPoint& at) const {
     Row row;
     for_nodes(at, [&](int node, double shape) {
-      push(row, line_.unknown(rail_, node, 5), .5 * shape);
-      push(row, line_.unknown(rail_, node, 7), -.5 * shape);
+      push_node(row, node, 5, .5 * shape);
+      push_node(row, node, 7, -.5 * shape);
     });
     push(row, sleeper_[kRoll], -share_ * 2. / spacing_);
     return row;
@@ -71,13 +71,17 @@ class SeatRows {
     const auto n = shape(at.xi);
     for (int i = 0; i < 3; ++i) visit(2 * at.element + i, n[static_cast<std::size_t>(i)]);
   }
+  /// The left rail's unknowns stand for both in a mirror: none changes sign there.
+  void push_node(Row& row, int node, int k, double coefficient) const {
+    push(row, line_.unknown(rail_, node, k), sign_of(line_, 0, k) * coefficient);
+  }
   Row rail_moves(const PadPoint& at, std::size_t d, double y) const {
     const int k = static_cast<int>(d);
     Row row;
     for_nodes(at, [&](int node, double shape) {
-      push(row, line_.unknown(rail_, node, k), shape);
-      push(row, line_.unknown(rail_, node, 3 + k), y * shape);
-      push(row, line_.unknown(rail_, node, 6 + k), pad_.height_z * shape);
+      push_node(row, node, k, shape);
+      push_node(row, node, 3 + k, y * shape);
+      push_node(row, node, 6 + k, pad_.height_z * shape);
     });
     return row;
   }
@@ -100,7 +104,7 @@ void add_pad(const Track& track, Assembly& part, int border, const SeatRows& row
       }
     // Rails without roll unknowns leave the sleeper's roll alone; a rail whose end is held does
     // not.
-    if (track.unknowns != Unknowns::full) continue;
+    if (track.unknowns == Unknowns::vertical) continue;
     const Row roll = rows.roll(at);
     Assembly::add(part.stiffness, roll, at.part * pad.roll_stiffness);
     Assembly::add(part.damping, roll, at.part * pad.roll_damping);

@@ -13,6 +13,7 @@ namespace {
 
 std::vector<int> carried(Unknowns unknowns) {
   if (unknowns == Unknowns::vertical) return {2, 6};
+  if (unknowns == Unknowns::rigid_section) return {0, 1, 2, 3, 5, 6};
   return {0, 1, 2, 3, 4, 5, 6, 7, 8};
 }
 
@@ -22,8 +23,8 @@ void number_sleeper(const Track& track, int border, Assembly& part) {
   const std::optional<SleeperBody> body = track.seat(border).sleeper;
   if (!body) return;
   auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
-  const bool full = track.unknowns == Unknowns::full;
-  const bool along_x = full && body->moves[0], along_y = full && body->moves[1];
+  const bool space = track.unknowns != Unknowns::vertical;
+  const bool along_x = space && body->moves[0], along_y = space && body->moves[1];
   const bool means = part.mirror != Mirror::antisymmetric;
   const bool turns = part.mirror == Mirror::antisymmetric || part.rails.size() == 2;
   if (along_x && means) sleeper[kAlongX] = part.count++;
@@ -48,6 +49,9 @@ void number(const Track& track, Assembly& part) {
         if (!holds(track, node, k))
           part.line.unknown_of[static_cast<std::size_t>(rail)][static_cast<std::size_t>(node)]
                               [static_cast<std::size_t>(k)] = part.count++;
+    if (part.line.rigid_section)
+      for (Line::RailUnknowns& table : part.line.unknown_of)
+        table[static_cast<std::size_t>(node)][7] = table[static_cast<std::size_t>(node)][5];
     if (node % per_bay == 0) number_sleeper(track, node / per_bay, part);
   }
 }
@@ -75,15 +79,18 @@ void add_elements(const Track& track, int rail, Assembly& part) {
         const int row = place[static_cast<std::size_t>(i)],
                   column = place[static_cast<std::size_t>(j)];
         if (row < 0 || column < 0) continue;
-        if (element.mass(i, j) != 0.) part.mass.emplace_back(row, column, element.mass(i, j));
+        const double sign = sign_of(part.line, 0, i % 9) * sign_of(part.line, 0, j % 9);
+        if (element.mass(i, j) != 0.)
+          part.mass.emplace_back(row, column, sign * element.mass(i, j));
         if (element.stiffness(i, j) != 0.)
-          part.stiffness.emplace_back(row, column, element.stiffness(i, j));
+          part.stiffness.emplace_back(row, column, sign * element.stiffness(i, j));
       }
   }
 }
 
 Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails) {
   Assembly part{mirror, std::move(rails)};
+  part.line.rigid_section = track.unknowns == Unknowns::rigid_section;
   number(track, part);
   for (const int rail : part.rails) add_elements(track, rail, part);
   for (int seat = 0; seat <= track.bays; ++seat) add_seat(track, part, seat);

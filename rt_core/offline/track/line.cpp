@@ -15,13 +15,14 @@ Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
     const int k = i % 9;
     const int unknown = line.unknown(point.rail, 2 * element + i / 9, k);
     if (unknown < 0 || local[i] == 0. || factor == 0.) continue;
-    row.coeffRef(unknown) += factor * (flips_in_mirror(line, point.rail, k) ? -local[i] : local[i]);
+    row.coeffRef(unknown) += factor * (sign_of(line, point.rail, k) * local[i]);
   }
   return row;
 }
 
-bool flips_in_mirror(const Line& line, int rail, int k) {
-  return line.mirrored && rail == 1 && (k == 1 || k == 3 || k == 5 || k == 7);
+double sign_of(const Line& line, int rail, int k) {
+  const bool flips = line.mirrored && rail == 1 && (k == 1 || k == 3 || k == 5 || k == 7);
+  return flips != (line.rigid_section && k == 7) ? -1. : 1.;
 }
 
 Eigen::SparseVector<double> sleeper_row(const Track& track, const Line& line, int rail, int seat,
@@ -53,8 +54,7 @@ Eigen::VectorXd state_of(const Track& track, const Line& line, const TrackState&
     for (const auto& node : line.unknown_of[side])
       for (int k = 0; k < 9; ++k, ++i)
         if (const int unknown = node[static_cast<std::size_t>(k)]; unknown >= 0)
-          u[unknown] += (flips_in_mirror(line, rail, k) ? -1. : 1.) * line.rail_factor[side] *
-                        state.rail[side][i];
+          u[unknown] += sign_of(line, rail, k) * line.rail_factor[side] * state.rail[side][i];
     if (state.sleeper[side].size() == 0) continue;
     for (int seat = 0; seat <= track.bays; ++seat)
       for (int d = 0; d < 4; ++d)

@@ -65,7 +65,7 @@ int TimoshenkoStatics::number_unknowns() {
       const RailEnd end = node == 0               ? track_.ends[0]
                           : node + 1 == x_.size() ? track_.ends[1]
                                                   : RailEnd::free;
-      const bool carried = track_.unknowns == Unknowns::full || k == 2 || k == 4;
+      const bool carried = track_.unknowns != Unknowns::vertical || k == 2 || k == 4;
       number_.push_back(carried && !holds_coordinate(end, k) ? count++ : -1);
     }
   return count;

@@ -10,8 +10,10 @@
 
 namespace railstep {
 
-/// Which unknowns a node carries: all nine, or [r_z, b_x] for vertical bending alone.
-enum class Unknowns { full, vertical };
+/// Which unknowns a node carries: all nine; six, of a section that turns but does not strain
+/// (a_y = b_z = 0, roll a_z = -b_y, and no Poisson coupling, which would then stiffen the rail); or
+/// [r_z, b_x] for vertical bending alone.
+enum class Unknowns { full, rigid_section, vertical };
 
 /// What holds a rail's end node. Pinned: its position (all three), so that the rail carries axial
 /// force, and its roll (a_z and b_y); the slopes a_x and b_x of bending stay free. Clamped: all
@@ -71,7 +73,9 @@ struct Track {
   }
   BeamLaw law(int rail = 0) const {
     const RailBar own = bar(rail);
-    return beam_law(own.section, own.material, rule, axis_z, own.axial_force);
+    ElementRule own_rule = rule;
+    if (unknowns == Unknowns::rigid_section) own_rule.coupling = Coupling::none;
+    return beam_law(own.section, own.material, own_rule, axis_z, own.axial_force);
   }
   Seat seat(int border) const;
 };
@@ -123,6 +127,7 @@ struct Line {
   std::vector<std::array<int, kSleeperMotions>> sleeper_unknown_of;
   std::array<double, 2> rail_factor;  // weight of the line in left, right; 0: it lacks that rail
   bool mirrored;                      // right rail: lateral unknowns change sign
+  bool rigid_section;                 // a_z and b_y are one unknown, the roll a_z
 
   int unknowns() const { return static_cast<int>(stiffness.rows()); }
   /// Number of coordinate k = 0..8 of a rail's node among the line's unknowns, -1 where not
@@ -143,9 +148,10 @@ std::vector<Line> assemble(const Track& track);
 /// it spreads a unit force at that point. Throws std::out_of_range off the rail.
 Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point);
 
-/// Whether unknown k of a node changes sign on that rail: the y components (r_y, a_x, a_z, b_y) of
-/// a mirrored right rail.
-bool flips_in_mirror(const Line& line, int rail, int k);
+/// What unknown k of a rail's node is per unknown of the line, before the rail's weight in it: -1
+/// for the y components (r_y, a_x, a_z, b_y) of a mirrored right rail; the other sign for b_y of a
+/// section that does not strain; else 1.
+double sign_of(const Line& line, int rail, int k);
 
 /// Coefficients of the displacement of a sleeper's end over the unknowns of one line.
 /// @param rail  0 left, 1 right: above that end

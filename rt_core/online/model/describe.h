@@ -58,6 +58,7 @@ void describe(Archive& a, Model& m, std::int32_t at) {
   a.real(line.rail_factor[0]);
   a.real(line.rail_factor[1]);
   a.count(line.mirrored, 1);
+  a.count(line.rigid_section, 1);
   a.count(line.twin, at);
   if (line.twin < at) {
     const LineModel& twin = m.line[line.twin];

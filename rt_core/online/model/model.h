@@ -63,8 +63,9 @@ struct LineModel {
   /// Of left and right rail, [nodes][9]: unknown, or row of modal.shape; -1: not carried. One table
   /// for both where they are mirror images and where the line has one rail.
   const std::int32_t* unknown_of[2];
-  double rail_factor[2];  // weight of the line in left and right rail; 0: it lacks that rail
-  std::int32_t mirrored;  // right rail: y components change sign
+  double rail_factor[2];       // weight of the line in left and right rail; 0: it lacks that rail
+  std::int32_t mirrored;       // right rail: y components change sign
+  std::int32_t rigid_section;  // a_z and b_y are one unknown, the roll a_z
 };
 
 /// How something goes along the rails: at one speed, or by a table of speeds, linear between its

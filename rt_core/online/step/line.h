@@ -25,11 +25,11 @@ double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t node, 
                    const Configuration& at) noexcept;
 
 /// The weight of a line's unknown k in a rail: y components of the mirrored right rail (r_y, a_x,
-/// a_z, b_y) change sign.
+/// a_z, b_y) change sign, and so does b_y of a section that does not strain.
 inline double weight_of(const LineModel& line, std::int32_t rail, int k) noexcept {
-  const bool flips = k == 1 || k == 3 || k == 5 || k == 7;
-  return line.mirrored != 0 && rail == 1 && flips ? -line.rail_factor[rail]
-                                                  : line.rail_factor[rail];
+  const bool flips = line.mirrored != 0 && rail == 1 && (k == 1 || k == 3 || k == 5 || k == 7);
+  return flips != (line.rigid_section != 0 && k == 7) ? -line.rail_factor[rail]
+                                                      : line.rail_factor[rail];
 }
 
 /// Vertical displacement of a rail's axis by the lines alone, m.

@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace railstep {
+
+/// What a polygon belongs to; cell array "part" of the files.
+enum class VtkPart : std::int32_t { rail, sleeper, wheel, force };
+
+/// What stands at one time, in VTK's terms: points where they rest, what moves them, and the faces
+/// between them.
+class VtkMesh {
+ public:
+  using Vector = std::array<float, 3>;
+
+  /// @returns the point's number
+  std::int32_t add_point(const Vector& rest, const Vector& displacement,
+                         const Vector& force = {0.F, 0.F, 0.F});
+  /// A face between points, in order around it.
+  void add_face(VtkPart part, const std::vector<std::int32_t>& points);
+  /// A point that shows a force, N.
+  void add_force(const Vector& at, const Vector& displacement, const Vector& force);
+  /// The two outlines of a prism, both of `sides` points from `first` and `second` on, joined by
+  /// faces and closed at its ends where asked for.
+  void add_prism(VtkPart part, std::int32_t first, std::int32_t second, std::int32_t sides,
+                 bool first_end, bool second_end);
+
+  std::size_t points() const { return rest_.size(); }
+  /// VTK XML PolyData, base64: point arrays displacement_m and force_n, cell array part.
+  std::string polydata() const;
+
+ private:
+  std::vector<Vector> rest_, displacement_, force_;
+  std::vector<std::int32_t> verts_, polys_, offsets_, part_;
+};
+
+/// A time series for ParaView: one file of each time, s, beside it.
+std::string vtk_series(const std::vector<double>& times, const std::vector<std::string>& files);
+
+}  // namespace railstep
