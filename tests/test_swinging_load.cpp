@@ -64,13 +64,13 @@ TEST_CASE("a force that swings as it crosses a beam has its modal closed form", 
   // Modes n have 2.97 n^2 Hz: 40 Hz is between the third and the fourth.
   for (const Case& c : {Case{20., 2., 0., 1, 32},
                         {50., 5., .25, 1, 32},
-                        {50., 40., -.1, 4, 128},
+                        {50., 40., -.1, 4, 96},
                         {74., 1., .6, 1, 32}}) {
     const Track track = bridge(c.elements);
     const PinnedModes modes(track, 30);  // the rest bears 30^-4
     const double w = modes.natural[static_cast<std::size_t>(2 * c.highest - 2)];
     const double time = 25. / c.speed;
-    const int steps = static_cast<int>(w * time * std::sqrt(w * time / 6e-4));
+    const int steps = static_cast<int>(w * time * std::sqrt(w * time / 12e-4));
     const double dt = time / steps;
     ModelRun run(track,
                  {.loads = {{.speed = c.speed,
@@ -88,7 +88,7 @@ TEST_CASE("a force that swings as it crosses a beam has its modal closed form", 
       largest = std::max(largest, std::abs(want));
     }
     UNSCOPED_INFO(c.speed << " m/s, " << c.frequency << " Hz: " << error / largest);
-    CHECK(error < 2.5e-4 * largest);
+    CHECK(error < 5e-4 * largest);
   }
 }
 

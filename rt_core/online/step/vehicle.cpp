@@ -43,8 +43,8 @@ double residual_before(const Model& model, const State& s, const Coupling& c, in
   double sum = c.loaded[i];
   for (int j = 0; j < c.wheels; ++j)
     if (c.contact[j].on_rail)
-      sum -= s.wheel_force[j] * (i == j ? residual_under(model, c.place[i])
-                                        : residual_between(model, c.place[j], c.place[i]));
+      sum -= s.wheel_force[j] * (i != j ? residual_between(model, c.place[j], c.place[i])
+                                        : residual_under(model, c.place[i]));
   return sum;
 }
 
