@@ -36,6 +36,10 @@ constexpr StatusText kStatus[] = {
     {Status::redundant_joint, "redundant_joint",
      "a row of a joint hangs on others and carries no force of its own: leave it out, or hold the "
      "joints by the augmented Lagrangian"},
+    {Status::large_turn, "large_turn",
+     "a rail under a wheel rolled by more than 0.14 rad, where the linear rail's roll is off by 1 "
+     "% "
+     "and more: give the pads roll stiffness, or less lateral force"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 

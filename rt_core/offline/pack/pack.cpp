@@ -165,6 +165,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (options.gravity != 0.) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
+  add_turn(track);
   set_start(start_released(*this));
 }
 

@@ -177,6 +177,14 @@ void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
 }
 
 template <typename Archive>
+void describe(Archive& a, SeatTurnModel& t, std::int32_t elements) {
+  a.count(t.elements_per_bay, kMostElements);
+  a.count(t.points, kMostPairPoints);
+  for (const double*& lever : t.lever)
+    a.reals(lever, std::int64_t{elements} * kTurnSeats * (t.points + 1));
+}
+
+template <typename Archive>
 void describe(Archive& a, ProbeModel& p, const Model& m) {
   a.count(p.count, kMostRows);
   a.integers(p.start, p.count + 1);
@@ -222,6 +230,7 @@ void describe(Archive& a, Model& m) {
     describe(a, m.signal[i].signal);
   }
   describe(a, m.residual, m.elements);
+  describe(a, m.turn, m.elements);
   describe(a, m.probe, m);
   a.reals(m.start, state_doubles(m));
 }

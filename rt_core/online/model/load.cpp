@@ -132,6 +132,11 @@ bool residual_holds(const Model& m) noexcept {
   return true;
 }
 
+bool turn_holds(const SeatTurnModel& t) noexcept {
+  return (t.lever[0] == nullptr && t.lever[1] == nullptr) ||
+         (t.elements_per_bay > 0 && t.points >= 3);
+}
+
 bool probes_hold(const Model& m) noexcept {
   const ProbeModel& p = m.probe;
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
@@ -160,7 +165,7 @@ bool holds(const Model& m) noexcept {
     if (!wheel_holds(m, i)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
-  return residual_holds(m) && probes_hold(m);
+  return residual_holds(m) && turn_holds(m.turn) && probes_hold(m);
 }
 
 bool same_bytes(const unsigned char* a, const void* b, int n) noexcept {

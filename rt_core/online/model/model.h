@@ -17,6 +17,7 @@ inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
 inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles
 inline constexpr int kMaxBodyForces = 4;
 inline constexpr int kMaxSignals = 32;   // irregularities and defects of the rails
+inline constexpr int kTurnSeats = 6;     // around a wheel, half of them on each side of its bay
 inline constexpr int kMaxPortKinds = 4;  // rails and heights at which vertical forces act
 
 // What a model may not exceed; a block that claims more is refused.
@@ -181,6 +182,16 @@ struct ResidualModel {
   PairModel pair[kMaxPortKinds][kMaxPortKinds];  // [force][displacement]
 };
 
+/// Levers of a vertical force on a railhead over the seats around it, bays to the left and right of
+/// it alike: the part of the force that a seat bears times the height of its pad over the axis (a
+/// foot: below 0). Where the rail turns over its seats the force goes down. Null pointers: not
+/// modelled.
+struct SeatTurnModel {
+  std::int32_t elements_per_bay;
+  std::int32_t points;     // intervals per element
+  const double* lever[2];  // of left and right rail, [elements][kTurnSeats][points + 1] m
+};
+
 /// Scalars of the track that a frame publishes: rest + row * [u, v] + residual * port forces.
 struct ProbeModel {
   std::int32_t count;
@@ -211,6 +222,7 @@ struct Model {
   double head_half_width[2];     // m
   const double* constant_force;  // [1 + condensed][unknowns] N, or null: the track's weight
   ResidualModel residual;
+  SeatTurnModel turn;
   ProbeModel probe;
   const double* start;  // [state_doubles] state at step 0
   std::int64_t steps;   // of the scene's run

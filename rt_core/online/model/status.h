@@ -12,6 +12,7 @@ enum class Status : std::uint32_t {
   nonfinite_state = 1u << 3,  // the state is no longer finite: Outputs name the first bad unknown
   contact_unresolved = 1u << 4,  // a wheel struck its rail for fewer than 10 steps: shorten dt
   redundant_joint = 1u << 5,     // a joint row hung on others: it carries no force of its own
+  large_turn = 1u << 6,          // a rail under a wheel rolled so far that its linear form is off
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {

@@ -2,6 +2,7 @@
 
 #include "online/step/load.h"
 #include "online/step/track_response.h"
+#include "online/step/turn.h"
 #include "online/step/vehicle.h"
 #include "online/step/vehicle_contact.h"
 #include "online/step/wheelset.h"
@@ -131,6 +132,7 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
     result.x[i] = at.x;
     result.on_rail[i] = at.on_rail;
     if (!stands(at)) result.status = result.status | Status::off_rail;
+    if (at.turn * at.turn > kLargeTurnSquared) result.status = result.status | Status::large_turn;
     if (at.cap_reached) result.status = result.status | Status::cap_reached;
     if (c.force[i] <= 0. && !c.law[i].pulls) result.status = result.status | Status::contact_lost;
   }

@@ -20,6 +20,12 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
       if (unknown < 0 || row.coefficient[i][k] == 0.) continue;
       visit(unknown, weight_of(line, row.rail, k) * row.coefficient[i][k]);
     }
+  for (std::int32_t s = 0; s < row.seats; ++s)
+    for (int k = 5; k <= 7; k += 2) {
+      const std::int32_t unknown = table[9 * row.seat[s] + k];
+      if (unknown >= 0)
+        visit(unknown, (k == 5 ? .5 : -.5) * weight_of(line, row.rail, k) * row.lever[s]);
+    }
 }
 
 }  // namespace

@@ -3,11 +3,16 @@
 
 namespace railstep {
 
-/// Displacement of a material point of one rail in one direction, over the nodes of its element:
-/// sum coefficient[i][k] q_k(node 2 element + i), q = [r, a, b] in the rail's own axes.
+/// Displacement of a material point of one rail in one direction, over the nodes of its element and
+/// the turns (a_z - b_y)/2 of its section over the seats around it:
+///   sum coefficient[i][k] q_k(node 2 element + i) + sum lever[s] turn(node seat[s]),
+/// q = [r, a, b] in the rail's own axes.
 struct RailRow {
   std::int32_t rail, element;
   double coefficient[3][9];
+  std::int32_t seats = 0;  // that matter, 0 to kTurnSeats; see step/turn.h
+  std::int32_t seat[kTurnSeats] = {};
+  double lever[kTurnSeats] = {};  // m
 };
 
 /// Displacements at which to look: u [unknowns] of banded lines and bodies, modes of condensed

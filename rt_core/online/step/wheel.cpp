@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "online/step/turn.h"
+
 namespace railstep {
 
 namespace {
@@ -57,6 +59,7 @@ void add_rest(const Model& model, int rail, Window& window) noexcept {
     q[2] += model.rail_z[rail];
     q[4] += 1.;
     q[8] += 1.;
+    keep_section(q);
   }
 }
 
@@ -98,8 +101,9 @@ void fill_row(const double* shape, WheelContact& at) noexcept {
 
 /// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
 /// then the material point of the railhead under the normal.
-WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, const double* p,
-                          const Window& window) noexcept {
+WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
+                          const Configuration& now, const Window& window) noexcept {
+  const double* const p = now.u + w.first;
   const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
   const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
   const double axle[3] = {-sy * cr, cy * cr, sr};
@@ -133,6 +137,8 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
   at.z = z_crown + model.crown_radius[side] * (n_b / length);
   if (!(std::fabs(at.y) <= model.head_half_width[side])) at.on_rail = false;
   fill_row(shape, at);
+  at.turn = .5 * (q[5] - q[7]);
+  const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
   // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
   const double arm[3] = {found.along * axle[0], found.along * axle[1], found.along * axle[2]};
   double lever[3], gap = 0.;
@@ -141,7 +147,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side, 
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   const Irregularity off = irregularity(model, w.tread[side], side, at.normal, at.x, p[0]);
-  at.penetration = (w.radius - gap) + off.depth;
+  at.penetration = (w.radius - gap) + off.depth + higher;
   at.irregular = off.depth;
   at.rise = off.rise;
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
@@ -174,7 +180,7 @@ void find_contacts(const Model& model, const WheelsetModel& wheelset, const Conf
   gather(model, wheelset.start + p[0], at, windows);
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
-    sides[side] = find_contact(model, wheelset, side, p, windows[side]);
+    sides[side] = find_contact(model, wheelset, side, at, windows[side]);
   }
 }
 

@@ -16,6 +16,7 @@ struct WheelContact {
   double normal[3];    // unit, from the rail to the axle
   double y, z;         // of the contact in the section, m from the axis
   RailRow row;         // displacement of that material point along the normal
+  double turn;         // of the rail's section there about x, rad
   double penetration;  // of that configuration, m; negative is a gap
   double body_row[6];  // d(gap)/d(coordinates) of the wheelset
   double irregular;    // what irregularities add to the penetration, m

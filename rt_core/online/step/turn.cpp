@@ -1,0 +1,53 @@
+#include "online/step/turn.h"
+
+#include "online/step/table.h"
+
+namespace railstep {
+
+namespace {
+
+/// Turn of a node's section, rad.
+double node_turn(const Model& model, std::int32_t rail, std::int32_t node,
+                 const Configuration& at) noexcept {
+  double turn = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineModel& line = model.line[l];
+    if (line.rail_factor[rail] == 0.) continue;
+    turn += .5 * weight_of(line, rail, 5) * nodal_value(line, rail, node, 5, at);
+    turn -= .5 * weight_of(line, rail, 7) * nodal_value(line, rail, node, 7, at);
+  }
+  return turn;
+}
+
+}  // namespace
+
+double add_turn(const Model& model, const Configuration& at, double turn, double xi, double y,
+                double z, const double* normal, RailRow& row) noexcept {
+  double shape[3];
+  shape_functions(xi, shape);
+  const double down = turn * (z * normal[2] + y * normal[1]);
+  for (int i = 0; i < 3; ++i) {
+    row.coefficient[i][5] -= .5 * down * shape[i];
+    row.coefficient[i][7] += .5 * down * shape[i];
+  }
+  const SeatTurnModel& seats = model.turn;
+  const double* lever = seats.lever[row.rail];
+  if (lever == nullptr) return 0.;
+  const std::int32_t bays = model.elements / seats.elements_per_bay;
+  const std::int32_t first = row.element / seats.elements_per_bay - (kTurnSeats / 2 - 1);
+  lever += static_cast<std::ptrdiff_t>(row.element) * kTurnSeats * (seats.points + 1);
+  double higher = 0.;
+  for (std::int32_t s = 0; s < kTurnSeats; ++s) {
+    if (first + s < 0 || first + s > bays) continue;
+    const std::int32_t node = 2 * seats.elements_per_bay * (first + s);
+    const double over = node_turn(model, row.rail, node, at);
+    const double arm =
+        normal[2] * over * interpolate(lever + s * (seats.points + 1), seats.points, xi);
+    row.seat[row.seats] = node;
+    row.lever[row.seats++] = arm;
+    higher += .5 * over * arm;
+  }
+  return higher;
+}
+
+}  // namespace railstep

@@ -1,0 +1,33 @@
+#pragma once
+#include "online/step/line.h"
+
+namespace railstep {
+
+// What a linear rail misses when it rolls (P-delta). A section that turns by phi = (a_z - b_y)/2
+// about x keeps its shape: the nonlinear element shortens its slopes, b_z = a_y = -phi^2/2 to
+// second order, and by that a vertical force V on the head, z above the axis, does work: V z phi
+// turns the rail on, and so does each seat's reaction R, at the foot, by R |z_foot| phi. A linear
+// rail has neither. They are added where the force acts, on the row of its displacement.
+
+/// Shortens a section's slopes by its turn. @param q  [9] r, a, b; or their change from rest
+inline void keep_section(double* q) noexcept {
+  const double turn = .5 * (q[5] - q[7]), shorter = .5 * turn * turn;
+  q[4] -= shorter;
+  q[8] -= shorter;
+}
+
+/// Adds to the row of the point (y, z) along a normal what the section's turn under it, and those
+/// over the seats around, make of it; without a turn nothing.
+/// @param turn    of the section under the point, rad
+/// @param xi      of the point in row.element
+/// @param normal  [3] unit
+/// @returns by how much the point lies higher along the normal for the turns over the seats, m; the
+///          one under the point itself is in places of which keep_section() was made
+double add_turn(const Model& model, const Configuration& at, double turn, double xi, double y,
+                double z, const double* normal, RailRow& row) noexcept;
+
+/// Square of a turn from which on the row's second order itself is off by more than 1 % of it: half
+/// of phi^2, from the series of its sine and cosine.
+inline constexpr double kLargeTurnSquared = .02;
+
+}  // namespace railstep
