@@ -11,6 +11,8 @@
 
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
+#include "offline/pack/start.h"
+#include "offline/vehicle/kinds.h"
 #include "online/step/step.h"
 
 namespace railstep {
@@ -186,6 +188,37 @@ void step_fixed_ports(benchmark::State& run) {
   run.counters["unknowns"] = scene.unknowns();
 }
 
+/// One step of 1 to 16 wheels, each a mass on a spring under its own, over 64 bays: what each adds
+/// is the slope over the wheels. No error of its own: test_moving_mass.cpp has it.
+void step_wheels(benchmark::State& run, const std::optional<ModalLimit>& modal) {
+  constexpr double dt = 50e-6;
+  Track track = peers_track(64, 2, 1, Unknowns::vertical);
+  Traffic traffic;
+  for (int i = 0; i < run.range(0); ++i) {
+    RunningVehicle v;
+    v.vehicle = sprung_mass(4000., 900., 1.2e6, 4e3).vehicle;
+    v.start = 2.5 + 2. * i;
+    traffic.vehicles.push_back(v);
+  }
+  PackedModel packed(track, traffic,
+                     PackOptions{.scheme = modal ? held_force(dt, .6) : generalised_alpha(dt, .6),
+                                 .modal = modal});
+  packed.set_start(start_in_equilibrium(track, packed, 0.));
+  const Model& model = packed.model();
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)));
+  std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(model)));
+  State state = state_on(model, memory.data());
+  Workspace workspace = workspace_on(model, scratch.data());
+  Outputs outputs{};
+  reset(model, state);
+  for (auto _ : run) benchmark::DoNotOptimize(advance_frame(model, state, workspace, outputs));
+  run.counters["force"] = outputs.wheel_force[0];
+  run.counters["iterations"] = outputs.iterations;
+}
+
+void step_wheels_banded(benchmark::State& run) { step_wheels(run, std::nullopt); }
+void step_wheels_condensed(benchmark::State& run) { step_wheels(run, ModalLimit{64, 1e9}); }
+
 constexpr int kTimed = 100'000;  // steps
 
 BENCHMARK(step_vertical)
@@ -206,6 +239,17 @@ BENCHMARK(step_condensed)
 BENCHMARK(step_fixed_ports)
     ->ArgNames({"bays", "seats", "condensed"})
     ->ArgsProduct({{40}, {0, 1, 4, 16}, {0, 1}})
+    ->Iterations(kTimed);
+
+BENCHMARK(step_wheels_banded)
+    ->ArgName("wheels")
+    ->RangeMultiplier(2)
+    ->Range(1, 16)
+    ->Iterations(kTimed);
+BENCHMARK(step_wheels_condensed)
+    ->ArgName("wheels")
+    ->RangeMultiplier(2)
+    ->Range(1, 16)
     ->Iterations(kTimed);
 
 }  // namespace

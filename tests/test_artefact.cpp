@@ -9,6 +9,7 @@
 #include "artefact.h"
 #include "build.h"
 #include "offline/pack/cost.h"
+#include "offline/vehicle/kinds.h"
 
 using namespace railstep;
 
@@ -16,8 +17,8 @@ namespace {
 
 const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 
-/// Small models of both kinds, with loads that have tables, wheelsets, irregular rails and wheels,
-/// probes and pair tables.
+/// Small models of both kinds, with loads that have tables, wheelsets, vehicles, irregular rails
+/// and wheels, probes and pair tables.
 std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
   Track track = wheels ? paper_track() : peers_pair(1);
   track.bays = 2;
@@ -39,7 +40,28 @@ std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
     traffic.irregularities = {{0, 2, fit_signal({0., 1e-5}, 1., .1, false)},
                               {1, 1, fit_signal({1e-5, 0., 2e-5}, 0., .5, true)}};
     traffic.head = {.1007375, .3, .038};
-    traffic.probes = {{.displacement = 1., .wheelset = 0, .coordinate = 2}};
+    RunningVehicle v;
+    v.vehicle = bogie({.frame_mass = 1000.,
+                       .frame_inertia = 700.,
+                       .wheel_mass = 500.,
+                       .wheelbase = .9,
+                       .axles = 2,
+                       .primary_stiffness = 1e6,
+                       .primary_damping = 1e4})
+                    .vehicle;
+    v.start = .1;  // a wheel comes from the ground
+    v.speeds = {0., 10., .01, 20.};
+    v.tread = {fit_signal({0., 1e-5, -1e-5}, 0., .3, true), {}};
+    traffic.vehicles = {v, v};
+    traffic.vehicles[1].rail = 1;
+    traffic.vehicles[1].contact = WheelContactKind::linear;
+    traffic.vehicles[1].stiffness = 1e8;
+    traffic.vehicles[1].damping = 1e4;
+    traffic.loads[0].amplitude = 1e3;
+    traffic.loads[0].frequency = 50.;
+    traffic.loads[1].speeds = {0., 10., .01, 20.};
+    traffic.probes = {{.displacement = 1., .wheelset = 0, .coordinate = 2},
+                      {.displacement = 1., .coordinate = 1, .vehicle = 1}};
   }
   traffic.probes.push_back({.rest = .1,
                             .displacement = 1.,
@@ -208,11 +230,12 @@ TEST_CASE("numbers out of range are refused though the sum is right", "[artefact
   Model model;
   REQUIRE(read(good, model).status == LoadStatus::ok);
   REQUIRE(word_of(good, counts) == model.lines);
-  // lines, loads, wheelsets, signals, elements, unknowns, condensed, bodies, steps_per_frame, steps
-  for (std::size_t i = 0; i < 10; ++i)
+  // lines, loads, wheelsets, vehicles and their wheels, signals, elements, unknowns, condensed,
+  // bodies, steps_per_frame, steps
+  for (std::size_t i = 0; i < 12; ++i)
     for (const std::int64_t value : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(),
                                      word_of(good, counts + 8 * i) + 1}) {
-      if (value > 0 && i >= 8) continue;  // more steps are a run like another
+      if (value > 0 && i >= 10) continue;  // more steps are a run like another
       Block bad = good;
       put_word(bad, counts + 8 * i, value);
       sign(bad);

@@ -24,7 +24,7 @@ struct Case {
 };
 
 /// Which laws a random case has.
-enum class Laws { contacts, springs, both };
+enum class Laws { contacts, springs, both, pulling };  // pulling: all kinds, half of them pull
 
 double log_uniform(double low, double high, std::mt19937& random) {
   return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
@@ -50,19 +50,24 @@ Case random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::
       c.W.data()[i * n + j] = compliance * sum / columns + (i == j ? own : 0.0);
     }
   for (int i = 0; i < n; ++i) {
-    const bool spring = laws == Laws::springs || (laws == Laws::both && coin(random));
+    const bool mixed = laws == Laws::both || laws == Laws::pulling;
+    const bool spring = laws == Laws::springs || (mixed && coin(random));
     if (spring) {
       const double jump = (coin(random) ? 1 : -1) * log_uniform(1e1, 1e5, random);
       c.law.push_back({0.0, log_uniform(1e6, 1e10, random), coin(random) ? jump : 0.0});
     } else {
       c.law.push_back({log_uniform(1e9, 1e12, random), 0.0, 0.0});
     }
+    if (laws == Laws::pulling && coin(random))
+      c.law.back() = {0.0, log_uniform(1e6, 1e10, random),
+                      (coin(random) ? 1 : -1) * log_uniform(1e1, 1e5, random), true};
     c.d_free.push_back((coin(random) ? 1 : -1) * log_uniform(1e-6, 1e-2, random));
   }
   return c;
 }
 
 Real force_of(const PortLaw& law, Real d) {
+  if (law.pulls) return law.slope * d + law.jump;
   if (d <= 0) return 0;
   if (law.hertz > 0.) return law.hertz * d * std::sqrt(d);
   return std::max(law.slope * d + law.jump * std::min<Real>(1, d / kJumpDepth), Real{0});
@@ -70,6 +75,7 @@ Real force_of(const PortLaw& law, Real d) {
 
 /// Root of d + w f(d) = d_free by bisection, in long double.
 Real bisect(Real w, const PortLaw& law, Real d_free) {
+  if (law.pulls) return (d_free - w * law.jump) / (1 + w * law.slope);
   if (d_free <= 0) return d_free;
   Real low = 0, high = d_free;
   for (int i = 0; i < 200; ++i) {
@@ -92,7 +98,7 @@ std::vector<Real> gauss_seidel(const Case& c) {
         if (j != i) others -= c.W[i * n + j] * f[j];
       const Real force = force_of(c.law[i], bisect(c.W[i * n + i], c.law[i], others));
       change = std::max(change, std::abs(force - f[i]));
-      largest = std::max(largest, force);
+      largest = std::max(largest, std::abs(force));
       f[i] = force;
     }
     if (change <= 1e-17L * largest) return f;
@@ -147,7 +153,7 @@ double length(const Case& c, const std::vector<T>& f) {
 }
 
 TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
-  const Laws laws = GENERATE(Laws::contacts, Laws::springs, Laws::both);
+  const Laws laws = GENERATE(Laws::contacts, Laws::springs, Laws::both, Laws::pulling);
   std::mt19937 random(2);
   int most = 0, compared = 0, histogram[kPortSweeps + 1] = {};
   double worst = 0.0;
@@ -241,6 +247,29 @@ TEST_CASE("a lone spring and damper is solved in one iteration, from any start",
       CHECK(got.iterations <= (start > 0.0 ? 4 : 1));
       const double want = static_cast<double>(bisect(c.W[0], c.law[0], c.d_free[0]));
       CHECK(std::abs(d - want) <= 2e-12 * std::abs(c.d_free[0]));
+    }
+  }
+}
+
+TEST_CASE("bonded ports hold what is under them, pulling where they must", "[ports]") {
+  // W f = d_free but for 1e15 N/m, a part of 1e-6 of the softest W and of 1e-4 of the hardest here.
+  std::mt19937 random(6);
+  for (int i = 0; i < 1000; ++i) {
+    Case c = random_case(1 + i % 8, 1e-8, random);
+    const auto n = static_cast<std::size_t>(c.n);
+    for (std::size_t k = 0; k < n; ++k) {
+      c.law[k] = {0.0, 1e15, 0.0, true};
+      c.W[k * n + k] += 1e-9;
+    }
+    std::vector<double> f(n, 0.0), d(n);
+    const PortResult got =
+        solve_ports(c.n, c.W.data(), c.law.data(), c.d_free.data(), f.data(), d.data());
+    REQUIRE(got.status == PortStatus::converged);
+    CHECK(got.iterations <= 2);  // linear: one, and one for its rounding
+    for (std::size_t k = 0; k < n; ++k) {
+      // what is left of a penetration: f / 1e15
+      CHECK(std::abs(d[k] - f[k] / 1e15) <= 1e-12 * length(c, f));
+      CHECK(std::abs(d[k]) <= 1e-6 * length(c, f));
     }
   }
 }

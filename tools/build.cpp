@@ -15,6 +15,7 @@
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
+#include "offline/pack/travel_rows.h"
 #include "offline/track/buckling.h"
 #include "sense.h"
 
@@ -26,8 +27,8 @@ void refuse_unstepped(const Scene& scene) {
   const auto refuse = [&](bool wanted, const char* what) {
     if (wanted) throw InputError(fmt::format("{}: run {}", scene.file.string(), what));
   };
-  refuse(scene.loads.empty() && scene.wheelsets.empty(),
-         "needs a [[load]] or a [[wheelset]] and the scene has neither");
+  refuse(scene.loads.empty() && scene.wheelsets.empty() && scene.vehicles.empty(),
+         "needs a [[load]], a [[wheelset]] or a [[vehicle]] and the scene has none");
   refuse(!scene.step, "and condense need a [step] and the scene has none");
   refuse(scene.track.model != RailModel::linearised,
          "and condense step the linearised rail; accepted is track.model = \"linearised\"");
@@ -53,14 +54,20 @@ std::vector<double> packed_table(const TimeTable& table) {
 std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& sections) {
   std::vector<MovingLoad> loads;
   for (const LoadScene& l : scene.loads) {
-    const double never = std::copysign(std::numeric_limits<double>::infinity(), l.speed);
+    const std::vector<double> speeds = l.speeds ? l.speeds->rows() : std::vector<double>{};
+    const double never =
+        std::copysign(std::numeric_limits<double>::infinity(), travel_table(l.speed, speeds).speed);
     loads.push_back({.rail = l.rail == Side::right ? 1 : 0,
                      .start = l.start,
                      .speed = l.speed,
                      .stop = l.stop.value_or(never),
                      .force = l.force_z,
                      .z = height_z(l.at, section_of(sections, l.rail)),
-                     .table = l.factor ? packed_table(*l.factor) : std::vector<double>{}});
+                     .table = l.factor ? packed_table(*l.factor) : std::vector<double>{},
+                     .speeds = speeds,
+                     .amplitude = l.amplitude,
+                     .frequency = l.frequency,
+                     .phase = l.phase});
   }
   return loads;
 }
@@ -92,6 +99,22 @@ std::vector<Wheelset> wheelsets_of(const Scene& scene) {
   std::vector<Wheelset> sets;
   for (const WheelsetScene& w : scene.wheelsets) sets.push_back(wheelset_of(w));
   return sets;
+}
+
+std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
+  std::vector<RunningVehicle> vehicles;
+  for (const VehicleScene& v : scene.vehicles)
+    vehicles.push_back({.vehicle = v.kind.vehicle,
+                        .rail = v.rail == Side::right ? 1 : 0,
+                        .start = v.start,
+                        .speed = v.speed,
+                        .speeds = v.speeds ? v.speeds->rows() : std::vector<double>{},
+                        .gravity = v.gravity ? kGravity : 0.,
+                        .contact = v.contact,
+                        .stiffness = v.stiffness,
+                        .damping = v.damping,
+                        .tread = treads_of(v)});
+  return vehicles;
 }
 
 Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail) {
@@ -250,11 +273,16 @@ std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) 
     columns.push_back(load.name + ".x_m");
     columns.push_back(load.name + ".deflection_z_m");
   }
+  const auto add_wheel = [&](const std::string& wheel) {
+    for (const char* quantity :
+         {"force_z_n", "force_z_mean_n", "force_z_peak_n", "impulse_z_n_s", "gap_m", "rail_z_m"})
+      columns.push_back(wheel + "." + quantity);
+  };
   for (const WheelsetScene& wheelset : scene.wheelsets)
-    for (const std::string& wheel : wheelset.wheels)
-      for (const char* quantity :
-           {"force_z_n", "force_z_mean_n", "force_z_peak_n", "impulse_z_n_s", "gap_m", "rail_z_m"})
-        columns.push_back(wheel + "." + quantity);
+    for (const std::string& wheel : wheelset.wheels) add_wheel(wheel);
+  for (const VehicleScene& vehicle : scene.vehicles)
+    for (std::size_t i = 0; i < vehicle.kind.vehicle.wheels.size(); ++i)
+      add_wheel(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
   columns.insert(columns.end(), sensors.columns.begin(), sensors.columns.end());
   return columns;
 }
@@ -268,6 +296,7 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
   std::vector<std::string> columns = columns_of(scene, sensors);
   return {{.loads = loads_of(scene, sections),
            .wheelsets = wheelsets_of(scene),
+           .vehicles = vehicles_of(scene),
            .head = head,
            .probes = std::move(sensors.probes),
            .irregularities = irregularities_of(scene),

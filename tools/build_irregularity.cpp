@@ -22,6 +22,7 @@ void check_record(const Scene& scene, const IrregularityScene& own, const RailSi
     for (const Signal& signal : *pair)
       if (!signal.coefficient.empty()) step = signal.step;
   for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(w.speed));
+  for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
   if (2. * step >= 8. * speed * scene.step->dt * (1. - 1e-12)) return;
   throw InputError(
       fmt::format("{}: rows {:.6g} m apart hold waves of {:.6g} m, passed at {:.6g} m/s in {:.3g} "
@@ -70,6 +71,12 @@ Signal signal_of(const TreadScene& d, double radius) {
   }
 }
 
+Signal signal_of_wheel(const TreadScene& d, double radius) {
+  Signal signal = signal_of(d, radius);
+  signal.start = d.first - kPi * radius;  // its middle is half a turn on
+  return signal;
+}
+
 }  // namespace
 
 std::vector<RailIrregularity> irregularities_of(const Scene& scene) {
@@ -98,9 +105,15 @@ std::array<Signal, 2> treads_of(const WheelsetScene& wheelset) {
   for (const TreadScene& d : wheelset.treads)
     for (std::size_t side = 0; side < 2; ++side) {
       if (!d.on[side]) continue;
-      treads[side] = signal_of(d, wheelset.radius);
-      treads[side].start = d.first - kPi * wheelset.radius;  // its middle is half a turn on
+      treads[side] = signal_of_wheel(d, wheelset.radius);
     }
+  return treads;
+}
+
+std::vector<Signal> treads_of(const VehicleScene& vehicle) {
+  if (vehicle.treads.empty()) return {};
+  std::vector<Signal> treads(vehicle.kind.vehicle.wheels.size());
+  for (const WheelTread& d : vehicle.treads) treads[d.wheel] = signal_of_wheel(d.shape, d.radius);
   return treads;
 }
 

@@ -5,11 +5,13 @@
 #include <iterator>
 #include <utility>
 
+#include "energy_vehicle.h"
 #include "online/model/course.h"
 #include "online/step/closing.h"
 #include "online/step/follow.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
+#include "online/step/vehicle_contact.h"
 
 namespace railstep {
 namespace {
@@ -66,6 +68,11 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
     for (int k = 0; k < 6; ++k) sum.kinetic += .5 * w.mass[k] * v[k] * v[k];
     sum.forward += .5 * w.mass[0] * w.speed * (2. * v[0] - w.speed);
   }
+  for (std::int32_t b = 0; b < model_.vehicles; ++b) {
+    const VehicleEnergy own = vehicle_energy(model_.vehicle[b], at.state);
+    sum.kinetic += own.kinetic;
+    sum.strain += own.strain;
+  }
   sum.hertz = at.contacts.hertz;
   sum.residual = at.contacts.residual;
   for (std::size_t j = 0; j < at.depth.size(); ++j)
@@ -79,9 +86,10 @@ void EnergyAccount::follow(const State& state) {
   stored_ = stored(now);
   add_lines(now);
   add_loads(now);
-  if (model_.wheelsets > 0) add_contacts(now);
+  if (wheel_count(model_) > 0) add_contacts(now);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) add_wheelset(now, b);
   for (std::int32_t j = 0; j < model_.fixed.count; ++j) add_port(now, j);
+  for (std::int32_t b = 0; b < model_.vehicles; ++b) add_vehicle(now, b);
   if (first_ && model_.condensed == 0) add_start(now);
   last_ = std::move(now);  // its views stay: a vector's memory moves with it
   first_ = false;
@@ -134,11 +142,16 @@ void EnergyAccount::add_contacts(const Standing& now) {
   const StandingContacts &before = last_.contacts, &after = now.contacts;
   double sum = residual_work(before, after) - (after.hertz - before.hertz) -
                (after.residual - before.residual);
+  double mean[kMaxWheels];
   for (int i = 0; i < after.wheels; ++i) {
-    if (!before.contact[i].on_rail || !after.contact[i].on_rail) continue;
-    sum += wheel_force(now, i) * (after.approach[i] - before.approach[i]);
+    mean[i] = wheel_force(now, i);
+    const bool lost =
+        is_of_wheelset(model_, i) && !(before.contact[i].on_rail && after.contact[i].on_rail);
+    if (!lost) sum += mean[i] * (after.approach[i] - before.approach[i]);
   }
-  flow_.loss += sum;
+  const double damped = contact_dissipation(model_, before, after, mean);
+  flow_.dissipated += damped;
+  flow_.loss += sum - damped;
 }
 
 void EnergyAccount::add_port(const Standing& now, std::int32_t j) {
@@ -184,6 +197,31 @@ double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
     }
   }
   return sum;
+}
+
+double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const {
+  const VehicleModel& v = model_.vehicle[b];
+  double sum = 0.;
+  for (const bool later : {false, true}) {
+    const Standing &at = later ? now : last_, &other = later ? last_ : now;
+    const double time = static_cast<double>(other.state.steps) * model_.scheme.dt;
+    WheelContact moved[kMaxWheels];
+    find_vehicle_contacts(model_, v, time, {at.state.u, {at.state.u, at.state.v}}, moved);
+    for (int k = 0; k < v.wheels; ++k) {
+      const int i = 2 * model_.wheelsets + v.first_wheel + k;
+      const double change = moved[i].penetration - at.contacts.approach[i];
+      sum += .5 * wheel_force(now, i) * (later ? -change : change);
+    }
+  }
+  return sum;
+}
+
+void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
+  const VehiclePassed passed = vehicle_passed(model_, model_.vehicle[b], last_.state, now.state);
+  flow_.weight += passed.weight;
+  flow_.dissipated += passed.dissipated;
+  flow_.loss += passed.loss;
+  flow_.guides += vehicle_passage(now, b);
 }
 
 double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
@@ -240,6 +278,8 @@ void EnergyAccount::add_start(const Standing& now) {
   for (std::size_t l = 0; l < lines_.size(); ++l)
     flow_.loss +=
         .5 * lines_[l].unbalanced(last_.lines[l], f.data()).dot(now.lines[l].u - last_.lines[l].u);
+  for (std::int32_t b = 0; b < model_.vehicles; ++b)
+    flow_.loss += .5 * vehicle_unbalanced(model_, model_.vehicle[b], s, now.state);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
     const WheelsetModel& w = model_.wheelset[b];
     for (int k = 1; k < 5; ++k) {  // x and yaw are guided

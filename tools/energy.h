@@ -9,9 +9,9 @@ namespace railstep {
 
 /// Energy that a state holds, J.
 struct StoredEnergy {
-  double kinetic = 0.;   // of lines and wheelsets
-  double strain = 0.;    // of lines
-  double hertz = 0.;     // sum 2/5 C d^2.5
+  double kinetic = 0.;   // of lines, wheelsets and vehicles
+  double strain = 0.;    // of lines and vehicles' springs
+  double hertz = 0.;     // sum 2/5 C d^2.5, and of linear contacts k d^2 / 2
   double residual = 0.;  // F' G_res F / 2
   double ports = 0.;     // of one-sided springs, k max(0, d)^2 / 2
   double forward = 0.;  // of kinetic: what the guided motion alone makes, m (v^2 - (v - speed)^2)/2
@@ -21,9 +21,9 @@ struct StoredEnergy {
 /// Energy that passed since the start, J.
 struct EnergyFlow {
   double loads = 0.;       // work of loads, on the material points under them
-  double weight = 0.;      // of the track's and the wheelsets' weight
+  double weight = 0.;      // of the weight of track, wheelsets and vehicles
   double forces = 0.;      // of forces on wheelsets
-  double guides = 0.;      // of the guides: they hold wheelsets at their speed
+  double guides = 0.;      // of what holds wheelsets and vehicles at their speed
   double dissipated = 0.;  // by the dampers, trapezoidal in the step
   double carriers = 0.;    // on the residual flexibility, see residual_work
   double loss = 0.;        // of the scheme, see EnergyAccount
@@ -42,6 +42,7 @@ struct EnergyFlow {
 /// alone; the multiplier would do as well but for its round-off, penalty times that of x, and the
 /// step's own normal but for a railhead that is squeezed, which it leaves by up to 1e-4 rad, and
 /// for the elements' borders. Yaw does not move; gyroscopic forces do no work while it is held.
+/// What moves a vehicle along does f da by its way alone.
 ///
 /// The loss is what the scheme itself takes out (below 0: puts in), in closed form:
 /// - of banded lines see LineEnergy::loss; of wheelsets the same without C, and 0 where forces are
@@ -95,6 +96,8 @@ class EnergyAccount {
   void add_contacts(const Standing& now);
   void add_port(const Standing& now, std::int32_t j);
   void add_wheelset(const Standing& now, std::int32_t b);
+  void add_vehicle(const Standing& now, std::int32_t b);
+  double vehicle_passage(const Standing& now, std::int32_t b) const;
   double wheel_force(const Standing& now, int wheel) const;
   double passage_work(const Standing& now, std::int32_t b) const;
   double guide_work(const Standing& now, std::int32_t b) const;

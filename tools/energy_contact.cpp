@@ -5,6 +5,7 @@
 
 #include "online/contact/ports.h"
 #include "online/model/course.h"
+#include "online/step/vehicle_contact.h"
 
 namespace railstep {
 namespace {
@@ -14,13 +15,31 @@ int ports_of(const Model& model, StandingContacts& c, RailForce* port) {
   for (int i = 0; i < c.loads; ++i)
     port[i] = {model.load[i].kind, c.load[i].row.element, c.load[i].xi, c.load[i].force};
   for (int i = 0; i < c.wheels; ++i)
-    port[c.loads + i] = {model.wheelset[i / 2].kind[i % 2], c.contact[i].row.element,
-                         c.contact[i].xi, 0.};
+    port[c.loads + i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
   return c.loads + c.wheels;
 }
 
 /// Turns after which a negative residual no longer matters: each leaves |G| dP/dd of it, 1e-2.
 constexpr int kTurns = 10;
+
+bool stands(const WheelContact& at) { return at.on_rail || at.on_ground; }
+
+/// A linear contact pulls too, and its damper's part is not in its penetration: its force is known.
+bool is_linear(const Model& model, int wheel) {
+  return !is_of_wheelset(model, wheel) && vehicle_wheel(model, wheel).contact.hertz == 0.;
+}
+double hertz_of(const Model& model, int wheel) {
+  if (is_linear(model, wheel)) return 1.;  // of a port that is never met
+  return is_of_wheelset(model, wheel) ? model.wheelset[wheel / 2].hertz[wheel % 2]
+                                      : vehicle_wheel(model, wheel).contact.hertz;
+}
+
+/// Energy in a linear contact; one without a damper has it by its force, which says it better than
+/// the small penetration of a stiff one.
+double linear_energy(const ContactModel& contact, double force, double depth) {
+  return contact.damping == 0. ? .5 * force * force / contact.stiffness
+                               : .5 * contact.stiffness * depth * depth;
+}
 
 /// Forces of the wheels by d + W f = d_free, W = G between wheels. Where G is below 0, which it may
 /// be by itself, it acts through the force of the turn before.
@@ -29,16 +48,18 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
   PortLaw law[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
   for (int i = 0; i < c.wheels; ++i) {
-    const bool on_rail = c.contact[i].on_rail;
-    law[i] = {model.wheelset[i / 2].hertz[i % 2], 0., 0.};
+    const bool on_rail = c.contact[i].on_rail && !is_linear(model, i);
+    law[i] = {hertz_of(model, i), 0., 0.};
     force[i] = 0.;
     free[i] =
         on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;
+    if (c.contact[i].on_ground && !is_linear(model, i)) free[i] = c.approach[i];
     for (int j = 0; j < c.wheels; ++j) {
       const RailForce &at = port[c.loads + i], &other = port[c.loads + j];
-      W[i * c.wheels + j] = !on_rail || !c.contact[j].on_rail ? 0.
-                            : i == j                          ? residual_under(model, at)
-                                                              : residual_between(model, other, at);
+      const bool coupled = on_rail && c.contact[j].on_rail && !is_linear(model, j);
+      W[i * c.wheels + j] = !coupled ? 0.
+                            : i == j ? residual_under(model, at)
+                                     : residual_between(model, other, at);
     }
     double& own = W[i * c.wheels + i];
     negative[i] = std::min(own, 0.);
@@ -50,9 +71,19 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
     static_cast<void>(solve_ports(c.wheels, W, law, shifted, force, d));  // as good as it gets
   }
   for (int i = 0; i < c.wheels; ++i) {
-    port[c.loads + i].force = -force[i];
+    if (is_linear(model, i)) continue;
+    port[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
     const double depth = std::max(d[i], 0.);
     c.hertz += .4 * law[i].hertz * depth * depth * std::sqrt(depth);
+  }
+}
+
+/// Penetrations of all wheels, and the energy of the linear contacts, under known forces.
+void press_linear(const Model& model, const State& state, StandingContacts& c) {
+  for (int i = 0; i < c.wheels; ++i) {
+    c.depth[i] = c.approach[i] + c.moved[c.loads + i];
+    if (is_linear(model, i))
+      c.hertz += linear_energy(vehicle_wheel(model, i).contact, state.wheel_force[i], c.depth[i]);
   }
 }
 
@@ -66,11 +97,16 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], at, c.contact + 2 * b);
-  for (int i = 0; i < c.wheels; ++i) {
-    c.approach[i] = c.contact[i].on_rail ? c.contact[i].penetration : 0.;
-  }
+  const double time = static_cast<double>(state.steps) * model.scheme.dt;
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    find_vehicle_contacts(model, model.vehicle[v], time, at, c.contact);
+  for (int i = 0; i < c.wheels; ++i)
+    c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
   RailForce port[kMaxLoads + kMaxWheels];
   const int ports = ports_of(model, c, port);
+  for (int i = 0; i < c.wheels; ++i)
+    if (is_linear(model, i) && c.contact[i].on_rail)
+      port[c.loads + i].force = -state.wheel_force[i];
   if (c.wheels > 0) press(model, c, port, ports);
   for (int i = 0; i < ports; ++i) {
     c.force[i] = port[i].force;
@@ -78,7 +114,21 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
     c.moved[i] = on_rail ? residual_displacement(model, port, ports, i) : 0.;
     c.residual += .5 * c.force[i] * c.moved[i];
   }
+  press_linear(model, state, c);
   return c;
+}
+
+double contact_dissipation(const Model& model, const StandingContacts& before,
+                           const StandingContacts& after, const double* mean_force) {
+  const double late = model.condensed != 0 ? model.scheme.theta : .5;
+  double sum = 0.;
+  for (int i = 2 * model.wheelsets; i < after.wheels; ++i) {
+    const ContactModel& contact = vehicle_wheel(model, i).contact;
+    if (contact.damping == 0.) continue;
+    const double mean = late * after.depth[i] + (1. - late) * before.depth[i];
+    sum += (mean_force[i] - contact.stiffness * mean) * (after.depth[i] - before.depth[i]);
+  }
+  return sum;
 }
 
 double residual_work(const StandingContacts& before, const StandingContacts& after) {

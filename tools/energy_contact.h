@@ -8,7 +8,7 @@ namespace railstep {
 /// Contacts and residual flexibility in a state as it stands, whatever its step held frozen. With a
 /// the approach of wheels and rails by lines and bodies, G the residual flexibility between all
 /// ports and F their vertical forces (loads P, wheels -f): w = G F, and d = a + w, f = C d^1.5 on
-/// wheels.
+/// wheels of Hertz contacts; f of the state on those that pull too.
 struct StandingContacts {
   int loads, wheels;
   PlacedLoad load[kMaxLoads];
@@ -16,11 +16,16 @@ struct StandingContacts {
   double approach[kMaxWheels];           // a, m; negative is a gap
   double force[kMaxLoads + kMaxWheels];  // F: of loads, then wheels, N
   double moved[kMaxLoads + kMaxWheels];  // w, m
-  double hertz;                          // sum 2/5 C d^2.5, J
+  double depth[kMaxWheels];              // d, m
+  double hertz;                          // sum 2/5 C d^2.5, and k d^2 / 2 of linear contacts, J
   double residual;                       // F' G F / 2, J
 };
 
 StandingContacts standing_contacts(const Model& model, const State& state);
+
+/// What the dampers of vehicles' contacts take of a step, (fbar - k dbar) dd, J.
+double contact_dissipation(const Model& model, const StandingContacts& before,
+                           const StandingContacts& after, const double* mean_force);
 
 /// Work of the loads on what they move by G, and of whatever carries loads and wheels along, J. The
 /// change of place alone changes the energy by F' dG F / 2 under loads, and takes as much from

@@ -223,6 +223,15 @@ double TimeTable::at(double t) const {
   return value[i - 1] + part * (value[i] - value[i - 1]);
 }
 
+std::vector<double> TimeTable::rows() const {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    all.push_back(time[i]);
+    all.push_back(value[i]);
+  }
+  return all;
+}
+
 ReferenceLine read_reference_line(const Table& t) {
   constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,
                                       ReferenceLine::foot, ReferenceLine::head};
@@ -315,6 +324,7 @@ Scene read_track_scene(const Table& root) {
   scene.stops = read_stops(root, scene);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene);
+  scene.vehicles = read_vehicles(root, scene);
   scene.irregularity = read_irregularity(root, scene);
   scene.defects = read_defects(root, scene);
   scene.sensors = read_sensors(root, scene);

@@ -10,6 +10,7 @@
 #include "offline/beam/equilibrium.h"
 #include "offline/section/section.h"
 #include "offline/track/track.h"
+#include "offline/vehicle/kinds.h"
 #include "online/model/model.h"
 #include "scene_irregularity.h"
 
@@ -150,6 +151,7 @@ struct TimeTable {
   std::vector<double> time;   // s, rising
   std::vector<double> value;  // [time.size()]
   [[nodiscard]] double at(double t) const;
+  [[nodiscard]] std::vector<double> rows() const;  // t, value, t, value, ...
 };
 
 /// A force on a rail at x = start + speed * t.
@@ -159,8 +161,10 @@ struct LoadScene {
   double start, speed, force_z;  // m, m/s, N (up positive)
   Height at;                     // axis or head
   std::optional<TimeTable> factor;
-  std::optional<double> stop;  // m; the load is taken off there
-  bool may_leave_rail;         // then it is simply gone past the end
+  std::optional<double> stop;                            // m; the load is taken off there
+  bool may_leave_rail;                                   // then it is simply gone past the end
+  std::optional<TimeTable> speeds;                       // m/s, constant outside its rows
+  double amplitude = 0.0, frequency = 0.0, phase = 0.0;  // N, Hz, turns
 };
 
 struct GuideScene {
@@ -188,6 +192,22 @@ struct WheelsetScene {
   std::vector<BodyForceScene> forces;
   std::vector<TreadScene> treads;
 };
+
+/// A vehicle over one rail.
+struct VehicleScene {
+  std::string name, table;  // in the trace, and that of its [[vehicle]]
+  NamedVehicle kind;
+  Side rail;
+  double start, speed;              // of its origin, m, m/s
+  std::optional<TimeTable> speeds;  // m/s, constant outside its rows
+  WheelContactKind contact;
+  double stiffness, damping;  // of a linear contact, N/m, N s/m
+  bool gravity, may_leave_rail;
+  std::vector<WheelTread> treads;
+};
+
+/// The speed of the largest size that a vehicle has, m/s.
+double fastest(const VehicleScene& vehicle);
 
 struct StepScene {
   double dt;  // s
@@ -236,6 +256,7 @@ struct Scene {
   std::vector<RailJoint> joints;
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
+  std::vector<VehicleScene> vehicles;
   std::optional<IrregularityScene> irregularity;
   std::vector<DefectScene> defects;
   std::optional<StepScene> step;  // none: the scene is not run

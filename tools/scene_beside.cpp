@@ -16,6 +16,10 @@ void refuse_foreign(const Table& root) {
     root.refuse("stop",
                 "[[stop]] is not stepped beside bodies and beams; accepted is a [[spring]] between "
                 "the rail and the ground");
+  if (root.has("vehicle"))
+    root.refuse("vehicle",
+                "[[vehicle]] is not stepped beside bodies and beams; accepted is a [[body]] with "
+                "[[spring]] or [[joint]] to the rails, and [[load]]");
   for (const char* key : {"irregularity", "defect"})
     if (root.has(key))
       root.refuse(key, fmt::format("{} is felt by wheels, which are not stepped beside bodies and "

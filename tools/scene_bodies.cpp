@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "online/step/travel.h"
 #include "scene_read.h"
 
 namespace railstep {
@@ -11,6 +12,8 @@ namespace {
 
 const Range kSpeed = between(-2000.0, 2000.0);
 const Range kForce = between(-1e8, 1e8);
+
+}  // namespace
 
 Side read_side(const Table& t, const Scene& scene) {
   // One rail is the left one, so that a scene can leave the key out.
@@ -39,19 +42,67 @@ TimeTable read_time_table(const Table& t, std::string_view key, const Range& acc
   return table;
 }
 
-/// Refuses a path that runs off the rail before the end of the run, or before `stop`.
-void check_path(const Table& t, const Scene& scene, double start, double speed,
+SpeedScene read_speed(const Table& t, std::optional<double> otherwise) {
+  if (!t.has("speed_table"))
+    return {otherwise ? t.number("speed_m_per_s", kSpeed, *otherwise)
+                      : t.number("speed_m_per_s", kSpeed),
+            std::nullopt};
+  if (t.has("speed_m_per_s"))
+    t.refuse("speed_table", "speed_table is given beside speed_m_per_s; one of them is accepted");
+  TimeTable table = read_time_table(t, "speed_table", kSpeed);
+  const auto [least, most] = std::minmax_element(table.value.begin(), table.value.end());
+  if (*least < 0.0 && *most > 0.0)
+    t.refuse("speed_table",
+             fmt::format("speed_table goes from {:.15g} to {:.15g} m/s and turns around; accepted "
+                         "are speeds of one sign",
+                         *least, *most));
+  const double first = table.value.front();
+  return {first, std::move(table)};
+}
+
+TravelTable travel_of(const SpeedScene& speed) {
+  return travel_table(speed.speed, speed.table ? speed.table->rows() : std::vector<double>{});
+}
+
+void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
                 const std::optional<double>& stop) {
   if (scene.track.endless) return;
   const double length = scene.track.length();
-  double end = start + speed * scene.duration();
-  if (stop) end = speed >= 0.0 ? std::min(end, *stop) : std::max(end, *stop);
+  const double way = travelled(travel_of(speed).model(), scene.duration()).distance;
+  double end = start + way;
+  if (stop) end = way >= 0.0 ? std::min(end, *stop) : std::max(end, *stop);
   // A path may end exactly on the border; 1e-9 of the length forgives its rounding.
   if (end >= -1e-9 * length && end <= length * (1.0 + 1e-9)) return;
+  if (speed.table)
+    t.refuse(
+        "speed_table",
+        fmt::format("speed_table leads from x = {:.15g} to {:.6g} m, off the rail; accepted is "
+                    "0 to {:.6g} (or may_leave_rail = true)",
+                    start, end, length));
   t.refuse("speed_m_per_s",
            fmt::format("speed_m_per_s = {:.15g} from start_m = {:.15g} leads to x = {:.6g} m, off "
                        "the rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
-                       speed, start, end, length));
+                       speed.speed, start, end, length));
+}
+
+namespace {
+
+/// amplitude_n, frequency_hz and phase_deg of a force that swings.
+void read_swing(const Table& t, const Scene& scene, LoadScene& load) {
+  if (!t.has("amplitude_n")) {
+    for (const char* key : {"frequency_hz", "phase_deg"})
+      if (t.has(key))
+        t.refuse(key, fmt::format("{} is of a force that swings; accepted with amplitude_n", key));
+    return;
+  }
+  load.amplitude = t.number("amplitude_n", kForce);
+  load.frequency = t.number("frequency_hz", between(0.0, 1e6));
+  load.phase = t.number("phase_deg", between(-360.0, 360.0), 0.0) / 360.0;
+  if (scene.step && load.frequency * scene.step->dt > .125 * (1.0 + 1e-12))
+    t.refuse("frequency_hz",
+             fmt::format("frequency_hz = {:.15g} has {:.3g} steps of dt_s = {:.6g} a period; "
+                         "accepted are 8 or more: a shorter step.dt_s",
+                         load.frequency, 1.0 / (load.frequency * scene.step->dt), scene.step->dt));
 }
 
 LoadScene read_load(const Table& t, const Scene& scene) {
@@ -61,18 +112,21 @@ LoadScene read_load(const Table& t, const Scene& scene) {
   load.rail = read_side(t, scene);
   load.may_leave_rail = t.boolean("may_leave_rail", false);
   load.start = t.number("start_m", load.may_leave_rail ? between(-1e6, 1e6) : between(0.0, length));
-  load.speed = t.number("speed_m_per_s", kSpeed, 0.0);
+  const SpeedScene speed = read_speed(t, 0.0);
+  load.speed = speed.speed;
+  load.speeds = speed.table;
   load.force_z = t.number("force_z_n", kForce);
   load.at = t.choice("at", {"axis", "head"}, 0) == 0 ? Height::axis : Height::head;
   if (t.has("table")) load.factor = read_time_table(t, "table", between(-1e6, 1e6));
+  read_swing(t, scene, load);
   if (t.has("stop_m")) {
     load.stop = t.number("stop_m", between(0.0, scene.track.endless ? 1e12 : length));
-    if ((*load.stop - load.start) * load.speed <= 0.0)
+    if ((*load.stop - load.start) * travel_of(speed).speed <= 0.0)
       t.refuse("stop_m", fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
                                      "is a place the load moves to",
                                      *load.stop, load.start));
   }
-  if (!load.may_leave_rail) check_path(t, scene, load.start, load.speed, load.stop);
+  if (!load.may_leave_rail) check_path(t, scene, load.start, speed, load.stop);
   return load;
 }
 
@@ -121,7 +175,7 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
     w.forces.push_back({static_cast<int>(force.choice("direction", {"x", "y", "z"})),
                         read_time_table(force, "table", kForce)});
   w.treads = read_treads(t, scene, w);
-  if (!w.may_leave_rail) check_path(t, scene, w.start, w.speed, std::nullopt);
+  if (!w.may_leave_rail) check_path(t, scene, w.start, {w.speed, std::nullopt}, std::nullopt);
   return w;
 }
 
@@ -228,6 +282,13 @@ void check_names(const Table& root, const Scene& scene) {
   }
   for (std::size_t i = 0; i < stops.size(); ++i)
     claim(traced, stops[i], "name", scene.stops[i].name);
+  // One table that stands on both rails makes two vehicles, whose names begin with its own.
+  std::size_t vehicle = 0;
+  for (const Table& t : root.tables("vehicle")) {
+    const std::string name = t.string("name");
+    while (vehicle < scene.vehicles.size() && scene.vehicles[vehicle].table == name)
+      claim(traced, t, "name", scene.vehicles[vehicle++].name);
+  }
   for (std::size_t i = 0; i < sensors.size(); ++i)
     claim(traced, sensors[i], "name", scene.sensors[i].name);
 }

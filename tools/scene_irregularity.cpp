@@ -28,6 +28,7 @@ std::array<bool, 2> read_sides(const Table& t, std::string_view key, const Scene
 double fastest(const Scene& scene) {
   double speed = 0.;
   for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(w.speed));
+  for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
   return speed;
 }
 
@@ -99,8 +100,8 @@ void read_generated(const Table& t, const Scene& scene, IrregularityScene& own) 
 std::optional<IrregularityScene> read_irregularity(const Table& root, const Scene& scene) {
   const std::optional<Table> t = root.table_if("irregularity");
   if (!t) return std::nullopt;
-  if (scene.wheelsets.empty())
-    t->refuse("", "no wheel feels the irregularity; accepted with a [[wheelset]]");
+  if (scene.wheelsets.empty() && scene.vehicles.empty())
+    t->refuse("", "no wheel feels the irregularity; accepted with a [[wheelset]] or a [[vehicle]]");
   if (t->has("file") == t->has("spectrum"))
     t->refuse("", "exactly one of file and spectrum is accepted");
   IrregularityScene own;
@@ -115,8 +116,8 @@ std::optional<IrregularityScene> read_irregularity(const Table& root, const Scen
 std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
   std::vector<DefectScene> defects;
   for (const Table& t : root.tables("defect")) {
-    if (scene.wheelsets.empty())
-      t.refuse("", "no wheel feels the defect; accepted with a [[wheelset]]");
+    if (scene.wheelsets.empty() && scene.vehicles.empty())
+      t.refuse("", "no wheel feels the defect; accepted with a [[wheelset]] or a [[vehicle]]");
     DefectScene d{};
     d.kind = t.choice("kind", {"dipped_joint", "corrugation"}) == 0 ? DefectKind::dipped_joint
                                                                     : DefectKind::corrugation;
@@ -139,16 +140,57 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
   return defects;
 }
 
+namespace {
+
+/// What a wheel of a radius at a speed lacks of being round; which wheel stands elsewhere.
+TreadScene read_tread(const Table& t, const Scene& scene, double radius, double speed) {
+  TreadScene d{};
+  constexpr TreadKind kKinds[] = {TreadKind::fresh_flat, TreadKind::rounded_flat,
+                                  TreadKind::out_of_round};
+  d.kind = kKinds[t.choice("kind", {"fresh_flat", "rounded_flat", "out_of_round"})];
+  d.first = t.number("first_m", between(0.0, 1e6), .5 * kTwoPi * radius);
+  d.patch = t.number("contact_patch_m", kPatch, kContactPatch);
+  double wave;
+  if (d.kind == TreadKind::out_of_round) {
+    d.order = static_cast<int>(t.integer("order", 1, 200));
+    d.amplitude = t.number("amplitude_m", kHeight);
+    wave = kTwoPi * radius / d.order;
+  } else {
+    wave = d.length = t.number("length_m", above_upto(0.0, .9 * radius));
+    if (d.kind == TreadKind::rounded_flat)
+      d.depth = t.number("depth_m", above_upto(0.0, 0.1), d.length * d.length / (16. * radius));
+  }
+  check_wave(t, d.kind == TreadKind::out_of_round ? "order" : "length_m", wave, std::fabs(speed),
+             scene);
+  return d;
+}
+
+}  // namespace
+
+std::vector<WheelTread> read_wheel_treads(const Table& vehicle, const Scene& scene,
+                                          const VehicleScene& own) {
+  std::vector<WheelTread> treads;
+  const std::vector<Vehicle::Wheel>& wheels = own.kind.vehicle.wheels;
+  for (const Table& t : vehicle.tables("tread")) {
+    const auto wheel = static_cast<std::size_t>(
+        t.integer("wheel", 1, static_cast<std::int64_t>(wheels.size())) - 1);
+    for (const WheelTread& other : treads)
+      if (other.wheel == wheel)
+        t.refuse("wheel", fmt::format("wheel {} has a [[vehicle.tread]] already; one of each wheel "
+                                      "is accepted",
+                                      wheel + 1));
+    const double radius = wheels[wheel].radius;
+    treads.push_back({wheel, read_tread(t, scene, radius, fastest(own)), radius});
+  }
+  return treads;
+}
+
 std::vector<TreadScene> read_treads(const Table& wheelset, const Scene& scene,
                                     const WheelsetScene& own) {
-  const double radius = own.radius;
   std::vector<TreadScene> treads;
   std::array<bool, 2> taken = {false, false};
   for (const Table& t : wheelset.tables("tread")) {
-    TreadScene d{};
-    constexpr TreadKind kKinds[] = {TreadKind::fresh_flat, TreadKind::rounded_flat,
-                                    TreadKind::out_of_round};
-    d.kind = kKinds[t.choice("kind", {"fresh_flat", "rounded_flat", "out_of_round"})];
+    TreadScene d = read_tread(t, scene, own.radius, own.speed);
     d.on = read_sides(t, "wheel", scene);
     for (std::size_t side = 0; side < 2; ++side) {
       if (d.on[side] && taken[side])
@@ -157,21 +199,7 @@ std::vector<TreadScene> read_treads(const Table& wheelset, const Scene& scene,
                                       side == 0 ? "left" : "right"));
       taken[side] = taken[side] || d.on[side];
     }
-    d.first = t.number("first_m", between(0.0, 1e6), .5 * kTwoPi * radius);
-    d.patch = t.number("contact_patch_m", kPatch, kContactPatch);
-    double wave;
-    if (d.kind == TreadKind::out_of_round) {
-      d.order = static_cast<int>(t.integer("order", 1, 200));
-      d.amplitude = t.number("amplitude_m", kHeight);
-      wave = kTwoPi * radius / d.order;
-    } else {
-      wave = d.length = t.number("length_m", above_upto(0.0, .9 * radius));
-      if (d.kind == TreadKind::rounded_flat)
-        d.depth = t.number("depth_m", above_upto(0.0, 0.1), d.length * d.length / (16. * radius));
-    }
     treads.push_back(d);
-    check_wave(t, d.kind == TreadKind::out_of_round ? "order" : "length_m", wave,
-               std::fabs(own.speed), scene);
   }
   return treads;
 }

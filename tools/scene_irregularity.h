@@ -45,4 +45,11 @@ struct TreadScene {
   double patch;            // m
 };
 
+/// [[vehicle.tread]]: the same of one wheel of a vehicle.
+struct WheelTread {
+  std::size_t wheel;  // from 0, the foremost
+  TreadScene shape;
+  double radius;  // m
+};
+
 }  // namespace railstep

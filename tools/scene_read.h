@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "offline/pack/travel_rows.h"
 #include "read.h"
 #include "scene.h"
 
@@ -47,6 +48,23 @@ std::optional<IrregularityScene> read_irregularity(const Table& root, const Scen
 std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
 /// [[wheelset.tread]] of a wheelset whose radius and speed are read.
 std::vector<TreadScene> read_treads(const Table& t, const Scene& scene, const WheelsetScene& own);
+std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene);
+/// [[vehicle.tread]] of a vehicle whose kind and speed are read.
+std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,
+                                          const VehicleScene& own);
+Side read_side(const Table& t, const Scene& scene);
+/// [[t_s, value], ...] with rising times from 0 on.
+TimeTable read_time_table(const Table& t, std::string_view key, const Range& accepted);
+/// speed_m_per_s, or speed_table in its place: speeds that do not turn around.
+struct SpeedScene {
+  double speed;  // m/s; with a table its first
+  std::optional<TimeTable> table;
+};
+SpeedScene read_speed(const Table& t, std::optional<double> otherwise);
+TravelTable travel_of(const SpeedScene& speed);
+/// Refuses a path that runs off the rail before the end of the run, or before `stop`.
+void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
+                const std::optional<double>& stop);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// On a rail, a sleeper or a wheelset.
 SensorScene read_sensor(const Table& t, const Scene& scene);

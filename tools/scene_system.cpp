@@ -16,8 +16,8 @@ constexpr const char* kSystemKeys[] = {"body",  "beam",   "joint", "spring",
 
 /// Refuses what says something of a track alone.
 void refuse_track_keys(const Table& root) {
-  for (const char* key : {"rail", "support", "sleeper", "ballast", "load", "wheelset", "condense",
-                          "static", "output"})
+  for (const char* key : {"rail", "support", "sleeper", "ballast", "load", "wheelset", "vehicle",
+                          "condense", "static", "output"})
     if (root.has(key))
       root.refuse(key, fmt::format("[{}] says something of a track, and the scene has none; "
                                    "accepted is a scene of bodies and beams without it",

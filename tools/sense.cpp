@@ -123,11 +123,24 @@ void move_on(SensorScene& sensor, int behind, const Track& track) {
   }
 }
 
+/// Heights of a vehicle's bodies from where they stand on a level rail without weight, and pitches.
+void add_bodies(const VehicleScene& scene, int vehicle, Sensors& sensors) {
+  const std::vector<int> first = first_coordinates(scene.kind.vehicle);
+  for (std::size_t b = 0; b + 1 < first.size(); ++b)
+    for (int c = first[b]; c < first[b + 1]; ++c) {
+      sensors.columns.push_back(fmt::format("{}.{}.{}", scene.name, scene.kind.bodies[b],
+                                            c == first[b] ? "z_m" : "pitch_rad"));
+      sensors.probes.push_back({.displacement = 1., .coordinate = c, .vehicle = vehicle});
+    }
+}
+
 }  // namespace
 
 Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& sections,
                    const Railhead& head) {
   Sensors sensors;
+  for (std::size_t i = 0; i < scene.vehicles.size(); ++i)
+    add_bodies(scene.vehicles[i], static_cast<int>(i), sensors);
   const int behind = scene.track.endless ? bays_behind(scene) : 0;
   for (SensorScene sensor : scene.sensors) {
     move_on(sensor, behind, track);

@@ -15,8 +15,9 @@ inline constexpr const char* kSensorQuantities[] = {"x_m",  "y_m",  "z_m",      
 
 /// A scene's sensors and support forces as probes of a model.
 struct Sensors {
-  /// S.x_m .. S.vz_m_per_s of each sensor, then support_<i>.force_z_n of the left rail's supports
-  /// and support_right_<i>.force_z_n of the right rail's where the scene asks for them, then
+  /// V.<body>.z_m of each vehicle's bodies, and .pitch_rad of those that pitch; then S.x_m ..
+  /// S.vz_m_per_s of each sensor, then support_<i>.force_z_n of the left rail's supports and
+  /// support_right_<i>.force_z_n of the right rail's where the scene asks for them, then
   /// <stop>.force_n of every stop.
   std::vector<std::string> columns;
   std::vector<Probe> probes;  // one per column

@@ -194,7 +194,7 @@ std::string place_in_track(const Model& model, std::int32_t unknown) {
           return fmt::format("{} of rail node {}", kNodeUnknowns[i % 9], 2 * (i / 27) + i % 27 / 9);
     break;
   }
-  return unknown < model.bodies ? "a sleeper's motion" : "a wheelset's coordinate";
+  return unknown < model.bodies ? "a sleeper's motion" : "a wheelset's or a vehicle's coordinate";
 }
 
 /// @param unknown  from the system's first on

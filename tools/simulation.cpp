@@ -73,7 +73,7 @@ void Simulation::load(const std::string& name) {
     throw InputError(fmt::format("{} {}", name, sentence(result.status)));
   columns_ = lines_of(result.text, result.text_bytes);
   const std::size_t expected = 1 + 2 * static_cast<std::size_t>(model_.loads) +
-                               12 * static_cast<std::size_t>(model_.wheelsets) +
+                               6 * static_cast<std::size_t>(wheel_count(model_)) +
                                static_cast<std::size_t>(model_.probe.count);
   if (columns_.size() != expected)
     throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));

@@ -52,6 +52,17 @@ void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) 
   for (const int rail : {0, 1}) add_force(problem, rail, w.start, Height::head, -.5 * weight);
 }
 
+/// The loads of a vehicle's wheels on a level rail that does not give way.
+void add_vehicle(const Scene& scene, const VehicleScene& v, Problem& problem) try {
+  const VehicleRest rest =
+      vehicle_at_rest(vehicle_matrices(v.kind.vehicle, v.gravity ? kGravity : 0.));
+  for (std::size_t i = 0; i < v.kind.vehicle.wheels.size(); ++i)
+    add_force(problem, v.rail == Side::right ? 1 : 0, v.start + v.kind.vehicle.wheels[i].place,
+              Height::head, -rest.force[static_cast<Eigen::Index>(i)]);
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: vehicle {}: {}", scene.file.string(), v.name, error.what()));
+}
+
 Problem problem_of(const Scene& scene) {
   const RailSection rail = rail_section_of(scene);
   const Section right =
@@ -65,7 +76,9 @@ Problem problem_of(const Scene& scene) {
                   scene.statics};
   for (const LoadScene& load : scene.loads)
     add_force(problem, load.rail == Side::right ? 1 : 0, load.start, load.at,
-              load.force_z * (load.factor ? load.factor->at(0.) : 1.));
+              load.force_z * (load.factor ? load.factor->at(0.) : 1.) +
+                  load.amplitude * std::sin(2. * M_PI * load.phase));
+  for (const VehicleScene& v : scene.vehicles) add_vehicle(scene, v, problem);
   for (const WheelsetScene& w : scene.wheelsets) add_wheelset(scene, w, problem);
   return problem;
 }

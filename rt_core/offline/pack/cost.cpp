@@ -58,6 +58,16 @@ std::int64_t residual_step(const Model& model, std::int64_t wheels) {
   return pairs * kPairLookUp + 2 * wheels * kLookUp;
 }
 
+/// Products of the vehicles' matrices, three of them dense, and of their rows.
+std::int64_t vehicles(const Model& model) {
+  std::int64_t sum = 0;
+  for (std::int32_t i = 0; i < model.vehicles; ++i) {
+    const std::int64_t n = model.vehicle[i].size, wheels = model.vehicle[i].wheels;
+    sum += 6 * n * n + 40 * n + wheels * (8 * n + 2 * 3 * 2 * kElementRow * model.lines);
+  }
+  return sum;
+}
+
 /// And to every load, once a frame.
 std::int64_t residual_frame(const Model& model, std::int64_t wheels) {
   return model.loads * (model.loads + wheels) * kPairLookUp;
@@ -83,7 +93,7 @@ std::int64_t contact(const Model& model, std::int64_t wheels) {
 
 std::int64_t flops_per_frame(const Model& model) {
   const std::int64_t wheels = std::int64_t{wheel_count(model)};
-  std::int64_t step = contact(model, wheels) + residual_step(model, wheels);
+  std::int64_t step = contact(model, wheels) + residual_step(model, wheels) + vehicles(model);
   for (std::int32_t l = 0; l < model.lines; ++l)
     step += model.condensed != 0 ? condensed(model, model.line[l], wheels)
                                  : banded(model, model.line[l], wheels);

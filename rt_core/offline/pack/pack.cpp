@@ -46,6 +46,8 @@ bool is_moved(const Track& track, const Line& line, const Traffic& traffic, doub
   for (const int rail : traffic.held)
     for (int direction = 0; direction < 3; ++direction)
       if (reaches(track, line, rail, .01, .1, direction)) return true;
+  for (const RunningVehicle& vehicle : traffic.vehicles)
+    if (reaches(track, line, vehicle.rail, 0., .1, 2)) return true;
   for (int direction = 0; direction < 3 && !traffic.wheelsets.empty(); ++direction)
     for (int rail = 0; rail < track.rails; ++rail)
       if (reaches(track, line, rail, .01, .1, direction)) return true;
@@ -72,9 +74,12 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.row[8] = load.z;
   packed.rail = load.rail;
   packed.start = model_.endless.origin + load.start;
-  packed.speed = load.speed;
+  packed.travel = keep_travel(load.speed, load.speeds);
   packed.stop = load.stop;
   packed.force = load.force;
+  packed.amplitude = load.amplitude;
+  packed.frequency = load.frequency;
+  packed.phase = load.phase;
   packed.table_points = static_cast<std::int32_t>(load.table.size() / 2);
   packed.table = keep(load.table);
   packed.kind = kind_of(load.rail, load.z);
@@ -168,6 +173,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const MovingLoad& load : traffic.loads) add_load(track, load);
   for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
+  for (const RunningVehicle& vehicle : traffic.vehicles) add_vehicle(track, vehicle, heads);
   add_fixed_ports(track);
   if (options.gravity != 0.) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);

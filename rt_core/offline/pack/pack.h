@@ -8,6 +8,7 @@
 #include "offline/condense/modal.h"
 #include "offline/irregularity/signal.h"
 #include "offline/track/fixed_port.h"
+#include "offline/vehicle/vehicle.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -15,12 +16,18 @@ namespace railstep {
 /// A force that runs along a rail, as a scene gives it.
 struct MovingLoad {
   int rail = 0;
-  double start = 0., speed = 0.;   // m, m/s
-  double stop = 0.;                // m; taken off beyond it
-  double force = 0.;               // N along z, up positive
-  double z = 0.;                   // of the loaded point over the axis, m
-  std::vector<double> table = {};  // t (s), factor, t, factor, ...; empty: constant
+  double start = 0., speed = 0.;    // m, m/s
+  double stop = 0.;                 // m; taken off beyond it
+  double force = 0.;                // N along z, up positive
+  double z = 0.;                    // of the loaded point over the axis, m
+  std::vector<double> table = {};   // t (s), factor, t, factor, ...; empty: constant
+  std::vector<double> speeds = {};  // t (s), m/s, t, m/s, ...; empty: `speed`
+  /// Beside `force`: amplitude sin(2 pi (frequency t + phase)); N, Hz, turns.
+  double amplitude = 0., frequency = 0., phase = 0.;
 };
+
+/// Speed of a load at t = 0, m/s.
+double first_speed(const MovingLoad& load);
 
 /// A rigid wheelset on both rails, as a scene gives it. Rolls without friction on cylinders.
 struct Wheelset {
@@ -40,6 +47,21 @@ struct Wheelset {
   std::vector<Force> forces = {};
   std::array<Signal, 2> tread = {};  // of the left and right wheel, over the distance rolled
 };
+
+/// A vehicle over one rail, as a scene gives it.
+struct RunningVehicle {
+  Vehicle vehicle = {};
+  int rail = 0;
+  double start = 0., speed = 0.;    // of its origin, m, m/s
+  std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
+  double gravity = 9.81;            // m/s2
+  WheelContactKind contact = WheelContactKind::hertz;
+  double stiffness = 0., damping = 0.;  // of a linear contact, N/m, N s/m
+  std::vector<Signal> tread = {};       // of each wheel, over the distance rolled; or empty
+};
+
+/// Of a bonded contact, N/m: a millionth of what the stiffest rail gives way under a wheel.
+inline constexpr double kBonded = 1e15;
 
 /// An irregularity or a defect of a rail.
 struct RailIrregularity {
@@ -62,6 +84,7 @@ struct Probe {
   double displacement = 0., velocity = 0.;  // factors
   Functional track = {};
   int wheelset = -1, coordinate = 0;  // of a probe on a wheelset; 0 x, 1 y, 2 z
+  int vehicle = -1;                   // of a probe on a vehicle, whose coordinate it is
   struct Press {
     int port;       // among fixed_ports() of the track
     double factor;  // of its force
@@ -75,6 +98,7 @@ struct Probe {
 struct Traffic {
   std::vector<MovingLoad> loads = {};
   std::vector<Wheelset> wheelsets = {};
+  std::vector<RunningVehicle> vehicles = {};
   Railhead head = {};  // of both rails
   std::vector<Probe> probes = {};
   std::vector<RailIrregularity> irregularities = {};
@@ -151,6 +175,9 @@ class PackedModel {
   void add_irregularity(const Track& track, const RailIrregularity& irregularity);
   void add_wheelset(const Track& track, const Wheelset& wheelset,
                     const std::array<Railhead, 2>& heads);
+  void add_vehicle(const Track& track, const RunningVehicle& vehicle,
+                   const std::array<Railhead, 2>& heads);
+  TravelModel keep_travel(double speed, const std::vector<double>& speeds);
   void add_weight(const Track& track, double gravity);
   void add_probes(const Track& track, const std::vector<Probe>& probes);
   void add_residual(const Track& track, const std::vector<Probe>& probes, int points);

@@ -14,8 +14,14 @@ namespace {
 
 /// The one speed of all that runs, m/s.
 double speed_of(const Traffic& traffic) {
+  if (!traffic.vehicles.empty())
+    throw std::invalid_argument("a track without end carries loads and wheelsets, no vehicles");
   std::vector<double> speeds;
-  for (const MovingLoad& load : traffic.loads) speeds.push_back(load.speed);
+  for (const MovingLoad& load : traffic.loads) {
+    if (!load.speeds.empty())
+      throw std::invalid_argument("on a track without end all runs at one speed, without a table");
+    speeds.push_back(load.speed);
+  }
   for (const Wheelset& set : traffic.wheelsets) speeds.push_back(set.speed);
   for (const double speed : speeds)
     if (speed != speeds[0])

@@ -17,7 +17,7 @@ std::vector<int> ports_of(const Model& model, std::size_t kinds) {
   for (std::int32_t i = 0; i < model.loads; ++i)
     ++count[static_cast<std::size_t>(model.load[i].kind)];
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    ++count[static_cast<std::size_t>(model.wheelset[i / 2].kind[i % 2])];
+    ++count[static_cast<std::size_t>(wheel_kind(model, i))];
   return count;
 }
 
@@ -109,6 +109,11 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
     }
     for (const Probe::Press& press : probe.ports)
       entry(2 * model_.unknowns + press.port, press.factor);
+    if (probe.vehicle >= 0) {
+      const std::int32_t at = model_.vehicle[probe.vehicle].first + probe.coordinate;
+      entry(at, probe.displacement);
+      entry(model_.unknowns + at, probe.velocity);
+    }
     start.push_back(static_cast<std::int32_t>(index.size()));
     rest.push_back(probe.rest);
   }
@@ -129,7 +134,7 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
 void PackedModel::clip(int points, std::vector<double>& under) {
   const std::size_t places = under.size() / kinds_.size();
   for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
-    const auto kind = static_cast<std::size_t>(model_.wheelset[wheel / 2].kind[wheel % 2]);
+    const auto kind = static_cast<std::size_t>(wheel_kind(model_, wheel));
     const std::vector<double> lines = step_compliance(model_, kinds_[kind], points);
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[kind * places + i];
@@ -177,7 +182,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
   std::int32_t tables = 0;
   for (const Probe& probe : probes) {
     std::vector<double> rows;
-    if (probe.displacement != 0. && probe.wheelset < 0)
+    if (probe.displacement != 0. && probe.wheelset < 0 && probe.vehicle < 0)
       for (const Port& port : kinds_)
         append(rows, residual.from(port, probe.track), probe.displacement);
     table.push_back(all_zero(rows) ? -1 : tables++);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "offline/pack/start_vehicle.h"
 #include "offline/track/statics.h"
 #include "online/contact/ports.h"
 #include "online/model/course.h"
@@ -14,6 +15,7 @@
 #include "online/step/residual.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
+#include "online/step/travel.h"
 #include "online/step/wheel.h"
 
 namespace railstep {
@@ -93,21 +95,77 @@ double height_of(const Track& track, const PackedModel& packed,
   return sum;
 }
 
-/// Displacements of the model's lines, and of six coordinates of each wheelset.
+/// Displacements of the model's lines, of six coordinates of each wheelset, and of the vehicles.
 struct Pose {
   std::vector<Eigen::VectorXd> lines;
   std::vector<std::array<double, 6>> wheelsets;
+  SettledVehicles vehicles;
 };
+
+/// Forces that act on the track, and the same for the residual flexibility.
+struct Acting {
+  std::vector<PointForce> forces;
+  std::vector<RailForce> ports;
+};
+
+/// Adds the forces of the vehicles' wheels to those that act: where they and the track settle.
+SettledVehicles settle(const Statics& statics, const PackedModel& packed, double gravity,
+                       double time, Acting& acting) {
+  const Model& model = packed.model();
+  const auto wheels = static_cast<std::size_t>(model.vehicle_wheels);
+  const Track& track = statics.track();
+  const std::vector<Eigen::VectorXd> without =
+      static_lines(packed, statics, acting.forces, gravity);
+  Eigen::MatrixXd flexibility = Eigen::MatrixXd::Zero(model.vehicle_wheels, model.vehicle_wheels);
+  Eigen::VectorXd free(model.vehicle_wheels);
+  std::vector<RailPoint> point(wheels);
+  std::vector<RailForce> port(wheels);
+  std::vector<bool> on_rail(wheels);
+  for (std::size_t i = 0; i < wheels; ++i) {
+    const VehicleWheel& wheel = model.vehicle_wheel[i];
+    const VehicleModel& own = model.vehicle[wheel.vehicle];
+    const double up[3] = {0., 0., 1.}, rolled = travelled(own.travel, 0.).speed * time;
+    const double x = own.start + wheel.place + rolled;
+    const auto at = static_cast<Eigen::Index>(i);
+    on_rail[i] = x >= 0. && x <= track.length();
+    free[at] = signal_at(wheel.tread, rolled).value;
+    if (!on_rail[i]) continue;
+    point[i] = {wheel.rail, x, 0., model.head_z[wheel.rail], 2};
+    port[i] = rail_force(model, wheel.kind, x, 0.);
+    free[at] = height_of(track, packed, without, point[i]) +
+               irregularity(model, wheel.tread, wheel.rail, up, x, rolled).depth;
+    for (const RailForce& f : acting.ports)
+      free[at] += f.force * residual_between(model, f, port[i]);
+  }
+  for (std::size_t j = 0; j < wheels; ++j) {
+    if (!on_rail[j]) continue;
+    const auto moved = static_lines(packed, statics, {{point[j], 1.}}, 0.);
+    for (std::size_t i = 0; i < wheels; ++i)
+      if (on_rail[i])
+        flexibility(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            height_of(track, packed, moved, point[i]) +
+            (i == j ? residual_under(model, port[i]) : residual_between(model, port[j], port[i]));
+  }
+  SettledVehicles settled = settle_vehicles(model, flexibility, free);
+  for (std::size_t i = 0; i < wheels; ++i) {
+    if (!on_rail[i]) continue;
+    port[i].force = -settled.force[static_cast<Eigen::Index>(i)];
+    acting.forces.push_back({point[i], port[i].force});
+    acting.ports.push_back(port[i]);
+  }
+  return settled;
+}
 
 /// Equilibrium with everything that moves shifted by `time`.
 Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
   const Model& model = packed.model();
-  std::vector<PointForce> forces;
-  std::vector<RailForce> ports;  // the same for the residual flexibility
+  Acting acting;
+  std::vector<PointForce>& forces = acting.forces;
+  std::vector<RailForce>& ports = acting.ports;
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const LoadModel& load = model.load[i];
     const PlacedLoad at = place(model, load, 0);
-    const double x = at.place + load.speed * time;
+    const double x = at.place + travelled(load.travel, 0.).speed * time;
     if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
     forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
     ports.push_back(rail_force(model, load.kind, x, at.force));
@@ -120,18 +178,21 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
       forces.push_back({{rail, x, 0., model.head_z[rail], 2}, -wheel_load(w)});
       ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
     }
-  Pose pose{static_lines(packed, statics, forces, gravity), {}};
+  SettledVehicles vehicles;
+  if (model.vehicles > 0) vehicles = settle(statics, packed, gravity, time, acting);
+  Pose pose{static_lines(packed, statics, forces, gravity), {}, std::move(vehicles)};
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
     const double up[3] = {0., 0., 1.}, rolled = w.speed * time, x = w.start + rolled;
     std::array<double, 2> height;
     for (const std::size_t rail : {0u, 1u}) {
       const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
-      height[rail] =
-          height_of(statics.track(), packed, pose.lines, forces[port].at) +
-          residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
-                                static_cast<int>(port)) +
-          irregularity(model, w, static_cast<int>(rail), up, x + passed(model, 0), rolled).depth;
+      height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
+                     residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
+                                           static_cast<int>(port)) +
+                     irregularity(model, w.tread[rail], static_cast<int>(rail), up,
+                                  x + passed(model, 0), rolled)
+                         .depth;
     }
     pose.wheelsets.push_back(standing_wheelset(model, w, height));
   }
@@ -177,7 +238,11 @@ Window window(const Model& model, double length) {
     if (is_on(0.) && !is_on(w.to)) w.to = 0.;
   };
   for (std::int32_t i = 0; i < model.loads; ++i)
-    narrow(place(model, model.load[i], 0).place, model.load[i].speed);
+    narrow(place(model, model.load[i], 0).place, travelled(model.load[i].travel, 0.).speed);
+  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
+    const VehicleModel& own = model.vehicle[model.vehicle_wheel[i].vehicle];
+    narrow(own.start + model.vehicle_wheel[i].place, travelled(own.travel, 0.).speed);
+  }
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     narrow(model.wheelset[b].start, model.wheelset[b].speed);
   return w;
@@ -225,6 +290,10 @@ std::vector<double> start_released(const PackedModel& packed) {
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
                                          double gravity) {
   const Model& model = packed.model();
+  if (model.vehicles > 0 && model.fixed.count > 0)
+    throw std::invalid_argument(
+        "no equilibrium is sought of vehicles on a track that pulls in one direction only; "
+        "accepted is step.start = \"released\"");
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());
   const Statics statics(track);
@@ -246,6 +315,16 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
     }
     for (int i = 0; i < 2; ++i) state.wheel_force[2 * b + i] = wheel_load(model.wheelset[b]);
   }
+  for (std::int32_t b = 0; b < model.vehicles; ++b) {
+    const std::size_t own = static_cast<std::size_t>(b);
+    const Eigen::VectorXd& u = at.vehicles.displacement[own];
+    const Eigen::VectorXd v =
+        (later.vehicles.displacement[own] - before.vehicles.displacement[own]) / span;
+    std::copy(u.begin(), u.end(), state.u + model.vehicle[b].first);
+    std::copy(v.begin(), v.end(), state.v + model.vehicle[b].first);
+  }
+  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
+    state.wheel_force[2 * model.wheelsets + i] = at.vehicles.force[i];
   put_port_forces(model, state);
   return memory;
 }

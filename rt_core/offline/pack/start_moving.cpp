@@ -22,7 +22,7 @@ LoadModel load_of(const Model& model, const WheelsetModel& w, int side) {
   load.row[8] = model.head_z[side];
   load.rail = side;
   load.start = w.start;
-  load.speed = w.speed;
+  load.travel.speed = w.speed;
   load.stop = std::numeric_limits<double>::infinity();
   load.force = -wheel_load(w);
   load.kind = w.kind[side];

@@ -72,16 +72,19 @@ SystemOptions still_options(SystemOptions options, double dt) {
   return options;
 }
 
-/// Loads where they are `shift` seconds later.
+/// Loads where they are `shift` seconds later, with the force that they start with.
 Traffic shifted(Traffic traffic, double shift) {
-  for (MovingLoad& load : traffic.loads) load.start += load.speed * shift;
+  for (MovingLoad& load : traffic.loads) {
+    load.start += first_speed(load) * shift;
+    load.frequency = 0.;
+  }
   return traffic;
 }
 
 std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
   std::vector<PathOfLoad> all;
   for (const MovingLoad& load : traffic.loads)
-    all.push_back({load.start, load.speed, track.length()});
+    all.push_back({load.start, first_speed(load), track.length()});
   return all;
 }
 
@@ -116,8 +119,9 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options, const Track& track,
                            const Traffic& traffic, const PackOptions& track_options)
     : memory_(std::make_unique<Memory>()) {
-  if (!traffic.wheelsets.empty())
-    throw std::invalid_argument("a track beside a system of bodies carries no wheelsets");
+  if (!traffic.wheelsets.empty() || !traffic.vehicles.empty())
+    throw std::invalid_argument(
+        "a track beside a system of bodies carries no wheelsets and no vehicles");
   if (track_options.modal)
     throw std::invalid_argument("a track beside a system of bodies is taken in full order");
   if (options.hold == Hold::gear_gupta_leimkuhler)

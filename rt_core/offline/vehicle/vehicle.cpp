@@ -7,14 +7,6 @@ namespace railstep {
 
 namespace {
 
-/// First coordinate of each body, and their number.
-std::vector<int> coordinates(const Vehicle& vehicle) {
-  std::vector<int> first = {0};
-  for (const Vehicle::Body& body : vehicle.bodies)
-    first.push_back(first.back() + (body.pitch_inertia > 0. ? 2 : 1));
-  return first;
-}
-
 /// Height of a body's point over the coordinates.
 Eigen::VectorXd row(const Vehicle& vehicle, const std::vector<int>& first, int body, double place) {
   const auto b = static_cast<std::size_t>(body);
@@ -34,6 +26,7 @@ void check(const Vehicle& vehicle) {
   for (const Vehicle::Body& body : vehicle.bodies) {
     if (!(body.mass > 0.)) refuse("a vehicle's bodies have masses above 0");
     if (!(body.pitch_inertia >= 0.)) refuse("a pitch inertia is 0 or more");
+    if (!(body.carried >= 0.)) refuse("a carried mass is 0 or more");
   }
   for (const Vehicle::Suspension& s : vehicle.suspensions) {
     if (!is_body(s.upper) || !is_body(s.lower) || s.upper == s.lower)
@@ -48,9 +41,16 @@ void check(const Vehicle& vehicle) {
 
 }  // namespace
 
+std::vector<int> first_coordinates(const Vehicle& vehicle) {
+  std::vector<int> first = {0};
+  for (const Vehicle::Body& body : vehicle.bodies)
+    first.push_back(first.back() + (body.pitch_inertia > 0. ? 2 : 1));
+  return first;
+}
+
 VehicleMatrices vehicle_matrices(const Vehicle& vehicle, double gravity) {
   check(vehicle);
-  const std::vector<int> first = coordinates(vehicle);
+  const std::vector<int> first = first_coordinates(vehicle);
   const int n = first.back(), wheels = static_cast<int>(vehicle.wheels.size());
   VehicleMatrices m;
   m.mass = m.damping = m.stiffness = Eigen::MatrixXd::Zero(n, n);
@@ -59,7 +59,7 @@ VehicleMatrices vehicle_matrices(const Vehicle& vehicle, double gravity) {
   for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
     const Vehicle::Body& body = vehicle.bodies[b];
     m.mass(first[b], first[b]) = body.mass;
-    m.weight[first[b]] = body.mass * gravity;
+    m.weight[first[b]] = (body.mass + body.carried) * gravity;
     if (body.pitch_inertia > 0.) m.mass(first[b] + 1, first[b] + 1) = body.pitch_inertia;
   }
   for (const Vehicle::Suspension& s : vehicle.suspensions) {

@@ -4,6 +4,10 @@
 
 namespace railstep {
 
+/// How wheels hold on to the rail: by Hertz; by a spring and a damper that pull too; or so that
+/// they never leave it.
+enum class WheelContactKind { hertz, linear, bonded };
+
 /// A vehicle that bounces and pitches over one rail: rigid bodies on springs and dampers, wheels on
 /// the rail. Places are along x from the vehicle's origin, positive ahead.
 struct Vehicle {
@@ -11,6 +15,7 @@ struct Vehicle {
     double mass;                // kg
     double pitch_inertia = 0.;  // about y through its centre, kg m2; 0: it does not pitch
     double place = 0.;          // of its centre, m
+    double carried = 0.;        // kg: weight without inertia
   };
   /// A spring and a damper, upright, side by side.
   struct Suspension {
@@ -29,6 +34,10 @@ struct Vehicle {
   std::vector<Suspension> suspensions;
   std::vector<Wheel> wheels;
 };
+
+/// First coordinate of each body among the vehicle's, z and then pitch if it has one; behind the
+/// last body their number.
+std::vector<int> first_coordinates(const Vehicle& vehicle);
 
 /// M q'' + C q' + K q = B' f - weight, q = each body's centre z (up) and then its pitch
 /// (right-handed about y: ahead goes down) if it has one; B q are the wheels' z, f the rail's

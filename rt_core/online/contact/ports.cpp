@@ -31,6 +31,7 @@ double penetration(double force, double C) noexcept {
 double larger(double a, double b) noexcept { return a > b ? a : b; }
 
 double force_at(const PortLaw& law, double d) noexcept {
+  if (law.pulls) return law.slope * d + law.jump;
   if (!(d > 0.0)) return 0.0;
   if (law.hertz > 0.0) return law.hertz * d * std::sqrt(d);
   const double part = d < kJumpDepth ? d / kJumpDepth : 1.0;
@@ -39,24 +40,31 @@ double force_at(const PortLaw& law, double d) noexcept {
 
 /// df/dd where there is a force.
 double stiffness_at(const PortLaw& law, double d) noexcept {
+  if (law.pulls) return law.slope;
   if (law.hertz > 0.0) return 1.5 * law.hertz * std::sqrt(d);
   return d < kJumpDepth ? law.slope + law.jump / kJumpDepth : law.slope;
 }
 
+/// Whether the port takes part: a force now, or one that a change of d makes.
+bool acts(const PortLaw& law, double force) noexcept { return law.pulls || force > 0.0; }
+
 /// Force where the jump is all there; below 0: there is none before slope d outweighs it.
 double knee(const PortLaw& law) noexcept { return law.slope * kJumpDepth + law.jump; }
 
-/// The penetration of a force > 0; at 0 that from which on there is one.
+/// The penetration of a force > 0, or any of a port that pulls; at 0 that from which on there is
+/// one.
 double depth_of(const PortLaw& law, double force) noexcept {
+  if (law.pulls) return (force - law.jump) / law.slope;
   if (law.hertz > 0.0) return penetration(force, law.hertz);
   const double at_knee = knee(law);
   if (at_knee > 0.0 && force <= at_knee) return force / at_knee * kJumpDepth;
   return (force - law.jump) / law.slope;
 }
 
-/// A lone port's penetration under d_free > 0: of a contact exact for w C sqrt(d) small and large
-/// and 14 % low between, of a spring exact.
+/// A lone port's penetration under d_free > 0, or any of one that pulls: of a contact exact for w C
+/// sqrt(d) small and large and 14 % low between, of a spring exact.
 double lone_depth(const PortLaw& law, double d_free, double w) noexcept {
+  if (law.pulls) return (d_free - w * law.jump) / (1.0 + w * law.slope);
   if (law.hertz > 0.0) {
     const double root = cube_root(w * law.hertz * std::sqrt(d_free));
     return d_free / (1.0 + root * root);
@@ -92,7 +100,8 @@ void evaluate(const Problem& p, Point& x) noexcept {
       size += std::fabs(term);
     }
     // A port without force has its gap in closed form.
-    if (x.f[i] == 0.0 && force_at(p.law[i], p.d_free[i] - sum) == 0.0) x.d[i] = p.d_free[i] - sum;
+    if (!acts(p.law[i], x.f[i]) && force_at(p.law[i], p.d_free[i] - sum) == 0.0)
+      x.d[i] = p.d_free[i] - sum;
     x.F[i] = x.d[i] + sum - p.d_free[i];
     // Written so that NaN counts as large.
     if (!(std::fabs(x.F[i]) <= x.residual)) x.residual = std::fabs(x.F[i]);
@@ -104,7 +113,7 @@ void evaluate(const Problem& p, Point& x) noexcept {
 double slope(const Problem& p, const Point& x, const double* step) noexcept {
   double sum = 0.0;
   for (int i = 0; i < p.n; ++i)
-    sum += (x.f[i] > 0.0 ? x.F[i] : x.F[i] - x.d[i] + depth_of(p.law[i], 0.0)) * step[i];
+    sum += (acts(p.law[i], x.f[i]) ? x.F[i] : x.F[i] - x.d[i] + depth_of(p.law[i], 0.0)) * step[i];
   return sum;
 }
 
@@ -140,7 +149,7 @@ void advance(const Problem& p, const Point& x, const double* K, const double* de
       d[i] = (next + weight * by_force) / (1.0 + weight);
     } else {
       const double free = next + w * force;
-      d[i] = free > 0.0 ? lone_depth(p.law[i], free, w) : free;
+      d[i] = acts(p.law[i], free) ? lone_depth(p.law[i], free, w) : free;
     }
   }
 }
@@ -154,7 +163,8 @@ constexpr double kOvershoot = 1000.0;
 /// One globalised iteration x -> next.
 void iterate(const Problem& p, const Point& x, Point& next) noexcept {
   double K[kPorts], delta[kPorts], step[kPorts];
-  for (int i = 0; i < p.n; ++i) K[i] = x.f[i] > 0.0 ? stiffness_at(p.law[i], x.d[i]) : 0.0;
+  for (int i = 0; i < p.n; ++i)
+    K[i] = acts(p.law[i], x.f[i]) ? stiffness_at(p.law[i], x.d[i]) : 0.0;
   newton_step(p, x, K, delta);
   advance(p, x, K, delta, next.d);
   evaluate(p, next);
@@ -166,7 +176,9 @@ void iterate(const Problem& p, const Point& x, Point& next) noexcept {
     const double part = before / (before - after);
     for (int i = 0; i < p.n; ++i) {
       const double force = x.f[i] + part * step[i];
-      next.d[i] = force > 0.0 ? depth_of(p.law[i], force) : next.d[i] < 0.0 ? next.d[i] : 0.0;
+      next.d[i] = acts(p.law[i], force) ? depth_of(p.law[i], force)
+                  : next.d[i] < 0.0     ? next.d[i]
+                                        : 0.0;
     }
     evaluate(p, next);
   }
@@ -175,6 +187,7 @@ void iterate(const Problem& p, const Point& x, Point& next) noexcept {
 bool is_law(const PortLaw& law) noexcept {
   if (!std::isfinite(law.hertz) || !std::isfinite(law.slope) || !std::isfinite(law.jump))
     return false;
+  if (law.pulls) return law.slope > 0.0;
   return law.hertz > 0.0 || (law.hertz == 0.0 && law.slope > 0.0);
 }
 
@@ -191,13 +204,14 @@ bool usable(const Problem& p) noexcept {
 
 /// From the last step's forces; a port that had none starts as if alone in the shape they make.
 void start(const Problem& p, const double* last, Point& x) noexcept {
-  for (int i = 0; i < p.n; ++i) x.f[i] = std::isfinite(last[i]) && last[i] > 0.0 ? last[i] : 0.0;
+  for (int i = 0; i < p.n; ++i)
+    x.f[i] = std::isfinite(last[i]) && acts(p.law[i], last[i]) ? last[i] : 0.0;
   for (int i = 0; i < p.n; ++i) {
     double free = p.d_free[i];
     for (int j = 0; j < p.n; ++j) free -= p.W[i * p.n + j] * x.f[j];
-    x.d[i] = x.f[i] > 0.0 ? depth_of(p.law[i], x.f[i])
-             : free > 0.0 ? lone_depth(p.law[i], free, p.W[i * p.n + i])
-                          : free;
+    x.d[i] = acts(p.law[i], x.f[i]) ? depth_of(p.law[i], x.f[i])
+             : free > 0.0           ? lone_depth(p.law[i], free, p.W[i * p.n + i])
+                                    : free;
   }
   evaluate(p, x);
 }

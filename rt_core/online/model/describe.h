@@ -106,10 +106,18 @@ void describe(Archive& a, Model& m, std::int32_t at) {
 }
 
 template <typename Archive>
+void describe(Archive& a, TravelModel& t) {
+  a.real(t.speed);
+  a.count(t.rows, kMostRows);
+  a.reals(t.table, std::int64_t{3} * t.rows);
+}
+
+template <typename Archive>
 void describe(Archive& a, LoadModel& l) {
   for (double& x : l.row) a.real(x);
   a.count(l.rail, 1);
-  for (double* x : {&l.start, &l.speed, &l.stop, &l.force}) a.real(*x);
+  for (double* x : {&l.start, &l.stop, &l.force, &l.amplitude, &l.frequency, &l.phase}) a.real(*x);
+  describe(a, l.travel);
   a.count(l.table_points, kMostRows);
   a.reals(l.table, std::int64_t{2} * l.table_points);
   a.count(l.kind, kMaxPortKinds - 1);
@@ -144,6 +152,31 @@ void describe(Archive& a, WheelsetModel& w) {
   }
   for (std::int32_t& kind : w.kind) a.count(kind, kMaxPortKinds - 1);
   for (SignalModel& tread : w.tread) describe(a, tread);
+}
+
+template <typename Archive>
+void describe(Archive& a, VehicleWheel& w) {
+  a.count(w.vehicle, kMaxVehicles - 1);
+  a.count(w.rail, 1);
+  for (double* x : {&w.place, &w.contact.hertz, &w.contact.stiffness, &w.contact.damping})
+    a.real(*x);
+  a.count(w.kind, kMaxPortKinds - 1);
+  describe(a, w.tread);
+}
+
+template <typename Archive>
+void describe(Archive& a, VehicleModel& v) {
+  a.count(v.first, kMostUnknowns);
+  a.count(v.size, kMaxVehicleUnknowns);
+  a.count(v.first_wheel, kMaxWheels);
+  a.count(v.wheels, kMaxWheels);
+  a.real(v.start);
+  describe(a, v.travel);
+  const std::int64_t n = v.size, wheels = v.wheels;
+  for (const double** of : {&v.mass, &v.weight}) a.reals(*of, n);
+  for (const double** of : {&v.damping, &v.stiffness, &v.inverse}) a.reals(*of, n * n);
+  for (const double** of : {&v.row, &v.give}) a.reals(*of, wheels * n);
+  a.reals(v.compliance, wheels * wheels);
 }
 
 template <typename Archive>
@@ -211,6 +244,8 @@ void describe(Archive& a, Model& m) {
   a.count(m.lines, kMaxLines);
   a.count(m.loads, kMaxLoads);
   a.count(m.wheelsets, kMaxWheelsets);
+  a.count(m.vehicles, kMaxVehicles);
+  a.count(m.vehicle_wheels, kMaxWheels - 2 * m.wheelsets);
   a.count(m.signals, kMaxSignals);
   a.count(m.elements, kMostElements);
   a.count(m.unknowns, kMostUnknowns);
@@ -228,6 +263,8 @@ void describe(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
   for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);
   for (std::int32_t i = 0; i < m.wheelsets; ++i) describe(a, m.wheelset[i]);
+  for (std::int32_t i = 0; i < m.vehicles; ++i) describe(a, m.vehicle[i]);
+  for (std::int32_t i = 0; i < m.vehicle_wheels; ++i) describe(a, m.vehicle_wheel[i]);
   for (std::int32_t i = 0; i < m.signals; ++i) {
     a.count(m.signal[i].rail, 1);
     a.count(m.signal[i].direction, 2);

@@ -111,6 +111,23 @@ bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
   return signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
 }
 
+bool travel_holds(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
+
+bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
+  if (v.first < m.bodies || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
+    return false;
+  return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_holds(v.travel) && v.mass &&
+         v.damping && v.stiffness && v.weight && v.inverse && v.row && v.give && v.compliance;
+}
+
+/// A wheel is one of its vehicle's, whose matrices have a row for it.
+bool wheel_holds(const Model& m, std::int32_t i) noexcept {
+  const VehicleWheel& wheel = m.vehicle_wheel[i];
+  if (wheel.vehicle >= m.vehicles) return false;
+  const VehicleModel& own = m.vehicle[wheel.vehicle];
+  return i >= own.first_wheel && i < own.first_wheel + own.wheels && signal_holds(wheel.tread);
+}
+
 bool residual_holds(const Model& m) noexcept {
   const ResidualModel& r = m.residual;
   const bool tables = r.under != nullptr || r.axis != nullptr || m.probe.residual != nullptr;
@@ -119,6 +136,8 @@ bool residual_holds(const Model& m) noexcept {
     if (m.load[i].kind >= r.kinds) return false;
   for (std::int32_t i = 0; i < m.wheelsets && tables; ++i)
     if (m.wheelset[i].kind[0] >= r.kinds || m.wheelset[i].kind[1] >= r.kinds) return false;
+  for (std::int32_t i = 0; i < m.vehicle_wheels && tables; ++i)
+    if (m.vehicle_wheel[i].kind >= r.kinds) return false;
   for (std::int32_t i = 0; i < r.kinds; ++i)
     for (std::int32_t j = 0; j < r.kinds; ++j)
       if (r.pair[i][j].value != nullptr && r.pair[i][j].points < 3) return false;
@@ -159,9 +178,15 @@ bool holds(const Model& m) noexcept {
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_holds(m, m.line[i])) return false;
   for (std::int32_t i = 0; i < m.loads; ++i)
-    if (m.load[i].table_points > 0 && m.load[i].table == nullptr) return false;
+    if ((m.load[i].table_points > 0 && m.load[i].table == nullptr) ||
+        !travel_holds(m.load[i].travel))
+      return false;
   for (std::int32_t i = 0; i < m.wheelsets; ++i)
     if (!wheelset_holds(m, m.wheelset[i])) return false;
+  for (std::int32_t i = 0; i < m.vehicles; ++i)
+    if (!vehicle_holds(m, m.vehicle[i])) return false;
+  for (std::int32_t i = 0; i < m.vehicle_wheels; ++i)
+    if (!wheel_holds(m, i)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
   return residual_holds(m) && turn_holds(m.turn) && probes_hold(m) && fixed_ports_hold(m);

@@ -12,7 +12,9 @@ namespace railstep {
 inline constexpr int kMaxLines = 16;  // independent systems a track falls into
 inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
-inline constexpr int kMaxWheels = 2 * kMaxWheelsets;
+inline constexpr int kMaxVehicles = 16;
+inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
+inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles
 inline constexpr int kMaxBodyForces = 4;
 inline constexpr int kMaxSignals = 32;     // irregularities and defects of the rails
 inline constexpr int kMaxFixedPorts = 32;  // one-sided springs of the track
@@ -95,15 +97,27 @@ struct LineModel {
   std::int32_t rigid_section;  // a_z and b_y are one unknown, the roll a_z
 };
 
-/// A prescribed force that runs along a rail.
+/// How something goes along the rails: at one speed, or by a table of speeds, linear between its
+/// rows and constant outside them.
+struct TravelModel {
+  double speed;         // m/s; with a table its speed of the largest size
+  std::int32_t rows;    // 0: one speed
+  const double* table;  // [rows][3]  s, m/s, m gone since t = 0
+};
+
+/// A prescribed force that runs along a rail: force * table + amplitude sin(2 pi (frequency t +
+/// phase)).
 struct LoadModel {
   double row[9];              // of a node: position, y slope, z slope; gives the loaded point's z
   std::int32_t rail;          // 0 left, 1 right
-  double start, speed, stop;  // m, m/s, m; taken off beyond stop; start of a track without end: of
-                              // the elements' x
+  double start, stop;         // m; taken off beyond stop; start of a track without end: of the
+                              // elements' x
+  TravelModel travel;         // from start
   double force;               // N along z, up positive
   std::int32_t table_points;  // 0: constant
   const double* table;        // [table_points][2]  s, factor; linear between, constant outside
+  double amplitude;           // N along z
+  double frequency, phase;    // Hz, turns
   std::int32_t kind;          // of port, for the residual flexibility
 };
 
@@ -142,6 +156,43 @@ struct WheelsetModel {
   std::int32_t kind[2];  // of port on left and right rail, for the residual flexibility
   SignalModel tread[2];  // of the left and right wheel: radius more than `radius`, over the
                          // distance rolled
+};
+
+/// How a vehicle's wheel holds on to what is under it, d the penetration:
+///   hertz d^1.5 above 0   of a Hertz contact (hertz > 0), else
+///   stiffness d + damping d'   at any d: it pulls too.
+struct ContactModel {
+  double hertz;               // N/m^1.5
+  double stiffness, damping;  // N/m, N s/m
+};
+
+/// A wheel of a vehicle. Off the rail it rolls on level, rigid ground in line with the rail's axis
+/// at rest.
+struct VehicleWheel {
+  std::int32_t vehicle, rail;  // rail: 0 left, 1 right
+  double place;                // from the vehicle's origin, m
+  ContactModel contact;
+  std::int32_t kind;  // of port, for the residual flexibility
+  SignalModel tread;  // radius more than its own, over the distance rolled
+};
+
+/// Rigid bodies on springs and dampers that bounce and pitch over one rail,
+///   M q'' + C q' + K q = B' f - weight,
+/// q from where they stand when the wheels touch a rail at rest without a force in any spring, B q
+/// the height of the wheels and f the rail's forces on them. Its equation holds at s of the step: 1
+/// at its end, as of banded lines; 1/2 where forces are held over it, as of condensed ones.
+struct VehicleModel {
+  std::int32_t first, size;          // its unknowns among the state's
+  std::int32_t first_wheel, wheels;  // among the vehicles' wheels
+  double start;                      // place of its origin at t = 0, m
+  TravelModel travel;
+  const double* mass;                 // [size] diagonal, kg, kg m2
+  const double *damping, *stiffness;  // [size][size]
+  const double* weight;               // [size] N
+  const double* inverse;              // [size][size] of s K + s kv C + kg M
+  const double* row;                  // [wheels][size] B
+  const double* give;                 // [wheels][size] inverse B'
+  const double* compliance;           // [wheels][wheels] B inverse B', m/N
 };
 
 /// Residual flexibility between ports of two kinds: of the first in element e at point p, of the
@@ -208,8 +259,9 @@ struct FixedPortModel {
 /// Everything a step needs; immutable, may be shared by threads.
 struct Model {
   Scheme scheme;
-  std::int32_t lines, loads, wheelsets, signals, elements;
-  std::int32_t unknowns;   // of all lines, padded, 8 per wheelset, and the system's
+  std::int32_t lines, loads, wheelsets, vehicles, signals, elements;
+  std::int32_t vehicle_wheels;  // of all vehicles
+  std::int32_t unknowns;   // of all lines, padded, 8 per wheelset, of vehicles, and the system's
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
   std::int32_t bodies;     // first unknown behind the lines
   std::int32_t steps_per_frame;
@@ -230,11 +282,30 @@ struct Model {
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];
+  VehicleModel vehicle[kMaxVehicles];
+  VehicleWheel vehicle_wheel[kMaxWheels];
   RailSignal signal[kMaxSignals];
   SystemModel system;
 };
 
-/// Wheels on the rails: left and right of each wheelset in turn.
-inline std::int32_t wheel_count(const Model& model) noexcept { return 2 * model.wheelsets; }
+/// Wheels on the rails: left and right of each wheelset in turn, then those of each vehicle.
+inline std::int32_t wheel_count(const Model& model) noexcept {
+  return 2 * model.wheelsets + model.vehicle_wheels;
+}
+inline bool is_of_wheelset(const Model& model, std::int32_t wheel) noexcept {
+  return wheel < 2 * model.wheelsets;
+}
+/// Of a wheel that is no wheelset's.
+inline const VehicleWheel& vehicle_wheel(const Model& model, std::int32_t wheel) noexcept {
+  return model.vehicle_wheel[wheel - 2 * model.wheelsets];
+}
+inline std::int32_t wheel_rail(const Model& model, std::int32_t wheel) noexcept {
+  return is_of_wheelset(model, wheel) ? wheel % 2 : vehicle_wheel(model, wheel).rail;
+}
+/// Of port, for the residual flexibility.
+inline std::int32_t wheel_kind(const Model& model, std::int32_t wheel) noexcept {
+  return is_of_wheelset(model, wheel) ? model.wheelset[wheel / 2].kind[wheel % 2]
+                                      : vehicle_wheel(model, wheel).kind;
+}
 
 }  // namespace railstep

@@ -4,6 +4,8 @@
 #include "online/step/load.h"
 #include "online/step/track_response.h"
 #include "online/step/turn.h"
+#include "online/step/vehicle.h"
+#include "online/step/vehicle_contact.h"
 #include "online/step/wheelset.h"
 
 namespace railstep {
@@ -13,7 +15,8 @@ namespace {
 /// Contacts where the forces of the step act: on u + dt v of bodies and banded lines at its end; in
 /// the middle of it where forces are held, with condensed lines as they stand (their fastest rates
 /// are far above 1/dt).
-void locate_contacts(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
+void locate_contacts(const Model& model, std::int64_t step, const State& s, Workspace& w,
+                     Coupling& c) noexcept {
   const double ahead = (model.condensed != 0 ? .5 : 1.) * model.scheme.dt;
 #pragma omp simd
   for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
@@ -28,7 +31,15 @@ void locate_contacts(const Model& model, const State& s, Workspace& w, Coupling&
       c.place[i] = {set.kind[side], c.contact[i].row.element, c.contact[i].xi, 0.};
     }
   }
+  const double time = static_cast<double>(step - 1) * model.scheme.dt + ahead;
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    find_vehicle_contacts(model, model.vehicle[v], time, located_on(model, s, w), c.contact);
+  for (int i = 2 * model.wheelsets; i < c.wheels; ++i)
+    c.place[i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }
+
+/// Whether there is anything under a wheel.
+bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground; }
 
 /// What the loads add to the rail under each wheel through the residual flexibility.
 void find_loaded(const Model& model, std::int64_t step, Coupling& c) noexcept {
@@ -42,6 +53,12 @@ void find_loaded(const Model& model, std::int64_t step, Coupling& c) noexcept {
   }
 }
 
+/// What a unit force at wheel j adds to the approach of wheel i through what bears them both.
+double body_compliance(const Model& model, const Coupling& c, int i, int j) noexcept {
+  if (is_of_wheelset(model, i) != is_of_wheelset(model, j)) return 0.;
+  return is_of_wheelset(model, i) ? wheelset_compliance(c, i, j) : vehicle_compliance(model, i, j);
+}
+
 /// W between all wheels: through the lines, the bodies and the residual flexibility.
 void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
   for (int i = 0; i < c.wheels; ++i)
@@ -49,9 +66,11 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
       double sum = 0.;
       if (c.contact[i].on_rail && c.contact[j].on_rail)
         sum = model.scheme.theta *
-                  (track_compliance(model, w, c, i, j) + wheelset_compliance(c, i, j)) +
+                  (track_compliance(model, w, c, i, j) + body_compliance(model, c, i, j)) +
               (i == j ? residual_under(model, c.place[i])
                       : residual_between(model, c.place[j], c.place[i]));
+      else if (stands(c.contact[i]) && stands(c.contact[j]))
+        sum = model.scheme.theta * body_compliance(model, c, i, j);
       c.W[i * c.ports + j] = c.W[j * c.ports + i] = sum;
     }
 }
@@ -62,8 +81,12 @@ void track_penetration(const Model& model, const State& s, const Workspace& w,
   for (int i = 0; i < c.wheels; ++i) {
     c.track_free[i] = -1.;  // off the rail: far away
     if (c.contact[i].on_rail)
-      c.track_free[i] = model.scheme.theta * track_motion(model, s, w, c, i) + c.loaded[i] +
-                        wheelset_offset(model, s, w, c, i);
+      c.track_free[i] = model.scheme.theta * track_motion(model, s, w, c, i) + c.loaded[i];
+    else if (c.contact[i].on_ground)
+      c.track_free[i] = 0.;
+    if (stands(c.contact[i]))
+      c.track_free[i] += is_of_wheelset(model, i) ? wheelset_offset(model, s, w, c, i)
+                                                  : vehicle_offset(model, s, w, c, i);
   }
 }
 
@@ -72,8 +95,9 @@ PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
   double d_free[kPorts];
   for (int i = 0; i < c.ports; ++i) {
     d_free[i] = c.track_free[i];
-    if (i < c.wheels && c.contact[i].on_rail)
-      d_free[i] -= model.scheme.theta * free_lift(model, s, c, i);
+    if (i >= c.wheels || !stands(c.contact[i])) continue;
+    d_free[i] -= model.scheme.theta *
+                 (is_of_wheelset(model, i) ? free_lift(model, s, c, i) : vehicle_lift(model, c, i));
   }
   return solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
 }
@@ -94,20 +118,25 @@ void solve_coupled(const Model& model, std::int64_t step, State& s, Workspace& w
   if (!settled || !solved) result.status = result.status | Status::cap_reached;
 }
 
+bool closes_too_fast(const Model& model, const Coupling& c, const State& s, int i) noexcept {
+  return is_of_wheelset(model, i) ? strikes_too_fast(model, c, s, i)
+                                  : vehicle_strikes_too_fast(model, c, s, i);
+}
+
 void publish_wheels(const Model& model, const Coupling& c, State& state,
                     CoupleResult& result) noexcept {
   for (int i = 0; i < c.wheels; ++i) {
     const WheelContact& at = c.contact[i];
-    if (state.wheel_force[i] <= 0. && c.force[i] > 0. && strikes_too_fast(model, c, state, i))
+    if (state.wheel_force[i] <= 0. && c.force[i] > 0. && closes_too_fast(model, c, state, i))
       result.status = result.status | Status::contact_unresolved;
     state.wheel_force[i] = c.force[i];
     result.gap[i] = -c.penetration[i];
-    result.x[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+    result.x[i] = at.x;
     result.on_rail[i] = at.on_rail;
-    if (!at.on_rail) result.status = result.status | Status::off_rail;
+    if (!stands(at)) result.status = result.status | Status::off_rail;
     if (at.turn * at.turn > kLargeTurnSquared) result.status = result.status | Status::large_turn;
     if (at.cap_reached) result.status = result.status | Status::cap_reached;
-    if (c.force[i] <= 0.) result.status = result.status | Status::contact_lost;
+    if (c.force[i] <= 0. && !c.law[i].pulls) result.status = result.status | Status::contact_lost;
   }
 }
 
@@ -118,9 +147,12 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   Coupling c;
   c.wheels = wheel_count(model);
   c.ports = c.wheels + model.fixed.count;
-  locate_contacts(model, state, w, c);
+  const double time = static_cast<double>(step) * model.scheme.dt;
+  locate_contacts(model, step, state, w, c);
   find_loaded(model, step, c);
   free_wheelsets(model, step, w, c);
+  free_vehicles(model, state, w, c);
+  find_vehicle_laws(model, time, state, w, c);
   respond(model, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);
@@ -128,6 +160,7 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
   solve_coupled(model, step, state, w, c, result);
   move_track(model, w, c);
+  move_vehicles(model, w, c);
   if (model.fixed.count > 0) press_fixed_ports(model, c, state, w);
   publish_wheels(model, c, state, result);
   return result;

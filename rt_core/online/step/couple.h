@@ -13,10 +13,10 @@ struct CoupleResult {
   bool on_rail[kMaxWheels];
 };
 
-/// Wheelsets, their guides, their contacts with the rails, and what of the track is one-sided:
-/// finds the contacts, solves the track for its own right-hand side (in workspace.solved[0]) and
-/// for each wheel, then all ports' forces and guides together, and leaves behind the displacements
-/// of track and wheelsets in solved[0].
+/// Wheelsets, their guides, vehicles, their contacts with the rails, and what of the track is
+/// one-sided: finds the contacts, solves the track for its own right-hand side (in
+/// workspace.solved[0]) and for each wheel, then all ports' forces and guides together, and leaves
+/// behind the displacements of all in solved[0].
 CoupleResult couple(const Model& model, std::int64_t step, State& state,
                     Workspace& workspace) noexcept;
 

@@ -19,7 +19,8 @@ struct Coupling {
   RailForce place[kMaxWheels];  // of the contacts
   double loaded[kMaxWheels];    // residual displacement there by the loads, m
   FreeWheelset wheelset[kMaxWheelsets];
-  double W[kPorts * kPorts];  // [ports][ports] m/N
+  double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
+  double W[kPorts * kPorts];                          // [ports][ports] m/N
   PortLaw law[kPorts];
   double track_free[kPorts];   // penetration from the track and the frozen geometry, m
   double force[kPorts];        // N

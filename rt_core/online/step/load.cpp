@@ -1,7 +1,9 @@
 #include "online/step/load.h"
 
+#include "online/math/wave.h"
 #include "online/model/course.h"
 #include "online/step/table.h"
+#include "online/step/travel.h"
 
 namespace railstep {
 
@@ -9,7 +11,7 @@ PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) n
   const double time = static_cast<double>(step) * model.scheme.dt;
   PlacedLoad at{};
   if (model.endless.bays == 0) {
-    at.x = at.place = load.start + load.speed * time;
+    at.x = at.place = load.start + travelled(load.travel, time).distance;
   } else {
     at.place = load.start + within_bay(model, step);
     at.x = passed(model, step) + at.place;
@@ -27,8 +29,10 @@ PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) n
     for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * load.row[k];
   const double factor =
       load.table_points == 0 ? 1. : table_value(load.table, load.table_points, time);
-  const bool taken_off = load.speed >= 0. ? at.x > load.stop : at.x < load.stop;
+  const bool taken_off = load.travel.speed >= 0. ? at.x > load.stop : at.x < load.stop;
   at.force = taken_off ? 0. : load.force * factor;
+  if (load.amplitude != 0. && !taken_off)
+    at.force += load.amplitude * sine_of_turns(load.frequency * time + load.phase);
   return at;
 }
 

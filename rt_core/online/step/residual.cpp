@@ -33,8 +33,8 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
     forces[count++] =
         rail_force(model, model.load[i].kind, outputs.load_place[i], outputs.load_force[i]);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    forces[count++] = rail_force(model, model.wheelset[i / 2].kind[i % 2], outputs.wheel_place[i],
-                                 -outputs.wheel_force[i]);
+    forces[count++] = rail_force(model, wheel_kind(model, i), outputs.wheel_place[i],
+                                 outputs.wheel_on_rail[i] ? -outputs.wheel_force[i] : 0.);
   return count;
 }
 

@@ -6,6 +6,7 @@
 #include "online/step/follow.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
+#include "online/step/vehicle_contact.h"
 #include "online/step/wheel.h"
 #include "online/system/system_step.h"
 
@@ -204,7 +205,7 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     outputs.wheel_rail_z[i] = 0.;
     if (!outputs.wheel_on_rail[i]) continue;
     outputs.wheel_rail_z[i] =
-        axis_height(model, i % 2, own.element, own.xi, standing(model, state)) +
+        axis_height(model, wheel_rail(model, i), own.element, own.xi, standing(model, state)) +
         residual_displacement(model, force, count, model.loads + i) +
         own.force * (residual_axis(model, own) - residual_under(model, own));
   }
@@ -214,25 +215,26 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
 
 void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept {
   start_frame(model, outputs);
-  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
-    WheelContact sides[2];
-    find_contacts(model, model.wheelset[b], standing(model, state), sides);
-    for (int side = 0; side < 2; ++side) {
-      const int i = 2 * b + side;
-      const WheelContact& at = sides[side];
-      outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
-          state.wheel_force[i];
-      outputs.wheel_gap[i] = -at.penetration;
-      outputs.wheel_on_rail[i] = at.on_rail;
-      outputs.wheel_place[i] = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
-      outputs.wheel_x[i] = outputs.wheel_place[i] + passed(model, state.steps);
-    }
+  WheelContact contact[kMaxWheels];
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    find_contacts(model, model.wheelset[b], standing(model, state), contact + 2 * b);
+  const double time = static_cast<double>(state.steps) * model.scheme.dt;
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    find_vehicle_contacts(model, model.vehicle[v], time, standing(model, state), contact);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
+    outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
+        state.wheel_force[i];
+    outputs.wheel_gap[i] = -contact[i].penetration;
+    outputs.wheel_on_rail[i] = contact[i].on_rail;
+    outputs.wheel_place[i] = contact[i].x;
+    outputs.wheel_x[i] = contact[i].x + passed(model, state.steps);
   }
   publish(model, state, outputs);
   RailForce force[kMaxLoads + kMaxWheels];
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
+    if (outputs.wheel_on_rail[i])
+      outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
 }
 
 }  // namespace railstep

@@ -148,8 +148,9 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
                    (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
   const double rolled = (now.passed + model.endless.origin) + p[0];
   const Irregularity off =
-      irregularity(model, w, side, at.normal, (x + now.passed) + ahead, rolled + ahead);
+      irregularity(model, w.tread[side], side, at.normal, (x + now.passed) + ahead, rolled + ahead);
   fill_row(shape, off.rail_rise, at);
+  at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   at.turn = .5 * (q[5] - q[7]);
   const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
   // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
@@ -158,6 +159,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
   at.penetration = (w.radius - gap) + off.depth + higher;
+  at.irregular = off.depth;
   at.rise = off.rise;
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
   at.body_row[3] = cy * lever[0] + sy * lever[1];
@@ -168,16 +170,16 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
 
 }  // namespace
 
-Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int side,
+Irregularity irregularity(const Model& model, const SignalModel& tread, int rail,
                           const double* normal, double x, double rolled) noexcept {
-  const SignalValue tread = signal_at(wheelset.tread[side], rolled);
-  Irregularity sum{tread.value, tread.slope, 0.};
+  const SignalValue round = signal_at(tread, rolled);
+  Irregularity sum{round.value, round.slope, 0.};
   for (std::int32_t i = 0; i < model.signals; ++i) {
-    const RailSignal& rail = model.signal[i];
-    if (rail.rail != side) continue;
-    const SignalValue at = signal_at(rail.signal, x);
-    sum.depth += normal[rail.direction] * at.value;
-    sum.rail_rise += normal[rail.direction] * at.slope;
+    const RailSignal& own = model.signal[i];
+    if (own.rail != rail) continue;
+    const SignalValue at = signal_at(own.signal, x);
+    sum.depth += normal[own.direction] * at.value;
+    sum.rail_rise += normal[own.direction] * at.slope;
   }
   sum.rise += sum.rail_rise;
   return sum;

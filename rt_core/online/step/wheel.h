@@ -9,26 +9,30 @@ namespace railstep {
 /// velocities lead to.
 struct WheelContact {
   bool on_rail;
+  bool on_ground;  // of a vehicle: it rolls on level ground before or behind the rail
   bool cap_reached;
   double xi;
+  double x;            // of the contact along the undeformed rail, m
   double normal[3];    // unit, from the rail to the axle
   double y, z;         // of the contact in the section, m from the axis
   RailRow row;         // displacement of that material point along the normal
   double turn;         // of the rail's section there about x, rad
   double penetration;  // of that configuration, m; negative is a gap
   double body_row[6];  // d(gap)/d(coordinates) of the wheelset
-  double rise;         // of the penetration by irregularities, per metre that the wheelset goes on
+  double irregular;    // what irregularities add to the penetration, m
+  double rise;         // of that, per metre that the wheel goes on
 };
 
 /// What irregularities add to the penetration along a normal, m, and its rise over x. To first
 /// order: the normal is that of the true shapes.
+/// @param tread   of the wheel
 /// @param x       of the contact along the track, m
 /// @param rolled  distance that the wheel has gone, m
 struct Irregularity {
   double depth, rise;
   double rail_rise;  // the part of the rise that is the rail's, which goes along with its steel
 };
-Irregularity irregularity(const Model& model, const WheelsetModel& wheelset, int side,
+Irregularity irregularity(const Model& model, const SignalModel& tread, int rail,
                           const double* normal, double x, double rolled) noexcept;
 
 /// Finds the contacts of a wheelset's left and right wheel.

@@ -4,6 +4,7 @@
 
 #include "online/model/course.h"
 #include "online/step/couple.h"
+#include "online/step/strike.h"
 #include "online/step/table.h"
 
 namespace railstep {
@@ -158,9 +159,7 @@ bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int
   }
   speed += c.contact[wheel].rise * s.v[set.first];
   const double inverse_mass = alone > together ? alone : together;
-  const double depth = 1.25 / (inverse_mass * set.hertz[wheel % 2]),
-               steps = 10. * model.scheme.dt / 2.9433;
-  return speed > 0. && depth * depth < steps * steps * steps * steps * steps * speed;
+  return is_left_too_soon(set.hertz[wheel % 2], inverse_mass, speed, model.scheme.dt);
 }
 
 void project_guides(const Model& model, State& state) noexcept {

@@ -31,9 +31,8 @@ std::int32_t guide_turns(const Model& model) noexcept;
 bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& w,
                     const Coupling& c, double& violation) noexcept;
 
-/// Whether a wheel that closes now on its rail will have left it within 10 steps. A mass m that
-/// meets a Hertz contact C at speed v stays for T = 2.9433 (5 m / 4 C)^0.4 v^-0.2 (Goldsmith,
-/// Impact, 1960), here with the rail taken as rigid (one that gives way holds the wheel for longer)
+/// Whether a wheel that closes now on its rail will have left it within 10 steps (strike.h), with
+/// the rail taken as rigid (one that gives way holds the wheel for longer)
 /// and the smaller of the masses that the wheel has alone and together with the set's other one.
 bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int wheel) noexcept;
 

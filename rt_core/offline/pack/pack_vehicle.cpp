@@ -1,0 +1,127 @@
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+#include "offline/contact/hertz.h"
+#include "offline/pack/pack.h"
+#include "offline/pack/travel_rows.h"
+#include "online/step/table.h"
+#include "online/step/travel.h"
+
+namespace railstep {
+
+namespace {
+
+std::vector<double> row_by_row(const Eigen::MatrixXd& A) {
+  std::vector<double> values;
+  for (Eigen::Index i = 0; i < A.rows(); ++i)
+    for (Eigen::Index j = 0; j < A.cols(); ++j) values.push_back(A(i, j));
+  return values;
+}
+
+/// (s K + s kv C + kg M)^-1, made symmetric to the last bit.
+Eigen::MatrixXd step_inverse(const VehicleMatrices& m, const Scheme& scheme, double s) {
+  const Eigen::MatrixXd A = s * m.stiffness + s * scheme.kv * m.damping + scheme.kg * m.mass;
+  const Eigen::MatrixXd inverse = A.fullPivLu().inverse();
+  return .5 * (inverse + inverse.transpose());
+}
+
+ContactModel contact_of(const RunningVehicle& vehicle, double radius, const Railhead& head,
+                        const Material& material) {
+  switch (vehicle.contact) {
+    case WheelContactKind::linear:
+      if (!(vehicle.stiffness > 0.) || !(vehicle.damping >= 0.))
+        throw std::invalid_argument("a linear contact has a stiffness above 0");
+      return {0., vehicle.stiffness, vehicle.damping};
+    case WheelContactKind::bonded:
+      return {0., kBonded, 0.};
+    default:
+      return {
+          hertz_contact(radius, head.crown_radius, material.young, material.poisson, 1e3).constant,
+          0., 0.};
+  }
+}
+
+}  // namespace
+
+double first_speed(const MovingLoad& load) {
+  if (load.speeds.empty()) return load.speed;
+  return table_value(load.speeds.data(), static_cast<std::int32_t>(load.speeds.size() / 2), 0.);
+}
+
+TravelTable travel_table(double speed, const std::vector<double>& speeds) {
+  TravelTable made{{}, speed};
+  if (speeds.empty()) return made;
+  made.speed = 0.;
+  std::vector<double>& rows = made.rows;
+  for (std::size_t i = 0; i < speeds.size(); i += 2) {
+    const double t = speeds[i], v = speeds[i + 1];
+    double gone = 0.;
+    if (!rows.empty()) {
+      const double* last = rows.data() + rows.size() - 3;
+      if (!(t > last[0])) throw std::invalid_argument("the times of a table of speeds do not rise");
+      gone = last[2] + .5 * (t - last[0]) * (last[1] + v);
+    }
+    rows.insert(rows.end(), {t, v, gone});
+    if (std::abs(v) > std::abs(made.speed)) made.speed = v;
+  }
+  const double at_zero = travelled(made.model(), 0.).distance;
+  for (std::size_t i = 2; i < rows.size(); i += 3) rows[i] -= at_zero;
+  return made;
+}
+
+TravelModel PackedModel::keep_travel(double speed, const std::vector<double>& speeds) {
+  TravelTable made = travel_table(speed, speeds);
+  TravelModel packed = made.model();
+  packed.table = packed.rows == 0 ? nullptr : keep(std::move(made.rows));
+  return packed;
+}
+
+void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
+                              const std::array<Railhead, 2>& heads) {
+  if (vehicle.rail < 0 || vehicle.rail >= track.rails)
+    throw std::invalid_argument("a vehicle stands on a rail that the track does not have");
+  if (model_.vehicles == kMaxVehicles) throw std::invalid_argument("more than 16 vehicles");
+  const VehicleMatrices m = vehicle_matrices(vehicle.vehicle, vehicle.gravity);
+  const auto n = static_cast<std::int32_t>(m.mass.rows());
+  const auto wheels = static_cast<std::int32_t>(m.wheels.rows());
+  if (n > kMaxVehicleUnknowns)
+    throw std::invalid_argument("more than 16 coordinates of one vehicle");
+  if (wheel_count(model_) + wheels > kMaxWheels)
+    throw std::invalid_argument("more than 32 wheels of wheelsets and vehicles");
+  if (!vehicle.tread.empty() && vehicle.tread.size() != vehicle.vehicle.wheels.size())
+    throw std::invalid_argument("treads of a vehicle that are not one for each wheel");
+  const auto rail = static_cast<std::size_t>(vehicle.rail);
+  VehicleModel& packed = model_.vehicle[model_.vehicles];
+  packed.first = model_.unknowns;
+  packed.size = n;
+  packed.first_wheel = model_.vehicle_wheels;
+  packed.wheels = wheels;
+  packed.start = vehicle.start;
+  packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
+  const Eigen::MatrixXd inverse = step_inverse(m, model_.scheme, model_.condensed != 0 ? .5 : 1.);
+  const Eigen::MatrixXd give = m.wheels * inverse;
+  const Eigen::MatrixXd compliance = give * m.wheels.transpose();
+  packed.mass = keep(row_by_row(m.mass.diagonal()));
+  packed.damping = keep(row_by_row(m.damping));
+  packed.stiffness = keep(row_by_row(m.stiffness));
+  packed.weight = keep(row_by_row(m.weight));
+  packed.inverse = keep(row_by_row(inverse));
+  packed.row = keep(row_by_row(m.wheels));
+  packed.give = keep(row_by_row(give));
+  packed.compliance = keep(row_by_row(.5 * (compliance + compliance.transpose())));
+  for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i) {
+    const Vehicle::Wheel& wheel = vehicle.vehicle.wheels[i];
+    VehicleWheel& own = model_.vehicle_wheel[model_.vehicle_wheels++];
+    own.vehicle = model_.vehicles;
+    own.rail = vehicle.rail;
+    own.place = wheel.place;
+    own.contact = contact_of(vehicle, wheel.radius, heads[rail], track.bar(vehicle.rail).material);
+    own.kind = kind_of(vehicle.rail, heads[rail].top_z);
+    if (!vehicle.tread.empty()) own.tread = keep(vehicle.tread[i]);
+  }
+  ++model_.vehicles;
+  model_.unknowns += (n + kLanes - 1) / kLanes * kLanes;
+}
+
+}  // namespace railstep
