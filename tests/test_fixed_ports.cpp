@@ -383,7 +383,7 @@ TEST_CASE("a rail thrown against a stop", "[ports]") {
   ModelRun run(t, passing(1.2, 0., -1e3, 2.), {.scheme = generalised_alpha(2e-5, 1.)});
   for (std::int32_t l = 0; l < run.model().lines; ++l) {
     const LineModel& line = run.model().line[l];
-    for (int node = 0; node < run.model().elements * 2 + 1; ++node)
+    for (int node = 0; node < run.model().elements * 3; ++node)  // of each element in turn
       if (const auto y = line.unknown_of[0][9 * node + 1]; y >= 0) run.state.v[line.first + y] = .5;
   }
   EnergyAccount energy(*run.packed, run.model(), run.state);

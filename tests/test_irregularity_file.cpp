@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +14,8 @@ using Catch::Matchers::Contains;
 namespace {
 
 std::filesystem::path written(const std::string& text) {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / "railstep_rail.csv";
+  std::filesystem::path path = std::filesystem::temp_directory_path() /
+                               ("railstep_rail_" + std::to_string(getpid()) + ".csv");
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }

@@ -52,7 +52,7 @@ ModelRun from_rest(const Track& track, const Traffic& traffic, const PackOptions
 /// Deflection of the middle, down, m: a node where the elements are even.
 double midspan(const ModelRun& run) {
   const LineModel& line = run.model().line[0];
-  return -run.state.u[line.first + line.unknown_of[0][9 * run.model().elements + 2]];
+  return -run.state.u[line.first + line.unknown_of[0][27 * (run.model().elements / 2) + 2]];
 }
 
 struct Largest {

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -26,8 +28,8 @@ std::filesystem::path with(const std::string& name, const std::string& tables) {
   const std::string profile = "../profiles/";
   text.replace(text.find(profile), profile.size(),
                std::string(RAILSTEP_SOURCE) + "/config/profiles/");
-  std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("railstep_irregular_" + name + ".toml");
+  std::filesystem::path file = std::filesystem::temp_directory_path() /
+                               (std::to_string(getpid()) + "_railstep_irregular_" + name + ".toml");
   std::ofstream(file) << text << tables;
   return file;
 }
@@ -102,15 +104,16 @@ TEST_CASE("an irregularity is read with its defaults and made into the rails' si
 }
 
 TEST_CASE("a record stands beside its scene") {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "railstep_record.csv";
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_railstep_record.csv");
   std::ofstream(file) << "distance_m,left_z_mm\n0,0\n0.25,1\n0.5,0\n0.75,2\n1,0\n";
   const Scene scene =
-      read_scene(with("ballasted_track",
-                      "[irregularity]\nfile = \"railstep_record.csv\"\ncontact_patch_m = 0.0\n"));
+      read_scene(with("ballasted_track", "[irregularity]\nfile = \"" + file.filename().string() +
+                                             "\"\ncontact_patch_m = 0.0\n"));
   const auto rails = irregularities_of(scene);
   REQUIRE(rails.size() == 1);
   CHECK(signal_at(rails[0].signal.model(), .75).value == Approx(2e-3));
-  CHECK_THAT(refusal("[irregularity]\nfile = \"railstep_record.csv\"\n",
+  CHECK_THAT(refusal("[irregularity]\nfile = \"" + file.filename().string() + "\"\n",
                      {"step.dt_s=0.01", "step.frame_s=0.01"}),
              Contains("railstep_record.csv") && Contains("8 steps or more"));
   CHECK_THAT(refusal("[irregularity]\nfile = \"nowhere.csv\"\n"), Contains("nowhere.csv"));

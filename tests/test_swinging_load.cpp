@@ -48,7 +48,7 @@ double closed_form(const PinnedModes& modes, double speed, double amplitude, dou
 
 double midspan(const ModelRun& run) {
   const LineModel& line = run.model().line[0];
-  return run.state.u[line.first + line.unknown_of[0][9 * run.model().elements + 2]];
+  return run.state.u[line.first + line.unknown_of[0][27 * (run.model().elements / 2) + 2]];
 }
 
 }  // namespace

@@ -145,6 +145,7 @@ Line small_line(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen:
   Line line{};
   line.mass = M.sparseView();
   line.damping = C.sparseView(1., 0.);
+  line.end_damping.resize(line.damping.rows(), line.damping.cols());
   line.stiffness = K.sparseView();
   return line;
 }

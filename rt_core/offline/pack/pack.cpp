@@ -164,9 +164,9 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (options.endless) add_endless(track, traffic, options);
   std::vector<Line> lines = assemble(track);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    Eigen::SparseMatrix<double> closing = closing_of(track, lines[i]);
+    const Eigen::SparseMatrix<double> closing = closing_of(track, lines[i]);
     if (closing.norm() > 0. || is_moved(track, lines[i], traffic, options.gravity))
-      add_line(track, {std::move(lines[i]), i, std::move(closing), {}, {}}, options);
+      add_line(track, {std::move(lines[i]), i, closing, {}, {}}, options);
   }
   if (lines_.empty()) throw std::invalid_argument("nothing moves the track");
   model_.bodies = model_.unknowns;
