@@ -125,6 +125,7 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
   model_.probe.value = keep(std::move(value));
   model_.probe.rest = keep(std::move(rest));
   std::vector<std::int32_t> along;
+  along.reserve(probes.size());
   for (const Probe& probe : probes) along.push_back(probe.along ? 1 : 0);
   model_.probe.along = keep(std::move(along));
 }
