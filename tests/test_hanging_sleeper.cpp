@@ -11,7 +11,6 @@
 #include "traced.h"
 
 using namespace railstep;
-using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
@@ -31,7 +30,7 @@ TEST_CASE("loads that stand over hanging sleepers rest as `static` finds them", 
   const char* const x[] = {"9.0", "9.0", "6.6", "6.6"};
   for (int i = 0; i < 4; ++i) {
     const std::string load = " --set load[" + std::to_string(i) + "].";
-    words += load + "start_m=" + x[i] + load + "speed_m_per_s=0.0";
+    words.append(load).append("start_m=").append(x[i]).append(load).append("speed_m_per_s=0.0");
   }
   const Rows rows = traced(words);
   const Ran ran = railstep_program("static " + words + " --json");

@@ -313,11 +313,13 @@ TEST_CASE("a scene's joints are checked", "[joint]") {
   refused("--set 'rail_joint=[{x_m=4.8}]'", "bending_vertical_stiffness_n_m_per_rad");
   refused("--set 'rail_joint=[{x_m=4.7, bending_vertical_stiffness_n_m_per_rad=1}]'",
           "4.2 and 4.8");
-  for (const std::string model : {"nonlinear", "timoshenko"})
-    refused(kJoint + "--set 'track.model=\"" + model +
-                "\"' --set track.rails=1 --set support.half_spread_m=0.05 --set "
-                "'load=[]' --set track.unknowns='\"full\"'",
-            "joints");
+  for (const char* const model : {"nonlinear", "timoshenko"}) {
+    std::string words = kJoint + "--set 'track.model=\"";
+    words.append(model).append(
+        "\"' --set track.rails=1 --set support.half_spread_m=0.05 --set 'load=[]' "
+        "--set track.unknowns='\"full\"'");
+    refused(words, "joints");
+  }
   refused("--set 'rail_joint=[{x_m=9.6, bending_vertical_stiffness_n_m_per_rad=1}]'", "at an end");
   refused(kJoint + "--set rail.axial_force_n=1e5", "carry no force");
   refused(kJoint + "--set 'track.ends=\"pinned\"' --set rail.temperature_rise_k=20", "gap_m = 0");
