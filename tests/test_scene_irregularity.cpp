@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "build_irregularity.h"
-#include "simulate.h"
+#include "scene_run.h"
 
 using namespace railstep;
 using Catch::Matchers::Contains;
 
 namespace {
 
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 constexpr double kPi = 3.14159265358979323846;
 const std::string kFull = "condense.kind=\"full\"";  // a start in a tenth of the time
 constexpr double kStatic = 10000. * 9.81 / 2.;       // N under each wheel of these scenes
@@ -42,30 +41,6 @@ std::string refusal(const std::string& tables, const std::vector<std::string>& o
   }
   return "accepted";
 }
-
-/// A run of a scene, each frame's value of a column.
-struct Traced {
-  std::vector<std::string> columns;
-  std::vector<double> rows;
-  Status status;
-
-  explicit Traced(const std::string& name, const std::vector<std::string>& overrides = {}) {
-    Simulation run(read_scene(kScenes + name + ".toml", overrides));
-    RunRecord record =
-        simulate(run, run.model().steps / run.model().steps_per_frame, nullptr, true, nullptr);
-    columns = run.columns();
-    rows = std::move(record.rows);
-    status = record.status;
-  }
-  std::vector<double> operator[](const std::string& column) const {
-    const auto at = std::find(columns.begin(), columns.end(), column) - columns.begin();
-    REQUIRE(at < static_cast<std::ptrdiff_t>(columns.size()));
-    std::vector<double> values;
-    for (std::size_t i = static_cast<std::size_t>(at); i < rows.size(); i += columns.size())
-      values.push_back(rows[i]);
-    return values;
-  }
-};
 
 /// Time of the largest value.
 double time_of_peak(const Traced& run, const std::string& column) {

@@ -9,40 +9,14 @@
 #include "build.h"
 #include "energy.h"
 #include "offline/receptance/full_order.h"
+#include "scene_run.h"
 #include "sense.h"
-#include "simulate.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-
-/// A run of a shipped scene: each frame's value of a column.
-struct Traced {
-  std::vector<std::string> columns;
-  std::vector<double> rows;
-  Status status;
-
-  explicit Traced(const std::string& name, const std::vector<std::string>& overrides = {}) {
-    Simulation run(read_scene(kScenes + name + ".toml", overrides));
-    RunRecord record =
-        simulate(run, run.model().steps / run.model().steps_per_frame, nullptr, true, nullptr);
-    columns = run.columns();
-    rows = std::move(record.rows);
-    status = record.status;
-  }
-  std::vector<double> operator[](const std::string& column) const {
-    const auto at = std::find(columns.begin(), columns.end(), column) - columns.begin();
-    REQUIRE(at < static_cast<std::ptrdiff_t>(columns.size()));
-    std::vector<double> values;
-    for (std::size_t i = static_cast<std::size_t>(at); i < rows.size(); i += columns.size())
-      values.push_back(rows[i]);
-    return values;
-  }
-};
 
 /// Mean of a column while another is between two values.
 double mean(const Traced& run, const std::string& column, const std::string& of, double from,
