@@ -10,8 +10,8 @@
 #include "condensed.h"
 #include "energy.h"
 #include "offline/pack/start.h"
-#include "offline/vehicle/kinds.h"
 #include "simulate.h"
+#include "vehicles.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
@@ -19,21 +19,6 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// The Manchester benchmark's, of one rail.
-const BogieData kBogie{.frame_mass = 1307.5,
-                       .frame_inertia = 738.,
-                       .wheel_mass = 906.5,
-                       .wheelbase = 2.56,
-                       .axles = 2,
-                       .primary_stiffness = 1.22e6,
-                       .primary_damping = 4e3,
-                       .carried = 8000.};
-const CarData kCar{.bogie = {1307.5, 738., 906.5, 2.56, 2, 1.22e6, 4e3},
-                   .body_mass = 16000.,
-                   .body_inertia = 9.85e5,
-                   .bogie_distance = 19.,
-                   .secondary_stiffness = 4.3e5,
-                   .secondary_damping = 2e4};
 constexpr double kBogieLoad = (1307.5 + 8000. + 2. * 906.5) * 9.81 / 2.;  // of a wheel, N
 
 /// One rail of 60E1-like stiffness on seats each .6 m.

@@ -129,9 +129,9 @@ void add_load(const Simulation& run, const LoadModel& load, VtkMesh& mesh) {
   const PlacedLoad at = place(model, load, run.state.steps);
   if (!at.on_rail) return;
   const double down = deflection(model, at, {run.state.u, {run.state.u, run.state.v}});
-  mesh.add_force(
-      vector({at.x, model.rail_y[load.rail], model.rail_z[load.rail] + model.head_z[load.rail]}),
-      vector({0., 0., down}), vector({0., 0., at.force}));
+  mesh.add_force(vector({at.place, model.rail_y[load.rail],
+                         model.rail_z[load.rail] + model.head_z[load.rail]}),
+                 vector({0., 0., down}), vector({0., 0., at.force}));
 }
 
 }  // namespace
