@@ -26,11 +26,18 @@ std::int64_t carried(const Model& model, const LineModel& line) {
   return most;
 }
 
+/// Unknowns that the turns over the seats around a wheel add to its row.
+std::int64_t turning(const Model& model) {
+  const bool turns = model.turn.lever[0] != nullptr || model.turn.lever[1] != nullptr;
+  return turns ? 2 * kTurnSeats : 0;
+}
+
 std::int64_t banded(const Model& model, const LineModel& line, std::int64_t wheels) {
   const std::int64_t n = line.size;
   const std::int64_t products = 2 * n * (line.mass.count + std::int64_t{line.damping.count});
   const std::int64_t vectors = (22 + 2 * wheels) * n;  // predict, correct, forces of wheels
-  const std::int64_t rows = 2 * kElementRow * (model.loads + wheels * (wheels + 3));
+  const std::int64_t rows = 2 * kElementRow * (model.loads + wheels * (wheels + 3)) +
+                            2 * turning(model) * wheels * (wheels + 4);
   const std::int64_t fixed = 2 * n * model.fixed.count;  // their forces; rows are counted once
   return products + vectors + rows + fixed + (1 + wheels) * solve(line.step);
 }
@@ -43,7 +50,8 @@ std::int64_t condensed(const Model& model, const LineModel& line, std::int64_t w
   const std::int64_t products = (wheels * (wheels + 1) / 2 + 2 * wheels) * 4 * n;
   const std::int64_t moved = wheels * 4 * n, heights = wheels * 3 * 4 * n;
   const std::int64_t ports = model.fixed.count * (12 + 4 * wheels) * n;  // depths, W, forces
-  return 22 * n + ports + loads + seen + rows + responses + products + moved + heights;
+  const std::int64_t turned = 2 * wheels * turning(model) * 4 * n;       // read, and put in the row
+  return 22 * n + ports + turned + loads + seen + rows + responses + products + moved + heights;
 }
 
 // Of a table at one place: weights of a cubic, four products with their sum, and the force times
