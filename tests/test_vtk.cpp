@@ -106,19 +106,19 @@ TEST_CASE("a run for ParaView shows the trace's deflection and forces", "[vtk]")
   const double deflection = last_of(text_of(trace), "load_left.deflection_z_m");
   CHECK(deflection < -1e-4);
   CHECK(force[2] == -50e3F);
-  CHECK_THAT(double{moved[2]}, WithinRel(deflection, 1e-6));
+  CHECK_THAT(static_cast<double>(moved[2]), WithinRel(deflection, 1e-6));
   // The whole section over the seat moves with it, and the rail is as high as its section.
   float low = 1.F, high = -1.F;
   int found = 0;
   for (std::size_t i = 6; i < rest.size(); i += 3) {
     if (std::abs(rest[i] - 4.8F) > 1e-4F || rest[i + 1] < 0.F) continue;
-    CHECK_THAT(double{moved[i + 2]}, WithinRel(deflection, 1e-6));
+    CHECK_THAT(static_cast<double>(moved[i + 2]), WithinRel(deflection, 1e-6));
     low = std::min(low, rest[i + 2]);
     high = std::max(high, rest[i + 2]);
     ++found;
   }
   CHECK(found == 4);  // a rectangle
-  CHECK_THAT(double{high} - double{low}, WithinAbs(.2319, 1e-6));
+  CHECK_THAT(static_cast<double>(high) - static_cast<double>(low), WithinAbs(.2319, 1e-6));
   const auto faces = array_of<std::int32_t>(last, "connectivity", 1);
   CHECK(*std::max_element(faces.begin(), faces.end()) < static_cast<std::int32_t>(rest.size() / 3));
 }
@@ -143,7 +143,7 @@ TEST_CASE("wheels stand on the rails in their files, with what they carry", "[vt
     CHECK(std::count(part.begin(), part.end(), wanted) > 0);  // rail, sleeper, wheel, force
   std::vector<double> shown;
   for (std::size_t i = 2; i < force.size(); i += 3)
-    if (force[i] != 0.F) shown.push_back(-double{force[i]});
+    if (force[i] != 0.F) shown.push_back(-static_cast<double>(force[i]));
   REQUIRE(shown.size() == 2);
   CHECK_THAT(shown[0], WithinRel(last_of(text_of(trace), "wheel_left.force_z_n"), 1e-6));
   CHECK_THAT(shown[1], WithinRel(last_of(text_of(trace), "wheel_right.force_z_n"), 1e-6));
