@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "artefact.h"
-#include "endless.h"
+#include "endless_run.h"
 #include "offline/irregularity/defect.h"
 
 using namespace railstep;
@@ -22,48 +22,6 @@ Traffic wheelset_traffic(double start) {
   w.speed = kSpeed;
   return {.wheelsets = {w}, .head = {kHeadZ, .3, .035}};
 }
-
-constexpr double kDt = 1e-4;  // s: 200 steps a bay
-constexpr int kStepsPerFrame = 10;
-
-PackOptions framed(PackOptions options) {
-  options.steps_per_frame = kStepsPerFrame;
-  return options;
-}
-
-/// Means over frames of 1 ms of the left wheel's force, and the rail's height under it.
-struct Heard {
-  std::vector<double> force, rail;
-};
-
-Heard listen(ModelRun& run, int from, int frames) {
-  Heard heard;
-  for (int frame = 1; frame <= from + frames; ++frame) {
-    run.step();
-    if (frame <= from) continue;
-    heard.force.push_back(run.outputs.wheel_force_mean[0]);
-    heard.rail.push_back(run.outputs.wheel_rail_z[0]);
-  }
-  CHECK(run.seen == Status::ok);
-  return heard;
-}
-
-double largest(const std::vector<double>& a, const std::vector<double>& b) {
-  double error = 0., peak = 0.;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    error = std::max(error, std::abs(a[i] - b[i]));
-    peak = std::max(peak, std::abs(b[i]));
-  }
-  return error / peak;
-}
-
-ModelRun moving_run(const Track& track, const Traffic& traffic, const PackOptions& options) {
-  ModelRun run(track, traffic, framed(options));
-  run.packed->set_start(start_moving(track, *run.packed, 0.));
-  reset(run.model(), run.state);
-  return run;
-}
-
 }  // namespace
 
 TEST_CASE("a wheelset on a ring or a window is heard as on a long track of a fine mesh") {

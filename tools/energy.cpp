@@ -203,10 +203,11 @@ double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const
   const VehicleModel& v = model_.vehicle[b];
   double sum = 0.;
   for (const bool later : {false, true}) {
-    const Standing &at = later ? now : last_, &other = later ? last_ : now;
-    const double time = static_cast<double>(other.state.steps) * model_.scheme.dt;
+    const Standing& at = later ? now : last_;
+    const std::int64_t step = now.state.steps;
     WheelContact moved[kMaxWheels];
-    find_vehicle_contacts(model_, v, time, {at.state.u, {at.state.u, at.state.v}}, moved);
+    find_vehicle_contacts(model_, v, step, later ? model_.scheme.dt : 0.,
+                          {at.state.u, {at.state.u, at.state.v}, passed(model_, step)}, moved);
     for (int k = 0; k < v.wheels; ++k) {
       const int i = 2 * model_.wheelsets + v.first_wheel + k;
       const double change = moved[i].penetration - at.contacts.approach[i];

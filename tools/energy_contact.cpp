@@ -97,9 +97,8 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], at, c.contact + 2 * b);
-  const double time = static_cast<double>(state.steps) * model.scheme.dt;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
-    find_vehicle_contacts(model, model.vehicle[v], time, at, c.contact);
+    find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., at, c.contact);
   for (int i = 0; i < c.wheels; ++i)
     c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
   RailForce port[kMaxLoads + kMaxWheels];

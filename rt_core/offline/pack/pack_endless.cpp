@@ -14,18 +14,18 @@ namespace {
 
 /// The one speed of all that runs, m/s.
 double speed_of(const Traffic& traffic) {
-  if (!traffic.vehicles.empty())
-    throw std::invalid_argument("a track without end carries loads and wheelsets, no vehicles");
   std::vector<double> speeds;
-  for (const MovingLoad& load : traffic.loads) {
-    if (!load.speeds.empty())
+  const auto add = [&](double speed, const std::vector<double>& table) {
+    if (!table.empty())
       throw std::invalid_argument("on a track without end all runs at one speed, without a table");
-    speeds.push_back(load.speed);
-  }
-  for (const Wheelset& set : traffic.wheelsets) speeds.push_back(set.speed);
+    speeds.push_back(speed);
+  };
+  for (const MovingLoad& load : traffic.loads) add(load.speed, load.speeds);
+  for (const Wheelset& set : traffic.wheelsets) add(set.speed, {});
+  for (const RunningVehicle& vehicle : traffic.vehicles) add(vehicle.speed, vehicle.speeds);
   for (const double speed : speeds)
     if (speed != speeds[0])
-      throw std::invalid_argument("on a track without end all loads and wheelsets have one speed");
+      throw std::invalid_argument("on a track without end all that runs has one speed");
   return speeds.empty() ? 0. : speeds[0];
 }
 
@@ -38,6 +38,8 @@ std::pair<double, double> span_of(const Traffic& traffic) {
   };
   for (const MovingLoad& load : traffic.loads) take(load.start);
   for (const Wheelset& set : traffic.wheelsets) take(set.start);
+  for (const RunningVehicle& own : traffic.vehicles)
+    for (const Vehicle::Wheel& wheel : own.vehicle.wheels) take(own.start + wheel.place);
   return span;
 }
 

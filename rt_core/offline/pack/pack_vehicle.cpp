@@ -97,7 +97,7 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   packed.size = n;
   packed.first_wheel = model_.vehicle_wheels;
   packed.wheels = wheels;
-  packed.start = vehicle.start;
+  packed.start = model_.endless.origin + vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
   const Eigen::MatrixXd inverse = step_inverse(m, model_.scheme, model_.condensed != 0 ? .5 : 1.);
   const Eigen::MatrixXd give = m.wheels * inverse;

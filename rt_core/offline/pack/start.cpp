@@ -133,7 +133,7 @@ SettledVehicles settle(const Statics& statics, const PackedModel& packed, double
     point[i] = {wheel.rail, x, 0., model.head_z[wheel.rail], 2};
     port[i] = rail_force(model, wheel.kind, x, 0.);
     free[at] = height_of(track, packed, without, point[i]) +
-               irregularity(model, wheel.tread, wheel.rail, up, x, rolled).depth;
+               irregularity(model, wheel.tread, wheel.rail, up, x + passed(model, 0), rolled).depth;
     for (const RailForce& f : acting.ports)
       free[at] += f.force * residual_between(model, f, port[i]);
   }

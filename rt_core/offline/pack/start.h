@@ -24,8 +24,8 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
 /// The state at step 0 of a track without end in its moving steady state: it is as a bay later,
 /// and a bay later again. Loads and wheels press with the force they have at the start, wheels with
 /// their static one, on an even track. Of a ring under loads exact, wave by wave, from one passage
-/// of the model itself: with z1 = k^n z0 + r turned by the bays gone, z1 = z0. Wheelsets, and a
-/// window, then pass bays until each is as the one before to 1e-9.
+/// of the model itself: with z1 = k^n z0 + r turned by the bays gone, z1 = z0. Wheelsets, vehicles
+/// and a window then pass bays until each is as the one before to 1e-9.
 /// @returns state_doubles() values
 /// Throws std::invalid_argument as start_in_equilibrium(), where the track has ends, where no whole
 /// number of steps up to 2^20 is a whole number of bays, and where nothing settles.

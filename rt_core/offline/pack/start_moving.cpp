@@ -1,9 +1,11 @@
+#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <stdexcept>
 
 #include "offline/pack/start.h"
+#include "offline/pack/start_vehicle.h"
 #include "online/model/course.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
@@ -15,17 +17,37 @@ namespace {
 constexpr std::int64_t kMostSteps = std::int64_t{1} << 20;  // of a passage, and of all
 constexpr double kSettled = 1e-9;  // of the largest displacement, from passage to passage
 
-/// A wheel as the force with which it stands.
-LoadModel load_of(const Model& model, const WheelsetModel& w, int side) {
+/// Each wheel's force where the model stands on level, rigid rails, N.
+std::vector<double> static_forces(const Model& model) {
+  std::vector<double> force;
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    force.insert(force.end(), 2, wheel_load(model.wheelset[b]));
+  if (model.vehicles == 0) return force;
+  const Eigen::Index wheels = model.vehicle_wheels;
+  const SettledVehicles rest =
+      settle_vehicles(model, Eigen::MatrixXd::Zero(wheels, wheels), Eigen::VectorXd::Zero(wheels));
+  force.insert(force.end(), rest.force.begin(), rest.force.end());
+  return force;
+}
+
+/// A wheel as a force.
+LoadModel load_of(const Model& model, int wheel, double force) {
+  const std::int32_t rail = wheel_rail(model, wheel);
   LoadModel load{};
   load.row[2] = 1.;
-  load.row[8] = model.head_z[side];
-  load.rail = side;
-  load.start = w.start;
-  load.travel.speed = w.speed;
+  load.row[8] = model.head_z[rail];
+  load.rail = rail;
   load.stop = std::numeric_limits<double>::infinity();
-  load.force = -wheel_load(w);
-  load.kind = w.kind[side];
+  load.force = -force;
+  load.kind = wheel_kind(model, wheel);
+  if (is_of_wheelset(model, wheel)) {
+    load.start = model.wheelset[wheel / 2].start;
+    load.travel.speed = model.wheelset[wheel / 2].speed;
+    return load;
+  }
+  const VehicleWheel& own = vehicle_wheel(model, wheel);
+  load.start = model.vehicle[own.vehicle].start + own.place;
+  load.travel = model.vehicle[own.vehicle].travel;
   return load;
 }
 
@@ -46,18 +68,19 @@ Model evened(const Model& model) {
     w.forces = 0;
     w.tread[0] = w.tread[1] = {};
   }
+  for (std::int32_t i = 0; i < even.vehicle_wheels; ++i) even.vehicle_wheel[i].tread = {};
   return even;
 }
 
 /// The same with forces in place of wheels, behind its loads.
 Model with_forces(const Model& even) {
   Model carried = even;
-  if (carried.loads + 2 * carried.wheelsets > kMaxLoads)
+  if (carried.loads + wheel_count(even) > kMaxLoads)
     throw std::invalid_argument("a start on the move takes 32 loads and wheels at most");
-  for (std::int32_t b = 0; b < even.wheelsets; ++b)
-    for (const int side : {0, 1})
-      carried.load[carried.loads++] = load_of(even, even.wheelset[b], side);
-  carried.wheelsets = 0;
+  int wheel = 0;
+  for (const double force : static_forces(even))
+    carried.load[carried.loads++] = load_of(even, wheel++, force);
+  carried.wheelsets = carried.vehicles = carried.vehicle_wheels = 0;
   return carried;
 }
 
@@ -124,7 +147,8 @@ void settle_ring(const Model& carried, std::vector<double>& memory) {
 }
 
 /// Largest change of the model's displacements in a passage, and the largest of the lines, m. A
-/// wheelset's way along x is its guide's.
+/// wheelset's way along x is its guide's. Pitch counts in rad, which over a vehicle's few metres is
+/// as much.
 std::pair<double, double> change_of(const Model& model, const std::vector<double>& before,
                                     const std::vector<double>& after) {
   double change = 0., size = 0.;
@@ -138,6 +162,8 @@ std::pair<double, double> change_of(const Model& model, const std::vector<double
   }
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     for (int k = 1; k < 6; ++k) take(model.wheelset[b].first + k);
+  for (std::int32_t b = 0; b < model.vehicles; ++b)
+    for (std::int32_t k = 0; k < model.vehicle[b].size; ++k) take(model.vehicle[b].first + k);
   return {change, size};
 }
 
@@ -158,30 +184,56 @@ void settle(const Model& even, std::vector<double>& memory) {
       "\"equilibrium\"");
 }
 
-/// Wheelsets on the track as it moves; rates by differences over the first steps.
+/// Coordinates of what stands on rails whose heads are `height` over rest under each wheel, and the
+/// wheels' forces.
+struct Stand {
+  std::vector<std::array<double, 6>> wheelsets;
+  SettledVehicles vehicles;
+};
+Stand stand_on(const Model& model, const double* height) {
+  Stand found;
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    found.wheelsets.push_back(
+        standing_wheelset(model, model.wheelset[b], {height[2 * b], height[2 * b + 1]}));
+  const Eigen::Index wheels = model.vehicle_wheels;
+  if (wheels > 0)
+    found.vehicles =
+        settle_vehicles(model, Eigen::MatrixXd::Zero(wheels, wheels),
+                        Eigen::Map<const Eigen::VectorXd>(
+                            height + 2 * static_cast<std::ptrdiff_t>(model.wheelsets), wheels));
+  return found;
+}
+
+/// Wheelsets and vehicles on the track as it moves; rates by differences over the first steps.
 void stand_up(const Model& model, const Model& carried, std::vector<double>& memory) {
   Passage passage(carried, memory);
-  std::vector<double> at[3] = {passage.heights(), {}, {}};
-  for (std::vector<double>* later : {at + 1, at + 2}) {
-    passage.go(1);
-    *later = passage.heights();
+  Stand at[3];
+  for (int n = 0; n < 3; ++n) {
+    if (n > 0) passage.go(1);
+    at[n] = stand_on(model, passage.heights().data() + model.loads);
   }
   State state = state_on(model, memory.data());
+  const auto put = [&](std::int32_t i, double x0, double x1, double x2) {
+    state.u[i] = x0;
+    state.v[i] = (4. * x1 - 3. * x0 - x2) / (2. * model.scheme.dt);
+  };
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
-    std::array<double, 6> pose[3];
-    for (int n = 0; n < 3; ++n) {
-      const double* height = at[n].data() + model.loads + 2 * b;
-      pose[n] = standing_wheelset(model, w, {height[0], height[1]});
-    }
-    for (std::size_t k = 0; k < 6; ++k) {
-      const std::int32_t i = w.first + static_cast<int>(k);
-      state.u[i] = pose[0][k];
-      state.v[i] = (k == 0 ? w.speed : 0.) +
-                   (4. * pose[1][k] - 3. * pose[0][k] - pose[2][k]) / (2. * model.scheme.dt);
-    }
+    const auto own = static_cast<std::size_t>(b);
+    for (std::size_t k = 0; k < 6; ++k)
+      put(w.first + static_cast<int>(k), at[0].wheelsets[own][k], at[1].wheelsets[own][k],
+          at[2].wheelsets[own][k]);
+    state.v[w.first] += w.speed;
     for (int side = 0; side < 2; ++side) state.wheel_force[2 * b + side] = wheel_load(w);
   }
+  for (std::int32_t b = 0; b < model.vehicles; ++b) {
+    const auto own = static_cast<std::size_t>(b);
+    for (std::int32_t k = 0; k < model.vehicle[b].size; ++k)
+      put(model.vehicle[b].first + k, at[0].vehicles.displacement[own][k],
+          at[1].vehicles.displacement[own][k], at[2].vehicles.displacement[own][k]);
+  }
+  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
+    state.wheel_force[2 * model.wheelsets + i] = at[0].vehicles.force[i];
 }
 
 }  // namespace
@@ -203,7 +255,7 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
   const Model carried = with_forces(even);
   std::vector<double> memory = start_released(packed);
   settle_ring(carried, memory);
-  if (model.wheelsets == 0) return memory;
+  if (wheel_count(model) == 0) return memory;
   stand_up(even, carried, memory);
   // Wheels press anew in every step; only loads were there before it.
   State state = state_on(model, memory.data());

@@ -31,9 +31,9 @@ void locate_contacts(const Model& model, std::int64_t step, const State& s, Work
       c.place[i] = {set.kind[side], c.contact[i].row.element, c.contact[i].xi, 0.};
     }
   }
-  const double time = static_cast<double>(step - 1) * model.scheme.dt + ahead;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
-    find_vehicle_contacts(model, model.vehicle[v], time, located_on(model, s, w), c.contact);
+    find_vehicle_contacts(model, model.vehicle[v], step, model.scheme.dt - ahead,
+                          located_on(model, s, w), c.contact);
   for (int i = 2 * model.wheelsets; i < c.wheels; ++i)
     c.place[i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }

@@ -1,7 +1,6 @@
 #include "online/step/load.h"
 
 #include "online/math/wave.h"
-#include "online/model/course.h"
 #include "online/step/table.h"
 #include "online/step/travel.h"
 
@@ -10,12 +9,8 @@ namespace railstep {
 PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) noexcept {
   const double time = static_cast<double>(step) * model.scheme.dt;
   PlacedLoad at{};
-  if (model.endless.bays == 0) {
-    at.x = at.place = load.start + travelled(load.travel, time).distance;
-  } else {
-    at.place = load.start + within_bay(model, step);
-    at.x = passed(model, step) + at.place;
-  }
+  at.place = load.start + way_at(model, load.travel, step).distance;
+  at.x = passed(model, step) + at.place;
   const double scaled = at.place / model.element_length;
   at.on_rail = scaled >= 0. && scaled <= model.elements;
   if (!at.on_rail) return at;

@@ -218,9 +218,9 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
   WheelContact contact[kMaxWheels];
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], standing(model, state), contact + 2 * b);
-  const double time = static_cast<double>(state.steps) * model.scheme.dt;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
-    find_vehicle_contacts(model, model.vehicle[v], time, standing(model, state), contact);
+    find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., standing(model, state),
+                          contact);
   for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
         state.wheel_force[i];

@@ -1,5 +1,5 @@
 #pragma once
-#include "online/model/model.h"
+#include "online/model/course.h"
 
 namespace railstep {
 
@@ -17,6 +17,15 @@ inline Travelled travelled(const TravelModel& travel, double time) noexcept {
   const bool inside = since > 0. && row + 3 < travel.table + 3 * travel.rows;
   const double rate = inside ? (row[4] - row[1]) / (row[3] - row[0]) : 0.;
   return {row[2] + since * (row[1] + .5 * rate * since), row[1] + rate * since};
+}
+
+/// What a step finds gone along the model's elements, and the speed, `before` seconds ahead of its
+/// end; on a track without end from the last bay border before that end.
+inline Travelled way_at(const Model& model, const TravelModel& travel, std::int64_t step,
+                        double before = 0.) noexcept {
+  if (model.endless.bays != 0)
+    return {within_bay(model, step) - travel.speed * before, travel.speed};
+  return travelled(travel, static_cast<double>(step) * model.scheme.dt - before);
 }
 
 }  // namespace railstep

@@ -40,15 +40,16 @@ double slope_under(const Model& model, const WheelContact& at, const Configurati
   return rail_height(model, along.row, seen);
 }
 
-void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, double time,
-                           const Configuration& at, WheelContact* contact) noexcept {
-  const double gone = travelled(vehicle.travel, time).distance;
+void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std::int64_t step,
+                           double before, const Configuration& at, WheelContact* contact) noexcept {
+  const double way = way_at(model, vehicle.travel, step, before).distance;
+  const double gone = (at.passed + model.endless.origin) + way;
   const double up[3] = {0., 0., 1.};
   for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
     const VehicleWheel& wheel = model.vehicle_wheel[vehicle.first_wheel + k];
     WheelContact& found = contact[2 * model.wheelsets + vehicle.first_wheel + k];
     found = WheelContact{};
-    found.x = vehicle.start + gone + wheel.place;
+    found.x = vehicle.start + way + wheel.place;
     found.row.rail = wheel.rail;
     found.normal[2] = 1.;
     found.z = model.head_z[wheel.rail];
@@ -64,7 +65,8 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, doub
       shape_functions(found.xi, shape);
       fill_row(model, found, shape);
       height = rail_height(model, found.row, at);
-      const Irregularity off = irregularity(model, wheel.tread, wheel.rail, up, found.x, gone);
+      const Irregularity off =
+          irregularity(model, wheel.tread, wheel.rail, up, found.x + at.passed, gone);
       found.irregular = off.depth;
       found.rise = off.rise;
     } else {

@@ -5,10 +5,11 @@ namespace railstep {
 
 /// Finds the contacts of a vehicle's wheels: upright, over the place that the time says. A wheel
 /// off the rail stands on the ground at the height of the rail's axis at rest.
+/// @param before   s, by how much it is looked for ahead of the step's end
 /// @param at       displacements of track and vehicles at which to look
 /// @param contact  [wheels] of the model; those of the vehicle are written
-void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, double time,
-                           const Configuration& at, WheelContact* contact) noexcept;
+void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std::int64_t step,
+                           double before, const Configuration& at, WheelContact* contact) noexcept;
 
 /// Displacement along a row of a rail by the lines alone, m.
 double rail_height(const Model& model, const RailRow& row, const Configuration& at) noexcept;
