@@ -67,7 +67,7 @@ class Linear {
     const double force = std::hypot(down, aside);
     const double along[3] = {0., aside / force, -down / force};
     const double element = x / model.element_length;
-    RailRow plain{0, static_cast<std::int32_t>(element), {}};
+    RailRow plain{0, static_cast<std::int32_t>(element), {}, 0, {}, {}};
     const double xi = 2. * (element - plain.element) - 1.;
     double shape[3];
     shape_functions(xi, shape);
@@ -183,12 +183,12 @@ TEST_CASE("the row of a turned rail is the slope of how it lies", "[turn]") {
                   nodal_value(model.line[l], 0, element, i, k, at);
     const double turn = .5 * (q[5] - q[7]);
     keep_section(q);
-    row = {0, element, {}};
+    row = {0, element, {}, 0, {}, {}};
     double height = add_turn(model, at, turn, xi, y, z, normal, row);
     for (int d = 0; d < 3; ++d) height += normal[d] * (y * q[3 + d] + z * q[6 + d]);
     return height;
   };
-  RailRow row, other;
+  RailRow row{}, other{};
   const double height = lies(row);
   for (int i = 0; i < 3; ++i)
     for (int d = 0; d < 3; ++d) {

@@ -36,7 +36,7 @@ std::vector<double> step_compliance(const Model& model, const Port& port, int po
   std::vector<double> re(n), im(n), table;
   for (std::int32_t element = 0; element < model.elements; ++element)
     for (int p = 0; p <= points; ++p) {
-      RailRow row{port.rail, element, {}};
+      RailRow row{port.rail, element, {}, 0, {}, {}};
       double shape[3];
       shape_functions(2. * p / points - 1., shape);
       for (int i = 0; i < 3; ++i) {

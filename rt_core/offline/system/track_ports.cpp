@@ -12,7 +12,7 @@ namespace {
 
 /// B' of one of a port's nine: its unit force on the lines' unknowns.
 void add_unit_force(const Model& model, const RailPortModel& port, int k, double* force) {
-  RailRow row{port.rail, port.element, {}};
+  RailRow row{port.rail, port.element, {}, 0, {}, {}};
   for (int i = 0; i < 3; ++i) row.coefficient[i][k] = port.value[i];
   for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], row, 1., force);
 }

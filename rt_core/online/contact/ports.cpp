@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "online/math/dense.h"
 
@@ -230,8 +231,8 @@ PortResult solve_ports(int n, const double* W, const PortLaw* law, const double*
   cap = cap < 0 ? 0 : cap > kPortSweeps ? kPortSweeps : cap;
   Point points[3];
   Point *x = points, *best = points + 1, *next = points + 2;
-  for (int i = 0; i < n; ++i) best->d[i] = 0.0;
-  evaluate(p, *best);  // no force at all is always finite
+  best->residual = std::numeric_limits<double>::infinity();  // none yet
+  best->scale = 0.0;
   start(p, f, *x);
   int iterations = 0;
   while (!done(*x) && iterations < cap) {
@@ -243,6 +244,11 @@ PortResult solve_ports(int n, const double* W, const PortLaw* law, const double*
     ++iterations;
   }
   if (x->residual < best->residual || done(*x)) best = x;
+  if (!done(*best)) {  // no force at all is always finite
+    for (int i = 0; i < n; ++i) next->d[i] = 0.0;
+    evaluate(p, *next);
+    if (!(best->residual < next->residual)) best = next;
+  }
   for (int i = 0; i < n; ++i) {
     f[i] = best->f[i];
     d[i] = best->d[i];

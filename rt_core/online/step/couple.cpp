@@ -32,8 +32,7 @@ void locate_contacts(const Model& model, std::int64_t step, const State& s, Work
     }
   }
   for (std::int32_t v = 0; v < model.vehicles; ++v)
-    find_vehicle_contacts(model, model.vehicle[v], step, model.scheme.dt - ahead,
-                          located_on(model, s, w), c.contact);
+    place_vehicle_wheels(model, model.vehicle[v], step, model.scheme.dt - ahead, c.contact);
   for (int i = 2 * model.wheelsets; i < c.wheels; ++i)
     c.place[i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }
@@ -81,12 +80,12 @@ void track_penetration(const Model& model, const State& s, const Workspace& w,
   for (int i = 0; i < c.wheels; ++i) {
     c.track_free[i] = -1.;  // off the rail: far away
     if (c.contact[i].on_rail)
-      c.track_free[i] = model.scheme.theta * track_motion(model, s, w, c, i) + c.loaded[i];
+      c.track_free[i] = model.scheme.theta * track_motion(model, w, c, i) + c.loaded[i];
     else if (c.contact[i].on_ground)
       c.track_free[i] = 0.;
     if (stands(c.contact[i]))
       c.track_free[i] += is_of_wheelset(model, i) ? wheelset_offset(model, s, w, c, i)
-                                                  : vehicle_offset(model, s, w, c, i);
+                                                  : vehicle_offset(model, s, c, i);
   }
 }
 
@@ -149,11 +148,11 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   c.ports = c.wheels + model.fixed.count;
   const double time = static_cast<double>(step) * model.scheme.dt;
   locate_contacts(model, step, state, w, c);
+  respond(model, state, w, c);
   find_loaded(model, step, c);
   free_wheelsets(model, step, w, c);
   free_vehicles(model, state, w, c);
   find_vehicle_laws(model, time, state, w, c);
-  respond(model, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);

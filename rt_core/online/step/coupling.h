@@ -12,12 +12,13 @@ struct FreeWheelset {
 };
 
 /// A step's coupled problem: where the track and what stands on it would be without contact, and
-/// how both give way under contact forces.
+/// how both give way under contact forces. Written where it is read: nothing of it is zeroed.
 struct Coupling {
   int wheels, ports;  // ports: the wheels, then the fixed ones
   WheelContact contact[kMaxWheels];
   RailForce place[kMaxWheels];  // of the contacts
   double loaded[kMaxWheels];    // residual displacement there by the loads, m
+  double seen[kMaxWheels];      // displacement of the lines there as contacts were located, m
   FreeWheelset wheelset[kMaxWheelsets];
   double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
   double W[kPorts * kPorts];                          // [ports][ports] m/N

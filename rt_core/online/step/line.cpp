@@ -9,6 +9,8 @@ Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
   return {re, re + modal.count};
 }
 
+constexpr int kMostCarried = 3 * 9 + 2 * kTurnSeats;  // unknowns of a row
+
 /// Calls visit(unknown, weight) for what a line carries of a row.
 template <typename Visit>
 void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcept {
@@ -66,6 +68,30 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
   for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
     rhs[line.first + unknown] += force * weight;
   });
+}
+
+void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept {
+  const double *shape[kMostCarried], *imaginary[kMostCarried];
+  double weight[kMostCarried];
+  int count = 0;
+  for_carried(line, row, [&](std::int32_t unknown, double w) noexcept {
+    const Complex own = shape_of(line.modal, unknown);
+    shape[count] = own.re;
+    imaginary[count] = own.im;
+    weight[count++] = w;
+  });
+  for (std::int32_t k = 0; k < line.size; k += kLanes) {
+    double sum_re[kLanes] = {}, sum_im[kLanes] = {};
+    for (int i = 0; i < count; ++i) {
+#pragma omp simd
+      for (int l = 0; l < kLanes; ++l) {
+        sum_re[l] += weight[i] * shape[i][k + l];
+        sum_im[l] += weight[i] * imaginary[i][k + l];
+      }
+    }
+    for (int l = 0; l < kLanes; ++l) re[line.first + k + l] = sum_re[l];
+    for (int l = 0; l < kLanes; ++l) im[line.first + k + l] = sum_im[l];
+  }
 }
 
 void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,

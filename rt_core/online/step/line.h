@@ -10,9 +10,9 @@ namespace railstep {
 struct RailRow {
   std::int32_t rail, element;
   double coefficient[3][9];
-  std::int32_t seats = 0;  // that matter, 0 to kTurnSeats; see step/turn.h
-  std::int32_t seat[kTurnSeats] = {};
-  double lever[kTurnSeats] = {};  // m
+  std::int32_t seats;  // that matter, 0 to kTurnSeats; see step/turn.h
+  std::int32_t seat[kTurnSeats];
+  double lever[kTurnSeats];  // m
 };
 
 /// Place in a rail's table of unknown k of a node, counted from 0 along the rail; of one that two
@@ -55,6 +55,9 @@ double motion(const LineModel& line, const RailRow& row, const Configuration& at
 
 /// rhs += force * row of a banded line; rhs [unknowns] of all lines.
 void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept;
+
+/// Shape of a row among a condensed line's modes; its part of re and im [unknowns] is overwritten.
+void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept;
 
 /// shape += force * row of a condensed line: [unknowns] of all lines, complex.
 void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,

@@ -45,6 +45,11 @@ void add_inertia(const Model& model, Workspace& w) noexcept {
   }
 }
 
+/// Whether anything but wheels and ports presses the track.
+bool is_pressed(const Model& model) noexcept {
+  return model.loads > 0 || model.constant_force != nullptr;
+}
+
 /// The track's displacements without wheels, for loads that stand on the right-hand side.
 void solve_bands(const Model& model, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l)
@@ -70,6 +75,24 @@ void advance_modes(const LineModel& line, State& s, Workspace& w) noexcept {
     a[k] = q_re;
     g[k] = q_im;
   }
+}
+
+/// The same of modes that nothing presses: q1 is 0, and was. Leaves bodies without a force.
+void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineModel& line = model.line[l];
+    modes_multiply(line.modal.keep, {s.u + line.first, s.v + line.first}, w.solved + line.first,
+                   w.imaginary + line.first, line.size);
+  }
+  for (std::int32_t i = model.bodies; i < model.unknowns; ++i) w.solved[i] = 0.;
+}
+
+/// Right-hand sides of banded lines, and condensed ones without wheels at the step's end.
+void advance_track(const Model& model, State& s, Workspace& w) noexcept {
+  if (model.condensed != 0 && !is_pressed(model)) return keep_modes(model, s, w);
+  forces(model, s.steps + 1, w.solved, w.imaginary);
+  if (model.condensed == 0) return add_inertia(model, w);
+  for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], s, w);
 }
 
 void correct(const Model& model, State& s, const Workspace& w) noexcept {
@@ -116,6 +139,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
   out.status = out.status | met.status;
   if (met.violation > out.constraint_violation) out.constraint_violation = met.violation;
   if (met.iterations > out.iterations) out.iterations = met.iterations;
+  const double gone_by = passed(model, s.steps + 1);
   for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     const double force = s.wheel_force[i];
     out.wheel_force[i] = force;
@@ -123,7 +147,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
     out.wheel_force_mean[i] = out.wheel_impulse[i] / (model.scheme.dt * model.steps_per_frame);
     if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
     out.wheel_gap[i] = met.gap[i];
-    out.wheel_x[i] = met.x[i] + passed(model, s.steps + 1);
+    out.wheel_x[i] = met.x[i] + gone_by;
     out.wheel_place[i] = met.x[i];
     out.wheel_on_rail[i] = met.on_rail[i];
   }
@@ -142,11 +166,7 @@ void collect(const SystemResult& met, Outputs& out) noexcept {
 void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
   follow_traffic(model, state.steps + 1, state, w);
   predict(model, state, w);
-  forces(model, state.steps + 1, w.solved, w.imaginary);
-  if (model.condensed != 0)
-    for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], state, w);
-  else
-    add_inertia(model, w);
+  advance_track(model, state, w);
   if (wheel_count(model) > 0 || model.fixed.count > 0)
     collect(model, state, couple(model, state.steps + 1, state, w), outputs);
   else if (model.condensed == 0)

@@ -4,9 +4,15 @@ namespace railstep {
 
 namespace {
 
-Complex row_of(const Model& model, const Workspace& w, int wheel) noexcept {
-  const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(wheel) * model.unknowns;
+/// Of a wheel's row, the part of one line.
+Complex row_of(const Model& model, const Workspace& w, const LineModel& line, int wheel) noexcept {
+  const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(wheel) * model.unknowns + line.first;
   return {re, re + model.unknowns};
+}
+
+/// Whether a force at the wheel moves the line.
+bool presses(const Coupling& c, int wheel, const LineModel& line) noexcept {
+  return c.contact[wheel].on_rail && line.rail_factor[c.contact[wheel].row.rail] != 0.;
 }
 
 /// Solves each banded line for itself and for the wheels that touch it, together where they can be.
@@ -32,75 +38,94 @@ void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   }
 }
 
-/// What a unit force under each wheel, held over the step, makes of every condensed line.
+/// What a unit force under each wheel, held over the step, makes of the condensed lines it presses.
 void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (int i = 0; i < c.wheels; ++i) {
     double* re = w.row + 2 * i * stride;
-    double* im = re + stride;
-    for (std::int32_t k = 0; k < model.bodies; ++k) re[k] = im[k] = 0.;
-    for (std::int32_t l = 0; l < model.lines && c.contact[i].on_rail; ++l)
-      spread_modes(model.line[l], c.contact[i].row, 1., re, im);
+    const std::ptrdiff_t unit = (i + 1) * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
-      modes_multiply(line.modal.held_force, {re + line.first, im + line.first},
-                     w.solved + (i + 1) * stride + line.first,
-                     w.imaginary + (i + 1) * stride + line.first, line.size);
+      if (!presses(c, i, line)) continue;
+      shape_row(line, c.contact[i].row, re, re + stride);
+      modes_multiply(line.modal.held_force, row_of(model, w, line, i), w.solved + unit + line.first,
+                     w.imaginary + unit + line.first, line.size);
     }
   }
 }
 
+/// x -= sum of forces times what a unit of each makes of a line; whole panels, so that the line is
+/// read and written once.
+/// @param unit  [count] of those vectors, from the line's first unknown on
+void subtract(const double* const* unit, const double* force, int count, int size,
+              double* x) noexcept {
+  for (int k = 0; k < size; k += kLanes) {
+    double sum[kLanes];
+    for (int l = 0; l < kLanes; ++l) sum[l] = x[k + l];
+    for (int i = 0; i < count; ++i) {
+#pragma omp simd
+      for (int l = 0; l < kLanes; ++l) sum[l] -= force[i] * unit[i][k + l];
+    }
+    for (int l = 0; l < kLanes; ++l) x[k + l] = sum[l];
+  }
+}
+
+/// What a line that wheel `i` presses adds to the displacement under it.
+double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
+                  int i, const double* re, const double* im) noexcept {
+  if (model.condensed == 0) return motion(line, c.contact[i].row, {re, {}});
+  return modes_dot(row_of(model, w, line, i), {re + line.first, im + line.first}, line.size);
+}
+
 }  // namespace
 
-void respond(const Model& model, Workspace& w, const Coupling& c) noexcept {
+void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
   if (model.condensed != 0)
     respond_modes(model, w, c);
   else
     solve_bands(model, w, c);
+  for (int i = 0; i < c.wheels; ++i)
+    c.seen[i] = model.condensed != 0 ? track_under(model, w, c, i, s.u, s.v)
+                                     : track_under(model, w, c, i, w.scaled, nullptr);
 }
 
 double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
                    const double* re, const double* im) noexcept {
-  if (model.condensed != 0) return modes_dot(row_of(model, w, i), {re, im}, model.bodies);
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    sum += motion(model.line[l], c.contact[i].row, {re, {}});
+    if (presses(c, i, model.line[l])) sum += line_under(model, w, c, model.line[l], i, re, im);
   return sum;
 }
 
 double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
                         int j) noexcept {
   const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(j + 1) * model.unknowns;
-  return track_under(model, w, c, i, w.solved + unit, w.imaginary + unit);
+  double sum = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    if (presses(c, i, model.line[l]) && presses(c, j, model.line[l]))
+      sum += line_under(model, w, c, model.line[l], i, w.solved + unit, w.imaginary + unit);
+  return sum;
 }
 
-double track_motion(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                    int i) noexcept {
-  const Configuration seen = located_on(model, s, w);
-  if (model.condensed != 0)
-    return modes_dot(row_of(model, w, i), {w.solved, w.imaginary}, model.bodies) -
-           modes_dot(row_of(model, w, i), seen.modes, model.bodies);
-  const RailRow& row = c.contact[i].row;
-  double moved = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l)
-    moved += motion(model.line[l], row, {w.solved, {}}) - motion(model.line[l], row, seen);
-  return moved;
+double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept {
+  return track_under(model, w, c, i, w.solved, w.imaginary) - c.seen[i];
 }
 
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
-  for (int i = 0; i < c.wheels; ++i) {
-    const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i + 1) * model.unknowns;
-    for (std::int32_t l = 0; l < model.lines; ++l) {
-      const LineModel& line = model.line[l];
-      if (line.rail_factor[c.contact[i].row.rail] == 0.) continue;
-#pragma omp simd
-      for (std::int32_t k = line.first; k < line.first + line.size; ++k)
-        w.solved[k] -= c.force[i] * w.solved[unit + k];
-      if (model.condensed == 0) continue;
-#pragma omp simd
-      for (std::int32_t k = line.first; k < line.first + line.size; ++k)
-        w.imaginary[k] -= c.force[i] * w.imaginary[unit + k];
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineModel& line = model.line[l];
+    const double *re[kMaxWheels], *im[kMaxWheels];
+    double force[kMaxWheels];
+    int count = 0;
+    for (int i = 0; i < c.wheels; ++i) {
+      if (!presses(c, i, line)) continue;
+      const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i + 1) * model.unknowns + line.first;
+      re[count] = w.solved + unit;
+      im[count] = w.imaginary + unit;
+      force[count++] = c.force[i];
     }
+    subtract(re, force, count, line.size, w.solved + line.first);
+    if (model.condensed != 0) subtract(im, force, count, line.size, w.imaginary + line.first);
   }
 }
 

@@ -9,10 +9,10 @@ inline Configuration located_on(const Model& model, const State& s, const Worksp
   return {w.scaled, {s.u, s.v}, passed(model, s.steps + 1)};
 }
 
-/// Solves banded lines for their own right-hand side (in workspace.solved[0]) and all lines for a
-/// unit force at each wheel that is on its rail (solved[1 + wheel]); of condensed lines the force
-/// is held over the step.
-void respond(const Model& model, Workspace& w, const Coupling& c) noexcept;
+/// Solves banded lines for their own right-hand side (in workspace.solved[0]) and the lines that a
+/// wheel presses for a unit force there (solved[1 + wheel]); of condensed lines the force is held
+/// over the step. Notes where the lines were seen under each wheel.
+void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
 
 /// Displacement under wheel `i` of the track moved by unit forces at wheel `j`, at the step's end.
 double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
@@ -23,8 +23,7 @@ double track_under(const Model& model, const Workspace& w, const Coupling& c, in
                    const double* re, const double* im) noexcept;
 
 /// Displacement under wheel `i`, without contact forces, from where the contact was located.
-double track_motion(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                    int i) noexcept;
+double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept;
 
 /// Displacements of the track under the wheel forces: free, and what each force adds.
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept;

@@ -67,8 +67,7 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
   const double passing = travelled(v.travel, time).speed * along;
   if (model.condensed != 0) {
     const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
-    double d0 = at.irregular + missed - dot(row, s.u + v.first, v.size);
-    if (at.on_rail) d0 += rail_height(model, at.row, seen);
+    const double d0 = c.seen[i] + at.irregular + missed - dot(row, s.u + v.first, v.size);
     return {per_metre, passing - per_metre * d0};
   }
   double d_star = at.irregular + missed - dot(row, w.u_star + v.first, v.size);
@@ -118,14 +117,10 @@ double vehicle_compliance(const Model& model, int i, int j) noexcept {
   return v.compliance[among_own(model, i) * v.wheels + among_own(model, j)];
 }
 
-double vehicle_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                      int i) noexcept {
+double vehicle_offset(const Model& model, const State& s, const Coupling& c, int i) noexcept {
   const VehicleModel& v = vehicle_of(model, i);
-  const double* row = row_of(model, i);
-  double sum = c.contact[i].penetration;
-  for (int k = 0; k < v.size; ++k)
-    sum += row[k] * (w.scaled[v.first + k] - (1. - model.scheme.theta) * s.u[v.first + k]);
-  return sum;
+  return (c.seen[i] + c.contact[i].irregular) -
+         (1. - model.scheme.theta) * dot(row_of(model, i), s.u + v.first, v.size);
 }
 
 double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept {

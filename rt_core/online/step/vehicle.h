@@ -17,10 +17,9 @@ void find_vehicle_laws(const Model& model, double time, const State& s, const Wo
 /// What a unit force at wheel j adds to the approach of wheel i through a vehicle that bears both.
 double vehicle_compliance(const Model& model, int i, int j) noexcept;
 
-/// Penetration that the vehicle's place at the step's start leaves of wheel i: what the coordinates
-/// at the step's end take off is left out.
-double vehicle_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                      int i) noexcept;
+/// Penetration that the rail as it was seen, irregularities and the vehicle's place at the step's
+/// start leave of wheel i: what the coordinates at the step's end take off is left out.
+double vehicle_offset(const Model& model, const State& s, const Coupling& c, int i) noexcept;
 
 /// Height of wheel i at the step's end without contact forces.
 double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept;

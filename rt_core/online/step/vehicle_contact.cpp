@@ -40,10 +40,10 @@ double slope_under(const Model& model, const WheelContact& at, const Configurati
   return rail_height(model, along.row, seen);
 }
 
-void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std::int64_t step,
-                           double before, const Configuration& at, WheelContact* contact) noexcept {
+void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::int64_t step,
+                          double before, WheelContact* contact) noexcept {
   const double way = way_at(model, vehicle.travel, step, before).distance;
-  const double gone = (at.passed + model.endless.origin) + way;
+  const double gone_by = passed(model, step), gone = (gone_by + model.endless.origin) + way;
   const double up[3] = {0., 0., 1.};
   for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
     const VehicleWheel& wheel = model.vehicle_wheel[vehicle.first_wheel + k];
@@ -56,7 +56,6 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std:
     const double scaled = found.x / model.element_length;
     found.on_rail = scaled >= 0. && scaled <= model.elements;
     found.on_ground = !found.on_rail;
-    double height = 0.;
     if (found.on_rail) {
       found.row.element = static_cast<std::int32_t>(scaled);
       if (found.row.element == model.elements) found.row.element = model.elements - 1;
@@ -64,9 +63,8 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std:
       double shape[3];
       shape_functions(found.xi, shape);
       fill_row(model, found, shape);
-      height = rail_height(model, found.row, at);
       const Irregularity off =
-          irregularity(model, wheel.tread, wheel.rail, up, found.x + at.passed, gone);
+          irregularity(model, wheel.tread, wheel.rail, up, found.x + gone_by, gone);
       found.irregular = off.depth;
       found.rise = off.rise;
     } else {
@@ -74,6 +72,15 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std:
       found.irregular = tread.value;
       found.rise = tread.slope;
     }
+  }
+}
+
+void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std::int64_t step,
+                           double before, const Configuration& at, WheelContact* contact) noexcept {
+  place_vehicle_wheels(model, vehicle, step, before, contact);
+  for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
+    WheelContact& found = contact[2 * model.wheelsets + vehicle.first_wheel + k];
+    const double height = found.on_rail ? rail_height(model, found.row, at) : 0.;
     found.penetration = height + found.irregular - wheel_height(vehicle, k, at.u);
   }
 }

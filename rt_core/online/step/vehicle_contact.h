@@ -3,9 +3,15 @@
 
 namespace railstep {
 
-/// Finds the contacts of a vehicle's wheels: upright, over the place that the time says. A wheel
-/// off the rail stands on the ground at the height of the rail's axis at rest.
+/// Places a vehicle's wheels: upright, over the place that the time says, with the rail's row and
+/// irregularities there, whatever moves. A wheel off the rail stands on the ground at the height of
+/// the rail's axis at rest.
 /// @param before   s, by how much it is looked for ahead of the step's end
+/// @param contact  [wheels] of the model; those of the vehicle are written
+void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::int64_t step,
+                          double before, WheelContact* contact) noexcept;
+
+/// The same with the penetrations of a configuration.
 /// @param at       displacements of track and vehicles at which to look
 /// @param contact  [wheels] of the model; those of the vehicle are written
 void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std::int64_t step,
