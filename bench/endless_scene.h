@@ -85,6 +85,7 @@ class Run {
     return outputs_;
   }
   const State& state() const { return state_; }
+  const Outputs& outputs() const { return outputs_; }
 
  private:
   const Model& model_;

@@ -1,42 +1,18 @@
 // Rings of bays in Floquet modes against a long track of full order, as CSV on stdout for
 // docs/endless.md: error of the deflection under a load at 30 m/s that swings at a frequency, over
 // its peak, and the cost of a step under two constant loads.
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 #include <vector>
 
-#include "offline/pack/pack.h"
-#include "offline/pack/scheme.h"
-#include "online/step/step.h"
+#include "endless_scene.h"
 
 namespace railstep {
 namespace {
 
-constexpr double kSpeed = 30., kForce = -50e3;            // m/s, N
+constexpr double kForce = -50e3;                          // N
 constexpr double kStep = 4e-5, kEnd = .4, kSettled = .3;  // s; errors are of what follows kSettled
 constexpr double kFrequencies[] = {0., 20., 50., 100., 200., 500., 1000.};  // Hz
-
-/// A ballasted track, 60E1, vertical.
-Track track_of(int bays, int elements_per_bay, int rails) {
-  Track t;
-  t.section = {.area = 76.7e-4,
-               .inertia_y = 3038e-8,
-               .inertia_z = 512e-8,
-               .torsion = 209e-8,
-               .shear_factor_y = .4,
-               .shear_factor_z = .4};
-  t.unknowns = Unknowns::vertical;
-  t.rails = rails;
-  t.bays = bays;
-  t.elements_per_bay = elements_per_bay;
-  t.support.stiffness = {0., 0., 200e6};
-  t.support.damping = {0., 0., 20e3};
-  t.sleeper = Sleeper{300., 169., {0., 0., 50e6}, {0., 0., 80e3}};
-  return t;
-}
 
 MovingLoad load_at(double start, double hz, int rail = 0) {
   MovingLoad load{.rail = rail,
@@ -51,36 +27,15 @@ MovingLoad load_at(double start, double hz, int rail = 0) {
   return load;
 }
 
-class Run {
- public:
-  explicit Run(const PackedModel& packed)
-      : model_(packed.model()),
-        memory_(static_cast<std::size_t>(state_doubles(model_))),
-        scratch_(static_cast<std::size_t>(workspace_doubles(model_))),
-        state_(state_on(model_, memory_.data())),
-        workspace_(workspace_on(model_, scratch_.data())) {
-    reset(model_, state_);
+std::vector<double> deflections(const PackedModel& packed) {
+  Run run(packed);
+  std::vector<double> found;
+  for (int n = 1; n <= std::lround(kEnd / kStep); ++n) {
+    const double z = run.frame().load_deflection[0];
+    if (n * kStep > kSettled) found.push_back(z);
   }
-  double frame() {
-    static_cast<void>(advance_frame(model_, state_, workspace_, outputs_));
-    return outputs_.load_deflection[0];
-  }
-  std::vector<double> deflections() {
-    std::vector<double> found;
-    for (int n = 1; n <= std::lround(kEnd / kStep); ++n) {
-      const double z = frame();
-      if (n * kStep > kSettled) found.push_back(z);
-    }
-    return found;
-  }
-
- private:
-  const Model& model_;
-  std::vector<double> memory_, scratch_;
-  State state_;
-  Workspace workspace_;
-  Outputs outputs_{};
-};
+  return found;
+}
 
 std::vector<double> reference(double hz, int finer) {
   const Track track = track_of(200, 8, 1);
@@ -88,30 +43,7 @@ std::vector<double> reference(double hz, int finer) {
                            {.scheme = generalised_alpha(kStep / finer, .6),
                             .steps_per_frame = finer,
                             .residual_points = 8});
-  return Run(packed).deflections();
-}
-
-PackOptions ring_options(int bays, int modes, double dt) {
-  PackOptions o;
-  o.scheme = held_force(dt, .6);
-  o.modal = ModalLimit{modes * bays, std::numeric_limits<double>::infinity()};
-  o.endless = EndlessTrack{bays / 2};
-  return o;
-}
-
-Track ring_of(int bays, int rails) {
-  Track ring = track_of(bays, 4, rails);
-  ring.ring = true;
-  return ring;
-}
-
-double error(const std::vector<double>& got, const std::vector<double>& want) {
-  double worst = 0., peak = 0.;
-  for (std::size_t i = 0; i < want.size(); ++i) {
-    worst = std::max(worst, std::abs(got[i] - want[i]));
-    peak = std::max(peak, std::abs(want[i]));
-  }
-  return worst / peak;
+  return deflections(packed);
 }
 
 /// Best of many blocks of a bay's steps, us a step, under a constant load on either rail.
@@ -138,7 +70,7 @@ void table() {
   std::printf("\nreference,,,");
   for (const double hz : kFrequencies) {
     want.push_back(reference(hz, 4));
-    std::printf(",%.1e", error(reference(hz, 2), want.back()));
+    std::printf(",%.1e", error_over_peak(reference(hz, 2), want.back()));
   }
   std::printf("\n");
   for (const int bays : {16, 24, 32, 40, 64})
@@ -150,7 +82,7 @@ void table() {
         const PackedModel packed(ring, {.loads = {load_at(0., kFrequencies[i])}},
                                  ring_options(bays, modes, kStep));
         unknowns = packed.model().unknowns;
-        errors.push_back(error(Run(packed).deflections(), want[i]));
+        errors.push_back(error_over_peak(deflections(packed), want[i]));
       }
       std::printf("%d,%d,%d,%.2f", bays, modes, unknowns, step_us(bays, modes));
       for (const double e : errors) std::printf(",%.1e", e);

@@ -98,8 +98,8 @@ Eigen::VectorXd DividedLine::under(const Port& port, double z, int points) const
   const Superelement& own = element(port.rail);
   const Superelement::Rows a = port_rows(port, points), b = port_rows({port.rail, z}, points);
   const Eigen::VectorXd held = own.held(a, b).diagonal();
-  Eigen::VectorXd result(track_.elements() * (points + 1));
-  for (int e = 0; e < track_.elements(); ++e) {
+  Eigen::VectorXd result(tabled_elements(track_) * (points + 1));
+  for (int e = 0; e < tabled_elements(track_); ++e) {
     const Eigen::MatrixXd ends =
         gather(end_columns(port.rail, e), end_unknowns(line_, port.rail, own, e));
     for (int p = 0; p <= points; ++p)

@@ -25,12 +25,22 @@ std::size_t place_in(const PairTable& table, int e, int p, int e2, int q) {
   return (block * n + static_cast<std::size_t>(p)) * n + static_cast<std::size_t>(q);
 }
 
+/// The element that lies `shift` elements on, round a ring; -1: off the rail.
+int shifted(const Track& track, int e, int shift) {
+  const int elements = track.elements(), e2 = e + shift;
+  if (track.ring) return (e2 % elements + elements) % elements;
+  return e2 >= 0 && e2 < elements ? e2 : -1;
+}
+
 /// Takes from the strip of element e what lies within the table's reach.
-void keep(const Eigen::MatrixXd& strip, int e, int elements, PairTable& table) {
+void keep(const Eigen::MatrixXd& strip, int e, const Track& track, PairTable& table) {
   const int n = table.points + 1;
-  for (int e2 = std::max(0, e - table.reach); e2 <= std::min(elements - 1, e + table.reach); ++e2)
-    for (int p = 0; p < n; ++p)
-      for (int q = 0; q < n; ++q) table.value[place_in(table, e, p, e2, q)] = strip(p, e2 * n + q);
+  for (int shift = -table.reach; shift <= table.reach; ++shift) {
+    const int e2 = shifted(track, e, shift);
+    for (int p = 0; p < n && e2 >= 0; ++p)
+      for (int q = 0; q < n; ++q)
+        table.value[place_in(table, e, p, e + shift, q)] = strip(p, e2 * n + q);
+  }
 }
 
 bool carries(const std::vector<int>& carried, int k) {
@@ -99,7 +109,7 @@ double ResidualFlexibility::weight(const Pair& pair, Port port) const {
 std::vector<double> ResidualFlexibility::under(Port port) const { return under(port, port.z); }
 
 std::vector<double> ResidualFlexibility::under(Port port, double z) const {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(tabled_elements(track_) * (points_ + 1));
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, port) * weight(pair, {port.rail, z});
     if (w == 0.) continue;
@@ -109,7 +119,7 @@ std::vector<double> ResidualFlexibility::under(Port port, double z) const {
 }
 
 std::vector<double> ResidualFlexibility::exact_under(Port port) const {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(tabled_elements(track_) * (points_ + 1));
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, port);
     if (w != 0.) sum += w * w * pair.exact->under(port, port.z, points_);
@@ -159,27 +169,29 @@ double ResidualFlexibility::largest_exact(Port port) const {
   return *std::max_element(exact.begin(), exact.end());
 }
 
-PairTable ResidualFlexibility::between(Port a, Port b, int points) const {
+PairTable ResidualFlexibility::between(Port a, Port b, int points, int most) const {
   if (points < 1 || points_ % points != 0)
     throw std::invalid_argument("a table between ports takes a divisor of the points of the track");
   const LineFlexibility::Strip strip = strips(a, b, points);
-  const int elements = track_.elements(), n = points + 1;
+  const int elements = tabled_elements(track_), n = points + 1;
+  most = std::min(most, track_.elements() - 1);
   // Two passes over the strips: the whole table would be elements^2 blocks.
-  std::vector<double> largest(static_cast<std::size_t>(elements), 0.);  // by distance in elements
+  std::vector<double> largest(static_cast<std::size_t>(most) + 1, 0.);  // by distance in elements
   for (int e = 0; e < elements; ++e) {
     const Eigen::MatrixXd row = strip(e);
-    for (int e2 = 0; e2 < elements; ++e2) {
-      double& there = largest[static_cast<std::size_t>(std::abs(e2 - e))];
-      there = std::max(there, row.middleCols(e2 * n, n).cwiseAbs().maxCoeff());
+    for (int shift = -most; shift <= most; ++shift) {
+      const int e2 = shifted(track_, e, shift);
+      double& there = largest[static_cast<std::size_t>(std::abs(shift))];
+      if (e2 >= 0) there = std::max(there, row.middleCols(e2 * n, n).cwiseAbs().maxCoeff());
     }
   }
   const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
-  PairTable table{points, elements - 1, {}};
+  PairTable table{points, most, {}};
   while (table.reach > 0 && largest[static_cast<std::size_t>(table.reach)] < limit) --table.reach;
   table.value.assign(
       static_cast<std::size_t>(elements * (2 * table.reach + 1)) * static_cast<std::size_t>(n * n),
       0.);
-  for (int e = 0; e < elements; ++e) keep(strip(e), e, elements, table);
+  for (int e = 0; e < elements; ++e) keep(strip(e), e, track_, table);
   return table;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace railstep {
 struct PairTable {
   int points;                 // intervals per element
   int reach;                  // elements
-  std::vector<double> value;  // [e][e2 - e + reach][p][q], m/N; 0 where e2 is off the rail
+  std::vector<double> value;  // [tabled e][e2 - e + reach][p][q], m/N; 0 where e2 is off the rail
 
   /// Of the first port at place p of element e and the second at place q of element e2, both on
   /// the rail; 0 beyond the reach.
@@ -44,14 +45,15 @@ class ResidualFlexibility {
   ResidualFlexibility(const ResidualFlexibility&) = delete;
   ResidualFlexibility& operator=(const ResidualFlexibility&) = delete;
 
-  /// G_res(x, x); [elements][points + 1], m/N, at equal steps of x. On the axis never below 0 but
+  /// G_res(x, x); [tabled elements][points + 1], m/N, at equal steps of x; of a ring
+  /// those are one bay's, which all others repeat. On the axis never below 0 but
   /// by rounding. Above it the element's two Gauss points make it softer than the rail to the
   /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0
   /// (most_negative() says by how much), and nothing is clipped here.
   std::vector<double> under(Port port) const;
   /// The same of the rail's point at height z over the axis, straight above or below the port.
   std::vector<double> under(Port port, double z) const;
-  /// G_exact(x, x); [elements][points + 1], m/N.
+  /// G_exact(x, x); [tabled elements][points + 1], m/N.
   std::vector<double> exact_under(Port port) const;
 
   /// G_res of all places of two ports of one or two rails; between(b, a) is its transpose.
@@ -60,7 +62,8 @@ class ResidualFlexibility {
   /// force inside it quadratically, and so moves others wrongly (5e-3 of G_exact next to it with
   /// one element of 0.6 m per bay, 1e-3 with two).
   /// @param points intervals per element, a divisor of the constructor's
-  PairTable between(Port a, Port b, int points) const;
+  /// @param most   reach at most, where ports are known to stand no farther apart
+  PairTable between(Port a, Port b, int points, int most = std::numeric_limits<int>::max()) const;
 
   /// What the model misses of the functional under a unit force of the port at each place;
   /// [elements][points + 1], m/N. Throws std::out_of_range if the functional is off the track.

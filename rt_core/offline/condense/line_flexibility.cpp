@@ -4,6 +4,10 @@
 
 namespace railstep {
 
+int tabled_elements(const Track& track) {
+  return track.ring ? track.elements_per_bay : track.elements();
+}
+
 std::vector<int> carried_unknowns(const Line& line, int rail) {
   std::vector<int> found;
   for (int k = 0; k < 9; ++k)

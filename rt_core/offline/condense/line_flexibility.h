@@ -18,6 +18,10 @@ struct Port {
   double z;  // above the axis, m
 };
 
+/// Elements of the tables over places: the track's, or on a ring those of one bay, which every
+/// other bay repeats.
+int tabled_elements(const Track& track);
+
 /// Static flexibility of one line between the places of ports, `points` intervals per element at
 /// equal steps of x, in the line's own coordinates: the weights of a port's rail in the line are
 /// left to the caller, those of a functional are in.
@@ -28,7 +32,7 @@ class LineFlexibility {
   using Strip = std::function<Eigen::MatrixXd(int element)>;
 
   virtual ~LineFlexibility() = default;
-  /// G(x, x) from a port to one at height `z` of its rail; [elements x (points + 1)], m/N.
+  /// G(x, x) from a port to one at height `z` of its rail; [tabled elements x (points + 1)], m/N.
   virtual Eigen::VectorXd under(const Port& port, double z, int points) const = 0;
   virtual Strip between(const Port& a, const Port& b, int points) const = 0;
   /// The functional under a unit force of a port at each place; [elements x (points + 1)].

@@ -28,7 +28,10 @@ Eigen::MatrixXd ReducedLine::scaled_shapes(int rail, int points) const {
 }
 
 Eigen::VectorXd ReducedLine::under(const Port& port, double, int points) const {
-  return scaled_shapes(port.rail, points).rowwise().squaredNorm();
+  return scaled_shapes(port.rail, points)
+      .topRows(tabled_elements(track_) * (points + 1))
+      .rowwise()
+      .squaredNorm();
 }
 
 LineFlexibility::Strip ReducedLine::between(const Port& a, const Port& b, int points) const {

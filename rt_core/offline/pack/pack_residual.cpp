@@ -11,14 +11,30 @@ namespace {
 
 constexpr int kPairPoints = 4;  // intervals per element of tables between ports
 
-/// Ports of each kind that a model has.
-std::vector<int> ports_of(const Model& model, std::size_t kinds) {
-  std::vector<int> count(kinds, 0);
-  for (std::int32_t i = 0; i < model.loads; ++i)
-    ++count[static_cast<std::size_t>(model.load[i].kind)];
-  for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    ++count[static_cast<std::size_t>(wheel_kind(model, i))];
-  return count;
+/// Places at the start of all ports of each kind, m along the model's elements.
+std::vector<std::vector<double>> ports_of(const Model& model, std::size_t kinds) {
+  std::vector<std::vector<double>> places(kinds);
+  const auto add = [&](std::int32_t kind, double place) {
+    places[static_cast<std::size_t>(kind)].push_back(place);
+  };
+  for (std::int32_t i = 0; i < model.loads; ++i) add(model.load[i].kind, model.load[i].start);
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+    add(wheel_kind(model, i), model.wheelset[i / 2].start);
+  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
+    const VehicleWheel& wheel = model.vehicle_wheel[i];
+    add(wheel.kind, model.vehicle[wheel.vehicle].start + wheel.place);
+  }
+  return places;
+}
+
+/// How many elements two ports of these places are apart at most: on a track without end they stay
+/// as they are, within the element that a contact's search may find beside the wheel.
+int farthest(const Model& model, const std::vector<double>& a, const std::vector<double>& b) {
+  if (model.endless.bays == 0) return model.elements;
+  double distance = 0.;
+  for (const double x : a)
+    for (const double y : b) distance = std::max(distance, std::abs(x - y));
+  return static_cast<int>(distance / model.element_length) + 2;
 }
 
 bool all_zero(const std::vector<double>& values) {
@@ -31,10 +47,11 @@ void append(std::vector<double>& to, const std::vector<double>& values, double f
 
 /// What the model's lines give way within a step under a force of a port, m/N, at the places of its
 /// table: theta row S^-1 row', or of condensed lines theta Re row held_force row.
-std::vector<double> step_compliance(const Model& model, const Port& port, int points) {
+std::vector<double> step_compliance(const Model& model, const Port& port, std::int32_t elements,
+                                    int points) {
   const auto n = static_cast<std::size_t>(model.unknowns);
   std::vector<double> re(n), im(n), table;
-  for (std::int32_t element = 0; element < model.elements; ++element)
+  for (std::int32_t element = 0; element < elements; ++element)
     for (int p = 0; p <= points; ++p) {
       RailRow row{port.rail, element, {}, 0, {}, {}};
       double shape[3];
@@ -136,7 +153,8 @@ void PackedModel::clip(int points, std::vector<double>& under) {
   const std::size_t places = under.size() / kinds_.size();
   for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
     const auto kind = static_cast<std::size_t>(wheel_kind(model_, wheel));
-    const std::vector<double> lines = step_compliance(model_, kinds_[kind], points);
+    const std::vector<double> lines =
+        step_compliance(model_, kinds_[kind], model_.residual.elements, points);
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[kind * places + i];
       const double lowest = -.5 * lines[i];
@@ -160,6 +178,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
     if (condensed) bases.push_back(own.basis);
   }
   const ResidualFlexibility residual(reference, lines, bases, points);
+  model_.residual.elements = tabled_elements(reference);
   std::vector<double> under, axis;
   for (const Port& port : kinds_) {
     append(under, residual.under(port));
@@ -170,11 +189,12 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
   model_.residual.points = points;
   model_.residual.under = keep(std::move(under));
   model_.residual.axis = keep(std::move(axis));
-  const std::vector<int> ports = ports_of(model_, kinds_.size());
+  const std::vector<std::vector<double>> ports = ports_of(model_, kinds_.size());
   for (std::size_t a = 0; a < kinds_.size(); ++a)
     for (std::size_t b = 0; b < kinds_.size(); ++b) {
-      if (a == b && ports[a] < 2) continue;
-      PairTable pair = residual.between(kinds_[a], kinds_[b], kPairPoints);
+      if (a == b && ports[a].size() < 2) continue;
+      PairTable pair =
+          residual.between(kinds_[a], kinds_[b], kPairPoints, farthest(model_, ports[a], ports[b]));
       if (all_zero(pair.value)) continue;
       model_.residual.pair[a][b] = {pair.points, pair.reach, keep(std::move(pair.value))};
     }

@@ -183,7 +183,8 @@ template <typename Archive>
 void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
   a.count(r.kinds, kMaxPortKinds);
   a.count(r.points, kMostRows);
-  const std::int64_t table = std::int64_t{r.kinds} * elements * (r.points + 1);
+  a.count(r.elements, elements);
+  const std::int64_t table = std::int64_t{r.kinds} * r.elements * (r.points + 1);
   a.reals(r.under, table);
   a.reals(r.axis, table);
   for (std::int32_t i = 0; i < r.kinds; ++i)
@@ -192,7 +193,7 @@ void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
       a.count(pair.points, kMostPairPoints);
       a.count(pair.reach, elements);
       const std::int64_t block = std::int64_t{pair.points + 1} * (pair.points + 1);
-      a.reals(pair.value, std::int64_t{elements} * (2 * pair.reach + 1) * block);
+      a.reals(pair.value, std::int64_t{r.elements} * (2 * pair.reach + 1) * block);
     }
 }
 

@@ -131,7 +131,7 @@ bool wheel_holds(const Model& m, std::int32_t i) noexcept {
 bool residual_holds(const Model& m) noexcept {
   const ResidualModel& r = m.residual;
   const bool tables = r.under != nullptr || r.axis != nullptr || m.probe.residual != nullptr;
-  if (tables && r.points < 3) return false;
+  if (tables && (r.points < 3 || r.elements < 1)) return false;
   for (std::int32_t i = 0; i < m.loads && tables; ++i)
     if (m.load[i].kind >= r.kinds) return false;
   for (std::int32_t i = 0; i < m.wheelsets && tables; ++i)

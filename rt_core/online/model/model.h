@@ -196,7 +196,8 @@ struct VehicleModel {
 };
 
 /// Residual flexibility between ports of two kinds: of the first in element e at point p, of the
-/// second in element e + shift at point q, -reach <= shift <= reach; zero beyond.
+/// second in element e + shift at point q, -reach <= shift <= reach; zero beyond, or on a track
+/// without end nowhere.
 struct PairModel {
   std::int32_t points, reach;  // intervals per element, elements
   const double* value;         // [elements][2 reach + 1][points + 1][points + 1] m/N, or null
@@ -205,10 +206,11 @@ struct PairModel {
 /// What the model's unknowns miss of the static deflection under vertical forces, tabled over
 /// elements at equal steps of xi. Null pointers: not modelled.
 struct ResidualModel {
-  std::int32_t kinds;   // of ports
-  std::int32_t points;  // intervals per element
-  const double* under;  // [kinds][elements][points + 1] m/N, of the force's own point
-  const double* axis;   // the same of the rail's axis under it
+  std::int32_t kinds;     // of ports
+  std::int32_t points;    // intervals per element
+  std::int32_t elements;  // of the tables, which repeat after them: the model's, of a ring a bay's
+  const double* under;    // [kinds][elements][points + 1] m/N, of the force's own point
+  const double* axis;     // the same of the rail's axis under it
   PairModel pair[kMaxPortKinds][kMaxPortKinds];  // [force][displacement]
 };
 
@@ -233,7 +235,7 @@ struct ProbeModel {
   const std::int32_t* along;  // [count] 1: a place along the rail, which the traffic takes with it
   const std::int32_t* table;  // [count] of its residual, -1: none
   std::int32_t tables;
-  const double* residual;  // [tables][kinds][elements][points + 1] per N, or null
+  const double* residual;  // [tables][kinds][model.elements][points + 1] per N, or null
 };
 
 /// One-sided springs and dampers that stand still: supports that do not pull, gaps, stops. Of each

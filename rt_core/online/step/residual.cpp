@@ -7,10 +7,12 @@ namespace railstep {
 namespace {
 
 /// Entry of a table [kinds][elements][points + 1] under a force.
-double look_up(const Model& model, const double* table, const RailForce& at) noexcept {
+double look_up(const Model& model, const double* table, std::int32_t elements,
+               const RailForce& at) noexcept {
   if (table == nullptr) return 0.;
   const std::int32_t points = model.residual.points;
-  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(at.kind) * model.elements + at.element;
+  const std::ptrdiff_t row =
+      static_cast<std::ptrdiff_t>(at.kind) * elements + at.element % elements;
   return interpolate(table + row * (points + 1), points, at.xi);
 }
 
@@ -39,11 +41,11 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
 }
 
 double residual_under(const Model& model, const RailForce& at) noexcept {
-  return look_up(model, model.residual.under, at);
+  return look_up(model, model.residual.under, model.residual.elements, at);
 }
 
 double residual_axis(const Model& model, const RailForce& at) noexcept {
-  return look_up(model, model.residual.axis, at);
+  return look_up(model, model.residual.axis, model.residual.elements, at);
 }
 
 double residual_between(const Model& model, const RailForce& force, const RailForce& at) noexcept {
@@ -53,7 +55,8 @@ double residual_between(const Model& model, const RailForce& force, const RailFo
   const std::int32_t points = pair.points;
   const double* block =
       pair.value +
-      (static_cast<std::ptrdiff_t>(force.element) * (2 * pair.reach + 1) + (shift + pair.reach)) *
+      (static_cast<std::ptrdiff_t>(force.element % model.residual.elements) * (2 * pair.reach + 1) +
+       (shift + pair.reach)) *
           static_cast<std::ptrdiff_t>((points + 1) * (points + 1));
   const Cubic along = cubic(points, force.xi);
   double sum = 0.;
@@ -79,7 +82,8 @@ double residual_of_probe(const Model& model, std::int32_t probe, const RailForce
                                                     model.residual.kinds * model.elements *
                                                     (model.residual.points + 1);
   double sum = 0.;
-  for (int i = 0; i < count; ++i) sum += forces[i].force * look_up(model, values, forces[i]);
+  for (int i = 0; i < count; ++i)
+    sum += forces[i].force * look_up(model, values, model.elements, forces[i]);
   return sum;
 }
 
