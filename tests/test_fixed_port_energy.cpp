@@ -12,7 +12,6 @@
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
-using Catch::Matchers::WithinRel;
 
 namespace {
 
