@@ -11,7 +11,6 @@
 #include "online/step/closing.h"
 
 using namespace railstep;
-using Catch::Matchers::WithinAbs;
 
 namespace {
 
