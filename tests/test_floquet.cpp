@@ -6,6 +6,7 @@
 #include "endless.h"
 #include "offline/condense/floquet.h"
 #include "offline/track/statics.h"
+#include "online/step/residual.h"
 
 using namespace railstep;
 
@@ -83,4 +84,43 @@ TEST_CASE("a step back by a bay turns each wave's coordinates") {
           CHECK(std::abs(back[at] - here[ahead]) < 1e-12 * scale);  // sums of 60 terms
         }
   }
+}
+
+TEST_CASE("a ring's table of one bay gives two places of any bay their flexibility") {
+  // Modes and residual flexibility against the ring with 16 times the elements, at their ends, where
+  // an element is exact: so are the tables there, and between two places the beam is a cubic, as
+  // their interpolation is. 1e-16 times K's condition of 1e7 and 512 elements leave 1e-9.
+  const Track ring = ring_of(endless_track(16, 2));
+  const Traffic traffic{.loads = {moving_load(0.), moving_load(1.5)}};
+  const PackedModel packed(ring, traffic, ring_options(ring, 1));
+  const Model& model = packed.model();
+  const PackedLine& own = packed.lines()[0];
+  CHECK(model.residual.elements == 2);
+  CHECK(model.residual.pair[0][0].reach <= 7);  // 1.5 m of .3 m, and one either way
+  Track fine = ring;
+  fine.elements_per_bay *= 16;
+  const Statics exact(fine);
+  double worst = 0., missed = 0., peak = 0.;
+  for (const int bay : {0, 6, 11})
+    for (const double within : {.05625, .1875, .35625, .46875})
+      for (const double apart : {0., -1.5, 1.5}) {
+        const double x = 1.8 + bay * .6 + within, to = x + apart;
+        if (to > ring.length()) continue;
+        const RailPoint a{0, x, 0., 0., 2}, b{0, to, 0., 0., 2};
+        const auto row = [&](const RailPoint& at) -> Eigen::VectorXd {
+          return own.basis.shapes.transpose() * Eigen::VectorXd(point_row(ring, own.line, at));
+        };
+        const double modes =
+            row(a).cwiseProduct(row(b)).cwiseQuotient(own.basis.omega.cwiseAbs2()).sum();
+        const RailForce from = rail_force(model, 0, x, 1.), there = rail_force(model, 0, to, 0.);
+        const double residual =
+            apart == 0. ? residual_under(model, from) : residual_between(model, from, there);
+        const double want = exact.flexibility(a, b);
+        peak = std::max(peak, std::abs(want));
+        worst = std::max(worst, std::abs(modes + residual - want));
+        missed = std::max(missed, std::abs(modes - want));
+      }
+  CAPTURE(worst / peak, missed / peak);
+  CHECK(worst < 1e-8 * peak);
+  CHECK(missed > 1e-2 * peak);  // the modes alone
 }
