@@ -57,7 +57,7 @@ Model with_forces(const Model& even) {
   for (std::int32_t b = 0; b < even.wheelsets; ++b)
     for (const int side : {0, 1})
       carried.load[carried.loads++] = load_of(even, even.wheelset[b], side);
-  carried.wheelsets = 0;
+  carried.wheelsets = carried.flanges = 0;
   return carried;
 }
 

@@ -94,6 +94,15 @@ void interpolate_nodes(const Window& window, RailPlace place, const double* shap
   for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
 }
 
+/// Where a search in a window starts: at x on the straight rail.
+RailPlace guess(const Model& model, const Window& window, double x) noexcept {
+  double at = x / model.element_length - window.first;
+  if (!(at > 0.)) at = 0.;
+  if (at > window.elements) at = window.elements;
+  const int element = static_cast<int>(at);
+  return {element, 2. * (at - element) - 1.};
+}
+
 /// Row of the material point (y, z) along the normal. An irregular rail that is drawn along brings
 /// up the height that its steel had behind: its row leans back by the slope.
 void fill_row(const double* shape, double slope, WheelContact& at) noexcept {
@@ -114,13 +123,8 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   WheelContact at{};
   at.row.rail = side;
   const double z_crown = model.head_z[side] - model.crown_radius[side];
-  double guess = centre[0] / model.element_length - window.first;
-  if (!(guess > 0.)) guess = 0.;
-  if (guess > window.elements) guess = window.elements;
-  RailPlace start{static_cast<int>(guess), 0.};
-  start.xi = 2. * (guess - start.element) - 1.;
-  const WheelOnRail found =
-      locate_wheel({window.elements, window.nodes, 27}, centre, axle, z_crown, start);
+  const WheelOnRail found = locate_wheel({window.elements, window.nodes, 27}, centre, axle, z_crown,
+                                         guess(model, window, centre[0]));
   at.cap_reached = found.status == LocateStatus::cap_reached;
   at.on_rail = found.status == LocateStatus::found || at.cap_reached;
   if (std::fabs(std::fabs(found.along) - std::fabs(model.rail_y[side])) > w.tread_half_width)
@@ -168,6 +172,69 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   return at;
 }
 
+/// Slope along x, in the direction of the normal, of the line of the material point of a contact.
+double slope_along(const Model& model, const Window& window, RailPlace place,
+                   const WheelContact& at) noexcept {
+  const double per_metre = 2. / model.element_length, xi = place.xi;
+  const double shape[3] = {(xi - .5) * per_metre, -2. * xi * per_metre, (xi + .5) * per_metre};
+  double q[9];
+  interpolate_nodes(window, place, shape, q);
+  return dot3(at.normal, q) + at.y * dot3(at.normal, q + 3) + at.z * dot3(at.normal, q + 6);
+}
+
+/// Finds the contact of flange `side`, as find_flanges() says.
+WheelContact find_flange(const Model& model, const FlangeModel& flange, int side,
+                         const Configuration& now, double ahead, const Window& window) noexcept {
+  const WheelsetModel& w = model.wheelset[flange.wheelset];
+  const double* const p = now.u + w.first;
+  const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
+  const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
+  const double axle[3] = {-sy * cr, cy * cr, sr}, up[3] = {sy * sr, -cy * sr, cr};
+  WheelContact at{};
+  at.row.rail = side;
+  double face[3];
+  for (int d = 0; d < 3; ++d) {
+    face[d] = centre[d] + (flange.point[side][0] * axle[d] + flange.point[side][1] * up[d]);
+    at.normal[d] =
+        (side == 0 ? flange.normal[0] : -flange.normal[0]) * axle[d] + flange.normal[1] * up[d];
+  }
+  const PointOnRail found =
+      locate_point({window.elements, window.nodes, 27}, face, guess(model, window, face[0]));
+  at.cap_reached = found.status == LocateStatus::cap_reached;
+  at.on_rail = found.status == LocateStatus::found || at.cap_reached;
+  if (!at.on_rail) return at;
+
+  at.row.element = window.first + found.place.element;
+  at.xi = found.place.xi;
+  at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+  at.y = flange.gauge[side][0];
+  at.z = flange.gauge[side][1];
+  double shape[3], q[9], arm[3], lever[3], gap = 0.;
+  shape_functions(at.xi, shape);
+  interpolate_nodes(window, found.place, shape, q);
+  for (int d = 0; d < 3; ++d) {
+    const double gauge = q[d] + at.y * q[3 + d] + at.z * q[6 + d];
+    arm[d] = gauge - centre[d];
+    gap += at.normal[d] * (face[d] - gauge);
+  }
+  const double x = at.x + (face[0] - (centre[0] + arm[0]));
+  const Irregularity off =
+      irregularity(model, SignalModel{}, side, at.normal, (x + now.passed) + ahead, 0.);
+  fill_row(shape, off.rail_rise, at);
+  at.turn = .5 * (q[5] - q[7]);
+  const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
+  at.penetration = (off.depth + higher) - gap;
+  at.irregular = off.depth;
+  at.rise = off.rise + slope_along(model, window, found.place, at);
+  if (at.penetration > 0. && dot3(arm, up) < flange.tip) at.on_rail = false;
+  cross(arm, at.normal, lever);
+  for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
+  at.body_row[3] = cy * lever[0] + sy * lever[1];
+  at.body_row[4] = 0.;  // the face is one of revolution, met right below the axle
+  at.body_row[5] = lever[2];
+  return at;
+}
+
 }  // namespace
 
 Irregularity irregularity(const Model& model, const SignalModel& tread, int rail,
@@ -193,6 +260,17 @@ void find_contacts(const Model& model, const WheelsetModel& wheelset, const Conf
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
     sides[side] = find_contact(model, wheelset, side, at, ahead, windows[side]);
+  }
+}
+
+void find_flanges(const Model& model, const FlangeModel& flange, const Configuration& at,
+                  WheelContact* sides, double ahead) noexcept {
+  const WheelsetModel& wheelset = model.wheelset[flange.wheelset];
+  Window windows[2];
+  gather(model, wheelset.start + at.u[wheelset.first], at, windows);
+  for (int side = 0; side < 2; ++side) {
+    add_rest(model, side, windows[side]);
+    sides[side] = find_flange(model, flange, side, at, ahead, windows[side]);
   }
 }
 

@@ -42,4 +42,13 @@ Irregularity irregularity(const Model& model, const SignalModel& tread, int rail
 void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
                    WheelContact* sides, double ahead = 0.) noexcept;
 
+/// Finds the contacts of a wheelset's left and right flange, each in the rail's section through its
+/// face: X the gauge face's point there, c the wheelset's centre, n the face's normal, R its turn,
+///   gap = n.(c + R point - X),  d(gap) = n.(dc - dX) + ((X - c) x n).(turn of the wheelset),
+/// so that a force f n on the wheelset at X is the opposite of that on the rail. A flange whose tip
+/// is over X on the rail's side has run off: on_rail is false. `rise` has the rail's own slope too.
+/// Arguments as those of find_contacts().
+void find_flanges(const Model& model, const FlangeModel& flange, const Configuration& at,
+                  WheelContact* sides, double ahead = 0.) noexcept;
+
 }  // namespace railstep
