@@ -26,9 +26,14 @@ ModelRun rolling(const Wheelset& w, double dt, double y, double speed) {
   ModelRun run(rigid_track(), {.wheelsets = {w}, .head = kFlangedHead}, rigid(dt));
   const WheelsetModel& own = run.model().wheelset[0];
   run.state.u[own.first + 1] = y;
-  run.state.u[own.first + 2] = -std::pow(w.weight / 2. / own.hertz[0], 2. / 3.);
   run.state.v[own.first + 1] = speed;
-  for (const int i : {0, 1}) run.state.wheel_force[i] = w.weight / 2.;
+  double depth[2];  // the treads stand half a metre from the middle, the weight stands at y
+  for (const int i : {0, 1}) {
+    run.state.wheel_force[i] = w.weight * (.5 + (i == 0 ? y : -y));
+    depth[i] = std::pow(run.state.wheel_force[i] / own.hertz[i], 2. / 3.);
+  }
+  run.state.u[own.first + 2] = -.5 * (depth[0] + depth[1]);
+  run.state.u[own.first + 3] = depth[1] - depth[0];
   return run;
 }
 
@@ -133,43 +138,51 @@ TEST_CASE("a flange's force loads wheelset and rail at one point: no net force, 
 
 TEST_CASE("a wheelset that runs into its flange moves as an integration by itself has it",
           "[flange]") {
-  // Second order where the force has a kink alone; a damper's jump is met within a step. The flange
-  // is met at the end of a step of each run, so that the steps compare. Hertz's blow lifts the
-  // tread.
+  // Way aside and heights of the axle over both rails, each over its largest: of second order where
+  // the force has a kink alone. A damper's force jumps within a step, which leaves up to c sin^2 v
+  // dt / m of the speed. Each run meets the flange right before the end of a step, so that steps
+  // compare. Hertz's blow lifts the tread.
   struct Law {
     double stiffness, damping, corner;
-    double coarse, end;   // s
-    double error, order;  // at a quarter of `coarse`, of the largest value; as the step is halved
+    double coarse, end;  // s
+    double error;        // at a quarter of `coarse`
   };
-  const Law law =
-      GENERATE(Law{1e7, 0., 0., 4e-5, .03, 2e-4, 2.}, Law{1e7, 1.35e4, 0., 4e-5, .03, 2e-3, 1.},
-               Law{0., 0., .013, 8e-6, .008, 2e-3, 2.});
+  const Law law = GENERATE(Law{1e7, 0., 0., 1e-5, .02, 3e-5}, Law{1e7, 1.35e4, 0., 1e-5, .02, 2e-3},
+                           Law{0., 0., .013, 8e-6, .008, 3e-5});
   Wheelset w = flanged_wheelset(law.stiffness, law.damping);
   w.flange->corner_radius = law.corner;
   constexpr double kSpeed = .0374;
-  const double start = 7e-3 - kSpeed * 64. * law.coarse, fine = law.coarse / 40.;
+  const double start = 7e-3 + 1e-11 - kSpeed * 64. * law.coarse, fine = law.coarse / 40.;
   std::vector<double> error;
   for (const int part : {1, 2, 4}) {
     ModelRun run = rolling(w, law.coarse / part, start, kSpeed);
     const PlaneWheelset plane = plane_of(run);
-    PlaneWheelset::State q{start, run.body()[2], 0., kSpeed, 0., 0.}, most{}, miss{};
+    const double rest = run.body()[2];
+    PlaneWheelset::State q{start, rest, run.body()[3], kSpeed, 0., 0.};
+    double most[3] = {}, miss[3] = {};
+    const auto moved = [&](double y, double z, double roll) {
+      return std::array{y - 7e-3, z - rest + .5 * roll, z - rest - .5 * roll};
+    };
     while (run.time() < law.end - 1e-9) {
       run.step();
       for (int i = 0; i < 40 / part; ++i) q = plane.step(q, fine);
+      const auto want = moved(q[0], q[1], q[2]),
+                 got = moved(run.body()[1], run.body()[2], run.body()[3]);
       for (std::size_t k = 0; k < 3; ++k) {
-        const double from = k == 0 ? 7e-3 : 0.;
-        most[k] = std::max(most[k], std::abs(q[k] - from));
-        miss[k] = std::max(miss[k], std::abs(run.body()[k + 1] - q[k]));
+        most[k] = std::max(most[k], std::abs(want[k]));
+        miss[k] = std::max(miss[k], std::abs(got[k] - want[k]));
       }
     }
     error.push_back(std::max({miss[0] / most[0], miss[1] / most[1], miss[2] / most[2]}));
     CHECK(q[3] < -.01);  // it came back
+    const double sine = std::sin(kFaceAngle), dt = law.coarse / part;
+    if (law.damping > 0.) CHECK(miss[0] < law.damping * sine * sine * kSpeed * dt / 100. * law.end);
   }
   CAPTURE(law.stiffness, law.damping, law.corner, error);
-  WARN("errors " << error[0] << " " << error[1] << " " << error[2]);
   CHECK(error[2] < law.error);
-  CHECK_THAT(std::log2(error[0] / error[1]), WithinAbs(law.order, .5));
-  CHECK_THAT(std::log2(error[1] / error[2]), WithinAbs(law.order, .5));
+  if (law.damping > 0.) return;
+  CHECK_THAT(std::log2(error[0] / error[1]), WithinAbs(2., .3));
+  CHECK_THAT(std::log2(error[1] / error[2]), WithinAbs(2., .3));
 }
 
 TEST_CASE("a damped flange gives back what the closed form says", "[flange]") {
@@ -190,7 +203,6 @@ TEST_CASE("a damped flange gives back what the closed form says", "[flange]") {
         std::exp(-(M_PI - 2. * std::asin(zeta)) * zeta / std::sqrt(1. - zeta * zeta));
     const double got = -run.state.v[run.model().wheelset[0].first + 1] / kSpeed;
     CAPTURE(zeta, got, want, got / want - 1.);
-    WARN("restitution " << zeta << ": " << got / want - 1.);
     CHECK_THAT(got, WithinRel(want, 1e-3));
     if (zeta == 0.)
       CHECK_THAT(

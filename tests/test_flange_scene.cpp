@@ -76,9 +76,6 @@ TEST_CASE("wheelset_flange: met, thrown back and at rest as closed forms say", "
   const double met = s.time() - s.model.scheme.dt;
   before.until(met);
   const double way = before.y() - y0, speed = before.speed();
-  WARN("met at " << met << " y " << before.y() << " v " << speed << " vs "
-                 << std::sqrt(2. * kPush * way / kMass) << " expected t "
-                 << 1. + std::sqrt(2. * kMass * kClearance / kPush));
   CHECK_THAT(way, WithinAbs(kClearance, speed * s.model.scheme.dt + 1e-6));
   CHECK_THAT(speed, WithinRel(std::sqrt(2. * kPush * way / kMass), 1e-3));
   CHECK_THAT(met, WithinAbs(1. + std::sqrt(2. * kMass * kClearance / kPush), 1e-3));
@@ -86,32 +83,37 @@ TEST_CASE("wheelset_flange: met, thrown back and at rest as closed forms say", "
   while (s.out.flange_force[0] > 0. || s.speed() > 0.) s.step();
   const double back = s.speed(), from = s.y();
   while (s.speed() < 0.) s.step();
-  WARN("back " << back << " restitution " << -back / speed << " height " << from - s.y() << " vs "
-               << kMass * back * back / (2. * kPush));
   CHECK_THAT(from - s.y(), WithinRel(kMass * back * back / (2. * kPush), 2e-3));
   const double zeta = 1.35e4 * std::sin(kAngle) / (2. * std::sqrt(1e7 * kMass));
   const double e = std::exp(-(M_PI - 2. * std::asin(zeta)) * zeta / std::sqrt(1. - zeta * zeta));
-  WARN("closed e " << e);
   CHECK_THAT(-back / speed, WithinRel(e, .1));
   // At rest: f sin = F, N_left + N_right + f cos = Q, and the moments about the centre, with the
-  // roll of the rails' give, 1e-6 rad, which tilts all three normals.
-  s.until(3.);
+  // roll of 2.5e-6 rad that the rails' give makes and that tilts all three normals. Means over 0.2
+  // s, since 1e-3 of the force still swings with the wheelset's roll, at 108 Hz.
+  s.until(2.8);
+  double f = 0., left = 0., right = 0., roll = 0., depth = 0.;
+  constexpr int kSteps = 4000;
+  for (int i = 0; i < kSteps; ++i) {
+    s.step();
+    f += s.out.flange_force[0] / kSteps;
+    left += s.out.wheel_force[0] / kSteps;
+    right += s.out.wheel_force[1] / kSteps;
+    roll += s.at(s.run.state.u, 3) / kSteps;
+    depth -= s.out.flange_gap[0] / kSteps;
+  }
   CHECK(s.seen == Status::ok);
   CHECK(std::abs(s.speed()) < 1e-6);
-  const double f = s.out.flange_force[0], left = s.out.wheel_force[0], right = s.out.wheel_force[1];
-  const double half = .5 * .07720505094, roll = s.at(s.run.state.u, 3);
-  WARN("rest f " << f << " roll " << roll << " "
-                 << f * std::sin(kAngle + roll) + (left + right) * std::sin(roll) - kPush);
-  CHECK_THAT(f * std::sin(kAngle), WithinRel(kPush, 1e-3));
-  CHECK_THAT(f * std::sin(kAngle + roll) + (left + right) * std::sin(roll), WithinRel(kPush, 1e-4));
-  CHECK_THAT(left + right + f * std::cos(kAngle), WithinRel(kWeight, 1e-6));
+  // Means over 21.6 swings of 1e-3 leave 1e-3 / (2 pi 21.6) = 1e-5.
+  const double sine = std::sin(kAngle), cosine = std::cos(kAngle);
+  CHECK_THAT(f * std::sin(kAngle + roll) + (left + right) * std::sin(roll), WithinRel(kPush, 3e-5));
+  CHECK_THAT(left + right + f * cosine, WithinRel(kWeight, 1e-6));
+  CHECK_THAT(f, WithinRel(kPush / sine, 3e-4));  // without the roll: Q roll / F = 2.5e-4
+  const double half = .5 * .07720505094;
   const double moment = left * (.5 - s.y()) - right * (.5 + s.y()) +
-                        f * std::cos(kAngle) * (.5 - half - s.y()) - f * std::sin(kAngle) * .162;
-  WARN("moment " << moment);
-  CHECK_THAT(moment, WithinAbs(0., 1e-3 * kPush * .5));
-  // Depth of spring and rail: f / k along the normal, and what the supports give way aside.
-  WARN("depth " << -s.out.flange_gap[0] << " vs " << f / 1e7);
-  CHECK_THAT(-s.out.flange_gap[0], WithinRel(f / 1e7, 1e-2));
+                        f * cosine * (.5 - half - s.y()) - f * sine * .162 -
+                        (left + right) * (.3 + .148) * roll;
+  CHECK_THAT(moment, WithinAbs(0., 1e-5 * kPush * .5));
+  CHECK_THAT(depth, WithinRel(f / 1e7, 1e-4));  // the law alone
 }
 
 TEST_CASE("wheelset_flange: momentum is what push and normals give, step by step", "[scenes]") {
@@ -131,8 +133,6 @@ TEST_CASE("wheelset_flange: momentum is what push and normals give, step by step
     given += force * s.model.scheme.dt;
     passed += std::abs(force) * s.model.scheme.dt;
   }
-  WARN("worst " << worst << " of " << largest << ", momentum " << kMass * s.speed() - start
-                << " given " << given << " passed " << passed);
   CHECK(worst < 1e-4);
   CHECK(largest > 500.);
   // The scheme's velocity sums the accelerations but for those at the two ends.
@@ -168,10 +168,15 @@ TEST_CASE("wheelset_flange: energies balance, the flange's with them", "[scenes]
     flange = std::max(flange, out.flange_force[0]);
   }
   turned = account.turned_over();
-  WARN(kind << " " << contact << " rest " << rest / turned << " error " << account.balance_error()
-            << " loss " << account.numerical_loss() << " force " << flange);
   CHECK(flange > 10.);
-  CHECK(rest / turned < 1e-3);
+  // The closed form of the loss leaves the contacts' geometry, frozen for a step, and of condensed
+  // tracks the trapezoids of the dissipation. What the spring or Hertz contact kept is seen by it.
+  const ContactModel& law = model.flange[0].contact;
+  const double kept = law.hertz > 0. ? .4 * flange * std::pow(flange / law.hertz, 2. / 3.)
+                                     : .5 * flange * flange / law.stiffness / 4.;
+  const double bound = (kind == "full" ? 1e-6 : 1e-4) * turned;
+  CHECK(rest < bound);
+  CHECK(kept > 10. * bound);
   CHECK(account.balance_error() < 1e-2);
 }
 
@@ -212,8 +217,6 @@ TEST_CASE("wheelset_flange: condensed and on a finer step it is thrown back alik
   const double fine = thrown("step.dt_s=1.25e-5");
   const double coarse = thrown("step.dt_s=1e-4"), half = thrown("step.dt_s=5e-5"),
                condensed = thrown("condense={kind=\"modal\", modes_per_bay=4}");
-  WARN("thrown " << fine << " " << half - fine << " " << coarse - fine << " condensed "
-                 << condensed - fine);
   CHECK_THAT(half, WithinAbs(fine, 1e-5));
   CHECK_THAT(condensed, WithinAbs(fine, 1e-5));
 }
@@ -227,7 +230,7 @@ TEST_CASE("what is wrong with a flange is said in one sentence", "[scene]") {
   };
   CHECK_THAT(said("{}"), Contains("clearance_m"));
   CHECK_THAT(said("{clearance_m=7.0}"), Contains("above 0, at most 0.1"));
-  CHECK_THAT(said("{clearance_m=7e-3, angle_deg=90}"), Contains("20 to 85"));
+  CHECK_THAT(said("{clearance_m=7e-3, angle_deg=90}"), Contains("at least 20, at most 85"));
   CHECK_THAT(said("{clearance_m=7e-3, height_m=0.014}"), Contains("above 0.014"));
   CHECK_THAT(said("{clearance_m=7e-3, contact=\"linear\"}"), Contains("stiffness_n_per_m"));
   CHECK_THAT(said("{clearance_m=7e-3, damping_n_s_per_m=1.0}"),
