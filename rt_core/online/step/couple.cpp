@@ -82,7 +82,8 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
 void track_penetration(const Model& model, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
   for (int i = 0; i < c.wheels; ++i) {
-    c.track_free[i] = -1.;  // off the rail: far away
+    // Off the rail: far away.
+    c.track_free[i] = c.contact[i].apart ? c.contact[i].penetration : -1.;
     if (c.contact[i].on_rail)
       c.track_free[i] = model.scheme.theta * track_motion(model, s, w, c, i) + c.loaded[i];
     else if (c.contact[i].on_ground)
@@ -137,7 +138,7 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
     result.gap[i] = -c.penetration[i];
     result.x[i] = at.x;
     result.on_rail[i] = at.on_rail;
-    if (!stands(at)) result.status = result.status | Status::off_rail;
+    if (!stands(at) && !at.apart) result.status = result.status | Status::off_rail;
     if (at.turn * at.turn > kLargeTurnSquared) result.status = result.status | Status::large_turn;
     if (at.cap_reached) result.status = result.status | Status::cap_reached;
     if (c.force[i] <= 0. && !c.law[i].pulls && !is_flange(model, i))

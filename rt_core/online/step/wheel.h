@@ -10,6 +10,7 @@ namespace railstep {
 struct WheelContact {
   bool on_rail;
   bool on_ground;  // of a vehicle: it rolls on level ground before or behind the rail
+  bool apart;      // of a flange: too far from its rail to take part in the step
   bool cap_reached;
   double xi;
   double x;            // of the contact along the undeformed rail, m
