@@ -42,4 +42,8 @@ inline Track with_gap(Track track, int border, double gap, bool left = true, boo
   return track;
 }
 
+inline Traffic passing(double from, double speed, double force, double to) {
+  return {.loads = {{.start = from, .speed = speed, .stop = to, .force = force}}};
+}
+
 }  // namespace railstep
