@@ -217,8 +217,8 @@ TEST_CASE("wheelset_flange: condensed and on a finer step it is thrown back alik
   const double fine = thrown("step.dt_s=1.25e-5");
   const double coarse = thrown("step.dt_s=1e-4"), half = thrown("step.dt_s=5e-5"),
                condensed = thrown("condense={kind=\"modal\", modes_per_bay=4}");
-  // Of 0.3 mm: the scheme's second order, 2.2 um at 1e-4 s (with the damper's jump met within a step
-  // it need not be), and what modes to 4 a bay leave of the rails' give.
+  // Of 0.3 mm: the scheme's second order, 2.2 um at 1e-4 s (with the damper's jump met within a
+  // step it need not be), and what modes to 4 a bay leave of the rails' give.
   CHECK_THAT(coarse, WithinAbs(fine, 5e-6));
   CHECK_THAT(half, WithinAbs(fine, 1.5e-6));
   CHECK_THAT(condensed, WithinAbs(fine, 1e-5));

@@ -87,6 +87,20 @@ double dot3(const double* a, const double* b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// Where a wheelset is: its centre and its axes, of which the first does not roll.
+struct Pose {
+  double centre[3], ahead[3], axle[3], up[3];
+};
+
+Pose pose_of(const WheelsetModel& w, const double* p) noexcept {
+  const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
+  const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
+  return {{centre[0], centre[1], centre[2]},
+          {cy, sy, 0.},
+          {-sy * cr, cy * cr, sr},
+          {sy * sr, -cy * sr, cr}};
+}
+
 /// Interpolates [r, a, b] at a place of the window.
 void interpolate_nodes(const Window& window, RailPlace place, const double* shape,
                        double* q) noexcept {
@@ -116,10 +130,8 @@ void fill_row(const double* shape, double slope, WheelContact& at) noexcept {
 /// then the material point of the railhead under the normal.
 WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
                           const Configuration& now, double ahead, const Window& window) noexcept {
-  const double* const p = now.u + w.first;
-  const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
-  const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
-  const double axle[3] = {-sy * cr, cy * cr, sr};
+  const Pose body = pose_of(w, now.u + w.first);
+  const double *const centre = body.centre, *const axle = body.axle;
   WheelContact at{};
   at.row.rail = side;
   const double z_crown = model.head_z[side] - model.crown_radius[side];
@@ -150,7 +162,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   // contact at the true shapes' nearest points does not.
   const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length +
                    (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
-  const double rolled = (now.passed + model.endless.origin) + p[0];
+  const double rolled = (now.passed + model.endless.origin) + now.u[w.first];
   const Irregularity off =
       irregularity(model, w.tread[side], side, at.normal, (x + now.passed) + ahead, rolled + ahead);
   fill_row(shape, off.rail_rise, at);
@@ -166,7 +178,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   at.irregular = off.depth;
   at.rise = off.rise;
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
-  at.body_row[3] = cy * lever[0] + sy * lever[1];
+  at.body_row[3] = body.ahead[0] * lever[0] + body.ahead[1] * lever[1];
   at.body_row[4] = 0.;  // the normal meets the axle: no torque about it
   at.body_row[5] = lever[2];
   return at;
@@ -186,10 +198,8 @@ double slope_along(const Model& model, const Window& window, RailPlace place,
 WheelContact find_flange(const Model& model, const FlangeModel& flange, int side,
                          const Configuration& now, double ahead, const Window& window) noexcept {
   const WheelsetModel& w = model.wheelset[flange.wheelset];
-  const double* const p = now.u + w.first;
-  const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
-  const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
-  const double axle[3] = {-sy * cr, cy * cr, sr}, up[3] = {sy * sr, -cy * sr, cr};
+  const Pose body = pose_of(w, now.u + w.first);
+  const double *const centre = body.centre, *const axle = body.axle, *const up = body.up;
   WheelContact at{};
   at.row.rail = side;
   double face[3];
@@ -229,7 +239,7 @@ WheelContact find_flange(const Model& model, const FlangeModel& flange, int side
   if (at.penetration > 0. && dot3(arm, up) < flange.tip) at.on_rail = false;
   cross(arm, at.normal, lever);
   for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
-  at.body_row[3] = cy * lever[0] + sy * lever[1];
+  at.body_row[3] = body.ahead[0] * lever[0] + body.ahead[1] * lever[1];
   at.body_row[4] = 0.;  // the face is one of revolution, met right below the axle
   at.body_row[5] = lever[2];
   return at;
