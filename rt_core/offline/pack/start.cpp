@@ -201,6 +201,7 @@ Pose leaning_equilibrium(const Statics& statics, const PackedModel& packed, doub
   const Configuration at{state.u, {state.u, state.v}, passed(model, 0)};
   double* const p = state.u + model.wheelset[0].first;
   const int side = side_force(model.wheelset[0]) > 0. ? 0 : 1;
+  const std::int32_t contact = wheel_count(model) + side;
   p[0] = model.wheelset[0].speed * time;
   p[1] = model.rail_y[side] + flange.gauge[side][0] - flange.point[side][0];
   Pose pose;
@@ -217,7 +218,7 @@ Pose leaning_equilibrium(const Statics& statics, const PackedModel& packed, doub
     for (int k = 0; k < 3; ++k) p[1 + k] += way[k];
     pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
     for (const int i : {0, 1}) pose.wheel_force[static_cast<std::size_t>(i)] = now.force[i];
-    pose.wheel_force[static_cast<std::size_t>(wheel_count(model) + side)] = now.force[2];
+    pose.wheel_force[static_cast<std::size_t>(contact)] = now.force[2];
     if (!(way.cwiseAbs().maxCoeff() < 1e-15)) continue;
     pose.wheelsets = {{0., p[1], p[2], p[3], 0., 0.}};
     return pose;

@@ -126,6 +126,16 @@ void fill_row(const double* shape, double slope, WheelContact& at) noexcept {
     for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
 }
 
+/// d(gap)/d(coordinates) of the wheelset. @param arm  from its centre to where the force acts, m
+void fill_body_row(const Pose& body, const double* arm, WheelContact& at) noexcept {
+  double lever[3];
+  cross(arm, at.normal, lever);
+  for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
+  at.body_row[3] = body.ahead[0] * lever[0] + body.ahead[1] * lever[1];
+  at.body_row[4] = 0.;  // the normal meets the axle, or the face is right below: no torque about it
+  at.body_row[5] = lever[2];
+}
+
 /// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
 /// then the material point of the railhead under the normal.
 WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
@@ -169,18 +179,13 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   at.turn = .5 * (q[5] - q[7]);
   const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
-  // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
-  double lever[3], gap = 0.;
-  cross(arm, at.normal, lever);
+  double gap = 0.;
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
   at.penetration = (w.radius - gap) + off.depth + higher;
   at.irregular = off.depth;
   at.rise = off.rise;
-  for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
-  at.body_row[3] = body.ahead[0] * lever[0] + body.ahead[1] * lever[1];
-  at.body_row[4] = 0.;  // the normal meets the axle: no torque about it
-  at.body_row[5] = lever[2];
+  fill_body_row(body, arm, at);
   return at;
 }
 
@@ -219,7 +224,7 @@ WheelContact find_flange(const Model& model, const FlangeModel& flange, int side
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   at.y = flange.gauge[side][0];
   at.z = flange.gauge[side][1];
-  double shape[3], q[9], arm[3], lever[3], gap = 0.;
+  double shape[3], q[9], arm[3], gap = 0.;
   shape_functions(at.xi, shape);
   interpolate_nodes(window, found.place, shape, q);
   for (int d = 0; d < 3; ++d) {
@@ -237,11 +242,7 @@ WheelContact find_flange(const Model& model, const FlangeModel& flange, int side
   at.irregular = off.depth;
   at.rise = off.rise + slope_along(model, window, found.place, at);
   if (at.penetration > 0. && dot3(arm, up) < flange.tip) at.on_rail = false;
-  cross(arm, at.normal, lever);
-  for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
-  at.body_row[3] = body.ahead[0] * lever[0] + body.ahead[1] * lever[1];
-  at.body_row[4] = 0.;  // the face is one of revolution, met right below the axle
-  at.body_row[5] = lever[2];
+  fill_body_row(body, arm, at);
   return at;
 }
 
