@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "offline/pack/start.h"
+#include "offline/pack/start_flange.h"
 #include "offline/pack/start_vehicle.h"
 #include "online/model/course.h"
 #include "online/step/step.h"
@@ -80,7 +81,7 @@ Model with_forces(const Model& even) {
   int wheel = 0;
   for (const double force : static_forces(even))
     carried.load[carried.loads++] = load_of(even, wheel++, force);
-  carried.wheelsets = carried.vehicles = carried.vehicle_wheels = 0;
+  carried.wheelsets = carried.flanges = carried.vehicles = carried.vehicle_wheels = 0;
   return carried;
 }
 
@@ -246,6 +247,10 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
     throw std::invalid_argument(
         "no number of steps is a whole number of bays; accepted is a speed at which one is, or "
         "step.start = \"equilibrium\"");
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    if (side_force(model.wheelset[b]) != 0.)
+      throw std::invalid_argument(
+          "a start on the move takes no lateral force on a wheelset at the start");
   const Model even = evened(model);
   if (model.condensed == 0) {
     std::vector<double> memory = start_in_equilibrium(track, packed, gravity);
