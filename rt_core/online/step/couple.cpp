@@ -33,8 +33,10 @@ void locate_contacts(const Model& model, std::int64_t step, const State& s, Work
     }
   }
   locate_flanges(model, s, w, ahead, c);
+  // Irregularities are those of where the penetration is taken.
+  const double later = model.scheme.theta * model.scheme.dt - ahead;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
-    place_vehicle_wheels(model, model.vehicle[v], step, model.scheme.dt - ahead, c.contact);
+    place_vehicle_wheels(model, model.vehicle[v], step, model.scheme.dt - ahead, c.contact, later);
   for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i)
     c.place[i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }

@@ -41,9 +41,10 @@ double slope_under(const Model& model, const WheelContact& at, const Configurati
 }
 
 void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::int64_t step,
-                          double before, WheelContact* contact) noexcept {
+                          double before, WheelContact* contact, double later) noexcept {
   const double way = way_at(model, vehicle.travel, step, before).distance;
-  const double gone_by = passed(model, step), gone = (gone_by + model.endless.origin) + way;
+  const double further = way_at(model, vehicle.travel, step, before - later).distance;
+  const double behind = passed(model, step), rolled = (behind + model.endless.origin) + further;
   const double up[3] = {0., 0., 1.};
   for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
     const VehicleWheel& wheel = model.vehicle_wheel[vehicle.first_wheel + k];
@@ -63,12 +64,12 @@ void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::
       double shape[3];
       shape_functions(found.xi, shape);
       fill_row(model, found, shape);
-      const Irregularity off =
-          irregularity(model, wheel.tread, wheel.rail, up, found.x + gone_by, gone);
+      const Irregularity off = irregularity(model, wheel.tread, wheel.rail, up,
+                                            (found.x + behind) + (further - way), rolled);
       found.irregular = off.depth;
       found.rise = off.rise;
     } else {
-      const SignalValue tread = signal_at(wheel.tread, gone);
+      const SignalValue tread = signal_at(wheel.tread, rolled);
       found.irregular = tread.value;
       found.rise = tread.slope;
     }

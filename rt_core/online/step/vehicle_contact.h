@@ -8,8 +8,9 @@ namespace railstep {
 /// the rail's axis at rest.
 /// @param before   s, by how much it is looked for ahead of the step's end
 /// @param contact  [wheels] of the model; those of the vehicle are written
+/// @param later    s, by how much the irregularities under them are those of a later time
 void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::int64_t step,
-                          double before, WheelContact* contact) noexcept;
+                          double before, WheelContact* contact, double later = 0.) noexcept;
 
 /// The same with the penetrations of a configuration.
 /// @param at       displacements of track and vehicles at which to look
