@@ -87,9 +87,9 @@ TEST_CASE("a step back by a bay turns each wave's coordinates") {
 }
 
 TEST_CASE("a ring's table of one bay gives two places of any bay their flexibility") {
-  // Modes and residual flexibility against the ring with 16 times the elements, at their ends, where
-  // an element is exact: so are the tables there, and between two places the beam is a cubic, as
-  // their interpolation is. 1e-16 times K's condition of 1e7 and 512 elements leave 1e-9.
+  // Modes and residual flexibility against the ring with 16 times the elements, at their ends,
+  // where an element is exact: so are the tables there, and between two places the beam is a cubic,
+  // as their interpolation is. 1e-16 times K's condition of 1e7 and 512 elements leave 1e-9.
   const Track ring = ring_of(endless_track(16, 2));
   const Traffic traffic{.loads = {moving_load(0.), moving_load(1.5)}};
   const PackedModel packed(ring, traffic, ring_options(ring, 1));
