@@ -167,7 +167,9 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
   w.may_leave_rail = t.boolean("may_leave_rail", false);
   w.start = t.number("start_m",
                      w.may_leave_rail ? between(-1e6, 1e6) : between(0.0, scene.track.length()));
-  w.speed = t.number("speed_m_per_s", kSpeed);
+  const SpeedScene speed = read_speed(t, std::nullopt);
+  w.speed = speed.speed;
+  w.speeds = speed.table;
   w.carried_mass = t.number("carried_mass_kg", between(0.0, 1e6), 0.0);
   w.gravity = t.boolean("gravity", true);
   w.guide = read_guide(t);
@@ -175,20 +177,42 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
     w.forces.push_back({static_cast<int>(force.choice("direction", {"x", "y", "z"})),
                         read_time_table(force, "table", kForce)});
   w.treads = read_treads(t, scene, w);
-  if (!w.may_leave_rail) check_path(t, scene, w.start, {w.speed, std::nullopt}, std::nullopt);
+  if (!w.may_leave_rail) check_path(t, scene, w.start, speed, std::nullopt);
   return w;
 }
 
-WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
-  const std::string name = t.string("wheelset");
+/// Which of the names the key gives; refused if none.
+std::size_t index_of(const Table& t, std::string_view key, const std::string& name,
+                     const std::vector<std::string>& names) {
   std::string known;
-  for (std::size_t i = 0; i < scene.wheelsets.size(); ++i) {
-    if (scene.wheelsets[i].name == name) return {i};
-    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", scene.wheelsets[i].name);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return i;
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", names[i]);
   }
-  t.refuse("wheelset",
-           fmt::format("wheelset = \"{}\" is unknown; {}", name,
-                       known.empty() ? "the scene has no wheelset" : "accepted are " + known));
+  t.refuse(key, fmt::format("{} = \"{}\" is unknown; {}", key, name,
+                            known.empty() ? fmt::format("the scene has no {}", key)
+                                          : "accepted are " + known));
+}
+
+WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const WheelsetScene& w : scene.wheelsets) names.push_back(w.name);
+  return {index_of(t, "wheelset", t.string("wheelset"), names)};
+}
+
+/// A point of a vehicle's body.
+VehicleSensor read_vehicle_sensor(const Table& t, const Scene& scene) {
+  const std::string name = t.string("vehicle");
+  std::vector<std::string> vehicles;
+  for (const VehicleScene& v : scene.vehicles) vehicles.push_back(v.name);
+  const std::size_t vehicle = index_of(t, "vehicle", name, vehicles);
+  const NamedVehicle& kind = scene.vehicles[vehicle].kind;
+  const std::size_t body = t.has("body") ? index_of(t, "body", t.string("body"), kind.bodies) : 0;
+  VehicleSensor sensor{vehicle, body, t.number("x_m", between(-100.0, 100.0), 0.0)};
+  if (sensor.ahead != 0.0 && kind.vehicle.bodies[body].pitch_inertia == 0.0)
+    t.refuse("x_m", fmt::format("x_m = {:.15g}, but {} does not pitch; accepted is x_m = 0",
+                                sensor.ahead, kind.bodies[body]));
+  return sensor;
 }
 
 }  // namespace
@@ -212,7 +236,7 @@ std::string checked_name(const Table& t, std::string_view key, const std::string
 SensorScene read_sensor(const Table& t, const Scene& scene) {
   SensorScene sensor;
   sensor.name = checked_name(t, "name", t.string("name"));
-  switch (t.choice("on", {"rail", "sleeper", "wheelset"})) {
+  switch (t.choice("on", {"rail", "sleeper", "wheelset", "vehicle"})) {
     case 0: {
       RailSensor rail{read_side(t, scene), 0.0, Height::axis};
       rail.position = t.number("position_m", between(0.0, (1.0 + 1e-12) * scene.track.length()));
@@ -225,7 +249,7 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
       if (!scene.sleeper)
         t.refuse("on",
                  "on = \"sleeper\", but the scene has no [sleeper]; accepted are \"rail\", "
-                 "\"wheelset\"");
+                 "\"wheelset\", \"vehicle\"");
       SleeperSensor sleeper{t.integer("sleeper", 0, scene.track.bays), std::nullopt};
       for (const SeatChange& change : scene.seat_changes)
         if (change.missing == Missing::sleeper &&
@@ -237,8 +261,11 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
       sensor.on = sleeper;
       break;
     }
-    default:
+    case 2:
       sensor.on = read_wheelset_sensor(t, scene);
+      break;
+    default:
+      sensor.on = read_vehicle_sensor(t, scene);
   }
   return sensor;
 }
@@ -247,6 +274,10 @@ std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {
   std::vector<LoadScene> loads;
   for (const Table& t : root.tables("load")) loads.push_back(read_load(t, scene));
   return loads;
+}
+
+double fastest(const WheelsetScene& wheelset) {
+  return travel_of({wheelset.speed, wheelset.speeds}).speed;
 }
 
 std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene) {
