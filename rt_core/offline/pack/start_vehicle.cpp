@@ -167,7 +167,7 @@ struct Under {
   Eigen::MatrixXd slopes(const Eigen::VectorXd& force, const Eigen::VectorXd& at) const {
     const bool linear = packed.model().fixed.count == 0;
     Eigen::MatrixXd G = Eigen::MatrixXd::Zero(force.size(), force.size());
-    const double more = kPart * force.cwiseAbs().maxCoeff();
+    const double more = std::max(kPart * force.cwiseAbs().maxCoeff(), 1.);  // N
     for (std::size_t j = 0; j < wheels.count(); ++j) {
       const auto column = static_cast<Eigen::Index>(j);
       if (!wheels.on_rail[j]) continue;
@@ -204,7 +204,8 @@ SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packe
   const Eigen::Index n = model.vehicle_wheels;
   const bool linear = model.fixed.count == 0;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
-  if (!linear) force = settle_vehicles(model, Eigen::MatrixXd::Zero(n, n), wheels.uneven).force;
+  if (!linear)  // what they press on a level, rigid rail
+    force = settle_vehicles(model, Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)).force;
   SettledVehicles settled;
   bool done = false;
   for (int turn = 0; turn < kTurns && !done; ++turn) {
