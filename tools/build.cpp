@@ -117,6 +117,8 @@ std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
   return vehicles;
 }
 
+}  // namespace
+
 Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail) {
   const bool right = rail == Side::right && scene.right_rail;
   Railhead head;
@@ -124,6 +126,16 @@ Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail
   head.crown_radius = (right ? *scene.right_rail : scene.rail).crown_radius;
   return head;
 }
+
+double rail_z(const Scene& scene, const RailSections& sections, const Track& track, Side rail) {
+  const auto top = [&](Side side) {
+    const Railhead head = railhead_of(scene, sections, side);
+    return crown_top(track.lean(side == Side::right ? 1 : 0), head.top_z, head.crown_radius).height;
+  };
+  return top(Side::left) - top(rail);
+}
+
+namespace {
 
 Scheme scheme_of(const Scene& scene) {
   const StepScene& step = *scene.step;
@@ -243,6 +255,7 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.bay_length = scene.track.bay;
   track.elements_per_bay = scene.track.elements_per_bay;
   track.rail_spacing = scene.track.rail_spacing;
+  track.cant = scene.rail.cant;
   track.ends = scene.track.ends;
   track.end_zone_bays = scene.track.end_zone_bays;
   track.ring = scene.track.endless;

@@ -75,6 +75,7 @@ struct RailScene : BarScene {
   double axial_force;       // N, tension positive, beside what the temperature makes
   double temperature_rise;  // K, over that without force
   double expansion;         // 1/K
+  double cant;              // by how much both rails lean inwards, tangent
 };
 
 /// A spring and a damper in parallel.

@@ -63,17 +63,23 @@ Polygon outline_of(const Scene& scene, Side rail) {
 void add_rail(const Simulation& run, const TrackMotion& motion, int rail, const Polygon& outline,
               VtkMesh& mesh) {
   const Model& model = run.model();
+  const Cant& cant = model.cant[rail];
   const auto sides = static_cast<std::int32_t>(outline.size());
   std::int32_t before = -1;
   const int nodes = run.track().nodes();
   for (int node = 0; node < nodes; ++node) {
     const std::array<double, 9> q = motion.node(rail, node);
     const auto first = static_cast<std::int32_t>(mesh.points());
-    for (const auto& [y, z] : outline)
-      mesh.add_point(vector({.5 * node * model.element_length, model.rail_y[rail] + y,
-                             model.rail_z[rail] + z}),
-                     vector({q[0] + y * q[3] + z * q[6], q[1] + y * q[4] + z * q[7],
-                             q[2] + y * q[5] + z * q[8]}));
+    for (const auto& [y, z] : outline) {
+      const double own[3] = {.5 * node * model.element_length, y, z};
+      const double along[3] = {q[0] + y * q[3] + z * q[6], q[1] + y * q[4] + z * q[7],
+                               q[2] + y * q[5] + z * q[8]};
+      std::array<double, 3> rest, moved;
+      to_track(cant, own, rest.data());
+      to_track(cant, along, moved.data());
+      mesh.add_point(vector({rest[0], model.rail_y[rail] + rest[1], model.rail_z[rail] + rest[2]}),
+                     vector(moved));
+    }
     if (before >= 0)
       mesh.add_prism(VtkPart::rail, before, first, sides, node == 1, node == nodes - 1);
     before = first;
@@ -120,7 +126,10 @@ void add_wheel(const Simulation& run, const WheelsetModel& set, int wheel, VtkMe
     }
   }
   mesh.add_prism(VtkPart::wheel, first[0], first[1], kWheelSides, true, true);
-  mesh.add_force(vector({x, y, set.rest_z - set.radius}), vector({0., 0., p[2]}),
+  const Cant& cant = run.model().cant[side];
+  const CrownTop top = crown_top(cant, run.model().head_z[side], run.model().crown_radius[side]);
+  const double aside = cant.cosine * top.y - cant.sine * top.z;
+  mesh.add_force(vector({x, y + aside, set.rest_z - set.radius}), vector({0., 0., p[2]}),
                  vector({0., 0., -run.state.wheel_force[wheel]}));
 }
 
@@ -129,9 +138,12 @@ void add_load(const Simulation& run, const LoadModel& load, VtkMesh& mesh) {
   const PlacedLoad at = place(model, load, run.state.steps);
   if (!at.on_rail) return;
   const double down = deflection(model, at, {run.state.u, {run.state.u, run.state.v}});
-  mesh.add_force(vector({at.place, model.rail_y[load.rail],
-                         model.rail_z[load.rail] + model.head_z[load.rail]}),
-                 vector({0., 0., down}), vector({0., 0., at.force}));
+  const double in_section[3] = {at.place, 0., model.head_z[load.rail]};
+  std::array<double, 3> head;
+  to_track(model.cant[load.rail], in_section, head.data());
+  mesh.add_force(
+      vector({head[0], model.rail_y[load.rail] + head[1], model.rail_z[load.rail] + head[2]}),
+      vector({0., 0., down}), vector({0., 0., at.force}));
 }
 
 }  // namespace

@@ -22,10 +22,16 @@ namespace railstep {
 
 namespace {
 
-/// A point as ports see it: those of condensed lines leave out the section's own strain.
-RailPoint seen(const Model& model, RailPoint at) {
-  if (model.condensed != 0) at.z = 0.;
-  return at;
+/// A point's row as ports see it: those of condensed lines leave out the section's own strain.
+Eigen::SparseVector<double> row_of(const Track& track, const PackedModel& packed, const Line& line,
+                                   const RailPoint& at) {
+  return point_row(track, line, at, packed.model().condensed == 0);
+}
+
+/// Where a port's force acts.
+RailPoint point_of(const PackedModel& packed, std::int32_t kind, double x) {
+  const Port& port = packed.kinds()[static_cast<std::size_t>(kind)];
+  return {port.rail, x, port.y, port.z, 2};
 }
 
 /// Displacements of each line of a condensed model under its fixed ports' forces too.
@@ -73,7 +79,7 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
     Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
     if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
     for (const PointForce& f : forces)
-      load += f.force * point_row(statics.track(), own.line, seen(packed.model(), f.at));
+      load += f.force * row_of(statics.track(), packed, own.line, f.at);
     lines.push_back((own.basis.shapes.transpose() * load)
                         .cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
   }
@@ -87,7 +93,7 @@ double height_of(const Track& track, const PackedModel& packed,
   double sum = 0.;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const PackedLine& own = packed.lines()[l];
-    const Eigen::SparseVector<double> row = point_row(track, own.line, seen(packed.model(), at));
+    const Eigen::SparseVector<double> row = row_of(track, packed, own.line, at);
     sum += packed.model().condensed == 0
                ? row.dot(lines[l])
                : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(lines[l]);
@@ -130,7 +136,7 @@ SettledVehicles settle(const Statics& statics, const PackedModel& packed, double
     on_rail[i] = x >= 0. && x <= track.length();
     free[at] = signal_at(wheel.tread, rolled).value;
     if (!on_rail[i]) continue;
-    point[i] = {wheel.rail, x, 0., model.head_z[wheel.rail], 2};
+    point[i] = point_of(packed, wheel.kind, x);
     port[i] = rail_force(model, wheel.kind, x, 0.);
     free[at] = height_of(track, packed, without, point[i]) +
                irregularity(model, wheel.tread, wheel.rail, up, x, rolled).depth;
@@ -167,7 +173,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     const PlacedLoad at = place(model, load, 0);
     const double x = at.place + travelled(load.travel, 0.).speed * time;
     if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
-    forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
+    forces.push_back({point_of(packed, load.kind, x), at.force});
     ports.push_back(rail_force(model, load.kind, x, at.force));
   }
   const std::size_t loads = forces.size();
@@ -175,7 +181,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     for (const int rail : {0, 1}) {
       const WheelsetModel& w = model.wheelset[b];
       const double x = w.start + w.speed * time;
-      forces.push_back({{rail, x, 0., model.head_z[rail], 2}, -wheel_load(w)});
+      forces.push_back({point_of(packed, w.kind[rail], x), -wheel_load(w)});
       ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
     }
   SettledVehicles vehicles;
@@ -264,12 +270,23 @@ double wheel_load(const WheelsetModel& w) {
   return vertical / 2.;
 }
 
+namespace {
+
+/// Where a level wheel meets a rail at rest, beside the track's middle, m.
+double contact_y(const Model& model, int rail) {
+  const Cant& cant = model.cant[rail];
+  const CrownTop top = crown_top(cant, model.head_z[rail], model.crown_radius[rail]);
+  return model.rail_y[rail] + (cant.cosine * top.y - cant.sine * top.z);
+}
+
+}  // namespace
+
 std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& w,
                                         const std::array<double, 2>& height) {
   const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
                           std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
   const double roll =
-      ((height[0] - height[1]) - (into[0] - into[1])) / (model.rail_y[0] - model.rail_y[1]);
+      ((height[0] - height[1]) - (into[0] - into[1])) / (contact_y(model, 0) - contact_y(model, 1));
   // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
   const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
   const double lifted = .5 * roll * roll * (w.radius + crown);

@@ -8,20 +8,11 @@ namespace railstep {
 
 namespace {
 
-/// How far a rail comes down on its seat y beside its middle. The sleeper's top there moves by
-/// u_end + y (u_left - u_right)/g.
+/// How far a rail comes down on its seat y beside its middle.
 Functional pad_closing(const Track& track, int rail, int seat, double y) {
-  const Seat there = track.seat(seat);
-  const Support& pad = there.pad[static_cast<std::size_t>(rail)];
-  const PadPoint at = pad_points(track, seat, 0.).front();
   Functional closing;
-  closing.rail.push_back({{rail, at.x, y, pad.height_z, 2}, -1.});
-  if (!there.sleeper) return closing;
-  closing.sleeper.push_back({rail, seat, 2, 1.});
-  if (track.rails == 2 && y != 0.) {
-    closing.sleeper.push_back({0, seat, 2, y / track.rail_spacing});
-    closing.sleeper.push_back({1, seat, 2, -y / track.rail_spacing});
-  }
+  add_underside(track, rail, seat, pad_points(track, seat, 0.).front().x, y, -1., closing);
+  add_sleeper_top(track, rail, seat, y, 1., closing);
   return closing;
 }
 
