@@ -309,7 +309,7 @@ void read_rails(const Table& root, Scene& scene) {
   read_gauge(root.table("track"), scene);
   check_cant(rail, scene);
   check_held(rail, scene);
-  scene.joints = read_joints(root, rail, scene);
+  read_joints(root, rail, scene);
   scene.support = read_support(root, scene);
   scene.sleeper = read_sleeper(root, scene);
   scene.seat_changes = read_seat_changes(root, scene);

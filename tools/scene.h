@@ -135,6 +135,14 @@ struct SeatChange {
   Missing missing = Missing::nothing;
 };
 
+/// Between the ends of rails at a joint.
+struct JointGap {
+  std::optional<double> cold;           // without heat, m; none: the ends never meet
+  std::optional<double> end_stiffness;  // N/m; none: by the section
+  double end_damping = 0.0;             // N s/m
+  std::array<double, 2> grown{};        // what heat takes of it at left and right rail, m
+};
+
 /// What a rail's point meets and does not pull at.
 struct StopScene {
   std::string name;
@@ -254,7 +262,8 @@ struct Scene {
   std::optional<SleeperScene> sleeper;
   std::vector<SeatChange> seat_changes;  // one after the other
   std::vector<StopScene> stops;
-  std::vector<RailJoint> joints;
+  std::vector<RailJoint> joints;     // without what their gaps do
+  std::vector<JointGap> joint_gaps;  // [joints]
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::vector<VehicleScene> vehicles;

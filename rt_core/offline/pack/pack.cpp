@@ -1,5 +1,6 @@
 #include "offline/pack/pack.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -38,6 +39,12 @@ Eigen::SparseMatrix<double> closing_of(const Track& track, const Line& line) {
   for (std::size_t j = 0; j < ports.size(); ++j)
     closing.col(static_cast<Eigen::Index>(j)) = closing_row(track, line, ports[j]);
   return closing;
+}
+
+bool has_preload(const Track& track) {
+  const std::vector<FixedPort> ports = fixed_ports(track);
+  return std::any_of(ports.begin(), ports.end(),
+                     [](const FixedPort& port) { return port.preload != 0.; });
 }
 
 bool is_moved(const Track& track, const Line& line, const Traffic& traffic, double gravity) {
@@ -189,7 +196,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   for (const RunningVehicle& vehicle : traffic.vehicles) add_vehicle(track, vehicle, heads);
   add_fixed_ports(track);
-  if (options.gravity != 0.) add_weight(track, options.gravity);
+  if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
   add_turn(track);
@@ -200,7 +207,8 @@ void PackedModel::add_weight(const Track& track, double gravity) {
   const auto n = static_cast<std::size_t>(model_.unknowns);
   std::vector<double> force(n * static_cast<std::size_t>(1 + model_.condensed), 0.);
   for (std::size_t l = 0; l < lines_.size(); ++l) {
-    const Eigen::VectorXd own = weight(track, lines_[l].line, gravity);
+    Eigen::VectorXd own = preload(track, lines_[l].line);
+    if (gravity != 0.) own += weight(track, lines_[l].line, gravity);
     const auto first = static_cast<std::size_t>(model_.line[l].first);
     if (model_.condensed == 0) {
       std::copy(own.begin(), own.end(), force.begin() + static_cast<std::ptrdiff_t>(first));

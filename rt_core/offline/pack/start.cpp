@@ -78,6 +78,7 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
   for (const PackedLine& own : packed.lines()) {
     Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
     if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
+    if (packed.model().fixed.count > 0) load += preload(statics.track(), own.line);
     for (const PointForce& f : forces)
       load += f.force * row_of(statics.track(), packed, own.line, f.at);
     lines.push_back((own.basis.shapes.transpose() * load)

@@ -291,7 +291,10 @@ bool has_sleepers(const Track& track) {
 }
 
 bool is_symmetric(const Track& track) {
-  const auto alike = [](const RailJoint& joint) { return joint.rails[0] == joint.rails[1]; };
+  const auto alike = [](const RailJoint& joint) {
+    return joint.rails[0] == joint.rails[1] && joint.gap[0] == joint.gap[1] &&
+           joint.pressed[0] == joint.pressed[1];
+  };
   return !track.right && std::all_of(track.joints.begin(), track.joints.end(), alike) &&
          std::all_of(track.changed_seats.begin(), track.changed_seats.end(),
                      [](const auto& changed) { return changed.second.symmetric(); });

@@ -46,6 +46,34 @@ void add_ballast(const Track& track, int rail, int seat, std::vector<FixedPort>&
                    .seat = seat});
 }
 
+constexpr double kBehind = 1e-9;  // of an element: where the rail behind a joint ends
+
+/// The end behind a joint comes on and the one ahead stays.
+Functional ends_closing(const Track& track, int rail, double x) {
+  return {.rail = {{{rail, x - kBehind * track.element_length(), 0., 0., 0}, 1.},
+                   {{rail, x, 0., 0., 0}, -1.}},
+          .sleeper = {}};
+}
+
+void add_joints(const Track& track, std::vector<FixedPort>& ports) {
+  if (track.unknowns == Unknowns::vertical) return;
+  for (std::size_t j = 0; j < track.joints.size(); ++j)
+    for (int rail = 0; rail < track.rails; ++rail) {
+      const RailJoint& joint = track.joints[j];
+      const auto side = static_cast<std::size_t>(rail);
+      if (!joint.rails[side] || joint.end_stiffness == 0.) continue;
+      const double x = .5 * joint_node(track, joint) * track.element_length();
+      ports.push_back({.closing = ends_closing(track, rail, x),
+                       .stiffness = joint.end_stiffness,
+                       .damping = joint.end_damping,
+                       .gap = joint.gap[side],
+                       .preload = joint.pressed[side],
+                       .of = FixedPort::Of::joint,
+                       .rail = rail,
+                       .joint = static_cast<int>(j)});
+    }
+}
+
 /// Does `change` to the pad and the ballast of every side of every seat.
 template <typename Change>
 void change_sides(Track& track, const Change& change) {
@@ -82,6 +110,7 @@ std::vector<FixedPort> fixed_ports(const Track& track) {
          .rail = stop.rail,
          .stop = static_cast<int>(i)});
   }
+  add_joints(track, ports);
   return ports;
 }
 
@@ -90,7 +119,15 @@ Eigen::SparseVector<double> closing_row(const Track& track, const Line& line,
   return functional_row(track, line, port.closing);
 }
 
+Eigen::VectorXd preload(const Track& track, const Line& line) {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(line.unknowns());
+  for (const FixedPort& port : fixed_ports(track))
+    if (port.preload != 0.) force += port.preload * closing_row(track, line, port);
+  return force;
+}
+
 Track linear_about_rest(Track track) {
+  close_pressed_joints(track);
   change_sides(track, [](auto& spring) {
     if (spring.gap == 0.) spring.unilateral = false;
   });
@@ -103,6 +140,10 @@ Track all_open(Track track) {
     if (!spring.one_sided()) return;
     spring.stiffness[2] = spring.damping[2] = 0.;
   });
+  for (RailJoint& joint : track.joints) {
+    joint.end_stiffness = joint.end_damping = 0.;
+    joint.gap = joint.pressed = {};
+  }
   track.stops.clear();
   return track;
 }
