@@ -140,7 +140,7 @@ TEST_CASE("a model is what it is: only its duration can be chosen", "[condense]"
   CHECK(entries(folder) == 1);
   const Ran longer = railstep_program("run --json " + file + " --duration 0.01");
   REQUIRE(longer.code == 0);
-  CHECK(Json::parse(longer.out).at("steps") == 10);
+  CHECK(Json::parse(longer.out).at("steps") == 400);
 }
 
 TEST_CASE("condense refuses in one sentence and writes nothing", "[condense]") {

@@ -202,7 +202,7 @@ TEST_CASE("R1 to R3: a drop's energies by the account and by hand are the same",
 
 TEST_CASE("a moving load's balance is the scheme's loss, and falls with the step", "[energy]") {
   std::vector<double> error;
-  for (const char* dt : {"step.dt_s=4e-4", "step.dt_s=2e-4", "step.dt_s=1e-4"}) {
+  for (const char* dt : {"step.dt_s=5e-4", "step.dt_s=2.5e-4", "step.dt_s=1.25e-4"}) {
     SceneRun full("moving_load.toml", {dt, "load[0].table=[[0, 0], [0.05, 1]]",
                                        "load[1].stop_m=3.0", "step.duration_s=0.2"});
     full.until(.2);  // the right one is taken off at 90 ms

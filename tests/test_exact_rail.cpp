@@ -10,6 +10,7 @@
 #include "offline/receptance/exact_rail.h"
 #include "offline/receptance/full_order.h"
 #include "offline/receptance/resonances.h"
+#include "reference_tracks.h"
 #include "sections.h"
 
 using namespace railstep;
@@ -25,23 +26,9 @@ Transfer driving(double x) {
   return {point, {point}};
 }
 
-/// Rail R60 of rail-data.md, section 3, on set S1.
 Track s1(int bays) {
-  Track t;
-  t.section = {.area = 7670e-6,
-               .inertia_y = 3038.3e-8,
-               .inertia_z = 5.123e-6,
-               .torsion = 2.21e-6,
-               .shear_factor_y = .538,
-               .shear_factor_z = .4};
-  t.unknowns = Unknowns::vertical;
-  t.rails = 1;
-  t.bays = bays;
+  Track t = s1_rail(bays);
   t.elements_per_bay = 4;
-  t.support.stiffness[2] = 200e6;
-  t.support.damping[2] = 20e3;
-  t.sleeper =
-      Sleeper{.mass = 300., .ballast_stiffness = {0., 0., 50e6}, .ballast_damping = {0., 0., 80e3}};
   return t;
 }
 

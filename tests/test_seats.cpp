@@ -8,7 +8,7 @@
 #include "condensed.h"
 #include "fine_track.h"
 #include "offline/track/statics.h"
-#include "sections.h"
+#include "reference_tracks.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
@@ -16,38 +16,14 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// R6 of hard-cases.md: one rail of section F, k_z .472, on springs of 3e7 N/m, 40 bays of 0.6 m.
-Track springs() {
-  Track t;
-  t.section = section_f();
-  t.section.shear_factor_z = .472;
-  t.unknowns = Unknowns::vertical;
-  t.rails = 1;
-  t.bays = 40;
-  t.support.stiffness = {0., 0., 3e7};
-  return t;
-}
-
 RailPoint at(double x, int rail = 0) { return {rail, x, 0., 0., 2}; }
-
-/// rail-data.md, set S1: one rail R60 on 40 bays, pad 200, ballast 50 MN/m.
-Track s1_rail() {
-  Track t;
-  t.rails = 1;
-  t.unknowns = Unknowns::vertical;
-  t.section = r60_section();
-  t.bays = 40;
-  t.support.stiffness = {0., 0., 200e6};
-  t.sleeper = Sleeper{300., 169., {0., 0., 50e6}, {0., 0., 80e3}};
-  return t;
-}
 
 }  // namespace
 
 TEST_CASE("missing supports: the deflection over the gap", "[supports]") {
   // R6: printed to 7 digits; 1e-3 is the case's own bound (its beam is Timoshenko's, this the
   // element).
-  Track t = springs();
+  Track t = r6_track();
   const Statics healthy(t);
   CHECK_THAT(50e3 * healthy.flexibility(at(12.), at(12.)), WithinRel(5.763979e-4, 1e-3));
   t.changed_seats[20] = {};
@@ -74,7 +50,7 @@ TEST_CASE("a load that runs over a missing support", "[supports]") {
   // none is missing (2e-4). A step of 0.2 ms misses the passage of the shape, 0.6 m / 30 m/s, by
   // (0.2/20)^2.
   const auto deepest = [](bool missing) {
-    Track t = springs();
+    Track t = r6_track();
     t.support.damping = {0., 0., 3e4};
     if (missing) t.changed_seats[20] = {};
     Traffic traffic{.loads = {{.start = 6., .speed = 30., .stop = 20., .force = -50e3}}};
@@ -131,14 +107,14 @@ TEST_CASE("a sleeper of 1 kg between springs of 1e9 and 1e8 N/m", "[supports]") 
 
 TEST_CASE("two rails that share nothing stand alone, each on its own springs", "[supports]") {
   // hard-cases.md, H32: left 3e7, right 1e8 N/m.
-  Track t = springs();
+  Track t = r6_track();
   t.rails = 2;
   for (int seat = 0; seat <= t.bays; ++seat) {
     Seat there = t.seat(seat);
     there.pad[1].stiffness[2] = 1e8;
     t.changed_seats[seat] = there;
   }
-  Track soft = springs(), stiff = springs();
+  Track soft = r6_track(), stiff = r6_track();
   stiff.support.stiffness[2] = 1e8;
   const Statics both(t), left(soft), right(stiff);
   REQUIRE(both.lines().size() == 2);
