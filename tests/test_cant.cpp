@@ -72,10 +72,9 @@ std::vector<PointForce> own_force(const Track& t, int rail, double x, double y, 
                                   const std::array<double, 3>& own) {
   std::array<double, 3> along;
   to_track(t.lean(rail), own.data(), along.data());
-  std::vector<PointForce> forces;
-  for (int d = 0; d < 3; ++d)
-    forces.push_back({{rail, x, y, z, d}, along[static_cast<std::size_t>(d)]});
-  return forces;
+  return {{{rail, x, y, z, 0}, along[0]},
+          {{rail, x, y, z, 1}, along[1]},
+          {{rail, x, y, z, 2}, along[2]}};
 }
 
 /// Displacement of a point along the rail's axes.
@@ -265,8 +264,8 @@ TEST_CASE("a wheelset at rest on leaning rails stays in their middle", "[cant]")
   }
   CAPTURE(largest);
   CHECK(run.seen == Status::ok);
-  // The start knows no P-delta: 500 N, 15 mm off the pad whose roll it turns by 2e-5 rad, sink 1e-10 m
-  // more for it, on a contact of 1e8 N/m.
+  // The start knows no P-delta: 500 N, 15 mm off the pad whose roll it turns by 2e-5 rad, sink
+  // 1e-10 m more for it, on a contact of 1e8 N/m.
   CHECK(largest < 1e-2);
   CHECK_THAT(run.outputs.wheel_force[1], WithinRel(run.outputs.wheel_force[0], 1e-9));
   CHECK_THAT(run.body()[1], WithinAbs(0., 1e-12));  // y, m: rounding of the mirror's sums

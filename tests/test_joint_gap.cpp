@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "condensed.h"
@@ -14,6 +15,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
+constexpr double kRigid = std::numeric_limits<double>::infinity();
 constexpr double kAlong = 2e8, kEnds = 5e9;  // N/m, of a seat and of ends that press
 
 /// A rail of 21 bays cut in the middle of the eleventh, on seats at its axis.
@@ -26,7 +28,7 @@ Track cut_rail(double gap, double along) {
   t.support = {.stiffness = {along, 1e8, 1e8}, .roll_stiffness = 1e6};
   RailJoint joint;
   joint.x = .5 * t.length();
-  joint.stiffness = {0., INFINITY, INFINITY};
+  joint.stiffness = {0., kRigid, kRigid};
   joint.turn_stiffness = {1e6, 1e6, 1e6};
   joint.end_stiffness = kEnds;
   joint.gap = {gap, gap};
@@ -34,7 +36,8 @@ Track cut_rail(double gap, double along) {
   return t;
 }
 
-double stretch(const Track& t) { return t.material.young * t.section.area; }
+/// N per strain; the stress of a rail that carries force stiffens it along x too.
+double stretch(const Track& t) { return t.material.young * t.section.area + t.axial_force; }
 
 /// Stiffness of half the rail along x, as its first seat with what lies beyond has it, and as its
 /// cut end has it: bars of EA/h and seats in turns, Z = k + s Z/(s + Z), from the free end on.
