@@ -10,8 +10,6 @@
 
 using namespace railstep;
 using Catch::Matchers::Contains;
-using Catch::Matchers::WithinAbs;
-using Catch::Matchers::WithinRel;
 
 namespace {
 
