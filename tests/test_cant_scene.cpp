@@ -58,6 +58,9 @@ TEST_CASE("what does not know leaning rails says so", "[cant]") {
                        "--at mid_bay --from 100 --to-hz 200 --points 2 --beside endless");
   CHECK(exact.code == 2);
   CHECK_THAT(exact.err, Contains("upright"));
+  const Ran flanged = railstep_program("run " + shipped("wheelset_flange") + lean);
+  CHECK(flanged.code == 2);
+  CHECK_THAT(flanged.err, Contains("upright"));
   const Ran machine = railstep_program("run " + shipped("exciter_on_track") + lean);
   CHECK(machine.code == 2);
   CHECK_THAT(machine.err, Contains("upright"));

@@ -177,6 +177,31 @@ TEST_CASE("a stiff joint is no joint", "[joint]") {
   CHECK_THAT(Statics(space).flexibility(axis(2.4, 1), axis(2.4, 1)), WithinRel(solid_y, 1e-2));
 }
 
+TEST_CASE("a joint of rails whose section does not strain", "[joint]") {
+  // On the axis the vertical motion is that of two unknowns a node; 1e-9 is rounding.
+  Track plane = bare(8, .6, 2, {});
+  plane.support.stiffness = {3e6, 20e6, 30e6};
+  plane.support.roll_stiffness = 2e5;
+  plane.joints = {hinge(2.4, 2e6)};
+  Track space = plane;
+  space.unknowns = Unknowns::rigid_section;
+  const Statics flat(plane), turning(space);
+  for (const double x : {2.4, 3.1})
+    CHECK_THAT(turning.flexibility(axis(2.4), axis(x)),
+               WithinRel(flat.flexibility(axis(2.4), axis(x)), 1e-9));
+  // Rigid plates share all six unknowns: no joint. Without them nothing passes.
+  const auto sideways = [&](double plates) {
+    space.joints[0].stiffness = {plates, plates, plates};
+    space.joints[0].turn_stiffness = {plates, plates, plates};
+    return Statics(space).flexibility(axis(3., 1), axis(1.8, 1));
+  };
+  space.joints.clear();
+  const double uncut = Statics(space).flexibility(axis(3., 1), axis(1.8, 1));
+  space.joints = plane.joints;
+  CHECK_THAT(sideways(1e13), WithinRel(uncut, 1e-4));  // EI / length over it: 1e6 / 1e13
+  CHECK(std::fabs(sideways(0.)) < 1e-12 * std::fabs(uncut));
+}
+
 TEST_CASE("a joint without plates leaves two rails", "[joint]") {
   // Cut over seat 4 of 8: the rail of the first four bays alone, on half of the pad at its end.
   Track cut = bare(8, .6, 2, {});
