@@ -54,7 +54,9 @@ struct Sensed {
 std::string listed(const Scene& scene) {
   std::vector<std::string> names;
   for (const SensorScene& sensor : scene.sensors)
-    if (!std::holds_alternative<WheelsetSensor>(sensor.on)) names.push_back(sensor.name);
+    if (std::holds_alternative<RailSensor>(sensor.on) ||
+        std::holds_alternative<SleeperSensor>(sensor.on))
+      names.push_back(sensor.name);
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -68,7 +70,7 @@ Sensed sensed(const Scene& scene, const Track& track, const std::string& name,
     if (sensor.name != name) continue;
     const std::optional<Functional> on = functional_of(sensor, scene, track, d);
     if (!on)
-      refuse(fmt::format("sensor '{}' is on a wheelset; accepted are {}", name, listed(scene)));
+      refuse(fmt::format("sensor '{}' is not on the track; accepted are {}", name, listed(scene)));
     double moved = 0.;
     for (const Line& line : assemble(track)) moved += functional_row(track, line, *on).norm();
     if (moved == 0. && d == 1 && track.unknowns == Unknowns::vertical)
@@ -234,7 +236,9 @@ ReceptanceAnswer solve(const ReceptanceRequest& request, const Scene& scene) {
                                    request.condensed ? curve("full").value : answer.curve.value);
   const RailPoint* at = rail_of(force);
   const bool driving = read.sensor == force.sensor && read.direction == force.direction;
-  if (driving && at != nullptr && force.direction == 2) add_resonances(track, *at, *model, answer);
+  // They are named by vertical bending alone.
+  if (driving && at != nullptr && force.direction == 2 && track.cant == 0.)
+    add_resonances(track, *at, *model, answer);
   if (request.reflection) add_reflection(track, force, answer);
   warn({&force, &read}, end_zones(track) > 0, answer);
   if (request.decay) add_decay(request, scene, track, force, answer);

@@ -76,6 +76,7 @@ struct RailScene : BarScene {
   double axial_force;       // N, tension positive, beside what the temperature makes
   double temperature_rise;  // K, over that without force
   double expansion;         // 1/K
+  double cant;              // by how much both rails lean inwards, tangent
 };
 
 /// A spring and a damper in parallel.
@@ -135,6 +136,14 @@ struct SeatChange {
   Missing missing = Missing::nothing;
 };
 
+/// Between the ends of rails at a joint.
+struct JointGap {
+  std::optional<double> cold;           // without heat, m; none: the ends never meet
+  std::optional<double> end_stiffness;  // N/m; none: by the section
+  double end_damping = 0.0;             // N s/m
+  std::array<double, 2> grown{};        // what heat takes of it at left and right rail, m
+};
+
 /// What a rail's point meets and does not pull at.
 struct StopScene {
   std::string name;
@@ -187,6 +196,7 @@ struct WheelsetScene {
   double mass, inertia_roll, inertia_spin, inertia_yaw;  // kg, kg m2
   double radius, tread_half_width;                       // m
   double start, speed;                                   // m, m/s
+  std::optional<TimeTable> speeds;                       // m/s, constant outside its rows
   double carried_mass;                                   // kg: weight without inertia
   bool gravity, may_leave_rail;
   GuideScene guide;
@@ -194,6 +204,9 @@ struct WheelsetScene {
   std::vector<TreadScene> treads;
   std::optional<Flange> flange;
 };
+
+/// The speed of the largest size that it has, m/s.
+double fastest(const WheelsetScene& wheelset);
 
 /// A vehicle over one rail.
 struct VehicleScene {
@@ -208,7 +221,6 @@ struct VehicleScene {
   std::vector<WheelTread> treads;
 };
 
-/// The speed of the largest size that a vehicle has, m/s.
 double fastest(const VehicleScene& vehicle);
 
 struct StepScene {
@@ -239,9 +251,13 @@ struct SleeperSensor {
 struct WheelsetSensor {
   std::size_t wheelset;  // index into Scene::wheelsets; its centre
 };
+struct VehicleSensor {
+  std::size_t vehicle, body;  // indices into Scene::vehicles and its bodies
+  double ahead;               // of the body's middle, m
+};
 struct SensorScene {
   std::string name;
-  std::variant<RailSensor, SleeperSensor, WheelsetSensor> on;
+  std::variant<RailSensor, SleeperSensor, WheelsetSensor, VehicleSensor> on;
 };
 
 /// One scene of a track, every number checked and in SI. config/README.md, "Scenes", has it key by
@@ -255,7 +271,8 @@ struct Scene {
   std::optional<SleeperScene> sleeper;
   std::vector<SeatChange> seat_changes;  // one after the other
   std::vector<StopScene> stops;
-  std::vector<RailJoint> joints;
+  std::vector<RailJoint> joints;     // without what their gaps do
+  std::vector<JointGap> joint_gaps;  // [joints]
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::vector<VehicleScene> vehicles;

@@ -44,10 +44,11 @@ struct Flange {
 /// A rigid wheelset on both rails, as a scene gives it. Rolls without friction on cylinders.
 struct Wheelset {
   double mass = 0., inertia_roll = 0., inertia_spin = 0., inertia_yaw = 0.;  // kg, kg m2
-  double weight = 0.;              // N, down; own and carried
-  double radius = .46;             // m
-  double tread_half_width = .065;  // m
-  double start = 0., speed = 0.;   // m, m/s
+  double weight = 0.;               // N, down; own and carried
+  double radius = .46;              // m
+  double tread_half_width = .065;   // m
+  double start = 0., speed = 0.;    // m, m/s
+  std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
   Guide guide = Guide::augmented_lagrangian;
   int cap = 20;
   double tolerance = 1e-10;      // m, rad
@@ -85,7 +86,7 @@ struct RailIrregularity {
 
 /// The railhead that wheels meet.
 struct Railhead {
-  double top_z = 0.;               // over the axis, m
+  double top_z = 0.;               // of its middle over the axis, in the section, m
   double crown_radius = .3;        // m
   double half_width = .035;        // m; a contact beyond it is off the rail
   double gauge_half_width = .035;  // m, at kGaugeDepth below the top
@@ -99,6 +100,8 @@ struct Probe {
   Functional track = {};
   int wheelset = -1, coordinate = 0;  // of a probe on a wheelset; 0 x, 1 y, 2 z
   int vehicle = -1;                   // of a probe on a vehicle, whose coordinate it is
+  double lever = 0.;                  // of a vehicle's next coordinate, beside it
+  double acceleration = 0.;           // factor, of a probe on a vehicle
   struct Press {
     int port;       // among fixed_ports() of the track
     double factor;  // of its force
@@ -199,7 +202,8 @@ class PackedModel {
   void add_residual(const Track& track, const std::vector<Probe>& probes, int points);
   void add_turn(const Track& track);
   void clip(int points, std::vector<double>& under);
-  std::int32_t kind_of(int rail, double z);
+  std::int32_t kind_of(const Port& port);
+  std::int32_t kind_of_wheel(int rail);
 
   Model model_{};
   std::vector<PackedLine> lines_;

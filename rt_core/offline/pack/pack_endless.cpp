@@ -21,7 +21,7 @@ double speed_of(const Traffic& traffic) {
     speeds.push_back(speed);
   };
   for (const MovingLoad& load : traffic.loads) add(load.speed, load.speeds);
-  for (const Wheelset& set : traffic.wheelsets) add(set.speed, {});
+  for (const Wheelset& set : traffic.wheelsets) add(set.speed, set.speeds);
   for (const RunningVehicle& vehicle : traffic.vehicles) add(vehicle.speed, vehicle.speeds);
   for (const double speed : speeds)
     if (speed != speeds[0])

@@ -56,10 +56,7 @@ std::vector<double> step_compliance(const Model& model, const Port& port, std::i
       RailRow row{port.rail, element, {}, 0, {}, {}};
       double shape[3];
       shape_functions(2. * p / points - 1., shape);
-      for (int i = 0; i < 3; ++i) {
-        row.coefficient[i][2] = shape[i];
-        row.coefficient[i][8] = port.z * shape[i];  // not carried by condensed lines
-      }
+      set_height_row(model.cant[port.rail], port.y, port.z, shape, row);
       std::fill(re.begin(), re.end(), 0.);
       std::fill(im.begin(), im.end(), 0.);
       double sum = 0.;
@@ -128,8 +125,13 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
       entry(2 * model_.unknowns + press.port, press.factor);
     if (probe.vehicle >= 0) {
       const std::int32_t at = model_.vehicle[probe.vehicle].first + probe.coordinate;
-      entry(at, probe.displacement);
-      entry(model_.unknowns + at, probe.velocity);
+      const std::int32_t g = 2 * model_.unknowns + model_.fixed.count;
+      for (const int next : {0, 1}) {
+        const double part = next == 0 ? 1. : probe.lever;
+        entry(at + next, part * probe.displacement);
+        entry(model_.unknowns + at + next, part * probe.velocity);
+        entry(g + at + next, part * probe.acceleration);
+      }
     }
     start.push_back(static_cast<std::int32_t>(index.size()));
     rest.push_back(probe.rest);
@@ -182,7 +184,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
   std::vector<double> under, axis;
   for (const Port& port : kinds_) {
     append(under, residual.under(port));
-    append(axis, residual.under(port, 0.));
+    append(axis, residual.under(port, {port.rail, 0.}));
   }
   clip(points, under);
   model_.residual.kinds = static_cast<std::int32_t>(kinds_.size());

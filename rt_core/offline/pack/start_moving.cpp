@@ -35,15 +35,15 @@ std::vector<double> static_forces(const Model& model) {
 LoadModel load_of(const Model& model, int wheel, double force) {
   const std::int32_t rail = wheel_rail(model, wheel);
   LoadModel load{};
-  load.row[2] = 1.;
-  load.row[8] = model.head_z[rail];
+  const CrownTop top = crown_top(model.cant[rail], model.head_z[rail], model.crown_radius[rail]);
+  height_row(model.cant[rail], top.y, top.z, load.row);
   load.rail = rail;
   load.stop = std::numeric_limits<double>::infinity();
   load.force = -force;
   load.kind = wheel_kind(model, wheel);
   if (is_of_wheelset(model, wheel)) {
     load.start = model.wheelset[wheel / 2].start;
-    load.travel.speed = model.wheelset[wheel / 2].speed;
+    load.travel = model.wheelset[wheel / 2].travel;
     return load;
   }
   const VehicleWheel& own = vehicle_wheel(model, wheel);
@@ -224,7 +224,7 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
     for (std::size_t k = 0; k < 6; ++k)
       put(w.first + static_cast<int>(k), at[0].wheelsets[own][k], at[1].wheelsets[own][k],
           at[2].wheelsets[own][k]);
-    state.v[w.first] += w.speed;
+    state.v[w.first] += w.travel.speed;
     for (int side = 0; side < 2; ++side) state.wheel_force[2 * b + side] = wheel_load(w);
   }
   for (std::int32_t b = 0; b < model.vehicles; ++b) {

@@ -5,6 +5,7 @@
 #include "online/math/band.h"
 #include "online/math/diagonals.h"
 #include "online/math/modes.h"
+#include "online/model/cant.h"
 #include "online/model/system.h"
 
 namespace railstep {
@@ -109,7 +110,8 @@ struct TravelModel {
 /// A prescribed force that runs along a rail: force * table + amplitude sin(2 pi (frequency t +
 /// phase)).
 struct LoadModel {
-  double row[9];              // of a node: position, y slope, z slope; gives the loaded point's z
+  double row[9];              // of a node: position, y slope, z slope, along the rail's own axes;
+                              // gives the loaded point's height
   std::int32_t rail;          // 0 left, 1 right
   double start, stop;         // m; taken off beyond stop; start of a track without end: of the
                               // elements' x
@@ -137,17 +139,18 @@ struct RailSignal {
 enum class Guide : std::int32_t { augmented_lagrangian, baumgarte };
 
 /// A rigid wheelset on both rails: coordinates x, y, z of its centre from its start, then roll,
-/// spin and yaw; cylinders of one radius roll on circular railhead crowns without friction. The
-/// guide holds x = speed t and yaw = 0.
+/// spin and yaw, the spin beyond speed / radius; cylinders of one radius roll on circular railhead
+/// crowns without friction. The guide holds x on its travel and yaw = 0.
 struct WheelsetModel {
   std::int32_t first;  // of its six coordinates among the state's unknowns
   double mass[6];      // kg, kg, kg, roll, spin, yaw inertia kg m2
   double weight;       // N, down; of the wheelset and what it carries
   double radius, tread_half_width;
-  double start, speed;  // of the centre, m, m/s; start of a track without end: of the elements' x,
-                        // from which the coordinate x then counts the way within a bay
-  double rest_z;        // height of the centre over the left rail's axis when it touches, m
-  double hertz[2];      // C of P = C d^1.5 on left and right rail, N/m^1.5
+  double start;  // of the centre, m; on a track without end of the elements' x, from which the
+                 // coordinate x then counts the way within a bay
+  TravelModel travel;
+  double rest_z;    // height of the centre over the left rail's axis when it touches, m
+  double hertz[2];  // C of P = C d^1.5 on left and right rail, N/m^1.5
   Guide guide;
   std::int32_t cap;    // iterations of the augmented Lagrangian
   double tolerance;    // m and rad
@@ -242,8 +245,8 @@ struct ProbeModel {
   std::int32_t count;
   const std::int32_t* start;  // [count + 1] of each row among index and value
   std::int32_t entries;
-  const std::int32_t* index;  // [entries] into u, v, then the fixed ports' forces of the state
-  const double* value;        // [entries] per m, per m/s or per N
+  const std::int32_t* index;  // [entries] into the state's u, v, fixed ports' forces, then g
+  const double* value;        // [entries] per m, per m/s, per N or per m/s2
   const double* rest;         // [count]
   const std::int32_t* along;  // [count] 1: a place along the rail, which the traffic takes with it
   const std::int32_t* table;  // [count] of its residual, -1: none
@@ -283,9 +286,10 @@ struct Model {
   std::int32_t steps_per_frame;
   double element_length;  // m
   Endless endless;
-  double rail_y[2];              // of the rails' axes, m
-  double rail_z[2];              // of the rails' axes over the left one, m: their heads are level
-  double head_z[2];              // of each railhead's top over its rail's axis, m
+  double rail_y[2];  // of the rails' axes, m
+  double rail_z[2];  // of the rails' axes over the left one, m: their heads are level
+  Cant cant[2];
+  double head_z[2];              // of each railhead's middle over its rail's axis in the section, m
   double crown_radius[2];        // m
   double head_half_width[2];     // m
   const double* constant_force;  // [1 + condensed][unknowns] N, or null: the track's weight
