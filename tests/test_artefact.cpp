@@ -36,6 +36,7 @@ std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
     w.start = 1.2;
     w.forces = {{1, {0., 10., .01, 0.}}};
     w.tread[1] = fit_signal({0., 1e-5, -1e-5}, 0., .3, true);
+    w.flange = Flange{.clearance = 1e-5, .angle = 1.2, .stiffness = 1e7, .damping = 1e4};
     traffic.wheelsets = {w};
     traffic.irregularities = {{0, 2, fit_signal({0., 1e-5}, 1., .1, false)},
                               {1, 1, fit_signal({1e-5, 0., 2e-5}, 0., .5, true)}};
@@ -123,7 +124,8 @@ std::int64_t some_value(std::int64_t old, std::mt19937_64& random) {
 }  // namespace
 
 TEST_CASE("a model that was written and read steps to the same bits", "[artefact]") {
-  for (const char* name : {"moving_load", "wheelset_on_track", "ballasted_track"})
+  for (const char* name :
+       {"moving_load", "wheelset_on_track", "wheelset_flange", "ballasted_track"})
     for (const char* kind : {"full", "modal"}) {
       std::vector<std::string> overrides = {std::string("condense.kind=\"") + kind + "\""};
       if (std::string(name) == "ballasted_track") {
@@ -248,6 +250,22 @@ TEST_CASE("numbers out of range are refused though the sum is right", "[artefact
     sign(bad);
     CHECK(status_of(bad) == LoadStatus::bad_content);
   }
+}
+
+TEST_CASE("flanges that are of no wheelset, or have no law, are refused", "[artefact]") {
+  const std::unique_ptr<PackedModel> packed = small_model(false, true);
+  const auto status = [&](const auto& change) {
+    Model model = packed->model();
+    change(model);
+    return status_of(to_block(model, kText));
+  };
+  CHECK(status([](Model&) {}) == LoadStatus::ok);
+  CHECK(status([](Model& m) { m.flange[0].wheelset = 1; }) == LoadStatus::bad_content);
+  CHECK(status([](Model& m) { m.flange[0].contact.stiffness = 0.; }) == LoadStatus::bad_content);
+  CHECK(status([](Model& m) { m.flange[0].contact.damping = -1.; }) == LoadStatus::bad_content);
+  CHECK(status([](Model& m) { m.flange[0].contact.stiffness = std::nan(""); }) ==
+        LoadStatus::bad_content);
+  CHECK(status([](Model& m) { m.flange[0].contact.hertz = 1e10; }) == LoadStatus::ok);
 }
 
 TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact][fuzz]") {

@@ -92,8 +92,8 @@ TEST_CASE("a thousand frames take nothing from the heap", "[no_heap]") {
 }
 
 TEST_CASE("shipped scenes take nothing from the heap, contact and sensors included", "[no_heap]") {
-  for (const char* name :
-       {"moving_load", "wheelset_on_track", "ballasted_track", "hanging_sleeper", "bogie_at_speed"})
+  for (const char* name : {"moving_load", "wheelset_on_track", "wheelset_flange", "ballasted_track",
+                           "hanging_sleeper", "bogie_at_speed"})
     for (const char* kind : {"full", "modal"}) {
       const Scene scene =
           read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/" + name + ".toml",

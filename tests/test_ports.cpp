@@ -70,7 +70,8 @@ Real force_of(const PortLaw& law, Real d) {
   if (law.pulls) return law.slope * d + law.jump;
   if (d <= 0) return 0;
   if (law.hertz > 0.) return law.hertz * d * std::sqrt(d);
-  return std::max(law.slope * d + law.jump * std::min<Real>(1, d / kJumpDepth), Real{0});
+  const Real part = law.jump > 0. ? std::min<Real>(1, d / kJumpDepth) : 1;
+  return std::max(law.slope * d + law.jump * part, Real{0});
 }
 
 /// Root of d + w f(d) = d_free by bisection, in long double.

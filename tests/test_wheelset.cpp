@@ -7,7 +7,7 @@
 #include "model_run.h"
 #include "offline/pack/scheme.h"
 #include "offline/track/statics.h"
-#include "sections.h"
+#include "rigid_track.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
@@ -33,21 +33,6 @@ ModelRun wheelset_run(const Track& track, const Wheelset& wheelset, const PackOp
 }
 
 PackOptions options(double dt) { return {.scheme = generalised_alpha(dt, .6)}; }
-
-/// A rail that does not give way: 800 t/m on seats a million times stiffer than the contact.
-Track rigid_track() {
-  Track t = paper_track();
-  t.section.area = 100.;
-  t.section.inertia_y = t.section.inertia_z = 10.;
-  t.section.torsion = 20.;
-  t.section.shear_factor_y = t.section.shear_factor_z = 1.;
-  t.section.shear_centre_z = 0.;
-  t.support.stiffness = {1e15, 1e15, 1e15};
-  t.support.damping = {};
-  t.support.roll_stiffness = 1e15;
-  t.support.roll_damping = 0.;
-  return t;
-}
 
 }  // namespace
 

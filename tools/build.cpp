@@ -93,6 +93,7 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   for (const BodyForceScene& force : w.forces)
     set.forces.push_back({force.direction, packed_table(force.force)});
   set.tread = treads_of(w);
+  set.flange = w.flange;
   return set;
 }
 
@@ -122,7 +123,9 @@ Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail
   const bool right = rail == Side::right && scene.right_rail;
   Railhead head;
   head.top_z = height_z(Height::head, section_of(sections, rail));
-  head.crown_radius = (right ? *scene.right_rail : scene.rail).crown_radius;
+  const RailScene& own = right ? *scene.right_rail : scene.rail;
+  head.crown_radius = own.crown_radius;
+  if (has_flanges(scene)) head.gauge_half_width = .5 * head_width(own).value();
   return head;
 }
 
@@ -284,6 +287,11 @@ std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) 
   for (const VehicleScene& vehicle : scene.vehicles)
     for (std::size_t i = 0; i < vehicle.kind.vehicle.wheels.size(); ++i)
       add_wheel(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
+  for (const WheelsetScene& wheelset : scene.wheelsets)
+    for (const std::string& wheel : wheelset.wheels)
+      for (const char* quantity :
+           {"flange_force_n", "flange_force_peak_n", "flange_impulse_n_s", "flange_gap_m"})
+        if (wheelset.flange) columns.push_back(wheel + "." + quantity);
   columns.insert(columns.end(), sensors.columns.begin(), sensors.columns.end());
   return columns;
 }

@@ -189,13 +189,15 @@ double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
     const Standing &at = later ? now : last_, &other = later ? last_ : now;
     std::vector<double> u(at.state.u, at.state.u + model_.unknowns);
     u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
-    WheelContact moved[2];
-    find_contacts(model_, w, {u.data(), {at.state.u, at.state.v}, passed(model_, now.state.steps)},
-                  moved);
-    for (int side = 0; side < 2; ++side) {
-      const int i = 2 * b + side;
-      if (!moved[side].on_rail || !at.contacts.contact[i].on_rail) continue;
-      const double change = moved[side].penetration - at.contacts.approach[i];
+    const Configuration seen{u.data(), {at.state.u, at.state.v}, passed(model_, now.state.steps)};
+    const OwnContacts own = contacts_of(model_, b);
+    WheelContact moved[4];
+    find_contacts(model_, w, seen, moved);
+    if (own.count > 2) find_flanges(model_, flange_of(model_, own.at[2]), seen, moved + 2);
+    for (int n = 0; n < own.count; ++n) {
+      const int i = own.at[n];
+      if (!moved[n].on_rail || !at.contacts.contact[i].on_rail) continue;
+      const double change = moved[n].penetration - at.contacts.approach[i];
       sum += .5 * wheel_force(now, i) * (later ? -change : change);
     }
   }
@@ -271,7 +273,7 @@ void EnergyAccount::add_start(const Standing& now) {
   const State& s = last_.state;
   std::vector<double> f(static_cast<std::size_t>(model_.unknowns));
   forces(model_, s.steps, f.data(), nullptr);
-  for (int i = 0; i < wheel_count(model_); ++i)
+  for (int i = 0; i < contact_count(model_); ++i)
     for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
       spread(model_.line[l], last_.contacts.contact[i].row, -s.wheel_force[i], f.data());
   const FixedPortModel& fixed = model_.fixed;
@@ -285,12 +287,13 @@ void EnergyAccount::add_start(const Standing& now) {
     flow_.loss += .5 * vehicle_unbalanced(model_, model_.vehicle[b], s, now.state);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
     const WheelsetModel& w = model_.wheelset[b];
+    const OwnContacts own = contacts_of(model_, b);
     for (int k = 1; k < 5; ++k) {  // x and yaw are guided
       const int at = w.first + k;
       double force = -w.mass[k] * s.g[at] - (k == 2 ? w.weight : 0.);
       if (k < 3) force += table_force(model_, w, k, s.steps);
-      for (int i = 2 * b; i < 2 * b + 2; ++i)
-        force += last_.contacts.contact[i].body_row[k] * s.wheel_force[i];
+      for (int n = 0; n < own.count; ++n)
+        force += last_.contacts.contact[own.at[n]].body_row[k] * s.wheel_force[own.at[n]];
       flow_.loss += .5 * force * (now.state.u[at] - s.u[at]);
     }
   }

@@ -11,7 +11,7 @@ namespace railstep {
 struct StoredEnergy {
   double kinetic = 0.;   // of lines, wheelsets and vehicles
   double strain = 0.;    // of lines and vehicles' springs
-  double hertz = 0.;     // sum 2/5 C d^2.5, and of linear contacts k d^2 / 2
+  double hertz = 0.;     // of wheels and flanges: sum 2/5 C d^2.5, of linear contacts k d^2 / 2
   double residual = 0.;  // F' G_res F / 2
   double ports = 0.;     // of one-sided springs, k max(0, d)^2 / 2
   double forward = 0.;  // of kinetic: what the guided motion alone makes, m (v^2 - (v - speed)^2)/2

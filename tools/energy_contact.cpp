@@ -28,8 +28,12 @@ bool stands(const WheelContact& at) { return at.on_rail || at.on_ground; }
 bool is_linear(const Model& model, int wheel) {
   return !is_of_wheelset(model, wheel) && vehicle_wheel(model, wheel).contact.hertz == 0.;
 }
+/// Whether the residual flexibility has a part in how deep a contact is.
+bool is_pressed(const Model& model, int wheel) {
+  return !is_flange(model, wheel) && !is_linear(model, wheel);
+}
 double hertz_of(const Model& model, int wheel) {
-  if (is_linear(model, wheel)) return 1.;  // of a port that is never met
+  if (!is_pressed(model, wheel)) return 1.;  // of a port that is never met
   return is_of_wheelset(model, wheel) ? model.wheelset[wheel / 2].hertz[wheel % 2]
                                       : vehicle_wheel(model, wheel).contact.hertz;
 }
@@ -48,15 +52,15 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
   PortLaw law[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
   for (int i = 0; i < c.wheels; ++i) {
-    const bool on_rail = c.contact[i].on_rail && !is_linear(model, i);
+    const bool on_rail = c.contact[i].on_rail && is_pressed(model, i);
     law[i] = {hertz_of(model, i), 0., 0.};
     force[i] = 0.;
     free[i] =
         on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;
-    if (c.contact[i].on_ground && !is_linear(model, i)) free[i] = c.approach[i];
+    if (c.contact[i].on_ground && is_pressed(model, i)) free[i] = c.approach[i];
     for (int j = 0; j < c.wheels; ++j) {
       const RailForce &at = port[c.loads + i], &other = port[c.loads + j];
-      const bool coupled = on_rail && c.contact[j].on_rail && !is_linear(model, j);
+      const bool coupled = on_rail && c.contact[j].on_rail && is_pressed(model, j);
       W[i * c.wheels + j] = !coupled ? 0.
                             : i == j ? residual_under(model, at)
                                      : residual_between(model, other, at);
@@ -71,19 +75,26 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
     static_cast<void>(solve_ports(c.wheels, W, law, shifted, force, d));  // as good as it gets
   }
   for (int i = 0; i < c.wheels; ++i) {
-    if (is_linear(model, i)) continue;
+    if (!is_pressed(model, i)) continue;
     port[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
     const double depth = std::max(d[i], 0.);
     c.hertz += .4 * law[i].hertz * depth * depth * std::sqrt(depth);
   }
 }
 
-/// Penetrations of all wheels, and the energy of the linear contacts, under known forces.
-void press_linear(const Model& model, const State& state, StandingContacts& c) {
+double flange_energy(const ContactModel& contact, double depth) {
+  const double d = std::max(depth, 0.);
+  return contact.hertz > 0. ? .4 * contact.hertz * d * d * std::sqrt(d)
+                            : .5 * contact.stiffness * d * d;
+}
+
+/// Penetrations of all contacts, and the energy of those that are not pressed, under known forces.
+void press_others(const Model& model, const State& state, StandingContacts& c) {
   for (int i = 0; i < c.wheels; ++i) {
     c.depth[i] = c.approach[i] + c.moved[c.loads + i];
     if (is_linear(model, i))
       c.hertz += linear_energy(vehicle_wheel(model, i).contact, state.wheel_force[i], c.depth[i]);
+    if (is_flange(model, i)) c.hertz += flange_energy(flange_of(model, i).contact, c.depth[i]);
   }
 }
 
@@ -92,11 +103,13 @@ void press_linear(const Model& model, const State& state, StandingContacts& c) {
 StandingContacts standing_contacts(const Model& model, const State& state) {
   StandingContacts c{};
   c.loads = model.loads;
-  c.wheels = wheel_count(model);
+  c.wheels = contact_count(model);
   const Configuration at{state.u, {state.u, state.v}, passed(model, state.steps)};
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], at, c.contact + 2 * b);
+  for (std::int32_t f = 0; f < model.flanges; ++f)
+    find_flanges(model, model.flange[f], at, c.contact + wheel_count(model) + 2 * f);
   const double time = static_cast<double>(state.steps) * model.scheme.dt;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     find_vehicle_contacts(model, model.vehicle[v], time, at, c.contact);
@@ -114,19 +127,27 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
     c.moved[i] = on_rail ? residual_displacement(model, port, ports, i) : 0.;
     c.residual += .5 * c.force[i] * c.moved[i];
   }
-  press_linear(model, state, c);
+  press_others(model, state, c);
   return c;
 }
 
 double contact_dissipation(const Model& model, const StandingContacts& before,
                            const StandingContacts& after, const double* mean_force) {
-  const double late = model.condensed != 0 ? model.scheme.theta : .5;
+  const bool held = model.condensed != 0;
+  const double late = held ? model.scheme.theta : .5;
   double sum = 0.;
   for (int i = 2 * model.wheelsets; i < after.wheels; ++i) {
-    const ContactModel& contact = vehicle_wheel(model, i).contact;
+    const bool presses = is_flange(model, i);
+    const ContactModel& contact =
+        presses ? flange_of(model, i).contact : vehicle_wheel(model, i).contact;
     if (contact.damping == 0.) continue;
-    const double mean = late * after.depth[i] + (1. - late) * before.depth[i];
-    sum += (mean_force[i] - contact.stiffness * mean) * (after.depth[i] - before.depth[i]);
+    const double d0 = before.depth[i], d1 = after.depth[i];
+    const auto spring = [&](double d) {
+      return contact.stiffness * (presses ? std::max(d, 0.) : d);
+    };
+    const double kept =
+        held ? spring(late * d1 + (1. - late) * d0) : late * (spring(d0) + spring(d1));
+    sum += (mean_force[i] - kept) * (d1 - d0);
   }
   return sum;
 }

@@ -8,7 +8,8 @@ namespace railstep {
 /// Contacts and residual flexibility in a state as it stands, whatever its step held frozen. With a
 /// the approach of wheels and rails by lines and bodies, G the residual flexibility between all
 /// ports and F their vertical forces (loads P, wheels -f): w = G F, and d = a + w, f = C d^1.5 on
-/// wheels of Hertz contacts; f of the state on those that pull too.
+/// wheels of Hertz contacts; f of the state on those that pull too. Flanges are wheels without a
+/// part in G.
 struct StandingContacts {
   int loads, wheels;
   PlacedLoad load[kMaxLoads];
@@ -23,7 +24,7 @@ struct StandingContacts {
 
 StandingContacts standing_contacts(const Model& model, const State& state);
 
-/// What the dampers of vehicles' contacts take of a step, (fbar - k dbar) dd, J.
+/// What the dampers of vehicles' contacts and of flanges take of a step, (fbar - k dbar) dd, J.
 double contact_dissipation(const Model& model, const StandingContacts& before,
                            const StandingContacts& after, const double* mean_force);
 

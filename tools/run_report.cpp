@@ -17,10 +17,12 @@ struct Plot {
   const char* label;     // of the axis
   double scale;
 };
-constexpr Plot kPlots[] = {{".deflection_z_m", "deflection under the load, mm", 1e3},
-                           {".rail_z_m", "rail under the wheel, mm", 1e3},
-                           {".force_z_mean_n", "wheel-rail force, mean of a frame, kN", 1e-3},
-                           {".dz_m", "vertical displacement at the sensors, mm", 1e3}};
+constexpr Plot kPlots[] = {
+    {".deflection_z_m", "deflection under the load, mm", 1e3},
+    {".rail_z_m", "rail under the wheel, mm", 1e3},
+    {".force_z_mean_n", "wheel-rail force, mean of a frame, kN", 1e-3},
+    {".flange_force_peak_n", "flange force along its normal, peak of a frame, kN", 1e-3},
+    {".dz_m", "vertical displacement at the sensors, mm", 1e3}};
 
 /// One curve a column; at most kPoints of them drawn, evenly thinned. Empty if nothing has it.
 std::string curves_script(const Plot& plot, const std::vector<std::string>& columns,

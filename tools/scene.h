@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "offline/beam/equilibrium.h"
+#include "offline/pack/pack.h"
 #include "offline/section/section.h"
 #include "offline/track/track.h"
 #include "offline/vehicle/kinds.h"
@@ -192,6 +193,7 @@ struct WheelsetScene {
   GuideScene guide;
   std::vector<BodyForceScene> forces;
   std::vector<TreadScene> treads;
+  std::optional<Flange> flange;
 };
 
 /// The speed of the largest size that it has, m/s.
@@ -276,6 +278,12 @@ struct Scene {
     return step ? static_cast<double>(step->steps) * step->dt : 0.0;
   }
 };
+
+/// Whether a wheelset has flanges.
+bool has_flanges(const Scene& scene);
+
+/// Width of a railhead where the gauge is measured, m; none: the section says nothing of it.
+std::optional<double> head_width(const BarScene& rail);
 
 /// Reads and checks a scene of a track; nothing of its size is allocated. Throws InputError, also
 /// at a scene of bodies and beams, which scene_system.h reads.

@@ -177,6 +177,8 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
     w.forces.push_back({static_cast<int>(force.choice("direction", {"x", "y", "z"})),
                         read_time_table(force, "table", kForce)});
   w.treads = read_treads(t, scene, w);
+  if (const std::optional<Table> flange = t.table_if("flange"))
+    w.flange = read_flange(*flange, scene);
   if (!w.may_leave_rail) check_path(t, scene, w.start, speed, std::nullopt);
   return w;
 }

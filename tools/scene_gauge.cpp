@@ -9,16 +9,14 @@
 namespace railstep {
 namespace {
 
-constexpr double kBelowTop = 0.014;  // m, where the gauge is measured
-
 std::optional<double> width_of(const Outline& outline) {
-  return length_inside(polygon(outline, kChordTolerance), 1, outline.height - kBelowTop,
+  return length_inside(polygon(outline, kChordTolerance), 1, outline.height - kGaugeDepth,
                        -outline.height, outline.height);
 }
 
 std::optional<double> width_of(const std::array<double, 3>& widths,
                                const std::array<double, 3>& heights) {
-  double below = kBelowTop;
+  double below = kGaugeDepth;
   for (int i = 2; i >= 0; --i) {
     const auto part = static_cast<std::size_t>(i);
     if (below < heights[part]) return widths[part];
@@ -27,7 +25,7 @@ std::optional<double> width_of(const std::array<double, 3>& widths,
   return std::nullopt;
 }
 
-/// Of the head where the gauge is measured, m; none: the scene gives constants alone.
+/// head_width() of each way to a section.
 struct HeadWidth {
   std::optional<double> operator()(const ProfileFile& file) const {
     return width_of(read_profile(file.path).outline);
@@ -46,8 +44,8 @@ struct HeadWidth {
   std::optional<double> operator()(const Section&) const { return std::nullopt; }
 };
 
-double head_width(const Table& track, const BarScene& bar) {
-  const std::optional<double> width = std::visit(HeadWidth{}, bar.shape);
+double width_for_gauge(const Table& track, const BarScene& bar) {
+  const std::optional<double> width = head_width(bar);
   if (!width)
     track.refuse("gauge_m",
                  "gauge_m is measured between the heads, 14 mm below their tops, of which the "
@@ -57,9 +55,13 @@ double head_width(const Table& track, const BarScene& bar) {
 
 }  // namespace
 
+std::optional<double> head_width(const BarScene& rail) {
+  return std::visit(HeadWidth{}, rail.shape);
+}
+
 double spacing_of_gauge(const Table& track, const Scene& scene, double gauge) {
   const RailScene& right = scene.right_rail ? *scene.right_rail : scene.rail;
-  return gauge + 0.5 * (head_width(track, scene.rail) + head_width(track, right));
+  return gauge + 0.5 * (width_for_gauge(track, scene.rail) + width_for_gauge(track, right));
 }
 
 }  // namespace railstep

@@ -48,6 +48,8 @@ std::optional<IrregularityScene> read_irregularity(const Table& root, const Scen
 std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
 /// [[wheelset.tread]] of a wheelset whose radius and speed are read.
 std::vector<TreadScene> read_treads(const Table& t, const Scene& scene, const WheelsetScene& own);
+/// [wheelset.flange].
+Flange read_flange(const Table& t, const Scene& scene);
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
 std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,

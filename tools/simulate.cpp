@@ -77,6 +77,9 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
     row.insert(row.end(),
                {outputs.wheel_force[i], outputs.wheel_force_mean[i], outputs.wheel_force_peak[i],
                 outputs.wheel_impulse[i], outputs.wheel_gap[i], outputs.wheel_rail_z[i]});
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
+    row.insert(row.end(), {outputs.flange_force[i], outputs.flange_force_peak[i],
+                           outputs.flange_impulse[i], outputs.flange_gap[i]});
   const std::size_t probes = row.size();
   row.resize(probes + static_cast<std::size_t>(model.probe.count));
   read_probes(model, run.state, outputs, row.data() + probes);

@@ -74,6 +74,7 @@ void Simulation::load(const std::string& name) {
   columns_ = lines_of(result.text, result.text_bytes);
   const std::size_t expected = 1 + 2 * static_cast<std::size_t>(model_.loads) +
                                6 * static_cast<std::size_t>(wheel_count(model_)) +
+                               8 * static_cast<std::size_t>(model_.flanges) +
                                static_cast<std::size_t>(model_.probe.count);
   if (columns_.size() != expected)
     throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));

@@ -101,10 +101,11 @@ std::int64_t contact(const Model& model, std::int64_t wheels) {
 
 std::int64_t flops_per_frame(const Model& model) {
   const std::int64_t wheels = std::int64_t{wheel_count(model)};
-  std::int64_t step = contact(model, wheels) + residual_step(model, wheels) + vehicles(model);
+  const std::int64_t contacts = std::int64_t{contact_count(model)};
+  std::int64_t step = contact(model, contacts) + residual_step(model, wheels) + vehicles(model);
   for (std::int32_t l = 0; l < model.lines; ++l)
-    step += model.condensed != 0 ? condensed(model, model.line[l], wheels)
-                                 : banded(model, model.line[l], wheels);
+    step += model.condensed != 0 ? condensed(model, model.line[l], contacts)
+                                 : banded(model, model.line[l], contacts);
   return step * model.steps_per_frame + residual_frame(model, wheels);
 }
 

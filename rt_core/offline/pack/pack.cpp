@@ -1,5 +1,6 @@
 #include "offline/pack/pack.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -136,6 +137,35 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
     packed.force[packed.forces++] = {
         force.direction, static_cast<std::int32_t>(force.table.size() / 2), keep(force.table)};
   for (const std::size_t rail : {0u, 1u}) packed.tread[rail] = keep(wheelset.tread[rail]);
+  if (wheelset.flange) add_flange(track, wheelset, heads);
+}
+
+/// Of the wheelset that was added last. The face touches the gauge face, `clearance` further in.
+void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
+                             const std::array<Railhead, 2>& heads) {
+  const Flange& flange = *wheelset.flange;
+  FlangeModel& packed = model_.flange[model_.flanges++];
+  if (contact_count(model_) > kMaxWheels)
+    throw std::invalid_argument("more than 32 wheels and flanges");
+  packed.wheelset = model_.wheelsets - 1;
+  packed.normal[0] = -std::sin(flange.angle);
+  packed.normal[1] = std::cos(flange.angle);
+  packed.tip = -(wheelset.radius + flange.height);
+  packed.contact = {0., flange.stiffness, flange.damping};
+  const Material material = track.bar(0).material;
+  const double around = (wheelset.radius + kGaugeDepth) / std::cos(flange.angle);
+  if (flange.corner_radius > 0.)
+    packed.contact = {
+        hertz_contact(around, flange.corner_radius, material.young, material.poisson, 1e3).constant,
+        0., 0.};
+  for (const int rail : {0, 1}) {
+    const Railhead& head = heads[static_cast<std::size_t>(rail)];
+    const double inward = rail == 0 ? -1. : 1.;
+    packed.gauge[rail][0] = inward * head.gauge_half_width;
+    packed.gauge[rail][1] = head.top_z - kGaugeDepth;
+    packed.point[rail][0] = model_.rail_y[rail] + packed.gauge[rail][0] + inward * flange.clearance;
+    packed.point[rail][1] = -(wheelset.radius + kGaugeDepth);
+  }
 }
 
 void PackedModel::set_start(std::vector<double> state) {

@@ -29,6 +29,18 @@ struct MovingLoad {
 /// Speed of a load at t = 0, m/s.
 double first_speed(const MovingLoad& load);
 
+/// How far below the railhead's top the gauge is measured, and flanges meet it, m.
+inline constexpr double kGaugeDepth = .014;
+
+/// The flanges of a wheelset's wheels, as a scene gives them.
+struct Flange {
+  double clearance = 0.;      // m, of each along y in the middle of the track
+  double angle = 0.;          // rad, of the faces to the horizontal
+  double height = .028;       // m, of the tips below the treads
+  double corner_radius = 0.;  // m, of a gauge face in Hertz contact; 0: a spring and a damper
+  double stiffness = 0., damping = 0.;  // N/m, N s/m
+};
+
 /// A rigid wheelset on both rails, as a scene gives it. Rolls without friction on cylinders.
 struct Wheelset {
   double mass = 0., inertia_roll = 0., inertia_spin = 0., inertia_yaw = 0.;  // kg, kg m2
@@ -47,6 +59,7 @@ struct Wheelset {
   };
   std::vector<Force> forces = {};
   std::array<Signal, 2> tread = {};  // of the left and right wheel, over the distance rolled
+  std::optional<Flange> flange = std::nullopt;
 };
 
 /// A vehicle over one rail, as a scene gives it.
@@ -73,9 +86,10 @@ struct RailIrregularity {
 
 /// The railhead that wheels meet.
 struct Railhead {
-  double top_z = 0.;         // over the axis, m
-  double crown_radius = .3;  // m
-  double half_width = .035;  // m; a contact beyond it is off the rail
+  double top_z = 0.;               // over the axis, m
+  double crown_radius = .3;        // m
+  double half_width = .035;        // m; a contact beyond it is off the rail
+  double gauge_half_width = .035;  // m, at kGaugeDepth below the top
 };
 
 /// A scalar that frames publish: rest + displacement * D(u) + velocity * D(v), with D a sum over
@@ -178,6 +192,8 @@ class PackedModel {
   void add_irregularity(const Track& track, const RailIrregularity& irregularity);
   void add_wheelset(const Track& track, const Wheelset& wheelset,
                     const std::array<Railhead, 2>& heads);
+  void add_flange(const Track& track, const Wheelset& wheelset,
+                  const std::array<Railhead, 2>& heads);
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
   TravelModel keep_travel(double speed, const std::vector<double>& speeds);

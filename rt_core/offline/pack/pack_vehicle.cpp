@@ -87,7 +87,7 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   const auto wheels = static_cast<std::int32_t>(m.wheels.rows());
   if (n > kMaxVehicleUnknowns)
     throw std::invalid_argument("more than 16 coordinates of one vehicle");
-  if (wheel_count(model_) + wheels > kMaxWheels)
+  if (contact_count(model_) + wheels > kMaxWheels)
     throw std::invalid_argument("more than 32 wheels of wheelsets and vehicles");
   if (!vehicle.tread.empty() && vehicle.tread.size() != vehicle.vehicle.wheels.size())
     throw std::invalid_argument("treads of a vehicle that are not one for each wheel");

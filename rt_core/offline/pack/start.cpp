@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "offline/pack/start_flange.h"
 #include "offline/pack/start_vehicle.h"
 #include "offline/pack/static_lines.h"
 #include "offline/track/statics.h"
@@ -27,7 +28,76 @@ struct Pose {
   std::vector<Eigen::VectorXd> lines;
   std::vector<std::array<double, 6>> wheelsets;
   SettledVehicles vehicles;
+  std::vector<double> wheel_force;  // [contacts] of wheelsets, N
 };
+
+/// Puts displacements and velocities of a line into a state.
+void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
+         const Eigen::VectorXd& v, State& state) {
+  if (line.modal.count == 0) {
+    std::copy(u.begin(), u.end(), state.u + line.first);
+    std::copy(v.begin(), v.end(), state.v + line.first);
+    return;
+  }
+  const Eigen::VectorXcd z = own.modes.from(u, v);
+  for (Eigen::Index k = 0; k < z.size(); ++k) {
+    state.u[line.first + k] = z[k].real();
+    state.v[line.first + k] = z[k].imag();
+  }
+}
+
+/// Residual displacement of each contact's rail; a flange knows none.
+std::array<double, 3> missed_under(const Model& model, const Leaning& leaning, Acting acting) {
+  const std::size_t loads = acting.ports.size();
+  for (const std::size_t i : {0u, 1u}) {
+    const WheelContact& c = leaning.contact[i];
+    acting.ports.push_back(rail_force(model, model.wheelset[0].kind[i], c.x,
+                                      -leaning.force[static_cast<int>(i)] * c.normal[2]));
+  }
+  const auto under = [&](std::size_t port) {
+    return residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
+                                 static_cast<int>(port));
+  };
+  return {under(loads), under(loads + 1), 0.};
+}
+
+/// Equilibrium of a wheelset that leans on its flange, alone under loads: turn by turn the forces
+/// that balance it where it is, the rails under these, and its way to the depths they want. The
+/// forces hang on the rails by their small turns alone, so each turn leaves 1e-3 of the last or
+/// less.
+Pose leaning_equilibrium(const Statics& statics, const PackedModel& packed, double gravity,
+                         double time, const Acting& loads) {
+  const Model& model = packed.model();
+  const FlangeModel& flange = model.flange[0];
+  std::vector<double> memory = start_released(packed);
+  State state = state_on(model, memory.data());
+  const Configuration at{state.u, {state.u, state.v}, passed(model, 0)};
+  double* const p = state.u + model.wheelset[0].first;
+  const int side = side_force(model.wheelset[0]) > 0. ? 0 : 1;
+  const std::int32_t contact = wheel_count(model) + side;
+  p[0] = travelled(model.wheelset[0].travel, 0.).speed * time;
+  p[1] = model.rail_y[side] + flange.gauge[side][0] - flange.point[side][0];
+  Pose pose;
+  constexpr int kMostTurns = 30;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    Acting acting = loads;
+    for (const PointForce& f : forces_on_rails(lean(model, at))) acting.forces.push_back(f);
+    pose.lines = static_lines(packed, statics, acting.forces, gravity);
+    for (std::size_t l = 0; l < pose.lines.size(); ++l)
+      put(packed.lines()[l], model.line[l], pose.lines[l],
+          Eigen::VectorXd::Zero(pose.lines[l].size()), state);
+    const Leaning now = lean(model, at);
+    const Eigen::Vector3d way = way_to_depths(model, now, missed_under(model, now, loads));
+    for (int k = 0; k < 3; ++k) p[1 + k] += way[k];
+    pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
+    for (const int i : {0, 1}) pose.wheel_force[static_cast<std::size_t>(i)] = now.force[i];
+    pose.wheel_force[static_cast<std::size_t>(contact)] = now.force[2];
+    if (!(way.cwiseAbs().maxCoeff() < 1e-15)) continue;
+    pose.wheelsets = {{0., p[1], p[2], p[3], 0., 0.}};
+    return pose;
+  }
+  throw std::invalid_argument("no equilibrium was found of a wheelset that leans on its flange");
+}
 
 /// Equilibrium with everything that moves shifted by `time`.
 Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
@@ -43,6 +113,8 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
     ports.push_back(rail_force(model, load.kind, x, at.force));
   }
+  if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
+    return leaning_equilibrium(statics, packed, gravity, time, acting);
   const std::size_t loads = forces.size();
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     for (const int rail : {0, 1}) {
@@ -53,7 +125,8 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     }
   SettledVehicles vehicles;
   if (model.vehicles > 0) vehicles = settle_on_track(statics, packed, gravity, time, acting);
-  Pose pose{static_lines(packed, statics, forces, gravity), {}, std::move(vehicles)};
+  Pose pose{static_lines(packed, statics, forces, gravity), {}, std::move(vehicles), {}};
+  pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
     const double up[3] = {0., 0., 1.}, rolled = travelled(w.travel, 0.).speed * time;
@@ -69,23 +142,10 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
                          .depth;
     }
     pose.wheelsets.push_back(standing_wheelset(model, w, height));
+    for (const std::int32_t i : {2 * b, 2 * b + 1})
+      pose.wheel_force[static_cast<std::size_t>(i)] = wheel_load(w);
   }
   return pose;
-}
-
-/// Puts displacements and velocities of a line into a state.
-void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
-         const Eigen::VectorXd& v, State& state) {
-  if (line.modal.count == 0) {
-    std::copy(u.begin(), u.end(), state.u + line.first);
-    std::copy(v.begin(), v.end(), state.v + line.first);
-    return;
-  }
-  const Eigen::VectorXcd z = own.modes.from(u, v);
-  for (Eigen::Index k = 0; k < z.size(); ++k) {
-    state.u[line.first + k] = z[k].real();
-    state.v[line.first + k] = z[k].imag();
-  }
 }
 
 /// Forces of the fixed ports where the lines stand and move.
@@ -129,9 +189,6 @@ double wheel_load(const WheelsetModel& w) {
   for (std::int32_t i = 0; i < w.forces; ++i) {
     const double force = table_value(w.force[i].table, w.force[i].points, 0.);
     if (w.force[i].direction == 2) vertical -= force;
-    if (w.force[i].direction == 1 && force != 0.)
-      throw std::invalid_argument(
-          "no equilibrium: a lateral force acts on a wheelset at the start and nothing holds it");
   }
   if (!(vertical > 0.))
     throw std::invalid_argument("no equilibrium in contact: nothing presses a wheelset down");
@@ -164,6 +221,7 @@ std::vector<double> start_released(const PackedModel& packed) {
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
                                          double gravity) {
   const Model& model = packed.model();
+  check_sides(model);
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());
   const Statics statics(track);
@@ -183,8 +241,8 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
       state.v[model.wheelset[b].first + static_cast<int>(k)] +=
           (later.wheelsets[set][k] - before.wheelsets[set][k]) / span;
     }
-    for (int i = 0; i < 2; ++i) state.wheel_force[2 * b + i] = wheel_load(model.wheelset[b]);
   }
+  std::copy(at.wheel_force.begin(), at.wheel_force.end(), state.wheel_force);
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const std::size_t own = static_cast<std::size_t>(b);
     const Eigen::VectorXd& u = at.vehicles.displacement[own];

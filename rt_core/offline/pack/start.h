@@ -17,7 +17,8 @@ std::vector<double> start_released(const PackedModel& packed);
 /// wheels, accelerations 0.
 /// @returns state_doubles() values
 /// Throws std::invalid_argument if the track has a free rigid mode, if a wheelset or a vehicle
-/// would lift a wheel, or if a force pushes a wheelset where nothing holds it (laterally).
+/// would lift a wheel, or if a force pushes a wheelset aside and no flange holds it, or lifts it
+/// over its flange, or it is not alone.
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
                                          double gravity);
 
@@ -32,7 +33,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
 std::vector<double> start_moving(const Track& track, const PackedModel& packed, double gravity);
 
 /// Vertical force at t = 0 on a wheel of a wheelset on its rails, N: no force acts on roll, so both
-/// carry half. Throws std::invalid_argument where it has none, or a lateral force.
+/// carry half. Throws std::invalid_argument where it has none.
 double wheel_load(const WheelsetModel& wheelset);
 
 /// Coordinates of a wheelset that stands on its rails, pressed by its wheel_load().

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "offline/pack/start.h"
+#include "offline/pack/start_flange.h"
 #include "online/model/course.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
@@ -57,7 +58,7 @@ Model with_forces(const Model& even) {
   for (std::int32_t b = 0; b < even.wheelsets; ++b)
     for (const int side : {0, 1})
       carried.load[carried.loads++] = load_of(even, even.wheelset[b], side);
-  carried.wheelsets = 0;
+  carried.wheelsets = carried.flanges = 0;
   return carried;
 }
 
@@ -194,6 +195,10 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
     throw std::invalid_argument(
         "no number of steps is a whole number of bays; accepted is a speed at which one is, or "
         "step.start = \"equilibrium\"");
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    if (side_force(model.wheelset[b]) != 0.)
+      throw std::invalid_argument(
+          "a start on the move takes no lateral force on a wheelset at the start");
   const Model even = evened(model);
   if (model.condensed == 0) {
     std::vector<double> memory = start_in_equilibrium(track, packed, gravity);

@@ -12,7 +12,7 @@ namespace {
 
 /// A point as ports see it: those of condensed lines leave out the section's own strain.
 RailPoint seen(const Model& model, RailPoint at) {
-  if (model.condensed != 0) at.z = 0.;
+  if (model.condensed != 0) (at.direction == 1 ? at.y : at.z) = 0.;
   return at;
 }
 

@@ -34,7 +34,7 @@ double force_at(const PortLaw& law, double d) noexcept {
   if (law.pulls) return law.slope * d + law.jump;
   if (!(d > 0.0)) return 0.0;
   if (law.hertz > 0.0) return law.hertz * d * std::sqrt(d);
-  const double part = d < kJumpDepth ? d / kJumpDepth : 1.0;
+  const double part = law.jump > 0.0 && d < kJumpDepth ? d / kJumpDepth : 1.0;
   return larger(law.slope * d + law.jump * part, 0.0);
 }
 
@@ -42,13 +42,13 @@ double force_at(const PortLaw& law, double d) noexcept {
 double stiffness_at(const PortLaw& law, double d) noexcept {
   if (law.pulls) return law.slope;
   if (law.hertz > 0.0) return 1.5 * law.hertz * std::sqrt(d);
-  return d < kJumpDepth ? law.slope + law.jump / kJumpDepth : law.slope;
+  return law.jump > 0.0 && d < kJumpDepth ? law.slope + law.jump / kJumpDepth : law.slope;
 }
 
 /// Whether the port takes part: a force now, or one that a change of d makes.
 bool acts(const PortLaw& law, double force) noexcept { return law.pulls || force > 0.0; }
 
-/// Force where the jump is all there; below 0: there is none before slope d outweighs it.
+/// Force where a jump above 0 is all there.
 double knee(const PortLaw& law) noexcept { return law.slope * kJumpDepth + law.jump; }
 
 /// The penetration of a force > 0, or any of a port that pulls; at 0 that from which on there is
@@ -56,8 +56,7 @@ double knee(const PortLaw& law) noexcept { return law.slope * kJumpDepth + law.j
 double depth_of(const PortLaw& law, double force) noexcept {
   if (law.pulls) return (force - law.jump) / law.slope;
   if (law.hertz > 0.0) return penetration(force, law.hertz);
-  const double at_knee = knee(law);
-  if (at_knee > 0.0 && force <= at_knee) return force / at_knee * kJumpDepth;
+  if (law.jump > 0.0 && force <= knee(law)) return force / knee(law) * kJumpDepth;
   return (force - law.jump) / law.slope;
 }
 
@@ -69,8 +68,8 @@ double lone_depth(const PortLaw& law, double d_free, double w) noexcept {
     const double root = cube_root(w * law.hertz * std::sqrt(d_free));
     return d_free / (1.0 + root * root);
   }
-  const double first = d_free / (1.0 + w * larger(knee(law), 0.0) / kJumpDepth);
-  if (first < kJumpDepth) return first;
+  const double first = d_free / (1.0 + w * knee(law) / kJumpDepth);
+  if (law.jump > 0.0 && first < kJumpDepth) return first;
   const double second = (d_free - w * law.jump) / (1.0 + w * law.slope);
   return second < d_free ? second : d_free;
 }

@@ -16,9 +16,10 @@ enum class PortStatus : std::uint8_t {
 /// Force of a port over its penetration d, which never falls: of one that pulls too slope d + jump
 /// at every d, else 0 where d <= 0, and above
 ///   hertz d^1.5                                    of a contact (hertz > 0), else
-///   max(0, slope d + jump min(1, d / kJumpDepth))  of a spring and a damper over one step.
+///   max(0, slope d + jump)                         of a spring and a damper over one step.
 /// A damper c that works while d > 0 has the velocity kv d + v0 at the end of a step: with it the
-/// slope is k + c kv and the jump c v0, taken over the first kJumpDepth so that the law has no gap.
+/// slope is k + c kv and the jump c v0. One above 0 is jump min(1, d / kJumpDepth), so that the law
+/// has no gap; one below 0 leaves none, and what stands still has the spring's force at any depth.
 struct PortLaw {
   double hertz;  // N/m^1.5
   double slope;  // N/m, > 0 unless hertz > 0

@@ -156,11 +156,27 @@ void describe(Archive& a, WheelsetModel& w) {
 }
 
 template <typename Archive>
+void describe(Archive& a, ContactModel& c) {
+  for (double* x : {&c.hertz, &c.stiffness, &c.damping}) a.real(*x);
+}
+
+template <typename Archive>
+void describe(Archive& a, FlangeModel& f) {
+  a.count(f.wheelset, kMaxWheelsets - 1);
+  describe(a, f.contact);
+  for (double* pair : {f.normal, f.point[0], f.point[1], f.gauge[0], f.gauge[1]}) {
+    a.real(pair[0]);
+    a.real(pair[1]);
+  }
+  a.real(f.tip);
+}
+
+template <typename Archive>
 void describe(Archive& a, VehicleWheel& w) {
   a.count(w.vehicle, kMaxVehicles - 1);
   a.count(w.rail, 1);
-  for (double* x : {&w.place, &w.contact.hertz, &w.contact.stiffness, &w.contact.damping})
-    a.real(*x);
+  a.real(w.place);
+  describe(a, w.contact);
   a.count(w.kind, kMaxPortKinds - 1);
   describe(a, w.tread);
 }
@@ -264,6 +280,8 @@ void describe(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
   for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);
   for (std::int32_t i = 0; i < m.wheelsets; ++i) describe(a, m.wheelset[i]);
+  a.count(m.flanges, m.wheelsets);
+  for (std::int32_t i = 0; i < m.flanges; ++i) describe(a, m.flange[i]);
   for (std::int32_t i = 0; i < m.vehicles; ++i) describe(a, m.vehicle[i]);
   for (std::int32_t i = 0; i < m.vehicle_wheels; ++i) describe(a, m.vehicle_wheel[i]);
   for (std::int32_t i = 0; i < m.signals; ++i) {

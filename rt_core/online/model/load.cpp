@@ -113,6 +113,19 @@ bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
   return travel_holds(w.travel) && signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
 }
 
+/// Flanges come by rising wheelset, one pair each, and count as wheels among the ports.
+bool flanges_hold(const Model& m) noexcept {
+  if (contact_count(m) > kMaxWheels) return false;
+  for (std::int32_t i = 0; i < m.flanges; ++i) {
+    const FlangeModel& f = m.flange[i];
+    if (f.wheelset >= m.wheelsets || (i > 0 && f.wheelset <= m.flange[i - 1].wheelset))
+      return false;
+    if (!(f.contact.hertz > 0.) && !(f.contact.stiffness > 0. && f.contact.damping >= 0.))
+      return false;
+  }
+  return true;
+}
+
 bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
   if (v.first < m.bodies || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
     return false;
@@ -183,6 +196,7 @@ bool holds(const Model& m) noexcept {
       return false;
   for (std::int32_t i = 0; i < m.wheelsets; ++i)
     if (!wheelset_holds(m, m.wheelset[i])) return false;
+  if (!flanges_hold(m)) return false;
   for (std::int32_t i = 0; i < m.vehicles; ++i)
     if (!vehicle_holds(m, m.vehicle[i])) return false;
   for (std::int32_t i = 0; i < m.vehicle_wheels; ++i)

@@ -14,12 +14,13 @@ inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxVehicles = 16;
 inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
-inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles
+inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles, a flange as another
 inline constexpr int kMaxBodyForces = 4;
 inline constexpr int kMaxSignals = 32;     // irregularities and defects of the rails
 inline constexpr int kMaxFixedPorts = 32;  // one-sided springs of the track
 inline constexpr int kTurnSeats = 6;       // around a wheel, half of them on each side of its bay
 inline constexpr int kMaxPortKinds = 4;    // rails and heights at which vertical forces act
+inline constexpr int kNoPortKind = -1;     // of what has no part in the residual flexibility
 
 // What a model may not exceed; a block that claims more is refused.
 inline constexpr std::int64_t kMostElements = 100'000;
@@ -167,6 +168,18 @@ struct ContactModel {
   double stiffness, damping;  // N/m, N s/m
 };
 
+/// The flanges of a wheelset. Each face is straight across the rail and turns with the wheelset;
+/// the gauge face is a point of the rail's section, at which both are loaded. The law is that of
+/// ContactModel above d = 0, and it never pulls.
+struct FlangeModel {
+  std::int32_t wheelset;
+  ContactModel contact;
+  double normal[2];    // of the left face at rest, from the rail to the wheel: y, z; right: -y, z
+  double point[2][2];  // of left and right face, from the wheelset's centre: y, z, m
+  double gauge[2][2];  // gauge face of left and right rail, from the rail's axis: y, z, m
+  double tip;          // z of the flanges' tips from the centre, m: rails below it are passed over
+};
+
 /// A wheel of a vehicle. Off the rail it rolls on level, rigid ground in line with the rail's axis
 /// at rest.
 struct VehicleWheel {
@@ -262,6 +275,7 @@ struct Model {
   Scheme scheme;
   std::int32_t lines, loads, wheelsets, vehicles, signals, elements;
   std::int32_t vehicle_wheels;  // of all vehicles
+  std::int32_t flanges;         // wheelsets that have them
   std::int32_t unknowns;   // of all lines, padded, 8 per wheelset, of vehicles, and the system's
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
   std::int32_t bodies;     // first unknown behind the lines
@@ -283,6 +297,7 @@ struct Model {
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];
+  FlangeModel flange[kMaxWheelsets];  // by rising wheelset
   VehicleModel vehicle[kMaxVehicles];
   VehicleWheel vehicle_wheel[kMaxWheels];
   RailSignal signal[kMaxSignals];
@@ -293,20 +308,53 @@ struct Model {
 inline std::int32_t wheel_count(const Model& model) noexcept {
   return 2 * model.wheelsets + model.vehicle_wheels;
 }
-inline bool is_of_wheelset(const Model& model, std::int32_t wheel) noexcept {
-  return wheel < 2 * model.wheelsets;
+/// Contacts with the rails: the treads of all wheels, then left and right flange of each wheelset
+/// that has them.
+inline std::int32_t contact_count(const Model& model) noexcept {
+  return wheel_count(model) + 2 * model.flanges;
+}
+inline bool is_flange(const Model& model, std::int32_t contact) noexcept {
+  return contact >= wheel_count(model);
+}
+/// Of a contact that is a flange's.
+inline const FlangeModel& flange_of(const Model& model, std::int32_t contact) noexcept {
+  return model.flange[(contact - wheel_count(model)) / 2];
+}
+inline bool is_of_wheelset(const Model& model, std::int32_t contact) noexcept {
+  return contact < 2 * model.wheelsets || is_flange(model, contact);
+}
+/// Of a contact that is a wheelset's.
+inline std::int32_t wheelset_of(const Model& model, std::int32_t contact) noexcept {
+  return is_flange(model, contact) ? flange_of(model, contact).wheelset : contact / 2;
 }
 /// Of a wheel that is no wheelset's.
 inline const VehicleWheel& vehicle_wheel(const Model& model, std::int32_t wheel) noexcept {
   return model.vehicle_wheel[wheel - 2 * model.wheelsets];
 }
-inline std::int32_t wheel_rail(const Model& model, std::int32_t wheel) noexcept {
-  return is_of_wheelset(model, wheel) ? wheel % 2 : vehicle_wheel(model, wheel).rail;
+/// Which rail a contact is on: 0 left, 1 right.
+inline std::int32_t wheel_rail(const Model& model, std::int32_t contact) noexcept {
+  if (is_flange(model, contact)) return (contact - wheel_count(model)) % 2;
+  return is_of_wheelset(model, contact) ? contact % 2 : vehicle_wheel(model, contact).rail;
 }
 /// Of port, for the residual flexibility.
-inline std::int32_t wheel_kind(const Model& model, std::int32_t wheel) noexcept {
-  return is_of_wheelset(model, wheel) ? model.wheelset[wheel / 2].kind[wheel % 2]
-                                      : vehicle_wheel(model, wheel).kind;
+inline std::int32_t wheel_kind(const Model& model, std::int32_t contact) noexcept {
+  if (is_flange(model, contact)) return kNoPortKind;
+  return is_of_wheelset(model, contact) ? model.wheelset[contact / 2].kind[contact % 2]
+                                        : vehicle_wheel(model, contact).kind;
+}
+
+/// What a wheelset stands on: contacts `at[0]` to `at[count - 1]`.
+struct OwnContacts {
+  int count;
+  std::int32_t at[4];
+};
+inline OwnContacts contacts_of(const Model& model, std::int32_t wheelset) noexcept {
+  OwnContacts own{2, {2 * wheelset, 2 * wheelset + 1}};
+  for (std::int32_t f = 0; f < model.flanges; ++f) {
+    if (model.flange[f].wheelset != wheelset) continue;
+    own = {4, {own.at[0], own.at[1], wheel_count(model) + 2 * f, wheel_count(model) + 2 * f + 1}};
+  }
+  return own;
 }
 
 }  // namespace railstep

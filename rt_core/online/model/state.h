@@ -15,7 +15,7 @@ struct State {
   double* v;            // [unknowns] velocity
   double* a;            // [unknowns] the scheme's acceleration
   double* g;            // [unknowns] true acceleration
-  double* wheel_force;  // [wheels] N, of the last step: where the contact solve starts
+  double* wheel_force;  // [contacts] N, of the last step: where the contact solve starts
   double* port_force;   // [fixed ports] N, the same of what stands still; 0: open
   double* multiplier;   // [2 wheelsets] of the guide along x, N, and about z, N m; the
                         // force on the wheelset is its negative
@@ -30,10 +30,10 @@ struct Workspace {
   double* u_star;     // [unknowns]
   double* v_star;     // [unknowns]
   double* scaled;     // [unknowns]
-  double* solved;     // [1 + wheels][unknowns] right-hand side of the track without wheels, then
-                      // of a unit force at each wheel; after the solve, the displacements
+  double* solved;     // [1 + contacts][unknowns] right-hand side of the track without wheels, then
+                      // of a unit force at each contact; after the solve, the displacements
   double* imaginary;  // the same of condensed lines; solved is their real part
-  double* row;        // [wheels][2][unknowns] of condensed lines: shape under each wheel
+  double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
   double* system;     // system/workspace.h
 };
 
@@ -54,20 +54,25 @@ struct Outputs {
   double wheel_x[kMaxWheels];       // of the contact along the undeformed rail, m
   double wheel_place[kMaxWheels];   // the same along the model's elements, m
   double wheel_rail_z[kMaxWheels];  // displacement of the rail's axis under it, m
-  double constraint_violation;      // largest of the frame, m or rad
-  std::int32_t iterations;          // largest of the frame, of contact, joint and Newton solves
-  double force_residual;            // of the system: largest of the frame, over its largest force
-  std::int32_t redundant_rows;      // of the system's joints, in the frame's last step that met any
+  /// Left and right flange of each wheelset that has them.
+  double flange_force[2 * kMaxWheelsets];       // N along its normal, at the frame's end
+  double flange_force_peak[2 * kMaxWheelsets];  // N
+  double flange_impulse[2 * kMaxWheelsets];     // N s
+  double flange_gap[2 * kMaxWheelsets];         // m along its normal, negative in contact
+  double constraint_violation;                  // largest of the frame, m or rad
+  std::int32_t iterations;      // largest of the frame, of contact, joint and Newton solves
+  double force_residual;        // of the system: largest of the frame, over its largest force
+  std::int32_t redundant_rows;  // of the system's joints, in the frame's last step that met any
   std::int32_t redundant_row[kMostNamedRows];  // the first of them, among the system's rows
 };
 
 inline std::int64_t state_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + wheel_count(model) + model.fixed.count + 2LL * model.wheelsets +
+  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + 2LL * model.wheelsets +
          system_state_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
-  const std::int64_t wheels = wheel_count(model);
-  return (4 + wheels + model.condensed * (1 + 3 * wheels)) * model.unknowns +
+  const std::int64_t contacts = contact_count(model);
+  return (4 + contacts + model.condensed * (1 + 3 * contacts)) * model.unknowns +
          system_workspace_doubles(model.system);
 }
 
@@ -75,7 +80,7 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
 inline State state_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns;
   double* const wheels = memory + 4 * n;
-  double* const ports = wheels + wheel_count(model);
+  double* const ports = wheels + contact_count(model);
   double* const guides = ports + model.fixed.count;
   double* const system = guides + 2LL * model.wheelsets;
   double* const rows = system + 4LL * model.system.bodies;
@@ -92,7 +97,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           model.system.renew == Renew::kept ? rows + system_rows(model.system) : nullptr};
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
-  const std::int64_t n = model.unknowns, solved = (1 + wheel_count(model)) * n;
+  const std::int64_t n = model.unknowns, solved = (1 + contact_count(model)) * n;
   double* const condensed = memory + 3 * n + solved;
   double* const row = condensed + model.condensed * solved;
   return {memory,
@@ -101,7 +106,7 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           memory + 3 * n,
           condensed,
           row,
-          row + model.condensed * 2LL * wheel_count(model) * n};
+          row + model.condensed * 2LL * contact_count(model) * n};
 }
 
 /// Puts the model's start into a state: step 0.

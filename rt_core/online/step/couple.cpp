@@ -1,6 +1,7 @@
 #include "online/step/couple.h"
 
 #include "online/step/fixed_port.h"
+#include "online/step/flange.h"
 #include "online/step/load.h"
 #include "online/step/track_response.h"
 #include "online/step/turn.h"
@@ -18,25 +19,26 @@ namespace {
 void locate_contacts(const Model& model, std::int64_t step, const State& s, Workspace& w,
                      Coupling& c) noexcept {
   const double ahead = (model.condensed != 0 ? .5 : 1.) * model.scheme.dt;
-  // Irregularities are those of where the penetration is taken.
-  const double later = model.scheme.theta * model.scheme.dt - ahead;
 #pragma omp simd
   for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
-    const double further = later * s.v[set.first];
-    find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b, further);
+    find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b,
+                  further(model, set, s, ahead));
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
       c.law[i] = {set.hertz[side], 0., 0.};
       c.place[i] = {set.kind[side], c.contact[i].row.element, c.contact[i].xi, 0.};
     }
   }
+  locate_flanges(model, s, w, ahead, c);
   const double time = static_cast<double>(step - 1) * model.scheme.dt + ahead;
+  // Irregularities are those of where the penetration is taken.
+  const double later = model.scheme.theta * model.scheme.dt - ahead;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     find_vehicle_contacts(model, model.vehicle[v], time, located_on(model, s, w), c.contact, later);
-  for (int i = 2 * model.wheelsets; i < c.wheels; ++i)
+  for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i)
     c.place[i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }
 
@@ -58,7 +60,8 @@ void find_loaded(const Model& model, std::int64_t step, Coupling& c) noexcept {
 /// What a unit force at wheel j adds to the approach of wheel i through what bears them both.
 double body_compliance(const Model& model, const Coupling& c, int i, int j) noexcept {
   if (is_of_wheelset(model, i) != is_of_wheelset(model, j)) return 0.;
-  return is_of_wheelset(model, i) ? wheelset_compliance(c, i, j) : vehicle_compliance(model, i, j);
+  return is_of_wheelset(model, i) ? wheelset_compliance(model, c, i, j)
+                                  : vehicle_compliance(model, i, j);
 }
 
 /// W between all wheels: through the lines, the bodies and the residual flexibility.
@@ -81,7 +84,8 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
 void track_penetration(const Model& model, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
   for (int i = 0; i < c.wheels; ++i) {
-    c.track_free[i] = -1.;  // off the rail: far away
+    // Off the rail: far away.
+    c.track_free[i] = c.contact[i].apart ? c.contact[i].penetration : -1.;
     if (c.contact[i].on_rail)
       c.track_free[i] = model.scheme.theta * track_motion(model, s, w, c, i) + c.loaded[i];
     else if (c.contact[i].on_ground)
@@ -121,6 +125,7 @@ void solve_coupled(const Model& model, std::int64_t step, State& s, Workspace& w
 }
 
 bool closes_too_fast(const Model& model, const Coupling& c, const State& s, int i) noexcept {
+  if (is_flange(model, i)) return flange_strikes_too_fast(model, c, s, i);
   return is_of_wheelset(model, i) ? strikes_too_fast(model, c, s, i)
                                   : vehicle_strikes_too_fast(model, c, s, i);
 }
@@ -135,10 +140,11 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
     result.gap[i] = -c.penetration[i];
     result.x[i] = at.x;
     result.on_rail[i] = at.on_rail;
-    if (!stands(at)) result.status = result.status | Status::off_rail;
+    if (!stands(at) && !at.apart) result.status = result.status | Status::off_rail;
     if (at.turn * at.turn > kLargeTurnSquared) result.status = result.status | Status::large_turn;
     if (at.cap_reached) result.status = result.status | Status::cap_reached;
-    if (c.force[i] <= 0. && !c.law[i].pulls) result.status = result.status | Status::contact_lost;
+    if (c.force[i] <= 0. && !c.law[i].pulls && !is_flange(model, i))
+      result.status = result.status | Status::contact_lost;
   }
 }
 
@@ -147,7 +153,7 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
 CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspace& w) noexcept {
   CoupleResult result{};
   Coupling c;
-  c.wheels = wheel_count(model);
+  c.wheels = contact_count(model);
   c.ports = c.wheels + model.fixed.count;
   const double time = static_cast<double>(step) * model.scheme.dt;
   locate_contacts(model, step, state, w, c);
@@ -155,6 +161,7 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   free_wheelsets(model, step, w, c);
   free_vehicles(model, state, w, c);
   find_vehicle_laws(model, time, state, w, c);
+  find_flange_laws(model, state, w, c);
   respond(model, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);

@@ -8,7 +8,7 @@ struct CoupleResult {
   Status status;
   std::int32_t iterations;
   double violation;        // of the guides, m or rad
-  double gap[kMaxWheels];  // m, negative in contact
+  double gap[kMaxWheels];  // [contacts] m, negative in contact
   double x[kMaxWheels];    // of the contact along the model's elements, undeformed, m
   bool on_rail[kMaxWheels];
 };

@@ -14,7 +14,8 @@ struct FreeWheelset {
 /// A step's coupled problem: where the track and what stands on it would be without contact, and
 /// how both give way under contact forces.
 struct Coupling {
-  int wheels, ports;  // ports: the wheels, then the fixed ones
+  int wheels,
+      ports;  // wheels: contacts, those of flanges behind; ports: these, then the fixed ones
   WheelContact contact[kMaxWheels];
   RailForce place[kMaxWheels];  // of the contacts
   double loaded[kMaxWheels];    // residual displacement there by the loads, m

@@ -8,7 +8,7 @@ namespace {
 
 /// Entry of a table [kinds][elements][points + 1] under a force.
 double look_up(const Model& model, const double* table, const RailForce& at) noexcept {
-  if (table == nullptr) return 0.;
+  if (table == nullptr || at.kind == kNoPortKind) return 0.;
   const std::int32_t points = model.residual.points;
   const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(at.kind) * model.elements + at.element;
   return interpolate(table + row * (points + 1), points, at.xi);
@@ -47,6 +47,7 @@ double residual_axis(const Model& model, const RailForce& at) noexcept {
 }
 
 double residual_between(const Model& model, const RailForce& force, const RailForce& at) noexcept {
+  if (force.kind == kNoPortKind || at.kind == kNoPortKind) return 0.;
   const PairModel& pair = model.residual.pair[force.kind][at.kind];
   const std::int32_t shift = at.element - force.element;
   if (pair.value == nullptr || shift > pair.reach || shift < -pair.reach) return 0.;

@@ -5,7 +5,7 @@ namespace railstep {
 
 /// Where a vertical force acts on a rail, for the residual flexibility.
 struct RailForce {
-  std::int32_t kind, element;
+  std::int32_t kind, element;  // kind: kNoPortKind makes and feels no residual displacement
   double xi;
   double force;  // N, up positive
 };

@@ -109,6 +109,18 @@ void start_frame(const Model& model, Outputs& out) noexcept {
   out.redundant_rows = 0;
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
     out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
+    out.flange_force_peak[i] = out.flange_impulse[i] = 0.;
+}
+
+void collect_flanges(const Model& model, const State& s, const double* gap, Outputs& out) noexcept {
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) {
+    const double force = s.wheel_force[wheel_count(model) + i];
+    out.flange_force[i] = force;
+    out.flange_impulse[i] += force * model.scheme.dt;
+    if (force > out.flange_force_peak[i]) out.flange_force_peak[i] = force;
+    out.flange_gap[i] = gap[i];
+  }
 }
 
 /// Adds what a step met to the frame's outputs.
@@ -127,6 +139,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
     out.wheel_place[i] = met.x[i];
     out.wheel_on_rail[i] = met.on_rail[i];
   }
+  collect_flanges(model, s, met.gap + wheel_count(model), out);
 }
 
 void collect(const SystemResult& met, Outputs& out) noexcept {
@@ -228,6 +241,13 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
     outputs.wheel_on_rail[i] = contact[i].on_rail;
     outputs.wheel_place[i] = contact[i].x;
     outputs.wheel_x[i] = contact[i].x + passed(model, state.steps);
+  }
+  for (std::int32_t f = 0; f < model.flanges; ++f)
+    find_flanges(model, model.flange[f], standing(model, state), contact + 2 * f);
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) {
+    outputs.flange_force[i] = outputs.flange_force_peak[i] =
+        state.wheel_force[wheel_count(model) + i];
+    outputs.flange_gap[i] = -contact[i].penetration;
   }
   publish(model, state, outputs);
   RailForce force[kMaxLoads + kMaxWheels];

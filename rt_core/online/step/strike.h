@@ -10,4 +10,12 @@ inline bool is_left_too_soon(double hertz, double inverse_mass, double speed, do
   return speed > 0. && depth * depth < steps * steps * steps * steps * steps * speed;
 }
 
+/// The same of a spring, for half a swing: pi sqrt(m / k). A damper beside it shortens that by up
+/// to a third where it is critical.
+inline bool is_left_too_soon_by_spring(double stiffness, double inverse_mass, double speed,
+                                       double dt) noexcept {
+  const double steps = 10. * dt / 3.14159265358979;
+  return speed > 0. && 1. < steps * steps * stiffness * inverse_mass;
+}
+
 }  // namespace railstep

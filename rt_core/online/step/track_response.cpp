@@ -21,13 +21,13 @@ void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     double* x = w.solved + model.line[l].first;
     const bool both = model.line[l].rail_factor[0] != 0. && model.line[l].rail_factor[1] != 0.;
-    if (c.wheels == 2 && both) {
+    const int together = both && c.wheels >= 2 ? 2 : 0;
+    if (together == 2)
       solve_band<3>(model.line[l].step, x, stride);
-      continue;
-    }
-    solve_band<1>(model.line[l].step, x, stride);
-    for (int i = 0; i < c.wheels; ++i)
-      if (model.line[l].rail_factor[c.contact[i].row.rail] != 0.)
+    else
+      solve_band<1>(model.line[l].step, x, stride);
+    for (int i = together; i < c.wheels; ++i)
+      if (c.contact[i].on_rail && model.line[l].rail_factor[c.contact[i].row.rail] != 0.)
         solve_band<1>(model.line[l].step, x + (i + 1) * stride, stride);
   }
 }

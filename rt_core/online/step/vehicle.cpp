@@ -103,7 +103,7 @@ void free_vehicles(const Model& model, const State& s, const Workspace& w, Coupl
 
 void find_vehicle_laws(const Model& model, double time, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
-  for (int i = 2 * model.wheelsets; i < c.wheels; ++i) {
+  for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i) {
     const ContactModel& contact = vehicle_wheel(model, i).contact;
     c.law[i] = {contact.hertz, contact.stiffness, 0., contact.hertz == 0.};
     if (contact.damping == 0.) continue;

@@ -87,11 +87,34 @@ double dot3(const double* a, const double* b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// Where a wheelset is: its centre and its axes, of which the first does not roll.
+struct Pose {
+  double centre[3], ahead[3], axle[3], up[3];
+};
+
+Pose pose_of(const WheelsetModel& w, const double* p) noexcept {
+  const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
+  const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
+  return {{centre[0], centre[1], centre[2]},
+          {cy, sy, 0.},
+          {-sy * cr, cy * cr, sr},
+          {sy * sr, -cy * sr, cr}};
+}
+
 /// Interpolates [r, a, b] at a place of the window.
 void interpolate_nodes(const Window& window, RailPlace place, const double* shape,
                        double* q) noexcept {
   const double* n = window.nodes + 27 * place.element;
   for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
+}
+
+/// Where a search in a window starts: at x on the straight rail.
+RailPlace guess(const Model& model, const Window& window, double x) noexcept {
+  double at = x / model.element_length - window.first;
+  if (!(at > 0.)) at = 0.;
+  if (at > window.elements) at = window.elements;
+  const int element = static_cast<int>(at);
+  return {element, 2. * (at - element) - 1.};
 }
 
 /// Row of the material point (y, z) along the normal. An irregular rail that is drawn along brings
@@ -103,24 +126,27 @@ void fill_row(const double* shape, double slope, WheelContact& at) noexcept {
     for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
 }
 
+/// d(gap)/d(coordinates) of the wheelset. @param arm  from its centre to where the force acts, m
+void fill_body_row(const Pose& body, const double* arm, WheelContact& at) noexcept {
+  double lever[3];
+  cross(arm, at.normal, lever);
+  for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
+  at.body_row[3] = body.ahead[0] * lever[0] + body.ahead[1] * lever[1];
+  at.body_row[4] = 0.;  // the normal meets the axle, or the face is right below: no torque about it
+  at.body_row[5] = lever[2];
+}
+
 /// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
 /// then the material point of the railhead under the normal.
 WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
                           const Configuration& now, double ahead, const Window& window) noexcept {
-  const double* const p = now.u + w.first;
-  const double centre[3] = {w.start + p[0], p[1], w.rest_z + p[2]};
-  const double sr = sine(p[3]), cr = cosine(p[3]), sy = sine(p[5]), cy = cosine(p[5]);
-  const double axle[3] = {-sy * cr, cy * cr, sr};
+  const Pose body = pose_of(w, now.u + w.first);
+  const double *const centre = body.centre, *const axle = body.axle;
   WheelContact at{};
   at.row.rail = side;
   const double z_crown = model.head_z[side] - model.crown_radius[side];
-  double guess = centre[0] / model.element_length - window.first;
-  if (!(guess > 0.)) guess = 0.;
-  if (guess > window.elements) guess = window.elements;
-  RailPlace start{static_cast<int>(guess), 0.};
-  start.xi = 2. * (guess - start.element) - 1.;
-  const WheelOnRail found =
-      locate_wheel({window.elements, window.nodes, 27}, centre, axle, z_crown, start);
+  const WheelOnRail found = locate_wheel({window.elements, window.nodes, 27}, centre, axle, z_crown,
+                                         guess(model, window, centre[0]));
   at.cap_reached = found.status == LocateStatus::cap_reached;
   at.on_rail = found.status == LocateStatus::found || at.cap_reached;
   if (std::fabs(std::fabs(found.along) - std::fabs(model.rail_y[side])) > w.tread_half_width)
@@ -146,25 +172,77 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   // contact at the true shapes' nearest points does not.
   const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length +
                    (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
-  const double rolled = (now.passed + model.endless.origin) + p[0];
+  const double rolled = (now.passed + model.endless.origin) + now.u[w.first];
   const Irregularity off =
       irregularity(model, w.tread[side], side, at.normal, (x + now.passed) + ahead, rolled + ahead);
   fill_row(shape, off.rail_rise, at);
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   at.turn = .5 * (q[5] - q[7]);
   const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
-  // The point of the axle nearest to it, seen from the centre, and its lever on roll and yaw.
-  double lever[3], gap = 0.;
-  cross(arm, at.normal, lever);
+  double gap = 0.;
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
   at.penetration = (w.radius - gap) + off.depth + higher;
   at.irregular = off.depth;
   at.rise = off.rise;
-  for (int d = 0; d < 3; ++d) at.body_row[d] = at.normal[d];
-  at.body_row[3] = cy * lever[0] + sy * lever[1];
-  at.body_row[4] = 0.;  // the normal meets the axle: no torque about it
-  at.body_row[5] = lever[2];
+  fill_body_row(body, arm, at);
+  return at;
+}
+
+/// Slope along x, in the direction of the normal, of the line of the material point of a contact.
+double slope_along(const Model& model, const Window& window, RailPlace place,
+                   const WheelContact& at) noexcept {
+  const double per_metre = 2. / model.element_length, xi = place.xi;
+  const double shape[3] = {(xi - .5) * per_metre, -2. * xi * per_metre, (xi + .5) * per_metre};
+  double q[9];
+  interpolate_nodes(window, place, shape, q);
+  return dot3(at.normal, q) + at.y * dot3(at.normal, q + 3) + at.z * dot3(at.normal, q + 6);
+}
+
+/// Finds the contact of flange `side`, as find_flanges() says.
+WheelContact find_flange(const Model& model, const FlangeModel& flange, int side,
+                         const Configuration& now, double ahead, const Window& window) noexcept {
+  const WheelsetModel& w = model.wheelset[flange.wheelset];
+  const Pose body = pose_of(w, now.u + w.first);
+  const double *const centre = body.centre, *const axle = body.axle, *const up = body.up;
+  WheelContact at{};
+  at.row.rail = side;
+  double face[3];
+  for (int d = 0; d < 3; ++d) {
+    face[d] = centre[d] + (flange.point[side][0] * axle[d] + flange.point[side][1] * up[d]);
+    at.normal[d] =
+        (side == 0 ? flange.normal[0] : -flange.normal[0]) * axle[d] + flange.normal[1] * up[d];
+  }
+  const PointOnRail found =
+      locate_point({window.elements, window.nodes, 27}, face, guess(model, window, face[0]));
+  at.cap_reached = found.status == LocateStatus::cap_reached;
+  at.on_rail = found.status == LocateStatus::found || at.cap_reached;
+  if (!at.on_rail) return at;
+
+  at.row.element = window.first + found.place.element;
+  at.xi = found.place.xi;
+  at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
+  at.y = flange.gauge[side][0];
+  at.z = flange.gauge[side][1];
+  double shape[3], q[9], arm[3], gap = 0.;
+  shape_functions(at.xi, shape);
+  interpolate_nodes(window, found.place, shape, q);
+  for (int d = 0; d < 3; ++d) {
+    const double gauge = q[d] + at.y * q[3 + d] + at.z * q[6 + d];
+    arm[d] = gauge - centre[d];
+    gap += at.normal[d] * (face[d] - gauge);
+  }
+  const double x = at.x + (face[0] - (centre[0] + arm[0]));
+  const Irregularity off =
+      irregularity(model, SignalModel{}, side, at.normal, (x + now.passed) + ahead, 0.);
+  fill_row(shape, off.rail_rise, at);
+  at.turn = .5 * (q[5] - q[7]);
+  const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
+  at.penetration = (off.depth + higher) - gap;
+  at.irregular = off.depth;
+  at.rise = off.rise + slope_along(model, window, found.place, at);
+  if (at.penetration > 0. && dot3(arm, up) < flange.tip) at.on_rail = false;
+  fill_body_row(body, arm, at);
   return at;
 }
 
@@ -193,6 +271,17 @@ void find_contacts(const Model& model, const WheelsetModel& wheelset, const Conf
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
     sides[side] = find_contact(model, wheelset, side, at, ahead, windows[side]);
+  }
+}
+
+void find_flanges(const Model& model, const FlangeModel& flange, const Configuration& at,
+                  WheelContact* sides, double ahead) noexcept {
+  const WheelsetModel& wheelset = model.wheelset[flange.wheelset];
+  Window windows[2];
+  gather(model, wheelset.start + at.u[wheelset.first], at, windows);
+  for (int side = 0; side < 2; ++side) {
+    add_rest(model, side, windows[side]);
+    sides[side] = find_flange(model, flange, side, at, ahead, windows[side]);
   }
 }
 

@@ -10,6 +10,7 @@ namespace railstep {
 struct WheelContact {
   bool on_rail;
   bool on_ground;  // of a vehicle: it rolls on level ground before or behind the rail
+  bool apart;      // of a flange: too far from its rail to take part in the step
   bool cap_reached;
   double xi;
   double x;            // of the contact along the undeformed rail, m
@@ -41,5 +42,14 @@ Irregularity irregularity(const Model& model, const SignalModel& tread, int rail
 /// @param ahead  m, by how much the irregularities under them are those of a place further on
 void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
                    WheelContact* sides, double ahead = 0.) noexcept;
+
+/// Finds the contacts of a wheelset's left and right flange, each in the rail's section through its
+/// face: X the gauge face's point there, c the wheelset's centre, n the face's normal, R its turn,
+///   gap = n.(c + R point - X),  d(gap) = n.(dc - dX) + ((X - c) x n).(turn of the wheelset),
+/// so that a force f n on the wheelset at X is the opposite of that on the rail. A flange whose tip
+/// is over X on the rail's side has run off: on_rail is false. `rise` has the rail's own slope too.
+/// Arguments as those of find_contacts().
+void find_flanges(const Model& model, const FlangeModel& flange, const Configuration& at,
+                  WheelContact* sides, double ahead = 0.) noexcept;
 
 }  // namespace railstep

@@ -45,12 +45,14 @@ bool is_guided_by_force(const WheelsetModel& set, int k) noexcept {
 }
 
 /// Coordinates of a wheelset under its wheel forces and multipliers.
-void move_body(const WheelsetModel& set, int b, const Coupling& c, const double* multiplier,
+void move_body(const Model& model, int b, const Coupling& c, const double* multiplier,
                double* p) noexcept {
+  const WheelsetModel& set = model.wheelset[b];
+  const OwnContacts own = contacts_of(model, b);
   for (int k = 0; k < 6; ++k) {
     double force = 0.;
-    for (int side = 0; side < 2; ++side)
-      force += c.contact[2 * b + side].body_row[k] * c.force[2 * b + side];
+    for (int n = 0; n < own.count; ++n)
+      force += c.contact[own.at[n]].body_row[k] * c.force[own.at[n]];
     if (is_guided_by_force(set, k)) force -= multiplier[k == kGuided[1] ? 1 : 0];
     p[k] = c.wheelset[b].free[k] + c.wheelset[b].compliance[k] * force;
   }
@@ -92,17 +94,18 @@ void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
   }
 }
 
-double wheelset_compliance(const Coupling& c, int i, int j) noexcept {
+double wheelset_compliance(const Model& model, const Coupling& c, int i, int j) noexcept {
   double sum = 0.;
-  if (i / 2 != j / 2) return sum;
+  const std::int32_t b = wheelset_of(model, i);
+  if (b != wheelset_of(model, j)) return sum;
   for (int k = 0; k < 6; ++k)
-    sum += c.contact[i].body_row[k] * c.wheelset[i / 2].compliance[k] * c.contact[j].body_row[k];
+    sum += c.contact[i].body_row[k] * c.wheelset[b].compliance[k] * c.contact[j].body_row[k];
   return sum;
 }
 
 double wheelset_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
                        int i) noexcept {
-  const std::int32_t first = model.wheelset[i / 2].first;
+  const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
   double sum = c.contact[i].penetration;
   for (int k = 0; k < 6; ++k)
     sum += c.contact[i].body_row[k] *
@@ -111,7 +114,7 @@ double wheelset_offset(const Model& model, const State& s, const Workspace& w, c
 }
 
 double free_lift(const Model& model, const State& s, const Coupling& c, int i) noexcept {
-  const int b = i / 2;
+  const std::int32_t b = wheelset_of(model, i);
   const FreeWheelset& own = c.wheelset[b];
   double sum = 0.;
   for (int k = 0; k < 6; ++k) {
@@ -137,7 +140,7 @@ bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& 
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     double* p = w.solved + set.first;
-    move_body(set, b, c, s.multiplier + 2 * b, p);
+    move_body(model, b, c, s.multiplier + 2 * b, p);
     for (int i = 0; i < 2; ++i) {
       const int k = kGuided[i];
       const double miss = p[k] - target(model, set, k, step).distance;

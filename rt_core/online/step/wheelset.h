@@ -3,23 +3,24 @@
 
 namespace railstep {
 
-// Wheelsets in a step's coupled problem. The left and right wheel of wheelset b are wheels 2 b and
-// 2 b + 1 of the model.
+// Wheelsets in a step's coupled problem. The left and right tread of wheelset b are contacts 2 b
+// and 2 b + 1 of the model; its flanges, if it has them, stand behind all wheels.
 
 /// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
 /// guide does not give way at all: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
 void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
                     Coupling& c) noexcept;
 
-/// What a unit force at wheel j adds to the approach of wheel i through a wheelset that bears both.
-double wheelset_compliance(const Coupling& c, int i, int j) noexcept;
+/// What a unit force at contact j adds to the approach of contact i through a wheelset that bears
+/// both.
+double wheelset_compliance(const Model& model, const Coupling& c, int i, int j) noexcept;
 
-/// Penetration that frozen geometry and the wheelset's place at the step's start leave of wheel i:
-/// what the coordinates at the step's end take off is left out.
+/// Penetration that frozen geometry and the wheelset's place at the step's start leave of contact
+/// i: what the coordinates at the step's end take off is left out.
 double wheelset_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
                        int i) noexcept;
 
-/// How far wheel i goes from its rail over the step without contact forces.
+/// How far contact i goes from its rail over the step without contact forces.
 double free_lift(const Model& model, const State& s, const Coupling& c, int i) noexcept;
 
 /// Most turns of the guides' augmented Lagrangian around the contacts.

@@ -1,0 +1,31 @@
+#pragma once
+#include "online/step/coupling.h"
+
+namespace railstep {
+
+// Flanges in a step's coupled problem: contacts behind those of all wheels. What a force at one
+// does to the track and the wheelset is found as that of a tread is; it neither makes nor feels
+// residual displacements.
+
+/// By how far the irregularities under a wheelset are those of a place further on than where its
+/// contacts are located, m.
+/// @param ahead  of the step's start, at which they are located, s
+inline double further(const Model& model, const WheelsetModel& w, const State& s,
+                      double ahead) noexcept {
+  return (model.scheme.theta * model.scheme.dt - ahead) * s.v[w.first];
+}
+
+/// Contacts of all flanges where the forces of the step act, as of the treads.
+void locate_flanges(const Model& model, const State& s, const Workspace& w, double ahead,
+                    Coupling& c) noexcept;
+
+/// Laws of the flanges over the step. A damper takes the rate of the penetration d at its end,
+/// kv (d - d*) + d*' with d* and d*' those of u* and v*; of held forces (d - d0) / (theta dt); and
+/// what the way along a rail adds to the rate.
+void find_flange_laws(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
+
+/// As strikes_too_fast() of treads, for the mass that the flange has alone.
+bool flange_strikes_too_fast(const Model& model, const Coupling& c, const State& s,
+                             int contact) noexcept;
+
+}  // namespace railstep
