@@ -196,11 +196,12 @@ TEST_CASE("a wheelset at 30 m/s along its flange balances, on a track with ends 
   using Words = std::pair<const char*, const char*>;
   const auto [name, kind] =
       GENERATE(Words{"ballasted_track", "full"}, Words{"endless_track", "modal"});
+  const std::string flange =
+      "wheelset[0].flange={clearance_m=1e-4, contact=\"linear\", stiffness_n_per_m=2e7, "
+      "damping_n_s_per_m=5e4}";
   const Balance found = balance(
       name, {std::string("condense.kind=\"") + kind + "\"", "track.bays=24", "step.duration_s=0.05",
-             "wheelset[0].flange={clearance_m=1e-4, contact=\"linear\", stiffness_n_per_m=2e7, "
-             "damping_n_s_per_m=5e4}",
-             "wheelset[0].force=[{direction=\"y\", table=[[0.0, 0.0], [0.01, 10e3]]}]"});
+             flange, "wheelset[0].force=[{direction=\"y\", table=[[0.0, 0.0], [0.01, 10e3]]}]"});
   CHECK(found.flange > 10e3);
   // test_energy's bounds of the same wheelset without flanges
   CHECK(found.rest < 1e-4 * found.turned);
@@ -289,9 +290,9 @@ TEST_CASE("a push at the start leans the wheelset on its flange, where it stays"
            "wheelset[0].force[0].table=[[0.0, " + push + "]]"});
   std::vector<double> start(s.run.state.u, s.run.state.u + s.model.unknowns);
   const std::vector<double> forces(s.run.state.wheel_force, s.run.state.wheel_force + 4);
-  const int side = push[0] == '-' ? 1 : 0;
-  const double f = forces[static_cast<std::size_t>(2 + side)];
-  CHECK(forces[static_cast<std::size_t>(3 - side)] == 0.);
+  const std::size_t side = push[0] == '-' ? 1 : 0;
+  const double f = forces[2 + side];
+  CHECK(forces[3 - side] == 0.);
   CHECK(f > 0.);
   const Push normals(s);
   CHECK_THAT(normals.on(s.run.state), WithinAbs(-std::atof(push.c_str()), 1e-9));
@@ -299,8 +300,8 @@ TEST_CASE("a push at the start leans the wheelset on its flange, where it stays"
   while (s.time() < .1) {
     s.step();
     for (int k = 1; k < 4; ++k) {
-      const auto i = static_cast<std::size_t>(s.model.wheelset[0].first + k);
-      moved = std::max(moved, std::abs(s.run.state.u[i] - start[i]));
+      const std::int32_t i = s.model.wheelset[0].first + k;
+      moved = std::max(moved, std::abs(s.run.state.u[i] - start[static_cast<std::size_t>(i)]));
     }
     for (std::size_t i = 0; i < 4; ++i)
       changed = std::max(changed, std::abs(s.run.state.wheel_force[i] - forces[i]));
