@@ -164,12 +164,14 @@ TEST_CASE("the seats' part of a vertical force and what it hangs on", "[turn]") 
 TEST_CASE("the row of a turned rail is the slope of how it lies", "[turn]") {
   // The height that add_turn() and keep_section() give, against differences: 1e-7 of its size, the
   // square root of rounding.
-  ModelRun run(rolling_track(1e5), {.wheelsets = {paper_wheelset(3.)}, .head = kHead},
-               full_order(1e-3));
+  Track track = rolling_track(1e5);
+  track.cant = GENERATE(0., .05);
+  ModelRun run(track, {.wheelsets = {paper_wheelset(3.)}, .head = kHead}, full_order(1e-3));
   const Model& model = run.model();
   const double xi = .3, y = .01, z = .09, normal[3] = {0., .28, .96};
-  double shape[3];
+  double shape[3], own[3];
   shape_functions(xi, shape);
+  to_rail(model.cant[0], normal, own);
   std::vector<double> u(static_cast<std::size_t>(model.unknowns));
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = 1e-2 * std::sin(1.7 * static_cast<double>(i));
   const std::int32_t element = 11;
@@ -185,15 +187,15 @@ TEST_CASE("the row of a turned rail is the slope of how it lies", "[turn]") {
     keep_section(q);
     row = {0, element, {}};
     double height = add_turn(model, at, turn, xi, y, z, normal, row);
-    for (int d = 0; d < 3; ++d) height += normal[d] * (y * q[3 + d] + z * q[6 + d]);
+    for (int d = 0; d < 3; ++d) height += own[d] * (y * q[3 + d] + z * q[6 + d]);
     return height;
   };
   RailRow row, other;
   const double height = lies(row);
   for (int i = 0; i < 3; ++i)
     for (int d = 0; d < 3; ++d) {
-      row.coefficient[i][3 + d] += shape[i] * y * normal[d];
-      row.coefficient[i][6 + d] += shape[i] * z * normal[d];
+      row.coefficient[i][3 + d] += shape[i] * y * own[d];
+      row.coefficient[i][6 + d] += shape[i] * z * own[d];
     }
   const std::vector<double> start = u;
   for (std::size_t i = 0; i < u.size(); i += 3) {

@@ -11,6 +11,7 @@
 
 #include "build_endless.h"
 #include "build_irregularity.h"
+#include "build_joints.h"
 #include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
@@ -119,6 +120,8 @@ std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
   return vehicles;
 }
 
+}  // namespace
+
 Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail) {
   const bool right = rail == Side::right && scene.right_rail;
   Railhead head;
@@ -128,6 +131,16 @@ Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail
   if (has_flanges(scene)) head.gauge_half_width = .5 * head_width(own).value();
   return head;
 }
+
+double rail_z(const Scene& scene, const RailSections& sections, const Track& track, Side rail) {
+  const auto top = [&](Side side) {
+    const Railhead head = railhead_of(scene, sections, side);
+    return crown_top(track.lean(side == Side::right ? 1 : 0), head.top_z, head.crown_radius).height;
+  };
+  return top(Side::left) - top(rail);
+}
+
+namespace {
 
 Scheme scheme_of(const Scene& scene) {
   const StepScene& step = *scene.step;
@@ -173,21 +186,21 @@ Stop stop_of(const StopScene& s, const Section& section, double axis_z) {
 }
 
 /// Force in a rail at rest: its own, and what heat makes between ends that hold it, N. Gaps of
-/// joints pass none.
-double axial_force_of(const RailScene& rail, double area, int side,
-                      const std::vector<RailJoint>& joints) {
-  for (const RailJoint& joint : joints)
-    if (joint.rails[static_cast<std::size_t>(side)]) return 0.;
+/// joints pass none until they are closed.
+double axial_force_of(const RailScene& rail, double area, int side, const HeatedJoints& heated) {
+  for (const RailJoint& joint : heated.joints)
+    if (joint.rails[static_cast<std::size_t>(side)])
+      return -heated.compression[static_cast<std::size_t>(side)];
   return rail.axial_force - rail.young * area * (rail.expansion * rail.temperature_rise);
 }
 
 /// The right rail where it differs; its pads reach down to its own foot.
-void add_right_rail(const Scene& scene, bool keep_moments, Track& track) {
+void add_right_rail(const Scene& scene, const RailSection& found, const HeatedJoints& heated,
+                    bool keep_moments, Track& track) {
   const RailScene& right = *scene.right_rail;
-  const RailSection found = rail_section_of(scene, Side::right);
   RailBar bar{beam_section(found), {right.young, right.poisson, right.density}, 0.};
   if (!keep_moments) bar.section.moments.reset();
-  bar.axial_force = axial_force_of(right, bar.section.area, 1, scene.joints);
+  bar.axial_force = axial_force_of(right, bar.section.area, 1, heated);
   if (scene.track.reference_line != ReferenceLine::centroid)
     throw std::invalid_argument(
         "rails that differ have their nodes on their centroids; accepted is track.reference_line = "
@@ -247,14 +260,18 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.bay_length = scene.track.bay;
   track.elements_per_bay = scene.track.elements_per_bay;
   track.rail_spacing = scene.track.rail_spacing;
+  track.cant = scene.rail.cant;
   track.ends = scene.track.ends;
   track.end_zone_bays = scene.track.end_zone_bays;
   track.ring = scene.track.endless;
   if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
   if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
-  track.axial_force = axial_force_of(scene.rail, track.section.area, 0, scene.joints);
-  track.joints = scene.joints;
-  if (scene.right_rail) add_right_rail(scene, keep_moments, track);
+  const RailSection right = scene.right_rail ? rail_section_of(scene, Side::right) : rail;
+  const HeatedJoints heated = heated_joints(scene, {section.area.area, right.section.area.area},
+                                            {section.height, right.section.height});
+  track.axial_force = axial_force_of(scene.rail, track.section.area, 0, heated);
+  track.joints = heated.joints;
+  if (scene.right_rail) add_right_rail(scene, right, heated, keep_moments, track);
   change_seats(scene.seat_changes, track);
   for (const StopScene& stop : scene.stops) {
     const bool own = stop.rail == Side::right && scene.right_rail;

@@ -46,8 +46,10 @@ inline const Section& section_of(const RailSections& sections, Side rail) {
   return sections[rail == Side::right ? 1 : 0];
 }
 
+/// The head that wheels meet on a rail.
+Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail);
 /// Height of a rail's axis over the left one's, m: railheads are level.
-double rail_z(const RailSections& sections, Side rail);
+double rail_z(const Scene& scene, const RailSections& sections, const Track& track, Side rail);
 
 /// Height of a reference line above the centroid, m.
 double axis_z_of(ReferenceLine line, const Section& section);

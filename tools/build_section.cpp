@@ -101,10 +101,6 @@ RailSections sections_of(const Scene& scene) {
   return {left, scene.right_rail ? rail_section_of(scene, Side::right).section : left};
 }
 
-double rail_z(const RailSections& sections, Side rail) {
-  return height_z(Height::head, sections[0]) - height_z(Height::head, section_of(sections, rail));
-}
-
 double height_z(Height at, const Section& section, double axis_z) {
   if (at == Height::axis) return -axis_z;
   return (at == Height::head ? section.height : 0.) - section.area.centroid_height - axis_z;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -187,6 +188,24 @@ double Table::number(std::string_view key, const Range& accepted) const {
 
 double Table::number(std::string_view key, const Range& accepted, double otherwise) const {
   return has(key) ? number(key, accepted) : otherwise;
+}
+
+double Table::slope(std::string_view key, const Range& accepted, double otherwise) const {
+  if (!has(key)) return otherwise;
+  const Entry entry = need(key);
+  const auto* text = entry.node->as_string();
+  if (!text) return entry.number(*entry.node, accepted);
+  const std::string& slope = text->get();
+  double n = 0.0;
+  const char* const end = slope.data() + slope.size();
+  const bool is_slope = slope.starts_with("1:") &&
+                        std::from_chars(slope.data() + 2, end, n).ptr == end && n > 0.0 &&
+                        accepted.holds(1.0 / n);
+  if (!is_slope)
+    entry.refuse(*entry.node,
+                 fmt::format("{} = \"{}\"; accepted is \"1:n\", or a number that is {}", key, slope,
+                             accepted.text()));
+  return 1.0 / n;
 }
 
 std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64_t most) const {

@@ -45,6 +45,8 @@ class Table {
   /// An integer or a float, finite and in `accepted`; a string is refused.
   [[nodiscard]] double number(std::string_view key, const Range& accepted) const;
   [[nodiscard]] double number(std::string_view key, const Range& accepted, double otherwise) const;
+  /// A number, or a slope as "1:n".
+  [[nodiscard]] double slope(std::string_view key, const Range& accepted, double otherwise) const;
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t least,
                                      std::int64_t most) const;
   [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t least, std::int64_t most,

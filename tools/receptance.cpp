@@ -236,7 +236,9 @@ ReceptanceAnswer solve(const ReceptanceRequest& request, const Scene& scene) {
                                    request.condensed ? curve("full").value : answer.curve.value);
   const RailPoint* at = rail_of(force);
   const bool driving = read.sensor == force.sensor && read.direction == force.direction;
-  if (driving && at != nullptr && force.direction == 2) add_resonances(track, *at, *model, answer);
+  // They are named by vertical bending alone.
+  if (driving && at != nullptr && force.direction == 2 && track.cant == 0.)
+    add_resonances(track, *at, *model, answer);
   if (request.reflection) add_reflection(track, force, answer);
   warn({&force, &read}, end_zones(track) > 0, answer);
   if (request.decay) add_decay(request, scene, track, force, answer);

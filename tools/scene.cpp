@@ -125,7 +125,20 @@ void read_gauge(const Table& track, Scene& scene) {
     track.refuse("gauge_m", "gauge_m beside rail_spacing_m; one of them is accepted");
   if (scene.track.rails == 1)
     track.refuse("gauge_m", "gauge_m, but the track has one rail; accepted with rails = 2");
+  if (scene.rail.cant != 0.0)
+    track.refuse(
+        "gauge_m",
+        "gauge_m is measured between the heads of upright rails; accepted beside rail.cant "
+        "is rail_spacing_m, between the rails' axes");
   scene.track.rail_spacing = spacing_of_gauge(track, scene, gauge);
+}
+
+/// A vertical force moves a rail that leans sideways too.
+void check_cant(const Table& rail, const Scene& scene) {
+  if (scene.rail.cant != 0.0 && scene.track.unknowns == Unknowns::vertical)
+    rail.refuse("cant",
+                "cant makes a vertical force move the rail sideways too; accepted with "
+                "track.unknowns = \"rigid-section\" or \"full\"");
 }
 
 std::optional<SupportScene> read_support(const Table& root, const Scene& scene) {
@@ -294,8 +307,9 @@ void read_rails(const Table& root, Scene& scene) {
     scene.right_rail = read_right_rail(*right, scene.rail);
   }
   read_gauge(root.table("track"), scene);
+  check_cant(rail, scene);
   check_held(rail, scene);
-  scene.joints = read_joints(root, rail, scene);
+  read_joints(root, rail, scene);
   scene.support = read_support(root, scene);
   scene.sleeper = read_sleeper(root, scene);
   scene.seat_changes = read_seat_changes(root, scene);

@@ -76,6 +76,7 @@ struct RailScene : BarScene {
   double axial_force;       // N, tension positive, beside what the temperature makes
   double temperature_rise;  // K, over that without force
   double expansion;         // 1/K
+  double cant;              // by how much both rails lean inwards, tangent
 };
 
 /// A spring and a damper in parallel.
@@ -133,6 +134,14 @@ struct SeatChange {
   std::vector<SeatScatter> scatter;
   std::uint64_t seed = 0;
   Missing missing = Missing::nothing;
+};
+
+/// Between the ends of rails at a joint.
+struct JointGap {
+  std::optional<double> cold;           // without heat, m; none: the ends never meet
+  std::optional<double> end_stiffness;  // N/m; none: by the section
+  double end_damping = 0.0;             // N s/m
+  std::array<double, 2> grown{};        // what heat takes of it at left and right rail, m
 };
 
 /// What a rail's point meets and does not pull at.
@@ -262,7 +271,8 @@ struct Scene {
   std::optional<SleeperScene> sleeper;
   std::vector<SeatChange> seat_changes;  // one after the other
   std::vector<StopScene> stops;
-  std::vector<RailJoint> joints;
+  std::vector<RailJoint> joints;     // without what their gaps do
+  std::vector<JointGap> joint_gaps;  // [joints]
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::vector<VehicleScene> vehicles;

@@ -126,6 +126,7 @@ RailScene read_rail(const Table& rail) {
   r.axial_force = rail.number("axial_force_n", between(-1e10, 1e10), 0.0);
   r.temperature_rise = rail.number("temperature_rise_k", between(-300.0, 300.0), 0.0);
   r.expansion = rail.number("expansion_per_k", between(0.0, 1e-3), 1.15e-5);
+  r.cant = rail.slope("cant", between(0.0, 0.2), 0.0);
   return r;
 }
 

@@ -44,8 +44,20 @@ double read_place(const Table& t, const TrackScene& track) {
 
 struct Jointed {
   RailJoint joint;
-  double gap;  // m
+  JointGap gap;
 };
+
+JointGap read_gap(const Table& t) {
+  JointGap gap;
+  if (t.has("gap_m")) gap.cold = t.number("gap_m", between(0.0, 0.1));
+  for (const char* key : {"end_stiffness_n_per_m", "end_damping_n_s_per_m"})
+    if (t.has(key) && !gap.cold)
+      t.refuse(key, fmt::format("{} is of ends that meet; accepted beside gap_m", key));
+  if (t.has("end_stiffness_n_per_m"))
+    gap.end_stiffness = t.number("end_stiffness_n_per_m", above_upto(0.0, 1e13));
+  gap.end_damping = t.number("end_damping_n_s_per_m", between(0.0, 1e11), 0.0);
+  return gap;
+}
 
 Jointed read_joint(const Table& t, const Scene& scene) {
   Jointed read{};
@@ -62,33 +74,57 @@ Jointed read_joint(const Table& t, const Scene& scene) {
   read_plates(t, "twist", true, 0.0, joint.turn_stiffness[0], joint.turn_damping[0]);
   read_plates(t, "bending_vertical", true, 0.0, joint.turn_stiffness[1], joint.turn_damping[1]);
   read_plates(t, "bending_lateral", true, 0.0, joint.turn_stiffness[2], joint.turn_damping[2]);
-  read.gap = t.number("gap_m", between(0.0, 0.1), 0.0);
+  read.gap = read_gap(t);
   return read;
 }
 
+/// Whether heat closes all gaps of a rail, and presses it; `cuts` by place.
+bool closes_all(const std::vector<std::pair<double, std::size_t>>& cuts,
+                const std::vector<Jointed>& joints, double growth) {
+  double gaps = 0.0;
+  for (const auto& [x, i] : cuts) {
+    if (!joints[i].gap.cold) return false;
+    gaps += *joints[i].gap.cold;
+  }
+  return growth > gaps;
+}
+
+/// Heat presses ends alone, without plates beside them.
+void check_plates(const Table& t, const RailJoint& joint) {
+  if (joint.stiffness[0] > 0.0)
+    t.refuse(
+        "along_stiffness_n_per_m",
+        "along_stiffness_n_per_m beside a gap that heat closes: plates that do not slip bear a "
+        "part of its force; accepted are wider gaps, colder rails, or 0");
+}
+
 /// Warm rails grow into their gaps: each from its middle, those at the ends from there, where they
-/// are held.
-void check_gaps(const Table& root, const Scene& scene, int rail,
-                const std::vector<Jointed>& joints) {
+/// are held. Where they have room in all together, none is closed.
+void check_gaps(const Table& root, const Scene& scene, int rail, std::vector<Jointed>& joints) {
   const RailScene& own = rail == 1 && scene.right_rail ? *scene.right_rail : scene.rail;
   std::vector<std::pair<double, std::size_t>> cuts;
   for (std::size_t i = 0; i < joints.size(); ++i)
     if (joints[i].joint.rails[static_cast<std::size_t>(rail)])
       cuts.emplace_back(joints[i].joint.x, i);
   std::sort(cuts.begin(), cuts.end());
+  const double strain = own.expansion * own.temperature_rise;
+  const bool closed = closes_all(cuts, joints, strain * scene.track.length());
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     const double x = cuts[i].first;
     const double before = i == 0 ? x : 0.5 * (x - cuts[i - 1].first);
     const double after =
         i + 1 == cuts.size() ? scene.track.length() - x : 0.5 * (cuts[i + 1].first - x);
-    const double grown = own.expansion * own.temperature_rise * (before + after);
-    const double gap = joints[cuts[i].second].gap;
-    if (grown > gap)
-      root.tables("rail_joint")[cuts[i].second].refuse(
-          "gap_m", fmt::format("gap_m = {:.15g}, but at temperature_rise_k = {:.15g} the rails "
-                               "grow by {:.3g} m into it: a closed gap presses, which is not "
-                               "modelled; accepted are wider gaps, or colder rails",
-                               gap, own.temperature_rise, grown));
+    const double grown = strain * (before + after);
+    JointGap& gap = joints[cuts[i].second].gap;
+    gap.grown[static_cast<std::size_t>(rail)] = grown;
+    const Table t = root.tables("rail_joint")[cuts[i].second];
+    if (closed) check_plates(t, joints[cuts[i].second].joint);
+    if (!closed && grown > gap.cold.value_or(0.0))
+      t.refuse("gap_m",
+               fmt::format("gap_m = {:.15g}, but at temperature_rise_k = {:.15g} the rails grow by "
+                           "{:.3g} m into it, which not all of the rail's gaps do; accepted are "
+                           "gaps in all joints that heat leaves all open or closes all",
+                           gap.cold.value_or(0.0), own.temperature_rise, grown));
   }
 }
 
@@ -115,7 +151,7 @@ void check_heat(const Table& rail, const Scene& scene, const std::vector<Jointed
 
 }  // namespace
 
-std::vector<RailJoint> read_joints(const Table& root, const Table& rail, const Scene& scene) {
+void read_joints(const Table& root, const Table& rail, Scene& scene) {
   std::vector<Jointed> read;
   for (const Table& t : root.tables("rail_joint")) {
     read.push_back(read_joint(t, scene));
@@ -125,13 +161,14 @@ std::vector<RailJoint> read_joints(const Table& root, const Table& rail, const S
             read.back().joint.rails[side])
           t.refuse("x_m", "x_m: the rail is cut there already; accepted is one joint at a place");
   }
-  std::vector<RailJoint> joints;
-  if (read.empty()) return joints;
+  if (read.empty()) return;
   check_force(rail, scene);
   check_heat(rail, scene, read);
   for (int side = 0; side < scene.track.rails; ++side) check_gaps(root, scene, side, read);
-  for (const Jointed& one : read) joints.push_back(one.joint);
-  return joints;
+  for (const Jointed& one : read) {
+    scene.joints.push_back(one.joint);
+    scene.joint_gaps.push_back(one.gap);
+  }
 }
 
 }  // namespace railstep

@@ -28,7 +28,7 @@ RailScene read_right_rail(const Table& right, const RailScene& left);
 std::vector<SeatChange> read_seat_changes(const Table& root, const Scene& scene);
 std::vector<StopScene> read_stops(const Table& root, const Scene& scene);
 /// [[rail_joint]] of a scene whose rails are read. Refuses force that a gap does not carry.
-std::vector<RailJoint> read_joints(const Table& root, const Table& rail, const Scene& scene);
+void read_joints(const Table& root, const Table& rail, Scene& scene);
 /// Distance of the rails' centres whose heads' inner faces are `gauge` apart, 14 mm below the
 /// running surface, m. Throws InputError where a rail's section has no head.
 double spacing_of_gauge(const Table& track, const Scene& scene, double gauge);

@@ -24,7 +24,11 @@ using Point = std::array<Direction, 3>;
 Point point_of(const RailSensor& sensor, const Track& track, double z, double axis_z) {
   const int rail = sensor.rail == Side::right ? 1 : 0;
   const double y = track.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track.rail_spacing;
-  const std::array<double, 3> rest = {sensor.position, y, axis_z + z};
+  const double in_section[3] = {sensor.position, 0., z};
+  std::array<double, 3> rest;
+  to_track(track.lean(rail), in_section, rest.data());
+  rest[1] += y;
+  rest[2] += axis_z;
   Point point;
   for (int d = 0; d < 3; ++d)
     point[static_cast<std::size_t>(d)] = {
@@ -49,13 +53,13 @@ Point point_of(const SleeperSensor& sensor, const Track& track, double z) {
   return point;
 }
 
-Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Railhead& head,
-               double origin) {
+Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Track& track,
+               const Railhead& head, double origin) {
   const WheelsetScene& w = scene.wheelsets[sensor.wheelset];
   Point point;
   point[0].rest = origin + w.start;
   point[0].moved = origin;
-  point[2].rest = head.top_z + w.radius;
+  point[2].rest = crown_top(track.lean(0), head.top_z, head.crown_radius).height + w.radius;
   for (Direction& direction : point) direction.wheelset = static_cast<int>(sensor.wheelset);
   return point;
 }
@@ -104,8 +108,8 @@ Probe press_of(const Track& track, const Chosen& chosen) {
   return probe;
 }
 
-/// Force of a seat on its rail, up positive: its spring and damper on the gap between foot and
-/// sleeper.
+/// Force of a seat on its rail along the pad's normal, up positive: its spring and damper on the
+/// gap between foot and sleeper.
 void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
   const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
   Probe probe;
@@ -163,7 +167,7 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
       add_point(sensor.name,
                 point_of(*rail, track, height_z(rail->at, section_of(sections, rail->rail)),
-                         rail_z(sections, rail->rail)),
+                         rail_z(scene, sections, track, rail->rail)),
                 sensors);
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
       add_point(sensor.name, point_of(*sleeper, track, height_z(Height::foot, sections[0])),
@@ -171,10 +175,10 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
     else if (const auto* vehicle = std::get_if<VehicleSensor>(&sensor.on))
       add_vehicle_point(sensor.name, *vehicle, scene, sensors);
     else
-      add_point(
-          sensor.name,
-          point_of(std::get<WheelsetSensor>(sensor.on), scene, head, behind * track.bay_length),
-          sensors);
+      add_point(sensor.name,
+                point_of(std::get<WheelsetSensor>(sensor.on), scene, track, head,
+                         behind * track.bay_length),
+                sensors);
   }
   for (int rail = 0; rail < track.rails && scene.trace_supports; ++rail)
     for (int seat = 0; seat <= track.bays; ++seat) add_support(rail, seat, track, sensors);
@@ -193,7 +197,7 @@ std::optional<Functional> functional_of(const SensorScene& sensor, const Scene& 
   if (const auto* rail = std::get_if<RailSensor>(&sensor.on)) {
     const RailSections sections = sections_of(scene);
     return point_of(*rail, track, height_z(rail->at, section_of(sections, rail->rail)),
-                    rail_z(sections, rail->rail))[d]
+                    rail_z(scene, sections, track, rail->rail))[d]
         .track;
   }
   if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))

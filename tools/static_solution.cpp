@@ -36,9 +36,17 @@ struct Place {
 
 using Displacement = std::function<double(const Functional&)>;
 
-void add_force(Problem& problem, int rail, double x, Height at, double newton) {
+void add_force(Problem& problem, int rail, double x, double y, double z, double newton) {
   if (x < 0. || x > problem.track.length()) return;  // it may leave the rail, and has
-  problem.forces.push_back({{rail, x, 0., problem.z(rail, at), 2}, newton});
+  problem.forces.push_back({{rail, x, y, z, 2}, newton});
+}
+
+/// Where a wheel stands on a rail at rest.
+void add_wheel(const Scene& scene, Problem& problem, int rail, double x, double newton) {
+  const RailScene& own = rail == 1 && scene.right_rail ? *scene.right_rail : scene.rail;
+  const CrownTop top =
+      crown_top(problem.track.lean(rail), problem.z(rail, Height::head), own.crown_radius);
+  add_force(problem, rail, x, top.y, top.z, newton);
 }
 
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
@@ -49,7 +57,7 @@ void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) 
                       "forces that are 0 at t = 0",
                       scene.file.string(), w.name));
   const double weight = ((w.gravity ? w.mass : 0.) + w.carried_mass) * kGravity;
-  for (const int rail : {0, 1}) add_force(problem, rail, w.start, Height::head, -.5 * weight);
+  for (const int rail : {0, 1}) add_wheel(scene, problem, rail, w.start, -.5 * weight);
 }
 
 /// The loads of a vehicle's wheels on a level rail that does not give way.
@@ -57,8 +65,8 @@ void add_vehicle(const Scene& scene, const VehicleScene& v, Problem& problem) tr
   const VehicleRest rest =
       vehicle_at_rest(vehicle_matrices(v.kind.vehicle, v.gravity ? kGravity : 0.));
   for (std::size_t i = 0; i < v.kind.vehicle.wheels.size(); ++i)
-    add_force(problem, v.rail == Side::right ? 1 : 0, v.start + v.kind.vehicle.wheels[i].place,
-              Height::head, -rest.force[static_cast<Eigen::Index>(i)]);
+    add_wheel(scene, problem, v.rail == Side::right ? 1 : 0,
+              v.start + v.kind.vehicle.wheels[i].place, -rest.force[static_cast<Eigen::Index>(i)]);
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: vehicle {}: {}", scene.file.string(), v.name, error.what()));
 }
@@ -67,17 +75,16 @@ Problem problem_of(const Scene& scene) {
   const RailSection rail = rail_section_of(scene);
   const Section right =
       scene.right_rail ? rail_section_of(scene, Side::right).section : rail.section;
-  Problem problem{track_of(scene, rail),
-                  {rail.section, right},
-                  rail_z({rail.section, right}, Side::right),
-                  {},
-                  scene.track.gravity ? kGravity : 0.,
-                  .5 * rail.section.height,
-                  scene.statics};
-  for (const LoadScene& load : scene.loads)
-    add_force(problem, load.rail == Side::right ? 1 : 0, load.start, load.at,
+  Problem problem{
+      track_of(scene, rail),    {rail.section, right}, 0., {}, scene.track.gravity ? kGravity : 0.,
+      .5 * rail.section.height, scene.statics};
+  problem.right_z = rail_z(scene, problem.section, problem.track, Side::right);
+  for (const LoadScene& load : scene.loads) {
+    const int side = load.rail == Side::right ? 1 : 0;
+    add_force(problem, side, load.start, 0., problem.z(side, load.at),
               load.force_z * (load.factor ? load.factor->at(0.) : 1.) +
                   load.amplitude * std::sin(2. * M_PI * load.phase));
+  }
   for (const VehicleScene& v : scene.vehicles) add_vehicle(scene, v, problem);
   for (const WheelsetScene& w : scene.wheelsets) add_wheelset(scene, w, problem);
   return problem;
@@ -91,7 +98,11 @@ double rail_y(const Track& track, int rail) {
 Place rail_place(const std::string& name, const Problem& problem, int rail, double x, Height at) {
   const Track& track = problem.track;
   const double z = problem.z(rail, at), axis = rail == 0 ? 0. : problem.right_z;
-  Place place{name, {x, rail_y(track, rail), axis + (z + track.axis_z)}, {}};
+  const double in_section[3] = {x, 0., z + track.axis_z};
+  Place place{name, {}, {}};
+  to_track(track.lean(rail), in_section, place.rest.data());
+  place.rest[1] += rail_y(track, rail);
+  place.rest[2] += axis;
   for (int d = 0; d < 3; ++d)
     place.moves[static_cast<std::size_t>(d)].rail = {{{rail, x, 0., z, d}, 1.}};
   return place;

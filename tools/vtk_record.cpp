@@ -57,17 +57,24 @@ Polygon outline_of(const Scene& scene, Side rail) {
 void add_rail(const Simulation& run, const TrackMotion& motion, int rail, const Polygon& outline,
               VtkMesh& mesh) {
   const Model& model = run.model();
+  const Cant& cant = model.cant[rail];
   const auto sides = static_cast<std::int32_t>(outline.size());
   std::int32_t before = -1;
   const int nodes = run.track().nodes();
   for (int node = 0; node < nodes; ++node) {
     const std::array<double, 9> q = motion.node(rail, node);
     const auto first = static_cast<std::int32_t>(mesh.points());
-    for (const auto& [y, z] : outline)
-      mesh.add_point(vtk_vector({.5 * node * model.element_length, model.rail_y[rail] + y,
-                                 model.rail_z[rail] + z}),
-                     vtk_vector({q[0] + y * q[3] + z * q[6], q[1] + y * q[4] + z * q[7],
-                                 q[2] + y * q[5] + z * q[8]}));
+    for (const auto& [y, z] : outline) {
+      const double own[3] = {.5 * node * model.element_length, y, z};
+      const double along[3] = {q[0] + y * q[3] + z * q[6], q[1] + y * q[4] + z * q[7],
+                               q[2] + y * q[5] + z * q[8]};
+      std::array<double, 3> rest, moved;
+      to_track(cant, own, rest.data());
+      to_track(cant, along, moved.data());
+      mesh.add_point(
+          vtk_vector({rest[0], model.rail_y[rail] + rest[1], model.rail_z[rail] + rest[2]}),
+          vtk_vector(moved));
+    }
     if (before >= 0)
       mesh.add_prism(VtkPart::rail, before, first, sides, node == 1, node == nodes - 1);
     before = first;
@@ -99,12 +106,16 @@ void add_sleeper(const Track& track, const TrackMotion& motion, int seat, double
 /// A disc about an axle, and the force on the rail under it.
 void add_wheel(const Simulation& run, const WheelsetModel& set, int wheel, VtkMesh& mesh) {
   const double* p = run.state.u + set.first;
-  const double x = set.start + p[0], y = run.model().rail_y[wheel % 2];
+  const int side = wheel % 2;
+  const double x = set.start + p[0], y = run.model().rail_y[side];
   mesh.add_disc({x, y, set.rest_z}, set.radius, [&](double ahead, double beside, double up) {
     return std::array<double, 3>{-p[5] * (y + beside), p[1] + p[5] * ahead - p[3] * up,
                                  p[2] + p[3] * (y + beside)};
   });
-  mesh.add_force(vtk_vector({x, y, set.rest_z - set.radius}), vtk_vector({0., 0., p[2]}),
+  const Cant& cant = run.model().cant[side];
+  const CrownTop top = crown_top(cant, run.model().head_z[side], run.model().crown_radius[side]);
+  const double aside = cant.cosine * top.y - cant.sine * top.z;
+  mesh.add_force(vtk_vector({x, y + aside, set.rest_z - set.radius}), vtk_vector({0., 0., p[2]}),
                  vtk_vector({0., 0., -run.state.wheel_force[wheel]}));
 }
 
@@ -113,9 +124,12 @@ void add_load(const Simulation& run, const LoadModel& load, VtkMesh& mesh) {
   const PlacedLoad at = place(model, load, run.state.steps);
   if (!at.on_rail) return;
   const double down = deflection(model, at, {run.state.u, {run.state.u, run.state.v}});
-  mesh.add_force(vtk_vector({at.place, model.rail_y[load.rail],
-                             model.rail_z[load.rail] + model.head_z[load.rail]}),
-                 vtk_vector({0., 0., down}), vtk_vector({0., 0., at.force}));
+  const double in_section[3] = {at.place, 0., model.head_z[load.rail]};
+  std::array<double, 3> head;
+  to_track(model.cant[load.rail], in_section, head.data());
+  mesh.add_force(
+      vtk_vector({head[0], model.rail_y[load.rail] + head[1], model.rail_z[load.rail] + head[2]}),
+      vtk_vector({0., 0., down}), vtk_vector({0., 0., at.force}));
 }
 
 }  // namespace

@@ -88,8 +88,8 @@ void TrackStructure::lay_rails() {
   for (int rail = 0; rail < track_.rails; ++rail) {
     const double y = track_.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track_.rail_spacing;
     for (int node = 0; node < track_.nodes(); ++node) {
-      structure_.rest[place(rail, node, 0)] = .5 * node * track_.element_length();
-      structure_.rest[place(rail, node, 1)] = y;
+      const double at[3] = {.5 * node * track_.element_length(), y, 0.};
+      to_rail(track_.lean(rail), at, structure_.rest.data() + place(rail, node, 0));
       structure_.rest[place(rail, node, 4)] = structure_.rest[place(rail, node, 8)] = 1.;
       for (int k = 0; k < 9; ++k)
         structure_.held[index(place(rail, node, k))] = holds(track_, node, k);
@@ -100,14 +100,19 @@ void TrackStructure::lay_rails() {
   }
 }
 
-/// The springs of one rail on its seat. The top of a rigid sleeper under two rails, y beside the
-/// middle of its left or right end, moves along d by u_end + y (u_left - u_right)/g, d = x or z.
+/// The springs of one rail on its seat, along the rail's axes. The top of a rigid sleeper under two
+/// rails, y beside the middle of its left or right end, moves along d = x or z of the track by
+/// u_end + y (u_left - u_right)/g.
 void TrackStructure::add_seat(int rail, int seat) {
   const Seat there = track_.seat(seat);
   const Support& support = there.pad[index(rail)];
   const bool turns = there.sleeper && track_.rails == 2;
   const double g = track_.rail_spacing;
   const std::array<int, 4>& sleeper = sleeper_[index(rail)][index(seat)];
+  const Cant cant = track_.lean(rail);
+  // Of the sleeper's motions along x, y, z what lies along d of the rail.
+  const double along[3][3] = {
+      {1., 0., 0.}, {0., cant.cosine, cant.sine}, {0., -cant.sine, cant.cosine}};
   const auto end = [&](int side, int d) {
     return turns ? sleeper_[index(side)][index(seat)][index(d)] : -1;
   };
@@ -123,13 +128,17 @@ void TrackStructure::add_seat(int rail, int seat) {
     };
     for (const double side : {-1., 1.}) {
       const double y = side * support.half_spread;
+      const double aside = cant.cosine * y - cant.sine * support.height_z;
       for (int d = 0; d < 3; ++d) {
-        Entries gap = {{sleeper[index(d)], -1.}};
+        Entries gap;
+        for (int own = 0; own < 3; ++own) gap.emplace_back(sleeper[index(own)], -along[d][own]);
         rail_moves(d, 1., gap);
         rail_moves(3 + d, y, gap);
         rail_moves(6 + d, support.height_z, gap);
-        if (d != 1) gap.insert(gap.end(), {{end(0, d), -y / g}, {end(1, d), y / g}});
-        if (d == 2) gap.emplace_back(sleeper[3], at.offset);
+        for (const int own : {0, 2})
+          gap.insert(gap.end(), {{end(0, own), -along[d][own] * aside / g},
+                                 {end(1, own), along[d][own] * aside / g}});
+        gap.emplace_back(sleeper[3], along[d][2] * at.offset);
         add(at.part * support.stiffness[index(d)] / 2., gap);
       }
     }
@@ -155,7 +164,7 @@ void TrackStructure::add_ballast(int seat) {
 
 Sparse TrackStructure::row(const RailPoint& point) const {
   const auto [element, xi] = place_on(track_, point.x);
-  const Vector27 local = point_row(xi, point.y, point.z, point.direction);
+  const Vector27 local = rail_row(track_.lean(point.rail), xi, point.y, point.z, point.direction);
   Sparse row(structure_.unknowns());
   for (int i = 0; i < 27; ++i)
     if (local[i] != 0.) row.coeffRef(place(point.rail, 2 * element + i / 9, i % 9)) += local[i];
@@ -180,8 +189,9 @@ TrackState TrackStructure::state(const Eigen::VectorXd& q) const {
     const int seen = symmetric ? 0 : rail;
     Eigen::VectorXd& own = state.rail[index(rail)];
     own = change.segment(place(seen, 0, 0), 9 * track_.nodes());
+    const double mirrored = track_.cant == 0. ? 0. : rail == 0 ? 1. : -1.;
     for (int node = 0; node < track_.nodes() && symmetric; ++node)
-      for (const int sideways : {1, 3, 5, 7}) own[9 * node + sideways] = 0.;
+      for (const int sideways : {1, 3, 5, 7}) own[9 * node + sideways] *= mirrored;
     Eigen::VectorXd& ends = state.sleeper[index(rail)];
     ends = Eigen::VectorXd::Zero(4 * (track_.bays + 1));
     Eigen::Index i = 0;
@@ -198,12 +208,11 @@ Eigen::VectorXd TrackStructure::weight(double gravity) const {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(structure_.unknowns());
   for (int rail = 0; rail < track_.rails; ++rail) {
     const RailBar bar = track_.bar(rail);
-    const ElementMatrices element =
-        element_matrices(bar.section, track_.law(rail), track_.element_length());
+    const Vector27 load = line_load(track_, rail);
     const double line_weight = bar.material.density * bar.section.area * gravity;
     for (int e = 0; e < track_.elements(); ++e)
       for (int i = 0; i < 27; ++i)
-        force[place(rail, 2 * e + i / 9, i % 9)] -= line_weight * element.line_load[i];
+        force[place(rail, 2 * e + i / 9, i % 9)] -= line_weight * load[i];
     for (int seat = 0; seat <= track_.bays; ++seat)
       if (const int height = sleeper_[index(rail)][index(seat)][2]; height >= 0)
         force[height] -= track_.seat(seat).sleeper->mass / 2. * gravity;

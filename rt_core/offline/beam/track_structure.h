@@ -9,8 +9,8 @@
 namespace railstep {
 
 /// A track as a nonlinear structure in plain coordinates: positions and slopes of the left rail's
-/// nodes, then of the right rail's, then the displacements of the sleepers' ends. Springs act
-/// between material points of rail and sleeper (or ground) and keep their directions, as the
+/// nodes along its own axes, then of the right rail's, then the displacements of the sleepers' ends
+/// along the track's. Springs act between material points of rail and sleeper (or ground) and keep their directions, as the
 /// supports of assemble() do: at rest the tangent is the stiffness of its lines.
 class TrackStructure {
  public:
@@ -26,8 +26,8 @@ class TrackStructure {
   Eigen::SparseVector<double> row(const RailPoint& point) const;
   Eigen::SparseVector<double> row(const Functional& functional) const;
   /// Where rails and sleepers stand. Of a track that is symmetric, both sides where the left one
-  /// stands in its upright plane: sections sag straight down, and what round-off makes beside it
-  /// would tie vertical to lateral motion.
+  /// stands; without a cant in its upright plane: sections sag straight down, and what round-off
+  /// makes beside it would tie vertical to lateral motion.
   TrackState state(const Eigen::VectorXd& q) const;
   /// Nodal forces of the rails' and sleepers' own weight. @param gravity m/s2, > 0 down
   Eigen::VectorXd weight(double gravity = 9.81) const;

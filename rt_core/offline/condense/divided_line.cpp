@@ -74,12 +74,23 @@ void DividedLine::refuse_free_modes() const {
         "residual flexibility needs a track that is held: it has a free rigid mode");
 }
 
+/// From a rail's own unknowns to the line's.
+void DividedLine::sign(int rail, Eigen::VectorXd& row) const {
+  const std::vector<int>& carried = element(rail).carried();
+  for (Eigen::Index i = 0; i < row.size(); ++i)
+    row[i] *= sign_of(line_, rail, carried[static_cast<std::size_t>(i) % carried.size()]);
+}
+
 Superelement::Rows DividedLine::port_rows(const Port& port, int points) const {
   const Superelement& own = element(port.rail);
   const int parts = own.parts();
   Eigen::MatrixXd rows(points + 1, (2 * parts + 1) * static_cast<int>(own.carried().size()));
-  for (int p = 0; p <= points; ++p)
-    rows.row(p) = own.row(static_cast<double>(p) * parts / points, 0., port.z, 2).transpose();
+  for (int p = 0; p <= points; ++p) {
+    Eigen::VectorXd row =
+        own.row(static_cast<double>(p) * parts / points, track_.lean(port.rail), port.y, port.z, 2);
+    sign(port.rail, row);
+    rows.row(p) = row.transpose();
+  }
   return own.condense(rows);
 }
 
@@ -93,10 +104,10 @@ Eigen::MatrixXd DividedLine::end_columns(int rail, int at) const {
   return factor_.solve(unit);
 }
 
-Eigen::VectorXd DividedLine::under(const Port& port, double z, int points) const {
+Eigen::VectorXd DividedLine::under(const Port& port, const Port& seen, int points) const {
   refuse_free_modes();
   const Superelement& own = element(port.rail);
-  const Superelement::Rows a = port_rows(port, points), b = port_rows({port.rail, z}, points);
+  const Superelement::Rows a = port_rows(port, points), b = port_rows(seen, points);
   const Eigen::VectorXd held = own.held(a, b).diagonal();
   Eigen::VectorXd result(track_.elements() * (points + 1));
   for (int e = 0; e < track_.elements(); ++e) {
@@ -128,16 +139,13 @@ LineFlexibility::Strip DividedLine::between(const Port& a, const Port& b, int po
 
 /// A point of the functional over the divided element that holds it, weighted by its factor and
 /// its rail's part in the line.
-Superelement::Rows DividedLine::rail_row(const Functional::OnRail& point, int at_element) const {
+Superelement::Rows DividedLine::rail_rows(const Functional::OnRail& point, int at_element) const {
   const RailPoint& at = point.at;
   const Superelement& own = element(at.rail);
   const double place = at.x / track_.element_length() - at_element;
-  Eigen::VectorXd row = own.row(place * own.parts(), at.y, at.z, at.direction);
-  const std::vector<int>& carried = own.carried();
-  for (Eigen::Index i = 0; i < row.size(); ++i) {
-    const int k = carried[static_cast<std::size_t>(i) % carried.size()];
-    row[i] *= sign_of(line_, at.rail, k);
-  }
+  Eigen::VectorXd row =
+      own.row(place * own.parts(), track_.lean(at.rail), at.y, at.z, at.direction);
+  sign(at.rail, row);
   row *= point.factor * line_.rail_factor[static_cast<std::size_t>(at.rail)];
   return own.condense(row.transpose());
 }
@@ -148,7 +156,7 @@ DividedLine::Spread DividedLine::spread(const Functional& functional) const {
     const int rail = point.at.rail;
     if (line_.rail_factor[static_cast<std::size_t>(rail)] == 0.) continue;
     const int at = element_at(track_, point.at.x);
-    const Superelement::Rows row = rail_row(point, at);
+    const Superelement::Rows row = rail_rows(point, at);
     const std::vector<int> ends = end_unknowns(line_, rail, element(rail), at);
     for (std::size_t i = 0; i < ends.size(); ++i)
       if (ends[i] >= 0) result.load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));

@@ -73,9 +73,9 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
     const Line& line = lines_[i];
     const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
                                                      carried_unknowns(line, 1)};
-    // Others no vertical force on y = 0 moves.
-    if (!carries(carried[0], 2) && !carries(carried[0], 8) && !carries(carried[1], 2) &&
-        !carries(carried[1], 8))
+    // Others no vertical force on y = 0 of an upright rail moves.
+    if (track.cant == 0. && !carries(carried[0], 2) && !carries(carried[0], 8) &&
+        !carries(carried[1], 2) && !carries(carried[1], 8))
       continue;
     Pair pair{&line, carried, exact_line(track_, line, points), nullptr};
     if (bases_.empty())
@@ -91,19 +91,22 @@ double ResidualFlexibility::weight(const Pair& pair, Port port) const {
   if (port.rail < 0 || port.rail >= track_.rails)
     throw std::invalid_argument("residual flexibility is asked on a rail that the track lacks");
   const auto rail = static_cast<std::size_t>(port.rail);
+  double row[9];
+  height_row(track_.lean(port.rail), port.y, port.z, row);
+  const std::vector<int>& carried = pair.carried[rail];
   const bool moved =
-      carries(pair.carried[rail], 2) || (carries(pair.carried[rail], 8) && port.z != 0.);
+      std::any_of(carried.begin(), carried.end(), [&](int k) { return row[k] != 0.; });
   return moved ? pair.line->rail_factor[rail] : 0.;
 }
 
-std::vector<double> ResidualFlexibility::under(Port port) const { return under(port, port.z); }
+std::vector<double> ResidualFlexibility::under(Port port) const { return under(port, port); }
 
-std::vector<double> ResidualFlexibility::under(Port port, double z) const {
+std::vector<double> ResidualFlexibility::under(Port port, Port seen) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
   for (const Pair& pair : pairs_) {
-    const double w = weight(pair, port) * weight(pair, {port.rail, z});
+    const double w = weight(pair, port) * weight(pair, seen);
     if (w == 0.) continue;
-    sum += w * (pair.exact->under(port, z, points_) - pair.model->under(port, z, points_));
+    sum += w * (pair.exact->under(port, seen, points_) - pair.model->under(port, seen, points_));
   }
   return to_vector(sum);
 }
@@ -112,7 +115,7 @@ std::vector<double> ResidualFlexibility::exact_under(Port port) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, port);
-    if (w != 0.) sum += w * w * pair.exact->under(port, port.z, points_);
+    if (w != 0.) sum += w * w * pair.exact->under(port, port, points_);
   }
   return to_vector(sum);
 }

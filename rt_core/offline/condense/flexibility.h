@@ -49,8 +49,8 @@ class ResidualFlexibility {
   /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0
   /// (most_negative() says by how much), and nothing is clipped here.
   std::vector<double> under(Port port) const;
-  /// The same of the rail's point at height z over the axis, straight above or below the port.
-  std::vector<double> under(Port port, double z) const;
+  /// From the port to another of its rail in the same section.
+  std::vector<double> under(Port port, Port seen) const;
   /// G_exact(x, x); [elements][points + 1], m/N.
   std::vector<double> exact_under(Port port) const;
 

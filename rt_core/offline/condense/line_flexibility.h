@@ -12,10 +12,11 @@
 
 namespace railstep {
 
-/// A vertical force on a rail and the displacement there, on y = 0 of the section.
+/// A vertical force on a rail and the displacement there.
 struct Port {
-  int rail;  // 0 left (+y), 1 right
-  double z;  // above the axis, m
+  int rail;       // 0 left (+y), 1 right
+  double z;       // of the section's point above the axis, m
+  double y = 0.;  // beside it, m
 };
 
 /// Static flexibility of one line between the places of ports, `points` intervals per element at
@@ -28,8 +29,8 @@ class LineFlexibility {
   using Strip = std::function<Eigen::MatrixXd(int element)>;
 
   virtual ~LineFlexibility() = default;
-  /// G(x, x) from a port to one at height `z` of its rail; [elements x (points + 1)], m/N.
-  virtual Eigen::VectorXd under(const Port& port, double z, int points) const = 0;
+  /// G(x, x) from a port to another of its rail; [elements x (points + 1)], m/N.
+  virtual Eigen::VectorXd under(const Port& port, const Port& seen, int points) const = 0;
   virtual Strip between(const Port& a, const Port& b, int points) const = 0;
   /// The functional under a unit force of a port at each place; [elements x (points + 1)].
   virtual Eigen::VectorXd from(const Port& port, const Functional& functional,
@@ -49,7 +50,7 @@ class DividedLine : public LineFlexibility {
   DividedLine(const Track& track, const Line& line, int parts);
 
   /// These throw std::invalid_argument if the line has a free rigid mode.
-  Eigen::VectorXd under(const Port& port, double z, int points) const override;
+  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
   Strip between(const Port& a, const Port& b, int points) const override;
   Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
@@ -69,7 +70,8 @@ class DividedLine : public LineFlexibility {
   Spread spread(const Functional& functional) const;
   const Superelement& element(int rail) const;
   Superelement::Rows port_rows(const Port& port, int points) const;
-  Superelement::Rows rail_row(const Functional::OnRail& point, int element) const;
+  Superelement::Rows rail_rows(const Functional::OnRail& point, int element) const;
+  void sign(int rail, Eigen::VectorXd& row) const;
   Eigen::MatrixXd end_columns(int rail, int element) const;
   void factor(const Eigen::SparseMatrix<double>& stiffness);
   void refuse_free_modes() const;
@@ -89,7 +91,7 @@ class RefinedLine : public LineFlexibility {
   RefinedLine(const Track& track, const Line& line, int parts);
 
   /// These throw std::invalid_argument if the line has a free rigid mode.
-  Eigen::VectorXd under(const Port& port, double z, int points) const override;
+  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
   Strip between(const Port& a, const Port& b, int points) const override;
   Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
@@ -108,14 +110,14 @@ class RefinedLine : public LineFlexibility {
   bool held_ = false;  // no free rigid mode
 };
 
-/// The line in the coordinates of a basis. A port leaves out the section's own strain (b_z at its
-/// height), which few coordinates do not carry; functionals are read whole.
+/// The line in the coordinates of a basis. A port leaves out the section's own strain (a_y, b_z),
+/// which few coordinates do not carry; functionals are read whole.
 class ReducedLine : public LineFlexibility {
  public:
   /// Throws std::invalid_argument if the basis is not one of the line.
   ReducedLine(const Track& track, const Line& line, const Basis& basis);
 
-  Eigen::VectorXd under(const Port& port, double z, int points) const override;
+  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
   Strip between(const Port& a, const Port& b, int points) const override;
   Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
@@ -123,7 +125,7 @@ class ReducedLine : public LineFlexibility {
 
  private:
   /// shapes / omega at a port's places; [elements x (points + 1)][kept]
-  Eigen::MatrixXd scaled_shapes(int rail, int points) const;
+  Eigen::MatrixXd scaled_shapes(const Port& port, int points) const;
 
   const Track& track_;
   const Line& line_;

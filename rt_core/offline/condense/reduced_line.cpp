@@ -12,28 +12,33 @@ ReducedLine::ReducedLine(const Track& track, const Line& line, const Basis& basi
     throw std::invalid_argument("a basis for residual flexibility has no free rigid mode");
 }
 
-Eigen::MatrixXd ReducedLine::scaled_shapes(int rail, int points) const {
+Eigen::MatrixXd ReducedLine::scaled_shapes(const Port& port, int points) const {
+  double own[9];
+  height_row(track_.lean(port.rail), port.y, port.z, own);
   const Eigen::MatrixXd scaled = basis_.shapes * basis_.omega.cwiseInverse().asDiagonal();
   Eigen::MatrixXd result =
       Eigen::MatrixXd::Zero(track_.elements() * (points + 1), basis_.omega.size());
   for (int e = 0; e < track_.elements(); ++e)
     for (int p = 0; p <= points; ++p) {
       const auto n = shape(2. * p / points - 1.);
-      for (std::size_t i = 0; i < 3; ++i) {
-        const int height = line_.element_unknown(rail, e, static_cast<int>(i), 2);
-        if (height >= 0) result.row(e * (points + 1) + p) += n[i] * scaled.row(height);
-      }
+      for (std::size_t i = 0; i < 3; ++i)
+        for (const int k : {1, 2, 5, 7}) {
+          const int unknown = line_.element_unknown(port.rail, e, static_cast<int>(i), k);
+          const double factor = sign_of(line_, port.rail, k) * own[k];
+          if (unknown >= 0 && factor != 0.)
+            result.row(e * (points + 1) + p) += (n[i] * factor) * scaled.row(unknown);
+        }
     }
   return result;
 }
 
-Eigen::VectorXd ReducedLine::under(const Port& port, double, int points) const {
-  return scaled_shapes(port.rail, points).rowwise().squaredNorm();
+Eigen::VectorXd ReducedLine::under(const Port& port, const Port& seen, int points) const {
+  return scaled_shapes(port, points).cwiseProduct(scaled_shapes(seen, points)).rowwise().sum();
 }
 
 LineFlexibility::Strip ReducedLine::between(const Port& a, const Port& b, int points) const {
-  return [points, from = scaled_shapes(a.rail, points),
-          to = scaled_shapes(b.rail, points)](int element) -> Eigen::MatrixXd {
+  return [points, from = scaled_shapes(a, points),
+          to = scaled_shapes(b, points)](int element) -> Eigen::MatrixXd {
     return from.middleRows(element * (points + 1), points + 1) * to.transpose();
   };
 }
@@ -43,7 +48,7 @@ Eigen::VectorXd ReducedLine::from(const Port& port, const Functional& functional
   Eigen::VectorXd load = sleeper_load(track_, line_, functional);
   for (const Functional::OnRail& point : functional.rail)
     load += point.factor * point_row(track_, line_, point.at);
-  return scaled_shapes(port.rail, points) *
+  return scaled_shapes(port, points) *
          (basis_.shapes.transpose() * load).cwiseQuotient(basis_.omega);
 }
 

@@ -65,18 +65,18 @@ Eigen::SparseMatrix<double> RefinedLine::columns(const Port& port, int element, 
   Eigen::SparseMatrix<double> all(line_.unknowns(), points + 1);
   for (int p = 0; p <= points; ++p) {
     const double x = length * (element + static_cast<double>(p) / points);
-    all.col(p) = point_row(track_, line_, {port.rail, x, 0., port.z, 2}) / weight;
+    all.col(p) = point_row(track_, line_, {port.rail, x, port.y, port.z, 2}) / weight;
   }
   return all;
 }
 
-Eigen::VectorXd RefinedLine::under(const Port& port, double z, int points) const {
+Eigen::VectorXd RefinedLine::under(const Port& port, const Port& seen, int points) const {
   refuse_free_modes();
   Eigen::VectorXd result(elements_ * (points + 1));
   for (int e = 0; e < elements_; ++e) {
     const Eigen::MatrixXd moved = factor_.solve(Eigen::MatrixXd(columns(port, e, points)));
-    const Eigen::MatrixXd seen = columns({port.rail, z}, e, points).transpose() * moved;
-    result.segment(e * (points + 1), points + 1) = seen.diagonal();
+    const Eigen::MatrixXd there = columns(seen, e, points).transpose() * moved;
+    result.segment(e * (points + 1), points + 1) = there.diagonal();
   }
   return result;
 }

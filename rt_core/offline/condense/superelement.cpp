@@ -12,8 +12,9 @@ void tie_sections(Eigen::Ref<Vector27, 0, Eigen::InnerStride<>> row) {
   for (int node = 0; node < 27; node += 9) row[node + 5] -= row[node + 7];
 }
 
-Vector27 carried_row(const Track& track, double xi, double y, double z, int direction) {
-  Vector27 row = point_row(xi, y, z, direction);
+Vector27 carried_row(const Track& track, const Cant& cant, double xi, double y, double z,
+                     int direction) {
+  Vector27 row = rail_row(cant, xi, y, z, direction);
   if (track.unknowns == Unknowns::rigid_section) tie_sections(row);
   return row;
 }
@@ -55,10 +56,11 @@ Superelement::Superelement(const Track& track, int rail, std::vector<int> carrie
   stiffness_ = chain(ends_, ends_) + mixed.transpose() * follow_;
 }
 
-Eigen::VectorXd Superelement::row(double place, double y, double z, int direction) const {
+Eigen::VectorXd Superelement::row(double place, const Cant& cant, double y, double z,
+                                  int direction) const {
   const int d = static_cast<int>(carried_.size());
   const int part = std::min(static_cast<int>(place), parts_ - 1);
-  const Vector27 local = carried_row(track_, 2. * (place - part) - 1., y, z, direction);
+  const Vector27 local = carried_row(track_, cant, 2. * (place - part) - 1., y, z, direction);
   Eigen::VectorXd result = Eigen::VectorXd::Zero((2 * parts_ + 1) * d);
   for (int i = 0; i < 3 * d; ++i)
     result[2 * part * d + i] = local[9 * (i / d) + carried_[static_cast<std::size_t>(i % d)]];

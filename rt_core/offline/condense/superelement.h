@@ -29,9 +29,10 @@ class Superelement {
 
   /// Coefficients over all unknowns of the chain of a material point's displacement.
   /// @param place  0 to parts, from the first end
+  /// @param cant   of the point's rail, which may be this one's mirror image
   /// @param y,z    over the section, from the axis, m
-  /// @param direction 0 x, 1 y, 2 z
-  Eigen::VectorXd row(double place, double y, double z, int direction) const;
+  /// @param direction 0 x, 1 y, 2 z of the track
+  Eigen::VectorXd row(double place, const Cant& cant, double y, double z, int direction) const;
   /// @param rows [places][unknowns of the chain], each as row() gives it
   Rows condense(const Eigen::MatrixXd& rows) const;
   /// Flexibility between places with both ends held, m/N; [places of a][places of b].

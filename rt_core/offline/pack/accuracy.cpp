@@ -42,9 +42,8 @@ void add_receptances(const Track& track, const PackedLine& own,
   dynamic.diagonal().array() += (own.basis.omega.array().square() - omega * omega).cast<Value>();
   const Eigen::PartialPivLU<Eigen::MatrixXcd> factor(dynamic);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    RailPoint at = points[i];
-    at.z = 0.;  // ports leave out the section's own strain
-    const Eigen::VectorXd row(point_row(track, own.line, at));
+    // Ports leave out the section's own strain.
+    const Eigen::VectorXd row(point_row(track, own.line, points[i], false));
     const Eigen::VectorXcd modal = (own.basis.shapes.transpose() * row).cast<Value>();
     sums[i] += (modal.transpose() * factor.solve(modal))(0, 0);
   }
@@ -80,7 +79,7 @@ struct Asked {
     for (std::size_t kind = 0; kind < packed.kinds().size(); ++kind)
       for (const double x : places) {
         const Port& port = packed.kinds()[kind];
-        points.push_back({port.rail, x, 0., port.z, 2});
+        points.push_back({port.rail, x, port.y, port.z, 2});
         kinds.push_back(static_cast<std::int32_t>(kind));
       }
   }

@@ -1,5 +1,6 @@
 #include "offline/pack/pack.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -41,6 +42,12 @@ Eigen::SparseMatrix<double> closing_of(const Track& track, const Line& line) {
   return closing;
 }
 
+bool has_preload(const Track& track) {
+  const std::vector<FixedPort> ports = fixed_ports(track);
+  return std::any_of(ports.begin(), ports.end(),
+                     [](const FixedPort& port) { return port.preload != 0.; });
+}
+
 bool is_moved(const Track& track, const Line& line, const Traffic& traffic, double gravity) {
   for (const MovingLoad& load : traffic.loads)
     if (reaches(track, line, load.rail, 0., load.z, 2)) return true;
@@ -57,13 +64,20 @@ bool is_moved(const Track& track, const Line& line, const Traffic& traffic, doub
 
 }  // namespace
 
-std::int32_t PackedModel::kind_of(int rail, double z) {
+std::int32_t PackedModel::kind_of(const Port& port) {
   for (std::size_t i = 0; i < kinds_.size(); ++i)
-    if (kinds_[i].rail == rail && kinds_[i].z == z) return static_cast<std::int32_t>(i);
+    if (kinds_[i].rail == port.rail && kinds_[i].z == port.z && kinds_[i].y == port.y)
+      return static_cast<std::int32_t>(i);
   if (kinds_.size() == static_cast<std::size_t>(kMaxPortKinds))
     throw std::invalid_argument("vertical forces act at more than 2 heights of a rail");
-  kinds_.push_back({rail, z});
+  kinds_.push_back(port);
   return static_cast<std::int32_t>(kinds_.size()) - 1;
+}
+
+/// Of a wheel on a rail at rest.
+std::int32_t PackedModel::kind_of_wheel(int rail) {
+  const CrownTop top = crown_top(model_.cant[rail], model_.head_z[rail], model_.crown_radius[rail]);
+  return kind_of({rail, top.z, top.y});
 }
 
 void PackedModel::add_load(const Track& track, const MovingLoad& load) {
@@ -71,8 +85,7 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   if (load.rail < 0 || load.rail >= track.rails)
     throw std::invalid_argument("a load stands on a rail that the track does not have");
   LoadModel& packed = model_.load[model_.loads++];
-  packed.row[2] = 1.;
-  packed.row[8] = load.z;
+  height_row(model_.cant[load.rail], 0., load.z, packed.row);
   packed.rail = load.rail;
   packed.start = model_.endless.origin + load.start;
   packed.travel = keep_travel(load.speed, load.speeds);
@@ -83,7 +96,7 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.phase = load.phase;
   packed.table_points = static_cast<std::int32_t>(load.table.size() / 2);
   packed.table = keep(load.table);
-  packed.kind = kind_of(load.rail, load.z);
+  packed.kind = kind_of({load.rail, load.z});
 }
 
 void PackedModel::add_irregularity(const Track& track, const RailIrregularity& irregularity) {
@@ -119,14 +132,15 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   packed.tread_half_width = wheelset.tread_half_width;
   packed.start = model_.endless.origin + wheelset.start;
   packed.travel = keep_travel(wheelset.speed, wheelset.speeds);
-  packed.rest_z = heads[0].top_z + wheelset.radius;
+  packed.rest_z =
+      crown_top(model_.cant[0], heads[0].top_z, heads[0].crown_radius).height + wheelset.radius;
   for (const int rail : {0, 1}) {
     const Railhead& head = heads[static_cast<std::size_t>(rail)];
     const Material material = track.bar(rail).material;
     packed.hertz[rail] =
         hertz_contact(wheelset.radius, head.crown_radius, material.young, material.poisson, 1e3)
             .constant;
-    packed.kind[rail] = kind_of(rail, head.top_z);
+    packed.kind[rail] = kind_of_wheel(rail);
   }
   packed.guide = wheelset.guide;
   packed.cap = wheelset.cap;
@@ -144,6 +158,8 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
 void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
                              const std::array<Railhead, 2>& heads) {
   const Flange& flange = *wheelset.flange;
+  if (track.cant != 0.)
+    throw std::invalid_argument("flanges meet the heads of upright rails; accepted is no cant");
   FlangeModel& packed = model_.flange[model_.flanges++];
   if (contact_count(model_) > kMaxWheels)
     throw std::invalid_argument("more than 32 wheels and flanges");
@@ -185,12 +201,19 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   model_.rail_y[1] = -model_.rail_y[0];
   const std::array<Railhead, 2> heads = {traffic.head, traffic.right_head.value_or(traffic.head)};
   for (const std::size_t rail : {0u, 1u}) {
-    model_.rail_z[rail] = heads[0].top_z - heads[rail].top_z;
+    model_.cant[rail] = track.lean(static_cast<int>(rail));
+    const auto height = [&](std::size_t r) {
+      return crown_top(track.lean(static_cast<int>(r)), heads[r].top_z, heads[r].crown_radius)
+          .height;
+    };
+    model_.rail_z[rail] = height(0) - height(rail);
     model_.head_z[rail] = heads[rail].top_z;
     model_.crown_radius[rail] = heads[rail].crown_radius;
     model_.head_half_width[rail] = heads[rail].half_width;
   }
   model_.condensed = options.modal ? 1 : 0;
+  if (track.cant != 0. && !traffic.held.empty())
+    throw std::invalid_argument("bodies hold on to rails that stand upright; accepted is no cant");
   if (options.endless) add_endless(track, traffic, options);
   std::vector<Line> lines = assemble(track);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -205,7 +228,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   for (const RunningVehicle& vehicle : traffic.vehicles) add_vehicle(track, vehicle, heads);
   add_fixed_ports(track);
-  if (options.gravity != 0.) add_weight(track, options.gravity);
+  if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
   add_turn(track);
@@ -216,7 +239,8 @@ void PackedModel::add_weight(const Track& track, double gravity) {
   const auto n = static_cast<std::size_t>(model_.unknowns);
   std::vector<double> force(n * static_cast<std::size_t>(1 + model_.condensed), 0.);
   for (std::size_t l = 0; l < lines_.size(); ++l) {
-    const Eigen::VectorXd own = weight(track, lines_[l].line, gravity);
+    Eigen::VectorXd own = preload(track, lines_[l].line);
+    if (gravity != 0.) own += weight(track, lines_[l].line, gravity);
     const auto first = static_cast<std::size_t>(model_.line[l].first);
     if (model_.condensed == 0) {
       std::copy(own.begin(), own.end(), force.begin() + static_cast<std::ptrdiff_t>(first));

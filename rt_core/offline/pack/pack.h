@@ -86,7 +86,7 @@ struct RailIrregularity {
 
 /// The railhead that wheels meet.
 struct Railhead {
-  double top_z = 0.;               // over the axis, m
+  double top_z = 0.;               // of its middle over the axis, in the section, m
   double crown_radius = .3;        // m
   double half_width = .035;        // m; a contact beyond it is off the rail
   double gauge_half_width = .035;  // m, at kGaugeDepth below the top
@@ -202,7 +202,8 @@ class PackedModel {
   void add_residual(const Track& track, const std::vector<Probe>& probes, int points);
   void add_turn(const Track& track);
   void clip(int points, std::vector<double>& under);
-  std::int32_t kind_of(int rail, double z);
+  std::int32_t kind_of(const Port& port);
+  std::int32_t kind_of_wheel(int rail);
 
   Model model_{};
   std::vector<PackedLine> lines_;

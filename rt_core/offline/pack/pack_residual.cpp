@@ -39,10 +39,7 @@ std::vector<double> step_compliance(const Model& model, const Port& port, int po
       RailRow row{port.rail, element, {}};
       double shape[3];
       shape_functions(2. * p / points - 1., shape);
-      for (int i = 0; i < 3; ++i) {
-        row.coefficient[i][2] = shape[i];
-        row.coefficient[i][8] = port.z * shape[i];  // not carried by condensed lines
-      }
+      set_height_row(model.cant[port.rail], port.y, port.z, shape, row);
       std::fill(re.begin(), re.end(), 0.);
       std::fill(im.begin(), im.end(), 0.);
       double sum = 0.;
@@ -168,7 +165,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
   std::vector<double> under, axis;
   for (const Port& port : kinds_) {
     append(under, residual.under(port));
-    append(axis, residual.under(port, 0.));
+    append(axis, residual.under(port, {port.rail, 0.}));
   }
   clip(points, under);
   model_.residual.kinds = static_cast<std::int32_t>(kinds_.size());

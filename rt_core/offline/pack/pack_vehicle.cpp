@@ -117,7 +117,7 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
     own.rail = vehicle.rail;
     own.place = wheel.place;
     own.contact = contact_of(vehicle, wheel.radius, heads[rail], track.bar(vehicle.rail).material);
-    own.kind = kind_of(vehicle.rail, heads[rail].top_z);
+    own.kind = kind_of_wheel(vehicle.rail);
     if (!vehicle.tread.empty()) own.tread = keep(vehicle.tread[i]);
   }
   ++model_.vehicles;

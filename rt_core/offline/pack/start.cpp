@@ -110,7 +110,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     const PlacedLoad at = place(model, load, 0);
     const double x = at.place + travelled(load.travel, 0.).speed * time;
     if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
-    forces.push_back({{load.rail, x, 0., load.row[8], 2}, at.force});
+    forces.push_back({point_of(packed, load.kind, x), at.force});
     ports.push_back(rail_force(model, load.kind, x, at.force));
   }
   if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
@@ -120,7 +120,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     for (const int rail : {0, 1}) {
       const WheelsetModel& w = model.wheelset[b];
       const double x = w.start + travelled(w.travel, 0.).speed * time;
-      forces.push_back({{rail, x, 0., model.head_z[rail], 2}, -wheel_load(w)});
+      forces.push_back({point_of(packed, w.kind[rail], x), -wheel_load(w)});
       ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
     }
   SettledVehicles vehicles;
@@ -195,12 +195,23 @@ double wheel_load(const WheelsetModel& w) {
   return vertical / 2.;
 }
 
+namespace {
+
+/// Where a level wheel meets a rail at rest, beside the track's middle, m.
+double contact_y(const Model& model, int rail) {
+  const Cant& cant = model.cant[rail];
+  const CrownTop top = crown_top(cant, model.head_z[rail], model.crown_radius[rail]);
+  return model.rail_y[rail] + (cant.cosine * top.y - cant.sine * top.z);
+}
+
+}  // namespace
+
 std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& w,
                                         const std::array<double, 2>& height) {
   const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
                           std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
   const double roll =
-      ((height[0] - height[1]) - (into[0] - into[1])) / (model.rail_y[0] - model.rail_y[1]);
+      ((height[0] - height[1]) - (into[0] - into[1])) / (contact_y(model, 0) - contact_y(model, 1));
   // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
   const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
   const double lifted = .5 * roll * roll * (w.radius + crown);

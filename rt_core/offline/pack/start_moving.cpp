@@ -19,8 +19,8 @@ constexpr double kSettled = 1e-9;  // of the largest displacement, from passage 
 /// A wheel as the force with which it stands.
 LoadModel load_of(const Model& model, const WheelsetModel& w, int side) {
   LoadModel load{};
-  load.row[2] = 1.;
-  load.row[8] = model.head_z[side];
+  const CrownTop top = crown_top(model.cant[side], model.head_z[side], model.crown_radius[side]);
+  height_row(model.cant[side], top.y, top.z, load.row);
   load.rail = side;
   load.start = w.start;
   load.travel = w.travel;

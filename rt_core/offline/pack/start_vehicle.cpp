@@ -133,7 +133,7 @@ Wheels wheels_of(const Model& model, const Track& track, double time, const Acti
     w.on_rail[i] = x >= 0. && x <= track.length();
     uneven = signal_at(wheel.tread, rolled).value;
     if (!w.on_rail[i]) continue;
-    w.point[i] = {wheel.rail, x, 0., model.head_z[wheel.rail], 2};
+    w.point[i] = point_of(packed, wheel.kind, x);
     w.port[i] = rail_force(model, wheel.kind, x, 0.);
     uneven = irregularity(model, wheel.tread, wheel.rail, up, x + passed(model, 0), rolled).depth;
     for (const RailForce& f : acting.ports)

@@ -10,10 +10,10 @@ namespace railstep {
 
 namespace {
 
-/// A point as ports see it: those of condensed lines leave out the section's own strain.
-RailPoint seen(const Model& model, RailPoint at) {
-  if (model.condensed != 0) (at.direction == 1 ? at.y : at.z) = 0.;
-  return at;
+/// A point's row as ports see it: those of condensed lines leave out the section's own strain.
+Eigen::SparseVector<double> row_of(const Track& track, const PackedModel& packed, const Line& line,
+                                   const RailPoint& at) {
+  return point_row(track, line, at, packed.model().condensed == 0);
 }
 
 /// Displacements of each line of a condensed model under its fixed ports' forces too.
@@ -61,8 +61,9 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
   for (const PackedLine& own : packed.lines()) {
     Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
     if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
+    if (packed.model().fixed.count > 0) load += preload(statics.track(), own.line);
     for (const PointForce& f : forces)
-      load += f.force * point_row(statics.track(), own.line, seen(packed.model(), f.at));
+      load += f.force * row_of(statics.track(), packed, own.line, f.at);
     lines.push_back((own.basis.shapes.transpose() * load)
                         .cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
   }
@@ -75,12 +76,17 @@ double height_of(const Track& track, const PackedModel& packed,
   double sum = 0.;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const PackedLine& own = packed.lines()[l];
-    const Eigen::SparseVector<double> row = point_row(track, own.line, seen(packed.model(), at));
+    const Eigen::SparseVector<double> row = row_of(track, packed, own.line, at);
     sum += packed.model().condensed == 0
                ? row.dot(lines[l])
                : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(lines[l]);
   }
   return sum;
+}
+
+RailPoint point_of(const PackedModel& packed, std::int32_t kind, double x) {
+  const Port& port = packed.kinds()[static_cast<std::size_t>(kind)];
+  return {port.rail, x, port.y, port.z, 2};
 }
 
 }  // namespace railstep

@@ -15,4 +15,7 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
 double height_of(const Track& track, const PackedModel& packed,
                  const std::vector<Eigen::VectorXd>& lines, const RailPoint& at);
 
+/// Where the force of a port of that kind acts at a place along the rail.
+RailPoint point_of(const PackedModel& packed, std::int32_t kind, double x);
+
 }  // namespace railstep

@@ -56,6 +56,8 @@ Matrix for_ever(Matrix part) {
 }
 
 void check(const Track& track) {
+  if (track.cant != 0.)
+    throw std::invalid_argument("the reflection of an end is that of upright rails");
   if (!track.changed_seats.empty() || track.right || has_long_pads(track) || track.state ||
       !track.joints.empty())
     throw std::invalid_argument(

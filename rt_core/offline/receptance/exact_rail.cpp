@@ -42,6 +42,8 @@ Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, const Eigen::Mat
 ExactRailReceptance::ExactRailReceptance(const Track& track, const Transfer& transfer,
                                          BeamTheory theory, bool endless)
     : track_(track), transfer_(transfer), beam_(bending_beam(track, theory)), endless_(endless) {
+  if (track.cant != 0.)
+    throw std::invalid_argument("the exact beam stands for rails upright; accepted is no cant");
   if (track.axial_force != 0. || track.axis_z != 0.)
     throw std::invalid_argument("the exact beam carries no axial force and is on the centroid");
   if (!track.changed_seats.empty() || track.right || has_long_pads(track) || !track.joints.empty())

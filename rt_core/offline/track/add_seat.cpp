@@ -14,6 +14,9 @@ namespace {
 /// mirror coordinates of the rails, sqrt 2 times those of a symmetric (or antisymmetric) left rail,
 /// the end under it moves by just that; in the rails' own by sqrt 1/2 of it, at the right one with
 /// the other sign where the ends differ.
+///
+/// Pads stand in the axes of their rail. The sleeper's top under one, off the end's middle by the
+/// pad's lean too, moves by its end's displacement and rises by the roll times that distance.
 class SeatRows {
  public:
   SeatRows(const Track& track, const Assembly& part, int border, int rail)
@@ -21,6 +24,7 @@ class SeatRows {
         pad_(track.seat(border).pad[static_cast<std::size_t>(rail)]),
         sleeper_(part.line.sleeper_unknown_of[static_cast<std::size_t>(border)]),
         rail_(rail),
+        cant_(track.lean(rail)),
         spacing_(track.rail_spacing),
         share_(part.rails.size() == 2 ? std::sqrt(.5) : 1.),
         side_(rail == 0 ? 1. : -1.) {}
@@ -28,11 +32,20 @@ class SeatRows {
   /// What the pad is strained by along d at one of its points, y beside the middle of the rail.
   Row gap(const PadPoint& at, std::size_t d, double y) const {
     Row row = rail_moves(at, d, y);
-    const double turned = side_ + 2. * y / spacing_;
-    if (d == 0) push(row, sleeper_[kYaw], -share_ * turned);
-    if (d == 2) push(row, sleeper_[kRoll], -share_ * turned);
-    if (d == 2) push(row, sleeper_[kPitch], share_ * at.offset);
-    push(row, sleeper_[kMean[d]], -share_);
+    const double aside = cant_.cosine * y - cant_.sine * pad_.height_z;
+    const double turned = side_ + 2. * aside / spacing_;
+    if (d == 0) {
+      push(row, sleeper_[kYaw], -share_ * turned);
+      push(row, sleeper_[kAlongX], -share_);
+      return row;
+    }
+    // Of the sleeper's motion along y and z what lies along d.
+    const double across = d == 1 ? cant_.cosine : -cant_.sine;
+    const double up = d == 2 ? cant_.cosine : cant_.sine;
+    push(row, sleeper_[kRoll], -share_ * (turned * up));
+    push(row, sleeper_[kPitch], share_ * (at.offset * up));
+    push(row, sleeper_[kAlongY], -share_ * across);
+    push(row, sleeper_[kAlongZ], -share_ * up);
     return row;
   }
   /// What the pad is turned by about x at one of its points.
@@ -90,6 +103,7 @@ class SeatRows {
   Support pad_;
   std::array<int, kSleeperMotions> sleeper_;
   int rail_;
+  Cant cant_;
   double spacing_, share_, side_;
 };
 

@@ -240,6 +240,11 @@ void check(const Track& track) {
   if (track.rails != 1 && track.rails != 2) refuse("a track has one rail or two");
   if (!(track.bay_length > 0.) || !(track.rail_spacing > 0.))
     refuse("bay length and rail spacing are above zero");
+  if (!(std::abs(track.cant) <= 1.)) refuse("rails lean by at most 1:1");
+  if (track.cant != 0. && track.unknowns == Unknowns::vertical)
+    refuse(
+        "a rail that leans moves sideways under a vertical force; accepted with a cant are all "
+        "unknowns of a rail, or those of a rigid section");
   check_joints(track);
   if (end_zones(track) * track.end_zone_bays > track.bays)
     refuse("the zones of non-reflecting ends do not fit on the track");
@@ -286,7 +291,10 @@ bool has_sleepers(const Track& track) {
 }
 
 bool is_symmetric(const Track& track) {
-  const auto alike = [](const RailJoint& joint) { return joint.rails[0] == joint.rails[1]; };
+  const auto alike = [](const RailJoint& joint) {
+    return joint.rails[0] == joint.rails[1] && joint.gap[0] == joint.gap[1] &&
+           joint.pressed[0] == joint.pressed[1];
+  };
   return !track.right && std::all_of(track.joints.begin(), track.joints.end(), alike) &&
          std::all_of(track.changed_seats.begin(), track.changed_seats.end(),
                      [](const auto& changed) { return changed.second.symmetric(); });

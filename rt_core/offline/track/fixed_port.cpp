@@ -8,20 +8,11 @@ namespace railstep {
 
 namespace {
 
-/// How far a rail comes down on its seat y beside its middle. The sleeper's top there moves by
-/// u_end + y (u_left - u_right)/g.
+/// How far a rail comes down on its seat y beside its middle.
 Functional pad_closing(const Track& track, int rail, int seat, double y) {
-  const Seat there = track.seat(seat);
-  const Support& pad = there.pad[static_cast<std::size_t>(rail)];
-  const PadPoint at = pad_points(track, seat, 0.).front();
   Functional closing;
-  closing.rail.push_back({{rail, at.x, y, pad.height_z, 2}, -1.});
-  if (!there.sleeper) return closing;
-  closing.sleeper.push_back({rail, seat, 2, 1.});
-  if (track.rails == 2 && y != 0.) {
-    closing.sleeper.push_back({0, seat, 2, y / track.rail_spacing});
-    closing.sleeper.push_back({1, seat, 2, -y / track.rail_spacing});
-  }
+  add_underside(track, rail, seat, pad_points(track, seat, 0.).front().x, y, -1., closing);
+  add_sleeper_top(track, rail, seat, y, 1., closing);
   return closing;
 }
 
@@ -53,6 +44,34 @@ void add_ballast(const Track& track, int rail, int seat, std::vector<FixedPort>&
                    .of = FixedPort::Of::ballast,
                    .rail = rail,
                    .seat = seat});
+}
+
+constexpr double kBehind = 1e-9;  // of an element: where the rail behind a joint ends
+
+/// The end behind a joint comes on and the one ahead stays.
+Functional ends_closing(const Track& track, int rail, double x) {
+  return {.rail = {{{rail, x - kBehind * track.element_length(), 0., 0., 0}, 1.},
+                   {{rail, x, 0., 0., 0}, -1.}},
+          .sleeper = {}};
+}
+
+void add_joints(const Track& track, std::vector<FixedPort>& ports) {
+  if (track.unknowns == Unknowns::vertical) return;
+  for (std::size_t j = 0; j < track.joints.size(); ++j)
+    for (int rail = 0; rail < track.rails; ++rail) {
+      const RailJoint& joint = track.joints[j];
+      const auto side = static_cast<std::size_t>(rail);
+      if (!joint.rails[side] || joint.end_stiffness == 0.) continue;
+      const double x = .5 * joint_node(track, joint) * track.element_length();
+      ports.push_back({.closing = ends_closing(track, rail, x),
+                       .stiffness = joint.end_stiffness,
+                       .damping = joint.end_damping,
+                       .gap = joint.gap[side],
+                       .preload = joint.pressed[side],
+                       .of = FixedPort::Of::joint,
+                       .rail = rail,
+                       .joint = static_cast<int>(j)});
+    }
 }
 
 /// Does `change` to the pad and the ballast of every side of every seat.
@@ -91,6 +110,7 @@ std::vector<FixedPort> fixed_ports(const Track& track) {
          .rail = stop.rail,
          .stop = static_cast<int>(i)});
   }
+  add_joints(track, ports);
   return ports;
 }
 
@@ -99,7 +119,15 @@ Eigen::SparseVector<double> closing_row(const Track& track, const Line& line,
   return functional_row(track, line, port.closing);
 }
 
+Eigen::VectorXd preload(const Track& track, const Line& line) {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(line.unknowns());
+  for (const FixedPort& port : fixed_ports(track))
+    if (port.preload != 0.) force += port.preload * closing_row(track, line, port);
+  return force;
+}
+
 Track linear_about_rest(Track track) {
+  close_pressed_joints(track);
   change_sides(track, [](auto& spring) {
     if (spring.gap == 0.) spring.unilateral = false;
   });
@@ -112,6 +140,10 @@ Track all_open(Track track) {
     if (!spring.one_sided()) return;
     spring.stiffness[2] = spring.damping[2] = 0.;
   });
+  for (RailJoint& joint : track.joints) {
+    joint.end_stiffness = joint.end_damping = 0.;
+    joint.gap = joint.pressed = {};
+  }
   track.stops.clear();
   return track;
 }

@@ -6,28 +6,35 @@
 namespace railstep {
 
 /// A one-sided spring and damper of the track. With d = closing - gap it presses what it stands
-/// between apart with max(0, stiffness d + damping d') while d > 0, and does not pull.
+/// between apart with max(0, stiffness d + damping d') while d > 0, and does not pull. One that
+/// presses where the track stands (gap < 0) is balanced there by its preload, which stays.
 struct FixedPort {
   Functional closing;     // displacement towards it, from the unloaded straight track
   double stiffness = 0.;  // N/m
   double damping = 0.;    // N s/m
   double gap = 0.;        // m
-  enum class Of { pad, ballast, stop } of = Of::stop;
+  double preload = 0.;    // N
+  enum class Of { pad, ballast, stop, joint } of = Of::stop;
   int rail = 0;
-  int seat = -1;  // of a pad or ballast
-  int stop = -1;  // number of a stop
+  int seat = -1;   // of a pad or ballast
+  int stop = -1;   // number of a stop
+  int joint = -1;  // number of a joint
 };
 
 /// What of a track is one-sided: of each rail, seat by seat, pad (two halves where it has a
-/// half_spread) and ballast, then the stops. Without stiffness and damping there is none.
+/// half_spread) and ballast, then the stops, then the ends of rails at joints where rails move
+/// along x. Without stiffness and damping there is none.
 std::vector<FixedPort> fixed_ports(const Track& track);
 
 /// Its closing over the unknowns of one line.
 Eigen::SparseVector<double> closing_row(const Track& track, const Line& line,
                                         const FixedPort& port);
 
-/// The track about its unloaded state: what has no gap and does not pull is taken for a spring that
-/// does; what has a gap, and stops, stay out of its lines.
+/// The preloads of all ports over the unknowns of one line, N.
+Eigen::VectorXd preload(const Track& track, const Line& line);
+
+/// The track about its unloaded state: what has no gap and does not pull, and ends of rails that
+/// heat presses, are taken for springs that do; what has a gap, and stops, stay out of its lines.
 Track linear_about_rest(Track track);
 
 /// The track with everything one-sided away.

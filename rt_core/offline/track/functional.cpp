@@ -4,18 +4,43 @@
 
 namespace railstep {
 
+void add_underside(const Track& track, int rail, int seat, double x, double y, double factor,
+                   Functional& to) {
+  const double z = track.seat(seat).pad[static_cast<std::size_t>(rail)].height_z;
+  const Cant cant = track.lean(rail);
+  to.rail.push_back({{rail, x, y, z, 2}, factor * cant.cosine});
+  if (cant.sine != 0.) to.rail.push_back({{rail, x, y, z, 1}, -factor * cant.sine});
+}
+
+/// u_end, and along z as much as the sleeper rises by the distance from its end's middle,
+/// aside (u_left - u_right)/g.
+void add_sleeper_top(const Track& track, int rail, int seat, double y, double factor,
+                     Functional& to) {
+  const Seat there = track.seat(seat);
+  if (!there.sleeper) return;
+  const Cant cant = track.lean(rail);
+  to.sleeper.push_back({rail, seat, 2, factor * cant.cosine});
+  if (cant.sine != 0.) to.sleeper.push_back({rail, seat, 1, -factor * cant.sine});
+  const double aside =
+      cant.cosine * y - cant.sine * there.pad[static_cast<std::size_t>(rail)].height_z;
+  if (track.rails == 1 || aside == 0.) return;
+  const double turned = cant.cosine * aside / track.rail_spacing;
+  to.sleeper.push_back({0, seat, 2, factor * turned});
+  to.sleeper.push_back({1, seat, 2, -factor * turned});
+}
+
 Functional pad_gap(const Track& track, int rail, int seat) {
   const Seat there = track.seat(seat);
   const Support& pad = there.pad[static_cast<std::size_t>(rail)];
   Functional gap;
   double offset = 0.;
   for (const PadPoint& at : pad_points(track, seat, pad.length)) {
-    gap.rail.push_back({{rail, at.x, 0., pad.height_z, 2}, at.part});
+    add_underside(track, rail, seat, at.x, 0., at.part, gap);
     offset += at.part * at.offset;
   }
-  if (there.sleeper) gap.sleeper.push_back({rail, seat, 2, -1.});
+  add_sleeper_top(track, rail, seat, 0., -1., gap);
   if (there.sleeper && there.sleeper->moves[2] && offset != 0.)
-    gap.sleeper.push_back({rail, seat, 3, offset});
+    gap.sleeper.push_back({rail, seat, 3, offset * track.lean(rail).cosine});
   return gap;
 }
 

@@ -19,9 +19,16 @@ struct Functional {
   std::vector<OnSleeper> sleeper = {};
 };
 
-/// What opens a pad: its rail's seat over the sleeper's end, or over the ground, along z; the mean
-/// of one that has a length.
+/// What opens a pad: its rail's seat over the sleeper, or over the ground, along the pad's normal,
+/// which is the rail's own z; the mean of one that has a length.
 Functional pad_gap(const Track& track, int rail, int seat);
+
+/// The two sides of a pad at a place y beside its rail's middle, along its normal: adds `factor`
+/// times what the rail's underside over x does, or the top of the sleeper under the seat.
+void add_underside(const Track& track, int rail, int seat, double x, double y, double factor,
+                   Functional& to);
+void add_sleeper_top(const Track& track, int rail, int seat, double y, double factor,
+                     Functional& to);
 
 /// Its coefficients over the unknowns of one line.
 Eigen::SparseVector<double> functional_row(const Track& track, const Line& line,

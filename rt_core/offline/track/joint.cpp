@@ -68,6 +68,15 @@ void check_joints(const Track& track) {
       for (const double value : *values)
         if (!(value >= 0.))
           throw std::invalid_argument("a joint's stiffness and damping are at least 0");
+    const bool opens = std::isfinite(joint.end_stiffness) && joint.end_stiffness >= 0. &&
+                       joint.end_damping >= 0. && std::isfinite(joint.stiffness[0]);
+    if ((joint.end_stiffness != 0. || joint.end_damping != 0.) && !opens)
+      throw std::invalid_argument(
+          "ends that press have a stiffness and a damping that are finite and at least 0, and do "
+          "not share their motion along x");
+    for (const std::size_t side : {0u, 1u})
+      if (!(joint.pressed[side] >= 0.) || (joint.pressed[side] > 0. && joint.end_stiffness == 0.))
+        throw std::invalid_argument("ends that are pressed have a stiffness");
     if (std::isinf(joint.turn_stiffness[0]))
       throw std::invalid_argument("a joint's stiffness against twist is finite");
   }
@@ -92,6 +101,7 @@ void add_joints(const Track& track, Assembly& part, int rail) {
     if (!joint.rails[static_cast<std::size_t>(rail)]) continue;
     const int node = joint_node(track, joint);
     const auto row = [&](int k, double factor) { return jump(part.line, rail, node, k, factor); };
+    if (joint.end_stiffness > 0.) Assembly::tie(part.stiffness, row(0, 1.));
     for (std::size_t d = 0; d < 3; ++d)
       add_spring(part, row(static_cast<int>(d), 1.), joint.stiffness[d], joint.damping[d]);
     Row twist = row(5, .5);  // (a_z - b_y)/2
@@ -99,6 +109,26 @@ void add_joints(const Track& track, Assembly& part, int rail) {
     add_spring(part, twist, joint.turn_stiffness[0], joint.turn_damping[0]);
     add_spring(part, row(kVertical, 1.), joint.turn_stiffness[1], joint.turn_damping[1]);
     add_spring(part, row(kLateral, 1.), joint.turn_stiffness[2], joint.turn_damping[2]);
+  }
+}
+
+double compression_by_heat(double growth, double give, const std::vector<HeatedGap>& joints) {
+  double gaps = 0.;
+  for (const HeatedGap& joint : joints) {
+    if (joint.end_stiffness == 0.) return 0.;
+    gaps += joint.gap;
+    give += 1. / joint.end_stiffness;
+  }
+  return growth > gaps ? (growth - gaps) / give : 0.;
+}
+
+void close_pressed_joints(Track& track) {
+  for (RailJoint& joint : track.joints) {
+    if (joint.pressed[0] + joint.pressed[1] == 0.) continue;
+    joint.stiffness[0] += joint.end_stiffness;
+    joint.damping[0] += joint.end_damping;
+    joint.end_stiffness = joint.end_damping = 0.;
+    joint.gap = joint.pressed = {};
   }
 }
 

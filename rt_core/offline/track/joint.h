@@ -1,12 +1,15 @@
 #pragma once
 #include <array>
+#include <limits>
+#include <vector>
 
 namespace railstep {
 
 /// A bolted joint: a rail is cut at a border of its elements, and fishplates hold its two ends by
 /// springs and dampers on what one end does over the other, at the rail's axis. A stiffness that is
 /// infinite lets both ends share that motion; all others of the section (its own strains) are free
-/// at both ends.
+/// at both ends. Where its gap closes, the ends press on each other along x at the axis: a
+/// one-sided spring (fixed_port.h). Nothing of that in a rail that does not move along x.
 struct RailJoint {
   double x = 0.;                           // along the rail, m
   std::array<bool, 2> rails{true, true};   // cut: left, right
@@ -15,6 +18,11 @@ struct RailJoint {
   std::array<double, 3> turn_stiffness{};  // twist, vertical bending, lateral bending, N m/rad;
                                            // that of twist is finite
   std::array<double, 3> turn_damping{};    // N m s/rad
+  double end_stiffness = 0.;               // of two ends that press, N/m; 0: they never meet
+  double end_damping = 0.;                 // N s/m
+  std::array<double, 2> gap{};             // between the ends of left and right rail at rest, m;
+                                           // closed by heat: -pressed / end_stiffness
+  std::array<double, 2> pressed{};         // with which heat presses them at rest, N
 
   bool operator==(const RailJoint&) const = default;
 };
@@ -30,5 +38,20 @@ const RailJoint* joint_at(const Track& track, int rail, int node);
 
 /// Throws std::invalid_argument on joints that the track cannot have.
 void check_joints(const Track& track);
+
+/// Compression, N, of rails that heat makes longer between two ends that hold them, where their
+/// seats let them slide:
+///   P = (growth - sum of gaps)/(L/EA + sum of 1/k),   0 where the gaps have room.
+/// It is the same all along, and where it is above 0 every gap is closed.
+/// @param growth  of all rails, free, m
+/// @param give    L/EA, m/N
+/// @param joints  gap, m, and end_stiffness, N/m, of each; one whose ends never meet: 0
+struct HeatedGap {
+  double gap, end_stiffness;
+};
+double compression_by_heat(double growth, double give, const std::vector<HeatedGap>& joints);
+
+/// Each joint whose ends heat presses, with a spring of that stiffness in the place of the ends.
+void close_pressed_joints(Track& track);
 
 }  // namespace railstep

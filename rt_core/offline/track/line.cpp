@@ -5,14 +5,23 @@
 
 namespace railstep {
 
-Eigen::SparseVector<double> point_row(const Track& track, const Line& line,
-                                      const RailPoint& point) {
+Vector27 rail_row(const Cant& cant, double xi, double y, double z, int direction) {
+  if (cant.sine == 0. || direction == 0) return point_row(xi, y, z, direction);
+  const double of_track[3] = {0., direction == 1 ? 1. : 0., direction == 2 ? 1. : 0.};
+  double own[3];
+  to_rail(cant, of_track, own);
+  return own[1] * point_row(xi, y, z, 1) + own[2] * point_row(xi, y, z, 2);
+}
+
+Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point,
+                                      bool strains) {
   const auto [element, xi] = place_on(track, point.x);
-  const Vector27 local = point_row(xi, point.y, point.z, point.direction);
+  const Vector27 local = rail_row(track.lean(point.rail), xi, point.y, point.z, point.direction);
   const double factor = line.rail_factor[static_cast<std::size_t>(point.rail)];
   Eigen::SparseVector<double> row(line.unknowns());
   for (int i = 0; i < 27; ++i) {
     const int k = i % 9;
+    if (!strains && (k == 4 || k == 8)) continue;
     const int unknown = line.element_unknown(point.rail, element, i / 9, k);
     if (unknown < 0 || local[i] == 0. || factor == 0.) continue;
     row.coeffRef(unknown) += factor * (sign_of(line, point.rail, k) * local[i]);
@@ -66,17 +75,25 @@ Eigen::VectorXd state_of(const Track& track, const Line& line, const TrackState&
 /// Adds the weight of a rail, as often as `factor` says.
 void add_rail_weight(const Track& track, const Line& line, int rail, double factor,
                      Eigen::VectorXd& force) {
-  const RailBar bar = track.bar(rail);
-  const ElementMatrices element =
-      element_matrices(bar.section, track.law(rail), track.element_length());
+  const Vector27 load = line_load(track, rail);
   for (int e = 0; e < track.elements(); ++e)
     for (int i = 0; i < 27; ++i) {
       const int unknown = line.element_unknown(rail, e, i / 9, i % 9);
-      if (unknown >= 0) force[unknown] -= factor * element.line_load[i];
+      if (unknown >= 0) force[unknown] -= factor * (sign_of(line, rail, i % 9) * load[i]);
     }
 }
 
 }  // namespace
+
+Vector27 line_load(const Track& track, int rail) {
+  const RailBar bar = track.bar(rail);
+  const Vector27 upright =
+      element_matrices(bar.section, track.law(rail), track.element_length()).line_load;
+  const Cant cant = track.lean(rail);
+  Vector27 load;
+  for (int i = 0; i < 27; i += 3) to_rail(cant, upright.data() + i, load.data() + i);
+  return load;
+}
 
 Eigen::VectorXd weight(const Track& track, const Line& line, double gravity) {
   if (track.state) return line.stiffness * state_of(track, line, *track.state);

@@ -125,8 +125,11 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
   for (std::size_t l = 0; l < load.size(); ++l) f.segment(first_[l], load[l].size()) = load[l];
   // All closed is where a track rests that carries what it is made for.
   Eigen::VectorXd gaps(static_cast<Eigen::Index>(ports_.size()));
-  for (std::size_t p = 0; p < ports_.size(); ++p)
+  double largest_gap = 0.;  // m; what rests pressed does not move at all
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
     gaps[static_cast<Eigen::Index>(p)] = ports_[p].stiffness * ports_[p].gap;
+    largest_gap = std::max(largest_gap, std::abs(ports_[p].gap));
+  }
   Eigen::VectorXd u = all_closed_.solve(f + closing_ * gaps);
   Closed closed = pressing(u);
   bool done = false;
@@ -137,7 +140,8 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
     const Closed now = pressing(u);
     // A whole step that changes no spring's state solved the linear system of that state; one that
     // flickers about 0 moves nothing any more.
-    done = (now == closed && std::abs(part - 1.) < 1e-6) || step.norm() <= 1e-9 * u.norm();
+    const double nothing = std::max(1e-9 * u.norm(), 1e-12 * largest_gap);
+    done = (now == closed && std::abs(part - 1.) < 1e-6) || step.norm() <= nothing;
     closed = now;
   }
   if (!done)

@@ -61,6 +61,7 @@ std::vector<Eigen::VectorXd> Statics::loads(const std::vector<PointForce>& force
   for (const Line& line : lines_) {
     Eigen::VectorXd load = Eigen::VectorXd::Zero(line.unknowns());
     if (gravity != 0.) load += weight(track_, line, gravity);
+    if (one_sided_) load += preload(track_, line);
     for (const PointForce& f : forces) load += f.force * point_row(track_, line, f.at);
     result.push_back(std::move(load));
   }

@@ -21,6 +21,7 @@ void check(const Track& track) {
     if (wrong) throw std::invalid_argument(std::string("a Timoshenko beam stands for ") + what);
   };
   refuse(track.rails != 1, "one rail; accepted is track.rails = 1");
+  refuse(track.cant != 0., "a rail that stands upright; accepted is no cant");
   refuse(!track.joints.empty(), "a rail without joints; accepted is model = \"linearised\"");
   refuse(has_sleepers(track), "a rail on the ground; accepted without sleepers");
   refuse(has_long_pads(track), "a rail on point seats; accepted is support.length_m = 0");

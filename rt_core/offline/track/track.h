@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/SparseCore>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "offline/element/matrices.h"
 #include "offline/track/joint.h"
 #include "offline/track/seat.h"
+#include "online/model/cant.h"
 
 namespace railstep {
 
@@ -31,7 +33,7 @@ inline constexpr int kEndZoneBays = 16;
 /// Where a track stands under its own weight. Of one that is symmetric both sides are the same, and
 /// nothing moves sideways.
 struct TrackState {
-  std::array<Eigen::VectorXd, 2> rail;     // [9 nodes] change of its unknowns from rest
+  std::array<Eigen::VectorXd, 2> rail;     // [9 nodes] change of its unknowns, in its own axes
   std::array<Eigen::VectorXd, 2> sleeper;  // [4 seats] x, y, z of the ends, m, and turn about y
   double gravity = 0.;                     // of that weight, m/s2
 };
@@ -67,7 +69,10 @@ struct Track {
   int bays = 1;
   double bay_length = .6;  // m
   int elements_per_bay = 2;
-  double rail_spacing = 1.5;  // m
+  double rail_spacing = 1.5;  // m, between the rails' axes
+  /// By how much each rail leans inwards, the tangent of the angle: 1/20, say. Its ends, joints and
+  /// pads lie in its own axes: a pad lies on the sleeper's inclined seat.
+  double cant = 0.;
   RailEnds ends = {RailEnd::free, RailEnd::free};
   int end_zone_bays = kEndZoneBays;  // damped bays before each non-reflecting end
   /// The last bay border is the first: a track without ends, whatever runs on it runs round. Its
@@ -93,6 +98,10 @@ struct Track {
   double element_length() const { return bay_length / elements_per_bay; }
   double length() const { return bays * bay_length; }
   /// @param rail  0 left (+y), 1 right
+  Cant lean(int rail) const {
+    const double cosine = 1. / std::sqrt(1. + cant * cant);
+    return {cosine, (rail == 0 ? cant : -cant) * cosine};
+  }
   RailBar bar(int rail) const {
     return rail == 1 && right ? *right : RailBar{section, material, axial_force};
   }
@@ -128,9 +137,13 @@ ElementPlace place_on(const Track& track, double x);
 struct RailPoint {
   int rail;       // 0 left (+y), 1 right
   double x;       // along the undeformed rail, m
-  double y, z;    // over the section, from the axis, m
-  int direction;  // 0 x, 1 y, 2 z
+  double y, z;    // over the section, along its own axes from the axis, m
+  int direction;  // 0 x, 1 y, 2 z of the track
 };
+
+/// Coefficients of a material point's displacement along a direction of the track over the 27
+/// unknowns of its element, in the rail's own axes.
+Vector27 rail_row(const Cant& cant, double xi, double y, double z, int direction);
 
 /// How a rigid sleeper moves; of the table of a line's unknowns.
 enum SleeperMotion { kAlongX, kAlongY, kAlongZ, kRoll, kYaw, kPitch, kSleeperMotions };
@@ -143,7 +156,7 @@ enum SleeperMotion { kAlongX, kAlongY, kAlongZ, kRoll, kYaw, kPitch, kSleeperMot
 /// themselves. Whatever then does not couple (vertical and lateral motion of a section symmetric
 /// in y, say) becomes a line of its own.
 struct Line {
-  /// [nodes] unknowns of one rail; -1 where not carried.
+  /// [nodes] unknowns of one rail, along its own axes; -1 where not carried.
   using RailUnknowns = std::vector<std::array<int, 9>>;
 
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
@@ -186,7 +199,9 @@ std::vector<Line> assemble(const Track& track);
 
 /// Coefficients of the displacement of a material point over the unknowns of one line. Transposed,
 /// it spreads a unit force at that point. Throws std::out_of_range off the rail.
-Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point);
+/// @param strains  false: without what the section's own strain (a_y, b_z) adds
+Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point,
+                                      bool strains = true);
 
 /// What unknown k of a rail's node is per unknown of the line, before the rail's weight in it: -1
 /// for the y components (r_y, a_x, a_z, b_y) of a mirrored right rail; the other sign for b_y of a
@@ -198,6 +213,9 @@ double sign_of(const Line& line, int rail, int k);
 /// @param direction  0 x, 1 y, 2 z, m; 3 turn about y, rad
 Eigen::SparseVector<double> sleeper_row(const Track& track, const Line& line, int rail, int seat,
                                         int direction);
+
+/// Nodal forces of a load of 1 N/m upwards along an element of a rail, in the rail's axes.
+Vector27 line_load(const Track& track, int rail);
 
 /// Nodal forces of the rails' and sleepers' own weight on one line. @param gravity m/s2, > 0 down.
 /// Of a track with a state, which is that under its weight: K_r q_s, the constant part of Eq. 24,

@@ -276,6 +276,10 @@ void describe(Archive& a, Model& m) {
     a.real(of_rails[0]);
     a.real(of_rails[1]);
   }
+  for (Cant& cant : m.cant) {
+    a.real(cant.cosine);
+    a.real(cant.sine);
+  }
   a.reals(m.constant_force, std::int64_t{1 + m.condensed} * m.unknowns);
   for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
   for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);

@@ -100,6 +100,12 @@ bool line_holds(const Model& m, const LineModel& line) noexcept {
          diagonals_hold(line.mass) && diagonals_hold(line.damping);
 }
 
+/// Whether it is a turn, to its rounding.
+bool turns(const Cant& cant) noexcept {
+  const double off = (cant.cosine * cant.cosine + cant.sine * cant.sine) - 1.;
+  return off > -1e-14 && off < 1e-14 && cant.cosine > 0.;
+}
+
 bool signal_holds(const SignalModel& s) noexcept {
   return s.intervals == 0 || (s.step > 0. && s.coefficient != nullptr);
 }
@@ -194,6 +200,8 @@ bool holds(const Model& m) noexcept {
     if ((m.load[i].table_points > 0 && m.load[i].table == nullptr) ||
         !travel_holds(m.load[i].travel))
       return false;
+  for (const Cant& cant : m.cant)
+    if (!turns(cant)) return false;
   for (std::int32_t i = 0; i < m.wheelsets; ++i)
     if (!wheelset_holds(m, m.wheelset[i])) return false;
   if (!flanges_hold(m)) return false;

@@ -26,7 +26,7 @@ struct LoadResult {
 ///   follows, int64 bytes of the text, the text padded to 8 bytes with zeros, then the model's
 ///   numbers as describe.h orders them: each count, integer and real in 8 bytes, each array as
 ///   an int64 of its length and its values, padded to 8 bytes.
-inline constexpr std::int64_t kBlockFormat = 5;
+inline constexpr std::int64_t kBlockFormat = 6;
 inline constexpr std::size_t kBlockHeader = 8 + 8 + 8 + 32 + 8;
 
 /// Views over a block, which must outlive the model. Every number that a step uses as a size or an

@@ -5,6 +5,7 @@
 #include "online/math/band.h"
 #include "online/math/diagonals.h"
 #include "online/math/modes.h"
+#include "online/model/cant.h"
 #include "online/model/system.h"
 
 namespace railstep {
@@ -109,7 +110,8 @@ struct TravelModel {
 /// A prescribed force that runs along a rail: force * table + amplitude sin(2 pi (frequency t +
 /// phase)).
 struct LoadModel {
-  double row[9];              // of a node: position, y slope, z slope; gives the loaded point's z
+  double row[9];              // of a node: position, y slope, z slope, along the rail's own axes;
+                              // gives the loaded point's height
   std::int32_t rail;          // 0 left, 1 right
   double start, stop;         // m; taken off beyond stop; start of a track without end: of the
                               // elements' x
@@ -282,9 +284,10 @@ struct Model {
   std::int32_t steps_per_frame;
   double element_length;  // m
   Endless endless;
-  double rail_y[2];              // of the rails' axes, m
-  double rail_z[2];              // of the rails' axes over the left one, m: their heads are level
-  double head_z[2];              // of each railhead's top over its rail's axis, m
+  double rail_y[2];  // of the rails' axes, m
+  double rail_z[2];  // of the rails' axes over the left one, m: their heads are level
+  Cant cant[2];
+  double head_z[2];              // of each railhead's middle over its rail's axis in the section, m
   double crown_radius[2];        // m
   double head_half_width[2];     // m
   const double* constant_force;  // [1 + condensed][unknowns] N, or null: the track's weight

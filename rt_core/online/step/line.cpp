@@ -47,10 +47,15 @@ double axis_height(const Model& model, std::int32_t rail, std::int32_t element, 
                    const Configuration& at) noexcept {
   double shape[3], sum = 0.;
   shape_functions(xi, shape);
+  const Cant& cant = model.cant[rail];
   for (std::int32_t l = 0; l < model.lines; ++l)
-    for (int i = 0; i < 3; ++i)
-      sum += shape[i] * weight_of(model.line[l], rail, 2) *
+    for (int i = 0; i < 3; ++i) {
+      sum += shape[i] * (cant.cosine * weight_of(model.line[l], rail, 2)) *
              nodal_value(model.line[l], rail, element, i, 2, at);
+      if (cant.sine == 0.) continue;
+      sum += shape[i] * (cant.sine * weight_of(model.line[l], rail, 1)) *
+             nodal_value(model.line[l], rail, element, i, 1, at);
+    }
   return sum;
 }
 

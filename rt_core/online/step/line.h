@@ -46,6 +46,16 @@ inline double weight_of(const LineModel& line, std::int32_t rail, int k) noexcep
                                                       : line.rail_factor[rail];
 }
 
+/// Sets a row to that of the height of the section's point (y, z), m.
+/// @param shape  [3] of the row's element
+inline void set_height_row(const Cant& cant, double y, double z, const double* shape,
+                           RailRow& row) noexcept {
+  double of_node[9];
+  height_row(cant, y, z, of_node);
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k) row.coefficient[i][k] = shape[i] * of_node[k];
+}
+
 /// Vertical displacement of a rail's axis by the lines alone, m.
 double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
                    const Configuration& at) noexcept;

@@ -26,7 +26,9 @@ double add_turn(const Model& model, const Configuration& at, double turn, double
                 double z, const double* normal, RailRow& row) noexcept {
   double shape[3];
   shape_functions(xi, shape);
-  const double down = turn * (z * normal[2] + y * normal[1]);
+  double along[3];
+  to_rail(model.cant[row.rail], normal, along);
+  const double down = turn * (z * along[2] + y * along[1]);
   for (int i = 0; i < 3; ++i) {
     row.coefficient[i][5] -= .5 * down * shape[i];
     row.coefficient[i][7] += .5 * down * shape[i];

@@ -20,7 +20,7 @@ inline void keep_section(double* q) noexcept {
 /// over the seats around, make of it; without a turn nothing.
 /// @param turn    of the section under the point, rad
 /// @param xi      of the point in row.element
-/// @param normal  [3] unit
+/// @param normal  [3] unit, in the track's axes
 /// @returns by how much the point lies higher along the normal for the turns over the seats, m; the
 ///          one under the point itself is in places of which keep_section() was made
 double add_turn(const Model& model, const Configuration& at, double turn, double xi, double y,

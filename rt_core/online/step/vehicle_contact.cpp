@@ -6,15 +6,6 @@ namespace railstep {
 
 namespace {
 
-/// The row of the rail's vertical displacement in the contact, or of its slope along x.
-void fill_row(const Model& model, WheelContact& at, const double* shape) noexcept {
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k)
-      at.row.coefficient[i][k] = k == 2   ? shape[i]
-                                 : k == 8 ? model.head_z[at.row.rail] * shape[i]
-                                          : 0.;
-}
-
 /// Height of a vehicle's wheel k, m.
 double wheel_height(const VehicleModel& vehicle, int k, const double* u) noexcept {
   double sum = 0.;
@@ -35,9 +26,9 @@ double slope_under(const Model& model, const WheelContact& at, const Configurati
   const double per_metre = 2. / model.element_length;
   const double slope[3] = {(at.xi - .5) * per_metre, -2. * at.xi * per_metre,
                            (at.xi + .5) * per_metre};
-  WheelContact along = at;
-  fill_row(model, along, slope);
-  return rail_height(model, along.row, seen);
+  RailRow along = at.row;
+  set_height_row(model.cant[along.rail], at.y, at.z, slope, along);
+  return rail_height(model, along, seen);
 }
 
 void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, double time,
@@ -52,7 +43,10 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, doub
     found.x = vehicle.start + gone + wheel.place;
     found.row.rail = wheel.rail;
     found.normal[2] = 1.;
-    found.z = model.head_z[wheel.rail];
+    const Cant& cant = model.cant[wheel.rail];
+    const CrownTop top = crown_top(cant, model.head_z[wheel.rail], model.crown_radius[wheel.rail]);
+    found.y = top.y;
+    found.z = top.z;
     const double scaled = found.x / model.element_length;
     found.on_rail = scaled >= 0. && scaled <= model.elements;
     found.on_ground = !found.on_rail;
@@ -63,7 +57,7 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, doub
       found.xi = 2. * (scaled - found.row.element) - 1.;
       double shape[3];
       shape_functions(found.xi, shape);
-      fill_row(model, found, shape);
+      set_height_row(cant, found.y, found.z, shape, found.row);
       height = rail_height(model, found.row, at);
       const Irregularity off =
           irregularity(model, wheel.tread, wheel.rail, up, found.x + (rolled - gone), rolled);

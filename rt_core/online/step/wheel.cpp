@@ -52,17 +52,21 @@ void gather(const Model& model, double x, const Configuration& at, Window* sides
   for (std::int32_t l = 0; l < model.lines; ++l) gather_line(model.line[l], at, sides);
 }
 
-/// From displacements to places: rest added.
+/// From displacements in the rail's axes to places in the track's: rest added.
 void add_rest(const Model& model, int rail, Window& window) noexcept {
+  const Cant& cant = model.cant[rail];
   for (std::int32_t i = 0; i < 3 * window.elements; ++i) {
     double* q = window.nodes + 9 * i;
     const std::int32_t node = 2 * (window.first + i / 3) + i % 3;
-    q[0] += .5 * model.element_length * node;
-    q[1] += model.rail_y[rail];
-    q[2] += model.rail_z[rail];
     q[4] += 1.;
     q[8] += 1.;
     keep_section(q);
+    double own[9];
+    for (int k = 0; k < 9; ++k) own[k] = q[k];
+    for (int k = 0; k < 9; k += 3) to_track(cant, own + k, q + k);
+    q[0] += .5 * model.element_length * node;
+    q[1] += model.rail_y[rail];
+    q[2] += model.rail_z[rail];
   }
 }
 
@@ -108,6 +112,14 @@ void interpolate_nodes(const Window& window, RailPlace place, const double* shap
   for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
 }
 
+/// Turn of a section about x from rest, rad; q of a node in the track's axes.
+double section_turn(const Cant& cant, const double* q) noexcept {
+  double a[3], b[3];
+  to_rail(cant, q + 3, a);
+  to_rail(cant, q + 6, b);
+  return .5 * (a[2] - b[1]);
+}
+
 /// Where a search in a window starts: at x on the straight rail.
 RailPlace guess(const Model& model, const Window& window, double x) noexcept {
   double at = x / model.element_length - window.first;
@@ -119,9 +131,11 @@ RailPlace guess(const Model& model, const Window& window, double x) noexcept {
 
 /// Row of the material point (y, z) along the normal. An irregular rail that is drawn along brings
 /// up the height that its steel had behind: its row leans back by the slope.
-void fill_row(const double* shape, double slope, WheelContact& at) noexcept {
+void fill_row(const Cant& cant, const double* shape, double slope, WheelContact& at) noexcept {
   const double lever[3] = {1., at.y, at.z};
-  const double along[3] = {at.normal[0] - slope, at.normal[1], at.normal[2]};
+  double along[3];
+  to_rail(cant, at.normal, along);
+  along[0] -= slope;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
 }
@@ -175,9 +189,9 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   const double rolled = (now.passed + model.endless.origin) + now.u[w.first];
   const Irregularity off =
       irregularity(model, w.tread[side], side, at.normal, (x + now.passed) + ahead, rolled + ahead);
-  fill_row(shape, off.rail_rise, at);
+  fill_row(model.cant[side], shape, off.rail_rise, at);
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
-  at.turn = .5 * (q[5] - q[7]);
+  at.turn = section_turn(model.cant[side], q);
   const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
   double gap = 0.;
   for (int d = 0; d < 3; ++d)
@@ -235,8 +249,8 @@ WheelContact find_flange(const Model& model, const FlangeModel& flange, int side
   const double x = at.x + (face[0] - (centre[0] + arm[0]));
   const Irregularity off =
       irregularity(model, SignalModel{}, side, at.normal, (x + now.passed) + ahead, 0.);
-  fill_row(shape, off.rail_rise, at);
-  at.turn = .5 * (q[5] - q[7]);
+  fill_row(model.cant[side], shape, off.rail_rise, at);
+  at.turn = section_turn(model.cant[side], q);
   const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
   at.penetration = (off.depth + higher) - gap;
   at.irregular = off.depth;
