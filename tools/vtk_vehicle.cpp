@@ -36,7 +36,7 @@ Standing stand(const Simulation& run, const VehicleModel& model, int rail,
           Eigen::Map<const Eigen::VectorXd>(run.state.u + model.first, model.size) - drawn.rest,
           model.start + travelled(model.travel, time).distance,
           m.rail_y[rail],
-          m.rail_z[rail] + m.head_z[rail]};
+          m.rail_z[rail] + crown_top(m.cant[rail], m.head_z[rail], m.crown_radius[rail]).height};
 }
 
 /// 0 on the rail, 1 on springs over that, and so on.
