@@ -5,6 +5,7 @@
 
 #include "offline/track/track.h"
 #include "offline/vehicle/vehicle.h"
+#include "online/contact/signal.h"
 
 namespace railstep {
 
@@ -89,6 +90,7 @@ struct ModalCrossing {
   Vehicle vehicle;
   VehicleMatrices m;
   double start, speed, stiffness, damping;  // of each contact
+  SignalModel rough{};                      // height of the beam's head over its line
   Newmark run;
   double time = 0.;
   int steps = 0;
@@ -108,13 +110,25 @@ struct ModalCrossing {
     run.u.tail(m.weight.size()) =
         -(m.stiffness + k * m.wheels.transpose() * m.wheels).partialPivLu().solve(m.weight);
   }
+  double place(Eigen::Index wheel) const {
+    return start + speed * time + vehicle.wheels[static_cast<std::size_t>(wheel)].place;
+  }
+  /// What the head's height makes of the contacts' forces, N.
+  Eigen::VectorXd rough_forces() const {
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(m.wheels.rows());
+    for (Eigen::Index i = 0; i < f.size(); ++i) {
+      if (place(i) < 0. || place(i) > modes.length) continue;
+      const SignalValue at = signal_at(rough, place(i));
+      f[i] = stiffness * at.value + damping * speed * at.slope;
+    }
+    return f;
+  }
   /// Penetration rows of the wheels, [wheels][all], and by how much they change along x.
   Eigen::MatrixXd rows(int derivative) const {
     const Eigen::Index n = modes.count();
     Eigen::MatrixXd r(m.wheels.rows(), n + m.weight.size());
     for (Eigen::Index i = 0; i < r.rows(); ++i) {
-      const double x = start + speed * time + vehicle.wheels[static_cast<std::size_t>(i)].place;
-      r.row(i).head(n) = modes.at(x, derivative).transpose();
+      r.row(i).head(n) = modes.at(place(i), derivative).transpose();
     }
     r.rightCols(m.weight.size()) = (derivative == 0 ? -1. : 0.) * m.wheels;
     return r;
@@ -130,13 +144,14 @@ struct ModalCrossing {
     Eigen::MatrixXd K = row.transpose() * (stiffness * row + damping * speed * along);
     K.topLeftCorner(n, n).diagonal() += modes.squares();
     K.bottomRightCorner(own, own) += m.stiffness;
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(n + own);
-    f.tail(own) = -m.weight;
+    Eigen::VectorXd f = -row.transpose() * rough_forces();
+    f.tail(own) -= m.weight;
     run.step(M, C, K, f, dt);
   }
   /// Forces of the rail on the wheels, N.
   Eigen::VectorXd forces() const {
-    return stiffness * (rows(0) * run.u) + damping * (rows(0) * run.v + speed * rows(1) * run.u);
+    return rough_forces() + stiffness * (rows(0) * run.u) +
+           damping * (rows(0) * run.v + speed * rows(1) * run.u);
   }
   double midspan() const { return modes.at(.5 * modes.length).dot(run.u.head(modes.count())); }
   double body(int coordinate) const { return run.u[modes.count() + coordinate]; }

@@ -1,6 +1,7 @@
 // A force near the critical speed of a rail on seats so close that they are a bed.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
 #include <vector>
 
 #include "model_run.h"
@@ -71,4 +72,144 @@ TEST_CASE("deflections below critical speed have their ratios to the static one"
     UNSCOPED_INFO(part << " of critical speed: " << found);
     CHECK(std::abs(found / want - 1.) < .01);  // H14
   }
+}
+
+namespace {
+
+/// The wave that goes at the least speed: m/s, 1/s, d2(omega)/dk2 in m2/s, and what of a force
+/// moves it.
+struct CriticalWave {
+  double speed, frequency, alpha, share;
+};
+
+/// A Timoshenko beam of the same rail on a continuous bed, wave by wave.
+struct Bed {
+  double mass, rotary, shear, bending, stiffness, damping;  // kg/m, kg m, N, N m2, N/m2, N s/m2
+
+  explicit Bed(const Track& t)
+      : mass(t.material.density * t.section.area),
+        rotary(t.material.density * t.section.inertia_y),
+        shear(t.section.shear_factor_z * t.material.shear_modulus() * t.section.area),
+        bending(t.material.young * t.section.inertia_y),
+        stiffness(t.support.stiffness[2] / t.bay_length),
+        damping(t.support.damping[2] / t.bay_length) {}
+
+  struct Wave {
+    double square[2], share[2];  // of both branches: omega^2, and what of a force moves it over m
+  };
+  /// Of wave number k: m w'' + (S k^2 + stiffness) w + S k a = f, r a'' + (B k^2 + S) a + S k w =
+  /// 0.
+  Wave wave(double k) const {
+    const double A = (shear * k * k + stiffness) / mass, D = (bending * k * k + shear) / rotary;
+    const double b2 = shear * k * shear * k / (mass * rotary);
+    const double half = .5 * (A + D), root = std::sqrt(.25 * (D - A) * (D - A) + b2);
+    const double low = (A * D - b2) / (half + root), high = half + root;
+    const double turn = b2 / ((D - low) * (D - low));
+    return {{low, high}, {1. / (1. + turn), turn / (1. + turn)}};
+  }
+  double frequency(double k) const { return std::sqrt(wave(k).square[0]); }
+  /// Where omega / k is least, by thirds; its waves carry energy at that speed.
+  CriticalWave critical() const {
+    double low = .1, high = 10.;
+    while (high - low > 1e-7) {
+      const double a = low + (high - low) / 3., b = high - (high - low) / 3.;
+      if (frequency(a) / a < frequency(b) / b)
+        high = b;
+      else
+        low = a;
+    }
+    const double k = .5 * (low + high), h = 1e-3, w = frequency(k);
+    return {w / k, w, (frequency(k + h) - 2. * w + frequency(k - h)) / (h * h), wave(k).share[0]};
+  }
+  /// Deflection under a force that appears at x0 at t = 0 and runs along a beam on pinned ends:
+  /// each of its sines in closed form.
+  double under(double force, double speed, double x0, double time, double length) const {
+    double sum = 0.;
+    for (int n = 1; n < 2000; ++n) {
+      const double k = n * M_PI / length, W = k * speed, at = k * x0;
+      const Wave own = wave(k);
+      for (int j = 0; j < 2; ++j) {
+        const double w = std::sqrt(own.square[j]);
+        sum += own.share[j] *
+               (std::sin(at + W * time) - std::sin(at) * std::cos(w * time) -
+                W / w * std::cos(at) * std::sin(w * time)) /
+               (own.square[j] - W * W) * std::sin(at + W * time);
+      }
+    }
+    return 2. * force / (mass * length) * sum;
+  }
+  /// Deflection under a force that has always run.
+  double steady(double force, double speed) const {
+    double sum = 0.;
+    const double dk = 1e-4;
+    for (double k = .5 * dk; k < 200.; k += dk) {
+      const double W = k * speed;
+      const std::complex<double> held(shear * k * k + stiffness - mass * W * W, damping * W);
+      const double turns = bending * k * k + shear - rotary * W * W;
+      sum += (turns / (held * turns - shear * k * shear * k)).real();
+    }
+    return force * sum * dk / M_PI;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("at critical speed a deflection grows with the root of time", "[load]") {
+  // No damper: around the critical wave omega - v k = alpha (k - k0)^2 / 2, and the waves that the
+  // force feeds spread by sqrt(alpha t) only, so that
+  //   w = F / (m omega) sqrt(t / (pi alpha)) + a constant + O(1/sqrt(t)).
+  const Track track = bed(1300);
+  const Bed exact(track);
+  const CriticalWave at = exact.critical();
+  CHECK(std::abs(at.speed / 754.04 - 1.) < 1e-5);  // R9
+  const double force = -1e5, from = 30.05, dt = .1 / at.speed / 6.;
+  ModelRun run(track, {.loads = {{.start = from, .speed = at.speed, .stop = 130., .force = force}}},
+               {.scheme = generalised_alpha(dt, .6)});
+  const RailPoint middle{0, 30.05, 0., 0., 2};
+  const double still = force * Statics(bed(600)).flexibility(middle, middle);
+  const double rate = force * at.share / (exact.mass * at.frequency * std::sqrt(M_PI * at.alpha));
+  double first = 0., first_time = 0.;
+  for (int i = 1; i <= 7; ++i) {  // before the ends are heard of
+    run.until(.01 * i);
+    const double found = run.outputs.load_deflection[0];
+    const double want = exact.under(force, at.speed, from, run.time(), track.length());
+    CAPTURE(run.time(), found, want);
+    CHECK(std::abs(found / want - 1.) < .01);  // H14
+    if (i > 1) continue;
+    first = found;
+    first_time = run.time();
+  }
+  const double last = run.outputs.load_deflection[0];
+  const double grown = (last - first) / (std::sqrt(run.time()) - std::sqrt(first_time));
+  CAPTURE(grown / rate, last / still);
+  // What is left of the series over the time, 1/(omega sqrt(t0 t1)) = 3 %.
+  CHECK(std::abs(grown / rate - 1.) < 1. / (at.frequency * std::sqrt(first_time * run.time())));
+  CHECK(last / still > 5.);
+  CHECK(run.seen == Status::ok);
+}
+
+TEST_CASE("dampers hold the deflection at critical speed", "[load]") {
+  // Of a bed with damping c a length: F / (2 m omega sqrt(alpha delta)), delta = c / 2m, to the
+  // first order of delta / omega. The force has run for 8 time constants.
+  Track track = bed(1300);
+  track.support.damping = {0., 0., 1e3};
+  const Bed exact(track);
+  const CriticalWave at = exact.critical();
+  const double force = -1e5, delta = exact.damping / (2. * exact.mass);
+  ModelRun run(track,
+               {.loads = {{.start = 30.05, .speed = at.speed, .stop = 130., .force = force}}},
+               {.scheme = generalised_alpha(.1 / at.speed / 6., .6)});
+  run.until(.1);
+  double sum = 0.;
+  const int steps = 60;  // over ten seats
+  for (int i = 0; i < steps; ++i) {
+    run.step();
+    sum += run.outputs.load_deflection[0] / steps;
+  }
+  const double held = exact.steady(force, at.speed);
+  const double leading =
+      force * at.share / (2. * exact.mass * at.frequency * std::sqrt(at.alpha * delta));
+  CAPTURE(sum, held, leading);
+  CHECK(std::abs(sum / held - 1.) < .01);  // H14
+  CHECK(std::abs(held / leading - 1.) < delta / at.frequency);
 }

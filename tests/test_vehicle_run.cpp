@@ -7,9 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "condensed.h"
 #include "energy.h"
-#include "offline/pack/start.h"
 #include "simulate.h"
 #include "vehicles.h"
 
@@ -20,39 +18,6 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 constexpr double kBogieLoad = (1307.5 + 8000. + 2. * 906.5) * 9.81 / 2.;  // of a wheel, N
-
-/// One rail of 60E1-like stiffness on seats each .6 m.
-Track one_rail(int bays) {
-  Track t;
-  t.section = r60_section();
-  t.unknowns = Unknowns::vertical;
-  t.rails = 1;
-  t.bays = bays;
-  t.bay_length = .6;
-  t.elements_per_bay = 2;
-  t.support.stiffness = {0., 0., 4e7};
-  t.support.damping = {0., 0., 3e4};
-  return t;
-}
-
-RunningVehicle running(const NamedVehicle& what, double start, double speed) {
-  RunningVehicle v;
-  v.vehicle = what.vehicle;
-  v.start = start;
-  v.speed = speed;
-  return v;
-}
-
-ModelRun from_rest(const Track& track, const Traffic& traffic, const PackOptions& options) {
-  auto packed = std::make_unique<PackedModel>(track, traffic, options);
-  packed->set_start(start_in_equilibrium(track, *packed, 0.));
-  return ModelRun(std::move(packed));
-}
-
-/// Of both kinds of model.
-PackOptions options_of(bool modal, const Track& track, double dt) {
-  return modal ? condensed(track, 2, dt) : full_order(dt);
-}
 
 }  // namespace
 

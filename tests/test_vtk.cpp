@@ -149,6 +149,50 @@ TEST_CASE("wheels stand on the rails in their files, with what they carry", "[vt
   CHECK_THAT(shown[1], WithinRel(last_of(text_of(trace), "wheel_right.force_z_n"), 1e-6));
 }
 
+TEST_CASE("vehicles stand in their files with their wheels' forces and their frame's pitch",
+          "[vtk]") {
+  const auto folder = fresh_folder("vtk_vehicle");
+  const std::string trace = (folder / "trace.csv").string(), out = (folder / "pictures").string();
+  const Ran ran = railstep_program(
+      "run " + kScenes +
+      "bogie_at_speed.toml --duration 0.02 --set track.bays=40 --set 'sensor=[]' " +
+      "--set 'vehicle[0].start_m=6.0' --set 'defect=[{kind=\"dipped_joint\", at_m=8.0, "
+      "depth_m=2e-3, ramp_m=0.3}]' --trace " +
+      trace + " --vtk " + out);
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  std::string name;
+  for (const auto& entry : std::filesystem::directory_iterator(out))
+    if (entry.path().extension() == ".vtp") name = std::max(name, entry.path().string());
+  const std::string last = text_of(name), csv = text_of(trace);
+  const auto force = array_of<float>(last, "force_n"), rest = array_of<float>(last, "rest_m"),
+             moved = array_of<float>(last, "displacement_m");
+  std::vector<double> shown;
+  for (std::size_t i = 2; i < force.size(); i += 3)
+    if (force[i] != 0.F) shown.push_back(-static_cast<double>(force[i]));
+  REQUIRE(shown.size() == 2);
+  for (const std::size_t wheel : {0u, 1u})
+    CHECK_THAT(
+        shown[wheel],
+        WithinRel(last_of(csv, "bogie.wheel_" + std::to_string(wheel + 1) + ".force_z_n"), 1e-6));
+  // Discs of 48 faces and two ends, and the frame's block: its eight points are the last.
+  const auto part = array_of<std::int32_t>(last, "part");
+  CHECK(std::count(part.begin(), part.end(), 2) == 2 * 50);
+  REQUIRE(std::count(part.begin(), part.end(), 4) == 6);
+  const std::size_t block = rest.size() - 24;
+  const double length = 2.56 + 2. * .6, pitch = last_of(csv, "bogie.frame.pitch_rad");
+  const auto of = [&](const std::vector<float>& values, std::size_t point, std::size_t d) {
+    return static_cast<double>(values[block + 3 * point + d]);
+  };
+  CHECK_THAT(of(rest, 4, 0) - of(rest, 0, 0), WithinAbs(length, 1e-5));
+  // At rest its springs, two of 1.22 MN/m, sag under frame and body. Single precision of 5 mm.
+  const double sag = 9307.5 * 9.81 / 2.44e6, height = last_of(csv, "bogie.frame.z_m") + sag;
+  CHECK(std::abs(pitch) > 1e-4);
+  CHECK_THAT(of(moved, 4, 2) - of(moved, 0, 2), WithinAbs(-length * pitch, 1e-8));
+  CHECK_THAT(.5 * (of(moved, 4, 2) + of(moved, 0, 2)), WithinAbs(height, 1e-8));
+  CHECK_THAT(of(moved, 2, 0) - of(moved, 0, 0), WithinAbs(.3 * pitch, 1e-8));
+}
+
 TEST_CASE("pictures of what has none are refused", "[vtk]") {
   const auto folder = fresh_folder("vtk_bad");
   const Ran bodies =

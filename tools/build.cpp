@@ -83,6 +83,7 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   set.tread_half_width = w.tread_half_width;
   set.start = w.start;
   set.speed = w.speed;
+  if (w.speeds) set.speeds = w.speeds->rows();
   set.guide =
       w.guide.method == GuideMethod::baumgarte ? Guide::baumgarte : Guide::augmented_lagrangian;
   set.cap = w.guide.cap;

@@ -21,7 +21,7 @@ void check_record(const Scene& scene, const IrregularityScene& own, const RailSi
   for (const auto* pair : {&rails.y, &rails.z})
     for (const Signal& signal : *pair)
       if (!signal.coefficient.empty()) step = signal.step;
-  for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(w.speed));
+  for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(fastest(w)));
   for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
   if (2. * step >= 8. * speed * scene.step->dt * (1. - 1e-12)) return;
   throw InputError(

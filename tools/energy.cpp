@@ -11,6 +11,7 @@
 #include "online/step/follow.h"
 #include "online/step/step.h"
 #include "online/step/table.h"
+#include "online/step/travel.h"
 #include "online/step/vehicle_contact.h"
 
 namespace railstep {
@@ -62,11 +63,13 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
     sum.kinetic += line.kinetic;
     sum.strain += line.strain;
   }
+  const double time = static_cast<double>(at.state.steps) * model_.scheme.dt;
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
     const WheelsetModel& w = model_.wheelset[b];
     const double* v = at.state.v + w.first;
     for (int k = 0; k < 6; ++k) sum.kinetic += .5 * w.mass[k] * v[k] * v[k];
-    sum.forward += .5 * w.mass[0] * w.speed * (2. * v[0] - w.speed);
+    const double speed = travelled(w.travel, time).speed;
+    sum.forward += .5 * w.mass[0] * speed * (2. * v[0] - speed);
   }
   for (std::int32_t b = 0; b < model_.vehicles; ++b) {
     const VehicleEnergy own = vehicle_energy(model_.vehicle[b], at.state);
@@ -301,7 +304,7 @@ void EnergyAccount::note() {
                           std::abs(flow_.loads),
                           std::abs(flow_.weight),
                           std::abs(flow_.forces),
-                          std::abs(flow_.guides),
+                          std::abs(flow_.guides - (stored_.forward - start_.forward)),
                           std::abs(flow_.carriers),
                           flow_.dissipated};
   turned_over_ = std::max(turned_over_, *std::max_element(std::begin(sizes), std::end(sizes)));

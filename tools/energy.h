@@ -73,7 +73,7 @@ class EnergyAccount {
   /// stored - stored at the start - work + dissipated, J.
   double imbalance() const;
   /// Largest over the run's steps so far of: stored energy without what the guided speed alone
-  /// makes, work of each kind in size, dissipation; J.
+  /// makes, work of each kind in size (of guides without that speed's), dissipation; J.
   double turned_over() const { return turned_over_; }
   /// Largest |imbalance| over the steps so far, over turned_over(); 0 while nothing was.
   double balance_error() const;

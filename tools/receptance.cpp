@@ -54,7 +54,9 @@ struct Sensed {
 std::string listed(const Scene& scene) {
   std::vector<std::string> names;
   for (const SensorScene& sensor : scene.sensors)
-    if (!std::holds_alternative<WheelsetSensor>(sensor.on)) names.push_back(sensor.name);
+    if (std::holds_alternative<RailSensor>(sensor.on) ||
+        std::holds_alternative<SleeperSensor>(sensor.on))
+      names.push_back(sensor.name);
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -68,7 +70,7 @@ Sensed sensed(const Scene& scene, const Track& track, const std::string& name,
     if (sensor.name != name) continue;
     const std::optional<Functional> on = functional_of(sensor, scene, track, d);
     if (!on)
-      refuse(fmt::format("sensor '{}' is on a wheelset; accepted are {}", name, listed(scene)));
+      refuse(fmt::format("sensor '{}' is not on the track; accepted are {}", name, listed(scene)));
     double moved = 0.;
     for (const Line& line : assemble(track)) moved += functional_row(track, line, *on).norm();
     if (moved == 0. && d == 1 && track.unknowns == Unknowns::vertical)

@@ -187,6 +187,7 @@ struct WheelsetScene {
   double mass, inertia_roll, inertia_spin, inertia_yaw;  // kg, kg m2
   double radius, tread_half_width;                       // m
   double start, speed;                                   // m, m/s
+  std::optional<TimeTable> speeds;                       // m/s, constant outside its rows
   double carried_mass;                                   // kg: weight without inertia
   bool gravity, may_leave_rail;
   GuideScene guide;
@@ -194,6 +195,9 @@ struct WheelsetScene {
   std::vector<TreadScene> treads;
   std::optional<Flange> flange;
 };
+
+/// The speed of the largest size that it has, m/s.
+double fastest(const WheelsetScene& wheelset);
 
 /// A vehicle over one rail.
 struct VehicleScene {
@@ -208,7 +212,6 @@ struct VehicleScene {
   std::vector<WheelTread> treads;
 };
 
-/// The speed of the largest size that a vehicle has, m/s.
 double fastest(const VehicleScene& vehicle);
 
 struct StepScene {
@@ -239,9 +242,13 @@ struct SleeperSensor {
 struct WheelsetSensor {
   std::size_t wheelset;  // index into Scene::wheelsets; its centre
 };
+struct VehicleSensor {
+  std::size_t vehicle, body;  // indices into Scene::vehicles and its bodies
+  double ahead;               // of the body's middle, m
+};
 struct SensorScene {
   std::string name;
-  std::variant<RailSensor, SleeperSensor, WheelsetSensor> on;
+  std::variant<RailSensor, SleeperSensor, WheelsetSensor, VehicleSensor> on;
 };
 
 /// One scene of a track, every number checked and in SI. config/README.md, "Scenes", has it key by

@@ -167,7 +167,9 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
   w.may_leave_rail = t.boolean("may_leave_rail", false);
   w.start = t.number("start_m",
                      w.may_leave_rail ? between(-1e6, 1e6) : between(0.0, scene.track.length()));
-  w.speed = t.number("speed_m_per_s", kSpeed);
+  const SpeedScene speed = read_speed(t, std::nullopt);
+  w.speed = speed.speed;
+  w.speeds = speed.table;
   w.carried_mass = t.number("carried_mass_kg", between(0.0, 1e6), 0.0);
   w.gravity = t.boolean("gravity", true);
   w.guide = read_guide(t);
@@ -177,20 +179,8 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
   w.treads = read_treads(t, scene, w);
   if (const std::optional<Table> flange = t.table_if("flange"))
     w.flange = read_flange(*flange, scene);
-  if (!w.may_leave_rail) check_path(t, scene, w.start, {w.speed, std::nullopt}, std::nullopt);
+  if (!w.may_leave_rail) check_path(t, scene, w.start, speed, std::nullopt);
   return w;
-}
-
-WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
-  const std::string name = t.string("wheelset");
-  std::string known;
-  for (std::size_t i = 0; i < scene.wheelsets.size(); ++i) {
-    if (scene.wheelsets[i].name == name) return {i};
-    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", scene.wheelsets[i].name);
-  }
-  t.refuse("wheelset",
-           fmt::format("wheelset = \"{}\" is unknown; {}", name,
-                       known.empty() ? "the scene has no wheelset" : "accepted are " + known));
 }
 
 }  // namespace
@@ -211,56 +201,20 @@ std::string checked_name(const Table& t, std::string_view key, const std::string
   return name;
 }
 
-SensorScene read_sensor(const Table& t, const Scene& scene) {
-  SensorScene sensor;
-  sensor.name = checked_name(t, "name", t.string("name"));
-  switch (t.choice("on", {"rail", "sleeper", "wheelset"})) {
-    case 0: {
-      RailSensor rail{read_side(t, scene), 0.0, Height::axis};
-      rail.position = t.number("position_m", between(0.0, (1.0 + 1e-12) * scene.track.length()));
-      const Height heights[] = {Height::axis, Height::head, Height::foot};
-      rail.at = heights[t.choice("at", {"axis", "head", "foot"}, 0)];
-      sensor.on = rail;
-      break;
-    }
-    case 1: {
-      if (!scene.sleeper)
-        t.refuse("on",
-                 "on = \"sleeper\", but the scene has no [sleeper]; accepted are \"rail\", "
-                 "\"wheelset\"");
-      SleeperSensor sleeper{t.integer("sleeper", 0, scene.track.bays), std::nullopt};
-      for (const SeatChange& change : scene.seat_changes)
-        if (change.missing == Missing::sleeper &&
-            std::find(change.seats.begin(), change.seats.end(), sleeper.sleeper) !=
-                change.seats.end())
-          t.refuse("sleeper", fmt::format("sleeper = {} is missing; accepted is one that is there",
-                                          sleeper.sleeper));
-      if (t.has("rail")) sleeper.rail = read_side(t, scene);
-      sensor.on = sleeper;
-      break;
-    }
-    default:
-      sensor.on = read_wheelset_sensor(t, scene);
-  }
-  return sensor;
-}
-
 std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {
   std::vector<LoadScene> loads;
   for (const Table& t : root.tables("load")) loads.push_back(read_load(t, scene));
   return loads;
 }
 
+double fastest(const WheelsetScene& wheelset) {
+  return travel_of({wheelset.speed, wheelset.speeds}).speed;
+}
+
 std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene) {
   std::vector<WheelsetScene> wheelsets;
   for (const Table& t : root.tables("wheelset")) wheelsets.push_back(read_wheelset(t, scene));
   return wheelsets;
-}
-
-std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene) {
-  std::vector<SensorScene> sensors;
-  for (const Table& t : root.tables("sensor")) sensors.push_back(read_sensor(t, scene));
-  return sensors;
 }
 
 void check_names(const Table& root, const Scene& scene) {

@@ -27,7 +27,7 @@ std::array<bool, 2> read_sides(const Table& t, std::string_view key, const Scene
 
 double fastest(const Scene& scene) {
   double speed = 0.;
-  for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(w.speed));
+  for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(fastest(w)));
   for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
   return speed;
 }
@@ -190,7 +190,7 @@ std::vector<TreadScene> read_treads(const Table& wheelset, const Scene& scene,
   std::vector<TreadScene> treads;
   std::array<bool, 2> taken = {false, false};
   for (const Table& t : wheelset.tables("tread")) {
-    TreadScene d = read_tread(t, scene, own.radius, own.speed);
+    TreadScene d = read_tread(t, scene, own.radius, fastest(own));
     d.on = read_sides(t, "wheel", scene);
     for (std::size_t side = 0; side < 2; ++side) {
       if (d.on[side] && taken[side])

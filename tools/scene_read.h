@@ -68,7 +68,7 @@ TravelTable travel_of(const SpeedScene& speed);
 void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
                 const std::optional<double>& stop);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
-/// On a rail, a sleeper or a wheelset.
+/// On a rail, a sleeper, a wheelset or a vehicle.
 SensorScene read_sensor(const Table& t, const Scene& scene);
 /// Every name of the trace is there once. Throws InputError at the second.
 void check_names(const Table& root, const Scene& scene);

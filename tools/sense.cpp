@@ -60,6 +60,22 @@ Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Railhead&
   return point;
 }
 
+/// What a point of a vehicle's body does: z as its body's columns have it, and its rates.
+void add_vehicle_point(const std::string& name, const VehicleSensor& sensor, const Scene& scene,
+                       Sensors& sensors) {
+  const std::vector<int> first = first_coordinates(scene.vehicles[sensor.vehicle].kind.vehicle);
+  const auto add = [&](const char* quantity, Probe probe) {
+    probe.vehicle = static_cast<int>(sensor.vehicle);
+    probe.coordinate = first[sensor.body];
+    probe.lever = -sensor.ahead;  // pitch turns what is ahead down
+    sensors.columns.push_back(name + quantity);
+    sensors.probes.push_back(std::move(probe));
+  };
+  add(".z_m", {.displacement = 1.});
+  add(".vz_m_per_s", {.velocity = 1.});
+  add(".az_m_per_s2", {.acceleration = 1.});
+}
+
 void add_point(const std::string& name, const Point& point, Sensors& sensors) {
   static const char* const axes[3] = {"x", "y", "z"};
   const auto add = [&](const std::string& quantity, std::size_t d, Probe probe) {
@@ -152,6 +168,8 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
       add_point(sensor.name, point_of(*sleeper, track, height_z(Height::foot, sections[0])),
                 sensors);
+    else if (const auto* vehicle = std::get_if<VehicleSensor>(&sensor.on))
+      add_vehicle_point(sensor.name, *vehicle, scene, sensors);
     else
       add_point(
           sensor.name,

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -40,7 +41,14 @@ std::string array(const char* name, int components, const std::vector<T>& values
       std::is_same_v<T, std::int32_t> ? "Int32" : "Float32", name, components, base64(bytes));
 }
 
+constexpr double kWheelWidth = .13;  // m
+constexpr std::int32_t kWheelSides = 48;
+
 }  // namespace
+
+VtkMesh::Vector vtk_vector(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
 
 std::int32_t VtkMesh::add_point(const Vector& rest, const Vector& displacement,
                                 const Vector& force) {
@@ -71,6 +79,22 @@ void VtkMesh::add_prism(VtkPart part, std::int32_t first, std::int32_t second, s
   if (first_end) add_face(part, end);
   std::iota(end.rbegin(), end.rend(), second);
   if (second_end) add_face(part, end);
+}
+
+void VtkMesh::add_disc(const std::array<double, 3>& centre, double radius,
+                       const std::function<std::array<double, 3>(double, double, double)>& moved) {
+  std::int32_t first[2];
+  for (const int face : {0, 1}) {
+    const double beside = (face == 0 ? -.5 : .5) * kWheelWidth;
+    first[face] = static_cast<std::int32_t>(points());
+    for (std::int32_t i = 0; i < kWheelSides; ++i) {
+      const double angle = 2. * M_PI * i / kWheelSides;
+      const double ahead = radius * std::sin(angle), up = radius * std::cos(angle);
+      add_point(vtk_vector({centre[0] + ahead, centre[1] + beside, centre[2] + up}),
+                vtk_vector(moved(ahead, beside, up)));
+    }
+  }
+  add_prism(VtkPart::wheel, first[0], first[1], kWheelSides, true, true);
 }
 
 std::string VtkMesh::polydata() const {

@@ -2,13 +2,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace railstep {
 
 /// What a polygon belongs to; cell array "part" of the files.
-enum class VtkPart : std::int32_t { rail, sleeper, wheel, force };
+enum class VtkPart : std::int32_t { rail, sleeper, wheel, force, body };
 
 /// What stands at one time, in VTK's terms: points where they rest, what moves them, and the faces
 /// between them.
@@ -28,6 +29,12 @@ class VtkMesh {
   void add_prism(VtkPart part, std::int32_t first, std::int32_t second, std::int32_t sides,
                  bool first_end, bool second_end);
 
+  /// A wheel's disc about an axle across the track.
+  /// @param centre  m
+  /// @param moved   displacement of a point so far ahead of, beside and over the centre, m
+  void add_disc(const std::array<double, 3>& centre, double radius,
+                const std::function<std::array<double, 3>(double, double, double)>& moved);
+
   std::size_t points() const { return rest_.size(); }
   /// VTK XML PolyData, base64: point arrays displacement_m and force_n, cell array part.
   std::string polydata() const;
@@ -36,6 +43,8 @@ class VtkMesh {
   std::vector<Vector> rest_, displacement_, force_;
   std::vector<std::int32_t> verts_, polys_, offsets_, part_;
 };
+
+VtkMesh::Vector vtk_vector(const std::array<double, 3>& v);
 
 /// A time series for ParaView: one file of each time, s, beside it.
 std::string vtk_series(const std::vector<double>& times, const std::vector<std::string>& files);

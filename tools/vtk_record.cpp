@@ -22,12 +22,6 @@ using Polygon = std::vector<std::array<double, 2>>;
 
 constexpr double kChord = 5e-4;  // m, by which a drawn outline may leave the true one
 constexpr double kSleeperWidth = .25, kSleeperLength = 2.6, kSleeperHeight = .2;  // m
-constexpr double kWheelWidth = .13;                                               // m
-constexpr std::int32_t kWheelSides = 48;
-
-VtkMesh::Vector vector(const std::array<double, 3>& v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
 
 Polygon box(double width, double height) {
   return {{-.5 * width, 0.}, {.5 * width, 0.}, {.5 * width, height}, {-.5 * width, height}};
@@ -70,10 +64,10 @@ void add_rail(const Simulation& run, const TrackMotion& motion, int rail, const 
     const std::array<double, 9> q = motion.node(rail, node);
     const auto first = static_cast<std::int32_t>(mesh.points());
     for (const auto& [y, z] : outline)
-      mesh.add_point(vector({.5 * node * model.element_length, model.rail_y[rail] + y,
-                             model.rail_z[rail] + z}),
-                     vector({q[0] + y * q[3] + z * q[6], q[1] + y * q[4] + z * q[7],
-                             q[2] + y * q[5] + z * q[8]}));
+      mesh.add_point(vtk_vector({.5 * node * model.element_length, model.rail_y[rail] + y,
+                                 model.rail_z[rail] + z}),
+                     vtk_vector({q[0] + y * q[3] + z * q[6], q[1] + y * q[4] + z * q[7],
+                                 q[2] + y * q[5] + z * q[8]}));
     if (before >= 0)
       mesh.add_prism(VtkPart::rail, before, first, sides, node == 1, node == nodes - 1);
     before = first;
@@ -96,7 +90,7 @@ void add_sleeper(const Track& track, const TrackMotion& motion, int seat, double
       std::array<double, 3> moved;
       for (std::size_t d = 0; d < 3; ++d) moved[d] = left * end[0][d] + (1. - left) * end[1][d];
       moved[2] -= along * (left * end[0][3] + (1. - left) * end[1][3]);
-      mesh.add_point(vector({x + along, y, foot_z + up}), vector(moved));
+      mesh.add_point(vtk_vector({x + along, y, foot_z + up}), vtk_vector(moved));
     }
   }
   mesh.add_prism(VtkPart::sleeper, first[0], first[1], 4, true, true);
@@ -105,23 +99,13 @@ void add_sleeper(const Track& track, const TrackMotion& motion, int seat, double
 /// A disc about an axle, and the force on the rail under it.
 void add_wheel(const Simulation& run, const WheelsetModel& set, int wheel, VtkMesh& mesh) {
   const double* p = run.state.u + set.first;
-  const int side = wheel % 2;
-  const double x = set.start + p[0], y = run.model().rail_y[side];
-  std::int32_t first[2];
-  for (const int face : {0, 1}) {
-    const double across = y + (face == 0 ? -.5 : .5) * kWheelWidth;
-    first[face] = static_cast<std::int32_t>(mesh.points());
-    for (std::int32_t i = 0; i < kWheelSides; ++i) {
-      const double angle = 2. * M_PI * i / kWheelSides;
-      const double ahead = set.radius * std::sin(angle), up = set.radius * std::cos(angle);
-      mesh.add_point(
-          vector({x + ahead, across, set.rest_z + up}),
-          vector({-p[5] * across, p[1] + p[5] * ahead - p[3] * up, p[2] + p[3] * across}));
-    }
-  }
-  mesh.add_prism(VtkPart::wheel, first[0], first[1], kWheelSides, true, true);
-  mesh.add_force(vector({x, y, set.rest_z - set.radius}), vector({0., 0., p[2]}),
-                 vector({0., 0., -run.state.wheel_force[wheel]}));
+  const double x = set.start + p[0], y = run.model().rail_y[wheel % 2];
+  mesh.add_disc({x, y, set.rest_z}, set.radius, [&](double ahead, double beside, double up) {
+    return std::array<double, 3>{-p[5] * (y + beside), p[1] + p[5] * ahead - p[3] * up,
+                                 p[2] + p[3] * (y + beside)};
+  });
+  mesh.add_force(vtk_vector({x, y, set.rest_z - set.radius}), vtk_vector({0., 0., p[2]}),
+                 vtk_vector({0., 0., -run.state.wheel_force[wheel]}));
 }
 
 void add_load(const Simulation& run, const LoadModel& load, VtkMesh& mesh) {
@@ -129,9 +113,9 @@ void add_load(const Simulation& run, const LoadModel& load, VtkMesh& mesh) {
   const PlacedLoad at = place(model, load, run.state.steps);
   if (!at.on_rail) return;
   const double down = deflection(model, at, {run.state.u, {run.state.u, run.state.v}});
-  mesh.add_force(vector({at.place, model.rail_y[load.rail],
-                         model.rail_z[load.rail] + model.head_z[load.rail]}),
-                 vector({0., 0., down}), vector({0., 0., at.force}));
+  mesh.add_force(vtk_vector({at.place, model.rail_y[load.rail],
+                             model.rail_z[load.rail] + model.head_z[load.rail]}),
+                 vtk_vector({0., 0., down}), vtk_vector({0., 0., at.force}));
 }
 
 }  // namespace
@@ -145,6 +129,7 @@ VtkRecord::VtkRecord(const Scene& scene, const Simulation& run, std::filesystem:
     throw InputError(fmt::format("--vtk {}: accepted is a folder, or a name for a new one ({})",
                                  folder_.string(), error ? error.message() : "it is a file"));
   outline_ = {outline_of(scene, Side::left), outline_of(scene, Side::right)};
+  for (const VehicleScene& v : scene.vehicles) vehicles_.push_back(drawn_vehicle(v));
 }
 
 VtkMesh VtkRecord::mesh() const {
@@ -161,6 +146,8 @@ VtkMesh VtkRecord::mesh() const {
     if (track.seat(seat).sleeper) add_sleeper(track, motion, seat, foot_z, mesh);
   for (int wheel = 0; wheel < 2 * model.wheelsets; ++wheel)
     add_wheel(run_, model.wheelset[wheel / 2], wheel, mesh);
+  for (std::size_t v = 0; v < vehicles_.size(); ++v)
+    add_vehicle(run_, static_cast<int>(v), vehicles_[v], mesh);
   return mesh;
 }
 

@@ -9,6 +9,7 @@
 #include "scene.h"
 #include "simulation.h"
 #include "vtk_mesh.h"
+#include "vtk_vehicle.h"
 
 namespace railstep {
 
@@ -17,8 +18,9 @@ inline constexpr std::int64_t kVtkTimes = 100;  // most intervals between times 
 /// Files of a run of a track for ParaView: a .vtp of each of at most kVtkTimes + 1 times, evenly
 /// over the run, and one .pvd that names them. Rails are their true sections swept along the nodes
 /// (of a scene that gives constants alone, a rectangle of their height and area), sleepers blocks
-/// of 0.25 x 2.6 x 0.2 m, wheels discs of 0.13 m. Points rest where they are without load, wheels
-/// where they have rolled to; displacement_m moves them.
+/// of 0.25 x 2.6 x 0.2 m, wheels discs of 0.13 m, other bodies of vehicles blocks (vtk_vehicle.h).
+/// Points rest where they are without load, wheels where they have rolled to; displacement_m moves
+/// them.
 class VtkRecord {
  public:
   /// Makes the folder. @param run must outlive the record. Throws InputError.
@@ -37,6 +39,7 @@ class VtkRecord {
   std::filesystem::path folder_;
   std::int64_t frames_;
   std::array<std::vector<std::array<double, 2>>, 2> outline_;  // of each rail: y, z from the axis
+  std::vector<DrawnVehicle> vehicles_;
   std::vector<double> times_;
   std::vector<std::string> files_;
 };

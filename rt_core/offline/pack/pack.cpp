@@ -118,7 +118,7 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   packed.radius = wheelset.radius;
   packed.tread_half_width = wheelset.tread_half_width;
   packed.start = model_.endless.origin + wheelset.start;
-  packed.speed = wheelset.speed;
+  packed.travel = keep_travel(wheelset.speed, wheelset.speeds);
   packed.rest_z = heads[0].top_z + wheelset.radius;
   for (const int rail : {0, 1}) {
     const Railhead& head = heads[static_cast<std::size_t>(rail)];

@@ -44,10 +44,11 @@ struct Flange {
 /// A rigid wheelset on both rails, as a scene gives it. Rolls without friction on cylinders.
 struct Wheelset {
   double mass = 0., inertia_roll = 0., inertia_spin = 0., inertia_yaw = 0.;  // kg, kg m2
-  double weight = 0.;              // N, down; own and carried
-  double radius = .46;             // m
-  double tread_half_width = .065;  // m
-  double start = 0., speed = 0.;   // m, m/s
+  double weight = 0.;               // N, down; own and carried
+  double radius = .46;              // m
+  double tread_half_width = .065;   // m
+  double start = 0., speed = 0.;    // m, m/s
+  std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
   Guide guide = Guide::augmented_lagrangian;
   int cap = 20;
   double tolerance = 1e-10;      // m, rad
@@ -99,6 +100,8 @@ struct Probe {
   Functional track = {};
   int wheelset = -1, coordinate = 0;  // of a probe on a wheelset; 0 x, 1 y, 2 z
   int vehicle = -1;                   // of a probe on a vehicle, whose coordinate it is
+  double lever = 0.;                  // of a vehicle's next coordinate, beside it
+  double acceleration = 0.;           // factor, of a probe on a vehicle
   struct Press {
     int port;       // among fixed_ports() of the track
     double factor;  // of its force

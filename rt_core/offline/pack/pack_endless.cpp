@@ -22,7 +22,11 @@ double speed_of(const Traffic& traffic) {
       throw std::invalid_argument("on a track without end all runs at one speed, without a table");
     speeds.push_back(load.speed);
   }
-  for (const Wheelset& set : traffic.wheelsets) speeds.push_back(set.speed);
+  for (const Wheelset& set : traffic.wheelsets) {
+    if (!set.speeds.empty())
+      throw std::invalid_argument("on a track without end all runs at one speed, without a table");
+    speeds.push_back(set.speed);
+  }
   for (const double speed : speeds)
     if (speed != speeds[0])
       throw std::invalid_argument("on a track without end all loads and wheelsets have one speed");

@@ -111,8 +111,13 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
       entry(2 * model_.unknowns + press.port, press.factor);
     if (probe.vehicle >= 0) {
       const std::int32_t at = model_.vehicle[probe.vehicle].first + probe.coordinate;
-      entry(at, probe.displacement);
-      entry(model_.unknowns + at, probe.velocity);
+      const std::int32_t g = 2 * model_.unknowns + model_.fixed.count;
+      for (const int next : {0, 1}) {
+        const double part = next == 0 ? 1. : probe.lever;
+        entry(at + next, part * probe.displacement);
+        entry(model_.unknowns + at + next, part * probe.velocity);
+        entry(g + at + next, part * probe.acceleration);
+      }
     }
     start.push_back(static_cast<std::int32_t>(index.size()));
     rest.push_back(probe.rest);

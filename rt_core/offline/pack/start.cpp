@@ -8,8 +8,8 @@
 
 #include "offline/pack/start_flange.h"
 #include "offline/pack/start_vehicle.h"
+#include "offline/pack/static_lines.h"
 #include "offline/track/statics.h"
-#include "online/contact/ports.h"
 #include "online/model/course.h"
 #include "online/step/closing.h"
 #include "online/step/load.h"
@@ -23,79 +23,6 @@ namespace railstep {
 
 namespace {
 
-/// A point as ports see it: those of condensed lines leave out the section's own strain.
-RailPoint seen(const Model& model, RailPoint at) {
-  if (model.condensed != 0) (at.direction == 1 ? at.y : at.z) = 0.;
-  return at;
-}
-
-/// Displacements of each line of a condensed model under its fixed ports' forces too.
-void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines) {
-  const FixedPortModel& fixed = packed.model().fixed;
-  const Eigen::Index n = fixed.count;
-  // Rows over the lines' coordinates, and what they move: K = omega^2.
-  std::vector<Eigen::MatrixXd> rows, moved;
-  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd free = -Eigen::Map<const Eigen::VectorXd>(fixed.gap, n);
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    const PackedLine& own = packed.lines()[l];
-    rows.push_back(own.basis.shapes.transpose() * own.closing);
-    moved.push_back(own.basis.omega.cwiseAbs2().cwiseInverse().asDiagonal() * rows.back());
-    W += rows.back().transpose() * moved.back();
-    free += rows.back().transpose() * lines[l];
-  }
-  std::array<PortLaw, kMaxFixedPorts> law;
-  std::array<double, kMaxFixedPorts> force{}, depth{};
-  for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
-    law[j] = {0., std::max(fixed.stiffness[j], 1e-9), 0.};  // a damper alone carries nothing
-  constexpr int kMostSolves = 20;  // of 8 iterations each, where a step's solve takes one
-  PortStatus met = PortStatus::cap_reached;
-  for (int turn = 0; turn < kMostSolves && met != PortStatus::converged; ++turn)
-    met = solve_ports(static_cast<int>(n), W.data(), law.data(), free.data(), force.data(),
-                      depth.data())
-              .status;
-  if (met != PortStatus::converged)
-    throw std::invalid_argument(
-        "no equilibrium was found: the one-sided supports open and close without end");
-  for (std::size_t l = 0; l < lines.size(); ++l)
-    lines[l] -= moved[l] * Eigen::Map<const Eigen::VectorXd>(force.data(), n);
-}
-
-/// Static displacements of each line of the model: its unknowns, or its coordinates if condensed.
-std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
-                                          const std::vector<PointForce>& forces, double gravity) {
-  std::vector<Eigen::VectorXd> lines;
-  if (packed.model().condensed == 0) {
-    const std::vector<Eigen::VectorXd> all = statics.solve(forces, gravity);
-    for (const PackedLine& own : packed.lines()) lines.push_back(all[own.index]);
-    return lines;
-  }
-  for (const PackedLine& own : packed.lines()) {
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
-    if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
-    for (const PointForce& f : forces)
-      load += f.force * point_row(statics.track(), own.line, seen(packed.model(), f.at));
-    lines.push_back((own.basis.shapes.transpose() * load)
-                        .cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
-  }
-  if (packed.model().fixed.count > 0) press_ports(packed, lines);
-  return lines;
-}
-
-/// Height of a rail's point as the model's lines have it, m; the rest is residual.
-double height_of(const Track& track, const PackedModel& packed,
-                 const std::vector<Eigen::VectorXd>& lines, const RailPoint& at) {
-  double sum = 0.;
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    const PackedLine& own = packed.lines()[l];
-    const Eigen::SparseVector<double> row = point_row(track, own.line, seen(packed.model(), at));
-    sum += packed.model().condensed == 0
-               ? row.dot(lines[l])
-               : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(lines[l]);
-  }
-  return sum;
-}
-
 /// Displacements of the model's lines, of six coordinates of each wheelset, and of the vehicles.
 struct Pose {
   std::vector<Eigen::VectorXd> lines;
@@ -103,60 +30,6 @@ struct Pose {
   SettledVehicles vehicles;
   std::vector<double> wheel_force;  // [contacts] of wheelsets, N
 };
-
-/// Forces that act on the track, and the same for the residual flexibility.
-struct Acting {
-  std::vector<PointForce> forces;
-  std::vector<RailForce> ports;
-};
-
-/// Adds the forces of the vehicles' wheels to those that act: where they and the track settle.
-SettledVehicles settle(const Statics& statics, const PackedModel& packed, double gravity,
-                       double time, Acting& acting) {
-  const Model& model = packed.model();
-  const auto wheels = static_cast<std::size_t>(model.vehicle_wheels);
-  const Track& track = statics.track();
-  const std::vector<Eigen::VectorXd> without =
-      static_lines(packed, statics, acting.forces, gravity);
-  Eigen::MatrixXd flexibility = Eigen::MatrixXd::Zero(model.vehicle_wheels, model.vehicle_wheels);
-  Eigen::VectorXd free(model.vehicle_wheels);
-  std::vector<RailPoint> point(wheels);
-  std::vector<RailForce> port(wheels);
-  std::vector<bool> on_rail(wheels);
-  for (std::size_t i = 0; i < wheels; ++i) {
-    const VehicleWheel& wheel = model.vehicle_wheel[i];
-    const VehicleModel& own = model.vehicle[wheel.vehicle];
-    const double up[3] = {0., 0., 1.}, rolled = travelled(own.travel, 0.).speed * time;
-    const double x = own.start + wheel.place + rolled;
-    const auto at = static_cast<Eigen::Index>(i);
-    on_rail[i] = x >= 0. && x <= track.length();
-    free[at] = signal_at(wheel.tread, rolled).value;
-    if (!on_rail[i]) continue;
-    point[i] = {wheel.rail, x, 0., model.head_z[wheel.rail], 2};
-    port[i] = rail_force(model, wheel.kind, x, 0.);
-    free[at] = height_of(track, packed, without, point[i]) +
-               irregularity(model, wheel.tread, wheel.rail, up, x, rolled).depth;
-    for (const RailForce& f : acting.ports)
-      free[at] += f.force * residual_between(model, f, port[i]);
-  }
-  for (std::size_t j = 0; j < wheels; ++j) {
-    if (!on_rail[j]) continue;
-    const auto moved = static_lines(packed, statics, {{point[j], 1.}}, 0.);
-    for (std::size_t i = 0; i < wheels; ++i)
-      if (on_rail[i])
-        flexibility(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-            height_of(track, packed, moved, point[i]) +
-            (i == j ? residual_under(model, port[i]) : residual_between(model, port[j], port[i]));
-  }
-  SettledVehicles settled = settle_vehicles(model, flexibility, free);
-  for (std::size_t i = 0; i < wheels; ++i) {
-    if (!on_rail[i]) continue;
-    port[i].force = -settled.force[static_cast<Eigen::Index>(i)];
-    acting.forces.push_back({point[i], port[i].force});
-    acting.ports.push_back(port[i]);
-  }
-  return settled;
-}
 
 /// Puts displacements and velocities of a line into a state.
 void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
@@ -202,7 +75,7 @@ Pose leaning_equilibrium(const Statics& statics, const PackedModel& packed, doub
   double* const p = state.u + model.wheelset[0].first;
   const int side = side_force(model.wheelset[0]) > 0. ? 0 : 1;
   const std::int32_t contact = wheel_count(model) + side;
-  p[0] = model.wheelset[0].speed * time;
+  p[0] = travelled(model.wheelset[0].travel, 0.).speed * time;
   p[1] = model.rail_y[side] + flange.gauge[side][0] - flange.point[side][0];
   Pose pose;
   constexpr int kMostTurns = 30;
@@ -246,17 +119,18 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     for (const int rail : {0, 1}) {
       const WheelsetModel& w = model.wheelset[b];
-      const double x = w.start + w.speed * time;
+      const double x = w.start + travelled(w.travel, 0.).speed * time;
       forces.push_back({{rail, x, 0., model.head_z[rail], 2}, -wheel_load(w)});
       ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
     }
   SettledVehicles vehicles;
-  if (model.vehicles > 0) vehicles = settle(statics, packed, gravity, time, acting);
+  if (model.vehicles > 0) vehicles = settle_on_track(statics, packed, gravity, time, acting);
   Pose pose{static_lines(packed, statics, forces, gravity), {}, std::move(vehicles), {}};
   pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
-    const double up[3] = {0., 0., 1.}, rolled = w.speed * time, x = w.start + rolled;
+    const double up[3] = {0., 0., 1.}, rolled = travelled(w.travel, 0.).speed * time;
+    const double x = w.start + rolled;
     std::array<double, 2> height;
     for (const std::size_t rail : {0u, 1u}) {
       const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
@@ -304,7 +178,7 @@ Window window(const Model& model, double length) {
     narrow(own.start + model.vehicle_wheel[i].place, travelled(own.travel, 0.).speed);
   }
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    narrow(model.wheelset[b].start, model.wheelset[b].speed);
+    narrow(model.wheelset[b].start, travelled(model.wheelset[b].travel, 0.).speed);
   return w;
 }
 
@@ -339,7 +213,7 @@ std::vector<double> start_released(const PackedModel& packed) {
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)), 0.);
   State state = state_on(model, memory.data());
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    state.v[model.wheelset[b].first] = model.wheelset[b].speed;
+    state.v[model.wheelset[b].first] = travelled(model.wheelset[b].travel, 0.).speed;
   if (model.condensed != 0) forces(model, 0, state.a, state.g);
   return memory;
 }
@@ -347,10 +221,6 @@ std::vector<double> start_released(const PackedModel& packed) {
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
                                          double gravity) {
   const Model& model = packed.model();
-  if (model.vehicles > 0 && model.fixed.count > 0)
-    throw std::invalid_argument(
-        "no equilibrium is sought of vehicles on a track that pulls in one direction only; "
-        "accepted is step.start = \"released\"");
   check_sides(model);
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());

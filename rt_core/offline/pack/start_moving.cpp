@@ -23,7 +23,7 @@ LoadModel load_of(const Model& model, const WheelsetModel& w, int side) {
   load.row[8] = model.head_z[side];
   load.rail = side;
   load.start = w.start;
-  load.travel.speed = w.speed;
+  load.travel = w.travel;
   load.stop = std::numeric_limits<double>::infinity();
   load.force = -wheel_load(w);
   load.kind = w.kind[side];
@@ -178,7 +178,7 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
     for (std::size_t k = 0; k < 6; ++k) {
       const std::int32_t i = w.first + static_cast<int>(k);
       state.u[i] = pose[0][k];
-      state.v[i] = (k == 0 ? w.speed : 0.) +
+      state.v[i] = (k == 0 ? w.travel.speed : 0.) +
                    (4. * pose[1][k] - 3. * pose[0][k] - pose[2][k]) / (2. * model.scheme.dt);
     }
     for (int side = 0; side < 2; ++side) state.wheel_force[2 * b + side] = wheel_load(w);

@@ -5,6 +5,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "offline/pack/static_lines.h"
+#include "online/model/course.h"
+#include "online/step/travel.h"
+#include "online/step/wheel.h"
+
 namespace railstep {
 
 namespace {
@@ -100,6 +105,131 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
   for (Eigen::Index b = 0, at = 0; b < model.vehicles; at += model.vehicle[b].size, ++b)
     found.displacement.emplace_back(u.segment(at, model.vehicle[b].size));
   return found;
+}
+
+namespace {
+
+/// Where the vehicles' wheels stand, and what their rails are under them besides the lines.
+struct Wheels {
+  std::vector<RailPoint> point;
+  std::vector<RailForce> port;
+  std::vector<bool> on_rail;
+  Eigen::VectorXd uneven;    // irregularities, and what other forces' residual moves, m
+  Eigen::MatrixXd residual;  // flexibility between the wheels, m/N
+  std::size_t count() const { return point.size(); }
+};
+
+Wheels wheels_of(const Model& model, const Track& track, double time, const Acting& acting) {
+  const auto count = static_cast<std::size_t>(model.vehicle_wheels);
+  const Eigen::Index n = model.vehicle_wheels;
+  Wheels w{std::vector<RailPoint>(count), std::vector<RailForce>(count), std::vector<bool>(count),
+           Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const VehicleWheel& wheel = model.vehicle_wheel[i];
+    const VehicleModel& own = model.vehicle[wheel.vehicle];
+    const double up[3] = {0., 0., 1.}, rolled = travelled(own.travel, 0.).speed * time;
+    const double x = own.start + wheel.place + rolled;
+    double& uneven = w.uneven[static_cast<Eigen::Index>(i)];
+    w.on_rail[i] = x >= 0. && x <= track.length();
+    uneven = signal_at(wheel.tread, rolled).value;
+    if (!w.on_rail[i]) continue;
+    w.point[i] = {wheel.rail, x, 0., model.head_z[wheel.rail], 2};
+    w.port[i] = rail_force(model, wheel.kind, x, 0.);
+    uneven = irregularity(model, wheel.tread, wheel.rail, up, x + passed(model, 0), rolled).depth;
+    for (const RailForce& f : acting.ports)
+      uneven += f.force * residual_between(model, f, w.port[i]);
+  }
+  for (std::size_t j = 0; j < count; ++j)
+    for (std::size_t i = 0; i < count; ++i)
+      if (w.on_rail[i] && w.on_rail[j])
+        w.residual(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            i == j ? residual_under(model, w.port[i])
+                   : residual_between(model, w.port[j], w.port[i]);
+  return w;
+}
+
+/// The lines under the wheels as functions of the wheels' forces.
+struct Under {
+  const Statics& statics;
+  const PackedModel& packed;
+  double gravity;
+  const std::vector<PointForce>& others;
+  const Wheels& wheels;
+
+  /// @param force  [wheels] on the wheels, up, N
+  Eigen::VectorXd heights(const Eigen::VectorXd& force) const {
+    std::vector<PointForce> all = others;
+    for (std::size_t i = 0; i < wheels.count(); ++i)
+      if (wheels.on_rail[i]) all.push_back({wheels.point[i], -force[static_cast<Eigen::Index>(i)]});
+    return of(static_lines(packed, statics, all, gravity));
+  }
+  /// -d(heights)/d(force), m/N.
+  Eigen::MatrixXd slopes(const Eigen::VectorXd& force, const Eigen::VectorXd& at) const {
+    const bool linear = packed.model().fixed.count == 0;
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(force.size(), force.size());
+    const double more = std::max(kPart * force.cwiseAbs().maxCoeff(), 1.);  // N
+    for (std::size_t j = 0; j < wheels.count(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      if (!wheels.on_rail[j]) continue;
+      if (linear)
+        G.col(column) = of(static_lines(packed, statics, {{wheels.point[j], 1.}}, 0.));
+      else
+        G.col(column) =
+            (at - heights(force + more * Eigen::VectorXd::Unit(force.size(), column))) / more;
+    }
+    return G;
+  }
+
+ private:
+  /// Of the largest force: heights' rounding is below 1e-8 of it, so slopes are good to 1e-5.
+  static constexpr double kPart = 1e-3;
+
+  Eigen::VectorXd of(const std::vector<Eigen::VectorXd>& lines) const {
+    Eigen::VectorXd height = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wheels.count()));
+    for (std::size_t i = 0; i < wheels.count(); ++i)
+      if (wheels.on_rail[i])
+        height[static_cast<Eigen::Index>(i)] =
+            height_of(statics.track(), packed, lines, wheels.point[i]);
+    return height;
+  }
+};
+
+}  // namespace
+
+SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packed, double gravity,
+                                double time, Acting& acting) {
+  const Model& model = packed.model();
+  const Wheels wheels = wheels_of(model, statics.track(), time, acting);
+  const Under under{statics, packed, gravity, acting.forces, wheels};
+  const Eigen::Index n = model.vehicle_wheels;
+  const bool linear = model.fixed.count == 0;
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
+  if (!linear)  // what they press on a level, rigid rail
+    force = settle_vehicles(model, Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)).force;
+  SettledVehicles settled;
+  bool done = false;
+  for (int turn = 0; turn < kTurns && !done; ++turn) {
+    const Eigen::VectorXd height = under.heights(force);
+    const Eigen::MatrixXd slopes = under.slopes(force, height);
+    settled =
+        settle_vehicles(model, slopes + wheels.residual, wheels.uneven + height + slopes * force);
+    // What is left is the slopes' error of the last change.
+    done = linear || (settled.force - force).cwiseAbs().maxCoeff() <=
+                         1e-8 * settled.force.cwiseAbs().maxCoeff();
+    force = settled.force;
+  }
+  if (!done)
+    throw std::invalid_argument(
+        "no equilibrium was found of vehicles on supports that press alone; accepted is "
+        "step.start = \"released\"");
+  for (std::size_t i = 0; i < wheels.count(); ++i) {
+    if (!wheels.on_rail[i]) continue;
+    RailForce port = wheels.port[i];
+    port.force = -force[static_cast<Eigen::Index>(i)];
+    acting.forces.push_back({wheels.point[i], port.force});
+    acting.ports.push_back(port);
+  }
+  return settled;
 }
 
 }  // namespace railstep

@@ -2,7 +2,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "online/model/model.h"
+#include "offline/pack/pack.h"
+#include "offline/track/statics.h"
+#include "online/step/residual.h"
 
 namespace railstep {
 
@@ -21,5 +23,18 @@ struct SettledVehicles {
 /// a wheel would leave its rail.
 SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexibility,
                                 const Eigen::VectorXd& free);
+
+/// Forces that act on the track, and the same for the residual flexibility.
+struct Acting {
+  std::vector<PointForce> forces;
+  std::vector<RailForce> ports;
+};
+
+/// The vehicles of a model at rest on its track under what acts, `time` later than at the start,
+/// and adds the forces of their wheels to it. Where the track is one-sided the heights under the
+/// wheels are no linear function of the forces: Newton's method with their slopes by differences.
+/// Throws std::invalid_argument as settle_vehicles().
+SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packed, double gravity,
+                                double time, Acting& acting);
 
 }  // namespace railstep

@@ -136,9 +136,10 @@ template <typename Archive>
 void describe(Archive& a, WheelsetModel& w) {
   a.count(w.first, kMostUnknowns);
   for (double& x : w.mass) a.real(x);
-  for (double* x : {&w.weight, &w.radius, &w.tread_half_width, &w.start, &w.speed, &w.rest_z,
-                    &w.hertz[0], &w.hertz[1], &w.tolerance, &w.alpha, &w.beta})
+  for (double* x : {&w.weight, &w.radius, &w.tread_half_width, &w.start, &w.rest_z, &w.hertz[0],
+                    &w.hertz[1], &w.tolerance, &w.alpha, &w.beta})
     a.real(*x);
+  describe(a, w.travel);
   std::int32_t guide = static_cast<std::int32_t>(w.guide);
   a.count(guide, 1);
   w.guide = static_cast<Guide>(guide);

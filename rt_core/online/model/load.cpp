@@ -104,11 +104,13 @@ bool signal_holds(const SignalModel& s) noexcept {
   return s.intervals == 0 || (s.step > 0. && s.coefficient != nullptr);
 }
 
+bool travel_holds(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
+
 bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
   if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
   for (std::int32_t i = 0; i < w.forces; ++i)
     if (w.force[i].points < 1 || w.force[i].table == nullptr) return false;
-  return signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
+  return travel_holds(w.travel) && signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
 }
 
 /// Flanges come by rising wheelset, one pair each, and count as wheels among the ports.
@@ -123,8 +125,6 @@ bool flanges_hold(const Model& m) noexcept {
   }
   return true;
 }
-
-bool travel_holds(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
 
 bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
   if (v.first < m.bodies || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
@@ -167,7 +167,7 @@ bool probes_hold(const Model& m) noexcept {
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
   for (std::int32_t i = 0; i < p.count; ++i)
     if (p.start[i] > p.start[i + 1]) return false;
-  const std::int64_t values = std::int64_t{2} * m.unknowns + m.fixed.count;
+  const std::int64_t values = std::int64_t{3} * m.unknowns + m.fixed.count;
   return within(p.index, p.entries, 0, values - 1) && within(p.table, p.count, -1, p.tables - 1) &&
          (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value);
 }

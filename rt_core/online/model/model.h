@@ -137,17 +137,18 @@ struct RailSignal {
 enum class Guide : std::int32_t { augmented_lagrangian, baumgarte };
 
 /// A rigid wheelset on both rails: coordinates x, y, z of its centre from its start, then roll,
-/// spin and yaw; cylinders of one radius roll on circular railhead crowns without friction. The
-/// guide holds x = speed t and yaw = 0.
+/// spin and yaw, the spin beyond speed / radius; cylinders of one radius roll on circular railhead
+/// crowns without friction. The guide holds x on its travel and yaw = 0.
 struct WheelsetModel {
   std::int32_t first;  // of its six coordinates among the state's unknowns
   double mass[6];      // kg, kg, kg, roll, spin, yaw inertia kg m2
   double weight;       // N, down; of the wheelset and what it carries
   double radius, tread_half_width;
-  double start, speed;  // of the centre, m, m/s; start of a track without end: of the elements' x,
-                        // from which the coordinate x then counts the way within a bay
-  double rest_z;        // height of the centre over the left rail's axis when it touches, m
-  double hertz[2];      // C of P = C d^1.5 on left and right rail, N/m^1.5
+  double start;  // of the centre, m; on a track without end of the elements' x, from which the
+                 // coordinate x then counts the way within a bay
+  TravelModel travel;
+  double rest_z;    // height of the centre over the left rail's axis when it touches, m
+  double hertz[2];  // C of P = C d^1.5 on left and right rail, N/m^1.5
   Guide guide;
   std::int32_t cap;    // iterations of the augmented Lagrangian
   double tolerance;    // m and rad
@@ -240,8 +241,8 @@ struct ProbeModel {
   std::int32_t count;
   const std::int32_t* start;  // [count + 1] of each row among index and value
   std::int32_t entries;
-  const std::int32_t* index;  // [entries] into u, v, then the fixed ports' forces of the state
-  const double* value;        // [entries] per m, per m/s or per N
+  const std::int32_t* index;  // [entries] into the state's u, v, fixed ports' forces, then g
+  const double* value;        // [entries] per m, per m/s, per N or per m/s2
   const double* rest;         // [count]
   const std::int32_t* along;  // [count] 1: a place along the rail, which the traffic takes with it
   const std::int32_t* table;  // [count] of its residual, -1: none

@@ -19,6 +19,8 @@ namespace {
 void locate_contacts(const Model& model, std::int64_t step, const State& s, Workspace& w,
                      Coupling& c) noexcept {
   const double ahead = (model.condensed != 0 ? .5 : 1.) * model.scheme.dt;
+  // Irregularities are those of where the penetration is taken.
+  const double later = model.scheme.theta * model.scheme.dt - ahead;
 #pragma omp simd
   for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
@@ -35,7 +37,7 @@ void locate_contacts(const Model& model, std::int64_t step, const State& s, Work
   locate_flanges(model, s, w, ahead, c);
   const double time = static_cast<double>(step - 1) * model.scheme.dt + ahead;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
-    find_vehicle_contacts(model, model.vehicle[v], time, located_on(model, s, w), c.contact);
+    find_vehicle_contacts(model, model.vehicle[v], time, located_on(model, s, w), c.contact, later);
   for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i)
     c.place[i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }

@@ -22,6 +22,6 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state,
 
 /// After the scheme's correction: velocities and accelerations of guided coordinates are put onto
 /// the guide (augmented Lagrangian; the inertia is diagonal, so the projection is exact).
-void project_guides(const Model& model, State& state) noexcept;
+void project_guides(const Model& model, std::int64_t step, State& state) noexcept;
 
 }  // namespace railstep

@@ -8,11 +8,13 @@ namespace railstep {
 
 namespace {
 
-/// Entry of u, then v, then the fixed ports' forces.
+/// Entry of u, then v, then the fixed ports' forces, then g.
 double value_at(const Model& model, const State& state, std::int32_t at) noexcept {
   if (at < model.unknowns) return state.u[at];
   at -= model.unknowns;
-  return at < model.unknowns ? state.v[at] : state.port_force[at - model.unknowns];
+  if (at < model.unknowns) return state.v[at];
+  at -= model.unknowns;
+  return at < model.fixed.count ? state.port_force[at] : state.g[at - model.fixed.count];
 }
 
 }  // namespace

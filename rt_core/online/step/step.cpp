@@ -166,7 +166,7 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs)
     solve_bands(model, w);
   if (model.system.unknowns > 0) collect(solve_system(model, state, w), outputs);
   correct(model, state, w);
-  if (model.wheelsets > 0) project_guides(model, state);
+  if (model.wheelsets > 0) project_guides(model, state.steps + 1, state);
   if (model.system.unknowns > 0) outputs.status = outputs.status | finish_system(model, state, w);
   ++state.steps;
 }

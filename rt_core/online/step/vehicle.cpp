@@ -64,7 +64,8 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
     along += slope_under(model, at, seen);
     missed = residual_before(model, s, c, i);
   }
-  const double passing = travelled(v.travel, time).speed * along;
+  const double when = time - (1. - held_at(model)) * model.scheme.dt;
+  const double passing = travelled(v.travel, when).speed * along;
   if (model.condensed != 0) {
     const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
     double d0 = at.irregular + missed - dot(row, s.u + v.first, v.size);

@@ -41,8 +41,9 @@ double slope_under(const Model& model, const WheelContact& at, const Configurati
 }
 
 void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, double time,
-                           const Configuration& at, WheelContact* contact) noexcept {
+                           const Configuration& at, WheelContact* contact, double later) noexcept {
   const double gone = travelled(vehicle.travel, time).distance;
+  const double rolled = travelled(vehicle.travel, time + later).distance;
   const double up[3] = {0., 0., 1.};
   for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
     const VehicleWheel& wheel = model.vehicle_wheel[vehicle.first_wheel + k];
@@ -64,11 +65,12 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, doub
       shape_functions(found.xi, shape);
       fill_row(model, found, shape);
       height = rail_height(model, found.row, at);
-      const Irregularity off = irregularity(model, wheel.tread, wheel.rail, up, found.x, gone);
+      const Irregularity off =
+          irregularity(model, wheel.tread, wheel.rail, up, found.x + (rolled - gone), rolled);
       found.irregular = off.depth;
       found.rise = off.rise;
     } else {
-      const SignalValue tread = signal_at(wheel.tread, gone);
+      const SignalValue tread = signal_at(wheel.tread, rolled);
       found.irregular = tread.value;
       found.rise = tread.slope;
     }

@@ -7,8 +7,10 @@ namespace railstep {
 /// off the rail stands on the ground at the height of the rail's axis at rest.
 /// @param at       displacements of track and vehicles at which to look
 /// @param contact  [wheels] of the model; those of the vehicle are written
+/// @param later    s, by how much the irregularities under them are those of a later time
 void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, double time,
-                           const Configuration& at, WheelContact* contact) noexcept;
+                           const Configuration& at, WheelContact* contact,
+                           double later = 0.) noexcept;
 
 /// Displacement along a row of a rail by the lines alone, m.
 double rail_height(const Model& model, const RailRow& row, const Configuration& at) noexcept;

@@ -6,6 +6,7 @@
 #include "online/step/couple.h"
 #include "online/step/strike.h"
 #include "online/step/table.h"
+#include "online/step/travel.h"
 
 namespace railstep {
 
@@ -18,10 +19,11 @@ constexpr int kGuided[2] = {0, 5};  // x and yaw
 constexpr double kPenalty = 1e3;
 
 /// Of a guided coordinate at a step's end; x counts from the start, or from the last bay border.
-double target(const Model& model, const WheelsetModel& w, int guided, std::int64_t step) noexcept {
-  if (guided != 0) return 0.;
-  return model.endless.bays == 0 ? w.speed * (static_cast<double>(step) * model.scheme.dt)
-                                 : within_bay(model, step);
+Travelled target(const Model& model, const WheelsetModel& w, int guided,
+                 std::int64_t step) noexcept {
+  if (guided != 0) return {0., 0., 0.};
+  if (model.endless.bays != 0) return {within_bay(model, step), w.travel.speed, 0.};
+  return travelled(w.travel, static_cast<double>(step) * model.scheme.dt);
 }
 
 /// Forces other than contact and guide: weight, tables and the gyroscopic terms of an axisymmetric
@@ -33,7 +35,7 @@ void applied_force(const WheelsetModel& w, double time, const double* p, const d
   force[2] = -w.weight;
   for (std::int32_t i = 0; i < w.forces; ++i)
     force[w.force[i].direction] += table_value(w.force[i].table, w.force[i].points, time);
-  const double spin = w.speed / w.radius + v[4];
+  const double spin = travelled(w.travel, time).speed / w.radius + v[4];
   force[3] = w.mass[4] * spin * v[5] - w.mass[3] * v[5] * v[5] * p[3];
   force[5] = -w.mass[4] * spin * v[3] + 2. * w.mass[3] * v[5] * v[3] * p[3];
 }
@@ -73,16 +75,17 @@ void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
       c.wheelset[b].free[k] = p[k] + c.wheelset[b].compliance[k] * force[k];
     }
     for (const int k : kGuided) {
-      const double goal = target(model, set, k, step), rate = k == 0 ? set.speed : 0.;
+      const Travelled goal = target(model, set, k, step);
       if (set.guide == Guide::augmented_lagrangian) {
         // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
         const double penalty = kPenalty * kg * set.mass[k];
         c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k] + penalty);
-        c.wheelset[b].free[k] =
-            c.wheelset[b].compliance[k] * (kg * set.mass[k] * p[k] + force[k] + penalty * goal);
+        c.wheelset[b].free[k] = c.wheelset[b].compliance[k] *
+                                (kg * set.mass[k] * p[k] + force[k] + penalty * goal.distance);
       } else {
         const double beta2 = set.beta * set.beta;
-        const double g = (-2. * set.alpha * (v[k] - rate) - beta2 * (p[k] - goal)) /
+        const double g = (goal.acceleration - 2. * set.alpha * (v[k] - goal.speed) -
+                          beta2 * (p[k] - goal.distance)) /
                          (1. + 2. * set.alpha * kv / kg + beta2 / kg);
         c.wheelset[b].compliance[k] = 0.;
         c.wheelset[b].free[k] = p[k] + g / kg;
@@ -140,7 +143,7 @@ bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& 
     move_body(model, b, c, s.multiplier + 2 * b, p);
     for (int i = 0; i < 2; ++i) {
       const int k = kGuided[i];
-      const double miss = p[k] - target(model, set, k, step);
+      const double miss = p[k] - target(model, set, k, step).distance;
       if (std::fabs(miss) > violation) violation = std::fabs(miss);
       if (set.guide != Guide::augmented_lagrangian) continue;
       s.multiplier[2 * b + i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
@@ -165,14 +168,15 @@ bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int
   return is_left_too_soon(set.hertz[wheel % 2], inverse_mass, speed, model.scheme.dt);
 }
 
-void project_guides(const Model& model, State& state) noexcept {
+void project_guides(const Model& model, std::int64_t step, State& state) noexcept {
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     if (set.guide != Guide::augmented_lagrangian) continue;
     for (const int k : kGuided) {
-      state.v[set.first + k] = k == 0 ? set.speed : 0.;
-      state.a[set.first + k] = 0.;
-      state.g[set.first + k] = 0.;
+      const Travelled goal = target(model, set, k, step);
+      state.v[set.first + k] = goal.speed;
+      state.a[set.first + k] = goal.acceleration;
+      state.g[set.first + k] = goal.acceleration;
     }
   }
 }

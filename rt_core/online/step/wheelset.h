@@ -7,7 +7,7 @@ namespace railstep {
 // and 2 b + 1 of the model; its flanges, if it has them, stand behind all wheels.
 
 /// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
-/// guide does not give way at all: g = [x'' - 2 alpha (v - x') - beta^2 (u - x)] at the step's end.
+/// guide does not give way at all: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
 void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
                     Coupling& c) noexcept;
 

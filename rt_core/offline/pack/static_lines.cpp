@@ -1,0 +1,86 @@
+#include "offline/pack/static_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "online/contact/ports.h"
+
+namespace railstep {
+
+namespace {
+
+/// A point as ports see it: those of condensed lines leave out the section's own strain.
+RailPoint seen(const Model& model, RailPoint at) {
+  if (model.condensed != 0) (at.direction == 1 ? at.y : at.z) = 0.;
+  return at;
+}
+
+/// Displacements of each line of a condensed model under its fixed ports' forces too.
+void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines) {
+  const FixedPortModel& fixed = packed.model().fixed;
+  const Eigen::Index n = fixed.count;
+  // Rows over the lines' coordinates, and what they move: K = omega^2.
+  std::vector<Eigen::MatrixXd> rows, moved;
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd free = -Eigen::Map<const Eigen::VectorXd>(fixed.gap, n);
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    rows.push_back(own.basis.shapes.transpose() * own.closing);
+    moved.push_back(own.basis.omega.cwiseAbs2().cwiseInverse().asDiagonal() * rows.back());
+    W += rows.back().transpose() * moved.back();
+    free += rows.back().transpose() * lines[l];
+  }
+  std::array<PortLaw, kMaxFixedPorts> law;
+  std::array<double, kMaxFixedPorts> force{}, depth{};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
+    law[j] = {0., std::max(fixed.stiffness[j], 1e-9), 0.};  // a damper alone carries nothing
+  constexpr int kMostSolves = 20;  // of 8 iterations each, where a step's solve takes one
+  PortStatus met = PortStatus::cap_reached;
+  for (int turn = 0; turn < kMostSolves && met != PortStatus::converged; ++turn)
+    met = solve_ports(static_cast<int>(n), W.data(), law.data(), free.data(), force.data(),
+                      depth.data())
+              .status;
+  if (met != PortStatus::converged)
+    throw std::invalid_argument(
+        "no equilibrium was found: the one-sided supports open and close without end");
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    lines[l] -= moved[l] * Eigen::Map<const Eigen::VectorXd>(force.data(), n);
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
+                                          const std::vector<PointForce>& forces, double gravity) {
+  std::vector<Eigen::VectorXd> lines;
+  if (packed.model().condensed == 0) {
+    const std::vector<Eigen::VectorXd> all = statics.solve(forces, gravity);
+    for (const PackedLine& own : packed.lines()) lines.push_back(all[own.index]);
+    return lines;
+  }
+  for (const PackedLine& own : packed.lines()) {
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
+    if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
+    for (const PointForce& f : forces)
+      load += f.force * point_row(statics.track(), own.line, seen(packed.model(), f.at));
+    lines.push_back((own.basis.shapes.transpose() * load)
+                        .cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
+  }
+  if (packed.model().fixed.count > 0) press_ports(packed, lines);
+  return lines;
+}
+
+double height_of(const Track& track, const PackedModel& packed,
+                 const std::vector<Eigen::VectorXd>& lines, const RailPoint& at) {
+  double sum = 0.;
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    const Eigen::SparseVector<double> row = point_row(track, own.line, seen(packed.model(), at));
+    sum += packed.model().condensed == 0
+               ? row.dot(lines[l])
+               : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(lines[l]);
+  }
+  return sum;
+}
+
+}  // namespace railstep
