@@ -3,8 +3,8 @@
 namespace railstep {
 namespace {
 
-/// Whether every joint of a rail is pressed, or none: scene_rail_joints.cpp refuses what lies
-/// between.
+/// With what heat presses a rail, N: every joint of it, or none. What lies between is refused where
+/// the scene is read.
 double compression_of(const Scene& scene, std::size_t side, double area,
                       const std::vector<RailJoint>& joints) {
   const RailScene& own = side == 1 && scene.right_rail ? *scene.right_rail : scene.rail;
