@@ -10,8 +10,9 @@ namespace railstep {
 
 /// A track as a nonlinear structure in plain coordinates: positions and slopes of the left rail's
 /// nodes along its own axes, then of the right rail's, then the displacements of the sleepers' ends
-/// along the track's. Springs act between material points of rail and sleeper (or ground) and keep their directions, as the
-/// supports of assemble() do: at rest the tangent is the stiffness of its lines.
+/// along the track's. Springs act between material points of rail and sleeper (or ground) and keep
+/// their directions, as the supports of assemble() do: at rest the tangent is the stiffness of its
+/// lines.
 class TrackStructure {
  public:
   /// Throws std::invalid_argument as assemble() does, and where the track's unknowns are not
