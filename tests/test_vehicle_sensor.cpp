@@ -23,13 +23,13 @@ const std::string kSensors =
     "{name=\"first\", on=\"vehicle\", vehicle=\"bogie\", body=\"wheel_1\"},"
     "{name=\"second\", on=\"vehicle\", vehicle=\"bogie\", body=\"wheel_2\"}]";
 
+const std::string kDip = "defect=[{kind=\"dipped_joint\", at_m=7.5, depth_m=2e-3, ramp_m=0.3}]";
+
 Traced bogie_run(const std::string& kind, double rho) {
-  return Traced(
-      "bogie_at_speed",
-      {kSensors, "condense.kind=\"" + kind + "\"", "step.rho_inf=" + std::to_string(rho),
-       "step.duration_s=0.02", "step.frame_s=50.0e-6", "track.bays=30", "vehicle[0].start_m=6.0",
-       "defect=[{kind=\"dipped_joint\", at_m=7.5, "
-       "depth_m=2e-3, ramp_m=0.3}]"});
+  return Traced("bogie_at_speed",
+                {kSensors, "condense.kind=\"" + kind + "\"", "step.rho_inf=" + std::to_string(rho),
+                 "step.duration_s=0.02", "step.frame_s=50.0e-6", "track.bays=30",
+                 "vehicle[0].start_m=6.0", kDip});
 }
 
 std::string told(const std::string& sensor) {

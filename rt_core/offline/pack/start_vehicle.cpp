@@ -119,7 +119,8 @@ struct Wheels {
   std::size_t count() const { return point.size(); }
 };
 
-Wheels wheels_of(const Model& model, const Track& track, double time, const Acting& acting) {
+Wheels wheels_of(const PackedModel& packed, const Track& track, double time, const Acting& acting) {
+  const Model& model = packed.model();
   const auto count = static_cast<std::size_t>(model.vehicle_wheels);
   const Eigen::Index n = model.vehicle_wheels;
   Wheels w{std::vector<RailPoint>(count), std::vector<RailForce>(count), std::vector<bool>(count),
@@ -199,7 +200,7 @@ struct Under {
 SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packed, double gravity,
                                 double time, Acting& acting) {
   const Model& model = packed.model();
-  const Wheels wheels = wheels_of(model, statics.track(), time, acting);
+  const Wheels wheels = wheels_of(packed, statics.track(), time, acting);
   const Under under{statics, packed, gravity, acting.forces, wheels};
   const Eigen::Index n = model.vehicle_wheels;
   const bool linear = model.fixed.count == 0;
