@@ -30,11 +30,10 @@ struct Standing {
 Standing stand(const Simulation& run, const VehicleModel& model, int rail,
                const DrawnVehicle& drawn) {
   const Model& m = run.model();
-  const double time = static_cast<double>(run.state.steps) * m.scheme.dt;
   return {drawn.what,
           first_coordinates(drawn.what),
           Eigen::Map<const Eigen::VectorXd>(run.state.u + model.first, model.size) - drawn.rest,
-          model.start + travelled(model.travel, time).distance,
+          model.start + way_at(m, model.travel, run.state.steps).distance,
           m.rail_y[rail],
           m.rail_z[rail] + crown_top(m.cant[rail], m.head_z[rail], m.crown_radius[rail]).height};
 }
