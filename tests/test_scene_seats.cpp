@@ -168,8 +168,10 @@ TEST_CASE("the right rail may differ", "[seats]") {
   const Scene low =
       read_scene(shipped("ballasted_track"), {"rail={rectangle={height_m=0.17, width_m=0.045}, "
                                               "right={rectangle={height_m=0.15, width_m=0.045}}}"});
-  CHECK_THAT(rail_z(sections_of(low), Side::right), WithinAbs(.01, 1e-15));
-  CHECK(rail_z(sections_of(low), Side::left) == 0.);
+  const RailSections sections = sections_of(low);
+  const Track uneven = track_of(low);
+  CHECK_THAT(rail_z(low, sections, uneven, Side::right), WithinAbs(.01, 1e-15));
+  CHECK(rail_z(low, sections, uneven, Side::left) == 0.);
   CHECK_THROWS_WITH(track("pinned_bay", {"rail.right={young_pa=200e9}"}), Contains("one rail"));
 }
 
