@@ -230,7 +230,7 @@ TEST_CASE("what has no receptance is refused in one sentence", "[receptance]") {
   check_refused(shipped("ballasted_track") + " --at sleeper --direction y" + kBand, "held in y");
   check_refused(shipped("ballasted_track") + " --at pad --direction y --beside euler" + kBand,
                 "vertical");
-  check_refused(shipped("wheelset_on_track") + " --at wheelset" + kBand, "on a wheelset");
+  check_refused(shipped("wheelset_on_track") + " --at wheelset" + kBand, "is not on the track");
   check_refused(shipped("double_pendulum") + " --at A" + kBand, "bodies and beams");
   check_refused(shipped("free_rail") + " --at mid_bay" + kBand, "accepted are none");
   check_refused(kS1 + " --at mid_bay --set rail.axial_force_n=-1e9" + kBand, "buckles");

@@ -54,6 +54,7 @@ TEST_CASE("loads over joints that heat presses keep the balance of energy", "[jo
       "--set 'track.unknowns=\"rigid-section\"' --set rail.temperature_rise_k=30 "
       "--set support.stiffness_x_n_per_m=2e7 --set support.stiffness_y_n_per_m=2e7 "
       "--set support.stiffness_roll_n_m_per_rad=3e5 "
+      "--set 'load[0].table=[[0, 0], [0.05, 1]]' --set 'load[1].table=[[0, 0], [0.05, 1]]' "
       "--set 'rail_joint=[{x_m=4.8, gap_m=0.0023, bending_vertical_stiffness_n_m_per_rad=1e6}]'");
   INFO(ran.err);
   REQUIRE(ran.code == 0);
