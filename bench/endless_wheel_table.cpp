@@ -36,8 +36,9 @@ Traffic wheel_over(double x, double hz) {
   Traffic traffic{.vehicles = {v}, .head = {.081, .3, .035}};
   if (hz == 0.) return traffic;
   constexpr int kSamples = 32;  // of a wave: the spline misses it by 4e-6
-  std::vector<double> wave;
-  for (int k = 0; k < kSamples; ++k) wave.push_back(1e-2 / hz * std::sin(2. * M_PI * k / kSamples));
+  std::vector<double> wave(kSamples);
+  for (std::size_t k = 0; k < wave.size(); ++k)
+    wave[k] = 1e-2 / hz * std::sin(2. * M_PI * static_cast<double>(k) / kSamples);
   traffic.irregularities.push_back({0, 2, fit_signal(wave, x, kSpeed / hz / kSamples, true)});
   return traffic;
 }
