@@ -34,8 +34,8 @@ inline Track track_of(int bays, int elements_per_bay, int rails) {
   return t;
 }
 
-inline Track ring_of(int bays, int rails) {
-  Track ring = track_of(bays, 4, rails);
+inline Track ring_of(int bays, int rails, int elements_per_bay = 4) {
+  Track ring = track_of(bays, elements_per_bay, rails);
   ring.ring = true;
   return ring;
 }

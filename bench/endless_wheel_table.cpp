@@ -88,7 +88,7 @@ Quantities reference(double hz, int finer) {
 }
 
 Quantities on_ring(double hz, int bays, int modes) {
-  const Track ring = ring_of(bays, 1);
+  const Track ring = ring_of(bays, 1, 8);
   Traffic traffic = wheel_over(0., hz);
   add_seat(ring, bays / 2 + 1, traffic.probes);
   PackedModel packed(ring, traffic, ring_options(bays, modes, kStep));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "artefact.h"
 #include "endless.h"
 
 namespace railstep {
@@ -47,6 +48,26 @@ inline ModelRun moving_run(const Track& track, const Traffic& traffic, const Pac
   run.packed->set_start(start_moving(track, *run.packed, 0.));
   reset(run.model(), run.state);
   return run;
+}
+
+/// A run of 100 frames and the one of its block end alike, and so does one that is taken back half
+/// way, to what was saved there.
+inline void check_goes_on(ModelRun& run) {
+  const Block block = to_block(run.model(), "time_s");
+  Model model;
+  REQUIRE(read(block, model).status == LoadStatus::ok);
+  LoadedRun loaded(model);
+  CHECK(loaded.frames(100) == Status::ok);
+  for (int frame = 0; frame < 50; ++frame) run.step();
+  const std::vector<double> saved = run.memory;
+  const std::int64_t steps = run.state.steps;
+  for (int frame = 0; frame < 50; ++frame) run.step();
+  CHECK(state_hash(run.model(), run.state) == state_hash(model, loaded.state));
+  run.memory = saved;
+  run.state = state_on(run.model(), run.memory.data());
+  run.state.steps = steps;
+  for (int frame = 0; frame < 50; ++frame) run.step();
+  CHECK(state_hash(run.model(), run.state) == state_hash(model, loaded.state));
 }
 
 }  // namespace railstep

@@ -106,7 +106,8 @@ TEST_CASE("a course goes whole bays in whole steps, and else what a wide integer
 
 namespace {
 
-/// The issue's bound: 1e-3 of the peak; the reference is itself within 3e-4 (step halved).
+/// The bound of docs/endless.md, 1e-3 of the peak; the reference is itself within 3e-4 (step
+/// halved).
 void check_against_reference(const std::vector<double>& behind) {
   const Passage want = reference(behind);
   const auto check = [&](const char* what, const Track& track, const PackOptions& options) {

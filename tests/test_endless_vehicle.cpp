@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "artefact.h"
 #include "endless_run.h"
 #include "vehicles.h"
 
@@ -81,21 +80,7 @@ TEST_CASE("a vehicle on a track without end goes on from its block and from a sa
     const Track& track = modal ? ring : window;
     ModelRun run = moving_run(track, bogie_traffic(0.),
                               modal ? ring_options(ring, 2, kDt) : window_options(window, kDt));
-    const Block block = to_block(run.model(), "time_s");
-    Model model;
-    REQUIRE(read(block, model).status == LoadStatus::ok);
-    LoadedRun loaded(model);
-    CHECK(loaded.frames(100) == Status::ok);
-    for (int frame = 0; frame < 50; ++frame) run.step();
-    const std::vector<double> saved = run.memory;
-    const std::int64_t steps = run.state.steps;
-    for (int frame = 0; frame < 50; ++frame) run.step();
-    CHECK(state_hash(run.model(), run.state) == state_hash(model, loaded.state));
-    run.memory = saved;
-    run.state = state_on(run.model(), run.memory.data());
-    run.state.steps = steps;
-    for (int frame = 0; frame < 50; ++frame) run.step();
-    CHECK(state_hash(run.model(), run.state) == state_hash(model, loaded.state));
+    check_goes_on(run);
   }
 }
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <vector>
 
-#include "artefact.h"
 #include "endless_run.h"
 #include "offline/irregularity/defect.h"
 
@@ -25,7 +24,8 @@ Traffic wheelset_traffic(double start) {
 }  // namespace
 
 TEST_CASE("a wheelset on a ring or a window is heard as on a long track of a fine mesh") {
-  // the bound, 1e-3 of the peak, of means over 1 ms: the force below 440 Hz (-3 dB)
+  // the bound of docs/endless.md, 1e-3 of the peak, of means over 1 ms: the force below 440 Hz (-3
+  // dB)
   const Track track = endless_track(70, 6, 2);
   ModelRun reference(track, wheelset_traffic(12.), framed({.scheme = generalised_alpha(kDt, .6)}));
   reference.packed->set_start(start_in_equilibrium(track, *reference.packed, 0.));
@@ -108,21 +108,7 @@ TEST_CASE("a window passes its track on without a jump") {
 TEST_CASE("a track without end goes on from its block and from a saved state bit by bit") {
   const Track ring = ring_of(endless_track(24, 2, 2));
   ModelRun run = moving_run(ring, wheelset_traffic(0.), ring_options(ring, 2, kDt));
-  const Block block = to_block(run.model(), "time_s");
-  Model model;
-  REQUIRE(read(block, model).status == LoadStatus::ok);
-  LoadedRun loaded(model);
-  CHECK(loaded.frames(100) == Status::ok);
-  for (int frame = 0; frame < 50; ++frame) run.step();
-  const std::vector<double> saved = run.memory;
-  const std::int64_t steps = run.state.steps;
-  for (int frame = 0; frame < 50; ++frame) run.step();
-  CHECK(state_hash(run.model(), run.state) == state_hash(model, loaded.state));
-  run.memory = saved;
-  run.state = state_on(run.model(), run.memory.data());
-  run.state.steps = steps;
-  for (int frame = 0; frame < 50; ++frame) run.step();
-  CHECK(state_hash(run.model(), run.state) == state_hash(model, loaded.state));
+  check_goes_on(run);
 }
 
 TEST_CASE("what makes no track without end is refused in one sentence") {

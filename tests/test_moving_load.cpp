@@ -45,7 +45,7 @@ const double kTimes[5] = {.05, .10, .15, .20, .25};
 }  // namespace
 
 TEST_CASE("moving load: one element per bay with residual flexibility meets the converged row") {
-  // reference.md, "Moving load": 1e-3 is the issue's bound, the row itself is good to 2e-8 m.
+  // reference.md, "Moving load": 1e-3 is the bound asked for, the row itself is good to 2e-8 m.
   const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
   ModelRun run = peers_run(peers_track(1), 1e-3, true);
   for (int i = 0; i < 5; ++i) {
@@ -63,7 +63,7 @@ TEST_CASE("moving load: eight elements per bay and a fine step are the converged
 }
 
 TEST_CASE("moving load: without residual flexibility the element's own rows come out") {
-  // reference.md: 1 element per bay, 2 and 3 axial points; the issue asks 3e-4 of the second
+  // reference.md: 1 element per bay, 2 and 3 axial points; 3e-4 is asked of the second
   const double two[5] = {-5.83608e-4, -5.64767e-4, -5.66946e-4, -5.64658e-4, -5.83236e-4};
   const double three[5] = {-5.76017e-4, -5.62059e-4, -5.58991e-4, -5.61946e-4, -5.75650e-4};
   Track locking = peers_track(1);
