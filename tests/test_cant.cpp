@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "condensed.h"
+#include "mirror.h"
 #include "offline/beam/equilibrium.h"
 #include "offline/beam/track_structure.h"
 #include "offline/pack/accuracy.h"
@@ -184,12 +185,7 @@ TEST_CASE("leaning rails in mirror coordinates and the general way", "[cant]") {
   const Statics mirror(t);
   t.mirror_coordinates = false;
   const Statics general(t);
-  const double own = mirror.flexibility(left, left);
-  // Rounding of two factorisations of a condition of 1e7.
-  CHECK_THAT(general.flexibility(left, left), WithinRel(own, 1e-8));
-  CHECK_THAT(general.flexibility(left, right),
-             WithinAbs(mirror.flexibility(left, right), 1e-8 * own));
-  CHECK_THAT(general.flexibility(right, right), WithinRel(mirror.flexibility(right, right), 1e-8));
+  check_alike(mirror, general, left, right);
   const auto u = mirror.solve({}, 9.81), v = general.solve({}, 9.81);
   for (int d = 0; d < 3; ++d) {
     const RailPoint at{1, 4.1, 0., .09, d};
