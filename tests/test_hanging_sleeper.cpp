@@ -42,8 +42,10 @@ TEST_CASE("loads that stand over hanging sleepers rest as `static` finds them", 
     for (const auto& point : found["points"]) {
       const std::string name = point["name"];
       const double want = point["displacement_m"][2];
-      // The run's sensors know the residual flexibility, which `static` has not: none at nodes.
-      CHECK_THAT(first_or_last[rows.column(name + ".dz_m")], WithinRel(want, 1e-6));
+      // The run's sensors know the residual flexibility, which `static` has not: at nodes what the
+      // squeeze in series with the pads leaves out, 4e-3 of it (docs/unknowns.md), which is 8e-3 of
+      // the flexibility on the ground.
+      CHECK_THAT(first_or_last[rows.column(name + ".dz_m")], WithinRel(want, 3.2e-5));
     }
     double sum = 0.;
     for (int seat = 0; seat <= 30; ++seat)

@@ -118,8 +118,9 @@ void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
       return port.of == FixedPort::Of::pad && port.rail == rail && port.seat == seat;
     });
   } else {
-    probe = {.displacement = -pad.stiffness[2], .velocity = -pad.damping[2]};
-    probe.track = pad_gap(track, rail, seat);
+    const Functional gap = pad_gap(track, rail, seat);
+    probe = {.displacement = -pad.stiffness[2], .velocity = -gap.part * pad.damping[2]};
+    probe.track = gap;
   }
   sensors.columns.push_back(fmt::format("support_{}{}.force_z_n", rail == 0 ? "" : "right_", seat));
   sensors.probes.push_back(std::move(probe));

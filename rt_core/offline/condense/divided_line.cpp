@@ -151,12 +151,13 @@ Superelement::Rows DividedLine::rail_rows(const Functional::OnRail& point, int a
 }
 
 DividedLine::Spread DividedLine::spread(const Functional& functional) const {
+  const double part = part_in(track_, functional);
   Spread result{sleeper_load(track_, line_, functional), {}};
   for (const Functional::OnRail& point : functional.rail) {
     const int rail = point.at.rail;
     if (line_.rail_factor[static_cast<std::size_t>(rail)] == 0.) continue;
     const int at = element_at(track_, point.at.x);
-    const Superelement::Rows row = rail_rows(point, at);
+    const Superelement::Rows row = rail_rows({point.at, part * point.factor}, at);
     const std::vector<int> ends = end_unknowns(line_, rail, element(rail), at);
     for (std::size_t i = 0; i < ends.size(); ++i)
       if (ends[i] >= 0) result.load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));

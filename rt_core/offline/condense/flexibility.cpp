@@ -43,8 +43,11 @@ void keep(const Eigen::MatrixXd& strip, int e, const Track& track, PairTable& ta
   }
 }
 
-bool carries(const std::vector<int>& carried, int k) {
-  return std::find(carried.begin(), carried.end(), k) != carried.end();
+/// Whether a vertical force moves any of these, on y = 0 of an upright rail or anywhere.
+bool carries_any(const std::vector<int>& carried, bool upright) {
+  return std::any_of(carried.begin(), carried.end(), [&](int k) {
+    return k == 2 || k == 8 || (!upright && (k == 1 || k == 4 || k == 5 || k == 7));
+  });
 }
 
 void check_functional(const Track& track, const Functional& functional) {
@@ -83,10 +86,9 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
     const Line& line = lines_[i];
     const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
                                                      carried_unknowns(line, 1)};
-    // Others no vertical force on y = 0 of an upright rail moves.
-    if (track.cant == 0. && !carries(carried[0], 2) && !carries(carried[0], 8) &&
-        !carries(carried[1], 2) && !carries(carried[1], 8))
-      continue;
+    // The others nothing here asks for.
+    const bool upright = track.cant == 0.;
+    if (!carries_any(carried[0], upright) && !carries_any(carried[1], upright)) continue;
     Pair pair{&line, carried, exact_line(track_, line, points), nullptr};
     if (bases_.empty())
       pair.model = exact_line(track_, line, 1);

@@ -1,6 +1,10 @@
 #include "offline/condense/line_flexibility.h"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "offline/track/pad.h"
+#include "offline/track/squeeze.h"
 
 namespace railstep {
 
@@ -22,7 +26,75 @@ bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
   return (factor.vectorD().array() > 1e-12 * diagonal.array()).all();
 }
 
+Line matching(const Track& other, const Line& line) {
+  const auto carries_all = [&](const Line& there, int rail) {
+    const std::vector<int> more = carried_unknowns(there, rail),
+                           some = carried_unknowns(line, rail);
+    return std::includes(more.begin(), more.end(), some.begin(), some.end());
+  };
+  for (Line& there : assemble(other))
+    if (there.rail_factor == line.rail_factor && carries_all(there, 0) && carries_all(there, 1))
+      return std::move(there);
+  throw std::invalid_argument("a line is not one of its track's");
+}
+
+namespace {
+
+/// A divided line of the track with the section's strain, which it keeps. Where the few unknowns do
+/// not carry a rail along x, what is read along x counts from its axis, and sleepers stay.
+class StrainedLine : public LineFlexibility {
+ public:
+  StrainedLine(const Track& track, const Line& line, int parts)
+      : track_(with_strain(track)),
+        line_(matching(track_, line)),
+        goes_along_(carries_along(line)),
+        divided_(exact_line(track_, line_, parts)) {}
+
+  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override {
+    return divided_->under(port, seen, points);
+  }
+  Strip between(const Port& a, const Port& b, int points) const override {
+    return divided_->between(a, b, points);
+  }
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override {
+    return divided_->from(port, seen(functional), points);
+  }
+  Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
+                              const Functional& force) const override {
+    std::vector<Functional> those;
+    those.reserve(reads.size());
+    for (const Functional& one : reads) those.push_back(seen(one));
+    return divided_->flexibility(those, seen(force));
+  }
+  bool held() const override { return divided_->held(); }
+
+ private:
+  static bool carries_along(const Line& line) {
+    const std::vector<int> own = carried_unknowns(line, line.first_rail());
+    return std::find(own.begin(), own.end(), 0) != own.end();
+  }
+  Functional seen(Functional functional) const {
+    if (goes_along_) return functional;
+    const std::vector<Functional::OnRail> whole = functional.rail;
+    for (const Functional::OnRail& one : whole)
+      if (one.at.direction == 0)
+        functional.rail.push_back({{one.at.rail, one.at.x, 0., 0., 0}, -one.factor});
+    std::erase_if(functional.sleeper,
+                  [](const Functional::OnSleeper& one) { return one.direction == 0; });
+    return functional;
+  }
+
+  Track track_;
+  Line line_;
+  bool goes_along_;
+  std::unique_ptr<LineFlexibility> divided_;
+};
+
+}  // namespace
+
 std::unique_ptr<LineFlexibility> exact_line(const Track& track, const Line& line, int parts) {
+  if (parts > 1 && !strains_section(track.unknowns))
+    return std::make_unique<StrainedLine>(track, line, parts);
   if (has_long_pads(track)) return std::make_unique<RefinedLine>(track, line, parts);
   return std::make_unique<DividedLine>(track, line, parts);
 }
@@ -35,7 +107,7 @@ Eigen::VectorXd sleeper_load(const Track& track, const Line& line, const Functio
   Eigen::VectorXd load = Eigen::VectorXd::Zero(line.unknowns());
   for (const Functional::OnSleeper& at : functional.sleeper)
     load += at.factor * sleeper_row(track, line, at.rail, at.seat, at.direction);
-  return load;
+  return part_in(track, functional) * load;
 }
 
 }  // namespace railstep

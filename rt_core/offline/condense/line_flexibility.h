@@ -143,11 +143,16 @@ bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
 /// Unknowns of a rail's node that a line carries, from an inner one: ends may hold some of theirs.
 std::vector<int> carried_unknowns(const Line& line, int rail);
 
-/// Whether two rails are one to a line: the same, or mirror images.
-/// The line as exactly as with that many parts of every element. A pad with a length acts on the
-/// inner nodes of elements, which a divided line lets follow.
+/// The line of the same track on another mesh or with more unknowns: what carries all that this one
+/// does. Throws std::invalid_argument if there is none.
+Line matching(const Track& other, const Line& line);
+
+/// The line as exactly as with that many parts of every element, and with the section's strain
+/// where the track's unknowns lack it; with one part the line as it stands. A pad with a length
+/// acts on the inner nodes of elements, which a divided line lets follow.
 std::unique_ptr<LineFlexibility> exact_line(const Track& track, const Line& line, int parts);
 
+/// Whether two rails are one to a line: the same, or mirror images.
 bool same_rail(const Line& line, int a, int b);
 
 /// Element that holds a place of the rail. Throws std::out_of_range off the rail.

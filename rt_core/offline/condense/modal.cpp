@@ -142,7 +142,8 @@ Basis modal_basis(const Line& line, const ModalLimit& limit,
   const Eigen::MatrixXd kept = lowest.shape.leftCols(count);
   const Eigen::MatrixXd added = local_shapes(line, kept, rows);
   Eigen::MatrixXd both(line.unknowns(), kept.cols() + added.cols());
-  both << kept, added;
+  both.leftCols(kept.cols()) = kept;
+  both.rightCols(added.cols()) = added;
   if (both.cols() == 0)
     throw std::invalid_argument("a condensed line without dampers keeps one mode or more");
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(

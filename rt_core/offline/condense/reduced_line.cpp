@@ -50,9 +50,7 @@ LineFlexibility::Strip ReducedLine::between(const Port& a, const Port& b, int po
 
 Eigen::VectorXd ReducedLine::from(const Port& port, const Functional& functional,
                                   int points) const {
-  Eigen::VectorXd load = sleeper_load(track_, line_, functional);
-  for (const Functional::OnRail& point : functional.rail)
-    load += point.factor * point_row(track_, line_, point.at);
+  const Eigen::VectorXd load(functional_row(track_, line_, functional));
   return scaled_shapes(port, points) *
          (basis_.shapes.transpose() * load).cwiseQuotient(basis_.omega);
 }

@@ -30,17 +30,6 @@ Track divided(Track track, int parts) {
   return track;
 }
 
-/// The line of another mesh: the one that carries the same unknowns of inner nodes.
-Line matching(const Track& track, const Line& line) {
-  for (Line& other : assemble(track)) {
-    bool same = other.rail_factor == line.rail_factor;
-    for (const int rail : {0, 1})
-      same = same && carried_unknowns(other, rail) == carried_unknowns(line, rail);
-    if (same) return std::move(other);
-  }
-  throw std::invalid_argument("a line is not one of its track's");
-}
-
 }  // namespace
 
 RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)

@@ -8,6 +8,7 @@
 
 #include "offline/beam/linearise.h"
 #include "offline/track/krylov.h"
+#include "offline/track/squeeze.h"
 #include "offline/track/statics.h"
 #include "online/step/residual.h"
 
@@ -65,7 +66,9 @@ std::vector<Value> receptances(const Track& track, const PackedModel& packed,
   return sums;
 }
 
-Track refined(Track track, int times) {
+/// What a model is measured against: a finer mesh, all open, with the section's strain.
+Track refined(const Track& of, int times) {
+  Track track = with_strain(all_open(of));
   track.elements_per_bay *= times;
   return track.state ? linearised_under_weight(track, track.state->gravity) : track;
 }
@@ -90,7 +93,7 @@ struct Asked {
 double static_error(const Track& track, const PackedModel& packed) {
   const int points = packed.model().residual.points > 0 ? packed.model().residual.points : 16;
   // Exact at its end nodes, half-way of the tables.
-  const Statics exact(refined(all_open(track), 2 * points));
+  const Statics exact(refined(track, 2 * points));
   std::vector<double> places;
   for (const int bay : {0, track.bays / 2, track.bays - 1})
     for (int element = 0; element < track.elements_per_bay; ++element)
@@ -109,7 +112,7 @@ double static_error(const Track& track, const PackedModel& packed) {
 }
 
 double receptance_error(const Track& track, const PackedModel& packed) {
-  const Track fine = refined(all_open(track), 2);
+  const Track fine = refined(track, 2);
   const std::vector<Line> lines = assemble(fine);
   const int bay = track.bays / 2;
   const Asked asked(packed, {(bay + .5) * track.bay_length, bay * track.bay_length});

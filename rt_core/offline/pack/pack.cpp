@@ -218,7 +218,8 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   std::vector<Line> lines = assemble(track);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Eigen::SparseMatrix<double> closing = closing_of(track, lines[i]);
-    if (closing.norm() > 0. || is_moved(track, lines[i], traffic, options.gravity))
+    const bool closes = closing.cols() > 0 && closing.norm() > 0.;
+    if (closes || is_moved(track, lines[i], traffic, options.gravity))
       add_line(track, {std::move(lines[i]), i, closing, {}, {}}, options);
   }
   if (lines_.empty()) throw std::invalid_argument("nothing moves the track");

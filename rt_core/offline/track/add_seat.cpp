@@ -3,6 +3,7 @@
 #include "offline/element/shape.h"
 #include "offline/track/assembly.h"
 #include "offline/track/pad.h"
+#include "offline/track/squeeze.h"
 
 namespace railstep {
 
@@ -107,8 +108,9 @@ class SeatRows {
   double spacing_, share_, side_;
 };
 
-void add_pad(const Track& track, Assembly& part, int border, const SeatRows& rows,
+void add_pad(const Track& track, Assembly& part, int border, int rail, const SeatRows& rows,
              const Support& pad) {
+  const double left = part_of_pad(track, border, rail);
   for (const PadPoint& at : pad_points(track, border, pad.length)) {
     for (const double side : {-1., 1.})
       for (std::size_t d = 0; d < 3; ++d) {
@@ -120,9 +122,15 @@ void add_pad(const Track& track, Assembly& part, int border, const SeatRows& row
         Assembly::add(part.stiffness, gap, at.part * pad.stiffness[d] / 2.);
         Assembly::add(part.damping, gap, at.part * pad.damping[d] / 2.);
       }
+    // The section's squeeze takes its part of the mean, not of the turn.
+    if (left < 1. && !pad.one_sided()) {
+      const Row mean = rows.gap(at, 2, 0.);
+      Assembly::add(part.stiffness, mean, at.part * pad.stiffness[2] * (left - 1.));
+      Assembly::add(part.damping, mean, at.part * pad.damping[2] * (left * left - 1.));
+    }
     // Rails without roll unknowns leave the sleeper's roll alone; a rail whose end is held does
     // not.
-    if (track.unknowns == Unknowns::vertical) continue;
+    if (!moves_sideways(track.unknowns)) continue;
     const Row roll = rows.roll(at);
     Assembly::add(part.stiffness, roll, at.part * pad.roll_stiffness);
     Assembly::add(part.damping, roll, at.part * pad.roll_damping);
@@ -166,7 +174,7 @@ void add_seat(const Track& track, Assembly& part, int border) {
   for (const int rail : part.rails) {
     const auto side = static_cast<std::size_t>(rail);
     const SeatRows rows(track, part, border, rail);
-    add_pad(track, part, border, rows, seat.pad[side]);
+    add_pad(track, part, border, rail, rows, seat.pad[side]);
     if (seat.sleeper) add_ballast(part, rows, seat.ballast[side]);
   }
   if (seat.sleeper) add_body(track, part, border, *seat.sleeper);

@@ -15,6 +15,7 @@ namespace {
 
 std::vector<int> carried(Unknowns unknowns) {
   if (unknowns == Unknowns::vertical) return {2, 6};
+  if (unknowns == Unknowns::in_plane) return {0, 2, 4, 6, 8};
   if (unknowns == Unknowns::rigid_section) return {0, 1, 2, 3, 5, 6};
   return {0, 1, 2, 3, 4, 5, 6, 7, 8};
 }
@@ -25,7 +26,7 @@ void number_sleeper(const Track& track, int border, Assembly& part) {
   const std::optional<SleeperBody> body = track.seat(border).sleeper;
   if (!body) return;
   auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
-  const bool space = track.unknowns != Unknowns::vertical;
+  const bool space = moves_sideways(track.unknowns);
   const bool along_x = space && body->moves[0], along_y = space && body->moves[1];
   const bool means = part.mirror != Mirror::antisymmetric;
   const bool turns = part.mirror == Mirror::antisymmetric || part.rails.size() == 2;
@@ -99,6 +100,16 @@ void add_elements(const Track& track, int rail, Assembly& part) {
   }
 }
 
+void hold_along(const Track& track, int rail, Assembly& part) {
+  for (int node = 0; node < track.nodes(); ++node) {
+    const int own = part.line.unknown(rail, node, 0),
+              ahead = part.line.unknown_ahead(rail, node, 0);
+    Assembly::add(part.stiffness, {{own, 1.}}, own < 0 ? 0. : track.hold_along);
+    if (ahead != own)
+      Assembly::add(part.stiffness, {{ahead, 1.}}, ahead < 0 ? 0. : track.hold_along);
+  }
+}
+
 Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails) {
   Assembly part{mirror, std::move(rails)};
   part.line.rigid_section = track.unknowns == Unknowns::rigid_section;
@@ -106,6 +117,7 @@ Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails
   for (const int rail : part.rails) {
     add_elements(track, rail, part);
     add_joints(track, part, rail);
+    hold_along(track, rail, part);
   }
   for (int seat = 0; seat < track.seats(); ++seat) add_seat(track, part, seat);
   if (mirror != Mirror::none) {
@@ -241,7 +253,7 @@ void check(const Track& track) {
   if (!(track.bay_length > 0.) || !(track.rail_spacing > 0.))
     refuse("bay length and rail spacing are above zero");
   if (!(std::abs(track.cant) <= 1.)) refuse("rails lean by at most 1:1");
-  if (track.cant != 0. && track.unknowns == Unknowns::vertical)
+  if (track.cant != 0. && !moves_sideways(track.unknowns))
     refuse(
         "a rail that leans moves sideways under a vertical force; accepted with a cant are all "
         "unknowns of a rail, or those of a rigid section");

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "offline/track/pad.h"
+#include "offline/track/squeeze.h"
 
 namespace railstep {
 
@@ -20,11 +21,12 @@ void add_pad(const Track& track, int rail, int seat, std::vector<FixedPort>& por
   const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
   if (!pad.one_sided() || pad.stiffness[2] + pad.damping[2] == 0.) return;
   const int halves = pad.half_spread > 0. ? 2 : 1;
+  const double left = part_of_pad(track, seat, rail);
   for (int half = 0; half < halves; ++half) {
     const double y = half == 0 ? pad.half_spread : -pad.half_spread;
     ports.push_back({.closing = pad_closing(track, rail, seat, y),
-                     .stiffness = pad.stiffness[2] / halves,
-                     .damping = pad.damping[2] / halves,
+                     .stiffness = left * pad.stiffness[2] / halves,
+                     .damping = left * left * pad.damping[2] / halves,
                      .gap = pad.gap,
                      .of = FixedPort::Of::pad,
                      .rail = rail,
@@ -56,7 +58,7 @@ Functional ends_closing(const Track& track, int rail, double x) {
 }
 
 void add_joints(const Track& track, std::vector<FixedPort>& ports) {
-  if (track.unknowns == Unknowns::vertical) return;
+  if (!moves_sideways(track.unknowns)) return;
   for (std::size_t j = 0; j < track.joints.size(); ++j)
     for (int rail = 0; rail < track.rails; ++rail) {
       const RailJoint& joint = track.joints[j];

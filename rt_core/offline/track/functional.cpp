@@ -1,6 +1,7 @@
 #include "offline/track/functional.h"
 
 #include "offline/track/pad.h"
+#include "offline/track/squeeze.h"
 
 namespace railstep {
 
@@ -41,7 +42,12 @@ Functional pad_gap(const Track& track, int rail, int seat) {
   add_sleeper_top(track, rail, seat, 0., -1., gap);
   if (there.sleeper && there.sleeper->moves[2] && offset != 0.)
     gap.sleeper.push_back({rail, seat, 3, offset * track.lean(rail).cosine});
+  gap.part = part_of_pad(track, seat, rail);
   return gap;
+}
+
+double part_in(const Track& track, const Functional& functional) {
+  return strains_section(track.unknowns) ? 1. : functional.part;
 }
 
 Eigen::SparseVector<double> functional_row(const Track& track, const Line& line,
@@ -51,7 +57,7 @@ Eigen::SparseVector<double> functional_row(const Track& track, const Line& line,
     row += term.factor * point_row(track, line, term.at);
   for (const Functional::OnSleeper& term : functional.sleeper)
     row += term.factor * sleeper_row(track, line, term.rail, term.seat, term.direction);
-  return row;
+  return part_in(track, functional) * row;
 }
 
 }  // namespace railstep

@@ -17,10 +17,15 @@ struct Functional {
   };
   std::vector<OnRail> rail = {};
   std::vector<OnSleeper> sleeper = {};
+  double part = 1.;  // of it that the track's unknowns have, where they lack the section's squeeze
 };
 
+/// What the displacements of a track's unknowns count in a functional.
+double part_in(const Track& track, const Functional& functional);
+
 /// What opens a pad: its rail's seat over the sleeper, or over the ground, along the pad's normal,
-/// which is the rail's own z; the mean of one that has a length.
+/// which is the rail's own z; the mean of one that has a length. Where the unknowns lack the
+/// section's squeeze, their part of it is what part_of_pad() says.
 Functional pad_gap(const Track& track, int rail, int seat);
 
 /// The two sides of a pad at a place y beside its rail's middle, along its normal: adds `factor`

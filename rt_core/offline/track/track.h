@@ -14,9 +14,16 @@
 namespace railstep {
 
 /// Which unknowns a node carries: all nine; six, of a section that turns but does not strain
-/// (a_y = b_z = 0, roll a_z = -b_y, and no Poisson coupling, which would then stiffen the rail); or
-/// [r_z, b_x] for vertical bending alone.
-enum class Unknowns { full, rigid_section, vertical };
+/// (a_y = b_z = 0, roll a_z = -b_y, and no Poisson coupling, which would then stiffen the rail);
+/// [r_z, b_x] for vertical bending alone; or [r_x, r_z, a_y, b_x, b_z], all that a vertical force
+/// in the plane y = 0 moves of nine, which `vertical` is measured against (squeeze.h).
+enum class Unknowns { full, rigid_section, vertical, in_plane };
+inline bool strains_section(Unknowns unknowns) {
+  return unknowns == Unknowns::full || unknowns == Unknowns::in_plane;
+}
+inline bool moves_sideways(Unknowns unknowns) {
+  return unknowns == Unknowns::full || unknowns == Unknowns::rigid_section;
+}
 
 /// What holds a rail's end node. Pinned: its position (all three), so that the rail carries axial
 /// force, and its roll (a_z and b_y); the slopes a_x and b_x of bending stay free. Clamped: all
@@ -78,6 +85,9 @@ struct Track {
   /// The last bay border is the first: a track without ends, whatever runs on it runs round. Its
   /// seats are alike, its pads points; x goes from 0 to length() all the same.
   bool ring = false;
+  /// Of every rail node to the ground along x, N/m: so soft that it holds only what nothing else
+  /// does.
+  double hold_along = 0.;
   std::optional<RailBar> right;  // the right rail, where it differs from section, material, force
   Support support;               // of every seat but those changed
   std::optional<Sleeper> sleeper;
