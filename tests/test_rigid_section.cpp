@@ -181,7 +181,8 @@ TEST_CASE("what few unknowns miss of a force on the head is in the residual flex
   double largest = 0.;
   for (int p = 0; p <= kPoints; ++p) {  // from seat 8 on, over an element
     const RailPoint at{0, 4.8 + few.element_length() * p / kPoints, 0., kHeadZ, 2};
-    const auto place = static_cast<std::size_t>(16 * (kPoints + 1) + p);
+    constexpr std::size_t kElement = 16, kPlaces = kPoints + 1;
+    const std::size_t place = kElement * kPlaces + static_cast<std::size_t>(p);
     const double want = exact.flexibility(at, at), got = model.flexibility(at, at) + under[place];
     const auto moved = exact.solve({{at, 1.}}), by_model = model.solve({{at, 1.}});
     const double pressed = exact.support_force(moved, 0, 8);
