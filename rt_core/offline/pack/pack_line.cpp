@@ -12,7 +12,8 @@ namespace railstep {
 namespace {
 
 bool same(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double>& b) {
-  return a.rows() == b.rows() && (a - b).norm() == 0.;
+  if (a.rows() != b.rows() || a.cols() != b.cols()) return false;
+  return a.rows() == 0 || a.cols() == 0 || (a - b).norm() == 0.;
 }
 
 /// Whether one table of unknowns stands for all that a line has of the rails.
