@@ -78,12 +78,12 @@ void complete(DampedModes& modes) {
         std::to_string(error) + "); change the number of modes or step the full track");
 }
 
-/// Columns of a matrix that hold anything.
-Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A) {
+/// Columns of a matrix that hold anything, none of one without entries.
+Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A, Eigen::Index rows) {
   std::vector<Eigen::VectorXd> found;
   for (int j = 0; j < A.outerSize(); ++j)
     if (A.col(j).norm() > 0.) found.emplace_back(A.col(j));
-  Eigen::MatrixXd result(A.rows(), static_cast<Eigen::Index>(found.size()));
+  Eigen::MatrixXd result(rows, static_cast<Eigen::Index>(found.size()));
   for (std::size_t j = 0; j < found.size(); ++j)
     result.col(static_cast<Eigen::Index>(j)) = found[j];
   return result;
@@ -96,7 +96,8 @@ Eigen::MatrixXd local_shapes(const Line& line, const Eigen::MatrixXd& kept,
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
   // Zones at the ends have as many dampers as unknowns, each too weak to have a shape of its own.
   const Eigen::SparseMatrix<double> of_seats = line.damping - line.end_damping;
-  const Eigen::MatrixXd dampers = filled_columns(of_seats), others = filled_columns(rows);
+  const Eigen::MatrixXd dampers = filled_columns(of_seats, line.unknowns()),
+                        others = filled_columns(rows, line.unknowns());
   Eigen::MatrixXd forces(line.unknowns(), dampers.cols() + others.cols());
   forces.leftCols(dampers.cols()) = dampers;
   forces.rightCols(others.cols()) = others;
