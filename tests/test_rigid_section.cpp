@@ -195,6 +195,30 @@ TEST_CASE("what few unknowns miss of a force on the head is in the residual flex
   CHECK(largest > 5e-3);
 }
 
+TEST_CASE("a vertical track is measured against its own plane, under compression too",
+          "[unknowns]") {
+  // 400 kN, at which rails that pads do not hold sideways would buckle; two rails on sleepers that
+  // roll, one force on one rail: both mirror coordinates. The pads hold the rails' turn on them.
+  Track t = s1_track(12, 2);
+  t.unknowns = Unknowns::vertical;
+  t.axial_force = -4e5;
+  t.support.half_spread = .05;
+  Track fine = with_strain(t);
+  constexpr int kPoints = 8;
+  fine.elements_per_bay *= 2 * kPoints;
+  const Statics exact(fine), model(t);
+  const ResidualFlexibility residual(t, assemble(t), {}, kPoints);
+  const RailPoint at{0, 3.6 + t.element_length() * 3. / kPoints, 0., .09, 2};
+  const std::vector<double> under = residual.under({0, .09});
+  const double found = model.flexibility(at, at) + under[12 * (kPoints + 1) + 3];
+  CHECK_THAT(found, WithinRel(exact.flexibility(at, at), 1e-5));
+  // What is read across the track or along its axis stays where it is.
+  for (const int direction : {0, 1}) {
+    const Functional read{.rail = {{{0, 4.8, 0., .0, direction}, 1.}}};
+    for (const double value : residual.from({0, .09}, read)) CHECK(std::abs(value) < 1e-18);
+  }
+}
+
 TEST_CASE("six unknowns per node: a vertical force sees two of them", "[unknowns]") {
   // On the axis of a rail whose pads do not couple bending and stretching both carry r_z and b_x.
   Track six = one_rail(Unknowns::rigid_section);
