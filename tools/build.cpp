@@ -92,7 +92,9 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   set.alpha = w.guide.alpha;
   set.beta = w.guide.beta;
   for (const BodyForceScene& force : w.forces)
-    set.forces.push_back({force.direction, packed_table(force.force)});
+    set.forces.push_back({force.direction,
+                          force.input >= 0 ? std::vector<double>{} : packed_table(force.force),
+                          force.input});
   set.tread = treads_of(w);
   set.flange = w.flange;
   return set;
@@ -102,6 +104,12 @@ std::vector<Wheelset> wheelsets_of(const Scene& scene) {
   std::vector<Wheelset> sets;
   for (const WheelsetScene& w : scene.wheelsets) sets.push_back(wheelset_of(w));
   return sets;
+}
+
+std::vector<double> limits_of(const std::vector<InputScene>& inputs) {
+  std::vector<double> limits;
+  for (const InputScene& input : inputs) limits.push_back(input.limit);
+  return limits;
 }
 
 std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
@@ -326,6 +334,7 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
            .head = head,
            .probes = std::move(sensors.probes),
            .irregularities = irregularities_of(scene),
+           .input_limits = limits_of(scene.inputs),
            .right_head = railhead_of(scene, sections, Side::right)},
           std::move(columns)};
 }
@@ -339,6 +348,7 @@ Built::Built(const Scene& scene) try {
   TracedTraffic traced = traffic_of(scene, track);
   columns = {"time_s"};
   columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
+  for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
   packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
   const double gravity = scene.track.gravity ? kGravity : 0.;
   if (scene.step->start == Start::equilibrium)
@@ -349,7 +359,9 @@ Built::Built(const Scene& scene) try {
 }
 
 std::vector<std::byte> block_of(const Built& built) {
-  return to_block(built.packed->model(), fmt::format("{}", fmt::join(built.columns, "\n")));
+  std::string text = fmt::format("{}", fmt::join(built.columns, "\n"));
+  if (!built.inputs.empty()) text += fmt::format("\n\n{}", fmt::join(built.inputs, "\n"));
+  return to_block(built.packed->model(), text);
 }
 
 }  // namespace railstep

@@ -88,10 +88,11 @@ struct Built {
   explicit Built(const Scene& scene);
   Track track;
   std::vector<std::string> columns;
+  std::vector<std::string> inputs;  // NAME.force_n of each
   std::unique_ptr<PackedModel> packed;
 };
 
-/// The model and its columns in one block.
+/// The model with its columns and, after an empty line, its inputs in one block.
 std::vector<std::byte> block_of(const Built& built);
 
 }  // namespace railstep

@@ -50,6 +50,7 @@ System system_of(const SystemScene& scene) {
   for (std::size_t i = 0; i < system.beams.size(); ++i)
     add_section(scene.bars[i], fmt::format("{}: [beam[{}]]", scene.file.string(), i),
                 system.beams[i]);
+  for (const InputScene& input : scene.inputs) system.input_limits.push_back(input.limit);
   return system;
 }
 
@@ -76,6 +77,7 @@ BuiltSystem::BuiltSystem(const SystemScene& scene) try
   // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   columns = {"time_s"};
+  for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
   packed = packed_of(scene, system, columns);
   for (const std::string& sensor : names.sensors)
     for (const char* quantity : kSensorQuantities)

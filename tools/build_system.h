@@ -23,6 +23,7 @@ struct BuiltSystem {
   TracedForces traced;
   System system;
   std::vector<std::string> columns;
+  std::vector<std::string> inputs;  // NAME.force_n or NAME.moment_n_m of each
   std::unique_ptr<PackedSystem> packed;
 };
 

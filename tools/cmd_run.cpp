@@ -15,6 +15,8 @@
 #include "drawing.h"
 #include "energy.h"
 #include "energy_system.h"
+#include "inputs.h"
+#include "recording.h"
 #include "run_report.h"
 #include "simulate.h"
 #include "vtk_record.h"
@@ -25,7 +27,9 @@ namespace {
 
 struct RunOptions {
   std::string input, trace, report, vtk;  // input: a scene or a model
-  std::string model;                      // full, condensed; empty: as the scene says
+  std::string inputs, record;
+  std::int64_t hash_every = 1;  // frames of a recording
+  std::string model;            // full, condensed; empty: as the scene says
   std::vector<std::string> overrides;
   std::optional<double> step, duration;  // s
   bool json = false;
@@ -97,12 +101,13 @@ bool has_energies(const Simulation& run) {
 /// The energies of what was run, from a second pass over it; none where there are none, and of a
 /// run that did not stay finite.
 std::optional<EnergyBalance> balance_of_run(const Simulation& run, const RunRecord& record,
-                                            std::int64_t frames, Progress& bar) {
+                                            std::int64_t frames, const FrameInputs& inputs,
+                                            Progress& bar) {
   if (!has_energies(run) || record.first_bad_unknown >= 0) return std::nullopt;
   const auto after = [&bar, frames](std::int64_t done) { bar(frames + done); };
   const EnergyBalance found = run.system() != nullptr
-                                  ? balance_of(*run.system()->packed, frames, after)
-                                  : balance_of(*run.packed(), run.model(), frames, after);
+                                  ? balance_of(*run.system()->packed, frames, after, inputs)
+                                  : balance_of(*run.packed(), run.model(), frames, after, inputs);
   if (found.hash != state_hash(run.model(), run.state))
     throw std::runtime_error("a second run of the same model ended in another state");
   return found;
@@ -174,6 +179,26 @@ std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
   return std::make_optional<VtkRecord>(*track, run, o.vtk, frames);
 }
 
+/// What frames are given: of --inputs, or nothing.
+FrameInputs inputs_of(const RunOptions& o, const Simulation& run) {
+  if (o.inputs.empty()) return {};
+  const double frame_s = run.model().scheme.dt * run.model().steps_per_frame;
+  const auto table = std::make_shared<InputTable>(o.inputs, run.inputs(), frame_s);
+  return [table](std::int64_t frame) { return table->at(frame); };
+}
+
+/// Adds a frame that was made to a recording.
+void record_frame(const Simulation& run, const FrameInputs& inputs, std::int64_t done,
+                  Recording& recording) {
+  recording.frame(run, inputs ? inputs(done - 1) : run.state.input);
+}
+
+void write_recording(const std::string& file, const Simulation& run, Recording& recording) {
+  recording.finish(run);
+  const std::vector<std::byte> bytes = recording.bytes();
+  write_file(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
 Exit run(const RunOptions& o) {
   if (!o.trace.empty() && o.trace == o.report)
     throw InputError(fmt::format("--trace and --report both name {}", o.trace));
@@ -189,19 +214,26 @@ Exit run(const RunOptions& o) {
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
   std::optional<VtkRecord> vtk = vtk_record(o, scene ? &*scene : nullptr, *simulation, frames);
   if (vtk) vtk->frame(0);
+  const FrameInputs inputs = inputs_of(o, *simulation);
+  std::optional<Recording> recording;
+  if (!o.record.empty()) recording.emplace(Recording::begin(*simulation, o.hash_every));
   RunRecord record;
   std::optional<EnergyBalance> energy;
   {
     Progress bar(has_energies(*simulation) ? 2 * frames : frames);
-    record = simulate(*simulation, frames, trace ? &*trace : nullptr, !o.report.empty(),
-                      [&](std::int64_t done) {
-                        bar(done);
-                        if (vtk) vtk->frame(done);
-                      });
-    energy = balance_of_run(*simulation, record, frames, bar);
+    record = simulate(
+        *simulation, frames, trace ? &*trace : nullptr, !o.report.empty(),
+        [&](std::int64_t done) {
+          bar(done);
+          if (vtk) vtk->frame(done);
+          if (recording) record_frame(*simulation, inputs, done, *recording);
+        },
+        inputs);
+    energy = balance_of_run(*simulation, record, frames, inputs, bar);
   }
   if (trace) trace->finish();
   if (vtk) vtk->finish();
+  if (recording) write_recording(o.record, *simulation, *recording);
   if (!o.report.empty())
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
@@ -227,6 +259,13 @@ Command add_run(CLI::App& app) {
   sub->add_option("--report", o->report, "write a page with plots (HTML; needs gnuplot)");
   sub->add_option("--vtk", o->vtk,
                   "write rails, sleepers and wheels at 101 times into this folder, for ParaView");
+  sub->add_option(
+      "--inputs", o->inputs,
+      "what the scene's inputs are given (CSV: time_s, then inputs by name; a row holds "
+      "until the next)");
+  sub->add_option("--record", o->record, "write model, inputs and hashes, for `railstep replay`");
+  sub->add_option("--hash-every", o->hash_every, "frames from one hash of a recording to the next")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40));
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

@@ -16,9 +16,11 @@ struct Command {
 };
 
 Command add_fit(CLI::App& app);
+Command add_compare(CLI::App& app);
 Command add_condense(CLI::App& app);
 Command add_modes(CLI::App& app);
 Command add_receptance(CLI::App& app);
+Command add_replay(CLI::App& app);
 Command add_run(CLI::App& app);
 Command add_static(CLI::App& app);
 Command add_rules(CLI::App& app);

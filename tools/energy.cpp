@@ -9,21 +9,20 @@
 #include "online/model/course.h"
 #include "online/step/closing.h"
 #include "online/step/follow.h"
+#include "online/step/input.h"
 #include "online/step/step.h"
-#include "online/step/table.h"
 #include "online/step/travel.h"
 #include "online/step/vehicle_contact.h"
 
 namespace railstep {
 namespace {
 
-/// Force of a wheelset's tables in one direction at a step, N.
-double table_force(const Model& model, const WheelsetModel& w, int direction, std::int64_t step) {
-  const double time = static_cast<double>(step) * model.scheme.dt;
+/// Force of a wheelset's tables and inputs in one direction at a state, N.
+double outer_force(const Model& model, const WheelsetModel& w, int direction, const State& at) {
+  const double time = static_cast<double>(at.steps) * model.scheme.dt;
   double sum = 0.;
   for (std::int32_t i = 0; i < w.forces; ++i)
-    if (w.force[i].direction == direction)
-      sum += table_value(w.force[i].table, w.force[i].points, time);
+    if (w.force[i].direction == direction) sum += force_at(w.force[i], time, at.input);
   return sum;
 }
 
@@ -233,8 +232,8 @@ void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
 double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
   const WheelsetModel& w = model_.wheelset[b];
   const int x = w.first;
-  const double f0 = table_force(model_, w, 0, last_.state.steps);
-  const double f1 = table_force(model_, w, 0, now.state.steps);
+  const double f0 = outer_force(model_, w, 0, last_.state);
+  const double f1 = outer_force(model_, w, 0, now.state);
   const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
   const bool held = model_.condensed != 0;
   const double sum = passage_work(now, b) - (held ? f1 : .5 * (f0 + f1)) * du;
@@ -248,8 +247,8 @@ double EnergyAccount::body_loss(const Standing& now, const WheelsetModel& w, int
   const double dt = model_.scheme.dt, du = now.state.u[i] - last_.state.u[i];
   if (model_.condensed != 0) {
     if (k > 2) return 0.;
-    const double f0 = table_force(model_, w, k, last_.state.steps);
-    return .5 * (f0 - table_force(model_, w, k, now.state.steps)) * du;
+    const double f0 = outer_force(model_, w, k, last_.state);
+    return .5 * (f0 - outer_force(model_, w, k, now.state)) * du;
   }
   if (is_held(w, k)) return 0.;
   const double v = .5 * (last_.state.v[i] + now.state.v[i]);
@@ -262,9 +261,8 @@ void EnergyAccount::add_wheelset(const Standing& now, std::int32_t b) {
   const auto moved = [&](int k) { return now.state.u[w.first + k] - last_.state.u[w.first + k]; };
   flow_.weight -= w.weight * moved(2);
   for (int k = 0; k < 3; ++k)
-    flow_.forces +=
-        .5 * moved(k) *
-        (table_force(model_, w, k, last_.state.steps) + table_force(model_, w, k, now.state.steps));
+    flow_.forces += .5 * moved(k) *
+                    (outer_force(model_, w, k, last_.state) + outer_force(model_, w, k, now.state));
   for (int k = 0; k < 6; ++k) flow_.loss += body_loss(now, w, k);
   flow_.guides += guide_work(now, b);
 }
@@ -292,7 +290,7 @@ void EnergyAccount::add_start(const Standing& now) {
     for (int k = 1; k < 5; ++k) {  // x and yaw are guided
       const int at = w.first + k;
       double force = -w.mass[k] * s.g[at] - (k == 2 ? w.weight : 0.);
-      if (k < 3) force += table_force(model_, w, k, s.steps);
+      if (k < 3) force += outer_force(model_, w, k, s);
       for (int n = 0; n < own.count; ++n)
         force += last_.contacts.contact[own.at[n]].body_row[k] * s.wheel_force[own.at[n]];
       flow_.loss += .5 * force * (now.state.u[at] - s.u[at]);
@@ -326,7 +324,8 @@ double EnergyAccount::numerical_loss() const {
 }
 
 EnergyBalance balance_of(const PackedModel& packed, const Model& model, std::int64_t frames,
-                         const std::function<void(std::int64_t)>& after) {
+                         const std::function<void(std::int64_t)>& after,
+                         const FrameInputs& inputs) {
   Model single = model;
   single.steps_per_frame = 1;
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(single)));
@@ -337,8 +336,9 @@ EnergyBalance balance_of(const PackedModel& packed, const Model& model, std::int
   reset(single, state);
   EnergyAccount account(packed, single, state);
   for (std::int64_t frame = 0; frame < frames; ++frame) {
-    for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {
-      static_cast<void>(advance_frame(single, state, workspace, outputs));  // the run told of it
+    for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {  // the run told of the status
+      static_cast<void>(
+          make_frame(single, n == 0 ? inputs : FrameInputs{}, frame, state, workspace, outputs));
       account.follow(state);
     }
     if (after) after(frame + 1);

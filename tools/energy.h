@@ -4,6 +4,7 @@
 
 #include "energy_contact.h"
 #include "energy_line.h"
+#include "inputs.h"
 
 namespace railstep {
 
@@ -124,7 +125,9 @@ struct EnergyBalance {
 /// Steps a run again from its model's start, one step a frame, with an account beside it; what is
 /// timed elsewhere stays untouched. More steps than were made are not asked for.
 /// @param after  called after every frame of the model with the number of frames done; may be empty
+/// @param inputs  what the run was given
 EnergyBalance balance_of(const PackedModel& packed, const Model& model, std::int64_t frames,
-                         const std::function<void(std::int64_t)>& after = {});
+                         const std::function<void(std::int64_t)>& after = {},
+                         const FrameInputs& inputs = {});
 
 }  // namespace railstep

@@ -55,7 +55,9 @@ SystemAccount::Standing SystemAccount::stand(const State& state) const {
   for (std::int32_t f = 0; f < s.forces; ++f) {
     const PointForceModel& force = s.force[f];
     const MarkerModel& marker = s.marker[force.marker];
-    now.force.emplace_back(motion_at(s.motion[force.motion], time).x *
+    const double size =
+        force.input >= 0 ? state.input[force.input] : motion_at(s.motion[force.motion], time).x;
+    now.force.emplace_back(size *
                            Vector3d(force.direction[0], force.direction[1], force.direction[2]));
     now.point.push_back(force.moment != 0 ? angular_velocity(s, marker.part, at)
                                           : point_of(marker_jet(s, marker, at)));
@@ -80,7 +82,8 @@ SystemAccount::SystemAccount(const Model& model, const State& start)
 
 void SystemAccount::add_forces(const Standing& now) {
   for (std::size_t f = 0; f < now.force.size(); ++f) {
-    const Vector3d mean = .5 * (last_.force[f] + now.force[f]);
+    const bool held = model_.system.mean != 0 && model_.system.force[f].input >= 0;
+    const Vector3d mean = held ? now.force[f] : Vector3d(.5 * (last_.force[f] + now.force[f]));
     const Vector3d way = model_.system.force[f].moment != 0
                              ? Vector3d(.5 * model_.scheme.dt * (last_.point[f] + now.point[f]))
                              : Vector3d(now.point[f] - last_.point[f]);
@@ -152,7 +155,8 @@ class JoinedAccount {
 }  // namespace
 
 EnergyBalance balance_of(const PackedSystem& packed, std::int64_t frames,
-                         const std::function<void(std::int64_t)>& after) {
+                         const std::function<void(std::int64_t)>& after,
+                         const FrameInputs& inputs) {
   Model single = packed.model();
   const std::int32_t steps_per_frame = single.steps_per_frame;
   single.steps_per_frame = 1;
@@ -164,8 +168,9 @@ EnergyBalance balance_of(const PackedSystem& packed, std::int64_t frames,
   reset(single, state);
   JoinedAccount account(packed, single, state);
   for (std::int64_t frame = 0; frame < frames; ++frame) {
-    for (std::int32_t n = 0; n < steps_per_frame; ++n) {
-      static_cast<void>(advance_frame(single, state, workspace, outputs));  // the run told of it
+    for (std::int32_t n = 0; n < steps_per_frame; ++n) {  // the run told of the status
+      static_cast<void>(
+          make_frame(single, n == 0 ? inputs : FrameInputs{}, frame, state, workspace, outputs));
       account.follow(state);
     }
     if (after) after(frame + 1);

@@ -57,7 +57,9 @@ class SystemAccount {
 /// error; it is over the largest, over the steps, of: stored energy without weight's, the work of
 /// each kind (weight's of parts, of the track) in size, dissipation.
 /// @param after  called after every frame of the model with the number of frames done; may be empty
+/// @param inputs  what the run was given
 EnergyBalance balance_of(const PackedSystem& packed, std::int64_t frames,
-                         const std::function<void(std::int64_t)>& after = {});
+                         const std::function<void(std::int64_t)>& after = {},
+                         const FrameInputs& inputs = {});
 
 }  // namespace railstep

@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   const std::vector<Command> commands = {add_fit(app),        add_static(app),   add_modes(app),
                                          add_receptance(app), add_condense(app), add_run(app),
-                                         add_rules(app)};
+                                         add_replay(app),     add_compare(app),  add_rules(app)};
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)

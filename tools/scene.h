@@ -184,9 +184,16 @@ struct GuideScene {
   double alpha, beta;  // Baumgarte, 1/s
 };
 
+/// A force from outside that is given frame by frame.
+struct InputScene {
+  std::string name;  // NAME.force_n or NAME.moment_n_m
+  double limit;      // N or N m
+};
+
 struct BodyForceScene {
   int direction;    // 0 x, 1 y, 2 z
-  TimeTable force;  // N, on the centre
+  TimeTable force;  // N, on the centre; empty of an input
+  int input = -1;   // among Scene::inputs
 };
 
 /// Two wheels on one axle; needs two rails.
@@ -275,6 +282,7 @@ struct Scene {
   std::vector<JointGap> joint_gaps;  // [joints]
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
+  std::vector<InputScene> inputs;
   std::vector<VehicleScene> vehicles;
   std::optional<IrregularityScene> irregularity;
   std::vector<DefectScene> defects;

@@ -148,7 +148,15 @@ GuideScene read_guide(const Table& wheelset) {
   return g;
 }
 
-WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
+/// By a table over time, or given frame by frame.
+BodyForceScene read_body_force(const Table& t, std::vector<InputScene>& inputs) {
+  const int direction = static_cast<int>(t.choice("direction", {"x", "y", "z"}));
+  if (!t.has("input")) return {direction, read_time_table(t, "table", kForce)};
+  if (t.has("table")) t.refuse("table", "table is given beside input; one of them is accepted");
+  return {direction, {}, read_input(t, false, inputs)};
+}
+
+WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<InputScene>& inputs) {
   if (scene.track.rails != 2) t.refuse("", "a wheelset needs two rails; accepted with rails = 2");
   const Range inertia = above_upto(0.0, 1e6);
   WheelsetScene w;
@@ -173,9 +181,7 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene) {
   w.carried_mass = t.number("carried_mass_kg", between(0.0, 1e6), 0.0);
   w.gravity = t.boolean("gravity", true);
   w.guide = read_guide(t);
-  for (const Table& force : t.tables("force"))
-    w.forces.push_back({static_cast<int>(force.choice("direction", {"x", "y", "z"})),
-                        read_time_table(force, "table", kForce)});
+  for (const Table& force : t.tables("force")) w.forces.push_back(read_body_force(force, inputs));
   w.treads = read_treads(t, scene, w);
   if (const std::optional<Table> flange = t.table_if("flange"))
     w.flange = read_flange(*flange, scene);
@@ -211,10 +217,25 @@ double fastest(const WheelsetScene& wheelset) {
   return travel_of({wheelset.speed, wheelset.speeds}).speed;
 }
 
-std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene) {
+std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
+                                          std::vector<InputScene>& inputs) {
   std::vector<WheelsetScene> wheelsets;
-  for (const Table& t : root.tables("wheelset")) wheelsets.push_back(read_wheelset(t, scene));
+  for (const Table& t : root.tables("wheelset"))
+    wheelsets.push_back(read_wheelset(t, scene, inputs));
   return wheelsets;
+}
+
+int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
+  const std::string name =
+      checked_name(t, "input", t.string("input")) + (moment ? ".moment_n_m" : ".force_n");
+  for (const InputScene& other : inputs)
+    if (other.name == name)
+      t.refuse("input",
+               fmt::format("{} is taken by another force; accepted is a name used once", name));
+  if (inputs.size() == static_cast<std::size_t>(kMaxInputs))
+    t.refuse("input", fmt::format("more than {} inputs", kMaxInputs));
+  inputs.push_back({name, t.number(moment ? "limit_n_m" : "limit_n", above_upto(0.0, 1e12))});
+  return static_cast<int>(inputs.size()) - 1;
 }
 
 void check_names(const Table& root, const Scene& scene) {

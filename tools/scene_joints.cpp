@@ -203,25 +203,41 @@ Motion read_force_over_time(const Table& t, const std::string& constant, const s
   return motion;
 }
 
+/// How large it is, over time or given frame by frame.
+void set_size(const Table& t, SystemScene& scene, SystemForce& force) {
+  const char* const constant = force.moment ? "moment_n_m" : "force_n";
+  const char* const unit = force.moment ? "n_m" : "n";
+  if (!t.has("input")) {
+    force.factor = read_force_over_time(t, constant, unit);
+    return;
+  }
+  for (const std::string& key :
+       {std::string(constant), std::string("polynomial_") + unit, std::string("table_") + unit})
+    if (t.has(key))
+      t.refuse(key, fmt::format("{} is given beside input; one of them is accepted", key));
+  force.input = read_input(t, force.moment, scene.inputs);
+}
+
 void read_force(const Table& t, SystemScene& scene) {
   const bool planar = scene.system.planar;
   auto& force = scene.system.forces.emplace_back();
   force.on = read_part(t, "on", t.string("on"), scene, Naming::driven);
-  force.moment = t.has("moment_n_m") || t.has("polynomial_n_m") || t.has("table_n_m");
+  force.moment =
+      t.has("moment_n_m") || t.has("polynomial_n_m") || t.has("table_n_m") || t.has("limit_n_m");
   if (force.moment) {
-    for (const char* key : {"force_n", "polynomial_n", "table_n", "point_m"})
+    for (const char* key : {"force_n", "polynomial_n", "table_n", "limit_n", "point_m"})
       if (t.has(key))
         t.refuse(key,
                  fmt::format("{} is given beside a moment; accepted is a force or a moment", key));
     if (force.on.kind != Part::Kind::body)
       t.refuse("on", "a moment acts on a beam; accepted is a body");
     force.direction = read_turn_axis(t, "direction", planar);
-    force.factor = read_force_over_time(t, "moment_n_m", "n_m");
+    set_size(t, scene, force);
     return;
   }
   force.point = read_point(t, "point_m", force.on, scene);
   force.direction = read_direction(t, "direction", planar);
-  force.factor = read_force_over_time(t, "force_n", "n");
+  set_size(t, scene, force);
 }
 
 }  // namespace

@@ -43,7 +43,9 @@ ReferenceLine read_reference_line(const Table& t);
 /// A name that can stand in the trace's header. Throws InputError where it cannot.
 std::string checked_name(const Table& t, std::string_view key, const std::string& name);
 std::vector<LoadScene> read_loads(const Table& root, const Scene& scene);
-std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene);
+/// @param inputs  gets those that forces on them name
+std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
+                                          std::vector<InputScene>& inputs);
 std::optional<IrregularityScene> read_irregularity(const Table& root, const Scene& scene);
 std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
 /// [[wheelset.tread]] of a wheelset whose radius and speed are read.
@@ -67,6 +69,8 @@ TravelTable travel_of(const SpeedScene& speed);
 /// Refuses a path that runs off the rail before the end of the run, or before `stop`.
 void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
                 const std::optional<double>& stop);
+/// `input` and `limit_n`, or of a moment `limit_n_m`. @returns its index
+int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// On a rail, a sleeper, a wheelset or a vehicle.
 SensorScene read_sensor(const Table& t, const Scene& scene);

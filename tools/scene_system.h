@@ -35,6 +35,7 @@ struct SystemScene {
   std::vector<BeamBar> bars;   // [beams] of which these come
   SystemNames names;
   TracedForces traced;
+  std::vector<InputScene> inputs;
   SystemOptions options{};  // without scheme and steps, which `step` has
   StepScene step{};
 };

@@ -40,6 +40,10 @@ constexpr StatusText kStatus[] = {
      "a rail under a wheel rolled by more than 0.14 rad, where the linear rail's roll is off by 1 "
      "% "
      "and more: give the pads roll stiffness, or less lateral force"},
+    {Status::nonfinite_input, "nonfinite_input",
+     "an input was not a finite number, and its last good value was held"},
+    {Status::force_saturated, "force_saturated",
+     "an input was beyond its limit, and was cut to it: see limit_n of its force"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 
@@ -109,12 +113,13 @@ void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
   }
 }
 
-double timed_frame(Simulation& run, Outputs& outputs, std::int64_t& allocations) {
+double timed_frame(Simulation& run, const FrameInputs& inputs, std::int64_t frame, Outputs& outputs,
+                   std::int64_t& allocations) {
   using Clock = std::chrono::steady_clock;
   const std::int64_t before = heap_calls();
   const Clock::time_point start = Clock::now();
   // the status stands in the outputs too
-  static_cast<void>(advance_frame(run.model(), run.state, run.workspace, outputs));
+  static_cast<void>(make_frame(run.model(), inputs, frame, run.state, run.workspace, outputs));
   const Clock::time_point end = Clock::now();
   allocations += heap_calls() - before;
   return std::chrono::duration<double, std::micro>(end - start).count();
@@ -131,7 +136,7 @@ void note_redundant(const Simulation& run, const Outputs& outputs, RunRecord& re
 }  // namespace
 
 RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
-                   const std::function<void(std::int64_t)>& after) {
+                   const std::function<void(std::int64_t)>& after, const FrameInputs& inputs) {
   RunRecord record;
   Outputs outputs{};
   std::vector<double> row;
@@ -152,7 +157,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
   publish_start(run.model(), run.state, outputs);
   take();
   for (std::int64_t n = 0; n < frames && record.first_bad_unknown < 0; ++n) {
-    record.frame_us.push_back(timed_frame(run, outputs, record.allocations));
+    record.frame_us.push_back(timed_frame(run, inputs, n, outputs, record.allocations));
     take();
     // at 1/8, 3/8, 5/8 and 7/8 of the run
     if (keep_rows && (2 * kShapes * (n + 1)) / frames != (2 * kShapes * n) / frames &&

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "inputs.h"
 #include "simulation.h"
 #include "trace.h"
 
@@ -38,8 +39,10 @@ struct RunRecord {
 /// @param trace     gets a row for the state at the start and one a frame; may be null
 /// @param keep_rows also keep the rows in the record
 /// @param after     called after every frame with the number of frames done; may be empty
+/// @param inputs    what the frames are given
 RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
-                   const std::function<void(std::int64_t)>& after = {});
+                   const std::function<void(std::int64_t)>& after = {},
+                   const FrameInputs& inputs = {});
 
 /// Names of the bits that are set, as in the JSON; empty when all is well.
 std::vector<std::string> status_names(Status status);

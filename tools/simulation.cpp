@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "online/model/load.h"
 
@@ -30,15 +32,6 @@ const char* sentence(LoadStatus status) {
   return "cannot be placed in memory";
 }
 
-std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be opened", file.string()));
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  const auto* at = reinterpret_cast<const std::byte*>(text.data());
-  return {at, at + text.size()};
-}
-
 std::vector<std::string> lines_of(const char* text, std::size_t bytes) {
   std::vector<std::string> lines(1);
   for (std::size_t i = 0; i < bytes; ++i)
@@ -51,6 +44,15 @@ std::vector<std::string> lines_of(const char* text, std::size_t bytes) {
 
 }  // namespace
 
+std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(fmt::format("{}: cannot be opened", file.string()));
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  const auto* at = reinterpret_cast<const std::byte*>(text.data());
+  return {at, at + text.size()};
+}
+
 Simulation::Simulation(const Scene& scene)
     : built_(std::make_unique<Built>(scene)), block_(block_of(*built_)) {
   load(scene.file.string());
@@ -59,12 +61,17 @@ Simulation::Simulation(const Scene& scene)
 Simulation::Simulation(const SystemScene& scene)
     : system_(std::make_unique<BuiltSystem>(scene)),
       model_(system_->packed->model()),
-      columns_(system_->columns) {
+      columns_(system_->columns),
+      inputs_(system_->inputs) {
   place();
 }
 
-Simulation::Simulation(const std::filesystem::path& artefact) : block_(read_bytes(artefact)) {
-  load(artefact.string());
+Simulation::Simulation(const std::filesystem::path& artefact)
+    : Simulation(read_bytes(artefact), artefact.string()) {}
+
+Simulation::Simulation(std::vector<std::byte> block, const std::string& name)
+    : block_(std::move(block)) {
+  load(name);
 }
 
 void Simulation::load(const std::string& name) {
@@ -72,11 +79,14 @@ void Simulation::load(const std::string& name) {
   if (result.status != LoadStatus::ok)
     throw InputError(fmt::format("{} {}", name, sentence(result.status)));
   columns_ = lines_of(result.text, result.text_bytes);
+  const auto end = std::find(columns_.begin(), columns_.end(), "");
+  if (end != columns_.end()) inputs_.assign(end + 1, columns_.end());
+  columns_.erase(end, columns_.end());
   const std::size_t expected = 1 + 2 * static_cast<std::size_t>(model_.loads) +
                                6 * static_cast<std::size_t>(wheel_count(model_)) +
                                8 * static_cast<std::size_t>(model_.flanges) +
                                static_cast<std::size_t>(model_.probe.count);
-  if (columns_.size() != expected)
+  if (columns_.size() != expected || inputs_.size() != static_cast<std::size_t>(model_.inputs))
     throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));
   place();
 }

@@ -21,6 +21,8 @@ class Simulation {
   explicit Simulation(const SystemScene& scene);
   /// Of a block that `railstep condense` wrote. Throws InputError.
   explicit Simulation(const std::filesystem::path& artefact);
+  /// Of such a block, which `name` calls in errors. Throws InputError.
+  Simulation(std::vector<std::byte> block, const std::string& name);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -35,6 +37,8 @@ class Simulation {
   const BuiltSystem* system() const { return system_.get(); }
   /// Of a trace: time_s, then those of every load, wheel, sensor and support.
   const std::vector<std::string>& columns() const { return columns_; }
+  /// Of the model's inputs, in its order: NAME.force_n or NAME.moment_n_m.
+  const std::vector<std::string>& inputs() const { return inputs_; }
 
   State state;
   Workspace workspace;
@@ -47,12 +51,15 @@ class Simulation {
   std::unique_ptr<BuiltSystem> system_;
   std::vector<std::byte> block_;
   Model model_{};
-  std::vector<std::string> columns_;
+  std::vector<std::string> columns_, inputs_;
   std::vector<double> memory_, scratch_;
 };
 
 /// Of either kind of scene. Throws InputError.
 std::unique_ptr<Simulation> simulation_of(const AnyScene& scene);
+
+/// All of a file. Throws InputError.
+std::vector<std::byte> read_bytes(const std::filesystem::path& file);
 
 /// Whether a file begins as a block does.
 bool is_artefact(const std::filesystem::path& file);

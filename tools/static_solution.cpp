@@ -51,7 +51,7 @@ void add_wheel(const Scene& scene, Problem& problem, int rail, double x, double 
 
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
   for (const BodyForceScene& force : w.forces)
-    if (force.force.at(0.) != 0.)
+    if (force.input < 0 && force.force.at(0.) != 0.)
       throw InputError(
           fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
                       "forces that are 0 at t = 0",

@@ -42,6 +42,13 @@ Eigen::SparseMatrix<double> closing_of(const Track& track, const Line& line) {
   return closing;
 }
 
+/// Each force of a wheelset has a table or one of the inputs.
+void check_forces(const Wheelset& wheelset, std::int32_t inputs) {
+  for (const Wheelset::Force& force : wheelset.forces)
+    if (force.input >= inputs || (force.input >= 0) != force.table.empty())
+      throw std::invalid_argument("a force on a wheelset has a table, or an input of its own");
+}
+
 bool has_preload(const Track& track) {
   const std::vector<FixedPort> ports = fixed_ports(track);
   return std::any_of(ports.begin(), ports.end(),
@@ -116,6 +123,7 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
   if (wheelset.forces.size() > static_cast<std::size_t>(kMaxBodyForces))
     throw std::invalid_argument("more than 4 forces on one wheelset");
+  check_forces(wheelset, model_.inputs);
   for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
                                wheelset.inertia_yaw, wheelset.radius})
     if (!(inertia > 0.))
@@ -148,8 +156,9 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   packed.alpha = wheelset.alpha;
   packed.beta = wheelset.beta;
   for (const Wheelset::Force& force : wheelset.forces)
-    packed.force[packed.forces++] = {
-        force.direction, static_cast<std::int32_t>(force.table.size() / 2), keep(force.table)};
+    packed.force[packed.forces++] = {force.direction,
+                                     static_cast<std::int32_t>(force.table.size() / 2),
+                                     keep(force.table), force.input};
   for (const std::size_t rail : {0u, 1u}) packed.tread[rail] = keep(wheelset.tread[rail]);
   if (wheelset.flange) add_flange(track, wheelset, heads);
 }
@@ -195,6 +204,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   model_.scheme = options.scheme;
   model_.steps_per_frame = options.steps_per_frame;
   model_.steps = options.steps;
+  take_inputs(traffic.input_limits, model_);
   model_.elements = track.elements();
   model_.element_length = track.element_length();
   model_.rail_y[0] = track.rails == 2 ? track.rail_spacing / 2. : 0.;
@@ -234,6 +244,16 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
   add_turn(track);
   set_start(start_released(*this));
+}
+
+void take_inputs(const std::vector<double>& limits, Model& model) {
+  if (limits.size() > static_cast<std::size_t>(kMaxInputs))
+    throw std::invalid_argument("more than 64 inputs");
+  for (const double limit : limits) {
+    if (!(limit > 0.) || !std::isfinite(limit))
+      throw std::invalid_argument("an input's limit is a finite number above 0");
+    model.input_limit[model.inputs++] = limit;
+  }
 }
 
 void PackedModel::add_weight(const Track& track, double gravity) {

@@ -54,8 +54,9 @@ struct Wheelset {
   double tolerance = 1e-10;      // m, rad
   double alpha = 0., beta = 0.;  // of Baumgarte, 1/s
   struct Force {
-    int direction;              // 0 x, 1 y, 2 z
-    std::vector<double> table;  // t (s), N, t, N, ...
+    int direction;                   // 0 x, 1 y, 2 z
+    std::vector<double> table = {};  // t (s), N, t, N, ...; empty: given each frame
+    int input = -1;                  // of a given one, among Traffic::input_limits
   };
   std::vector<Force> forces = {};
   std::array<Signal, 2> tread = {};  // of the left and right wheel, over the distance rolled
@@ -119,6 +120,7 @@ struct Traffic {
   Railhead head = {};  // of both rails
   std::vector<Probe> probes = {};
   std::vector<RailIrregularity> irregularities = {};
+  std::vector<double> input_limits = {};              // of each input, N or N m, above 0
   std::vector<int> held = {};                         // rails that a multibody system holds on to
   std::optional<Railhead> right_head = std::nullopt;  // of the right rail where it differs
 };
@@ -130,6 +132,10 @@ struct Traffic {
 struct EndlessTrack {
   int behind;  // bays of the track before x = 0
 };
+
+/// Writes limits of inputs into a model. Throws std::invalid_argument on too many, or a limit that
+/// is no finite number above 0.
+void take_inputs(const std::vector<double>& limits, Model& model);
 
 struct PackOptions {
   Scheme scheme;  // of banded lines and bodies; condensed lines are stepped exactly

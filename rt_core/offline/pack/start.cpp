@@ -187,7 +187,7 @@ Window window(const Model& model, double length) {
 double wheel_load(const WheelsetModel& w) {
   double vertical = w.weight;
   for (std::int32_t i = 0; i < w.forces; ++i) {
-    const double force = table_value(w.force[i].table, w.force[i].points, 0.);
+    const double force = force_at(w.force[i], 0., nullptr);
     if (w.force[i].direction == 2) vertical -= force;
   }
   if (!(vertical > 0.))

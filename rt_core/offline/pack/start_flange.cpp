@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "online/step/table.h"
+#include "online/step/input.h"
 
 namespace railstep {
 
@@ -14,8 +14,7 @@ namespace {
 double force_along(const WheelsetModel& w, int direction) {
   double sum = 0.;
   for (std::int32_t i = 0; i < w.forces; ++i)
-    if (w.force[i].direction == direction)
-      sum += table_value(w.force[i].table, w.force[i].points, 0.);
+    if (w.force[i].direction == direction) sum += force_at(w.force[i], 0., nullptr);
   return sum;
 }
 

@@ -323,7 +323,10 @@ void Connector::add(const SystemForce& force) {
     throw std::invalid_argument("a moment acts on a body");
   PointForceModel packed{};
   packed.marker = marker(force.on, force.point, Matrix3d::Identity());
-  packed.motion = motion(force.factor);
+  if (force.input >= static_cast<int>(system_.input_limits.size()))
+    throw std::invalid_argument("its input is one of the system's");
+  packed.motion = force.input >= 0 ? -1 : motion(force.factor);
+  packed.input = force.input;
   packed.moment = force.moment ? 1 : 0;
   for (int c = 0; c < 3; ++c) packed.direction[c] = force.direction[c];
   parts_.forces.push_back(packed);

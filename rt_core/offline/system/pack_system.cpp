@@ -160,6 +160,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   const auto own = static_cast<std::int32_t>(parts.constant_force.size());
   if (track != nullptr) memory_->widened.widen(own, model_);
   model_.unknowns = first + own;
+  take_inputs(system.input_limits, model_);
   SystemModel& s = model_.system;
   const auto count = [](const auto& items) { return static_cast<std::int32_t>(items.size()); };
   s.bodies = count(parts.bodies);

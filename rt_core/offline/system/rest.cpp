@@ -57,6 +57,7 @@ class Still {
       const bool from_rest = at_rest_;
       last_ = memory_;
       state_.steps = -1;  // the step ends at t = 0, which is where forces are taken
+      state_.latched = Status::ok;
       const Status met = advance_frame(model(), state_, workspace_, outputs_);
       if (has(met, Status::cap_reached) || has(met, Status::nonfinite_state)) return Outcome::lost;
       if (from_rest && is_still()) return Outcome::settled;

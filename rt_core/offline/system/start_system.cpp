@@ -116,7 +116,7 @@ struct Standing {
     place_start(model, start, w);
     place_parts(model, start, w);
     part_forces(model, start, false, w);
-    outer_forces(model, 0., w);
+    outer_forces(model, 0., nullptr, w);
     for (std::int32_t r = 0; r < system_rows(model.system); ++r) w.force[r] = 0.;
     Model plain = model;
     plain.scheme.kv = 1.;  // springs have no slope else; what rows want is not used

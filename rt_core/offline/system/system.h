@@ -90,13 +90,15 @@ struct SpringDamper {
   double length = std::numeric_limits<double>::quiet_NaN();  // without force, m; NaN: as at rest
 };
 
-/// Direction (ground axes) times s(t): N at a point, or N m on a body.
+/// Direction (ground axes) times s(t), or times what is given each frame: N at a point, or N m on a
+/// body.
 struct SystemForce {
   Part on = {};
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
   Motion factor = {};
   bool moment = false;
+  int input = -1;  // in the place of s(t), among System::input_limits
 };
 
 /// A point whose motion is read.
@@ -116,6 +118,7 @@ struct System {
   std::vector<SpringDamper> springs = {};
   std::vector<SystemForce> forces = {};
   std::vector<SystemSensor> sensors = {};
+  std::vector<double> input_limits = {};  // of each input, N or N m, above 0
 };
 
 }  // namespace railstep

@@ -148,6 +148,9 @@ void describe(Archive& a, WheelsetModel& w) {
   for (std::int32_t i = 0; i < w.forces; ++i) {
     BodyForce& f = w.force[i];
     a.count(f.direction, 2);
+    std::int32_t input = f.input + 1;  // 0: none
+    a.count(input, kMaxInputs);
+    f.input = input - 1;
     a.count(f.points, kMostRows);
     a.reals(f.table, std::int64_t{2} * f.points);
   }
@@ -270,6 +273,8 @@ void describe(Archive& a, Model& m) {
   a.count(m.condensed, 1);
   a.count(m.bodies, m.unknowns);
   a.count(m.steps_per_frame, kMostRows);
+  a.count(m.inputs, kMaxInputs);
+  for (std::int32_t i = 0; i < m.inputs; ++i) a.real(m.input_limit[i]);
   a.integer(m.steps);
   a.real(m.element_length);
   describe(a, m.endless);

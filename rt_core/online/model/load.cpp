@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "online/math/bytes.h"
 #include "online/math/sha256.h"
 #include "online/model/course.h"
 #include "online/model/describe.h"
@@ -112,10 +113,21 @@ bool signal_holds(const SignalModel& s) noexcept {
 
 bool travel_holds(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
 
+bool force_holds(const Model& m, const BodyForce& f) noexcept {
+  return f.input >= 0 ? f.input < m.inputs : f.points > 0 && f.table != nullptr;
+}
+
+/// Limits are numbers above 0.
+bool inputs_hold(const Model& m) noexcept {
+  for (std::int32_t i = 0; i < m.inputs; ++i)
+    if (!(m.input_limit[i] > 0. && m.input_limit[i] - m.input_limit[i] == 0.)) return false;
+  return true;
+}
+
 bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
   if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
   for (std::int32_t i = 0; i < w.forces; ++i)
-    if (w.force[i].points < 1 || w.force[i].table == nullptr) return false;
+    if (!force_holds(m, w.force[i])) return false;
   return travel_holds(w.travel) && signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
 }
 
@@ -192,7 +204,7 @@ bool fixed_ports_hold(const Model& m) noexcept {
 /// What a step takes for granted beyond the counts.
 bool holds(const Model& m) noexcept {
   if (m.lines < 1 || m.elements < 1 || m.steps_per_frame < 1 || m.start == nullptr) return false;
-  if (!endless_holds(m.endless, m.elements)) return false;
+  if (!endless_holds(m.endless, m.elements) || !inputs_hold(m)) return false;
   if (!(m.element_length > 0.) || m.bodies % kLanes != 0 || m.steps < 0) return false;
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_holds(m, m.line[i])) return false;
@@ -212,12 +224,6 @@ bool holds(const Model& m) noexcept {
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
   return residual_holds(m) && turn_holds(m.turn) && probes_hold(m) && fixed_ports_hold(m);
-}
-
-bool same_bytes(const unsigned char* a, const void* b, int n) noexcept {
-  int different = 0;
-  for (int i = 0; i < n; ++i) different |= a[i] ^ static_cast<const unsigned char*>(b)[i];
-  return different == 0;
 }
 
 std::int64_t word_at(const unsigned char* at) noexcept {
@@ -247,6 +253,7 @@ LoadResult load_model(const void* block, std::size_t bytes, Model& model) noexce
   model = Model{};
   describe(reader, model);
   if (!reader.good() || !holds(model)) return refused(LoadStatus::bad_content);
+  std::memcpy(model.sum, sum, sizeof sum);
   return {LoadStatus::ok, reinterpret_cast<const char*>(at + kBlockHeader),
           static_cast<std::size_t>(text)};
 }

@@ -17,6 +17,7 @@ inline constexpr int kMaxVehicles = 16;
 inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
 inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles, a flange as another
 inline constexpr int kMaxBodyForces = 4;
+inline constexpr int kMaxInputs = 64;      // forces given each frame
 inline constexpr int kMaxSignals = 32;     // irregularities and defects of the rails
 inline constexpr int kMaxFixedPorts = 32;  // one-sided springs of the track
 inline constexpr int kTurnSeats = 6;       // around a wheel, half of them on each side of its bay
@@ -124,10 +125,11 @@ struct LoadModel {
   std::int32_t kind;          // of port, for the residual flexibility
 };
 
-/// A force on a wheelset's centre over time.
+/// A force on a wheelset's centre, over time or given each frame.
 struct BodyForce {
-  std::int32_t direction, points;  // 0 x, 1 y, 2 z; rows of the table
+  std::int32_t direction, points;  // 0 x, 1 y, 2 z; rows of the table, 0: given
   const double* table;             // [points][2]  s, N; linear between, constant outside
+  std::int32_t input;              // of a given one; -1
 };
 
 /// How far a railhead lies off its straight line, over the place along it.
@@ -284,7 +286,9 @@ struct Model {
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
   std::int32_t bodies;     // first unknown behind the lines
   std::int32_t steps_per_frame;
-  double element_length;  // m
+  std::int32_t inputs;             // forces given each frame
+  double input_limit[kMaxInputs];  // N or N m, above 0: what they saturate at, on both sides
+  double element_length;           // m
   Endless endless;
   double rail_y[2];  // of the rails' axes, m
   double rail_z[2];  // of the rails' axes over the left one, m: their heads are level
@@ -307,6 +311,7 @@ struct Model {
   VehicleWheel vehicle_wheel[kMaxWheels];
   RailSignal signal[kMaxSignals];
   SystemModel system;
+  unsigned char sum[32];  // SHA-256 of the block it was loaded from; zeros of one that has none
 };
 
 /// Wheels on the rails: left and right of each wheelset in turn, then those of each vehicle.

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "online/math/tiny.h"
+
 namespace railstep {
 
 namespace {
@@ -18,12 +20,14 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
 
 void reset(const Model& model, State& state) noexcept {
   state.steps = 0;
-  std::memcpy(state.u, model.start,
-              sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
+  state.latched = Status::ok;
+  const std::int64_t count = state_doubles(model);  // one block, from u on
+  for (std::int64_t i = 0; i < count; ++i) state.u[i] = without_tiny(model.start[i]);
 }
 
 std::uint64_t state_hash(const Model& model, const State& state) noexcept {
   std::uint64_t hash = mix(0xcbf29ce484222325u, static_cast<std::uint64_t>(state.steps));
+  hash = mix(hash, static_cast<std::uint64_t>(state.latched));
   const std::int64_t count = state_doubles(model);  // one block, from u on
   for (std::int64_t i = 0; i < count; ++i) {
     std::uint64_t word = 0;

@@ -23,7 +23,13 @@ struct State {
   double* row_force;    // [rows] of the system's joints and springs, N; the force on its parts is
                         // -G' of it, so a joint's or spring's pull is positive
   double* kept;         // Newton's matrix of the system where it is kept over steps, or null
+  double* input;        // [inputs] N or N m: the last good ones
+  Status latched;       // kLatched bits that were met since the reset
 };
+
+/// What stays set until reset(): a frame that was lost or distorted.
+inline constexpr Status kLatched =
+    Status::nonfinite_input | Status::nonfinite_state | Status::force_saturated;
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
@@ -68,7 +74,7 @@ struct Outputs {
 
 inline std::int64_t state_doubles(const Model& model) noexcept {
   return 4LL * model.unknowns + contact_count(model) + model.fixed.count + 2LL * model.wheelsets +
-         system_state_doubles(model.system);
+         system_state_doubles(model.system) + model.inputs;
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t contacts = contact_count(model);
@@ -94,7 +100,9 @@ inline State state_on(const Model& model, double* memory) noexcept {
           guides,
           system,
           rows,
-          model.system.renew == Renew::kept ? rows + system_rows(model.system) : nullptr};
+          model.system.renew == Renew::kept ? rows + system_rows(model.system) : nullptr,
+          system + system_state_doubles(model.system),
+          Status::ok};
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns, solved = (1 + contact_count(model)) * n;
@@ -112,7 +120,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
 /// Puts the model's start into a state: step 0.
 void reset(const Model& model, State& state) noexcept;
 
-/// FNV-1a over the step count and the bits of all fields: equal states have equal hashes.
+/// FNV-1a over the step count, what is latched and the bits of all fields: equal states have equal
+/// hashes.
 std::uint64_t state_hash(const Model& model, const State& state) noexcept;
 
 }  // namespace railstep

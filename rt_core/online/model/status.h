@@ -13,10 +13,15 @@ enum class Status : std::uint32_t {
   contact_unresolved = 1u << 4,  // a wheel struck its rail for fewer than 10 steps: shorten dt
   redundant_joint = 1u << 5,     // a joint row hung on others: it carries no force of its own
   large_turn = 1u << 6,          // a rail under a wheel rolled so far that its linear form is off
+  nonfinite_input = 1u << 7,     // an input was not finite: its last good value was held
+  force_saturated = 1u << 8,     // an input was beyond its limit, and cut to it
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {
   return static_cast<Status>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr Status operator&(Status a, Status b) noexcept {
+  return static_cast<Status>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
 }
 constexpr bool has(Status status, Status bit) noexcept {
   return (static_cast<std::uint32_t>(status) & static_cast<std::uint32_t>(bit)) != 0u;

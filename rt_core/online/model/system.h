@@ -94,9 +94,12 @@ struct MotionModel {
   const double* coefficient;  // [pieces][kMotionCoefficients]
 };
 
-/// A force on a marker's point, or a moment on its body: direction (ground axes) times s(t).
+/// A force on a marker's point, or a moment on its body: direction (ground axes) times s(t) or what
+/// is given each frame.
 struct PointForceModel {
-  std::int32_t marker, motion;
+  std::int32_t marker;
+  std::int32_t motion;  // s(t); -1: an input in its place
+  std::int32_t input;   // -1: none
   std::int32_t moment;  // 1: N m on a body
   double direction[3];
 };

@@ -158,7 +158,7 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   locate_contacts(model, step, state, w, c);
   respond(model, state, w, c);
   find_loaded(model, step, c);
-  free_wheelsets(model, step, w, c);
+  free_wheelsets(model, step, state, w, c);
   free_vehicles(model, state, w, c);
   find_vehicle_laws(model, time, state, w, c);
   find_flange_laws(model, state, w, c);

@@ -21,6 +21,7 @@ double value_at(const Model& model, const State& state, std::int32_t at) noexcep
 
 void read_probes(const Model& model, const State& state, const Outputs& outputs,
                  double* value) noexcept {
+  if (has(state.latched, Status::nonfinite_state)) return;
   const FloatMode flushed_to_zero;
   RailForce forces[kMaxLoads + kMaxWheels];
   const int count = rail_forces(model, outputs, forces);

@@ -3,7 +3,8 @@
 
 namespace railstep {
 
-/// Values of the model's probes on a state and the outputs that its frame published.
+/// Values of the model's probes on a state and the outputs that its frame published; left as they
+/// are of a state that is latched as not finite.
 /// @param value  [model.probe.count]
 void read_probes(const Model& model, const State& state, const Outputs& outputs,
                  double* value) noexcept;

@@ -1,9 +1,12 @@
 #include "online/step/step.h"
 
+#include "online/math/tiny.h"
 #include "online/model/course.h"
 #include "online/step/couple.h"
 #include "online/step/float_mode.h"
 #include "online/step/follow.h"
+#include "online/step/hold.h"
+#include "online/step/input.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/vehicle_contact.h"
@@ -72,8 +75,8 @@ void advance_modes(const LineModel& line, State& s, Workspace& w) noexcept {
              (new_re[k] * q_re - new_im[k] * q_im));
     im[k] = (((keep_re[k] * v[k] + keep_im[k] * u[k]) + (old_re[k] * g[k] + old_im[k] * a[k])) +
              (new_re[k] * q_im + new_im[k] * q_re));
-    a[k] = q_re;
-    g[k] = q_im;
+    a[k] = without_tiny(q_re);
+    g[k] = without_tiny(q_im);
   }
 }
 
@@ -100,17 +103,17 @@ void correct(const Model& model, State& s, const Workspace& w) noexcept {
   const std::int32_t first = model.condensed * model.bodies;
 #pragma omp simd
   for (std::int32_t i = 0; i < first; ++i) {
-    s.u[i] = w.solved[i];
-    s.v[i] = w.imaginary[i];
+    s.u[i] = without_tiny(w.solved[i]);
+    s.v[i] = without_tiny(w.imaginary[i]);
   }
 #pragma omp simd
   for (std::int32_t i = first; i < model.unknowns; ++i) {
     const double change = w.solved[i] - w.u_star[i];
     const double g = c.kg * change;
-    s.u[i] = w.solved[i];
-    s.v[i] = w.v_star[i] + c.kv * change;
-    s.a[i] = (c.ag * g + c.a0 * s.g[i]) + c.aa * s.a[i];
-    s.g[i] = g;
+    s.u[i] = without_tiny(w.solved[i]);
+    s.v[i] = without_tiny(w.v_star[i] + c.kv * change);
+    s.a[i] = without_tiny((c.ag * g + c.a0 * s.g[i]) + c.aa * s.a[i]);
+    s.g[i] = without_tiny(g);
   }
 }
 
@@ -124,8 +127,8 @@ std::int32_t first_bad(const Model& model, const State& s) noexcept {
   return -1;
 }
 
-void start_frame(const Model& model, Outputs& out) noexcept {
-  out.status = Status::ok;
+void start_frame(const Model& model, const State& state, Outputs& out) noexcept {
+  out.status = state.latched;
   out.constraint_violation = 0.;
   out.iterations = 0;
   out.force_residual = 0.;
@@ -213,11 +216,22 @@ void forces(const Model& model, std::int64_t step, double* re, double* im) noexc
 Status advance_frame(const Model& model, State& state, Workspace& workspace,
                      Outputs& outputs) noexcept {
   const FloatMode flushed_to_zero;
-  start_frame(model, outputs);
+  if (has(state.latched, Status::nonfinite_state)) return outputs.status = state.latched;
+  Outputs last;
+  copy_published(model, outputs, last);
+  start_frame(model, state, outputs);
   for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
     make_step(model, state, workspace, outputs);
   publish(model, state, outputs);
+  if (has(outputs.status, Status::nonfinite_state)) copy_published(model, last, outputs);
+  state.latched = state.latched | (outputs.status & kLatched);
   return outputs.status;
+}
+
+Status advance_frame(const Model& model, const double* inputs, State& state, Workspace& workspace,
+                     Outputs& outputs) noexcept {
+  state.latched = state.latched | take_inputs(model, inputs, state);
+  return advance_frame(model, state, workspace, outputs);
 }
 
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept {
@@ -247,7 +261,7 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
 }
 
 void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept {
-  start_frame(model, outputs);
+  start_frame(model, state, outputs);
   WheelContact contact[kMaxWheels];
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], standing(model, state), contact + 2 * b);

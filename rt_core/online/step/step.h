@@ -1,12 +1,26 @@
 #pragma once
+#include <cstddef>
+
 #include "online/model/state.h"
 
 namespace railstep {
 
+/// What a frame may need of the caller's stack, bytes, in an optimised build.
+inline constexpr std::size_t kStepStack = std::size_t{128} << 10;
+
 /// Advances by one frame of model.steps_per_frame steps. No heap, no exceptions, no clock; the
-/// same work for every state. A state that stops being finite is reported and left as it is.
+/// same work for every state. Inputs stay as the state holds them. A state that stops being finite
+/// is reported and left as it is from then on, and what is published of loads and wheels stays that
+/// of the last good frame, which `outputs` must hold (publish_start() for the first).
+/// @returns what the frame met, and what is latched since the reset
 [[nodiscard]] Status advance_frame(const Model& model, State& state, Workspace& workspace,
                                    Outputs& outputs) noexcept;
+
+/// The same with new inputs, held over the frame's steps; of one that is not finite the last good
+/// one goes on, and one beyond its limit is cut to it.
+/// @param inputs  [model.inputs] N or N m
+[[nodiscard]] Status advance_frame(const Model& model, const double* inputs, State& state,
+                                   Workspace& workspace, Outputs& outputs) noexcept;
 
 /// Forces of loads and weight on the unknowns at a step, N; on modes of condensed lines, complex.
 /// @param re, im  [unknowns] overwritten; im of condensed models only

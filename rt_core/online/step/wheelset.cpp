@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "online/step/couple.h"
+#include "online/step/input.h"
 #include "online/step/strike.h"
-#include "online/step/table.h"
 #include "online/step/travel.h"
 
 namespace railstep {
@@ -24,15 +24,15 @@ Travelled target(const Model& model, const WheelsetModel& w, int guided,
   return way_at(model, w.travel, step);
 }
 
-/// Forces other than contact and guide: weight, tables and the gyroscopic terms of an axisymmetric
-/// body, at the velocities v* (roll r, spin s, yaw y; cos(roll) = 1):
+/// Forces other than contact and guide: weight, tables, inputs and the gyroscopic terms of an
+/// axisymmetric body, at the velocities v* (roll r, spin s, yaw y; cos(roll) = 1):
 ///   Ix r'' = Iy s' y' - Ix y'^2 r,   Iz y'' = -Iy s' r' + 2 Ix y' r' r
-void applied_force(const WheelsetModel& w, double time, const double* p, const double* v,
-                   double* force) noexcept {
+void applied_force(const WheelsetModel& w, double time, const double* input, const double* p,
+                   const double* v, double* force) noexcept {
   for (int k = 0; k < 6; ++k) force[k] = 0.;
   force[2] = -w.weight;
   for (std::int32_t i = 0; i < w.forces; ++i)
-    force[w.force[i].direction] += table_value(w.force[i].table, w.force[i].points, time);
+    force[w.force[i].direction] += force_at(w.force[i], time, input);
   const double spin = travelled(w.travel, time).speed / w.radius + v[4];
   force[3] = w.mass[4] * spin * v[5] - w.mass[3] * v[5] * v[5] * p[3];
   force[5] = -w.mass[4] * spin * v[3] + 2. * w.mass[3] * v[5] * v[3] * p[3];
@@ -58,7 +58,7 @@ void move_body(const Model& model, int b, const Coupling& c, const double* multi
 
 }  // namespace
 
-void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
+void free_wheelsets(const Model& model, std::int64_t step, const State& s, const Workspace& w,
                     Coupling& c) noexcept {
   const double kg = model.scheme.kg, kv = model.scheme.kv;
   const double time = static_cast<double>(step) * model.scheme.dt;
@@ -67,7 +67,7 @@ void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
     const double* p = w.u_star + set.first;
     const double* v = w.v_star + set.first;
     double force[6];
-    applied_force(set, time, p, v, force);
+    applied_force(set, time, s.input, p, v, force);
     for (int k = 0; k < 6; ++k) {
       c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k]);
       c.wheelset[b].free[k] = p[k] + c.wheelset[b].compliance[k] * force[k];

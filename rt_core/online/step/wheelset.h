@@ -8,7 +8,7 @@ namespace railstep {
 
 /// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
 /// guide does not give way at all: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
-void free_wheelsets(const Model& model, std::int64_t step, const Workspace& w,
+void free_wheelsets(const Model& model, std::int64_t step, const State& s, const Workspace& w,
                     Coupling& c) noexcept;
 
 /// What a unit force at contact j adds to the approach of contact i through a wheelset that bears

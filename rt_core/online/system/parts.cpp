@@ -1,6 +1,7 @@
 #include "online/system/parts.h"
 
 #include "online/model/beam_chain.h"
+#include "online/step/input.h"
 #include "online/system/marker.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"
@@ -288,14 +289,16 @@ std::int32_t part_forces(const Model& model, const SystemStart& start, bool rene
   return lost;
 }
 
-void outer_forces(const Model& model, double time, SystemWorkspace& w) noexcept {
+void outer_forces(const Model& model, double time, const double* input,
+                  SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
 #pragma omp simd
   for (std::int32_t i = 0; i < s.unknowns; ++i) w.outer[i] = s.constant_force[i];
   for (std::int32_t f = 0; f < s.forces; ++f) {
     const PointForceModel& force = s.force[f];
     const MarkerModel& marker = s.marker[force.marker];
-    const double size = motion_at(s.motion[force.motion], time).x;
+    const double size = force.input >= 0 ? held_input(input, force.input)
+                                         : motion_at(s.motion[force.motion], time).x;
     const Reach at = reach(s, marker);
     double row[kMostNodeUnknowns] = {};
     applied(s, w, force, size, row);

@@ -33,7 +33,9 @@ std::int32_t part_forces(const Model& model, const SystemStart& start, bool rene
                          SystemWorkspace& w) noexcept;
 
 /// Weight and applied forces.
-void outer_forces(const Model& model, double time, SystemWorkspace& w) noexcept;
+/// @param input  State::input, or null before there is one
+void outer_forces(const Model& model, double time, const double* input,
+                  SystemWorkspace& w) noexcept;
 
 /// change of the ports on rails: to free motion - compliance * residual.
 void solve_ports(const SystemModel& system, SystemWorkspace& w) noexcept;

@@ -255,12 +255,13 @@ struct Search {
 };
 
 /// Places the iterate and takes all forces and rows there.
-Size look(const Model& model, const SystemStart& start, double time, bool renew, SystemWorkspace& w,
-          SystemResult& result) noexcept {
+Size look(const Model& model, const State& state, const SystemStart& start, bool renew,
+          SystemWorkspace& w, SystemResult& result) noexcept {
+  const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
   const SystemModel& s = model.system;
   place_parts(model, start, w);
   part_forces(model, start, renew, w);
-  outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, w);
+  outer_forces(model, s.mean != 0 ? time - .5 * model.scheme.dt : time, state.input, w);
   const double wanted = set_rows(model, time, renew, w);
   Size left = set_residual(s, w);
   left.wanted = wanted;
@@ -293,7 +294,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
   Search search;
   for (std::int32_t done = 0;; ++done) {
     const bool renew = is_renewed(s, w.tangent, done, search.slow);
-    const Size left = look(model, start, time, renew, w, result);
+    const Size left = look(model, state, start, renew, w, result);
     if (done > 0 && is_done(s, w, left, search, result)) break;
     if (done == s.cap) {
       result.status = Status::cap_reached;

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace railstep {
+
+/// A trace, or another CSV file of a line of names and rows of numbers.
+struct TraceTable {
+  std::vector<std::string> columns;
+  std::vector<double> values;  // row after row
+  std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+  /// NaN, as a run that was lost writes it, and infinity are read too. Throws InputError, with the
+  /// line, on anything else.
+  static TraceTable read(const std::filesystem::path& file);
+};
+
+struct TraceDifference {
+  std::size_t row;  // from 0, without the line of names
+  std::string column;
+  std::optional<double> a, b;  // none: that trace has ended
+};
+
+struct TraceComparison {
+  bool identical;  // every number has the same bits, -0 and 0 apart, any NaN another's
+  std::optional<TraceDifference> first;
+  double largest;  // of |a - b| over its column's largest |a|; infinite where one ended or is NaN
+};
+
+/// Of two traces with the same columns. Throws InputError, naming the files, of others.
+TraceComparison compare(const TraceTable& a, const TraceTable& b, const std::string& name_a,
+                        const std::string& name_b);
+
+}  // namespace railstep
