@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "online/math/tiny.h"
 #include "online/step/step.h"
 #include "simulation.h"
 
@@ -29,6 +31,14 @@ std::int64_t subnormals(const double* from, std::int64_t count) {
   return found;
 }
 
+/// Numbers below the size at which a state's end.
+std::int64_t tiny(const double* from, std::int64_t count) {
+  std::int64_t found = 0;
+  for (std::int64_t i = 0; i < count; ++i)
+    found += from[i] != 0. && std::abs(from[i]) < kTiny ? 1 : 0;
+  return found;
+}
+
 double largest(const double* from, std::int64_t count) {
   double most = 0.;
   for (std::int64_t i = 0; i < count; ++i) most = std::max(most, std::abs(from[i]));
@@ -38,6 +48,7 @@ double largest(const double* from, std::int64_t count) {
 /// Steps a scene on for kSteps after its loads are gone.
 struct Decayed {
   std::int64_t subnormal = 0;  // numbers, of state and workspace after any step
+  std::int64_t tiny = 0;       // of the state after any step
   double before = 0., after = 0.;
   std::int64_t zero_from = -1;  // the step from which on all of the state is 0
 };
@@ -56,6 +67,7 @@ Decayed decayed(const std::string& name, const std::vector<std::string>& overrid
   for (std::int64_t n = 0; n < kSteps; ++n) {
     static_cast<void>(advance_frame(single, run->state, run->workspace, outputs));
     found.subnormal += subnormals(run->state.u, state);
+    found.tiny += tiny(run->state.u, state);
     if (n % 16 == 0) found.subnormal += subnormals(run->workspace.u_star, scratch);
     if (found.zero_from < 0 && n % 1000 == 0 && largest(run->state.u, state) == 0.)
       found.zero_from = n;
@@ -87,6 +99,7 @@ TEST_CASE("a track without load comes to rest through no subnormal number", "[de
                           std::string("track.unknowns=\"") + unknowns + "\""});
       CAPTURE(kind, unknowns, found.before, found.after, found.zero_from);
       CHECK(found.subnormal == 0);
+      CHECK(found.tiny == 0);
       CHECK(found.before > 1e-5);
       CHECK(found.after == 0.);
       CHECK(found.zero_from > 0);

@@ -201,6 +201,22 @@ TEST_CASE("every bit and every end of a snapshot is watched", "[snapshot]") {
   CHECK(status(bytes) == SnapshotStatus::ok);
 }
 
+TEST_CASE("what is latched, and a state that is not finite, come back to the bit", "[snapshot]") {
+  const auto run = simulation_of(read_any_scene(kFolder + "moving_load.toml"));
+  const Model& model = run->model();
+  Outputs outputs{};
+  publish_start(model, run->state, outputs);
+  run->state.u[3] = -std::numeric_limits<double>::quiet_NaN();
+  const Status met = advance_frame(model, run->state, run->workspace, outputs);
+  REQUIRE(has(met, Status::nonfinite_state));
+  const Bytes bytes = saved(model, run->state);
+  const std::uint64_t hash = state_hash(model, run->state);
+  reset(model, run->state);
+  REQUIRE(restore_snapshot(model, bytes.data(), bytes.size(), run->state) == SnapshotStatus::ok);
+  CHECK(run->state.latched == Status::nonfinite_state);
+  CHECK(state_hash(model, run->state) == hash);
+}
+
 TEST_CASE("a snapshot of another model is refused", "[snapshot]") {
   const std::string scene = kFolder + "moving_load.toml";
   const auto one = simulation_of(read_any_scene(scene, {"load[0].force_z_n=-50e3"}));
