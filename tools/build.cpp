@@ -28,8 +28,10 @@ void refuse_unstepped(const Scene& scene) {
   const auto refuse = [&](bool wanted, const char* what) {
     if (wanted) throw InputError(fmt::format("{}: run {}", scene.file.string(), what));
   };
-  refuse(scene.loads.empty() && scene.wheelsets.empty() && scene.vehicles.empty(),
-         "needs a [[load]], a [[wheelset]] or a [[vehicle]] and the scene has none");
+  refuse(scene.loads.empty() && scene.wheelsets.empty() && scene.vehicles.empty() &&
+             scene.external_wheels.empty(),
+         "needs a [[load]], a [[wheelset]], a [[vehicle]] or an [[external_wheel]] and the scene "
+         "has none");
   refuse(!scene.step, "and condense need a [step] and the scene has none");
   refuse(scene.track.model != RailModel::linearised,
          "and condense step the linearised rail; accepted is track.model = \"linearised\"");
@@ -110,6 +112,13 @@ std::vector<double> limits_of(const std::vector<InputScene>& inputs) {
   std::vector<double> limits;
   for (const InputScene& input : inputs) limits.push_back(input.limit);
   return limits;
+}
+
+std::vector<ExternalWheel> external_wheels_of(const Scene& scene) {
+  std::vector<ExternalWheel> wheels;
+  for (const ExternalWheelScene& w : scene.external_wheels)
+    wheels.push_back({w.rail == Side::right ? 1 : 0, w.limit});
+  return wheels;
 }
 
 std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
@@ -317,6 +326,9 @@ std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) 
       for (const char* quantity :
            {"flange_force_n", "flange_force_peak_n", "flange_impulse_n_s", "flange_gap_m"})
         if (wheelset.flange) columns.push_back(wheel + "." + quantity);
+  for (const ExternalWheelScene& wheel : scene.external_wheels)
+    for (const char* quantity : {"dx_m", "dy_m", "dz_m", "vx_m_per_s", "vy_m_per_s", "vz_m_per_s"})
+      columns.push_back(wheel.name + "." + quantity);
   columns.insert(columns.end(), sensors.columns.begin(), sensors.columns.end());
   return columns;
 }
@@ -335,6 +347,7 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
            .probes = std::move(sensors.probes),
            .irregularities = irregularities_of(scene),
            .input_limits = limits_of(scene.inputs),
+           .external_wheels = external_wheels_of(scene),
            .right_head = railhead_of(scene, sections, Side::right)},
           std::move(columns)};
 }
@@ -349,6 +362,9 @@ Built::Built(const Scene& scene) try {
   columns = {"time_s"};
   columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
+  for (const ExternalWheelScene& wheel : scene.external_wheels)
+    for (const char* quantity : {"x_m", "y_m", "force_x_n", "force_y_n", "force_z_n"})
+      inputs.push_back(wheel.name + "." + quantity);
   packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
   const double gravity = scene.track.gravity ? kGravity : 0.;
   if (scene.step->start == Start::equilibrium)

@@ -114,7 +114,7 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
     find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., at, c.contact);
   for (int i = 0; i < c.wheels; ++i)
     c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
-  RailForce port[kMaxLoads + kMaxWheels];
+  RailForce port[kMaxRailForces];
   const int ports = ports_of(model, c, port);
   for (int i = 0; i < c.wheels; ++i)
     if (is_linear(model, i) && c.contact[i].on_rail)

@@ -14,12 +14,12 @@ struct StandingContacts {
   int loads, wheels;
   PlacedLoad load[kMaxLoads];
   WheelContact contact[kMaxWheels];
-  double approach[kMaxWheels];           // a, m; negative is a gap
-  double force[kMaxLoads + kMaxWheels];  // F: of loads, then wheels, N
-  double moved[kMaxLoads + kMaxWheels];  // w, m
-  double depth[kMaxWheels];              // d, m
-  double hertz;                          // sum 2/5 C d^2.5, and k d^2 / 2 of linear contacts, J
-  double residual;                       // F' G F / 2, J
+  double approach[kMaxWheels];   // a, m; negative is a gap
+  double force[kMaxRailForces];  // F: of loads, then wheels, N
+  double moved[kMaxRailForces];  // w, m
+  double depth[kMaxWheels];      // d, m
+  double hertz;                  // sum 2/5 C d^2.5, and k d^2 / 2 of linear contacts, J
+  double residual;               // F' G F / 2, J
 };
 
 StandingContacts standing_contacts(const Model& model, const State& state);

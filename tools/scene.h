@@ -190,6 +190,13 @@ struct InputScene {
   double limit;      // N or N m
 };
 
+/// A wheel of a vehicle outside the scene.
+struct ExternalWheelScene {
+  std::string name;
+  Side rail;
+  double limit;  // N
+};
+
 struct BodyForceScene {
   int direction;    // 0 x, 1 y, 2 z
   TimeTable force;  // N, on the centre; empty of an input
@@ -283,6 +290,7 @@ struct Scene {
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
   std::vector<InputScene> inputs;
+  std::vector<ExternalWheelScene> external_wheels;
   std::vector<VehicleScene> vehicles;
   std::optional<IrregularityScene> irregularity;
   std::vector<DefectScene> defects;

@@ -225,6 +225,14 @@ std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
   return wheelsets;
 }
 
+std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene) {
+  std::vector<ExternalWheelScene> wheels;
+  for (const Table& t : root.tables("external_wheel"))
+    wheels.push_back({checked_name(t, "name", t.string("name")), read_side(t, scene),
+                      t.number("limit_n", above_upto(0.0, 1e12))});
+  return wheels;
+}
+
 int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
   const std::string name =
       checked_name(t, "input", t.string("input")) + (moment ? ".moment_n_m" : ".force_n");
@@ -257,6 +265,9 @@ void check_names(const Table& root, const Scene& scene) {
     for (const std::string& wheel : scene.wheelsets[i].wheels)
       claim(traced, bodies[i], "wheels", wheel);
   }
+  const auto external = root.tables("external_wheel");
+  for (std::size_t i = 0; i < external.size(); ++i)
+    claim(traced, external[i], "name", scene.external_wheels[i].name);
   for (std::size_t i = 0; i < stops.size(); ++i)
     claim(traced, stops[i], "name", scene.stops[i].name);
   // One table that stands on both rails makes two vehicles, whose names begin with its own.

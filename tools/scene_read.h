@@ -69,6 +69,7 @@ TravelTable travel_of(const SpeedScene& speed);
 /// Refuses a path that runs off the rail before the end of the run, or before `stop`.
 void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
                 const std::optional<double>& stop);
+std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene);
 /// `input` and `limit_n`, or of a moment `limit_n_m`. @returns its index
 int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);

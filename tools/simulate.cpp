@@ -84,6 +84,10 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
   for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
     row.insert(row.end(), {outputs.flange_force[i], outputs.flange_force_peak[i],
                            outputs.flange_impulse[i], outputs.flange_gap[i]});
+  for (std::int32_t i = 0; i < model.external_wheels; ++i) {
+    row.insert(row.end(), outputs.external_displacement[i], outputs.external_displacement[i] + 3);
+    row.insert(row.end(), outputs.external_velocity[i], outputs.external_velocity[i] + 3);
+  }
   const std::size_t probes = row.size();
   row.resize(probes + static_cast<std::size_t>(model.probe.count));
   read_probes(model, run.state, outputs, row.data() + probes);

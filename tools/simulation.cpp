@@ -85,6 +85,7 @@ void Simulation::load(const std::string& name) {
   const std::size_t expected = 1 + 2 * static_cast<std::size_t>(model_.loads) +
                                6 * static_cast<std::size_t>(wheel_count(model_)) +
                                8 * static_cast<std::size_t>(model_.flanges) +
+                               6 * static_cast<std::size_t>(model_.external_wheels) +
                                static_cast<std::size_t>(model_.probe.count);
   if (columns_.size() != expected || inputs_.size() != static_cast<std::size_t>(model_.inputs))
     throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));

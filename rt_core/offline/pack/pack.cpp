@@ -61,6 +61,9 @@ bool is_moved(const Track& track, const Line& line, const Traffic& traffic, doub
   for (const int rail : traffic.held)
     for (int direction = 0; direction < 3; ++direction)
       if (reaches(track, line, rail, .01, .1, direction)) return true;
+  for (const ExternalWheel& wheel : traffic.external_wheels)
+    for (int direction = 0; direction < 3; ++direction)
+      if (reaches(track, line, wheel.rail, .01, .1, direction)) return true;
   for (const RunningVehicle& vehicle : traffic.vehicles)
     if (reaches(track, line, vehicle.rail, 0., .1, 2)) return true;
   for (int direction = 0; direction < 3 && !traffic.wheelsets.empty(); ++direction)
@@ -239,6 +242,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   for (const RunningVehicle& vehicle : traffic.vehicles) add_vehicle(track, vehicle, heads);
   add_fixed_ports(track);
+  for (const ExternalWheel& wheel : traffic.external_wheels) add_external(track, wheel);
   if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);
   add_probes(track, traffic.probes);
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
@@ -246,10 +250,26 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   set_start(start_released(*this));
 }
 
+void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
+  if (model_.external_wheels == kMaxExternalWheels)
+    throw std::invalid_argument("more than 16 external wheels");
+  if (wheel.rail < 0 || wheel.rail >= track.rails)
+    throw std::invalid_argument("an external wheel is on a rail that the track does not have");
+  if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.fixed.count > 0)
+    throw std::invalid_argument(
+        "external wheels run on a track that is linear: beside loads, and without wheelsets, "
+        "vehicles, stops and supports that do not pull");
+  if (model_.steps_per_frame != 1)
+    throw std::invalid_argument("external wheels want a frame of one step");
+  constexpr double kFar = 1e9;  // m
+  const std::int32_t input = model_.inputs;
+  take_inputs({kFar, kFar, wheel.limit, wheel.limit, wheel.limit}, model_);
+  model_.external_wheel[model_.external_wheels++] = {wheel.rail, input, kind_of_wheel(wheel.rail)};
+}
+
 void take_inputs(const std::vector<double>& limits, Model& model) {
-  if (limits.size() > static_cast<std::size_t>(kMaxInputs))
-    throw std::invalid_argument("more than 64 inputs");
   for (const double limit : limits) {
+    if (model.inputs == kMaxInputs) throw std::invalid_argument("more than 96 inputs");
     if (!(limit > 0.) || !std::isfinite(limit))
       throw std::invalid_argument("an input's limit is a finite number above 0");
     model.input_limit[model.inputs++] = limit;

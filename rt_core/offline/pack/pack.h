@@ -112,6 +112,12 @@ struct Probe {
                        // with it
 };
 
+/// A wheel of a vehicle outside the model, whose place and force are inputs of their own.
+struct ExternalWheel {
+  int rail = 0;
+  double limit = 0.;  // N, of each component of its force
+};
+
 /// What acts on a track, and what is read from it.
 struct Traffic {
   std::vector<MovingLoad> loads = {};
@@ -121,6 +127,7 @@ struct Traffic {
   std::vector<Probe> probes = {};
   std::vector<RailIrregularity> irregularities = {};
   std::vector<double> input_limits = {};              // of each input, N or N m, above 0
+  std::vector<ExternalWheel> external_wheels = {};    // their inputs stand behind all others
   std::vector<int> held = {};                         // rails that a multibody system holds on to
   std::optional<Railhead> right_head = std::nullopt;  // of the right rail where it differs
 };
@@ -198,6 +205,7 @@ class PackedModel {
   void add_irregularity(const Track& track, const RailIrregularity& irregularity);
   void add_wheelset(const Track& track, const Wheelset& wheelset,
                     const std::array<Railhead, 2>& heads);
+  void add_external(const Track& track, const ExternalWheel& wheel);
   void add_flange(const Track& track, const Wheelset& wheelset,
                   const std::array<Railhead, 2>& heads);
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,

@@ -299,6 +299,12 @@ void describe(Archive& a, Model& m) {
     a.count(m.signal[i].direction, 2);
     describe(a, m.signal[i].signal);
   }
+  a.count(m.external_wheels, kMaxExternalWheels);
+  for (std::int32_t i = 0; i < m.external_wheels; ++i) {
+    a.count(m.external_wheel[i].rail, 1);
+    a.count(m.external_wheel[i].input, kMaxInputs);
+    a.count(m.external_wheel[i].kind, kMaxPortKinds - 1);
+  }
   describe(a, m.residual, m.elements);
   describe(a, m.turn, m.elements);
   describe(a, m.probe, m);

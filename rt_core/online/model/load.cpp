@@ -124,6 +124,16 @@ bool inputs_hold(const Model& m) noexcept {
   return true;
 }
 
+/// External wheels stand on a track alone with loads, a step a frame; each has its own inputs.
+bool external_wheels_hold(const Model& m) noexcept {
+  if (m.external_wheels == 0) return true;
+  if (m.wheelsets > 0 || m.vehicles > 0 || m.fixed.count > 0 || m.steps_per_frame != 1)
+    return false;
+  for (std::int32_t i = 0; i < m.external_wheels; ++i)
+    if (m.external_wheel[i].input + 5 > m.inputs) return false;
+  return true;
+}
+
 bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
   if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
   for (std::int32_t i = 0; i < w.forces; ++i)
@@ -169,6 +179,8 @@ bool residual_holds(const Model& m) noexcept {
     if (m.wheelset[i].kind[0] >= r.kinds || m.wheelset[i].kind[1] >= r.kinds) return false;
   for (std::int32_t i = 0; i < m.vehicle_wheels && tables; ++i)
     if (m.vehicle_wheel[i].kind >= r.kinds) return false;
+  for (std::int32_t i = 0; i < m.external_wheels && tables; ++i)
+    if (m.external_wheel[i].kind >= r.kinds) return false;
   for (std::int32_t i = 0; i < r.kinds; ++i)
     for (std::int32_t j = 0; j < r.kinds; ++j)
       if (r.pair[i][j].value != nullptr && r.pair[i][j].points < 3) return false;
@@ -223,7 +235,8 @@ bool holds(const Model& m) noexcept {
     if (!wheel_holds(m, i)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
-  return residual_holds(m) && turn_holds(m.turn) && probes_hold(m) && fixed_ports_hold(m);
+  return external_wheels_hold(m) && residual_holds(m) && turn_holds(m.turn) && probes_hold(m) &&
+         fixed_ports_hold(m);
 }
 
 std::int64_t word_at(const unsigned char* at) noexcept {

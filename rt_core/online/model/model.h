@@ -17,7 +17,8 @@ inline constexpr int kMaxVehicles = 16;
 inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
 inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles, a flange as another
 inline constexpr int kMaxBodyForces = 4;
-inline constexpr int kMaxInputs = 64;      // forces given each frame
+inline constexpr int kMaxInputs = 96;  // forces and places given each frame
+inline constexpr int kMaxExternalWheels = 16;
 inline constexpr int kMaxSignals = 32;     // irregularities and defects of the rails
 inline constexpr int kMaxFixedPorts = 32;  // one-sided springs of the track
 inline constexpr int kTurnSeats = 6;       // around a wheel, half of them on each side of its bay
@@ -276,6 +277,14 @@ struct FixedPortModel {
   const double* compliance;  // [count][count] theta row response, m/N
 };
 
+/// A wheel of a vehicle outside the model, as it presses a rail: five inputs from `input` on, its
+/// place x along the track and y across the railhead from the middle of its tread, m, then the
+/// force on the rail along x, y and z, N. They are those of the step, which is a frame.
+struct ExternalWheelModel {
+  std::int32_t rail, input;
+  std::int32_t kind;  // of port, for the residual flexibility
+};
+
 /// Everything a step needs; immutable, may be shared by threads.
 struct Model {
   Scheme scheme;
@@ -310,6 +319,8 @@ struct Model {
   VehicleModel vehicle[kMaxVehicles];
   VehicleWheel vehicle_wheel[kMaxWheels];
   RailSignal signal[kMaxSignals];
+  std::int32_t external_wheels;  // of a track alone with loads
+  ExternalWheelModel external_wheel[kMaxExternalWheels];
   SystemModel system;
   unsigned char sum[32];  // SHA-256 of the block it was loaded from; zeros of one that has none
 };

@@ -41,6 +41,7 @@ struct Workspace {
   double* imaginary;  // the same of condensed lines; solved is their real part
   double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
   double* system;     // system/workspace.h
+  double* external;   // [state_doubles] of models with external wheels: a state tried
 };
 
 /// What a frame publishes.
@@ -65,7 +66,13 @@ struct Outputs {
   double flange_force_peak[2 * kMaxWheelsets];  // N
   double flange_impulse[2 * kMaxWheelsets];     // N s
   double flange_gap[2 * kMaxWheelsets];         // m along its normal, negative in contact
-  double constraint_violation;                  // largest of the frame, m or rad
+  /// Of external wheels: the point of the rail under each at the frame's end.
+  bool external_on_rail[kMaxExternalWheels];
+  double external_place[kMaxExternalWheels];            // m along the model's elements
+  double external_force[kMaxExternalWheels];            // N along z, up positive
+  double external_displacement[kMaxExternalWheels][3];  // m
+  double external_velocity[kMaxExternalWheels][3];      // m/s, of the rail's material
+  double constraint_violation;                          // largest of the frame, m or rad
   std::int32_t iterations;      // largest of the frame, of contact, joint and Newton solves
   double force_residual;        // of the system: largest of the frame, over its largest force
   std::int32_t redundant_rows;  // of the system's joints, in the frame's last step that met any
@@ -79,7 +86,8 @@ inline std::int64_t state_doubles(const Model& model) noexcept {
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t contacts = contact_count(model);
   return (4 + contacts + model.condensed * (1 + 3 * contacts)) * model.unknowns +
-         system_workspace_doubles(model.system);
+         system_workspace_doubles(model.system) +
+         (model.external_wheels > 0 ? state_doubles(model) : 0);
 }
 
 /// Views over the caller's memory, which must be aligned to doubles.
@@ -114,7 +122,9 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           memory + 3 * n,
           condensed,
           row,
-          row + model.condensed * 2LL * contact_count(model) * n};
+          row + model.condensed * 2LL * contact_count(model) * n,
+          row + model.condensed * 2LL * contact_count(model) * n +
+              system_workspace_doubles(model.system)};
 }
 
 /// Puts the model's start into a state: step 0.

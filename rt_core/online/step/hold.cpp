@@ -32,6 +32,11 @@ void copy_published(const Model& model, const Outputs& from, Outputs& to) noexce
   copy(from.flange_force_peak, to.flange_force_peak, flanges);
   copy(from.flange_impulse, to.flange_impulse, flanges);
   copy(from.flange_gap, to.flange_gap, flanges);
+  copy(from.external_on_rail, to.external_on_rail, model.external_wheels);
+  copy(from.external_place, to.external_place, model.external_wheels);
+  copy(from.external_force, to.external_force, model.external_wheels);
+  copy(from.external_displacement, to.external_displacement, model.external_wheels);
+  copy(from.external_velocity, to.external_velocity, model.external_wheels);
 }
 
 }  // namespace railstep

@@ -23,7 +23,7 @@ void read_probes(const Model& model, const State& state, const Outputs& outputs,
                  double* value) noexcept {
   if (has(state.latched, Status::nonfinite_state)) return;
   const FloatMode flushed_to_zero;
-  RailForce forces[kMaxLoads + kMaxWheels];
+  RailForce forces[kMaxRailForces];
   const int count = rail_forces(model, outputs, forces);
   const ProbeModel& probe = model.probe;
   const double gone = passed(model, state.steps);

@@ -37,6 +37,9 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
     forces[count++] = rail_force(model, wheel_kind(model, i), outputs.wheel_place[i],
                                  outputs.wheel_on_rail[i] ? -outputs.wheel_force[i] : 0.);
+  for (std::int32_t i = 0; i < model.external_wheels; ++i)
+    forces[count++] = rail_force(model, model.external_wheel[i].kind, outputs.external_place[i],
+                                 outputs.external_on_rail[i] ? outputs.external_force[i] : 0.);
   return count;
 }
 

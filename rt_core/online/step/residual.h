@@ -13,8 +13,10 @@ struct RailForce {
 /// An element and its xi for a place along the model's elements, m; clipped to them.
 RailForce rail_force(const Model& model, std::int32_t kind, double x, double force) noexcept;
 
-/// Vertical forces of all loads, then all wheels, as published.
-/// @param forces  [kMaxLoads + kMaxWheels]
+inline constexpr int kMaxRailForces = kMaxLoads + kMaxWheels + kMaxExternalWheels;
+
+/// Vertical forces of all loads, then all wheels, then all external wheels, as published.
+/// @param forces  [kMaxRailForces]
 /// @returns how many
 int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) noexcept;
 

@@ -1,8 +1,11 @@
 #include "online/step/step.h"
 
+#include <cstring>
+
 #include "online/math/tiny.h"
 #include "online/model/course.h"
 #include "online/step/couple.h"
+#include "online/step/external.h"
 #include "online/step/float_mode.h"
 #include "online/step/follow.h"
 #include "online/step/hold.h"
@@ -179,10 +182,13 @@ void collect(const SystemResult& met, Outputs& out) noexcept {
   for (int i = 0; i < kMostNamedRows; ++i) out.redundant_row[i] = met.redundant_row[i];
 }
 
-void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
+/// @param external  [external_wheels] overwritten
+void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
+               ExternalContact* external) noexcept {
   follow_traffic(model, state.steps + 1, state, w);
   predict(model, state, w);
   advance_track(model, state, w);
+  if (model.external_wheels > 0) press_external(model, state.steps + 1, state, w, external);
   if (wheel_count(model) > 0 || model.fixed.count > 0)
     collect(model, state, couple(model, state.steps + 1, state, w), outputs);
   else if (model.condensed == 0)
@@ -220,8 +226,13 @@ Status advance_frame(const Model& model, State& state, Workspace& workspace,
   Outputs last;
   copy_published(model, outputs, last);
   start_frame(model, state, outputs);
+  ExternalContact external[kMaxExternalWheels];
   for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
-    make_step(model, state, workspace, outputs);
+    make_step(model, state, workspace, outputs, external);
+  if (model.external_wheels > 0) {
+    publish_external(model, state, external, outputs);
+    publish_external_rates(model, state, external, workspace, outputs);
+  }
   publish(model, state, outputs);
   if (has(outputs.status, Status::nonfinite_state)) copy_published(model, last, outputs);
   state.latched = state.latched | (outputs.status & kLatched);
@@ -234,6 +245,27 @@ Status advance_frame(const Model& model, const double* inputs, State& state, Wor
   return advance_frame(model, state, workspace, outputs);
 }
 
+Status external_response(const Model& model, const double* inputs, const State& state,
+                         Workspace& workspace, double* free, double* compliance) noexcept {
+  const FloatMode flushed_to_zero;
+  State tried = state_on(model, workspace.external);
+  std::memcpy(tried.u, state.u, sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
+  tried.steps = state.steps;
+  const Status met = take_inputs(model, inputs, tried);
+  for (std::int32_t n = 0; n < model.external_wheels; ++n)
+    for (int d = 0; d < 3; ++d) tried.input[model.external_wheel[n].input + 2 + d] = 0.;
+  Outputs outputs;
+  ExternalContact external[kMaxExternalWheels];
+  start_frame(model, tried, outputs);
+  make_step(model, tried, workspace, outputs, external);
+  publish_external(model, tried, external, outputs);
+  publish(model, tried, outputs);
+  for (std::int32_t n = 0; n < model.external_wheels; ++n)
+    for (int d = 0; d < 3; ++d) free[3 * n + d] = outputs.external_displacement[n][d];
+  external_compliance(model, external, workspace, compliance);
+  return met | outputs.status;
+}
+
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept {
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const PlacedLoad at = place(model, model.load[i], state.steps);
@@ -243,7 +275,7 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     outputs.load_deflection[i] = at.on_rail ? deflection(model, at, standing(model, state)) : 0.;
     if (!at.on_rail) outputs.status = outputs.status | Status::off_rail;
   }
-  RailForce force[kMaxLoads + kMaxWheels];
+  RailForce force[kMaxRailForces];
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < model.loads; ++i)
     outputs.load_deflection[i] += residual_displacement(model, force, count, i);
@@ -256,6 +288,10 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
         residual_displacement(model, force, count, model.loads + i) +
         own.force * (residual_axis(model, own) - residual_under(model, own));
   }
+  for (std::int32_t i = 0; i < model.external_wheels; ++i)
+    if (outputs.external_on_rail[i])
+      outputs.external_displacement[i][2] +=
+          residual_displacement(model, force, count, model.loads + wheel_count(model) + i);
   outputs.first_bad_unknown = first_bad(model, state);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
 }
@@ -283,8 +319,14 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
         state.wheel_force[wheel_count(model) + i];
     outputs.flange_gap[i] = -contact[i].penetration;
   }
+  if (model.external_wheels > 0) {
+    ExternalContact external[kMaxExternalWheels];
+    place_external(model, state.steps, state.input, standing(model, state), external);
+    publish_external(model, state, external, outputs);
+    for (auto& velocity : outputs.external_velocity) velocity[0] = velocity[1] = velocity[2] = 0.;
+  }
   publish(model, state, outputs);
-  RailForce force[kMaxLoads + kMaxWheels];
+  RailForce force[kMaxRailForces];
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
     if (outputs.wheel_on_rail[i])

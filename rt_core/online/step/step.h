@@ -22,6 +22,18 @@ inline constexpr std::size_t kStepStack = std::size_t{128} << 10;
 [[nodiscard]] Status advance_frame(const Model& model, const double* inputs, State& state,
                                    Workspace& workspace, Outputs& outputs) noexcept;
 
+/// What the next frame makes of the rail under external wheels, so that a vehicle outside the model
+/// can close its contacts in that frame: at its end their points are displaced, to rounding, by
+///   free + compliance * forces,
+/// with 3 n + d for direction d of wheel n. The state is not changed. Forces among the inputs are
+/// not looked at, places must be those of the frame.
+/// @param free        [3 external_wheels] m; 0 off the rail
+/// @param compliance  [3 external_wheels][3 external_wheels] m/N, symmetric; 0 off the rail
+/// @returns what the inputs and the step without forces met
+[[nodiscard]] Status external_response(const Model& model, const double* inputs, const State& state,
+                                       Workspace& workspace, double* free,
+                                       double* compliance) noexcept;
+
 /// Forces of loads and weight on the unknowns at a step, N; on modes of condensed lines, complex.
 /// @param re, im  [unknowns] overwritten; im of condensed models only
 void forces(const Model& model, std::int64_t step, double* re, double* im) noexcept;
