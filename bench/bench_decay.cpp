@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "online/step/step.h"
 #include "simulation.h"
 
 namespace railstep {

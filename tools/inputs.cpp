@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "csv.h"
 #include "read.h"
@@ -15,14 +13,7 @@ namespace railstep {
 namespace {
 
 constexpr std::size_t kTime = static_cast<std::size_t>(-1);
-
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be opened", file.string()));
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  return text;
-}
+constexpr std::size_t kLargestTable = std::size_t{256} << 20;  // bytes
 
 /// Which input each column is; kTime of the times.
 std::vector<std::size_t> columns_of(const CsvLine& header, const std::vector<std::string>& names) {
@@ -63,7 +54,7 @@ InputTable::InputTable(const std::filesystem::path& file, const std::vector<std:
     throw InputError(
         fmt::format("{}: the scene has no inputs; accepted is one with an input key in a force",
                     file.string()));
-  const std::string text = read_text(file);
+  const std::string text = read_text(file, kLargestTable);
   const std::vector<CsvLine> lines = csv_lines(text, file.string());
   if (lines.size() < 2)
     throw InputError(fmt::format(

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "csv.h"
@@ -16,6 +14,8 @@
 
 namespace railstep {
 namespace {
+
+constexpr std::size_t kLargestTrace = std::size_t{4} << 30;  // bytes
 
 double trace_number(std::string_view field, const std::string& place) {
   double value = 0.;
@@ -52,10 +52,7 @@ std::vector<double> peaks_of(const TraceTable& table) {
 }  // namespace
 
 TraceTable TraceTable::read(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be opened", file.string()));
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  const std::string text = read_text(file, kLargestTrace);
   const std::vector<CsvLine> lines = csv_lines(text, file.string());
   if (lines.empty() || !is_column_name(lines.front().fields.front()))
     throw InputError(fmt::format(

@@ -12,10 +12,10 @@
 #include "offline/track/statics.h"
 #include "online/model/course.h"
 #include "online/step/closing.h"
+#include "online/step/input.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/step.h"
-#include "online/step/table.h"
 #include "online/step/travel.h"
 #include "online/step/wheel.h"
 
