@@ -19,34 +19,6 @@
 namespace railstep {
 namespace {
 
-struct StatusText {
-  Status bit;
-  const char* name;
-  const char* sentence;
-};
-constexpr StatusText kStatus[] = {
-    {Status::off_rail, "off_rail",
-     "a load or wheel is off the rail and its force is 0: lengthen the track"},
-    {Status::contact_lost, "contact_lost", "a wheel stood free of its rail for a while"},
-    {Status::cap_reached, "cap_reached",
-     "a solve of contact, guide or joints ended at its cap: shorten step.dt_s or raise the cap"},
-    {Status::contact_unresolved, "contact_unresolved",
-     "a wheel struck its rail for fewer than 10 steps: its peak force is not right, shorten "
-     "step.dt_s"},
-    {Status::redundant_joint, "redundant_joint",
-     "a row of a joint hangs on others and carries no force of its own: leave it out, or hold the "
-     "joints by the augmented Lagrangian"},
-    {Status::large_turn, "large_turn",
-     "a rail under a wheel rolled by more than 0.14 rad, where the linear rail's roll is off by 1 "
-     "% "
-     "and more: give the pads roll stiffness, or less lateral force"},
-    {Status::nonfinite_input, "nonfinite_input",
-     "an input was not a finite number, and its last good value was held"},
-    {Status::force_saturated, "force_saturated",
-     "an input was beyond its limit, and was cut to it: see limit_n of its force"},
-    {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
-};
-
 /// kSensorQuantities of a system's sensors.
 void append_sensors(const Simulation& run, std::vector<double>& row) {
   const std::vector<SystemSensor>& sensors = run.system()->system.sensors;
@@ -174,13 +146,13 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
 
 std::vector<std::string> status_names(Status status) {
   std::vector<std::string> names;
-  for (const StatusText& text : kStatus)
+  for (const StatusText& text : kStatusTexts)
     if (has(status, text.bit)) names.emplace_back(text.name);
   return names;
 }
 
 std::string status_sentence(const std::string& name, const RunRecord& record) {
-  for (const StatusText& text : kStatus)
+  for (const StatusText& text : kStatusTexts)
     if (name == text.name)
       return text.bit == Status::redundant_joint && !record.redundant.empty()
                  ? fmt::format("{} ({})", text.sentence, fmt::join(record.redundant, ", "))

@@ -27,4 +27,36 @@ constexpr bool has(Status status, Status bit) noexcept {
   return (static_cast<std::uint32_t>(status) & static_cast<std::uint32_t>(bit)) != 0u;
 }
 
+/// A bit's name, as JSON and traces have it, and what it means and what to do about it.
+struct StatusText {
+  Status bit;
+  const char* name;
+  const char* sentence;
+};
+inline constexpr StatusText kStatusTexts[] = {
+    {Status::off_rail, "off_rail",
+     "a load or wheel is off the rail and its force is 0: lengthen the track"},
+    {Status::contact_lost, "contact_lost", "a wheel stood free of its rail for a while"},
+    {Status::cap_reached, "cap_reached",
+     "a solve of contact, guide or joints ended at its cap: shorten step.dt_s or raise the cap"},
+    {Status::contact_unresolved, "contact_unresolved",
+     "a wheel struck its rail for fewer than 10 steps: its peak force is not right, shorten "
+     "step.dt_s"},
+    {Status::redundant_joint, "redundant_joint",
+     "a row of a joint hangs on others and carries no force of its own: leave it out, or hold the "
+     "joints by the augmented Lagrangian"},
+    {Status::large_turn, "large_turn",
+     "a rail under a wheel rolled by more than 0.14 rad, where the linear rail's roll is off by 1 "
+     "% "
+     "and more: give the pads roll stiffness, or less lateral force"},
+    {Status::nonfinite_input, "nonfinite_input",
+     "an input was not a finite number, and its last good value was held"},
+    {Status::force_saturated, "force_saturated",
+     "an input was beyond its limit, and was cut to it: see limit_n of its force"},
+    {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
+};
+
+/// Of the first bit of these that is set; null: none.
+const StatusText* text_of(Status status) noexcept;
+
 }  // namespace railstep
