@@ -39,11 +39,12 @@ bool split_names(const char* text, std::size_t bytes, Names& columns, Names& inp
   columns = names_in(text, both ? end : bytes);
   inputs = both ? names_in(text + end + 2, bytes - end - 2) : Names{text, 0, 0};
   bool named = bytes < (std::size_t{1} << 30);
-  for (const Names* part : {&columns, &inputs})
-    for_names(*part, [&](std::int32_t, Name name) noexcept {
-      named = named && name.bytes > 0;
-      return false;
-    });
+  const auto look = [&](std::int32_t, Name name) noexcept {
+    named = named && name.bytes > 0;
+    return false;
+  };
+  for_names(columns, look);
+  for_names(inputs, look);
   return named;
 }
 
