@@ -182,10 +182,10 @@ TEST_CASE("in the air, mid-impact and at a cap a run goes on with the same bits"
                                     1600);
     CHECK(thrown.airborne);
     CHECK(thrown.impact);
-    CHECK(
-        resumed({condense, "wheelset[0].guide.cap=1", "wheelset[0].speed_table=[[0, 0], [0.1, 1]]"},
-                400)
-            .cap);
+    CHECK(resumed({condense, "wheelset[0].guide.cap=1",
+                   "wheelset[0].force=[{direction=\"x\", table=[[0, 0], [0.01, 1e4]]}]"},
+                  400)
+              .cap);
   }
 }
 
