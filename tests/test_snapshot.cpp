@@ -182,7 +182,7 @@ TEST_CASE("in the air, mid-impact and at a cap a run goes on with the same bits"
                                     1600);
     CHECK(thrown.airborne);
     CHECK(thrown.impact);
-    CHECK(resumed({condense, "wheelset[0].guide.cap=1",
+    CHECK(resumed({condense, "wheelset[0].guide.cap=1", "wheelset[0].guide.tolerance=1e-15",
                    "wheelset[0].force=[{direction=\"x\", table=[[0, 0], [0.01, 1e4]]}]"},
                   400)
               .cap);
