@@ -89,6 +89,6 @@ TEST_CASE("what is not two traces of the same columns gets one sentence", "[comp
   CHECK_THAT(sentence(kHead + "0,1\n", "time_s\n0\n"), Contains("has 2 columns"));
   CHECK_THAT(sentence(kHead + "0\n", kHead + "0,1\n"), Contains("a.csv:2: 1 values"));
   CHECK_THAT(sentence(kHead + "0,x\n", kHead + "0,1\n"), Contains("'x' is not a number"));
-  CHECK_THAT(sentence("", kHead), Contains("is not a trace"));
+  CHECK_THAT(sentence("", kHead), Contains("is empty"));
   CHECK_THAT(sentence("0,1\n", "0,1\n"), Contains("is not a trace"));
 }

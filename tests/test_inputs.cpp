@@ -121,7 +121,10 @@ TEST_CASE("energies balance under inputs, of wheelsets and of systems", "[inputs
     const EnergyBalance balance = balance_of(*run.packed(), run.model(), 200, {}, swinging);
     CHECK(record.first_bad_unknown < 0);
     CHECK(balance.hash == state_hash(run.model(), run.state));
-    CHECK(balance.error < 1e-3);
+    // Condensed lines hold forces over a step, which loses to first order; a table of the same
+    // force loses as much.
+    CHECK(balance.error < (kind == std::string("modal") ? 1e-2 : 1e-3));
+    CHECK(std::abs(balance.error - balance.numerical_loss) < 1e-5);
   }
   for (const char* scheme : {"generalised-alpha", "energy-momentum"}) {
     const auto run = simulation_of(read_any_scene(
@@ -155,7 +158,12 @@ TEST_CASE("a moment of an input turns a body as a constant one does", "[inputs]"
     simulate(*run, 100, nullptr, false, {}, given ? inputs : FrameInputs{});
     return std::vector<double>(run->state.quaternion, run->state.quaternion + 4);
   };
-  CHECK(turned("input=\"motor\", limit_n_m=1", true) == turned("moment_n_m=0.02", false));
+  // M t^2 / (2 J) from half a step on, to the scheme's second order: a constant moment is in
+  // balance at t = 0, the input comes with the first step.
+  const auto half_turn = [](double t) { return std::sin(.5 * (.5 * .02 / 8e-3 * t * t)); };
+  CHECK(turned("moment_n_m=0.02", false)[2] == Approx(half_turn(.1)).epsilon(1e-4));
+  CHECK(turned("input=\"motor\", limit_n_m=1", true)[2] ==
+        Approx(half_turn(.1 - .5e-3)).epsilon(1e-4));
   CHECK(turned("input=\"motor\", limit_n_m=1", false)[2] == 0.);
 }
 
@@ -189,7 +197,8 @@ TEST_CASE("bad tables of inputs and bad inputs of scenes get one sentence", "[in
   CHECK_THAT(told("time_s,push.force_n\n-1,1\n", kPushed), Contains("times from 0 on"));
   CHECK_THAT(told("time_s,push.force_n\n0,nan\n", kPushed), Contains("not a"));
   CHECK_THAT(told("time_s,push.force_n\n0\n", kPushed), Contains("in.csv:2: 1 values"));
-  CHECK_THAT(told("", kPushed), Contains("holds no rows"));
+  CHECK_THAT(told("time_s,push.force_n\n", kPushed), Contains("holds no rows"));
+  CHECK_THAT(told("", kPushed), Contains("is empty"));
   CHECK_THAT(told("time_s,push.force_n\n0,1\n", "wheelset[0].force=[]"), Contains("has no inputs"));
   CHECK_THAT(
       told("time_s,push.force_n\n0,1\n", "wheelset[0].force=[{direction=\"y\", input=\"push\"}]"),

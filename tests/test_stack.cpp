@@ -54,7 +54,7 @@ TEST_CASE("painted stacks show what is used, so the bound could fail", "[stack]"
 #if !defined(__SANITIZE_ADDRESS__)  // which may put a function's arrays elsewhere
   CHECK(much > little + 90'000);
 #endif
-  CHECK(little < 20'000);
+  CHECK(little < 100'000);  // what the thread itself keeps there
 }
 
 TEST_CASE("a frame of every scene fits the stack that the step is said to need", "[stack]") {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "csv.h"
 #include "read.h"
@@ -60,7 +61,7 @@ InputTable::InputTable(const std::filesystem::path& file, const std::vector<std:
     throw InputError(fmt::format(
         "{}: holds no rows; accepted are a line of names and rows under it", file.string()));
   const std::vector<std::size_t> columns = columns_of(lines.front(), names);
-  double last = -1.;
+  double last = -std::numeric_limits<double>::infinity();
   for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
     refuse_decimal_comma(*line, columns.size());
     if (line->fields.size() != columns.size())
