@@ -12,61 +12,11 @@
 #include "heap_count.h"
 #include "online/model/system_workspace.h"
 #include "online/step/line.h"
-#include "online/step/probe.h"
 #include "online/step/step.h"
-#include "online/system/sense.h"
+#include "online/step/trace_row.h"
 
 namespace railstep {
 namespace {
-
-/// kSensorQuantities of a system's sensors.
-void append_sensors(const Simulation& run, std::vector<double>& row) {
-  const std::vector<SystemSensor>& sensors = run.system()->system.sensors;
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const PointMotion p = sense(run.model(), run.state, static_cast<std::int32_t>(i));
-    row.insert(row.end(), p.position, p.position + 3);
-    for (int d = 0; d < 3; ++d) row.push_back(p.position[d] - sensors[i].point[d]);
-    row.push_back(p.velocity[2]);
-  }
-}
-
-/// kJointQuantities of traced joints, then the pull of traced springs.
-void append_forces(const Simulation& run, std::vector<double>& row) {
-  const TracedForces& traced = run.system()->traced;
-  for (const int joint : traced.joints) {
-    const JointForce f = joint_force(run.model(), run.state, joint);
-    row.insert(row.end(), f.force, f.force + 3);
-    row.insert(row.end(), f.moment, f.moment + 3);
-  }
-  for (const int spring : traced.springs)
-    row.push_back(run.state.row_force[run.model().system.joint_rows + spring]);
-}
-
-void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
-  const Model& model = run.model();
-  row.assign({static_cast<double>(run.state.steps) * model.scheme.dt});
-  for (std::int32_t i = 0; i < model.loads; ++i) {
-    row.push_back(outputs.load_x[i]);
-    row.push_back(outputs.load_deflection[i]);
-  }
-  for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    row.insert(row.end(),
-               {outputs.wheel_force[i], outputs.wheel_force_mean[i], outputs.wheel_force_peak[i],
-                outputs.wheel_impulse[i], outputs.wheel_gap[i], outputs.wheel_rail_z[i]});
-  for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
-    row.insert(row.end(), {outputs.flange_force[i], outputs.flange_force_peak[i],
-                           outputs.flange_impulse[i], outputs.flange_gap[i]});
-  for (std::int32_t i = 0; i < model.external_wheels; ++i) {
-    row.insert(row.end(), outputs.external_displacement[i], outputs.external_displacement[i] + 3);
-    row.insert(row.end(), outputs.external_velocity[i], outputs.external_velocity[i] + 3);
-  }
-  const std::size_t probes = row.size();
-  row.resize(probes + static_cast<std::size_t>(model.probe.count));
-  read_probes(model, run.state, outputs, row.data() + probes);
-  if (run.system() == nullptr) return;
-  append_sensors(run, row);
-  append_forces(run, row);
-}
 
 /// Axes of the rails that the model's lines carry.
 void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
@@ -115,7 +65,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
                    const std::function<void(std::int64_t)>& after, const FrameInputs& inputs) {
   RunRecord record;
   Outputs outputs{};
-  std::vector<double> row;
+  std::vector<double> row(static_cast<std::size_t>(trace_columns(run.model())));
   const auto take = [&] {
     record.status = record.status | outputs.status;
     record.first_bad_unknown = outputs.first_bad_unknown;
@@ -124,7 +74,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
         std::max(record.constraint_violation, outputs.constraint_violation);
     note_redundant(run, outputs, record);
     if (!trace && !keep_rows) return;
-    write_row(run, outputs, row);
+    trace_row(run.model(), run.state, outputs, row.data());
     if (trace) trace->row(row);
     if (!keep_rows) return;
     record.rows.insert(record.rows.end(), row.begin(), row.end());

@@ -1,8 +1,9 @@
 /* A vehicle that railstep knows nothing of, on a railstep track: a wheel under a sprung mass, with
  * a Hertz contact that is closed in the frame in which it acts.
  *
- * Usage: own_vehicle MODEL SECONDS [explicit]
+ * Usage: own_vehicle MODEL SECONDS HERTZ [explicit]
  *   MODEL  `railstep condense` of a scene with one [[external_wheel]], in full order
+ *   HERTZ  of the contact's law HERTZ d^1.5, N/m^1.5; 9e10 of a wheel of .46 m on a new rail
  * Prints a line a frame: time, force on the wheel, rail and wheel displacement.
  *
  * Each frame: ask the track what it would do without the wheel's force and how it gives way
@@ -23,7 +24,6 @@
 enum { kWheel, kBody, kMasses };
 static const double kMass[kMasses] = {900.0, 5000.0};   /* kg */
 static const double kStiffness = 1.0e6, kDamping = 2e4; /* N/m, N s/m */
-static const double kHertz = 9.0e10;                    /* N/m^1.5 */
 static const double kGravity = 9.81;                    /* m/s2 */
 static const double kStart = 0.3, kSpeed = 30.0;        /* m, m/s */
 static const double kRhoInf = 0.6; /* of its generalised-alpha, as the track's */
@@ -78,20 +78,20 @@ static Vehicle moved(const Scheme* s, const Vehicle* from, double force) {
   return to;
 }
 
-static double hertz(double d) { return d > 0.0 ? kHertz * d * sqrt(d) : 0.0; }
+static double hertz(double constant, double d) { return d > 0.0 ? constant * d * sqrt(d) : 0.0; }
 
 /* The force that wheel and rail agree on: f = hertz(d_free - w f), which has one root. */
-static double contact_force(double d_free, double w) {
+static double contact_force(double constant, double d_free, double w) {
   if (d_free <= 0.0) return 0.0;
   double d = d_free;
   for (int n = 0; n < 60; ++n) {
-    const double miss = d + w * hertz(d) - d_free;
-    const double step = miss / (1.0 + 1.5 * w * kHertz * sqrt(d));
+    const double miss = d + w * hertz(constant, d) - d_free;
+    const double step = miss / (1.0 + 1.5 * w * constant * sqrt(d));
     d -= step;
     if (d <= 0.0) d = 0.5 * (d + step);
     if (fabs(step) <= 1e-16 * d_free) break;
   }
-  return hertz(d);
+  return hertz(constant, d);
 }
 
 static void* whole_file(const char* name, size_t* bytes) {
@@ -114,7 +114,8 @@ static int fail(const char* what, const char* why) {
 /* What a frame is given: place along and across, force on the rail. */
 enum { kX, kY, kForceX, kForceY, kForceZ, kInputs };
 
-static int ride(railstep_run* run, double frame_s, double seconds, int explicitly) {
+static int ride(railstep_run* run, double frame_s, double seconds, double constant,
+                int explicitly) {
   const Scheme scheme = scheme_of(frame_s);
   Vehicle vehicle;
   memset(&vehicle, 0, sizeof vehicle);
@@ -128,9 +129,9 @@ static int ride(railstep_run* run, double frame_s, double seconds, int explicitl
     const Vehicle free_vehicle = moved(&scheme, &vehicle, 0.0);
     const Vehicle pushed = moved(&scheme, &vehicle, 1.0);
     const double give = pushed.u[kWheel] - free_vehicle.u[kWheel]; /* of the wheel, m/N */
-    const double force =
-        explicitly ? hertz(rail - vehicle.u[kWheel])
-                   : contact_force(motion[2] - free_vehicle.u[kWheel], compliance[8] + give);
+    const double force = explicitly ? hertz(constant, rail - vehicle.u[kWheel])
+                                    : contact_force(constant, motion[2] - free_vehicle.u[kWheel],
+                                                    compliance[8] + give);
     vehicle = moved(&scheme, &vehicle, force);
     in[kForceZ] = -force;
     railstep_step(run, in);
@@ -142,7 +143,7 @@ static int ride(railstep_run* run, double frame_s, double seconds, int explicitl
 }
 
 int main(int argc, char** argv) {
-  if (argc < 3) return fail("usage", "own_vehicle MODEL SECONDS [explicit]");
+  if (argc < 4) return fail("usage", "own_vehicle MODEL SECONDS HERTZ [explicit]");
   size_t bytes = 0;
   void* const block = whole_file(argv[1], &bytes);
   if (!block) return fail(argv[1], "cannot be read");
@@ -156,7 +157,7 @@ int main(int argc, char** argv) {
   void* const memory = malloc(size);
   result = railstep_start(model, memory, size, &run);
   if (result != RAILSTEP_OK) return fail(argv[1], railstep_result_text(result));
-  const int code = ride(run, railstep_frame_s(model), atof(argv[2]), argc > 3);
+  const int code = ride(run, railstep_frame_s(model), atof(argv[2]), atof(argv[3]), argc > 4);
   free(memory);
   free(place);
   free(block);
