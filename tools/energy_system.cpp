@@ -55,7 +55,7 @@ SystemAccount::Standing SystemAccount::stand(const State& state) const {
   for (std::int32_t f = 0; f < s.forces; ++f) {
     const PointForceModel& force = s.force[f];
     const MarkerModel& marker = s.marker[force.marker];
-    now.force.emplace_back(motion_at(s.motion[force.motion], time).x *
+    now.force.emplace_back(motion_at(s, force.motion, time).x *
                            Vector3d(force.direction[0], force.direction[1], force.direction[2]));
     now.point.push_back(force.moment != 0 ? angular_velocity(s, marker.part, at)
                                           : point_of(marker_jet(s, marker, at)));
@@ -70,7 +70,7 @@ SystemAccount::Standing SystemAccount::stand(const State& state) const {
     }
     now.multiplier.push_back(driven ? state.row_force[r] : 0.);
     now.drive_rate.push_back(
-        driven ? row_jet(row, held(a), held(b), motion_at(s.motion[row.motion], time)).v : 0.);
+        driven ? row_jet(row, held(a), held(b), motion_at(s, row.motion, time)).v : 0.);
   }
   return now;
 }

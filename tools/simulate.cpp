@@ -45,25 +45,26 @@ constexpr StatusText kStatus[] = {
 
 /// kSensorQuantities of a system's sensors.
 void append_sensors(const Simulation& run, std::vector<double>& row) {
-  const std::vector<SystemSensor>& sensors = run.system()->system.sensors;
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const PointMotion p = sense(run.model(), run.state, static_cast<std::int32_t>(i));
+  const SystemModel& system = run.model().system;
+  for (std::int32_t i = 0; i < system.sensors; ++i) {
+    const PointMotion p = sense(run.model(), run.state, i);
+    const double* rest = system.sensor_rest + std::ptrdiff_t{3} * i;
     row.insert(row.end(), p.position, p.position + 3);
-    for (int d = 0; d < 3; ++d) row.push_back(p.position[d] - sensors[i].point[d]);
+    for (int d = 0; d < 3; ++d) row.push_back(p.position[d] - rest[d]);
     row.push_back(p.velocity[2]);
   }
 }
 
 /// kJointQuantities of traced joints, then the pull of traced springs.
 void append_forces(const Simulation& run, std::vector<double>& row) {
-  const TracedForces& traced = run.system()->traced;
-  for (const int joint : traced.joints) {
-    const JointForce f = joint_force(run.model(), run.state, joint);
+  const SystemModel& system = run.model().system;
+  for (std::int32_t i = 0; i < system.traced_joints; ++i) {
+    const JointForce f = joint_force(run.model(), run.state, system.traced_joint[i]);
     row.insert(row.end(), f.force, f.force + 3);
     row.insert(row.end(), f.moment, f.moment + 3);
   }
-  for (const int spring : traced.springs)
-    row.push_back(run.state.row_force[run.model().system.joint_rows + spring]);
+  for (std::int32_t i = 0; i < system.traced_springs; ++i)
+    row.push_back(run.state.row_force[system.joint_rows + system.traced_spring[i]]);
 }
 
 void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
@@ -83,7 +84,6 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
   const std::size_t probes = row.size();
   row.resize(probes + static_cast<std::size_t>(model.probe.count));
   read_probes(model, run.state, outputs, row.data() + probes);
-  if (run.system() == nullptr) return;
   append_sensors(run, row);
   append_forces(run, row);
 }
@@ -120,11 +120,16 @@ double timed_frame(Simulation& run, Outputs& outputs, std::int64_t& allocations)
   return std::chrono::duration<double, std::micro>(end - start).count();
 }
 
+/// A model file has no names: its joints are numbered as the scene has them.
+std::string joint_name(const Simulation& run, std::int32_t joint) {
+  return run.system() != nullptr ? run.system()->names.joints[static_cast<std::size_t>(joint)]
+                                 : fmt::format("joint[{}]", joint);
+}
+
 void note_redundant(const Simulation& run, const Outputs& outputs, RunRecord& record) {
-  if (run.system() == nullptr) return;
   for (int i = 0; i < std::min(outputs.redundant_rows, kMostNamedRows); ++i) {
     const RowModel& row = run.model().system.row[outputs.redundant_row[i]];
-    record.redundant.insert(run.system()->names.joints[static_cast<std::size_t>(row.joint)]);
+    record.redundant.insert(joint_name(run, row.joint));
   }
 }
 
@@ -201,22 +206,27 @@ std::string place_in_track(const Model& model, std::int32_t unknown) {
 }
 
 /// @param unknown  from the system's first on
-std::string place_in_system(const SystemModel& system, const SystemNames& names,
+/// @param names    null for a model file
+std::string place_in_system(const SystemModel& system, const SystemNames* names,
                             std::int32_t unknown) {
   static const char* const of_body[6] = {"x position of",   "y position of",   "z position of",
                                          "turn about x of", "turn about y of", "turn about z of"};
+  const auto named = [](const char* what, const std::vector<std::string>* all, std::int32_t index) {
+    return all != nullptr ? fmt::format("{} \"{}\"", what, (*all)[static_cast<std::size_t>(index)])
+                          : fmt::format("{}[{}]", what, index);
+  };
   for (std::int32_t b = 0; b < system.bodies; ++b)
     for (int c = 0; c < 6; ++c)
       if (const std::int32_t column = system.body[b].column[c];
           column >= 0 && system.body[b].first + column == unknown)
-        return fmt::format("{} body \"{}\"", of_body[c], names.bodies[static_cast<std::size_t>(b)]);
+        return fmt::format("{} {}", of_body[c], named("body", names ? &names->bodies : nullptr, b));
   for (std::int32_t b = 0; b < system.beams; ++b) {
     const BeamChainModel& beam = system.beam[b];
     const std::int32_t at = unknown - beam.first, width = beam_width(beam);
     if (at < 0 || at >= beam.unknowns) continue;
     const int which = beam.planar != 0 ? kPlanarOf[at % width] : at % width;
-    return fmt::format("{} of node {} of beam \"{}\"", kNodeUnknowns[which], at / width,
-                       names.beams[static_cast<std::size_t>(b)]);
+    return fmt::format("{} of node {} of {}", kNodeUnknowns[which], at / width,
+                       named("beam", names ? &names->beams : nullptr, b));
   }
   for (std::int32_t p = 0; p < system.ports; ++p)
     if (unknown >= system.port[p].first && unknown < system.port[p].first + 9)
@@ -228,10 +238,10 @@ std::string place_in_system(const SystemModel& system, const SystemNames& names,
 }  // namespace
 
 std::string unknown_place(const Simulation& run, std::int32_t unknown) {
-  if (run.system() == nullptr || unknown < run.model().system.first)
-    return place_in_track(run.model(), unknown);
   const SystemModel& system = run.model().system;
-  return place_in_system(system, run.system()->names, unknown - system.first);
+  if (system.unknowns == 0 || unknown < system.first) return place_in_track(run.model(), unknown);
+  const SystemNames* const names = run.system() != nullptr ? &run.system()->names : nullptr;
+  return place_in_system(system, names, unknown - system.first);
 }
 
 double quantile(std::vector<double> values, double q) {
