@@ -18,8 +18,9 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
 
 void reset(const Model& model, State& state) noexcept {
   state.steps = 0;
-  std::memcpy(state.u, model.start,
-              sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
+  const std::int64_t given = start_doubles(model), all = state_doubles(model);
+  std::memcpy(state.u, model.start, sizeof(double) * static_cast<std::size_t>(given));
+  for (std::int64_t i = given; i < all; ++i) state.u[i] = 0.;
 }
 
 std::uint64_t state_hash(const Model& model, const State& state) noexcept {
