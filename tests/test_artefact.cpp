@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "artefact.h"
+#include "block_mutations.h"
 #include "build.h"
 #include "offline/pack/cost.h"
 #include "offline/vehicle/kinds.h"
@@ -79,46 +80,6 @@ const std::string kText = "time_s\nsome.column_m";
 
 Block small_block(bool modal, bool wheels) {
   return to_block(small_model(modal, wheels)->model(), kText);
-}
-
-/// Any word of a block's content, or the next one behind it that may be a count.
-std::size_t some_word(const Block& block, std::mt19937_64& random) {
-  const std::size_t words = (block.size() - kSummedFrom) / 8;
-  std::size_t at = kSummedFrom + 8 * static_cast<std::size_t>(random() % words);
-  if (random() % 2 == 0) return at;
-  while (at + 16 <= block.size() && (word_of(block, at) < 1 || word_of(block, at) > 100'000))
-    at += 8;
-  return at;
-}
-
-std::int64_t some_value(std::int64_t old, std::mt19937_64& random) {
-  const auto bits = [](double x) {
-    std::int64_t word = 0;
-    std::memcpy(&word, &x, sizeof word);
-    return word;
-  };
-  switch (random() % 10) {
-    case 0:
-      return static_cast<std::int64_t>(random());
-    case 1:
-      return old ^ (std::int64_t{1} << (random() % 63));
-    case 2:
-      return static_cast<std::int64_t>(random() % 64);
-    case 3:
-      return static_cast<std::int64_t>(static_cast<std::uint64_t>(old) + 1u);
-    case 4:
-      return static_cast<std::int64_t>(static_cast<std::uint64_t>(old) - 1u);
-    case 5:
-      return -1;
-    case 6:
-      return std::numeric_limits<std::int64_t>::max();
-    case 7:
-      return bits(std::numeric_limits<double>::quiet_NaN());
-    case 8:
-      return bits(1e300);
-    default:
-      return bits(-std::numeric_limits<double>::infinity());
-  }
 }
 
 }  // namespace
@@ -275,12 +236,7 @@ TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact]
       const Block good = small_block(modal, wheels);
       int loaded = 0, refused = 0;
       for (int round = 0; round < 1500; ++round) {
-        Block bad = good;
-        for (std::uint64_t i = 0, n = 1 + random() % 4; i < n; ++i) {
-          const std::size_t at = some_word(bad, random);
-          put_word(bad, at, some_value(word_of(bad, at), random));
-        }
-        sign(bad);
+        const Block bad = mutated(good, random);
         Model model;
         if (read(bad, model).status != LoadStatus::ok) {
           ++refused;

@@ -96,9 +96,8 @@ struct Rows {
     const SystemModel& s = model.system;
     const RowModel& row = s.row[r];
     const Motions at{w.x, w.v, w.g, w.matrix};
-    return row_jet(
-        row, marker_jet(s, s.marker[row.a], at), marker_jet(s, s.marker[row.b], at),
-        row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.});
+    return row_jet(row, marker_jet(s, s.marker[row.a], at), marker_jet(s, s.marker[row.b], at),
+                   row.motion >= 0 ? motion_at(s, row.motion, time) : Jet{row.offset, 0., 0.});
   }
   /// Displacements of the beams at random; of bodies too, but no turn.
   VectorXd random(double size, bool turns, unsigned seed) const {

@@ -40,6 +40,7 @@ SystemOptions options_of(const SystemScene& scene) {
   options.steps_per_frame = static_cast<int>(scene.step.steps_per_frame);
   options.steps = scene.step.steps;
   options.at_rest = scene.step.start == Start::equilibrium;
+  options.traced = scene.traced;
   return options;
 }
 
@@ -73,7 +74,7 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
 }  // namespace
 
 BuiltSystem::BuiltSystem(const SystemScene& scene) try
-    : names(scene.names), traced(scene.traced), system(system_of(scene)) {
+    : names(scene.names), system(system_of(scene)) {
   // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   columns = {"time_s"};
@@ -82,11 +83,11 @@ BuiltSystem::BuiltSystem(const SystemScene& scene) try
   for (const std::string& sensor : names.sensors)
     for (const char* quantity : kSensorQuantities)
       columns.push_back(fmt::format("{}.{}", sensor, quantity));
-  for (const int joint : traced.joints)
+  for (const int joint : scene.traced.joints)
     for (const char* quantity : kJointQuantities)
       columns.push_back(
           fmt::format("{}.{}", names.joints[static_cast<std::size_t>(joint)], quantity));
-  for (const int spring : traced.springs)
+  for (const int spring : scene.traced.springs)
     columns.push_back(fmt::format("{}.force_n", names.springs[static_cast<std::size_t>(spring)]));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));

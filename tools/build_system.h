@@ -20,7 +20,6 @@ inline constexpr const char* kJointQuantities[] = {"force_x_n",    "force_y_n", 
 struct BuiltSystem {
   explicit BuiltSystem(const SystemScene& scene);
   SystemNames names;
-  TracedForces traced;
   System system;
   std::vector<std::string> columns;
   std::vector<std::string> inputs;  // NAME.force_n or NAME.moment_n_m of each

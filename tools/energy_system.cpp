@@ -56,7 +56,7 @@ SystemAccount::Standing SystemAccount::stand(const State& state) const {
     const PointForceModel& force = s.force[f];
     const MarkerModel& marker = s.marker[force.marker];
     const double size =
-        force.input >= 0 ? state.input[force.input] : motion_at(s.motion[force.motion], time).x;
+        force.input >= 0 ? state.input[force.input] : motion_at(s, force.motion, time).x;
     now.force.emplace_back(size *
                            Vector3d(force.direction[0], force.direction[1], force.direction[2]));
     now.point.push_back(force.moment != 0 ? angular_velocity(s, marker.part, at)
@@ -72,7 +72,7 @@ SystemAccount::Standing SystemAccount::stand(const State& state) const {
     }
     now.multiplier.push_back(driven ? state.row_force[r] : 0.);
     now.drive_rate.push_back(
-        driven ? row_jet(row, held(a), held(b), motion_at(s.motion[row.motion], time)).v : 0.);
+        driven ? row_jet(row, held(a), held(b), motion_at(s, row.motion, time)).v : 0.);
   }
   return now;
 }

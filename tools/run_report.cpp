@@ -70,7 +70,7 @@ std::string paths_script(const Simulation& run, const RunRecord& record) {
   const std::vector<std::string>& columns = run.columns();
   const std::size_t rows = record.rows.size() / columns.size(), every = rows / kPoints + 1;
   std::string blocks, curves;
-  for (std::size_t c = 0; run.system() != nullptr && c < columns.size(); ++c) {
+  for (std::size_t c = 0; run.model().system.unknowns > 0 && c < columns.size(); ++c) {
     if (!columns[c].ends_with(".x_m")) continue;
     blocks += fmt::format("$path{} << EOD\n", c);
     for (std::size_t r = 0; r < rows; r += every)
@@ -94,7 +94,7 @@ std::string joints_script(const Simulation& run, const RunRecord& record) {
   const std::vector<double>& off = record.violations;
   const std::size_t width = run.columns().size(), every = off.size() / kPoints + 1;
   std::string data;
-  for (std::size_t r = 0; run.system() != nullptr && r < off.size(); r += every)
+  for (std::size_t r = 0; run.model().system.unknowns > 0 && r < off.size(); r += every)
     if (off[r] > 0.) data += fmt::format("{:.9g} {:.6g}\n", record.rows[r * width], off[r]);
   if (data.empty()) return {};
   return fmt::format(

@@ -21,11 +21,6 @@ struct SystemNames {
   std::vector<std::string> bodies, beams, joints, springs, sensors;
 };
 
-/// Joints and springs whose forces the trace has, by index.
-struct TracedForces {
-  std::vector<int> joints, springs;
-};
-
 /// One scene of bodies, beams and joints, alone or beside a track, every number checked and in SI.
 /// config/README.md, "Systems", has it key by key.
 struct SystemScene {

@@ -51,11 +51,16 @@ double timed_frame(Simulation& run, const FrameInputs& inputs, std::int64_t fram
   return std::chrono::duration<double, std::micro>(end - start).count();
 }
 
+/// A model file has no names: its joints are numbered as the scene has them.
+std::string joint_name(const Simulation& run, std::int32_t joint) {
+  return run.system() != nullptr ? run.system()->names.joints[static_cast<std::size_t>(joint)]
+                                 : fmt::format("joint[{}]", joint);
+}
+
 void note_redundant(const Simulation& run, const Outputs& outputs, RunRecord& record) {
-  if (run.system() == nullptr) return;
   for (int i = 0; i < std::min(outputs.redundant_rows, kMostNamedRows); ++i) {
     const RowModel& row = run.model().system.row[outputs.redundant_row[i]];
-    record.redundant.insert(run.system()->names.joints[static_cast<std::size_t>(row.joint)]);
+    record.redundant.insert(joint_name(run, row.joint));
   }
 }
 
@@ -132,22 +137,27 @@ std::string place_in_track(const Model& model, std::int32_t unknown) {
 }
 
 /// @param unknown  from the system's first on
-std::string place_in_system(const SystemModel& system, const SystemNames& names,
+/// @param names    null for a model file
+std::string place_in_system(const SystemModel& system, const SystemNames* names,
                             std::int32_t unknown) {
   static const char* const of_body[6] = {"x position of",   "y position of",   "z position of",
                                          "turn about x of", "turn about y of", "turn about z of"};
+  const auto named = [](const char* what, const std::vector<std::string>* all, std::int32_t index) {
+    return all != nullptr ? fmt::format("{} \"{}\"", what, (*all)[static_cast<std::size_t>(index)])
+                          : fmt::format("{}[{}]", what, index);
+  };
   for (std::int32_t b = 0; b < system.bodies; ++b)
     for (int c = 0; c < 6; ++c)
       if (const std::int32_t column = system.body[b].column[c];
           column >= 0 && system.body[b].first + column == unknown)
-        return fmt::format("{} body \"{}\"", of_body[c], names.bodies[static_cast<std::size_t>(b)]);
+        return fmt::format("{} {}", of_body[c], named("body", names ? &names->bodies : nullptr, b));
   for (std::int32_t b = 0; b < system.beams; ++b) {
     const BeamChainModel& beam = system.beam[b];
     const std::int32_t at = unknown - beam.first, width = beam_width(beam);
     if (at < 0 || at >= beam.unknowns) continue;
     const int which = beam.planar != 0 ? kPlanarOf[at % width] : at % width;
-    return fmt::format("{} of node {} of beam \"{}\"", kNodeUnknowns[which], at / width,
-                       names.beams[static_cast<std::size_t>(b)]);
+    return fmt::format("{} of node {} of {}", kNodeUnknowns[which], at / width,
+                       named("beam", names ? &names->beams : nullptr, b));
   }
   for (std::int32_t p = 0; p < system.ports; ++p)
     if (unknown >= system.port[p].first && unknown < system.port[p].first + 9)
@@ -159,10 +169,10 @@ std::string place_in_system(const SystemModel& system, const SystemNames& names,
 }  // namespace
 
 std::string unknown_place(const Simulation& run, std::int32_t unknown) {
-  if (run.system() == nullptr || unknown < run.model().system.first)
-    return place_in_track(run.model(), unknown);
   const SystemModel& system = run.model().system;
-  return place_in_system(system, run.system()->names, unknown - system.first);
+  if (system.unknowns == 0 || unknown < system.first) return place_in_track(run.model(), unknown);
+  const SystemNames* const names = run.system() != nullptr ? &run.system()->names : nullptr;
+  return place_in_system(system, names, unknown - system.first);
 }
 
 double quantile(std::vector<double> values, double q) {

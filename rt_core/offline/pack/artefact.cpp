@@ -32,6 +32,10 @@ class Writer {
   void integers(const std::int32_t* values, std::int64_t n) {
     array(values, n, sizeof(std::int32_t));
   }
+  template <typename T>
+  void structures(const T* values, std::int64_t n) {
+    array(values, n, sizeof(T));
+  }
   void text(const std::string& text) {
     word(static_cast<std::int64_t>(text.size()));
     bytes(text.data(), text.size());
@@ -68,6 +72,7 @@ std::vector<std::byte> to_block(const Model& model, const std::string& text) {
   writer.text(text);
   Model copy = model;  // describe() also reads into one
   describe(writer, copy);
+  describe_start(writer, copy);
   std::memcpy(block.data(), "railstep", 8);
   put(block, 8, kBlockFormat);
   put(block, 16, static_cast<std::int64_t>(block.size()));

@@ -26,6 +26,7 @@ class Connector {
   void add(const SystemForce& force);
   void add(const SystemSensor& sensor) {
     parts_.sensors.push_back(marker(sensor.on, sensor.point, Matrix3d::Identity()));
+    parts_.sensor_rest.insert(parts_.sensor_rest.end(), sensor.point.begin(), sensor.point.end());
   }
 
  private:
@@ -150,10 +151,11 @@ std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Ma
 }
 
 std::int32_t Connector::motion(const Motion& motion) {
-  MotionPieces pieces = motion_pieces(motion);
-  const auto count = static_cast<std::int32_t>(pieces.start.size());
-  parts_.motions.push_back(
-      {count, parts_.keep(std::move(pieces.start)), parts_.keep(std::move(pieces.coefficient))});
+  const MotionPieces made = motion_pieces(motion);
+  parts_.motions.push_back({static_cast<std::int32_t>(parts_.piece_start.size()),
+                            static_cast<std::int32_t>(made.start.size())});
+  parts_.piece_start.insert(parts_.piece_start.end(), made.start.begin(), made.start.end());
+  parts_.piece.insert(parts_.piece.end(), made.coefficient.begin(), made.coefficient.end());
   return static_cast<std::int32_t>(parts_.motions.size()) - 1;
 }
 
@@ -193,7 +195,11 @@ void Connector::add_either_way(const Joint& joint) {
       return row(RowKind::along_a, 0, 0, 0, motion(joint.motion));
     case JointKind::rotation: {
       const std::int32_t turn = motion(joint.motion);
-      const Jet start = motion_at(parts_.motions[static_cast<std::size_t>(turn)], 0.);
+      SystemModel drive{};
+      drive.motion = parts_.motions.data();
+      drive.piece_start = parts_.piece_start.data();
+      drive.piece = parts_.piece.data();
+      const Jet start = motion_at(drive, turn, 0.);
       if (!(std::abs(start.x) < 1e-9))
         throw std::invalid_argument("its rotation is 0 at t = 0: axes are given at rest");
       return row(RowKind::square, 2, 1, 1, turn);

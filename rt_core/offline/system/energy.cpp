@@ -61,21 +61,22 @@ double point_energy(const StraightBeam& beam, const Vector3d (&V)[5]) {
   return sum;
 }
 
-double strain_energy(const BeamChainModel& beam, const double* u) {
-  const double g = 1. / std::sqrt(3.), h = beam.chain.beam.per_length;
+/// @param rest, u  of the beam
+double strain_energy(const BeamChainModel& beam, const double* rest, const double* u) {
+  const double g = 1. / std::sqrt(3.), h = beam.element.per_length;
   double sum = 0.;
-  for (int e = 0; e < beam.chain.elements; ++e)
+  for (int e = 0; e < beam.elements; ++e)
     for (const double xi : {-g, g}) {
       const double value[3] = {.5 * xi * (xi - 1.), 1. - xi * xi, .5 * xi * (xi + 1.)};
       const double slope[3] = {(2. * xi - 1.) * h, -4. * xi * h, (2. * xi + 1.) * h};
       Vector3d V[5] = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
                        Vector3d::Zero()};
       for (int n = 0; n < 3; ++n) {
-        const Node q = nine(beam, beam.rest, 2 * e + n) + nine(beam, u, 2 * e + n);
+        const Node q = nine(beam, rest, 2 * e + n) + nine(beam, u, 2 * e + n);
         for (int f = 0; f < 3; ++f) V[f] += slope[n] * q.segment<3>(3 * f);
         for (int f = 1; f < 3; ++f) V[2 + f] += value[n] * q.segment<3>(3 * f);
       }
-      sum += point_energy(beam.chain.beam, V);
+      sum += point_energy(beam.element, V);
     }
   return sum;
 }
@@ -121,7 +122,7 @@ SystemEnergy system_energy(const Model& model, const State& state) {
     const std::vector<double> p = momenta(beam, v + beam.first);
     for (std::int32_t i = 0; i < beam.unknowns; ++i)
       sum.kinetic += .5 * p[static_cast<std::size_t>(i)] * v[beam.first + i];
-    sum.strain += strain_energy(beam, u + beam.first);
+    sum.strain += strain_energy(beam, s.beam_rest + beam.first, u + beam.first);
   }
   sum.springs = spring_energy(model, state);
   return sum;
@@ -141,8 +142,8 @@ SystemMomentum system_momentum(const Model& model, const State& state) {
   for (std::int32_t b = 0; b < s.beams; ++b) {
     const BeamChainModel& beam = s.beam[b];
     const std::vector<double> p = momenta(beam, v + beam.first);
-    for (int n = 0; n < chain_nodes(beam.chain.elements); ++n) {
-      const Node q = nine(beam, beam.rest, n) + nine(beam, u + beam.first, n);
+    for (int n = 0; n < chain_nodes(beam.elements); ++n) {
+      const Node q = nine(beam, s.beam_rest + beam.first, n) + nine(beam, u + beam.first, n);
       const Node own = nine(beam, p.data(), n);
       sum.linear += own.head<3>();
       for (int f = 0; f < 3; ++f)

@@ -16,6 +16,7 @@ struct PackedSystem::Memory {
   std::unique_ptr<PackedModel> track;
   TrackPorts ports;
   WidenedTrack widened;
+  std::vector<std::int32_t> traced_joint, traced_spring;
   std::vector<double> start;
 };
 
@@ -86,6 +87,14 @@ std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
   for (const MovingLoad& load : traffic.loads)
     all.push_back({load.start, first_speed(load), track.length()});
   return all;
+}
+
+/// Of things of which there are `count`.
+std::vector<std::int32_t> indices(const std::vector<int>& traced, std::size_t count) {
+  for (const int index : traced)
+    if (index < 0 || static_cast<std::size_t>(index) >= count)
+      throw std::invalid_argument("a traced joint or spring that is not there");
+  return {traced.begin(), traced.end()};
 }
 
 /// A track's own start with the lines' part of a rest.
@@ -172,6 +181,12 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.forces = count(parts.forces);
   s.sensors = count(parts.sensors);
   s.ends = count(parts.ends);
+  s.held = count(parts.held);
+  s.pieces = count(parts.piece_start);
+  memory_->traced_joint = indices(options.traced.joints, system.joints.size());
+  memory_->traced_spring = indices(options.traced.springs, system.springs.size());
+  s.traced_joints = count(memory_->traced_joint);
+  s.traced_springs = count(memory_->traced_spring);
   s.first = first;
   s.unknowns = own;
   s.hold = options.hold;
@@ -194,7 +209,14 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.part_end = parts.part_end.data();
   s.motion = parts.motions.data();
   s.force = parts.forces.data();
+  s.piece_start = parts.piece_start.data();
+  s.piece = parts.piece.data();
+  s.beam_rest = parts.beam_rest.data();
+  s.held_unknown = parts.held.data();
   s.sensor = parts.sensors.data();
+  s.sensor_rest = parts.sensor_rest.data();
+  s.traced_joint = memory_->traced_joint.data();
+  s.traced_spring = memory_->traced_spring.data();
   s.constant_force = parts.constant_force.data();
   s.per_length = parts.per_length.data();
   s.ports = count(parts.ports);

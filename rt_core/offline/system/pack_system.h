@@ -10,6 +10,11 @@
 
 namespace railstep {
 
+/// Joints and springs whose forces a trace shows, by index.
+struct TracedForces {
+  std::vector<int> joints, springs;
+};
+
 /// How a system's joints are held and its steps are solved.
 struct SystemOptions {
   Scheme scheme = {};
@@ -31,6 +36,7 @@ struct SystemOptions {
   /// The start is the static equilibrium under weight, springs, and forces and loads as they are at
   /// t = 0, with drives at s(0) (rest.h); else all stands as it is given, rails unloaded.
   bool at_rest = false;
+  TracedForces traced = {};
 };
 
 /// A model of a system alone, and the memory its views look into.

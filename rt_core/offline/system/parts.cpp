@@ -13,15 +13,12 @@
 
 namespace railstep {
 
-const double* SystemParts::keep(std::vector<double> values) {
-  return reals.emplace_back(std::move(values)).data();
-}
-
 void SystemParts::pad() {
   const std::int32_t panels = (unknowns + kLanes - 1) / kLanes;
   const std::size_t n = std::size_t{kLanes} * static_cast<std::size_t>(panels);
   constant_force.resize(n, 0.);
   per_length.resize(n, 0.);
+  beam_rest.resize(n, 0.);
 }
 
 namespace {
@@ -133,20 +130,14 @@ Eigen::Matrix<double, 9, 1> free_of(const FlexibleBeam& beam, int node) {
   return is_free;
 }
 
-Chain chain_of(const FlexibleBeam& beam, const BeamLaw& law, bool planar, SystemParts& parts) {
-  Chain chain{};
-  chain.beam = straight_beam(law, beam.length / beam.elements);
-  chain.elements = beam.elements;
-  const auto mass = chain_mass(beam.section, law);
-  std::copy(mass.begin(), mass.end(), chain.mass);
+/// Held unknowns of a beam, which join those of the others.
+void add_held(const FlexibleBeam& beam, BeamChainModel& packed, SystemParts& parts) {
   const std::vector<double> is_free =
-      over_nodes(beam, planar, [&](int n) { return free_of(beam, n); });
-  std::vector<std::int32_t> held;
+      over_nodes(beam, packed.planar != 0, [&](int n) { return free_of(beam, n); });
+  packed.first_held = static_cast<std::int32_t>(parts.held.size());
   for (std::size_t i = 0; i < is_free.size(); ++i)
-    if (is_free[i] == 0.) held.push_back(static_cast<std::int32_t>(i));
-  chain.held_count = static_cast<std::int32_t>(held.size());
-  chain.held = parts.integers.emplace_back(std::move(held)).data();
-  return chain;
+    if (is_free[i] == 0.) parts.held.push_back(static_cast<std::int32_t>(i));
+  packed.held = static_cast<std::int32_t>(parts.held.size()) - packed.first_held;
 }
 
 void add_beam(const FlexibleBeam& beam, std::size_t index, bool planar, SystemParts& parts) {
@@ -156,10 +147,17 @@ void add_beam(const FlexibleBeam& beam, std::size_t index, bool planar, SystemPa
   BeamChainModel& packed = parts.beams.emplace_back();
   packed.first = parts.unknowns;
   packed.planar = planar ? 1 : 0;
-  packed.rest = parts.keep(over_nodes(beam, planar, [&](int n) { return node_at_rest(beam, n); }));
+  packed.elements = beam.elements;
   packed.unknowns = (planar ? kPlanarUnknowns : 9) * (2 * beam.elements + 1);
   packed.slope_scale = beam.half_height;
-  packed.chain = chain_of(beam, law, planar, parts);
+  packed.element = straight_beam(law, beam.length / beam.elements);
+  const auto mass = chain_mass(beam.section, law);
+  std::copy(mass.begin(), mass.end(), packed.mass);
+  add_held(beam, packed, parts);
+  const std::vector<double> rest =
+      over_nodes(beam, planar, [&](int n) { return node_at_rest(beam, n); });
+  parts.beam_rest.resize(static_cast<std::size_t>(packed.first), 0.);
+  parts.beam_rest.insert(parts.beam_rest.end(), rest.begin(), rest.end());
   parts.unknowns += packed.unknowns;
 }
 

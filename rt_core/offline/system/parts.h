@@ -1,5 +1,4 @@
 #pragma once
-#include <deque>
 #include <vector>
 
 #include "offline/system/system.h"
@@ -21,12 +20,12 @@ struct SystemParts {
   std::vector<RowModel> rows;  // of joints, then of springs
   std::vector<EndModel> ends;
   std::vector<std::int32_t> part_end;
-  std::vector<double> constant_force, per_length;  // [unknowns]
+  std::vector<double> piece_start, piece;  // of motions: [pieces], [pieces][kMotionCoefficients]
+  std::vector<std::int32_t> held;          // of beams, each from its own first unknown
+  std::vector<double> sensor_rest;         // [sensors][3] m
+  std::vector<double> constant_force, per_length, beam_rest;  // [unknowns]
   std::int32_t unknowns = 0;
-  std::deque<std::vector<double>> reals;  // what the parts point to; does not move
-  std::deque<std::vector<std::int32_t>> integers;
 
-  const double* keep(std::vector<double> values);
   /// Makes room for all unknowns, in whole panels.
   void pad();
 };

@@ -117,7 +117,7 @@ class Still {
     double place = largest(state_.u, model().unknowns);
     for (std::int32_t b = 0; b < s.bodies; ++b) place = std::max(place, largest(s.body[b].rest, 3));
     for (std::int32_t b = 0; b < s.beams; ++b)
-      place = std::max(place, largest(s.beam[b].rest, s.beam[b].unknowns));
+      place = std::max(place, largest(s.beam_rest + s.beam[b].first, s.beam[b].unknowns));
     return place;
   }
 

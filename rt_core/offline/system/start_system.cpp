@@ -126,8 +126,7 @@ struct Standing {
     const SystemModel& s = model.system;
     const RowModel& row = s.row[r];
     const Motions at{u.data(), v.data(), zero.data(), w.matrix};
-    const Jet motion =
-        row.motion >= 0 ? motion_at(s.motion[row.motion], 0.) : Jet{row.offset, 0., 0.};
+    const Jet motion = row.motion >= 0 ? motion_at(s, row.motion, 0.) : Jet{row.offset, 0., 0.};
     return row_jet(row, marker_jet(s, s.marker[row.a], at), marker_jet(s, s.marker[row.b], at),
                    motion);
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <initializer_list>
 
+#include "online/model/describe_system.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -12,7 +13,8 @@ namespace railstep {
 //   real(double&)                any
 //   reals(const double*&, n)     n of them, or none and a null pointer
 //   integers(const int32*&, n)   n of them
-// and describe() may be read only where the counts have passed.
+//   structures(const T*&, n)     n of them, T flat (describe_system.h)
+// and what describe() makes may be read only where the counts have passed.
 
 template <typename Archive>
 void describe(Archive& a, Scheme& s) {
@@ -259,23 +261,9 @@ void describe(Archive& a, FixedPortModel& p, const Model& m) {
   a.reals(p.compliance, std::int64_t{p.count} * p.count);
 }
 
+/// A track with what runs on it, and the unknowns of a system beside it in its arrays.
 template <typename Archive>
-void describe(Archive& a, Model& m) {
-  describe(a, m.scheme);
-  a.count(m.lines, kMaxLines);
-  a.count(m.loads, kMaxLoads);
-  a.count(m.wheelsets, kMaxWheelsets);
-  a.count(m.vehicles, kMaxVehicles);
-  a.count(m.vehicle_wheels, kMaxWheels - 2 * m.wheelsets);
-  a.count(m.signals, kMaxSignals);
-  a.count(m.elements, kMostElements);
-  a.count(m.unknowns, kMostUnknowns);
-  a.count(m.condensed, 1);
-  a.count(m.bodies, m.unknowns);
-  a.count(m.steps_per_frame, kMostRows);
-  a.count(m.inputs, kMaxInputs);
-  for (std::int32_t i = 0; i < m.inputs; ++i) a.real(m.input_limit[i]);
-  a.integer(m.steps);
+void describe_track(Archive& a, Model& m) {
   a.real(m.element_length);
   describe(a, m.endless);
   for (double* of_rails : {m.rail_y, m.rail_z, m.head_z, m.crown_radius, m.head_half_width}) {
@@ -309,7 +297,35 @@ void describe(Archive& a, Model& m) {
   describe(a, m.turn, m.elements);
   describe(a, m.probe, m);
   describe(a, m.fixed, m);
-  a.reals(m.start, state_doubles(m));
+}
+
+/// All but the start. A system alone has no lines, and nothing of a track.
+template <typename Archive>
+void describe(Archive& a, Model& m) {
+  describe(a, m.scheme);
+  a.count(m.lines, kMaxLines);
+  a.count(m.loads, kMaxLoads);
+  a.count(m.wheelsets, kMaxWheelsets);
+  a.count(m.vehicles, kMaxVehicles);
+  a.count(m.vehicle_wheels, kMaxWheels - 2 * m.wheelsets);
+  a.count(m.signals, kMaxSignals);
+  a.count(m.elements, kMostElements);
+  a.count(m.unknowns, kMostUnknowns);
+  a.count(m.condensed, 1);
+  a.count(m.bodies, m.unknowns);
+  a.count(m.steps_per_frame, kMostRows);
+  a.count(m.inputs, kMaxInputs);
+  for (std::int32_t i = 0; i < m.inputs; ++i) a.real(m.input_limit[i]);
+  a.integer(m.steps);
+  a.count(m.system.unknowns, m.unknowns);
+  if (m.lines > 0) describe_track(a, m);
+  if (m.system.unknowns > 0) describe(a, m.system, m.bodies);
+}
+
+/// The start, behind a model that holds: its length follows from what the model is made of.
+template <typename Archive>
+void describe_start(Archive& a, Model& m) {
+  a.reals(m.start, start_doubles(m));
 }
 
 }  // namespace railstep

@@ -6,6 +6,7 @@
 #include "online/math/sha256.h"
 #include "online/model/course.h"
 #include "online/model/describe.h"
+#include "online/model/load_system.h"
 
 namespace railstep {
 
@@ -16,7 +17,9 @@ class Reader {
  public:
   Reader(const unsigned char* at, std::size_t left) noexcept : at_(at), left_(left) {}
 
-  bool good() const noexcept { return good_ && left_ == 0; }
+  /// Whether all was as it should be so far, and whether nothing is left.
+  bool good() const noexcept { return good_; }
+  bool at_end() const noexcept { return left_ == 0; }
 
   void count(std::int32_t& value, std::int64_t most) noexcept {
     const std::int64_t found = word();
@@ -30,6 +33,10 @@ class Reader {
   }
   void reals(const double*& values, std::int64_t n) noexcept { array(values, n, true); }
   void integers(const std::int32_t*& values, std::int64_t n) noexcept { array(values, n, false); }
+  template <typename T>
+  void structures(const T*& values, std::int64_t n) noexcept {
+    array(values, n, false);
+  }
 
  private:
   std::int64_t word() noexcept {
@@ -213,11 +220,9 @@ bool fixed_ports_hold(const Model& m) noexcept {
   return within(p.index, p.entries, 0, m.bodies - 1) && (p.entries == 0 || p.value);
 }
 
-/// What a step takes for granted beyond the counts.
-bool holds(const Model& m) noexcept {
-  if (m.lines < 1 || m.elements < 1 || m.steps_per_frame < 1 || m.start == nullptr) return false;
-  if (!endless_holds(m.endless, m.elements) || !inputs_hold(m)) return false;
-  if (!(m.element_length > 0.) || m.bodies % kLanes != 0 || m.steps < 0) return false;
+bool track_holds(const Model& m) noexcept {
+  if (m.elements < 1 || !endless_holds(m.endless, m.elements)) return false;
+  if (!(m.element_length > 0.) || m.bodies % kLanes != 0) return false;
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_holds(m, m.line[i])) return false;
   for (std::int32_t i = 0; i < m.loads; ++i)
@@ -237,6 +242,18 @@ bool holds(const Model& m) noexcept {
     if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
   return external_wheels_hold(m) && residual_holds(m) && turn_holds(m.turn) && probes_hold(m) &&
          fixed_ports_hold(m);
+}
+
+/// What a step takes for granted beyond the counts.
+bool holds(const Model& m) noexcept {
+  if (!(m.scheme.dt > 0.) || m.steps_per_frame < 1 || m.steps < 0 || !inputs_hold(m)) return false;
+  if (m.lines < 1 && m.system.unknowns < 1) return false;
+  if (m.lines > 0 && !track_holds(m)) return false;
+  return m.system.unknowns == 0 || system_holds(m);
+}
+
+bool start_holds(const Model& m) noexcept {
+  return m.start != nullptr && (m.system.unknowns == 0 || system_start_holds(m));
 }
 
 std::int64_t word_at(const unsigned char* at) noexcept {
@@ -266,6 +283,9 @@ LoadResult load_model(const void* block, std::size_t bytes, Model& model) noexce
   model = Model{};
   describe(reader, model);
   if (!reader.good() || !holds(model)) return refused(LoadStatus::bad_content);
+  describe_start(reader, model);
+  if (!reader.good() || !reader.at_end() || !start_holds(model))
+    return refused(LoadStatus::bad_content);
   std::memcpy(model.sum, sum, sizeof sum);
   return {LoadStatus::ok, reinterpret_cast<const char*>(at + kBlockHeader),
           static_cast<std::size_t>(text)};

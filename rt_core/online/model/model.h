@@ -310,7 +310,7 @@ struct Model {
   SeatTurnModel turn;
   ProbeModel probe;
   FixedPortModel fixed;
-  const double* start;  // [state_doubles] state at step 0
+  const double* start;  // [start_doubles] state at step 0
   std::int64_t steps;   // of the scene's run
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];

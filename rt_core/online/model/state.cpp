@@ -21,8 +21,9 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
 void reset(const Model& model, State& state) noexcept {
   state.steps = 0;
   state.latched = Status::ok;
-  const std::int64_t count = state_doubles(model);  // one block, from u on
-  for (std::int64_t i = 0; i < count; ++i) state.u[i] = without_tiny(model.start[i]);
+  const std::int64_t given = start_doubles(model), all = state_doubles(model);  // one row from u on
+  for (std::int64_t i = 0; i < given; ++i) state.u[i] = without_tiny(model.start[i]);
+  for (std::int64_t i = given; i < all; ++i) state.u[i] = 0.;
 }
 
 std::uint64_t state_hash(const Model& model, const State& state) noexcept {

@@ -83,6 +83,11 @@ inline std::int64_t state_doubles(const Model& model) noexcept {
   return 4LL * model.unknowns + contact_count(model) + model.fixed.count + 2LL * model.wheelsets +
          system_state_doubles(model.system) + model.inputs;
 }
+/// Of the model's start: all of a state but Newton's matrix, which is not made yet.
+inline std::int64_t start_doubles(const Model& model) noexcept {
+  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + 2LL * model.wheelsets +
+         system_start_doubles(model.system);
+}
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t contacts = contact_count(model);
   return (4 + contacts + model.condensed * (1 + 3 * contacts)) * model.unknowns +
@@ -127,7 +132,7 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
               system_workspace_doubles(model.system)};
 }
 
-/// Puts the model's start into a state: step 0.
+/// Puts the model's start into a state: step 0, with no matrix kept yet.
 void reset(const Model& model, State& state) noexcept;
 
 /// FNV-1a over the step count, what is latched and the bits of all fields: equal states have equal

@@ -11,10 +11,17 @@ namespace railstep {
 //   b_z) body   displacement of its centre from rest, then the turn of the step in body axes, which
 //   the
 //          end of the step folds into the state's quaternion: between steps 0; planar x, z, about y
+// Structures hold no pointers and no gaps, so that arrays of them stand in a block as they do here:
+// fields of 4 bytes come first and are even in number.
 
 inline constexpr int kMaxSystemRows = 512;
 inline constexpr int kMaxSystemParts = 256;
 inline constexpr int kMostElementsOfBeam = 10'000;
+inline constexpr int kMostSystemItems = 1 << 16;  // markers, motions, forces, or sensors
+inline constexpr int kMostPieces = 1 << 22;       // of all motions
+inline constexpr int kMostPorts = 1 << 12;        // on rails
+inline constexpr int kMostIterations = 1000;      // of Newton, or of a projection
+inline constexpr int kMostKeptSteps = 1'000'000;
 inline constexpr int kMotionCoefficients = 6;
 inline constexpr int kMostNamedRows = 16;     // redundant ones that a frame names
 inline constexpr int kMostNodeUnknowns = 27;  // that one row touches in one part
@@ -31,14 +38,15 @@ struct RigidBodyModel {
   double radius;   // of gyration, m: a moment over it compares with a force
 };
 
-/// A nonlinear beam: a chain of alike straight elements.
+/// A nonlinear beam: a chain of alike straight elements, beam_chain.h.
 struct BeamChainModel {
   std::int32_t first;
   std::int32_t unknowns;  // of all its nodes
-  std::int32_t planar;
-  Chain chain;
-  const double* rest;  // [unknowns] positions and slopes
+  std::int32_t planar, elements;
+  std::int32_t first_held, held;  // among the system's: those that are 0, from the beam's own first
+  double mass[4];                 // of a Chain
   double slope_scale;  // m: half the section's height; force / scale compares with a force
+  StraightBeam element;
 };
 
 /// A place of a linear track's rail that rows pull at. Its nine unknowns are the displacements of
@@ -46,6 +54,7 @@ struct BeamChainModel {
 struct RailPortModel {
   std::int32_t first;  // of its unknowns among the system's
   std::int32_t rail, element;
+  std::int32_t unused;
   double value[3];  // shape functions of the element's nodes
   double rest[9];   // r, a, b
 };
@@ -56,11 +65,12 @@ enum class PartKind : std::int32_t { ground, body, beam, rail };
 /// ground's axes, the body's axes, or the section's a x b, a, b.
 struct MarkerModel {
   PartKind kind;
-  std::int32_t part;   // body, beam, or port on a rail
+  std::int32_t part;  // body, beam, or port on a rail
+  std::int32_t node;  // of a beam: the first of the three it lies on
+  std::int32_t unused;
   double position[3];  // on the ground; in body axes from the centre; of a beam or rail 0, y, z, m
   double frame[9];
-  std::int32_t node;  // of a beam: the first of the three it lies on
-  double value[3];    // shape functions of these three
+  double value[3];  // of a beam: shape functions of its three nodes
 };
 
 /// What a row asks of its markers A and B, its value Phi; each a sum of products of linear
@@ -89,9 +99,7 @@ struct RowModel {
 /// s(t), piece by piece a polynomial in t - start; before the first and behind the last piece these
 /// go on.
 struct MotionModel {
-  std::int32_t pieces;
-  const double* start;        // [pieces] s, rising
-  const double* coefficient;  // [pieces][kMotionCoefficients]
+  std::int32_t first, pieces;  // among the system's
 };
 
 /// A force on a marker's point, or a moment on its body: direction (ground axes) times s(t) or what
@@ -119,6 +127,8 @@ struct SystemModel {
   std::int32_t bodies, beams, markers, joint_rows, spring_rows, motions, forces, sensors, ends;
   std::int32_t ports;            // on rails; their unknowns are the last
   std::int32_t first, unknowns;  // in the state, padded to whole panels; parts count from `first`
+  std::int32_t held, pieces;     // unknowns of all beams that are 0, pieces of all motions
+  std::int32_t traced_joints, traced_springs;  // whose forces a trace shows
   Hold hold;
   Renew renew;
   std::int32_t mean;         // 1: forces at the mean of both ends of a step (energy-momentum)
@@ -137,8 +147,15 @@ struct SystemModel {
   const std::int32_t* part_end;  // [bodies + beams + 2] the first end of a part
   const MotionModel* motion;
   const PointForceModel* force;
-  const std::int32_t* sensor;    // [sensors] markers
-  const double* constant_force;  // [unknowns] N: weight
+  const double* piece_start;          // [pieces] s, rising within a motion
+  const double* piece;                // [pieces][kMotionCoefficients]
+  const double* beam_rest;            // [unknowns] of beams: positions and slopes
+  const std::int32_t* held_unknown;   // [held]
+  const std::int32_t* sensor;         // [sensors] markers, the last of all
+  const double* sensor_rest;          // [sensors][3] m: what displacements count from
+  const std::int32_t* traced_joint;   // [traced_joints]
+  const std::int32_t* traced_spring;  // [traced_springs] from the first spring row on
+  const double* constant_force;       // [unknowns] N: weight
   const RailPortModel* port;
   const double* port_compliance;  // [9 ports][9 ports] B S^-1 B', m/N
   const double* port_shapes;      // [9 ports][lines' unknowns] S^-1 B', m/N

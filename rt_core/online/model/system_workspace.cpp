@@ -83,8 +83,8 @@ std::int64_t system_tangent_doubles(const SystemModel& system) noexcept {
 
 std::int64_t system_state_doubles(const SystemModel& system) noexcept {
   if (system.unknowns == 0) return 0;
-  const std::int64_t own = 4LL * system.bodies + system_rows(system);
-  return own + (system.renew == Renew::kept ? system_tangent_doubles(system) : 0);
+  return system_start_doubles(system) +
+         (system.renew == Renew::kept ? system_tangent_doubles(system) : 0);
 }
 
 std::int64_t system_workspace_doubles(const SystemModel& system) noexcept {

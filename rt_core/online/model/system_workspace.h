@@ -91,6 +91,10 @@ inline std::int32_t beam_groups(const SystemModel& s, std::int32_t beam) noexcep
 }
 
 std::int64_t system_tangent_doubles(const SystemModel& system) noexcept;
+/// Quaternions and row forces.
+inline std::int64_t system_start_doubles(const SystemModel& system) noexcept {
+  return system.unknowns == 0 ? 0 : 4LL * system.bodies + system_rows(system);
+}
 /// Quaternions, row forces, and the tangent where it is kept.
 std::int64_t system_state_doubles(const SystemModel& system) noexcept;
 std::int64_t system_workspace_doubles(const SystemModel& system) noexcept;

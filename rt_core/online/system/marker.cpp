@@ -53,7 +53,7 @@ void section_at(const SystemModel& s, const MarkerModel& marker, const double* x
   if (marker.kind == PartKind::rail)
     nine(s.port[marker.part].rest, out);
   else
-    interpolate(s.beam[marker.part], marker, s.beam[marker.part].rest, out);
+    interpolate(s.beam[marker.part], marker, s.beam_rest + s.beam[marker.part].first, out);
   section_change(s, marker, x, moved);
   for (int f = 0; f < 3; ++f)
     for (int c = 0; c < 3; ++c) out[f][c] += moved[f][c];

@@ -28,7 +28,7 @@ void place_nodes(const SystemModel& s, const SystemStart& start, SystemWorkspace
   for (std::int32_t b = 0; b < s.beams; ++b) {
     const BeamChainModel& beam = s.beam[b];
     const std::int32_t first = beam.first;
-    const double* rest = beam.rest;
+    const double* rest = s.beam_rest + first;
     if (s.mean == 0) {
 #pragma omp simd
       for (std::int32_t i = 0; i < beam.unknowns; ++i)
@@ -159,12 +159,12 @@ void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor,
   double* const lane = along ? solved + 4LL * beam.unknowns * (groups - 1) + 3 : nullptr;
   for (std::int32_t i = 0; along && i < beam.unknowns; ++i) lane[4LL * i] = other[i];
   for (std::int32_t g = 0; g < groups; ++g)
-    beam_solve(beam, factor, solved + 4LL * beam.unknowns * g);
+    beam_solve(s, beam, factor, solved + 4LL * beam.unknowns * g);
   for (std::int32_t i = 0; along && i < beam.unknowns; ++i) {
     other[i] = lane[4LL * i];
     lane[4LL * i] = 0.;
   }
-  if (other != nullptr && !along) beam_solve_one(beam, factor, other);
+  if (other != nullptr && !along) beam_solve_one(s, beam, factor, other);
 }
 
 /// y += C f of all ports.
@@ -280,7 +280,7 @@ std::int32_t part_forces(const Model& model, const SystemStart& start, bool rene
     const BeamChainModel& beam = s.beam[b];
     beam_elastic(model, beam, renew, w);
     if (renew)
-      lost += beam_factor(beam, model.scheme.kg, s.mean != 0 ? .5 : 1., w.tangents, factor);
+      lost += beam_factor(s, beam, model.scheme.kg, s.mean != 0 ? .5 : 1., w.tangents, factor);
     beam_inertia(beam, w.g + beam.first, w.inertia + beam.first);
     factor += beam_factor_doubles(beam);
   }
@@ -298,7 +298,7 @@ void outer_forces(const Model& model, double time, const double* input,
     const PointForceModel& force = s.force[f];
     const MarkerModel& marker = s.marker[force.marker];
     const double size = force.input >= 0 ? held_input(input, force.input)
-                                         : motion_at(s.motion[force.motion], time).x;
+                                         : motion_at(s, force.motion, time).x;
     const Reach at = reach(s, marker);
     double row[kMostNodeUnknowns] = {};
     applied(s, w, force, size, row);
@@ -318,7 +318,7 @@ void solve_parts(const Model& model, SystemWorkspace& w) noexcept {
   const double* factor = w.tangent.factor;
   for (std::int32_t b = 0; b < s.beams; ++b) {
     const BeamChainModel& beam = s.beam[b];
-    beam_solve_one(beam, factor, w.change + beam.first);
+    beam_solve_one(s, beam, factor, w.change + beam.first);
     factor += beam_factor_doubles(beam);
   }
   if (s.ports > 0) solve_ports(s, w);

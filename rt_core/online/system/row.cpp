@@ -45,12 +45,14 @@ bool turns(const RowModel& row) noexcept { return row.kind == RowKind::square &&
 
 }  // namespace
 
-Jet motion_at(const MotionModel& motion, double time) noexcept {
+Jet motion_at(const SystemModel& system, std::int32_t motion, double time) noexcept {
+  const MotionModel& own = system.motion[motion];
+  const double* start = system.piece_start + own.first;
   std::int32_t piece = 0;
-  for (std::int32_t i = 1; i < motion.pieces; ++i)
-    if (motion.start[i] <= time) piece = i;
-  const double* c = motion.coefficient + static_cast<std::ptrdiff_t>(kMotionCoefficients) * piece;
-  const double t = time - motion.start[piece];
+  for (std::int32_t i = 1; i < own.pieces; ++i)
+    if (start[i] <= time) piece = i;
+  const double* c = system.piece + std::ptrdiff_t{kMotionCoefficients} * (own.first + piece);
+  const double t = time - start[piece];
   Jet s{0., 0., 0.};
   for (int k = kMotionCoefficients - 1; k >= 0; --k) {
     s.a = s.a * t + 2. * s.v;

@@ -3,8 +3,8 @@
 
 namespace railstep {
 
-/// s(t) with its derivatives.
-Jet motion_at(const MotionModel& motion, double time) noexcept;
+/// s(t) of a motion with its derivatives.
+Jet motion_at(const SystemModel& system, std::int32_t motion, double time) noexcept;
 
 /// Phi of a row: of joints what must be 0, of springs their extension.
 /// @param s  its motion or offset at the same time

@@ -15,7 +15,7 @@ const MarkerModel& marker_of(const SystemModel& s, const EndModel& end) noexcept
 }
 
 Jet motion_of(const SystemModel& s, const RowModel& row, double time) noexcept {
-  return row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
+  return row.motion >= 0 ? motion_at(s, row.motion, time) : Jet{row.offset, 0., 0.};
 }
 
 Pivoted pivoted(const SystemModel& s, const SystemTangent& t) noexcept {

@@ -62,7 +62,7 @@ JointForce joint_force(const Model& model, const State& state, std::int32_t join
     const MarkerPose a = pose_of(marker_jet(s, s.marker[row.a], at));
     const MarkerPose b = pose_of(marker_jet(s, s.marker[row.b], at));
     Pull on_a, on_b;
-    const double motion = row.motion >= 0 ? motion_at(s.motion[row.motion], time).x : row.offset;
+    const double motion = row.motion >= 0 ? motion_at(s, row.motion, time).x : row.offset;
     row_pulls(row, a, b, row_length(a, b), motion, on_a, on_b);
     for (int c = 0; c < 3; ++c) sum.force[c] -= state.row_force[r] * on_b.point[c];
     for (int k = 0; k < 3; ++k) {

@@ -136,7 +136,7 @@ void start_springs(const Model& model, double time, SystemWorkspace& w) noexcept
   const SystemModel& s = model.system;
   for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) {
     const RowModel& row = s.row[r];
-    const double length = row.motion >= 0 ? motion_at(s.motion[row.motion], time).x : row.offset;
+    const double length = row.motion >= 0 ? motion_at(s, row.motion, time).x : row.offset;
     w.start_value[r] = row_value(row, w.start_pose[row.a], w.start_pose[row.b], length);
   }
 }
@@ -163,8 +163,7 @@ void set_rates(const SystemModel& s, double time, const Motions& at, SystemWorks
     const RowModel& row = s.row[r];
     if (row.a != at_a) a = marker_jet(s, s.marker[at_a = row.a], at);
     if (row.b != at_b) b = marker_jet(s, s.marker[at_b = row.b], at);
-    const Jet motion =
-        row.motion >= 0 ? motion_at(s.motion[row.motion], time) : Jet{row.offset, 0., 0.};
+    const Jet motion = row.motion >= 0 ? motion_at(s, row.motion, time) : Jet{row.offset, 0., 0.};
     const Jet phi = row_jet(row, a, b, motion);
     w.rate[0][r] = phi.v;
     w.rate[1][r] = phi.a;
