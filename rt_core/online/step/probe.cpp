@@ -17,11 +17,9 @@ double value_at(const Model& model, const State& state, std::int32_t at) noexcep
   return at < model.fixed.count ? state.port_force[at] : state.g[at - model.fixed.count];
 }
 
-}  // namespace
-
-void read_probes(const Model& model, const State& state, const Outputs& outputs,
-                 double* value) noexcept {
-  const FloatMode flushed_to_zero;
+// Never inlined: no arithmetic of it may leave the mode that its caller sets.
+[[gnu::noinline]] void read(const Model& model, const State& state, const Outputs& outputs,
+                            double* value) noexcept {
   RailForce forces[kMaxLoads + kMaxWheels];
   const int count = rail_forces(model, outputs, forces);
   const ProbeModel& probe = model.probe;
@@ -35,6 +33,14 @@ void read_probes(const Model& model, const State& state, const Outputs& outputs,
     value[i] = probe.rest[i] + (sum + residual_of_probe(model, i, forces, count));
     if (probe.along[i] != 0) value[i] += gone;
   }
+}
+
+}  // namespace
+
+void read_probes(const Model& model, const State& state, const Outputs& outputs,
+                 double* value) noexcept {
+  const FloatMode flushed_to_zero;
+  read(model, state, outputs, value);
 }
 
 }  // namespace railstep

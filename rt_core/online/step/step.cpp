@@ -210,16 +210,9 @@ void forces(const Model& model, std::int64_t step, double* re, double* im) noexc
   }
 }
 
-Status advance_frame(const Model& model, State& state, Workspace& workspace,
-                     Outputs& outputs) noexcept {
-  const FloatMode flushed_to_zero;
-  start_frame(model, outputs);
-  for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
-    make_step(model, state, workspace, outputs);
-  publish(model, state, outputs);
-  return outputs.status;
-}
+namespace {
 
+/// Loads and health of a state as it stands, on what a frame has collected.
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept {
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const PlacedLoad at = place(model, model.load[i], state.steps);
@@ -246,7 +239,17 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
 }
 
-void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept {
+// Never inlined: no arithmetic of theirs may leave the mode that their callers set.
+[[gnu::noinline]] void frame(const Model& model, State& state, Workspace& workspace,
+                             Outputs& outputs) noexcept {
+  start_frame(model, outputs);
+  for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
+    make_step(model, state, workspace, outputs);
+  publish(model, state, outputs);
+}
+
+[[gnu::noinline]] void start_outputs(const Model& model, const State& state,
+                                     Outputs& outputs) noexcept {
   start_frame(model, outputs);
   WheelContact contact[kMaxWheels];
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
@@ -275,6 +278,20 @@ void publish_start(const Model& model, const State& state, Outputs& outputs) noe
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
     if (outputs.wheel_on_rail[i])
       outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
+}
+
+}  // namespace
+
+Status advance_frame(const Model& model, State& state, Workspace& workspace,
+                     Outputs& outputs) noexcept {
+  const FloatMode flushed_to_zero;
+  frame(model, state, workspace, outputs);
+  return outputs.status;
+}
+
+void publish_start(const Model& model, const State& state, Outputs& outputs) noexcept {
+  const FloatMode flushed_to_zero;
+  start_outputs(model, state, outputs);
 }
 
 }  // namespace railstep
