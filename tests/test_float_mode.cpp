@@ -1,5 +1,6 @@
+#include <fenv.h>  // feenableexcept, an extension of glibc
+
 #include <catch2/catch.hpp>
-#include <cfenv>
 #include <limits>
 
 #include "online/step/float_mode.h"
@@ -41,7 +42,7 @@ TEST_CASE("inside the guard subnormal results and operands are zero, outside not
 }
 
 TEST_CASE("inside the guard sums round to nearest, then as the caller wants again", "[float]") {
-  REQUIRE(std::fesetround(FE_UPWARD) == 0);
+  REQUIRE(fesetround(FE_UPWARD) == 0);
   const auto word = FloatMode::read();
   const double before = add(1.0, 0x1p-60);
   double inside = 0.0;
@@ -51,12 +52,50 @@ TEST_CASE("inside the guard sums round to nearest, then as the caller wants agai
   }
   const double after = add(1.0, 0x1p-60);
   const auto restored = FloatMode::read();
-  std::fesetround(FE_TONEAREST);
+  fesetround(FE_TONEAREST);
   CHECK(before > 1.0);
   CHECK(inside == 1.0);
   CHECK(after == before);
   // The caller's own word, but for the sticky flags its own sum raised before it was read.
   CHECK((restored | 0x3fu) == (word | 0x3fu));
+}
+
+TEST_CASE(
+    "inside the guard nothing traps, however the caller traps, nor does it raise the caller's "
+    "flags",
+    "[float]") {
+  feclearexcept(FE_ALL_EXCEPT);
+  if (feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) == -1) return;  // no traps here
+  const auto word = FloatMode::read();
+  double inside = 0.0;
+  {
+    const FloatMode guard;
+    inside = add(multiply(1e300, 1e300), -multiply(1e300, 1e300));
+  }
+  const auto restored = FloatMode::read();
+  fedisableexcept(FE_ALL_EXCEPT);
+  CHECK_FALSE(inside == inside);
+  CHECK(restored == word);
+}
+
+TEST_CASE("inside the guard the word is the same, whatever the caller's", "[float]") {
+  FloatMode::Word usual;
+  {
+    const FloatMode guard;
+    usual = FloatMode::read();
+  }
+  for (const int rounding : {FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO, FE_TONEAREST}) {
+    fesetround(rounding);
+    feenableexcept(FE_ALL_EXCEPT);
+    FloatMode::Word inside;
+    {
+      const FloatMode guard;
+      inside = FloatMode::read();
+    }
+    fedisableexcept(FE_ALL_EXCEPT);
+    fesetround(FE_TONEAREST);
+    CHECK(inside == usual);
+  }
 }
 
 TEST_CASE("guards nest", "[float]") {

@@ -40,8 +40,9 @@ class FloatMode {
   }
 
  private:
-  // FPCR: bits 22-23 rounding, 8-12 and 15 traps, 24 FZ (results and operands).
-  static constexpr Word kCleared = 0xc00000u | 0x9f00u, kSet = 0x1000000u;
+  // FPCR: bits 22-23 rounding, 8-12 and 15 traps, 24 FZ (results and operands), 25 NaNs without
+  // payload, 0-2 alternate handling (FEAT_AFP), under which FZ flushes otherwise.
+  static constexpr Word kCleared = 0xc00000u | 0x9f00u | 0x2000000u | 0x7u, kSet = 0x1000000u;
   static void write(Word word) noexcept { asm volatile("msr fpcr, %0" : : "r"(word) : "memory"); }
 #endif
 

@@ -17,12 +17,9 @@ double value_at(const Model& model, const State& state, std::int32_t at) noexcep
   return at < model.fixed.count ? state.port_force[at] : state.g[at - model.fixed.count];
 }
 
-}  // namespace
-
-void read_probes(const Model& model, const State& state, const Outputs& outputs,
-                 double* value) noexcept {
-  if (has(state.latched, Status::nonfinite_state)) return;
-  const FloatMode flushed_to_zero;
+// Never inlined: no arithmetic of it may leave the mode that its caller sets.
+[[gnu::noinline]] void read(const Model& model, const State& state, const Outputs& outputs,
+                            double* value) noexcept {
   RailForce forces[kMaxRailForces];
   const int count = rail_forces(model, outputs, forces);
   const ProbeModel& probe = model.probe;
@@ -36,6 +33,15 @@ void read_probes(const Model& model, const State& state, const Outputs& outputs,
     value[i] = probe.rest[i] + (sum + residual_of_probe(model, i, forces, count));
     if (probe.along[i] != 0) value[i] += gone;
   }
+}
+
+}  // namespace
+
+void read_probes(const Model& model, const State& state, const Outputs& outputs,
+                 double* value) noexcept {
+  if (has(state.latched, Status::nonfinite_state)) return;
+  const FloatMode flushed_to_zero;
+  read(model, state, outputs, value);
 }
 
 }  // namespace railstep

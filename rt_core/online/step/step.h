@@ -11,7 +11,8 @@ inline constexpr std::size_t kStepStack = std::size_t{128} << 10;
 /// Advances by one frame of model.steps_per_frame steps. No heap, no exceptions, no clock; the
 /// same work for every state. Inputs stay as the state holds them. A state that stops being finite
 /// is reported and left as it is from then on, and what is published of loads and wheels stays that
-/// of the last good frame, which `outputs` must hold (publish_start() for the first).
+/// of the last good frame, which `outputs` must hold (publish_start() for the first). The caller's
+/// rounding, flushing and trapping of floating-point numbers may be anything, and stay.
 /// @returns what the frame met, and what is latched since the reset
 [[nodiscard]] Status advance_frame(const Model& model, State& state, Workspace& workspace,
                                    Outputs& outputs) noexcept;
@@ -37,9 +38,6 @@ inline constexpr std::size_t kStepStack = std::size_t{128} << 10;
 /// Forces of loads and weight on the unknowns at a step, N; on modes of condensed lines, complex.
 /// @param re, im  [unknowns] overwritten; im of condensed models only
 void forces(const Model& model, std::int64_t step, double* re, double* im) noexcept;
-
-/// Loads and health of a state as it stands, on what a frame has collected.
-void publish(const Model& model, const State& state, Outputs& outputs) noexcept;
 
 /// Outputs of a state from which no step was made: the first row of a trace. Wheels carry the
 /// forces that the state starts with.

@@ -1,5 +1,6 @@
 #include "online/system/sense.h"
 
+#include "online/step/float_mode.h"
 #include "online/system/marker.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"
@@ -31,9 +32,10 @@ MarkerPose pose_of(const MarkerJet& jet) noexcept {
   return pose;
 }
 
-}  // namespace
-
-PointMotion sense(const Model& model, const State& state, std::int32_t sensor) noexcept {
+// Never inlined, as joint_pull(): no arithmetic of theirs may leave the mode that their callers
+// set.
+[[gnu::noinline]] PointMotion point_motion(const Model& model, const State& state,
+                                           std::int32_t sensor) noexcept {
   const SystemModel& s = model.system;
   const Rotations turned(s, state);
   const MarkerJet jet = marker_jet(s, s.marker[s.sensor[sensor]], motions_of(s, state, turned));
@@ -46,11 +48,8 @@ PointMotion sense(const Model& model, const State& state, std::int32_t sensor) n
   return motion;
 }
 
-void body_rotation(const State& state, std::int32_t body, double* matrix) noexcept {
-  rotation_matrix(state.quaternion + 4 * body, matrix);
-}
-
-JointForce joint_force(const Model& model, const State& state, std::int32_t joint) noexcept {
+[[gnu::noinline]] JointForce joint_pull(const Model& model, const State& state,
+                                        std::int32_t joint) noexcept {
   const SystemModel& s = model.system;
   const Rotations turned(s, state);
   const Motions at = motions_of(s, state, turned);
@@ -72,6 +71,23 @@ JointForce joint_force(const Model& model, const State& state, std::int32_t join
     }
   }
   return sum;
+}
+
+}  // namespace
+
+PointMotion sense(const Model& model, const State& state, std::int32_t sensor) noexcept {
+  const FloatMode flushed_to_zero;
+  return point_motion(model, state, sensor);
+}
+
+void body_rotation(const State& state, std::int32_t body, double* matrix) noexcept {
+  const FloatMode flushed_to_zero;
+  rotation_matrix(state.quaternion + 4 * body, matrix);
+}
+
+JointForce joint_force(const Model& model, const State& state, std::int32_t joint) noexcept {
+  const FloatMode flushed_to_zero;
+  return joint_pull(model, state, joint);
 }
 
 }  // namespace railstep

@@ -1,0 +1,142 @@
+#include "online/step/publish.h"
+
+#include "online/step/load.h"
+#include "online/step/residual.h"
+#include "online/step/vehicle_contact.h"
+#include "online/step/wheel.h"
+
+namespace railstep {
+
+namespace {
+
+/// First unknown that is not finite, or -1. x - x is 0 for finite x alone.
+std::int32_t first_bad(const Model& model, const State& s) noexcept {
+  double sum = 0.;
+  for (std::int32_t i = 0; i < model.unknowns; ++i) sum += (s.u[i] - s.u[i]) + (s.v[i] - s.v[i]);
+  if (sum == 0.) return -1;
+  for (std::int32_t i = 0; i < model.unknowns; ++i)
+    if (!(s.u[i] - s.u[i] == 0.) || !(s.v[i] - s.v[i] == 0.)) return i;
+  return -1;
+}
+
+void collect_flanges(const Model& model, const State& s, const double* gap, Outputs& out) noexcept {
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) {
+    const double force = s.wheel_force[wheel_count(model) + i];
+    out.flange_force[i] = force;
+    out.flange_impulse[i] += force * model.scheme.dt;
+    if (force > out.flange_force_peak[i]) out.flange_force_peak[i] = force;
+    out.flange_gap[i] = gap[i];
+  }
+}
+
+}  // namespace
+
+void start_frame(const Model& model, const State& state, Outputs& out) noexcept {
+  out.status = state.latched;
+  out.constraint_violation = 0.;
+  out.iterations = 0;
+  out.force_residual = 0.;
+  out.redundant_rows = 0;
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
+    out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
+    out.flange_force_peak[i] = out.flange_impulse[i] = 0.;
+}
+
+void collect(const Model& model, const State& s, const CoupleResult& met, Outputs& out) noexcept {
+  out.status = out.status | met.status;
+  if (met.violation > out.constraint_violation) out.constraint_violation = met.violation;
+  if (met.iterations > out.iterations) out.iterations = met.iterations;
+  const double gone_by = passed(model, s.steps + 1);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
+    const double force = s.wheel_force[i];
+    out.wheel_force[i] = force;
+    out.wheel_impulse[i] += force * model.scheme.dt;
+    out.wheel_force_mean[i] = out.wheel_impulse[i] / (model.scheme.dt * model.steps_per_frame);
+    if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
+    out.wheel_gap[i] = met.gap[i];
+    out.wheel_x[i] = met.x[i] + gone_by;
+    out.wheel_place[i] = met.x[i];
+    out.wheel_on_rail[i] = met.on_rail[i];
+  }
+  collect_flanges(model, s, met.gap + wheel_count(model), out);
+}
+
+void collect(const SystemResult& met, Outputs& out) noexcept {
+  out.status = out.status | met.status;
+  if (!(met.violation <= out.constraint_violation)) out.constraint_violation = met.violation;
+  if (!(met.force_residual <= out.force_residual)) out.force_residual = met.force_residual;
+  if (met.iterations > out.iterations) out.iterations = met.iterations;
+  if (met.redundant_rows == 0) return;
+  out.redundant_rows = met.redundant_rows;
+  for (int i = 0; i < kMostNamedRows; ++i) out.redundant_row[i] = met.redundant_row[i];
+}
+
+void publish(const Model& model, const State& state, Outputs& outputs) noexcept {
+  for (std::int32_t i = 0; i < model.loads; ++i) {
+    const PlacedLoad at = place(model, model.load[i], state.steps);
+    outputs.load_x[i] = at.x;
+    outputs.load_place[i] = at.place;
+    outputs.load_force[i] = at.force;
+    outputs.load_deflection[i] = at.on_rail ? deflection(model, at, standing(model, state)) : 0.;
+    if (!at.on_rail) outputs.status = outputs.status | Status::off_rail;
+  }
+  RailForce force[kMaxRailForces];
+  const int count = rail_forces(model, outputs, force);
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    outputs.load_deflection[i] += residual_displacement(model, force, count, i);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
+    const RailForce& own = force[model.loads + i];
+    outputs.wheel_rail_z[i] = 0.;
+    if (!outputs.wheel_on_rail[i]) continue;
+    outputs.wheel_rail_z[i] =
+        axis_height(model, wheel_rail(model, i), own.element, own.xi, standing(model, state)) +
+        residual_displacement(model, force, count, model.loads + i) +
+        own.force * (residual_axis(model, own) - residual_under(model, own));
+  }
+  for (std::int32_t i = 0; i < model.external_wheels; ++i)
+    if (outputs.external_on_rail[i])
+      outputs.external_displacement[i][2] +=
+          residual_displacement(model, force, count, model.loads + wheel_count(model) + i);
+  outputs.first_bad_unknown = first_bad(model, state);
+  if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
+}
+
+void start_outputs(const Model& model, const State& state, Outputs& outputs) noexcept {
+  start_frame(model, state, outputs);
+  WheelContact contact[kMaxWheels];
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    find_contacts(model, model.wheelset[b], standing(model, state), contact + 2 * b);
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., standing(model, state),
+                          contact);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
+    outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
+        state.wheel_force[i];
+    outputs.wheel_gap[i] = -contact[i].penetration;
+    outputs.wheel_on_rail[i] = contact[i].on_rail;
+    outputs.wheel_place[i] = contact[i].x;
+    outputs.wheel_x[i] = contact[i].x + passed(model, state.steps);
+  }
+  for (std::int32_t f = 0; f < model.flanges; ++f)
+    find_flanges(model, model.flange[f], standing(model, state), contact + 2 * f);
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) {
+    outputs.flange_force[i] = outputs.flange_force_peak[i] =
+        state.wheel_force[wheel_count(model) + i];
+    outputs.flange_gap[i] = -contact[i].penetration;
+  }
+  if (model.external_wheels > 0) {
+    ExternalContact external[kMaxExternalWheels];
+    place_external(model, state.steps, state.input, standing(model, state), external);
+    publish_external(model, state, external, outputs);
+    for (auto& velocity : outputs.external_velocity) velocity[0] = velocity[1] = velocity[2] = 0.;
+  }
+  publish(model, state, outputs);
+  RailForce force[kMaxRailForces];
+  const int count = rail_forces(model, outputs, force);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
+    if (outputs.wheel_on_rail[i])
+      outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
+}
+
+}  // namespace railstep
