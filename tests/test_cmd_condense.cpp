@@ -61,6 +61,60 @@ TEST_CASE("a model runs to the bits of its scene, full and condensed", "[condens
     }
 }
 
+TEST_CASE("a model of a system runs to the bits of its scene", "[condense]") {
+  const auto folder = fresh_folder("system_bits");
+  const auto file = folder / "made.model";
+  for (const std::string& words :
+       {std::string("double_pendulum.toml"),
+        std::string("double_pendulum.toml --set "
+                    "system.planar=true"),
+        std::string("double_pendulum.toml --set 'joints.tangent=\"kept\"'"),
+        std::string("double_pendulum.toml --set 'step.scheme=\"energy-momentum\"'"),
+        std::string("slider_crank.toml --set 'joints.hold=\"baumgarte\"'"),
+        std::string("spring_pendulum.toml"), std::string("exciter_on_track.toml")}) {
+    const std::string scene = kScenes + words + " --set step.duration_s=0.1";
+    const Json made = condense(scene, file);
+    const Ran of_scene =
+        railstep_program("run --json " + scene + " --trace " + (folder / "scene.csv").string());
+    const Ran of_model = railstep_program("run --json " + file.string() + " --trace " +
+                                          (folder / "model.csv").string());
+    CAPTURE(words, of_scene.err, of_model.err);
+    REQUIRE(of_scene.code == 0);
+    REQUIRE(of_model.code == 0);
+    const Json a = Json::parse(of_scene.out), b = Json::parse(of_model.out);
+    for (const char* key : {"steps", "final_time_s", "state_hash", "status", "steps_per_frame",
+                            "max_iterations", "max_constraint_violation", "allocations"})
+      CHECK(a.at(key) == b.at(key));
+    CHECK(b.at("energy_balance_error").is_null());
+    CHECK(text_of(folder / "scene.csv") == text_of(folder / "model.csv"));
+    CHECK(made.at("bytes") == std::filesystem::file_size(file));
+    CHECK(made.at("full_unknowns") == made.at("kept_unknowns"));
+    for (const char* key : {"flops_per_frame", "transient_error"}) CHECK(made.at(key).is_null());
+  }
+}
+
+TEST_CASE("the unknowns of a system are counted without those that are held", "[condense]") {
+  const auto folder = fresh_folder("system_keys");
+  const Json pendulum = condense(kScenes + "double_pendulum.toml", folder / "a.model");
+  CHECK(pendulum.at("full_unknowns") == 2 * 9 * 9 - 3);  // beams, nodes, the pin
+  for (const char* key : {"static_error", "receptance_error"}) CHECK(pendulum.at(key).is_null());
+  const Ran table = railstep_program("condense " + kScenes + "slider_crank.toml --out " +
+                                     (folder / "b.model").string());
+  CHECK(table.code == 0);
+  CHECK_THAT(table.out, Contains("9 of 9 unknowns") && Contains("not known"));
+}
+
+TEST_CASE("a model file of a system names what it met by its place in the scene", "[condense]") {
+  const auto folder = fresh_folder("redundant");
+  const std::string scene = kScenes +
+                            "slider_crank.toml --set step.duration_s=0.01 --set "
+                            "system.planar=false --set 'joints.hold=\"direct\"'";
+  condense(scene, folder / "a.model");
+  const Ran ran = railstep_program("run " + (folder / "a.model").string());
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.err, Contains("note: redundant_joint") && Contains("(joint["));
+}
+
 TEST_CASE("the option --json has the contract's keys with their meaning", "[condense]") {
   const auto folder = fresh_folder("keys");
   const Json made = condense(kMovingLoad + kCondensed, folder / "a.model");

@@ -237,7 +237,7 @@ TEST_CASE("a scene with both says what it met, and where", "[run]") {
   for (const std::string command : {"static ", "modes "}) {
     const Ran ran = railstep_program(command + scene.path());
     CHECK(ran.code == 2);
-    CHECK_THAT(ran.err, Contains("run alone takes"));
+    CHECK_THAT(ran.err, Contains("run and condense take"));
   }
   const auto page = fresh_folder("report") / "r.html";
   CHECK(railstep_program("run " + scene.path() + " --report " + page.string()).code == 0);

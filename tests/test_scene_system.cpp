@@ -312,7 +312,7 @@ TEST_CASE("a scene without a track has nothing of one", "[scene]") {
     CHECK_THROWS_WITH(
         read_scene(shipped(name)),
         Contains(name + ".toml") &&
-            Contains("makes this a scene of bodies and beams, which run alone takes"));
+            Contains("makes this a scene of bodies and beams, which run and condense take"));
   CHECK(std::holds_alternative<Scene>(read_any_scene(shipped("moving_load"))));
 }
 

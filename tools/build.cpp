@@ -374,10 +374,15 @@ Built::Built(const Scene& scene) try {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }
 
+std::string block_text(const std::vector<std::string>& columns,
+                       const std::vector<std::string>& inputs) {
+  std::string text = fmt::format("{}", fmt::join(columns, "\n"));
+  if (!inputs.empty()) text += fmt::format("\n\n{}", fmt::join(inputs, "\n"));
+  return text;
+}
+
 std::vector<std::byte> block_of(const Built& built) {
-  std::string text = fmt::format("{}", fmt::join(built.columns, "\n"));
-  if (!built.inputs.empty()) text += fmt::format("\n\n{}", fmt::join(built.inputs, "\n"));
-  return to_block(built.packed->model(), text);
+  return to_block(built.packed->model(), block_text(built.columns, built.inputs));
 }
 
 }  // namespace railstep

@@ -92,7 +92,11 @@ struct Built {
   std::unique_ptr<PackedModel> packed;
 };
 
-/// The model with its columns and, after an empty line, its inputs in one block.
+/// A block's text: columns of a trace, then, behind an empty line, inputs.
+std::string block_text(const std::vector<std::string>& columns,
+                       const std::vector<std::string>& inputs);
+
+/// The model with its columns and inputs in one block.
 std::vector<std::byte> block_of(const Built& built);
 
 }  // namespace railstep

@@ -1,10 +1,12 @@
 #include "build_system.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <stdexcept>
 
 #include "build.h"
+#include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
 #include "sense.h"
 
@@ -91,6 +93,10 @@ BuiltSystem::BuiltSystem(const SystemScene& scene) try
     columns.push_back(fmt::format("{}.force_n", names.springs[static_cast<std::size_t>(spring)]));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+}
+
+std::vector<std::byte> block_of(const BuiltSystem& built) {
+  return to_block(built.packed->model(), block_text(built.columns, built.inputs));
 }
 
 }  // namespace railstep

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,5 +26,8 @@ struct BuiltSystem {
   std::vector<std::string> inputs;  // NAME.force_n or NAME.moment_n_m of each
   std::unique_ptr<PackedSystem> packed;
 };
+
+/// The model and its columns in one block.
+std::vector<std::byte> block_of(const BuiltSystem& built);
 
 }  // namespace railstep

@@ -4,15 +4,17 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "build.h"
+#include "build_system.h"
 #include "command.h"
 #include "condense_error.h"
 #include "offline/pack/accuracy.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/cost.h"
-#include "simulation.h"
 #include "write.h"
 
 namespace railstep {
@@ -25,39 +27,90 @@ struct CondenseOptions {
 };
 
 /// Unknowns of the track, and those that the model carries of it; wheelsets stand beside.
-std::pair<int, int> unknowns_of(const Built& built) {
+std::pair<int, int> unknowns_of(const Track& track, const PackedModel& packed) {
   int full = 0, kept = 0;
-  for (const Line& line : assemble(built.track)) full += line.unknowns();
-  for (const PackedLine& own : built.packed->lines())
-    kept += built.packed->model().condensed != 0 ? static_cast<int>(own.basis.omega.size())
-                                                 : own.line.unknowns();
+  for (const Line& line : assemble(track)) full += line.unknowns();
+  for (const PackedLine& own : packed.lines())
+    kept += packed.model().condensed != 0 ? static_cast<int>(own.basis.omega.size())
+                                          : own.line.unknowns();
   return {full, kept};
 }
 
-nlohmann::ordered_json condense(const CondenseOptions& o) {
-  const Scene scene = read_scene(o.scene, o.overrides);
-  const Built built(scene);
-  const Model& model = built.packed->model();
-  const std::vector<std::byte> block = block_of(built);
-  const auto [full, kept] = unknowns_of(built);
-  const TransientError transient = transient_error(scene, o.overrides);
+/// Unknowns of bodies and beams that are not held.
+int unknowns_of(const SystemModel& system) {
+  int sum = -system.held;
+  for (std::int32_t i = 0; i < system.bodies; ++i) sum += system.body[i].unknowns;
+  for (std::int32_t i = 0; i < system.beams; ++i) sum += system.beam[i].unknowns;
+  return sum;
+}
+
+/// A model that is ready to be written, and what is known of it; what is not known is null.
+struct Condensed {
+  std::vector<std::byte> block;
+  const Model& model;
+  std::pair<int, int> unknowns;  // full, kept
+  nlohmann::ordered_json flops, static_error, receptance_error, transient_error, window_s;
+  double clipped;  // m/N
+};
+
+nlohmann::ordered_json to_json(const Condensed& made) {
   const auto size = [](std::int64_t doubles) { return doubles * std::int64_t{sizeof(double)}; };
-  nlohmann::ordered_json result = {
-      {"full_unknowns", full},
-      {"kept_unknowns", kept},
-      {"bytes", block.size()},
-      {"state_bytes", size(state_doubles(model))},
-      {"workspace_bytes", size(workspace_doubles(model))},
-      {"flops_per_frame", flops_per_frame(model)},
-      {"sha256", sum_of(block)},
-      {"static_error", static_error(built.track, *built.packed)},
-      {"receptance_error", receptance_error(built.track, *built.packed)},
-      {"receptance_band_hz", {kReceptanceFrom, kReceptanceTo}},
-      {"transient_error", transient.largest},
-      {"transient_window_s", transient.window_s},
-      {"clipped_m_per_n", built.packed->clipped()}};
-  write_file(o.out, std::string_view(reinterpret_cast<const char*>(block.data()), block.size()));
-  return result;
+  return {{"full_unknowns", made.unknowns.first},
+          {"kept_unknowns", made.unknowns.second},
+          {"bytes", made.block.size()},
+          {"state_bytes", size(state_doubles(made.model))},
+          {"workspace_bytes", size(workspace_doubles(made.model))},
+          {"flops_per_frame", made.flops},
+          {"sha256", sum_of(made.block)},
+          {"static_error", made.static_error},
+          {"receptance_error", made.receptance_error},
+          {"receptance_band_hz", {kReceptanceFrom, kReceptanceTo}},
+          {"transient_error", made.transient_error},
+          {"transient_window_s", made.window_s},
+          {"clipped_m_per_n", made.clipped}};
+}
+
+std::string_view bytes_of(const std::vector<std::byte>& block) {
+  return {reinterpret_cast<const char*>(block.data()), block.size()};
+}
+
+nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
+  const Built built(scene);
+  const PackedModel& packed = *built.packed;
+  const TransientError transient = transient_error(scene, o.overrides);
+  const Condensed made{block_of(built),
+                       packed.model(),
+                       unknowns_of(built.track, packed),
+                       flops_per_frame(packed.model()),
+                       static_error(built.track, packed),
+                       receptance_error(built.track, packed),
+                       transient.largest,
+                       transient.window_s,
+                       packed.clipped()};
+  write_file(o.out, bytes_of(made.block));
+  return to_json(made);
+}
+
+/// Nothing of a system is left out: what errors there are, are those of the track beside it. How
+/// many iterations a step takes is not known before it runs.
+nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions& o) {
+  const BuiltSystem built(scene);
+  const Model& model = built.packed->model();
+  const int own = unknowns_of(model.system);
+  Condensed made{block_of(built), model, {own, own}, {}, {}, {}, {}, {}, 0.};
+  if (const PackedModel* const packed = built.packed->track()) {
+    const Track track = track_of(*scene.track);
+    const auto [full, kept] = unknowns_of(track, *packed);
+    made.unknowns = {own + full, own + kept};
+    made.static_error = static_error(track, *packed);
+    made.receptance_error = receptance_error(track, *packed);
+  }
+  write_file(o.out, bytes_of(made.block));
+  return to_json(made);
+}
+
+std::string error_text(const nlohmann::ordered_json& error) {
+  return error.is_null() ? "not known" : fmt::format("{:.2e}", error.get<double>());
 }
 
 void print_table(const nlohmann::ordered_json& r, const std::string& file) {
@@ -66,12 +119,14 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
              r["bytes"].get<std::int64_t>(), r["state_bytes"].get<std::int64_t>(),
              r["workspace_bytes"].get<std::int64_t>());
   fmt::print("sha256            {}\n", r["sha256"].get<std::string>());
-  fmt::print("flops per frame   {}\n", r["flops_per_frame"].get<std::int64_t>());
-  fmt::print("static error      {:.2e}\n", r["static_error"].get<double>());
-  fmt::print("receptance error  {:.2e}, {:g} to {:g} Hz\n", r["receptance_error"].get<double>(),
+  const auto& flops = r["flops_per_frame"];
+  fmt::print("flops per frame   {}\n", flops.is_null() ? "not known" : flops.dump());
+  fmt::print("static error      {}\n", error_text(r["static_error"]));
+  fmt::print("receptance error  {}, {:g} to {:g} Hz\n", error_text(r["receptance_error"]),
              kReceptanceFrom, kReceptanceTo);
-  fmt::print("transient error   {:.2e} in {:g} s\n", r["transient_error"].get<double>(),
-             r["transient_window_s"].get<double>());
+  const auto& window = r["transient_window_s"];
+  fmt::print("transient error   {}{}\n", error_text(r["transient_error"]),
+             window.is_null() ? "" : fmt::format(" in {:g} s", window.get<double>()));
 }
 
 }  // namespace
@@ -87,7 +142,9 @@ Command add_condense(CLI::App& app) {
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep condense config/scenes/ballasted_track.toml --out track.model");
   return {sub, [o] {
-            const nlohmann::ordered_json result = condense(*o);
+            const nlohmann::ordered_json result =
+                std::visit([&o](const auto& scene) { return condense(scene, *o); },
+                           read_any_scene(o->scene, o->overrides));
             if (o->json)
               fmt::print("{}\n", result.dump(2));
             else

@@ -87,10 +87,6 @@ Recording Recording::begin(const Simulation& run, std::int64_t every) {
   Recording made;
   made.every = every;
   made.block = run.block();
-  if (made.block.empty())
-    throw InputError(
-        "--record keeps the model's block, and a system of bodies has none; accepted is a track "
-        "without bodies");
   made.snapshot.resize(snapshot_bytes(run.model()));
   save_snapshot(run.model(), run.state, reinterpret_cast<unsigned char*>(made.snapshot.data()));
   return made;

@@ -23,7 +23,7 @@ struct Recording {
   std::vector<double> inputs;         // [frames][inputs of the model]
   std::vector<std::uint64_t> hashes;  // [hash_count()]
 
-  /// Begins one at a simulation's state. Throws InputError of one without a block.
+  /// Begins one at a simulation's state.
   static Recording begin(const Simulation& run, std::int64_t every);
   /// A frame that was made. @param given  [inputs], or null without inputs
   void frame(const Simulation& run, const double* given);

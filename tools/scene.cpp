@@ -357,8 +357,8 @@ Scene read_track_scene(const Table& root) {
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const Table root = open_scene(file, overrides);
   if (const char* key = key_of_system(root))
-    root.refuse(key, fmt::format("the key {} makes this a scene of bodies and beams, which run "
-                                 "alone takes; accepted here is the scene of a track",
+    root.refuse(key, fmt::format("the key {} makes this a scene of bodies and beams, which run and "
+                                 "condense take; accepted here is the scene of a track",
                                  key));
   return read_track_scene(root);
 }

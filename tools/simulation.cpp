@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "online/model/load.h"
+#include "online/step/trace_row.h"
 
 namespace railstep {
 namespace {
@@ -59,11 +60,8 @@ Simulation::Simulation(const Scene& scene)
 }
 
 Simulation::Simulation(const SystemScene& scene)
-    : system_(std::make_unique<BuiltSystem>(scene)),
-      model_(system_->packed->model()),
-      columns_(system_->columns),
-      inputs_(system_->inputs) {
-  place();
+    : system_(std::make_unique<BuiltSystem>(scene)), block_(block_of(*system_)) {
+  load(scene.file.string());
 }
 
 Simulation::Simulation(const std::filesystem::path& artefact)
@@ -82,12 +80,8 @@ void Simulation::load(const std::string& name) {
   const auto end = std::find(columns_.begin(), columns_.end(), "");
   if (end != columns_.end()) inputs_.assign(end + 1, columns_.end());
   columns_.erase(end, columns_.end());
-  const std::size_t expected = 1 + 2 * static_cast<std::size_t>(model_.loads) +
-                               6 * static_cast<std::size_t>(wheel_count(model_)) +
-                               8 * static_cast<std::size_t>(model_.flanges) +
-                               6 * static_cast<std::size_t>(model_.external_wheels) +
-                               static_cast<std::size_t>(model_.probe.count);
-  if (columns_.size() != expected || inputs_.size() != static_cast<std::size_t>(model_.inputs))
+  if (columns_.size() != static_cast<std::size_t>(trace_columns(model_)) ||
+      inputs_.size() != static_cast<std::size_t>(model_.inputs))
     throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));
   place();
 }

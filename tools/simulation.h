@@ -17,7 +17,7 @@ class Simulation {
  public:
   /// Of a scene, condensed where it says so. Throws InputError.
   explicit Simulation(const Scene& scene);
-  /// Of a scene of bodies and beams, which has no block. Throws InputError.
+  /// Of a scene of bodies and beams. Throws InputError.
   explicit Simulation(const SystemScene& scene);
   /// Of a block that `railstep condense` wrote. Throws InputError.
   explicit Simulation(const std::filesystem::path& artefact);
@@ -27,13 +27,12 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   const Model& model() const { return model_; }
-  /// Empty of a system.
   const std::vector<std::byte>& block() const { return block_; }
   /// What the block was made of, matrices and all; null for a model file, which carries none.
   const PackedModel* packed() const { return built_ ? built_->packed.get() : nullptr; }
   /// Of a scene of a track alone: where packed() is not null.
   const Track& track() const { return built_->track; }
-  /// The system that is stepped, with its names; null where it is a track.
+  /// The system that is stepped, with its names; null where it is a track, and for a model file.
   const BuiltSystem* system() const { return system_.get(); }
   /// Of a trace: time_s, then those of every load, wheel, sensor and support.
   const std::vector<std::string>& columns() const { return columns_; }
