@@ -19,6 +19,9 @@ const std::string kInside =
     "unsprung_mass_kg=900, stiffness_n_per_m=1e6, damping_n_s_per_m=2e4, start_m=0.3, "
     "speed_m_per_s=30}]'";
 
+/// Words for `run`: steps of that length, each a frame.
+std::string stepped(const std::string& dt) { return " --step " + dt + " --set step.frame_s=" + dt; }
+
 /// The constant of that vehicle's Hertz contact, N/m^1.5.
 double hertz_of_inside() {
   const auto run = simulation_of(read_any_scene(
@@ -33,6 +36,7 @@ Rows ride(const std::string& dt, const std::string& seconds, const char* way = "
   const auto folder = fresh_folder("own_vehicle");
   const std::string model = (folder / "track.model").string();
   const Ran made = railstep_program("condense " + kTrack + " --set step.dt_s=" + dt +
+                                    " --set step.frame_s=" + dt +
                                     " --set step.duration_s=" + seconds + " --out " + model);
   CAPTURE(made.err);
   REQUIRE(made.code == 0);
@@ -63,7 +67,7 @@ double difference(const Rows& own, const Rows& inside) {
 TEST_CASE("a vehicle outside, coupled by the step's compliance, is the vehicle in the model",
           "[own_vehicle]") {
   for (const char* dt : {"1e-4", "1e-3"}) {
-    const std::string at = std::string(" --step ") + dt + " --duration 0.5";
+    const std::string at = stepped(dt) + " --duration 0.5";
     const Rows inside = traced(kTrack + at + kInside);
     const Rows own = ride(dt, "0.5");
     CAPTURE(dt);
@@ -74,10 +78,10 @@ TEST_CASE("a vehicle outside, coupled by the step's compliance, is the vehicle i
 }
 
 TEST_CASE("coupled by the force of the frame before it is not", "[own_vehicle]") {
-  const Rows inside = traced(kTrack + " --step 1e-3 --duration 0.1" + kInside);
+  const Rows inside = traced(kTrack + stepped("1e-3") + " --duration 0.1" + kInside);
   const Rows own = ride("1e-3", "0.1", "explicit");
   const bool lost = own.row.size() + 1 < inside.row.size();  // it ended beyond 1e12 N
   if (!lost) CHECK(difference(own, inside) > .5);
-  const Rows fine = traced(kTrack + " --step 1e-5 --duration 0.1" + kInside);
+  const Rows fine = traced(kTrack + stepped("1e-5") + " --duration 0.1" + kInside);
   CHECK(difference(ride("1e-5", "0.1", "explicit"), fine) < .1);
 }

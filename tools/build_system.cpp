@@ -1,7 +1,6 @@
 #include "build_system.h"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <stdexcept>
 

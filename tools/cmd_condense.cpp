@@ -77,16 +77,20 @@ std::string_view bytes_of(const std::vector<std::byte>& block) {
 nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
   const Built built(scene);
   const PackedModel& packed = *built.packed;
-  const TransientError transient = transient_error(scene, o.overrides);
-  const Condensed made{block_of(built),
-                       packed.model(),
-                       unknowns_of(built.track, packed),
-                       flops_per_frame(packed.model()),
-                       static_error(built.track, packed),
-                       receptance_error(built.track, packed),
-                       transient.largest,
-                       transient.window_s,
-                       packed.clipped()};
+  Condensed made{block_of(built),
+                 packed.model(),
+                 unknowns_of(built.track, packed),
+                 flops_per_frame(packed.model()),
+                 static_error(built.track, packed),
+                 receptance_error(built.track, packed),
+                 {},
+                 {},
+                 packed.clipped()};
+  if (scene.external_wheels.empty()) {  // what runs over it elsewhere is not known here
+    const TransientError transient = transient_error(scene, o.overrides);
+    made.transient_error = transient.largest;
+    made.window_s = transient.window_s;
+  }
   write_file(o.out, bytes_of(made.block));
   return to_json(made);
 }
