@@ -70,6 +70,8 @@ void append_forces(const Simulation& run, std::vector<double>& row) {
     row.push_back(run.state.row_force[run.model().system.joint_rows + spring]);
 }
 
+}  // namespace
+
 void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row) {
   const Model& model = run.model();
   row.assign({static_cast<double>(run.state.steps) * model.scheme.dt});
@@ -91,6 +93,8 @@ void write_row(const Simulation& run, const Outputs& outputs, std::vector<double
   append_sensors(run, row);
   append_forces(run, row);
 }
+
+namespace {
 
 /// Axes of the rails that the model's lines carry.
 void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {

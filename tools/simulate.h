@@ -44,6 +44,10 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
                    const std::function<void(std::int64_t)>& after = {},
                    const FrameInputs& inputs = {});
 
+/// A trace's row of the state as it stands and what its frame published.
+/// @param row  [columns] overwritten; no heap where it has that capacity
+void write_row(const Simulation& run, const Outputs& outputs, std::vector<double>& row);
+
 /// Names of the bits that are set, as in the JSON; empty when all is well.
 std::vector<std::string> status_names(Status status);
 /// What a status bit means and what to do about it, by its name; with the joints it is about.
