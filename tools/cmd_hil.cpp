@@ -182,7 +182,7 @@ nlohmann::ordered_json to_json(const HilOptions& o, const HilPlan& plan, const H
       {"policy", o.policy},
       {"frames", paced.frames},
       {"skipped", paced.skipped},
-      {"most_behind_us", 1e-3 * static_cast<double>(paced.most_behind_ns)},
+      {"most_behind_us", static_cast<double>(paced.most_behind_ns) / 1e3},
       {"grace_frames", plan.schedule.grace},
       {"grace_overruns", paced.grace_overruns},
       {"frame_length_s", frame_s},

@@ -40,9 +40,9 @@ double Latency::quantile_us(double q) const {
   std::int64_t found = 0;
   for (std::size_t i = 0; i < kLast; ++i) {
     found += samples_[i];
-    if (found >= wanted) return 1e-3 * static_cast<double>(std::min(upper_end(i), longest_));
+    if (found >= wanted) return static_cast<double>(std::min(upper_end(i), longest_)) / 1e3;
   }
-  return 1e-3 * static_cast<double>(longest_);
+  return static_cast<double>(longest_) / 1e3;
 }
 
 std::vector<std::int64_t> Latency::microseconds() const {

@@ -106,8 +106,9 @@ std::string histogram_svg(const std::vector<NamedLatency>& shown) {
       grid(axes);
   for (std::size_t i = shown.size(); i-- > 0;) {  // the first lies on top
     const char* const colour = kColours[i % std::size(kColours)];
-    svg += fmt::format("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"0.5\"/>\n",
-                       bars(axes, all[i]), colour, colour);
+    svg += fmt::format(
+        "<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"0.5\" fill-opacity=\"0.8\"/>\n",
+        bars(axes, all[i]), colour, colour);
     const double y = kTop + 16. * static_cast<double>(i + 1);
     svg +=
         fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\" fill=\"{}\">{}</text>\n",
