@@ -1,0 +1,139 @@
+#include "hil_run.h"
+
+#include <sys/resource.h>
+
+#include <thread>
+
+#include "heap_count.h"
+#include "hil_inputs.h"
+#include "hil_packet.h"
+#include "online/step/step.h"
+#include "online/step/trace_row.h"
+#include "simulate.h"
+
+namespace railstep {
+namespace {
+
+/// All that a frame needs, made before the first one.
+class Stepper {
+ public:
+  Stepper(Simulation& run, const HilPlan& plan, const std::vector<Exchange*>& exchanges,
+          HilRecord& record)
+      : run_(run),
+        plan_(plan),
+        exchanges_(exchanges),
+        record_(record),
+        held_(static_cast<std::size_t>(run.model().inputs), plan.silence, plan.ramp),
+        row_(static_cast<std::size_t>(trace_columns(run.model()))) {
+    publish_start(run.model(), run.state, outputs_);
+    trace_row(run.model(), run.state, outputs_, row_.data());
+  }
+
+  /// @returns whether inputs came in time, or none are waited for
+  bool wait() noexcept {
+    constexpr std::int64_t kLook = 1'000'000;  // ns
+    const std::int64_t end = clock_.now() + static_cast<std::int64_t>(1e9 * plan_.wait_s);
+    while (plan_.wait_s > 0. && !held_.heard() && !interrupted() && clock_.now() < end) {
+      give(-1);
+      clock_.sleep_until(clock_.now() + kLook);
+    }
+    return plan_.wait_s <= 0. || held_.heard();
+  }
+
+  /// @returns whether the run goes on
+  bool frame(std::int64_t n) noexcept {
+    const double* const given = give(n);
+    record_.status =
+        record_.status | advance_frame(run_.model(), given, run_.state, run_.workspace, outputs_);
+    record_.first_bad_unknown = outputs_.first_bad_unknown;
+    if (held_.stopping() && record_.safe_stop_frame < 0) record_.safe_stop_frame = n;
+    trace_row(run_.model(), run_.state, outputs_, row_.data());
+    if (n == plan_.stall_frame) stall();
+    publish(n, 0);
+    record_.interrupted = interrupted();
+    return record_.first_bad_unknown < 0 && !record_.interrupted;
+  }
+
+  /// The last frame's outputs again, and that it was the last.
+  void end(std::int64_t frames) noexcept { publish(frames - 1, kLastFrame); }
+
+ private:
+  const double* give(std::int64_t n) noexcept {
+    const double* fresh = nullptr;
+    for (Exchange* const exchange : exchanges_) {
+      const double* const came = exchange->inputs(n);
+      if (fresh == nullptr) fresh = came;
+    }
+    return n < 0 && fresh == nullptr ? nullptr : held_.next(fresh, run_.state.input);
+  }
+
+  void publish(std::int64_t n, std::uint32_t flags) noexcept {
+    const FrameOutputs made{n, outputs_.status, flags | (held_.stopping() ? kSafeStop : 0u),
+                            row_.data()};
+    for (Exchange* const exchange : exchanges_) exchange->outputs(made);
+  }
+
+  void stall() const noexcept {
+    const std::int64_t end = clock_.now() + plan_.stall_ns;
+    while (clock_.now() < end) {
+    }
+  }
+
+  bool interrupted() const noexcept {
+    return plan_.interrupted != nullptr && plan_.interrupted->load(std::memory_order_relaxed);
+  }
+
+  Simulation& run_;
+  const HilPlan& plan_;
+  const std::vector<Exchange*>& exchanges_;
+  HilRecord& record_;
+  HeldInputs held_;
+  Outputs outputs_{};
+  std::vector<double> row_;
+  MonotonicClock clock_;
+};
+
+/// The calling thread's account with the system.
+rusage thread_usage() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage;
+}
+
+void step_thread(const HilPlan& plan, Stepper& stepper, HilRecord& record) {
+  record.settings = become_realtime(plan.realtime);
+  if (!stepper.wait()) {
+    record.unheard = true;
+    return;
+  }
+  const MonotonicClock clock;
+  Schedule empty = plan.schedule;
+  empty.slots = plan.empty_slots;
+  empty.grace = 0;
+  if (empty.policy == Policy::stop) empty.policy = Policy::skip;  // it is there to be measured
+  pace(
+      empty, clock, [](std::int64_t) { return true; }, record.empty_wakeup, record.empty_frame);
+  const rusage before = thread_usage();
+  const std::int64_t heap = heap_calls();
+  record.paced = pace(
+      plan.schedule, clock, [&stepper](std::int64_t n) { return stepper.frame(n); }, record.wakeup,
+      record.frame);
+  record.allocations = heap_calls() - heap;
+  const rusage after = thread_usage();
+  record.minor_faults = after.ru_minflt - before.ru_minflt;
+  record.major_faults = after.ru_majflt - before.ru_majflt;
+  record.preemptions = after.ru_nivcsw - before.ru_nivcsw;
+  stepper.end(record.paced.frames);
+}
+
+}  // namespace
+
+HilRecord run_paced(Simulation& run, const HilPlan& plan, const std::vector<Exchange*>& exchanges) {
+  HilRecord record;
+  Stepper stepper(run, plan, exchanges, record);
+  std::thread([&] { step_thread(plan, stepper, record); }).join();
+  unlock_memory();
+  return record;
+}
+
+}  // namespace railstep
