@@ -97,7 +97,7 @@ TEST_CASE("the unknowns of a system are counted without those that are held", "[
   const auto folder = fresh_folder("system_keys");
   const Json pendulum = condense(kScenes + "double_pendulum.toml", folder / "a.model");
   CHECK(pendulum.at("full_unknowns") == 2 * 9 * 9 - 3);  // beams, nodes, the pin
-  for (const char* key : {"static_error", "receptance_error"}) CHECK(pendulum.at(key).is_null());
+  for (const char* key : {"static_error", "receptance_error"}) CHECK(pendulum.at(key) == 0.);
   const Ran table = railstep_program("condense " + kScenes + "slider_crank.toml --out " +
                                      (folder / "b.model").string());
   CHECK(table.code == 0);

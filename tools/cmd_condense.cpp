@@ -95,13 +95,13 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
   return to_json(made);
 }
 
-/// Nothing of a system is left out: what errors there are, are those of the track beside it. How
-/// many iterations a step takes is not known before it runs.
+/// Nothing of a system is left out: what errors there are, are those of the track beside it, and 0
+/// without one. How many iterations a step takes is not known before it runs.
 nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions& o) {
   const BuiltSystem built(scene);
   const Model& model = built.packed->model();
   const int own = unknowns_of(model.system);
-  Condensed made{block_of(built), model, {own, own}, {}, {}, {}, {}, {}, 0.};
+  Condensed made{block_of(built), model, {own, own}, {}, 0., 0., {}, {}, 0.};
   if (const PackedModel* const packed = built.packed->track()) {
     const Track track = track_of(*scene.track);
     const auto [full, kept] = unknowns_of(track, *packed);
