@@ -212,7 +212,7 @@ void set_size(const Table& t, SystemScene& scene, SystemForce& force) {
     return;
   }
   for (const std::string& key :
-       {std::string(constant), std::string("polynomial_") + unit, std::string("table_") + unit})
+       {std::string(constant), fmt::format("polynomial_{}", unit), fmt::format("table_{}", unit)})
     if (t.has(key))
       t.refuse(key, fmt::format("{} is given beside input; one of them is accepted", key));
   force.input = read_input(t, force.moment, scene.inputs);

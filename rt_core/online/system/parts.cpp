@@ -297,8 +297,8 @@ void outer_forces(const Model& model, double time, const double* input,
   for (std::int32_t f = 0; f < s.forces; ++f) {
     const PointForceModel& force = s.force[f];
     const MarkerModel& marker = s.marker[force.marker];
-    const double size = force.input >= 0 ? held_input(input, force.input)
-                                         : motion_at(s, force.motion, time).x;
+    const double size =
+        force.input >= 0 ? held_input(input, force.input) : motion_at(s, force.motion, time).x;
     const Reach at = reach(s, marker);
     double row[kMostNodeUnknowns] = {};
     applied(s, w, force, size, row);
