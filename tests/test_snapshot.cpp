@@ -153,7 +153,8 @@ TEST_CASE("every scene goes on from a snapshot with the same bits, over scratch 
 
 TEST_CASE("a scene of the other kind goes on from a snapshot too", "[snapshot]") {
   for (const auto& [name, kind] :
-       {std::pair{"wheel_flat", "full"}, std::pair{"hanging_sleeper", "modal"}}) {
+       {std::pair{"wheel_flat", "full"}, std::pair{"hanging_sleeper", "modal"},
+        std::pair{"endless_track", "full"}}) {  // a window, which goes on by a bay after 400 steps
     const auto run = simulation_of(
         read_any_scene(kFolder + name + ".toml", {std::string("condense.kind=\"") + kind + "\""}));
     Model single = run->model();

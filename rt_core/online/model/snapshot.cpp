@@ -7,7 +7,7 @@ namespace railstep {
 
 namespace {
 
-constexpr char kMagic[] = "railsnap";
+constexpr char kMagic[8] = {'r', 'a', 'i', 'l', 's', 'n', 'a', 'p'};
 constexpr std::size_t kFormatAt = 8, kSizeAt = 16, kModelAt = 24, kStepsAt = 56, kLatchedAt = 64,
                       kCountAt = 72;
 static_assert(kCountAt + 8 == kSnapshotHead);
@@ -16,7 +16,7 @@ static_assert(kCountAt + 8 == kSnapshotHead);
 
 void save_snapshot(const Model& model, const State& state, unsigned char* bytes) noexcept {
   const auto count = static_cast<std::size_t>(state_doubles(model));
-  std::memcpy(bytes, kMagic, 8);
+  for (int i = 0; i < 8; ++i) bytes[i] = static_cast<unsigned char>(kMagic[i]);
   put_word(bytes + kFormatAt, kSnapshotFormat);
   put_word(bytes + kSizeAt, snapshot_bytes(model));
   std::memcpy(bytes + kModelAt, model.sum, sizeof model.sum);
