@@ -168,12 +168,13 @@ TEST_CASE("the program and the client over UDP", "[hil][cli]") {
 TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
   const auto folder = fresh_folder("hil_shm");
   const std::string name = "railstep_cli_" + std::to_string(getpid());
+  const std::string recording = (folder / "recording").string();
   Ran ran;
   std::thread hil([&] {
     ran = ran_in(folder / "hil", RAILSTEP_PROGRAM,
                  "hil " + kPushed +
-                     " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --shm " +
-                     name);
+                     " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --record " +
+                     recording + " --shm " + name);
   });
   const Ran client =
       ran_in(folder / "client", RAILSTEP_HIL_CLIENT, "--seconds 60 --input 0=30 --shm " + name);
@@ -185,6 +186,9 @@ TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
   CHECK(told(ran)["allocations"] == 0);
   CHECK_THAT(client.out, Contains("frame 99, ") && Contains("flags 1"));
   CHECK(printed(client.out, "wheelset.y_m") > 0.);
+  const Ran again = railstep_program("replay " + recording + " --json");
+  CHECK(again.code == 0);  // whenever the inputs came, they come again then
+  CHECK(told(again)["frames"] == 100);
 }
 
 TEST_CASE("a silence ends in a safe stop, and in exit code 1", "[hil][cli]") {
