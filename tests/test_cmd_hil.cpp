@@ -87,6 +87,13 @@ TEST_CASE("a paced run tells its times, settings and state", "[hil][cli]") {
   CHECK_FALSE(result["realtime"].contains("cpu_pinned"));
 }
 
+TEST_CASE("bodies and joints are paced too, without the heap", "[hil][cli]") {
+  const auto result =
+      told(railstep_program("hil " + kFolder + "slider_crank.toml --rate 500 --duration 0.2 --json"));
+  CHECK(result["allocations"] == 0);
+  CHECK(result["frames"].get<int>() >= 1);
+}
+
 TEST_CASE("paced frames are the frames of a run, to the bit", "[hil][cli]") {
   const auto folder = fresh_folder("hil_model");
   const std::string model = (folder / "track.model").string();
