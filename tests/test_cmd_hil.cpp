@@ -88,8 +88,8 @@ TEST_CASE("a paced run tells its times, settings and state", "[hil][cli]") {
 }
 
 TEST_CASE("bodies and joints are paced too, without the heap", "[hil][cli]") {
-  const auto result =
-      told(railstep_program("hil " + kFolder + "slider_crank.toml --rate 500 --duration 0.2 --json"));
+  const auto result = told(
+      railstep_program("hil " + kFolder + "slider_crank.toml --rate 500 --duration 0.2 --json"));
   CHECK(result["allocations"] == 0);
   CHECK(result["frames"].get<int>() >= 1);
 }
