@@ -47,7 +47,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void end_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int) { interrupted.store(true, std::memory_order_relaxed); };
-  action.sa_flags = SA_RESTART | SA_RESETHAND;  // a second one kills
+  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);  // a second one kills
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
