@@ -87,6 +87,13 @@ TEST_CASE("a paced run tells its times, settings and state", "[hil][cli]") {
   CHECK_FALSE(result["realtime"].contains("cpu_pinned"));
 }
 
+TEST_CASE("bodies and joints are paced too, without the heap", "[hil][cli]") {
+  const auto result = told(
+      railstep_program("hil " + kFolder + "slider_crank.toml --rate 500 --duration 0.2 --json"));
+  CHECK(result["allocations"] == 0);
+  CHECK(result["frames"].get<int>() >= 1);
+}
+
 TEST_CASE("paced frames are the frames of a run, to the bit", "[hil][cli]") {
   const auto folder = fresh_folder("hil_model");
   const std::string model = (folder / "track.model").string();
@@ -168,12 +175,13 @@ TEST_CASE("the program and the client over UDP", "[hil][cli]") {
 TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
   const auto folder = fresh_folder("hil_shm");
   const std::string name = "railstep_cli_" + std::to_string(getpid());
+  const std::string recording = (folder / "recording").string();
   Ran ran;
   std::thread hil([&] {
     ran = ran_in(folder / "hil", RAILSTEP_PROGRAM,
                  "hil " + kPushed +
-                     " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --shm " +
-                     name);
+                     " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --record " +
+                     recording + " --shm " + name);
   });
   const Ran client =
       ran_in(folder / "client", RAILSTEP_HIL_CLIENT, "--seconds 60 --input 0=30 --shm " + name);
@@ -185,6 +193,9 @@ TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
   CHECK(told(ran)["allocations"] == 0);
   CHECK_THAT(client.out, Contains("frame 99, ") && Contains("flags 1"));
   CHECK(printed(client.out, "wheelset.y_m") > 0.);
+  const Ran again = railstep_program("replay " + recording + " --json");
+  CHECK(again.code == 0);  // whenever the inputs came, they come again then
+  CHECK(told(again)["frames"] == 100);
 }
 
 TEST_CASE("a silence ends in a safe stop, and in exit code 1", "[hil][cli]") {

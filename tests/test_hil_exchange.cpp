@@ -302,6 +302,7 @@ TEST_CASE("a writer at work, and one that died at it, do not hold up the reader"
 TEST_CASE("two processes exchange through shared memory", "[hil]") {
   constexpr std::uint64_t kChanges = 100'000;
   std::vector<std::string> inputs;
+  inputs.reserve(12);
   for (int i = 0; i < 12; ++i) inputs.push_back("force_" + std::to_string(i));
   const std::string name = own_name();  // the child has another number
   SharedExchange exchange(name, {inputs, kOutputs, 1e6, -1});

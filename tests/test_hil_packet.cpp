@@ -1,5 +1,6 @@
+#include <bit>
 #include <catch2/catch.hpp>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -70,7 +71,8 @@ TEST_CASE("what is decoded is what was encoded", "[hil]") {
   double back[3] = {};
   const auto found = decode(bytes, PacketKind::outputs, 5, 3, back);
   REQUIRE(found);
-  CHECK(std::memcmp(values, back, sizeof back) == 0);
+  for (int i = 0; i < 3; ++i)
+    CHECK(std::bit_cast<std::uint64_t>(values[i]) == std::bit_cast<std::uint64_t>(back[i]));
   CHECK(found->sequence == head.sequence);
   CHECK(found->frame == head.frame);
   CHECK(found->status == head.status);

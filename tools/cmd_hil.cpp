@@ -18,6 +18,7 @@
 #include "hil_run.h"
 #include "hil_shm.h"
 #include "hil_udp.h"
+#include "recording.h"
 #include "simulate.h"
 #include "write.h"
 
@@ -28,7 +29,7 @@ constexpr const char* kPolicies[] = {"stop", "skip", "catch-up", "free-run"};
 constexpr int kPriority = 50;
 
 struct HilOptions {
-  std::string input, policy = "skip", udp, shm, names, report;
+  std::string input, policy = "skip", udp, shm, names, report, record;
   std::vector<std::string> overrides;
   double rate = 0., duration = 0.;  // Hz, s
   std::optional<int> cpu, priority;
@@ -46,7 +47,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void end_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int) { interrupted.store(true, std::memory_order_relaxed); };
-  action.sa_flags = SA_RESTART | SA_RESETHAND;  // a second one kills
+  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);  // a second one kills
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
@@ -93,6 +94,7 @@ HilPlan plan_of(const HilOptions& o) {
   plan.wait_s = o.wait;
   plan.stall_frame = o.stall_frame;
   plan.stall_ns = std::llround(1e3 * o.stall_us);
+  plan.keep_inputs = !o.record.empty();
   plan.interrupted = &interrupted;
   if (o.cpu) {
     const std::vector<int> allowed = allowed_cpus();
@@ -273,11 +275,33 @@ Exit verdict(const HilRecord& record, const Simulation& run) {
   return Exit::done;
 }
 
+/// A recording, its one hash behind the last frame: none is made while frames are timed.
+std::optional<Recording> begun_recording(const HilOptions& o, const HilPlan& plan,
+                                         const Simulation& run) {
+  if (o.record.empty()) return std::nullopt;
+  constexpr double kMostInputs = 1e9;  // 8 GB
+  if (static_cast<double>(plan.schedule.slots) * run.model().inputs > kMostInputs)
+    throw InputError(fmt::format("--record keeps {} inputs of {} frames, and at most {:g} numbers",
+                                 run.model().inputs, plan.schedule.slots, kMostInputs));
+  return Recording::begin(run, plan.schedule.slots + 1);
+}
+
+void write_recording(const std::string& file, const Simulation& run, const HilRecord& record,
+                     Recording& recording) {
+  recording.frames = record.paced.frames;
+  recording.inputs.assign(record.given.begin(),
+                          record.given.begin() + recording.frames * run.model().inputs);
+  recording.finish(run);
+  const std::vector<std::byte> bytes = recording.bytes();
+  write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
 Exit run(const HilOptions& o) {
   const HilPlan plan = plan_of(o);
   const std::unique_ptr<Simulation> simulation = simulation_of(o);
   const ExchangeLayout layout{simulation->inputs(), simulation->columns(), plan.schedule.period_ns,
                               o.cpu.value_or(-1)};
+  std::optional<Recording> recording = begun_recording(o, plan, *simulation);
   end_on_signals();  // from here on something would be left behind
   Exchanges exchanges(o, layout);
   if (!o.names.empty()) write_file(o.names, names_text(layout));
@@ -289,6 +313,7 @@ Exit run(const HilOptions& o) {
         fmt::format("no inputs came within the {:g} s of --wait, and nothing was run", o.wait));
   nlohmann::ordered_json told = to_json(o, plan, record, *simulation);
   add_exchanges(exchanges, told);
+  if (recording) write_recording(o.record, *simulation, record, *recording);
   if (!o.report.empty())
     write_file(o.report,
                hil_report(std::filesystem::path(o.input).stem().string(), told,
@@ -336,6 +361,7 @@ Command add_hil(CLI::App& app) {
       ->check(CLI::Range(0, 99));
   add_exchange_options(*sub, *o);
   sub->add_option("--report", o->report, "write a page with histograms (HTML)");
+  sub->add_option("--record", o->record, "write model and inputs, for `railstep replay`");
   sub->add_option("--stall-frame", o->stall_frame, "a frame to be made late, to see what follows")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--stall-us", o->stall_us, "us that it takes longer")->check(CLI::Range(0., 1e8));

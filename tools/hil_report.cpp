@@ -84,7 +84,7 @@ std::string bars(const Axes& axes, const Counts& counts) {
 void rows_of(const nlohmann::ordered_json& value, const std::string& name, std::string& html) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items())
-      rows_of(inner, name.empty() ? key : name + ", " + key, html);
+      rows_of(inner, name.empty() ? key : fmt::format("{}, {}", name, key), html);
     return;
   }
   const std::string text = value.is_string()         ? value.get<std::string>()

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -80,7 +81,7 @@ void SharedExchange::lay_out(const ExchangeLayout& layout, const std::string& na
   auto* const word = reinterpret_cast<Word*>(memory_);
   for (std::size_t i = 0; i < (bytes_ - names.size()) / 8; ++i) new (word + i) Word(0);
   const std::size_t names_at = bytes_ - names.size();
-  std::memcpy(bytes + names_at, names.data(), names.size());
+  std::copy(names.begin(), names.end(), bytes + names_at);
   std::uint64_t magic = 0;
   std::memcpy(&magic, "railshm1", 8);
   const std::uint64_t head[kSharedHead] = {

@@ -90,6 +90,7 @@ Layout read_names(const std::string& file) {
 // ---- UDP ----
 
 constexpr std::size_t kHead = 40, kSum = 4;
+constexpr unsigned char kMagic[4] = {'R', 'S', 'H', 'L'};
 
 /// CRC-32 as in zlib, bit by bit: slow and short.
 std::uint32_t crc32_of(const unsigned char* bytes, std::size_t count) {
@@ -115,7 +116,7 @@ std::vector<unsigned char> inputs_packet(const Layout& layout, const std::vector
                                          std::uint64_t sequence, long long frame) {
   std::vector<unsigned char> packet(kHead + 8 * value.size() + kSum, 0);
   unsigned char* const at = packet.data();
-  std::memcpy(at, "RSHL", 4);
+  std::memcpy(at, kMagic, sizeof kMagic);
   put(at + 4, 1, 2);  // version
   put(at + 6, 1, 2);  // kind: inputs
   put(at + 8, layout.inputs_sum, 4);
@@ -135,7 +136,7 @@ std::vector<unsigned char> inputs_packet(const Layout& layout, const std::vector
 bool read_outputs(const unsigned char* at, std::size_t size, const Layout& layout, Outputs& out,
                   std::uint64_t& sequence) {
   const std::size_t count = layout.outputs.size();
-  if (size != kHead + 8 * count + kSum || std::memcmp(at, "RSHL", 4) != 0) return false;
+  if (size != kHead + 8 * count + kSum || std::memcmp(at, kMagic, sizeof kMagic) != 0) return false;
   if (get(at + 4, 2) != 1 || get(at + 6, 2) != 2 || get(at + 8, 4) != layout.outputs_sum ||
       get(at + 12, 4) != count || get(at + size - kSum, 4) != crc32_of(at, size - kSum))
     return false;
