@@ -83,7 +83,8 @@ TEST_CASE("free motion and compliance give the frame's displacements for any for
         for (int i = 0; i < 6; ++i) {
           double want = free[i], size = std::abs(free[i]);
           for (int j = 0; j < 6; ++j) {
-            const double force = in[static_cast<std::size_t>(5 * (j / 3) + 2 + j % 3)];
+            const int input = 5 * (j / 3) + 2 + j % 3;
+            const double force = in[static_cast<std::size_t>(input)];
             want += compliance[6 * i + j] * force;
             size += std::abs(compliance[6 * i + j] * force);
             CHECK(compliance[6 * i + j] == compliance[6 * j + i]);
