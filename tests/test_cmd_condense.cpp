@@ -197,6 +197,19 @@ TEST_CASE("a model is what it is: only its duration can be chosen", "[condense]"
   CHECK(Json::parse(longer.out).at("steps") == 400);
 }
 
+TEST_CASE("without its errors a model is the same", "[condense]") {
+  const auto folder = fresh_folder("skipped");
+  const std::string with = (folder / "with").string(), without = (folder / "without").string();
+  REQUIRE(railstep_program("condense " + kMovingLoad + " --out " + with).code == 0);
+  const Ran ran =
+      railstep_program("condense " + kMovingLoad + " --skip-errors --json --out " + without);
+  REQUIRE(ran.code == 0);
+  CHECK(text_of(with) == text_of(without));
+  const auto told = nlohmann::json::parse(ran.out);
+  for (const char* key : {"static_error", "receptance_error", "transient_error"})
+    CHECK(told.at(key).is_null());
+}
+
 TEST_CASE("condense refuses in one sentence and writes nothing", "[condense]") {
   const auto folder = fresh_folder("refused");
   const std::string out = " --out " + (folder / "x.model").string();

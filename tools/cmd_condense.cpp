@@ -23,6 +23,7 @@ namespace {
 struct CondenseOptions {
   std::string scene, out;
   std::vector<std::string> overrides;
+  bool skip_errors = false;
   bool json = false;
 };
 
@@ -81,12 +82,16 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
                  packed.model(),
                  unknowns_of(built.track, packed),
                  flops_per_frame(packed.model()),
-                 static_error(built.track, packed),
-                 receptance_error(built.track, packed),
+                 {},
+                 {},
                  {},
                  {},
                  packed.clipped()};
-  if (scene.external_wheels.empty()) {  // what runs over it elsewhere is not known here
+  if (!o.skip_errors) {
+    made.static_error = static_error(built.track, packed);
+    made.receptance_error = receptance_error(built.track, packed);
+  }
+  if (!o.skip_errors && scene.external_wheels.empty()) {  // what runs elsewhere is not known here
     const TransientError transient = transient_error(scene, o.overrides);
     made.transient_error = transient.largest;
     made.window_s = transient.window_s;
@@ -101,13 +106,16 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
   const BuiltSystem built(scene);
   const Model& model = built.packed->model();
   const int own = unknowns_of(model.system);
-  Condensed made{block_of(built), model, {own, own}, {}, 0., 0., {}, {}, 0.};
+  Condensed made{block_of(built), model, {own, own}, {}, {}, {}, {}, {}, 0.};
+  if (!o.skip_errors) made.static_error = made.receptance_error = 0.;
   if (const PackedModel* const packed = built.packed->track()) {
     const Track track = track_of(*scene.track);
     const auto [full, kept] = unknowns_of(track, *packed);
     made.unknowns = {own + full, own + kept};
-    made.static_error = static_error(track, *packed);
-    made.receptance_error = receptance_error(track, *packed);
+    if (!o.skip_errors) {
+      made.static_error = static_error(track, *packed);
+      made.receptance_error = receptance_error(track, *packed);
+    }
   }
   write_file(o.out, bytes_of(made.block));
   return to_json(made);
@@ -143,6 +151,8 @@ Command add_condense(CLI::App& app) {
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);
+  sub->add_flag("--skip-errors", o->skip_errors,
+                "write the model alone: its errors take longer to find than it takes to make");
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep condense config/scenes/ballasted_track.toml --out track.model");
   return {sub, [o] {
