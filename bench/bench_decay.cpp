@@ -54,3 +54,5 @@ BENCHMARK_CAPTURE(decayed, modal, "modal")->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace railstep
+
+BENCHMARK_MAIN();
