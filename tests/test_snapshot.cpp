@@ -169,7 +169,7 @@ Instants resumed(const std::vector<std::string>& overrides, std::int64_t steps) 
   const auto run = simulation_of(read_any_scene(kFolder + "wheelset_on_track.toml", overrides));
   Model single = run->model();
   single.steps_per_frame = 1;
-  const Instants own = instants_of(single, steps);
+  Instants own = instants_of(single, steps);
   check_resumed(single, own.steps, steps);
   return own;
 }

@@ -110,12 +110,14 @@ std::vector<Wheelset> wheelsets_of(const Scene& scene) {
 
 std::vector<double> limits_of(const std::vector<InputScene>& inputs) {
   std::vector<double> limits;
+  limits.reserve(inputs.size());
   for (const InputScene& input : inputs) limits.push_back(input.limit);
   return limits;
 }
 
 std::vector<ExternalWheel> external_wheels_of(const Scene& scene) {
   std::vector<ExternalWheel> wheels;
+  wheels.reserve(scene.external_wheels.size());
   for (const ExternalWheelScene& w : scene.external_wheels)
     wheels.push_back({w.rail == Side::right ? 1 : 0, w.limit});
   return wheels;
