@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <set>
@@ -117,9 +117,10 @@ void check_resumed(const Model& single, const std::set<std::int64_t>& at, std::i
       static_cast<void>(advance_frame(single, other.state, other.workspace, again));
     CAPTURE(from);
     CHECK(state_hash(single, other.state) == end);
-    CHECK(std::memcmp(again.wheel_force, outputs.wheel_force, sizeof outputs.wheel_force) == 0);
-    CHECK(std::memcmp(again.load_deflection, outputs.load_deflection,
-                      sizeof outputs.load_deflection) == 0);
+    CHECK(std::equal(std::begin(again.wheel_force), std::end(again.wheel_force),
+                     std::begin(outputs.wheel_force)));
+    CHECK(std::equal(std::begin(again.load_deflection), std::end(again.load_deflection),
+                     std::begin(outputs.load_deflection)));
   }
 }
 
