@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -67,8 +69,7 @@ double difference(const Rows& own, const Rows& inside) {
 TEST_CASE("a vehicle outside, coupled by the step's compliance, is the vehicle in the model",
           "[own_vehicle]") {
   for (const char* dt : {"1e-4", "1e-3"}) {
-    const std::string at = stepped(dt) + " --duration 0.5";
-    const Rows inside = traced(kTrack + at + kInside);
+    const Rows inside = traced(fmt::format("{}{} --duration 0.5{}", kTrack, stepped(dt), kInside));
     const Rows own = ride(dt, "0.5");
     CAPTURE(dt);
     // 2^-52 times the track's stiffness against its own inertia terms (1e6 a step) over thousands
