@@ -12,8 +12,6 @@ namespace railstep {
 
 using Block = std::vector<std::byte>;
 
-inline constexpr std::size_t kSumAt = 24, kSummedFrom = 56, kModelFrom = 64;  // bytes of a block
-
 inline LoadResult read(const Block& block, Model& model) {
   return load_model(block.data(), block.size(), model);
 }
@@ -31,11 +29,21 @@ inline std::int64_t word_of(const Block& block, std::size_t at) {
   return value;
 }
 
-/// Makes size and sum those of the block as it stands.
+/// Where the payload begins, of a block whose header is whole.
+inline std::size_t payload_of(const Block& block) { return header_of(block.data()).header_bytes; }
+/// Where a section begins.
+inline std::size_t section_at(const Block& block, SectionName name) {
+  return header_of(block.data()).section[name].at;
+}
+
+/// Makes size and sums those of the block as it stands.
 inline void sign(Block& block) {
-  put_word(block, 16, static_cast<std::int64_t>(block.size()));
-  sha256(block.data() + kSummedFrom, block.size() - kSummedFrom,
+  put_word(block, offsetof(BlockHeader, bytes), static_cast<std::int64_t>(block.size()));
+  const std::size_t from = payload_of(block);
+  if (from > block.size()) return;
+  sha256(block.data() + from, block.size() - from,
          reinterpret_cast<std::uint8_t*>(block.data() + kSumAt));
+  put_word(block, kCrcAt, header_crc(reinterpret_cast<const unsigned char*>(block.data()), from));
 }
 
 /// A model of memory's own, from its start; what it published last, and all that a replay needs.

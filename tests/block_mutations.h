@@ -10,8 +10,8 @@ namespace railstep {
 
 /// Any word of a block's content, or the next one behind it that may be a count.
 inline std::size_t some_word(const Block& block, std::mt19937_64& random) {
-  const std::size_t words = (block.size() - kSummedFrom) / 8;
-  std::size_t at = kSummedFrom + 8 * static_cast<std::size_t>(random() % words);
+  const std::size_t from = payload_of(block), words = (block.size() - from) / 8;
+  std::size_t at = from + 8 * static_cast<std::size_t>(random() % words);
   if (random() % 2 == 0) return at;
   while (at + 16 <= block.size() && (word_of(block, at) < 1 || word_of(block, at) > 100'000))
     at += 8;
@@ -61,8 +61,8 @@ inline Block mutated(Block block, std::mt19937_64& random) {
 /// One integer of 4 bytes of a block changed to a small number or a neighbour, its size and sum
 /// right: what structures and index tables are made of.
 inline Block with_other_integer(Block block, std::mt19937_64& random) {
-  const std::size_t integers = (block.size() - kSummedFrom) / 4;
-  const std::size_t at = kSummedFrom + 4 * static_cast<std::size_t>(random() % integers);
+  const std::size_t from = payload_of(block), integers = (block.size() - from) / 4;
+  const std::size_t at = from + 4 * static_cast<std::size_t>(random() % integers);
   std::int32_t value = 0;
   std::memcpy(&value, block.data() + at, sizeof value);
   switch (random() % 6) {

@@ -248,7 +248,7 @@ TEST_CASE("a matrix that is kept over steps is no part of a block", "[artefact][
 TEST_CASE("a system's block cut short is refused, signed anew or not", "[artefact][system]") {
   for (const int kind : {1, 7}) {
     const Block good = to_block(small_model(kind)->model(), kText);
-    for (std::size_t size = kModelFrom; size < good.size(); size += 56) {
+    for (std::size_t size = payload_of(good); size < good.size(); size += 56) {
       Block cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
       CAPTURE(kind, size);
       CHECK(status_of(cut) == LoadStatus::wrong_size);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "about.h"
 #include "build_endless.h"
 #include "build_irregularity.h"
 #include "build_joints.h"
@@ -361,6 +362,7 @@ Built::Built(const Scene& scene) try {
   track = track_of(scene);
   if (scene.condense.kind == Condensation::full) track.ring = false;  // a window, which has ends
   TracedTraffic traced = traffic_of(scene, track);
+  about = railstep::about(scene);
   columns = {"time_s"};
   columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
@@ -383,8 +385,9 @@ std::string block_text(const std::vector<std::string>& columns,
   return text;
 }
 
-std::vector<std::byte> block_of(const Built& built) {
-  return to_block(built.packed->model(), block_text(built.columns, built.inputs));
+std::vector<std::byte> block_of(const Built& built, BlockNotes notes) {
+  notes.about = built.about;
+  return to_block(built.packed->model(), block_text(built.columns, built.inputs), notes);
 }
 
 }  // namespace railstep

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "offline/pack/artefact.h"
 #include "offline/pack/pack.h"
 #include "read.h"
 #include "scene.h"
@@ -89,6 +90,7 @@ struct Built {
   Track track;
   std::vector<std::string> columns;
   std::vector<std::string> inputs;  // NAME.force_n of each
+  std::string about;                // about.h
   std::unique_ptr<PackedModel> packed;
 };
 
@@ -96,7 +98,7 @@ struct Built {
 std::string block_text(const std::vector<std::string>& columns,
                        const std::vector<std::string>& inputs);
 
-/// The model with its columns and inputs in one block.
-std::vector<std::byte> block_of(const Built& built);
+/// The model with its columns and inputs in one block. @param notes  about is the scene's
+std::vector<std::byte> block_of(const Built& built, BlockNotes notes = {});
 
 }  // namespace railstep

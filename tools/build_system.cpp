@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "about.h"
 #include "build.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
@@ -78,6 +79,7 @@ BuiltSystem::BuiltSystem(const SystemScene& scene) try
     : names(scene.names), system(system_of(scene)) {
   // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
+  about = railstep::about(scene);
   columns = {"time_s"};
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
   packed = packed_of(scene, system, columns);
@@ -94,8 +96,9 @@ BuiltSystem::BuiltSystem(const SystemScene& scene) try
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }
 
-std::vector<std::byte> block_of(const BuiltSystem& built) {
-  return to_block(built.packed->model(), block_text(built.columns, built.inputs));
+std::vector<std::byte> block_of(const BuiltSystem& built, BlockNotes notes) {
+  notes.about = built.about;
+  return to_block(built.packed->model(), block_text(built.columns, built.inputs), notes);
 }
 
 }  // namespace railstep

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "offline/pack/artefact.h"
 #include "scene_system.h"
 
 namespace railstep {
@@ -24,10 +25,11 @@ struct BuiltSystem {
   System system;
   std::vector<std::string> columns;
   std::vector<std::string> inputs;  // NAME.force_n or NAME.moment_n_m of each
+  std::string about;                // about.h
   std::unique_ptr<PackedSystem> packed;
 };
 
-/// The model and its columns in one block.
-std::vector<std::byte> block_of(const BuiltSystem& built);
+/// The model and its columns in one block. @param notes  about is the scene's
+std::vector<std::byte> block_of(const BuiltSystem& built, BlockNotes notes = {});
 
 }  // namespace railstep

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +13,7 @@
 #include "build_system.h"
 #include "command.h"
 #include "condense_error.h"
+#include "emit_c.h"
 #include "offline/pack/accuracy.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/cost.h"
@@ -21,7 +23,7 @@ namespace railstep {
 namespace {
 
 struct CondenseOptions {
-  std::string scene, out;
+  std::string scene, out, emit;
   std::vector<std::string> overrides;
   bool skip_errors = false;
   bool json = false;
@@ -45,24 +47,33 @@ int unknowns_of(const SystemModel& system) {
   return sum;
 }
 
-/// A model that is ready to be written, and what is known of it; what is not known is null.
+/// What is known of a model; what is not known is null.
 struct Condensed {
-  std::vector<std::byte> block;
   const Model& model;
   std::pair<int, int> unknowns;  // full, kept
   nlohmann::ordered_json flops, static_error, receptance_error, transient_error, window_s;
   double clipped;  // m/N
+
+  BlockNotes notes() const {
+    const auto or_not_known = [](const nlohmann::ordered_json& error) {
+      return error.is_null() ? BlockNotes::kNotKnown : error.get<double>();
+    };
+    return {{},
+            or_not_known(static_error),
+            or_not_known(receptance_error),
+            or_not_known(transient_error)};
+  }
 };
 
-nlohmann::ordered_json to_json(const Condensed& made) {
+nlohmann::ordered_json to_json(const Condensed& made, const std::vector<std::byte>& block) {
   const auto size = [](std::int64_t doubles) { return doubles * std::int64_t{sizeof(double)}; };
   return {{"full_unknowns", made.unknowns.first},
           {"kept_unknowns", made.unknowns.second},
-          {"bytes", made.block.size()},
+          {"bytes", block.size()},
           {"state_bytes", size(state_doubles(made.model))},
           {"workspace_bytes", size(workspace_doubles(made.model))},
           {"flops_per_frame", made.flops},
-          {"sha256", sum_of(made.block)},
+          {"sha256", sum_of(block)},
           {"static_error", made.static_error},
           {"receptance_error", made.receptance_error},
           {"receptance_band_hz", {kReceptanceFrom, kReceptanceTo}},
@@ -75,11 +86,18 @@ std::string_view bytes_of(const std::vector<std::byte>& block) {
   return {reinterpret_cast<const char*>(block.data()), block.size()};
 }
 
+nlohmann::ordered_json write(const std::vector<std::byte>& block, const Condensed& made,
+                             const CondenseOptions& o) {
+  write_file(o.out, bytes_of(block));
+  if (!o.emit.empty())
+    write_file(o.emit, emit_c(block, identifier(std::filesystem::path(o.emit).stem().string())));
+  return to_json(made, block);
+}
+
 nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
   const Built built(scene);
   const PackedModel& packed = *built.packed;
-  Condensed made{block_of(built),
-                 packed.model(),
+  Condensed made{packed.model(),
                  unknowns_of(built.track, packed),
                  flops_per_frame(packed.model()),
                  {},
@@ -96,8 +114,7 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
     made.transient_error = transient.largest;
     made.window_s = transient.window_s;
   }
-  write_file(o.out, bytes_of(made.block));
-  return to_json(made);
+  return write(block_of(built, made.notes()), made, o);
 }
 
 /// Nothing of a system is left out: what errors there are, are those of the track beside it, and 0
@@ -106,7 +123,7 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
   const BuiltSystem built(scene);
   const Model& model = built.packed->model();
   const int own = unknowns_of(model.system);
-  Condensed made{block_of(built), model, {own, own}, {}, {}, {}, {}, {}, 0.};
+  Condensed made{model, {own, own}, {}, {}, {}, {}, {}, 0.};
   if (!o.skip_errors) made.static_error = made.receptance_error = 0.;
   if (const PackedModel* const packed = built.packed->track()) {
     const Track track = track_of(*scene.track);
@@ -117,8 +134,7 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
       made.receptance_error = receptance_error(track, *packed);
     }
   }
-  write_file(o.out, bytes_of(made.block));
-  return to_json(made);
+  return write(block_of(built, made.notes()), made, o);
 }
 
 std::string error_text(const nlohmann::ordered_json& error) {
@@ -148,6 +164,7 @@ Command add_condense(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("condense", "Write a scene's model, ready to step");
   sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
   sub->add_option("--out", o->out, "model file to write")->required();
+  sub->add_option("--emit-c", o->emit, "C file to write: the model for machines without files");
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

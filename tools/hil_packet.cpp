@@ -1,24 +1,14 @@
 #include "hil_packet.h"
 
-#include <array>
 #include <bit>
 #include <cstring>
+
+#include "online/math/crc32.h"
 
 namespace railstep {
 namespace {
 
 constexpr unsigned char kMagic[4] = {'R', 'S', 'H', 'L'};
-
-constexpr std::array<std::uint32_t, 256> make_table() noexcept {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t byte = 0; byte < 256; ++byte) {
-    std::uint32_t sum = byte;
-    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ ((sum & 1u) != 0u ? 0xEDB88320u : 0u);
-    table[byte] = sum;
-  }
-  return table;
-}
-constexpr std::array<std::uint32_t, 256> kTable = make_table();
 
 void put(std::uint64_t value, std::size_t size, unsigned char* at) noexcept {
   for (std::size_t i = 0; i < size; ++i) at[i] = static_cast<unsigned char>(value >> (8 * i));
@@ -32,18 +22,12 @@ std::uint64_t get(const unsigned char* at, std::size_t size) noexcept {
 
 }  // namespace
 
-std::uint32_t crc32(std::span<const unsigned char> bytes, std::uint32_t before) noexcept {
-  std::uint32_t sum = ~before;
-  for (const unsigned char byte : bytes) sum = (sum >> 8) ^ kTable[(sum ^ byte) & 255u];
-  return ~sum;
-}
-
 std::uint32_t names_sum(const std::vector<std::string>& names) noexcept {
   constexpr unsigned char kFeed[1] = {'\n'};
   std::uint32_t sum = 0;
   for (const std::string& name : names) {
-    sum = crc32({reinterpret_cast<const unsigned char*>(name.data()), name.size()}, sum);
-    sum = crc32(kFeed, sum);
+    sum = crc32(name.data(), name.size(), sum);
+    sum = crc32(kFeed, sizeof kFeed, sum);
   }
   return sum;
 }
@@ -61,7 +45,7 @@ void encode(const PacketHead& head, const double* values, unsigned char* bytes) 
   for (std::size_t i = 0; i < head.count; ++i)
     put(std::bit_cast<std::uint64_t>(values[i]), 8, bytes + kPacketHead + 8 * i);
   const std::size_t body = packet_bytes(head.count) - kPacketSum;
-  put(crc32({bytes, body}), 4, bytes + body);
+  put(crc32(bytes, body), 4, bytes + body);
 }
 
 std::optional<PacketHead> decode(std::span<const unsigned char> bytes, PacketKind kind,
@@ -74,7 +58,7 @@ std::optional<PacketHead> decode(std::span<const unsigned char> bytes, PacketKin
       get(at + 12, 4) != count)
     return std::nullopt;
   const std::size_t body = bytes.size() - kPacketSum;
-  if (get(at + body, 4) != crc32(bytes.first(body))) return std::nullopt;
+  if (get(at + body, 4) != crc32(at, body)) return std::nullopt;
   for (std::size_t i = 0; i < count; ++i)
     values[i] = std::bit_cast<double>(get(at + kPacketHead + 8 * i, 8));
   return PacketHead{kind,

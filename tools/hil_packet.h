@@ -8,10 +8,6 @@
 
 namespace railstep {
 
-/// CRC-32 as of IEEE 802.3, zlib and PNG (reflected, 0xEDB88320), of "123456789" 0xCBF43926.
-/// @param before  that of the bytes before these, 0 of none
-std::uint32_t crc32(std::span<const unsigned char> bytes, std::uint32_t before = 0) noexcept;
-
 /// One frame's inputs or outputs as bytes, little-endian:
 ///   0  4 bytes "RSHL"          16  uint64 sequence number    40  count doubles
 ///   4  uint16 version          24  int64 frame               ..  uint32 CRC-32 of all before

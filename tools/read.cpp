@@ -3,10 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
+#include "online/math/sha256.h"
 #include "read_document.h"
 
 namespace railstep {
@@ -30,6 +33,15 @@ std::string shown(const toml::node& node) {
   std::string text = out.str();
   if (const auto* s = node.as_string()) text = '"' + s->get() + '"';
   return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+}
+
+std::string hex_digest(Sha256& sum) {
+  std::array<std::uint8_t, 32> digest{};
+  sum.finish(digest.data());
+  std::string text;
+  text.reserve(2 * digest.size());
+  for (const std::uint8_t byte : digest) fmt::format_to(std::back_inserter(text), "{:02x}", byte);
+  return text;
 }
 
 std::string kind(const toml::node& node) {
@@ -357,13 +369,21 @@ void Table::finish() const { check_keys(*view_->document, *view_->table, view_->
 std::string Table::name() const { return view_->name; }
 
 const std::filesystem::path& Table::file() const { return view_->document->file; }
+const std::string& Table::sum() const { return view_->document->sum; }
 
 Table read_toml_text(std::string_view text, const std::filesystem::path& file,
                      const std::vector<std::string>& overrides) {
   auto document = std::make_shared<Document>();
   document->file = file;
   document->root = parse_toml(text, file.string());
-  for (const std::string& option : overrides) apply_override(document->root, option);
+  Sha256 sum;
+  sum.add(text.data(), text.size());
+  for (const std::string& option : overrides) {
+    apply_override(document->root, option);
+    sum.add(option.data(), option.size());
+    sum.add("\n", 1);
+  }
+  document->sum = hex_digest(sum);
   const toml::table* root = &document->root;
   document->known[root];
   return Table(std::make_shared<const Table::View>(Table::View{std::move(document), root, ""}));

@@ -91,6 +91,8 @@ class Table {
   void finish() const;
   [[nodiscard]] std::string name() const;  // "rail.constants", "load[1]"; root: ""
   [[nodiscard]] const std::filesystem::path& file() const;
+  /// SHA-256 in hexadecimal of the file's text with, a line each, what was set over it.
+  [[nodiscard]] const std::string& sum() const;
 
  private:
   friend Table read_toml(const std::filesystem::path&, const std::vector<std::string>&);

@@ -15,6 +15,7 @@ namespace railstep {
 struct Document {
   toml::table root;
   std::filesystem::path file;
+  std::string sum;                                                         // Table::sum()
   std::map<const toml::table*, std::set<std::string, std::less<>>> known;  // keys asked for
 };
 

@@ -297,6 +297,7 @@ Table open_scene(const std::filesystem::path& file, const std::vector<std::strin
 
 void read_rails(const Table& root, Scene& scene) {
   scene.file = root.file();
+  scene.sum = root.sum();
   scene.track = read_track(root.table("track"));
   check_size(root.table("track"), scene.track);
   const Table rail = root.table("rail");

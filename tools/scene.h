@@ -278,6 +278,7 @@ struct SensorScene {
 /// key.
 struct Scene {
   std::filesystem::path file;
+  std::string sum;  // Table::sum() of it
   TrackScene track;
   RailScene rail;                       // of both rails
   std::optional<RailScene> right_rail;  // of the right one, where it differs

@@ -90,6 +90,7 @@ SystemScene read_system_scene(const Table& root) {
   SystemScene scene;
   NameBook names;
   scene.file = root.file();
+  scene.sum = root.sum();
   if (!root.has("track")) refuse_track_keys(root);
   read_whole(root, scene.system);
   scene.options = read_hold(root);

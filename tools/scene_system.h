@@ -25,6 +25,7 @@ struct SystemNames {
 /// config/README.md, "Systems", has it key by key.
 struct SystemScene {
   std::filesystem::path file;
+  std::string sum;             // Table::sum() of it
   std::optional<Scene> track;  // with loads, sensors on rails and sleepers, and the step
   System system;               // beams without section, material, rule and axis
   std::vector<BeamBar> bars;   // [beams] of which these come

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "online/model/load.h"
+#include "online/step/self_check.h"
 #include "online/step/trace_row.h"
 
 namespace railstep {
@@ -22,8 +23,14 @@ const char* sentence(LoadStatus status) {
       return "is not a model; accepted is what `railstep condense` wrote";
     case LoadStatus::other_version:
       return "is a model of another format; write it anew with `railstep condense`";
+    case LoadStatus::other_byte_order:
+      return "is a model of a machine with another byte order; write it anew with `railstep "
+             "condense`";
     case LoadStatus::wrong_size:
       return "is a model that was cut short or run on; write it anew with `railstep condense`";
+    case LoadStatus::wrong_header:
+      return "is a model whose header does not match its CRC-32; write it anew with `railstep "
+             "condense`";
     case LoadStatus::wrong_sum:
       return "is a model whose content does not match its SHA-256; write it anew with `railstep "
              "condense`";
@@ -70,6 +77,13 @@ Simulation::Simulation(const std::filesystem::path& artefact)
 Simulation::Simulation(std::vector<std::byte> block, const std::string& name)
     : block_(std::move(block)) {
   load(name);
+  Outputs outputs{};
+  std::vector<double> row(columns_.size());
+  if (!self_check(model_, state, workspace, outputs, row.data()))
+    throw InputError(
+        fmt::format("{} is a model that steps to other bits here than where it was "
+                    "written; write it anew with `railstep condense`",
+                    name));
 }
 
 void Simulation::load(const std::string& name) {

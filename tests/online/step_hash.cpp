@@ -15,6 +15,7 @@
 #include "online/model/state.h"
 #include "online/step/float_mode.h"
 #include "online/step/probe.h"
+#include "online/step/self_check.h"
 #include "online/step/step.h"
 #include "online/system/sense.h"
 
@@ -71,6 +72,7 @@ class Run {
         state_(state_on(model, memory_.data())),
         workspace_(workspace_on(model, scratch_.data())),
         modes_(modes) {
+    check_inputs(model, input_);
     reset(model, state_);
     called([&] { publish_start(model_, state_, outputs_); });
     publish();
@@ -80,7 +82,8 @@ class Run {
   void frame() {
     // All bits set is a NaN, which no arithmetic made: the mode has no part in it.
     if (!scratch_.empty()) std::memset(scratch_.data(), 0xff, sizeof(double) * scratch_.size());
-    called([&] { status_ = status_ | advance_frame(model_, state_, workspace_, outputs_); });
+    called(
+        [&] { status_ = status_ | advance_frame(model_, input_, state_, workspace_, outputs_); });
     publish();
     const std::vector<bool> now = closed();
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -123,6 +126,11 @@ class Run {
     for (const double* of_flange :
          {o.flange_force, o.flange_force_peak, o.flange_impulse, o.flange_gap})
       published_.add(of_flange, 2 * model_.flanges);
+    published_.add(o.external_force, model_.external_wheels);
+    for (std::int32_t i = 0; i < model_.external_wheels; ++i) {
+      published_.add(o.external_displacement[i], 3);
+      published_.add(o.external_velocity[i], 3);
+    }
     published_.add(&o.constraint_violation, 1);
     published_.add(&o.iterations, 1);
     published_.add(&o.force_residual, 1);
@@ -152,6 +160,7 @@ class Run {
   State state_;
   Workspace workspace_;
   Outputs outputs_{};
+  double input_[kMaxInputs] = {};
   std::size_t modes_, calls_ = 0;
   Hash published_;
   std::vector<bool> was_closed_;

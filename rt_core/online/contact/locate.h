@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "online/model/caps.h"
+
 namespace railstep {
 
 /// A deformed rail of 3-node elements; a and b span the cross-section:
@@ -26,7 +28,6 @@ enum class LocateStatus : std::uint8_t {
   cap_reached,  // not settled (or not a number); the place is the last one tried
 };
 
-inline constexpr int kLocateSteps = 8;  // evaluations of one search
 /// How far beyond an end, in xi, still counts as on the rail: rounding of coordinates of 1 km.
 inline constexpr double kEndSlack = 1e-12;
 

@@ -2,10 +2,11 @@
 
 #include <cstdint>
 
+#include "online/model/caps.h"
+
 namespace railstep {
 
-inline constexpr int kPorts = 64;      // most ports of one solve
-inline constexpr int kPortSweeps = 8;  // most Newton iterations
+inline constexpr int kPorts = 64;  // most ports of one solve
 
 enum class PortStatus : std::uint8_t {
   converged,    // residual within kPortTolerance

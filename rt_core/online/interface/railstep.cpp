@@ -5,6 +5,7 @@
 #include "online/model/load.h"
 #include "online/model/names.h"
 #include "online/model/snapshot.h"
+#include "online/step/self_check.h"
 #include "online/step/step.h"
 #include "online/step/trace_row.h"
 
@@ -40,8 +41,11 @@ std::int32_t result_of(LoadStatus status) noexcept {
       return RAILSTEP_NOT_A_MODEL;
     case LoadStatus::other_version:
       return RAILSTEP_OTHER_VERSION;
+    case LoadStatus::other_byte_order:
+      return RAILSTEP_OTHER_BYTE_ORDER;
     case LoadStatus::wrong_size:
       return RAILSTEP_WRONG_SIZE;
+    case LoadStatus::wrong_header:
     case LoadStatus::wrong_sum:
       return RAILSTEP_WRONG_SUM;
     case LoadStatus::bad_content:
@@ -76,11 +80,13 @@ constexpr const char* kResults[] = {
     "not a model; accepted is what `railstep condense` wrote",
     "of another format; write it anew",
     "cut short or run on; write it anew",
-    "the content does not match its SHA-256; write it anew",
+    "the content does not match its check sums; write it anew",
     "a number is out of its range",
     "too little memory",
     "not a snapshot",
     "a snapshot of another model",
+    "of a machine with another byte order; write it anew",
+    "this machine steps the model to other bits than the one that wrote it",
 };
 
 std::size_t copy_name(const Names& names, std::int32_t index, char* to,
@@ -189,6 +195,12 @@ std::int32_t railstep_start(const railstep_model* model, void* memory, std::size
 void railstep_reset(railstep_run* run) {
   reset(run->of->model, run->state);
   begin(*run);
+}
+
+std::int32_t railstep_self_check(railstep_run* run) {
+  const bool same = self_check(run->of->model, run->state, run->workspace, run->outputs, run->row);
+  begin(*run);
+  return same ? RAILSTEP_OK : RAILSTEP_OTHER_BITS;
 }
 
 std::uint32_t railstep_step(railstep_run* run, const double* inputs) {

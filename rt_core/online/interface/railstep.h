@@ -32,7 +32,9 @@ enum {
   RAILSTEP_BAD_CONTENT,       /* a number is out of its range */
   RAILSTEP_TOO_LITTLE_MEMORY, /* see railstep_model_bytes() and railstep_run_bytes() */
   RAILSTEP_NOT_A_SNAPSHOT,    /* it does not begin as one does */
-  RAILSTEP_OTHER_MODEL        /* a snapshot of another model */
+  RAILSTEP_OTHER_MODEL,       /* a snapshot of another model */
+  RAILSTEP_OTHER_BYTE_ORDER,  /* a model of a machine that orders bytes the other way */
+  RAILSTEP_OTHER_BITS         /* see railstep_self_check() */
 };
 
 /* What a frame met; several can be set, the run goes on. */
@@ -84,6 +86,10 @@ size_t railstep_run_bytes(const railstep_model* model);
 int32_t railstep_start(const railstep_model* model, void* memory, size_t bytes, railstep_run** run);
 /* Back to the start; what was latched is cleared. */
 void railstep_reset(railstep_run* run);
+
+/* Steps the model through the check that stands in its block, from the start and back to it, and
+ * tells whether every bit is as where it was written: RAILSTEP_OK or RAILSTEP_OTHER_BITS. */
+int32_t railstep_self_check(railstep_run* run);
 
 /* One frame. inputs: [railstep_inputs()], or null: as they are held. Returns what it met, and
  * what of nonfinite_input, nonfinite_state and force_saturated was met since the start. */

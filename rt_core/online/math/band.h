@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "online/math/lanes.h"
 
@@ -12,8 +13,8 @@ namespace railstep {
 /// `forward` and `backward` are full panels; the columns that would lie before the first or behind
 /// the last unknown hold zeros and are never multiplied, so no vector needs padding.
 struct Band {
-  int panels;              // n / 8
-  int left;                // columns of L left of a panel, a multiple of 8
+  std::int32_t panels;     // n / 8
+  std::int32_t left;       // columns of L left of a panel, a multiple of 8
   const double* forward;   // [panels][left][8]  L(8p + lane, 8p - left + k)
   const double* inverse;   // [panels][8][8]     D_p^-1, column after column
   const double* backward;  // [panels][left][8]  L(8p + 8 + k, 8p + lane)

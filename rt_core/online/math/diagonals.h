@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "online/math/lanes.h"
 
@@ -8,9 +9,9 @@ namespace railstep {
 
 /// A square matrix stored by diagonals: A(i, i + offset[o]) = value[o * n + i]. Views only.
 struct Diagonals {
-  int n;                // unknowns, a multiple of 8
-  int count;            // of diagonals
-  const int* offset;    // [count], in the order in which they are summed
+  std::int32_t n;              // unknowns, a multiple of 8
+  std::int32_t count;          // of diagonals
+  const std::int32_t* offset;  // [count], in the order in which they are summed
   const double* value;  // [count][n]; entries whose column is outside the matrix are not read
 };
 

@@ -10,14 +10,26 @@ struct Gone {
   std::int64_t bays, part;
 };
 
+/// a b / 2^62 and what it leaves, both below 2^62 each; by halves, since not every machine has
+/// numbers of 128 bits.
+inline Gone split_product(std::uint64_t a, std::uint64_t b) noexcept {
+  const std::uint64_t half = 0xffffffffu;
+  const std::uint64_t low = (a & half) * (b & half);
+  const std::uint64_t one = (a >> 32) * (b & half) + (low >> 32);
+  const std::uint64_t two = (a & half) * (b >> 32) + (one & half);
+  const std::uint64_t high = (a >> 32) * (b >> 32) + (one >> 32) + (two >> 32);
+  const std::uint64_t rest = (two << 32) | (low & half);
+  return {static_cast<std::int64_t>((high << 2) | (rest >> 62)),
+          static_cast<std::int64_t>(rest & static_cast<std::uint64_t>(kBay - 1))};
+}
+
 /// Of a step >= 0; without rounding. Cannot overflow: a remainder of 2^62 steps at most, each less
 /// than a bay, is below 2^124.
 inline Gone gone_at(const Course& course, std::int64_t step) noexcept {
-  __extension__ using Wide = unsigned __int128;
   const std::int64_t periods = step / course.period, rest = step % course.period;
-  const Wide parts = static_cast<Wide>(rest) * static_cast<Wide>(course.advance);
-  return {periods * course.bays + static_cast<std::int64_t>(parts >> 62),
-          static_cast<std::int64_t>(parts & static_cast<Wide>(kBay - 1))};
+  const Gone within =
+      split_product(static_cast<std::uint64_t>(rest), static_cast<std::uint64_t>(course.advance));
+  return {periods * course.bays + within.bays, within.part};
 }
 
 /// Of the traffic within its bay at a step, m: 0 to below bay_length, or 0 on a track with ends.

@@ -10,7 +10,8 @@ namespace railstep {
 // Archive has
 //   count(int32&, most)          0 to most
 //   integer(int32 or int64&)     any
-//   real(double&)                any
+//   real(double&)                any finite one
+//   bound(double&)               any but NaN
 //   reals(const double*&, n)     n of them, or none and a null pointer
 //   integers(const int32*&, n)   n of them
 //   structures(const T*&, n)     n of them, T flat (describe_system.h)
@@ -118,7 +119,8 @@ template <typename Archive>
 void describe(Archive& a, LoadModel& l) {
   for (double& x : l.row) a.real(x);
   a.count(l.rail, 1);
-  for (double* x : {&l.start, &l.stop, &l.force, &l.amplitude, &l.frequency, &l.phase}) a.real(*x);
+  a.bound(l.stop);
+  for (double* x : {&l.start, &l.force, &l.amplitude, &l.frequency, &l.phase}) a.real(*x);
   describe(a, l.travel);
   a.count(l.table_points, kMostRows);
   a.reals(l.table, std::int64_t{2} * l.table_points);

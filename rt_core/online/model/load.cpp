@@ -3,23 +3,38 @@
 #include <cstring>
 
 #include "online/math/bytes.h"
+#include "online/math/finite.h"
 #include "online/math/sha256.h"
-#include "online/model/course.h"
+#include "online/model/caps.h"
 #include "online/model/describe.h"
 #include "online/model/load_system.h"
+#include "online/model/load_track.h"
 
 namespace railstep {
 
 namespace {
 
-/// Reads a block in order; after the first thing that does not fit, all counts are 0.
+/// What of a section has not been read.
+struct Rest {
+  const unsigned char* at;
+  std::uint64_t left;
+};
+
+/// Reads a payload in the order of describe.h; after the first thing that does not fit, all counts
+/// are 0.
 class Reader {
  public:
-  Reader(const unsigned char* at, std::size_t left) noexcept : at_(at), left_(left) {}
+  Reader(const unsigned char* block, const BlockHeader& header) noexcept {
+    for (int s = 0; s < kSections; ++s)
+      rest_[s] = {block + header.section[s].at, header.section[s].bytes};
+  }
 
   /// Whether all was as it should be so far, and whether nothing is left.
   bool good() const noexcept { return good_; }
-  bool at_end() const noexcept { return left_ == 0; }
+  bool at_end() const noexcept {
+    return rest_[kWords].left == 0 && rest_[kReals].left == 0 && rest_[kStructures].left == 0 &&
+           rest_[kIntegers].left == 0;
+  }
 
   void count(std::int32_t& value, std::int64_t most) noexcept {
     const std::int64_t found = word();
@@ -27,226 +42,112 @@ class Reader {
     value = good_ ? static_cast<std::int32_t>(found) : 0;
   }
   void integer(std::int64_t& value) noexcept { value = word(); }
-  void real(double& value) noexcept {
-    const std::int64_t found = word();
-    std::memcpy(&value, &found, sizeof value);
+  void bound(double& value) noexcept {
+    const double* const found = take<double>(kReals, 1);
+    value = found != nullptr ? *found : 0.;
+    if (value != value) good_ = false;
   }
-  void reals(const double*& values, std::int64_t n) noexcept { array(values, n, true); }
-  void integers(const std::int32_t*& values, std::int64_t n) noexcept { array(values, n, false); }
+  void real(double& value) noexcept {
+    bound(value);
+    if (!is_finite(value)) good_ = false;
+  }
+  void reals(const double*& values, std::int64_t n) noexcept {
+    array(values, kReals, n, true);
+    if (values == nullptr) return;
+    for (std::int64_t i = 0; i < n; ++i)
+      if (!is_finite(values[i])) good_ = false;
+  }
+  void integers(const std::int32_t*& values, std::int64_t n) noexcept {
+    array(values, kIntegers, n, false);
+  }
   template <typename T>
   void structures(const T*& values, std::int64_t n) noexcept {
-    array(values, n, false);
+    array(values, kStructures, n, false);
   }
 
  private:
   std::int64_t word() noexcept {
-    std::int64_t value = 0;
-    if (left_ < sizeof value) good_ = false;
-    if (!good_) return 0;
-    std::memcpy(&value, at_, sizeof value);
-    at_ += sizeof value;
-    left_ -= sizeof value;
-    return value;
+    const std::int64_t* const found = take<std::int64_t>(kWords, 1);
+    return found != nullptr ? *found : 0;
   }
 
   template <typename T>
-  void array(const T*& values, std::int64_t n, bool may_be_none) noexcept {
+  void array(const T*& values, SectionName from, std::int64_t n, bool may_be_none) noexcept {
     values = nullptr;
     const std::int64_t found = word();
     if (found == 0 && (may_be_none || n == 0)) return;
-    if (found != n || n < 0 || static_cast<std::uint64_t>(n) > left_ / sizeof(T)) good_ = false;
-    if (!good_) return;
-    values = reinterpret_cast<const T*>(at_);
-    const std::size_t bytes = (static_cast<std::size_t>(n) * sizeof(T) + 7) / 8 * 8;
-    if (bytes > left_) {
-      good_ = false;
-      return;
-    }
-    at_ += bytes;
-    left_ -= bytes;
+    if (found != n || n < 0) good_ = false;
+    if (good_) values = take<T>(from, static_cast<std::uint64_t>(n));
   }
 
-  const unsigned char* at_;
-  std::size_t left_;
+  /// The next n of a section, or null.
+  template <typename T>
+  const T* take(SectionName from, std::uint64_t n) noexcept {
+    Rest& rest = rest_[from];
+    if (n > rest.left / sizeof(T)) good_ = false;
+    if (!good_) return nullptr;
+    const auto* const found = reinterpret_cast<const T*>(rest.at);
+    rest.at += n * sizeof(T);
+    rest.left -= n * sizeof(T);
+    return found;
+  }
+
+  Rest rest_[kSections];
   bool good_ = true;
 };
 
-bool within(const std::int32_t* values, std::int64_t n, std::int64_t least,
-            std::int64_t most) noexcept {
-  for (std::int64_t i = 0; i < n; ++i)
-    if (values[i] < least || values[i] > most) return false;
-  return true;
-}
+std::uint64_t padded(std::uint64_t bytes) noexcept { return (bytes + 7) / 8 * 8; }
 
-bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
-  if (e.bays == 0) return true;
-  return e.bay_elements > 0 && std::int64_t{e.bays} * e.bay_elements == elements &&
-         e.bay_length > 0. && e.origin >= 0. && e.course.period > 0 && e.course.bays >= 0 &&
-         e.course.bays <= e.course.period && e.course.advance >= 0 && e.course.advance < kBay;
-}
-
-bool line_holds(const Model& m, const LineModel& line) noexcept {
-  if (line.size % kLanes != 0 || line.first + line.size > m.bodies) return false;
-  if (m.endless.bays > 0 && line.size > 0 &&
-      !(within(line.shift.from, line.size, 0, line.size - 1) && line.shift.own &&
-        line.shift.other && line.shift.fill))
+/// Whether one section behind the other fills the block, each no longer than what is left.
+bool sections_hold(const BlockHeader& h) noexcept {
+  if (h.about.at != sizeof(BlockHeader) || h.about.bytes > h.header_bytes - sizeof(BlockHeader) ||
+      sizeof(BlockHeader) + padded(h.about.bytes) != h.header_bytes)
     return false;
-  const std::int64_t most = (m.condensed != 0 ? line.modal.rows : line.size) - 1;
-  for (const std::int32_t* table : line.unknown_of)
-    if (!within(table, std::int64_t{27} * m.elements, -1, most)) return false;
-  if (m.condensed != 0)
-    return line.size == 0 ||
-           (line.modal.rate.re && line.modal.rate.im && line.modal.keep.re && line.modal.keep.im &&
-            line.modal.old_force.re && line.modal.old_force.im && line.modal.new_force.re &&
-            line.modal.new_force.im && line.modal.held_force.re && line.modal.held_force.im &&
-            (line.modal.rows == 0 || line.modal.shape));
-  const auto diagonals_hold = [&](const Diagonals& d) noexcept {
-    return within(d.offset, d.count, -line.size, line.size) && (d.count == 0 || d.value);
-  };
-  return line.step.left % kLanes == 0 && line.step.inverse &&
-         (line.step.left == 0 || (line.step.forward && line.step.backward)) &&
-         diagonals_hold(line.mass) && diagonals_hold(line.damping);
-}
-
-/// Whether it is a turn, to its rounding.
-bool turns(const Cant& cant) noexcept {
-  const double off = (cant.cosine * cant.cosine + cant.sine * cant.sine) - 1.;
-  return off > -1e-14 && off < 1e-14 && cant.cosine > 0.;
-}
-
-bool signal_holds(const SignalModel& s) noexcept {
-  return s.intervals == 0 || (s.step > 0. && s.coefficient != nullptr);
-}
-
-bool travel_holds(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
-
-bool force_holds(const Model& m, const BodyForce& f) noexcept {
-  return f.input >= 0 ? f.input < m.inputs : f.points > 0 && f.table != nullptr;
-}
-
-/// Limits are numbers above 0.
-bool inputs_hold(const Model& m) noexcept {
-  for (std::int32_t i = 0; i < m.inputs; ++i)
-    if (!(m.input_limit[i] > 0. && m.input_limit[i] - m.input_limit[i] == 0.)) return false;
-  return true;
-}
-
-/// External wheels stand on a track alone with loads, a step a frame; each has its own inputs.
-bool external_wheels_hold(const Model& m) noexcept {
-  if (m.external_wheels == 0) return true;
-  if (m.wheelsets > 0 || m.vehicles > 0 || m.fixed.count > 0 || m.steps_per_frame != 1)
-    return false;
-  for (std::int32_t i = 0; i < m.external_wheels; ++i)
-    if (m.external_wheel[i].input + 5 > m.inputs) return false;
-  return true;
-}
-
-bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
-  if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
-  for (std::int32_t i = 0; i < w.forces; ++i)
-    if (!force_holds(m, w.force[i])) return false;
-  return travel_holds(w.travel) && signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
-}
-
-/// Flanges come by rising wheelset, one pair each, and count as wheels among the ports.
-bool flanges_hold(const Model& m) noexcept {
-  if (contact_count(m) > kMaxWheels) return false;
-  for (std::int32_t i = 0; i < m.flanges; ++i) {
-    const FlangeModel& f = m.flange[i];
-    if (f.wheelset >= m.wheelsets || (i > 0 && f.wheelset <= m.flange[i - 1].wheelset))
-      return false;
-    if (!(f.contact.hertz > 0.) && !(f.contact.stiffness > 0. && f.contact.damping >= 0.))
-      return false;
+  std::uint64_t at = h.header_bytes;
+  for (const BlockSection& s : h.section) {
+    if (s.at != at || s.bytes > h.bytes - at || padded(s.bytes) > h.bytes - at) return false;
+    at += padded(s.bytes);
   }
-  return true;
+  return at == h.bytes;
 }
 
-bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
-  if (v.first < m.bodies || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
-    return false;
-  return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_holds(v.travel) && v.mass &&
-         v.damping && v.stiffness && v.weight && v.inverse && v.row && v.give && v.compliance;
+/// Of a block as it was given, up to its sums.
+LoadStatus check_header(const unsigned char* at, std::size_t bytes, BlockHeader& h) noexcept {
+  if (bytes < sizeof h || !same_bytes(at, "railstep", 8)) return LoadStatus::not_a_model;
+  std::memcpy(&h, at, sizeof h);
+  if (h.byte_order == 0x04030201) return LoadStatus::other_byte_order;
+  if (h.byte_order != kByteOrder || h.major != kBlockMajor) return LoadStatus::other_version;
+  if (h.bytes != bytes || bytes % 8 != 0) return LoadStatus::wrong_size;
+  if (h.header_bytes < sizeof h || h.header_bytes > bytes || h.header_bytes % 8 != 0 ||
+      h.crc != header_crc(at, h.header_bytes))
+    return LoadStatus::wrong_header;
+  if (h.real_bytes != sizeof(double) || !sections_hold(h)) return LoadStatus::bad_content;
+  unsigned char sum[32];
+  sha256(at + h.header_bytes, bytes - h.header_bytes, sum);
+  return same_bytes(sum, h.sum, 32) ? LoadStatus::ok : LoadStatus::wrong_sum;
 }
 
-/// A wheel is one of its vehicle's, whose matrices have a row for it.
-bool wheel_holds(const Model& m, std::int32_t i) noexcept {
-  const VehicleWheel& wheel = m.vehicle_wheel[i];
-  if (wheel.vehicle >= m.vehicles) return false;
-  const VehicleModel& own = m.vehicle[wheel.vehicle];
-  return i >= own.first_wheel && i < own.first_wheel + own.wheels && signal_holds(wheel.tread);
+/// Whether a header states what its payload says.
+bool states(const BlockHeader& h, const Model& m) noexcept {
+  const BlockCaps own = caps_of(m);
+  return h.step_s == m.scheme.dt && h.steps_per_frame == m.steps_per_frame &&
+         h.caps.locate == own.locate && h.caps.ports == own.ports && h.caps.guides == own.guides &&
+         h.caps.system == own.system && h.flops_per_frame >= 0 && h.bytes_per_frame >= 0 &&
+         h.state_bytes == state_doubles(m) * 8 && h.workspace_bytes == workspace_doubles(m) * 8;
 }
 
-bool residual_holds(const Model& m) noexcept {
-  const ResidualModel& r = m.residual;
-  const bool tables = r.under != nullptr || r.axis != nullptr || m.probe.residual != nullptr;
-  if (tables && (r.points < 3 || r.elements < 1)) return false;
-  for (std::int32_t i = 0; i < m.loads && tables; ++i)
-    if (m.load[i].kind >= r.kinds) return false;
-  for (std::int32_t i = 0; i < m.wheelsets && tables; ++i)
-    if (m.wheelset[i].kind[0] >= r.kinds || m.wheelset[i].kind[1] >= r.kinds) return false;
-  for (std::int32_t i = 0; i < m.vehicle_wheels && tables; ++i)
-    if (m.vehicle_wheel[i].kind >= r.kinds) return false;
-  for (std::int32_t i = 0; i < m.external_wheels && tables; ++i)
-    if (m.external_wheel[i].kind >= r.kinds) return false;
-  for (std::int32_t i = 0; i < r.kinds; ++i)
-    for (std::int32_t j = 0; j < r.kinds; ++j)
-      if (r.pair[i][j].value != nullptr && r.pair[i][j].points < 3) return false;
-  return true;
-}
-
-bool turn_holds(const SeatTurnModel& t) noexcept {
-  return (t.lever[0] == nullptr && t.lever[1] == nullptr) ||
-         (t.elements_per_bay > 0 && t.points >= 3);
-}
-
-bool probes_hold(const Model& m) noexcept {
-  const ProbeModel& p = m.probe;
-  if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
-  for (std::int32_t i = 0; i < p.count; ++i)
-    if (p.start[i] > p.start[i + 1]) return false;
-  const std::int64_t values = std::int64_t{3} * m.unknowns + m.fixed.count;
-  return within(p.index, p.entries, 0, values - 1) && within(p.table, p.count, -1, p.tables - 1) &&
-         (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value);
-}
-
-bool fixed_ports_hold(const Model& m) noexcept {
-  const FixedPortModel& p = m.fixed;
-  if (p.count == 0) return true;
-  if (!p.stiffness || !p.damping || !p.gap || !p.response || !p.compliance) return false;
-  if (m.condensed != 0) return p.shape != nullptr;
-  if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
-  for (std::int32_t i = 0; i < p.count; ++i)
-    if (p.start[i] > p.start[i + 1]) return false;
-  return within(p.index, p.entries, 0, m.bodies - 1) && (p.entries == 0 || p.value);
-}
-
-bool track_holds(const Model& m) noexcept {
-  if (m.elements < 1 || !endless_holds(m.endless, m.elements)) return false;
-  if (!(m.element_length > 0.) || m.bodies % kLanes != 0) return false;
-  for (std::int32_t i = 0; i < m.lines; ++i)
-    if (!line_holds(m, m.line[i])) return false;
-  for (std::int32_t i = 0; i < m.loads; ++i)
-    if ((m.load[i].table_points > 0 && m.load[i].table == nullptr) ||
-        !travel_holds(m.load[i].travel))
-      return false;
-  for (const Cant& cant : m.cant)
-    if (!turns(cant)) return false;
-  for (std::int32_t i = 0; i < m.wheelsets; ++i)
-    if (!wheelset_holds(m, m.wheelset[i])) return false;
-  if (!flanges_hold(m)) return false;
-  for (std::int32_t i = 0; i < m.vehicles; ++i)
-    if (!vehicle_holds(m, m.vehicle[i])) return false;
-  for (std::int32_t i = 0; i < m.vehicle_wheels; ++i)
-    if (!wheel_holds(m, i)) return false;
-  for (std::int32_t i = 0; i < m.signals; ++i)
-    if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
-  return external_wheels_hold(m) && residual_holds(m) && turn_holds(m.turn) && probes_hold(m) &&
-         fixed_ports_hold(m);
+/// A check compares a row of the trace, or there is none.
+bool check_holds(const BlockHeader& h) noexcept {
+  const std::uint64_t doubles = h.section[kCheck].bytes / 8;
+  if (h.check_frames == 0) return doubles == 0;
+  return h.check_frames > 0 && h.check_frames <= kMostCheckFrames && doubles > 0 &&
+         h.section[kCheck].bytes % 8 == 0;
 }
 
 /// What a step takes for granted beyond the counts.
 bool holds(const Model& m) noexcept {
-  if (!(m.scheme.dt > 0.) || m.steps_per_frame < 1 || m.steps < 0 || !inputs_hold(m)) return false;
+  if (!is_above_zero(m.scheme.dt) || m.steps_per_frame < 1 || m.steps < 0 || !inputs_hold(m))
+    return false;
   if (m.lines < 1 && m.system.unknowns < 1) return false;
   if (m.lines > 0 && !track_holds(m)) return false;
   return m.system.unknowns == 0 || system_holds(m);
@@ -256,39 +157,45 @@ bool start_holds(const Model& m) noexcept {
   return m.start != nullptr && (m.system.unknowns == 0 || system_start_holds(m));
 }
 
-std::int64_t word_at(const unsigned char* at) noexcept {
-  std::int64_t value = 0;
-  std::memcpy(&value, at, sizeof value);
-  return value;
+bool read_payload(const unsigned char* at, const BlockHeader& h, Model& model) noexcept {
+  Reader reader(at, h);
+  describe(reader, model);
+  if (!reader.good() || !holds(model)) return false;
+  describe_start(reader, model);
+  return reader.good() && reader.at_end() && start_holds(model) && states(h, model) &&
+         check_holds(h);
 }
 
 }  // namespace
 
+BlockCaps caps_of(const Model& m) noexcept {
+  BlockCaps caps{kLocateSteps, kPortSweeps, 0, m.system.unknowns > 0 ? m.system.cap : 0};
+  for (std::int32_t i = 0; i < m.wheelsets; ++i)
+    if (m.wheelset[i].cap > caps.guides) caps.guides = m.wheelset[i].cap;
+  return caps;
+}
+
 LoadResult load_model(const void* block, std::size_t bytes, Model& model) noexcept {
-  const auto* at = static_cast<const unsigned char*>(block);
+  const auto* const at = static_cast<const unsigned char*>(block);
   const auto refused = [](LoadStatus status) { return LoadResult{status, nullptr, 0}; };
   if (reinterpret_cast<std::uintptr_t>(block) % 8 != 0) return refused(LoadStatus::misaligned);
-  if (bytes < kBlockHeader || !same_bytes(at, "railstep", 8))
-    return refused(LoadStatus::not_a_model);
-  if (word_at(at + 8) != kBlockFormat) return refused(LoadStatus::other_version);
-  if (word_at(at + 16) != static_cast<std::int64_t>(bytes)) return refused(LoadStatus::wrong_size);
-  unsigned char sum[32];
-  sha256(at + 56, bytes - 56, sum);
-  if (!same_bytes(sum, at + 24, 32)) return refused(LoadStatus::wrong_sum);
-  const std::int64_t text = word_at(at + 56),
-                     room = static_cast<std::int64_t>(bytes - kBlockHeader);
-  if (text < 0 || text > room || (text + 7) / 8 * 8 > room) return refused(LoadStatus::bad_content);
-  const std::size_t skipped = kBlockHeader + static_cast<std::size_t>((text + 7) / 8 * 8);
-  Reader reader(at + skipped, bytes - skipped);
+  BlockHeader header;
+  const LoadStatus status = check_header(at, bytes, header);
+  if (status != LoadStatus::ok) return refused(status);
   model = Model{};
-  describe(reader, model);
-  if (!reader.good() || !holds(model)) return refused(LoadStatus::bad_content);
-  describe_start(reader, model);
-  if (!reader.good() || !reader.at_end() || !start_holds(model))
-    return refused(LoadStatus::bad_content);
-  std::memcpy(model.sum, sum, sizeof sum);
-  return {LoadStatus::ok, reinterpret_cast<const char*>(at + kBlockHeader),
-          static_cast<std::size_t>(text)};
+  if (!read_payload(at, header, model)) return refused(LoadStatus::bad_content);
+  std::memcpy(model.sum, header.sum, sizeof model.sum);
+  model.check = {static_cast<std::int32_t>(header.check_frames),
+                 static_cast<std::int32_t>(header.section[kCheck].bytes / 8), header.check_hash,
+                 reinterpret_cast<const double*>(at + header.section[kCheck].at)};
+  return {LoadStatus::ok, reinterpret_cast<const char*>(at + header.section[kColumns].at),
+          static_cast<std::size_t>(header.section[kColumns].bytes)};
+}
+
+BlockHeader header_of(const void* block) noexcept {
+  BlockHeader header;
+  std::memcpy(&header, block, sizeof header);
+  return header;
 }
 
 }  // namespace railstep

@@ -1,15 +1,12 @@
 #include "online/model/load_system.h"
 
+#include "online/math/finite.h"
 #include "online/math/lanes.h"
 #include "online/model/state.h"
 
 namespace railstep {
 
 namespace {
-
-bool is_finite(double x) noexcept { return x - x == 0.; }
-bool is_above_zero(double x) noexcept { return x > 0. && is_finite(x); }
-bool is_not_negative(double x) noexcept { return x >= 0. && is_finite(x); }
 
 template <int N>
 bool are_finite(const double (&values)[N]) noexcept {
@@ -34,6 +31,14 @@ bool solve_holds(const Scheme& c, const SystemModel& s) noexcept {
          is_above_zero(s.joint_tolerance) && s.rank_tolerance >= 0. && s.rank_tolerance < 1.;
 }
 
+/// Compliances of its ports on rails are not negative.
+bool ports_give(const SystemModel& s) noexcept {
+  const std::int64_t n = std::int64_t{9} * s.ports;
+  for (std::int64_t i = 0; i < n; ++i)
+    if (!(s.port_compliance[i * n + i] >= 0.)) return false;
+  return true;
+}
+
 /// What of a track is not stepped beside a system; without a track nothing of one is there.
 bool stands_alone_or_beside(const Model& m) noexcept {
   const SystemModel& s = m.system;
@@ -43,7 +48,7 @@ bool stands_alone_or_beside(const Model& m) noexcept {
     return false;
   if (m.lines > 0)
     return s.mean == 0 && s.hold != Hold::gear_gupta_leimkuhler &&
-           (s.ports == 0 || (s.port_compliance && s.port_shapes));
+           (s.ports == 0 || (s.port_compliance && s.port_shapes && ports_give(s)));
   return s.ports == 0 && m.bodies == 0 && m.elements == 0 && m.loads == 0 && m.signals == 0;
 }
 

@@ -285,6 +285,14 @@ struct ExternalWheelModel {
   std::int32_t kind;  // of port, for the residual flexibility
 };
 
+/// What a step must come to wherever it runs, of a model from a block: see self_check.h.
+struct CheckModel {
+  std::int32_t frames;   // 0: not known
+  std::int32_t columns;  // of `row`
+  std::uint64_t hash;    // of the state
+  const double* row;     // [columns] of the trace
+};
+
 /// Everything a step needs; immutable, may be shared by threads.
 struct Model {
   Scheme scheme;
@@ -322,7 +330,8 @@ struct Model {
   std::int32_t external_wheels;  // of a track alone with loads
   ExternalWheelModel external_wheel[kMaxExternalWheels];
   SystemModel system;
-  unsigned char sum[32];  // SHA-256 of the block it was loaded from; zeros of one that has none
+  CheckModel check;
+  unsigned char sum[32];  // SHA-256 of the payload it was loaded from; zeros of one that has none
 };
 
 /// Wheels on the rails: left and right of each wheelset in turn, then those of each vehicle.

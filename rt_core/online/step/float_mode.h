@@ -4,8 +4,11 @@
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
-#elif !defined(__aarch64__)
-#error "float_mode.h knows x86 with SSE2 and aarch64; add the control word of this machine"
+#elif defined(__arm__) && defined(__ARM_FP) && (__ARM_FP & 8) == 0
+#error "railstep computes in doubles, which this processor's floating-point unit has not"
+#elif !defined(__aarch64__) && !(defined(__arm__) && defined(__ARM_FP))
+#error \
+    "float_mode.h knows x86 with SSE2, aarch64 and Arm with FPv5; add the control word of this machine"
 #endif
 
 namespace railstep {
@@ -31,7 +34,7 @@ class FloatMode {
   // MXCSR: bits 13-14 rounding, 7-12 masks of traps, 0-5 their sticky flags, 15 FTZ, 6 DAZ.
   static constexpr Word kCleared = 0x6000u | 0x1f80u | 0x3fu, kSet = 0x8040u | 0x1f80u;
   static void write(Word word) noexcept { _mm_setcsr(word); }
-#else
+#elif defined(__aarch64__)
   using Word = std::uint64_t;
   static Word read() noexcept {
     Word word;
@@ -44,6 +47,20 @@ class FloatMode {
   // payload, 0-2 alternate handling (FEAT_AFP), under which FZ flushes otherwise.
   static constexpr Word kCleared = 0xc00000u | 0x9f00u | 0x2000000u | 0x7u, kSet = 0x1000000u;
   static void write(Word word) noexcept { asm volatile("msr fpcr, %0" : : "r"(word) : "memory"); }
+#else
+  using Word = std::uint32_t;
+  static Word read() noexcept {
+    Word word;
+    asm volatile("vmrs %0, fpscr" : "=r"(word) : : "memory");
+    return word;
+  }
+
+ private:
+  // FPSCR: bits 22-23 rounding, 8-12 and 15 traps, 24 FZ, 25 NaNs without payload, 26 another half
+  // precision; its sticky flags 0-4 and 7 are not the caller's to lose, they come back with the
+  // rest.
+  static constexpr Word kCleared = 0xc00000u | 0x9f00u | 0x6000000u, kSet = 0x1000000u;
+  static void write(Word word) noexcept { asm volatile("vmsr fpscr, %0" : : "r"(word) : "memory"); }
 #endif
 
   Word before_;

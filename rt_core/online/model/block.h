@@ -1,0 +1,68 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace railstep {
+
+// A model in one block of bytes, the model file of `railstep condense`: a header, then the payload.
+// docs/model-file.md has it as a table.
+
+/// Where something stands in a block, bytes from its start. What it leaves of its last word is 0.
+struct BlockSection {
+  std::uint64_t at, bytes;
+};
+
+/// The payload's, in this order and without a gap.
+enum SectionName : int {
+  kColumns,     // names of a trace's columns, one a line; behind an empty line those of the inputs
+  kWords,       // int64: every count, integer and length of an array
+  kReals,       // doubles, of scalars and arrays
+  kStructures,  // of a system, as they stand in memory, without gaps or pointers
+  kIntegers,    // int32, of arrays
+  kCheck,       // doubles: what a step must publish, see self_check.h
+  kSections
+};
+
+/// Largest of the loops in a step.
+struct BlockCaps {
+  std::int32_t locate, ports;   // of this library: caps.h
+  std::int32_t guides, system;  // turns of a wheelset's guide; Newton iterations of a system
+};
+
+/// The first bytes of a block, as they stand in memory: fields without gaps, little-endian. Behind
+/// them stands the text `about`, which a reader may show and never needs; the CRC covers it.
+struct BlockHeader {
+  char magic[8];               // "railstep"
+  std::uint32_t byte_order;    // kByteOrder in the writer's order
+  std::uint16_t major, minor;  // of the format
+  std::uint32_t real_bytes;    // 8
+  std::uint32_t header_bytes;  // up to the payload
+  std::uint64_t bytes;         // of the whole block
+  BlockSection about;
+  BlockSection section[kSections];
+  unsigned char sum[32];  // SHA-256 of the payload
+  double step_s;
+  std::int64_t steps_per_frame;
+  BlockCaps caps;
+  std::int64_t flops_per_frame;  // bounds
+  std::int64_t bytes_per_frame;
+  std::int64_t state_bytes, workspace_bytes;
+  double static_error, receptance_error, transient_error;  // of condensation; NaN: not known
+  std::uint64_t check_hash;                                // of the state after check_frames
+  std::int64_t check_frames;                               // 0: no check
+  std::uint64_t crc;  // CRC-32 of the bytes up to the payload, these 8 being 0
+};
+static_assert(sizeof(BlockHeader) == 8 + 4 + 2 + 2 + 4 + 4 + 8 + 16 * (1 + kSections) + 32 + 8 + 8 +
+                                         16 + 2 * 8 + 2 * 8 + 3 * 8 + 3 * 8);
+
+inline constexpr std::uint32_t kByteOrder = 0x01020304;
+/// Another major one is refused. A larger minor one adds behind what is there: it is read.
+inline constexpr std::uint16_t kBlockMajor = 9, kBlockMinor = 0;
+inline constexpr std::int64_t kMostCheckFrames = 1000;
+inline constexpr std::size_t kSumAt = offsetof(BlockHeader, sum);
+inline constexpr std::size_t kCrcAt = offsetof(BlockHeader, crc);
+
+/// Of a block's first `header_bytes`, which hold a header.
+std::uint32_t header_crc(const unsigned char* block, std::size_t header_bytes) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,218 @@
+#include "online/model/load_track.h"
+
+#include "online/math/finite.h"
+#include "online/model/course.h"
+#include "online/model/state.h"
+
+namespace railstep {
+
+namespace {
+
+bool within(const std::int32_t* values, std::int64_t n, std::int64_t least,
+            std::int64_t most) noexcept {
+  for (std::int64_t i = 0; i < n; ++i)
+    if (values[i] < least || values[i] > most) return false;
+  return true;
+}
+
+bool are_above_zero(const double* values, std::int64_t n) noexcept {
+  for (std::int64_t i = 0; i < n; ++i)
+    if (!(values[i] > 0.)) return false;
+  return true;
+}
+
+bool are_not_negative(const double* values, std::int64_t n) noexcept {
+  for (std::int64_t i = 0; i < n; ++i)
+    if (!(values[i] >= 0.)) return false;
+  return true;
+}
+
+/// Of a matrix [n][n].
+bool diagonal_is_above_zero(const double* matrix, std::int64_t n) noexcept {
+  for (std::int64_t i = 0; i < n; ++i)
+    if (!(matrix[i * n + i] > 0.)) return false;
+  return true;
+}
+
+/// A force that grows with the penetration.
+bool contact_holds(const ContactModel& c) noexcept {
+  return c.hertz > 0. || (c.stiffness > 0. && c.damping >= 0.);
+}
+
+bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
+  if (e.bays == 0) return true;
+  return e.bay_elements > 0 && std::int64_t{e.bays} * e.bay_elements == elements &&
+         e.bay_length > 0. && e.origin >= 0. && e.course.period > 0 && e.course.bays >= 0 &&
+         e.course.bays <= e.course.period && e.course.advance >= 0 && e.course.advance < kBay;
+}
+
+bool line_holds(const Model& m, const LineModel& line) noexcept {
+  if (line.size % kLanes != 0 || line.first + line.size > m.bodies) return false;
+  if (m.endless.bays > 0 && line.size > 0 &&
+      !(within(line.shift.from, line.size, 0, line.size - 1) && line.shift.own &&
+        line.shift.other && line.shift.fill))
+    return false;
+  const std::int64_t most = (m.condensed != 0 ? line.modal.rows : line.size) - 1;
+  for (const std::int32_t* table : line.unknown_of)
+    if (!within(table, std::int64_t{27} * m.elements, -1, most)) return false;
+  if (m.condensed != 0)
+    return line.size == 0 ||
+           (line.modal.rate.re && line.modal.rate.im && line.modal.keep.re && line.modal.keep.im &&
+            line.modal.old_force.re && line.modal.old_force.im && line.modal.new_force.re &&
+            line.modal.new_force.im && line.modal.held_force.re && line.modal.held_force.im &&
+            (line.modal.rows == 0 || line.modal.shape));
+  const auto diagonals_hold = [&](const Diagonals& d) noexcept {
+    return within(d.offset, d.count, -line.size, line.size) && (d.count == 0 || d.value);
+  };
+  return line.step.left % kLanes == 0 && line.step.inverse &&
+         (line.step.left == 0 || (line.step.forward && line.step.backward)) &&
+         diagonals_hold(line.mass) && diagonals_hold(line.damping);
+}
+
+/// Whether it is a turn, to its rounding.
+bool turns(const Cant& cant) noexcept {
+  const double off = (cant.cosine * cant.cosine + cant.sine * cant.sine) - 1.;
+  return off > -1e-14 && off < 1e-14 && cant.cosine > 0.;
+}
+
+bool signal_holds(const SignalModel& s) noexcept {
+  return s.intervals == 0 || (s.step > 0. && s.coefficient != nullptr);
+}
+
+bool travel_holds(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
+
+bool force_holds(const Model& m, const BodyForce& f) noexcept {
+  return f.input >= 0 ? f.input < m.inputs : f.points > 0 && f.table != nullptr;
+}
+
+/// External wheels stand on a track alone with loads, a step a frame; each has its own inputs.
+bool external_wheels_hold(const Model& m) noexcept {
+  if (m.external_wheels == 0) return true;
+  if (m.wheelsets > 0 || m.vehicles > 0 || m.fixed.count > 0 || m.steps_per_frame != 1)
+    return false;
+  for (std::int32_t i = 0; i < m.external_wheels; ++i)
+    if (m.external_wheel[i].input + 5 > m.inputs) return false;
+  return true;
+}
+
+bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
+  if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
+  if (!are_above_zero(w.mass, 6) || !are_above_zero(w.hertz, 2) || !(w.radius > 0.)) return false;
+  for (std::int32_t i = 0; i < w.forces; ++i)
+    if (!force_holds(m, w.force[i])) return false;
+  return travel_holds(w.travel) && signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
+}
+
+/// Flanges come by rising wheelset, one pair each, and count as wheels among the ports.
+bool flanges_hold(const Model& m) noexcept {
+  if (contact_count(m) > kMaxWheels) return false;
+  for (std::int32_t i = 0; i < m.flanges; ++i) {
+    const FlangeModel& f = m.flange[i];
+    if (f.wheelset >= m.wheelsets || (i > 0 && f.wheelset <= m.flange[i - 1].wheelset))
+      return false;
+    if (!contact_holds(f.contact)) return false;
+  }
+  return true;
+}
+
+bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
+  if (v.first < m.bodies || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
+    return false;
+  return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_holds(v.travel) && v.mass &&
+         v.damping && v.stiffness && v.weight && v.inverse && v.row && v.give && v.compliance &&
+         are_above_zero(v.mass, v.size) && diagonal_is_above_zero(v.inverse, v.size) &&
+         diagonal_is_above_zero(v.compliance, v.wheels);
+}
+
+/// A wheel is one of its vehicle's, whose matrices have a row for it.
+bool wheel_holds(const Model& m, std::int32_t i) noexcept {
+  const VehicleWheel& wheel = m.vehicle_wheel[i];
+  if (wheel.vehicle >= m.vehicles) return false;
+  const VehicleModel& own = m.vehicle[wheel.vehicle];
+  return i >= own.first_wheel && i < own.first_wheel + own.wheels && signal_holds(wheel.tread) &&
+         contact_holds(wheel.contact);
+}
+
+/// Its values may be a little below 0, where elements give way more than a rail does. What they add
+/// to is above 0 where pack_residual.cpp made them; where it is not, the solve of the ports says so
+/// and gives no force.
+bool residual_holds(const Model& m) noexcept {
+  const ResidualModel& r = m.residual;
+  const bool tables = r.under != nullptr || r.axis != nullptr || m.probe.residual != nullptr;
+  if (tables && (r.points < 3 || r.elements < 1)) return false;
+  for (std::int32_t i = 0; i < m.loads && tables; ++i)
+    if (m.load[i].kind >= r.kinds) return false;
+  for (std::int32_t i = 0; i < m.wheelsets && tables; ++i)
+    if (m.wheelset[i].kind[0] >= r.kinds || m.wheelset[i].kind[1] >= r.kinds) return false;
+  for (std::int32_t i = 0; i < m.vehicle_wheels && tables; ++i)
+    if (m.vehicle_wheel[i].kind >= r.kinds) return false;
+  for (std::int32_t i = 0; i < m.external_wheels && tables; ++i)
+    if (m.external_wheel[i].kind >= r.kinds) return false;
+  for (std::int32_t i = 0; i < r.kinds; ++i)
+    for (std::int32_t j = 0; j < r.kinds; ++j)
+      if (r.pair[i][j].value != nullptr && r.pair[i][j].points < 3) return false;
+  return true;
+}
+
+bool turn_holds(const SeatTurnModel& t) noexcept {
+  return (t.lever[0] == nullptr && t.lever[1] == nullptr) ||
+         (t.elements_per_bay > 0 && t.points >= 3);
+}
+
+bool probes_hold(const Model& m) noexcept {
+  const ProbeModel& p = m.probe;
+  if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
+  for (std::int32_t i = 0; i < p.count; ++i)
+    if (p.start[i] > p.start[i + 1]) return false;
+  const std::int64_t values = std::int64_t{3} * m.unknowns + m.fixed.count;
+  return within(p.index, p.entries, 0, values - 1) && within(p.table, p.count, -1, p.tables - 1) &&
+         (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value);
+}
+
+bool fixed_ports_hold(const Model& m) noexcept {
+  const FixedPortModel& p = m.fixed;
+  if (p.count == 0) return true;
+  if (!p.stiffness || !p.damping || !p.gap || !p.response || !p.compliance) return false;
+  if (!are_not_negative(p.stiffness, p.count) || !are_not_negative(p.damping, p.count) ||
+      !diagonal_is_above_zero(p.compliance, p.count))
+    return false;
+  if (m.condensed != 0) return p.shape != nullptr;
+  if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
+  for (std::int32_t i = 0; i < p.count; ++i)
+    if (p.start[i] > p.start[i + 1]) return false;
+  return within(p.index, p.entries, 0, m.bodies - 1) && (p.entries == 0 || p.value);
+}
+
+}  // namespace
+
+bool track_holds(const Model& m) noexcept {
+  if (m.elements < 1 || !endless_holds(m.endless, m.elements)) return false;
+  if (!(m.element_length > 0.) || m.bodies % kLanes != 0) return false;
+  for (std::int32_t i = 0; i < m.lines; ++i)
+    if (!line_holds(m, m.line[i])) return false;
+  for (std::int32_t i = 0; i < m.loads; ++i)
+    if ((m.load[i].table_points > 0 && m.load[i].table == nullptr) ||
+        !travel_holds(m.load[i].travel))
+      return false;
+  for (const Cant& cant : m.cant)
+    if (!turns(cant)) return false;
+  for (std::int32_t i = 0; i < m.wheelsets; ++i)
+    if (!wheelset_holds(m, m.wheelset[i])) return false;
+  if (!flanges_hold(m)) return false;
+  for (std::int32_t i = 0; i < m.vehicles; ++i)
+    if (!vehicle_holds(m, m.vehicle[i])) return false;
+  for (std::int32_t i = 0; i < m.vehicle_wheels; ++i)
+    if (!wheel_holds(m, i)) return false;
+  for (std::int32_t i = 0; i < m.signals; ++i)
+    if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
+  return external_wheels_hold(m) && residual_holds(m) && turn_holds(m.turn) && probes_hold(m) &&
+         fixed_ports_hold(m);
+}
+
+bool inputs_hold(const Model& m) noexcept {
+  for (std::int32_t i = 0; i < m.inputs; ++i)
+    if (!is_above_zero(m.input_limit[i])) return false;
+  return true;
+}
+
+}  // namespace railstep
