@@ -13,6 +13,7 @@
 #include "online/model/load.h"
 #include "online/model/snapshot.h"
 #include "online/step/probe.h"
+#include "online/step/self_check.h"
 #include "online/step/step.h"
 #include "online/system/sense.h"
 #include "pendulum_core.h"
@@ -145,12 +146,19 @@ TEST_CASE("a model is loaded, and refused, without the heap", "[no_heap]") {
   std::vector<std::byte> bad = run.block();
   bad[bad.size() / 2] ^= std::byte{1};
   Model model;
+  Simulation stepped(scene);
+  Outputs outputs{};
+  std::vector<double> row(run.columns().size());
   const Heap before;
+  const bool same =
+      self_check(stepped.model(), stepped.state, stepped.workspace, outputs, row.data());
   const LoadStatus good = load_model(run.block().data(), run.block().size(), model).status;
   const LoadStatus wrong = load_model(bad.data(), bad.size(), model).status;
   const LoadStatus cut = load_model(bad.data(), bad.size() - 8, model).status;
   const Heap after;
   CHECK(after == before);
+  CHECK(same);
+  CHECK(stepped.model().check.frames > 0);
   CHECK(good == LoadStatus::ok);
   CHECK(wrong == LoadStatus::wrong_sum);
   CHECK(cut == LoadStatus::wrong_size);
