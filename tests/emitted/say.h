@@ -2,4 +2,5 @@
 #ifdef __cplusplus
 extern "C"
 #endif
-void say(const char* text);
+    void
+    say(const char* text);

@@ -113,11 +113,12 @@ bool sections_hold(const BlockHeader& h) noexcept {
 
 /// Of a block as it was given, up to its sums.
 LoadStatus check_header(const unsigned char* at, std::size_t bytes, BlockHeader& h) noexcept {
-  if (bytes < sizeof h || !same_bytes(at, "railstep", 8)) return LoadStatus::not_a_model;
-  std::memcpy(&h, at, sizeof h);
+  if (bytes < 8 || !same_bytes(at, "railstep", 8)) return LoadStatus::not_a_model;
+  if (bytes < offsetof(BlockHeader, real_bytes)) return LoadStatus::wrong_size;
+  std::memcpy(&h, at, bytes < sizeof h ? bytes : sizeof h);
   if (h.byte_order == 0x04030201) return LoadStatus::other_byte_order;
   if (h.byte_order != kByteOrder || h.major != kBlockMajor) return LoadStatus::other_version;
-  if (h.bytes != bytes || bytes % 8 != 0) return LoadStatus::wrong_size;
+  if (bytes < sizeof h || h.bytes != bytes || bytes % 8 != 0) return LoadStatus::wrong_size;
   if (h.header_bytes < sizeof h || h.header_bytes > bytes || h.header_bytes % 8 != 0 ||
       h.crc != header_crc(at, h.header_bytes))
     return LoadStatus::wrong_header;
