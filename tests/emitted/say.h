@@ -1,6 +1,8 @@
 /* Writes a text to the console. */
 #ifdef __cplusplus
-extern "C"
+extern "C" {
 #endif
-    void
-    say(const char* text);
+void say(const char* text);
+#ifdef __cplusplus
+}
+#endif
