@@ -75,6 +75,15 @@ std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& section
   return loads;
 }
 
+std::vector<OuterForce> outer_forces(const std::vector<BodyForceScene>& of) {
+  std::vector<OuterForce> forces;
+  for (const BodyForceScene& force : of)
+    forces.push_back({force.direction,
+                      force.input >= 0 ? std::vector<double>{} : packed_table(force.force),
+                      force.input});
+  return forces;
+}
+
 Wheelset wheelset_of(const WheelsetScene& w) {
   Wheelset set;
   set.mass = w.mass;
@@ -93,10 +102,7 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   set.tolerance = w.guide.tolerance;
   set.alpha = w.guide.alpha;
   set.beta = w.guide.beta;
-  for (const BodyForceScene& force : w.forces)
-    set.forces.push_back({force.direction,
-                          force.input >= 0 ? std::vector<double>{} : packed_table(force.force),
-                          force.input});
+  set.forces = outer_forces(w.forces);
   set.tread = treads_of(w);
   set.flange = w.flange;
   return set;
@@ -135,7 +141,8 @@ std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
                         .contact = v.contact,
                         .stiffness = v.stiffness,
                         .damping = v.damping,
-                        .tread = treads_of(v)});
+                        .tread = treads_of(v),
+                        .forces = outer_forces(v.forces)});
   return vehicles;
 }
 

@@ -224,6 +224,7 @@ double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const
 void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
   const VehiclePassed passed = vehicle_passed(model_, model_.vehicle[b], last_.state, now.state);
   flow_.weight += passed.weight;
+  flow_.forces += passed.forces;
   flow_.dissipated += passed.dissipated;
   flow_.loss += passed.loss;
   flow_.guides += vehicle_passage(now, b);
