@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "energy_contact.h"
+#include "energy_external.h"
 #include "energy_line.h"
 #include "inputs.h"
 
@@ -24,11 +25,12 @@ struct EnergyFlow {
   double loads = 0.;       // work of loads, on the material points under them
   double weight = 0.;      // of the weight of track, wheelsets and vehicles
   double forces = 0.;      // of forces on wheelsets and vehicles
+  double outside = 0.;     // of the forces of external wheels
   double guides = 0.;      // of what holds wheelsets and vehicles at their speed
   double dissipated = 0.;  // by the dampers, trapezoidal in the step
   double carriers = 0.;    // on the residual flexibility, see residual_work
   double loss = 0.;        // of the scheme, see EnergyAccount
-  double work() const { return loads + weight + forces + guides + carriers; }
+  double work() const { return loads + weight + forces + outside + guides + carriers; }
 };
 
 /// The balance of energy of a run, step by step.
@@ -88,7 +90,8 @@ class EnergyAccount {
     State state;
     std::vector<LineMotion> lines;
     StandingContacts contacts;
-    std::vector<double> depth, speed;  // of one-sided springs, m, m/s
+    std::vector<double> depth, speed;       // of one-sided springs, m, m/s
+    std::vector<ExternalContact> external;  // as they pressed in the step that ended here
   };
   Standing stand(const State& state) const;
   StoredEnergy stored(const Standing& at) const;
