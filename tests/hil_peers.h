@@ -22,6 +22,19 @@ namespace railstep {
 
 using Values = std::vector<double>;
 
+/// A UDP port of the loopback that was free a moment ago.
+inline std::uint16_t free_port() {
+  const int file = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  REQUIRE(bind(file, reinterpret_cast<const sockaddr*>(&at), size) == 0);
+  getsockname(file, reinterpret_cast<sockaddr*>(&at), &size);
+  close(file);
+  return ntohs(at.sin_port);
+}
+
 /// The vehicle's end of a packet's way.
 struct Peer {
   virtual ~Peer() = default;

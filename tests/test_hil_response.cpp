@@ -142,15 +142,10 @@ Coupled by_packets(const std::string& way) {
     all.force = ride(layout, peer, [&] { run_paced(*run, plan, {&lock_step}); });
   };
   if (way == "udp") {
-    std::unique_ptr<UdpExchange> exchange;
-    std::uint16_t port = 20'000;
-    for (; !exchange; ++port) try {
-        exchange = std::make_unique<UdpExchange>("127.0.0.1:" + std::to_string(port), layout);
-      } catch (const InputError&) {
-        REQUIRE(port < 30'000);
-      }
-    UdpPeer peer(layout, --port);
-    with(*exchange, peer);
+    const std::uint16_t port = free_port();
+    UdpExchange exchange("127.0.0.1:" + std::to_string(port), layout);
+    UdpPeer peer(layout, port);
+    with(exchange, peer);
   } else {
     const std::string name = "railstep_response_" + std::to_string(getpid());
     SharedExchange exchange(name, layout);
@@ -279,7 +274,7 @@ TEST_CASE("the example's vehicle over UDP, paced, is that of the C interface",
   bool in_time = false;
   for (int rate = 100; rate >= 10 && !in_time; rate -= 30) {
     std::filesystem::remove(file("names"));
-    const std::string address = "127.0.0.1:" + std::to_string(30'000 + getpid() % 10'000);
+    const std::string address = "127.0.0.1:" + std::to_string(free_port());
     Ran hil;
     std::thread track([&] {
       hil = railstep_program("hil " + file("model") + " --rate " + std::to_string(rate) +
