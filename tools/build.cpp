@@ -77,6 +77,7 @@ std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& section
 
 std::vector<OuterForce> outer_forces(const std::vector<BodyForceScene>& of) {
   std::vector<OuterForce> forces;
+  forces.reserve(of.size());
   for (const BodyForceScene& force : of)
     forces.push_back({force.direction,
                       force.input >= 0 ? std::vector<double>{} : packed_table(force.force),

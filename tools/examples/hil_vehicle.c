@@ -7,7 +7,7 @@
  *   FRAME_S  its frame; the other words are those of own_vehicle.c
  * Prints a line a frame: time, force on the wheel, rail and wheel displacement. */
 
-#define _POSIX_C_SOURCE 200112L
+#define _POSIX_C_SOURCE 200112L /* NOLINT(bugprone-reserved-identifier): POSIX wants it */
 #include <netdb.h>
 #include <poll.h>
 #include <stdint.h>
