@@ -163,6 +163,12 @@ TEST_CASE("inputs are held, then a silence takes them to 0 for good", "[hil]") {
   for (const double want : {6., 4., 2., 0., 0.}) CHECK(held.next(nullptr, &good)[0] == want);
   CHECK(held.stopping());
   CHECK(held.next(&fresh, &good)[0] == 0.);  // it came too late
+  const double both[2] = {40., 8.};
+  HeldInputs placed(2, 1, 2, {0});  // a place does not go to 0 with its force
+  placed.next(both, both);
+  CHECK(placed.next(nullptr, both)[1] == 4.);
+  CHECK(placed.next(nullptr, both)[1] == 0.);
+  CHECK(placed.next(nullptr, both)[0] == 40.);
   HeldInputs patient(1, 0, 1);
   CHECK(patient.next(&fresh, &good)[0] == 12.);
   for (int n = 0; n < 1000; ++n) CHECK(patient.next(nullptr, &good)[0] == 12.);

@@ -76,6 +76,16 @@ std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& section
   return loads;
 }
 
+std::vector<OuterForce> outer_forces(const std::vector<BodyForceScene>& of) {
+  std::vector<OuterForce> forces;
+  forces.reserve(of.size());
+  for (const BodyForceScene& force : of)
+    forces.push_back({force.direction,
+                      force.input >= 0 ? std::vector<double>{} : packed_table(force.force),
+                      force.input});
+  return forces;
+}
+
 Wheelset wheelset_of(const WheelsetScene& w) {
   Wheelset set;
   set.mass = w.mass;
@@ -94,10 +104,7 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   set.tolerance = w.guide.tolerance;
   set.alpha = w.guide.alpha;
   set.beta = w.guide.beta;
-  for (const BodyForceScene& force : w.forces)
-    set.forces.push_back({force.direction,
-                          force.input >= 0 ? std::vector<double>{} : packed_table(force.force),
-                          force.input});
+  set.forces = outer_forces(w.forces);
   set.tread = treads_of(w);
   set.flange = w.flange;
   return set;
@@ -136,7 +143,8 @@ std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
                         .contact = v.contact,
                         .stiffness = v.stiffness,
                         .damping = v.damping,
-                        .tread = treads_of(v)});
+                        .tread = treads_of(v),
+                        .forces = outer_forces(v.forces)});
   return vehicles;
 }
 

@@ -15,6 +15,7 @@
 
 #include "command.h"
 #include "hil_report.h"
+#include "hil_response.h"
 #include "hil_run.h"
 #include "hil_shm.h"
 #include "hil_udp.h"
@@ -37,7 +38,7 @@ struct HilOptions {
   double silence = 0., ramp = .1, wait = 0.;  // s
   std::int64_t stall_frame = -1;
   double stall_us = 0.;
-  bool json = false;
+  bool respond = false, json = false;
 };
 
 std::atomic<bool> interrupted{false};
@@ -94,6 +95,7 @@ HilPlan plan_of(const HilOptions& o) {
   plan.wait_s = o.wait;
   plan.stall_frame = o.stall_frame;
   plan.stall_ns = std::llround(1e3 * o.stall_us);
+  plan.respond = o.respond;
   plan.keep_inputs = !o.record.empty();
   plan.interrupted = &interrupted;
   if (o.cpu) {
@@ -104,8 +106,9 @@ HilPlan plan_of(const HilOptions& o) {
           "of which need be there",
           *o.cpu, allowed.empty() ? 0 : allowed.front(), allowed.empty() ? 0 : allowed.back()));
   }
-  if ((o.silence > 0. || o.wait > 0.) && o.udp.empty() && o.shm.empty())
-    throw InputError("--silence and --wait are about inputs: they want --udp or --shm");
+  if ((o.silence > 0. || o.wait > 0. || o.respond) && o.udp.empty() && o.shm.empty())
+    throw InputError(
+        "--silence, --wait and --response are about an exchange: they want --udp or --shm");
   return plan;
 }
 
@@ -115,6 +118,17 @@ std::unique_ptr<Simulation> simulation_of(const HilOptions& o) {
     throw InputError(
         fmt::format("--set changes a scene, and {} is a model; condense the scene anew", o.input));
   return std::make_unique<Simulation>(std::filesystem::path(o.input));
+}
+
+/// What is exchanged: the model's inputs and outputs, and where it is asked for the response.
+ExchangeLayout layout_of(const HilOptions& o, const HilPlan& plan, const Simulation& run) {
+  ExchangeLayout layout{run.inputs(), run.columns(), plan.schedule.period_ns, o.cpu.value_or(-1)};
+  if (!o.respond) return layout;
+  if (run.model().external_wheels == 0)
+    throw InputError(
+        fmt::format("--response: {} has no [[external_wheel]], of which it tells", o.input));
+  Response::add_names(run, layout.inputs, layout.outputs);
+  return layout;
 }
 
 /// What the values are called, in their order, with the sums that packets carry.
@@ -299,8 +313,7 @@ void write_recording(const std::string& file, const Simulation& run, const HilRe
 Exit run(const HilOptions& o) {
   const HilPlan plan = plan_of(o);
   const std::unique_ptr<Simulation> simulation = simulation_of(o);
-  const ExchangeLayout layout{simulation->inputs(), simulation->columns(), plan.schedule.period_ns,
-                              o.cpu.value_or(-1)};
+  const ExchangeLayout layout = layout_of(o, plan, *simulation);
   std::optional<Recording> recording = begun_recording(o, plan, *simulation);
   end_on_signals();  // from here on something would be left behind
   Exchanges exchanges(o, layout);
@@ -330,6 +343,8 @@ void add_exchange_options(CLI::App& sub, HilOptions& o) {
   sub.add_option("--udp", o.udp, "listen for inputs on HOST:PORT; outputs go to who sends them");
   sub.add_option("--shm", o.shm, "shared memory of this name for inputs and outputs");
   sub.add_option("--names", o.names, "write what inputs and outputs are called to this file");
+  sub.add_flag("--response", o.respond,
+               "how the track gives way under external wheels in the next frame, in each output");
   sub.add_option("--wait", o.wait, "s to wait for the first inputs before the clock starts (0)")
       ->check(CLI::Range(0., 1e6));
   sub.add_option("--silence", o.silence,

@@ -93,10 +93,8 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
   return std::llround(frames);
 }
 
-/// Whether the energies of a run can be told; of a model file, which has no matrices, they cannot,
-/// nor where vehicles outside the model bring theirs.
+/// Whether the energies of a run can be told; of a model file, which has no matrices, they cannot.
 bool has_energies(const Simulation& run) {
-  if (run.model().external_wheels > 0) return false;
   return run.packed() != nullptr || run.system() != nullptr;
 }
 

@@ -85,6 +85,7 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
 void EnergyAccount::follow(const State& state) {
   Standing now = stand(state);
   pass_on(now.state.steps);
+  now.external = external_in_step(model_, last_.state, now.state);
   stored_ = stored(now);
   add_lines(now);
   add_loads(now);
@@ -108,6 +109,8 @@ void EnergyAccount::pass_on(std::int64_t step) {
   for (std::size_t l = 0; l < lines_.size(); ++l) last_.lines[l] = lines_[l].motion(last_.state);
   for (int i = 0; i < last_.contacts.loads; ++i)
     last_.contacts.load[i].row.element -= e.bay_elements;
+  for (ExternalContact& at : last_.external)
+    for (RailRow& row : at.row) row.element -= e.bay_elements;
   for (int i = 0; i < last_.contacts.wheels; ++i) {
     RailRow& row = last_.contacts.contact[i].row;
     row.element -= e.bay_elements;
@@ -137,6 +140,7 @@ void EnergyAccount::add_loads(const Standing& now) {
       const PlacedLoad& load = at->contacts.load[i];
       if (load.on_rail) flow_.loads += .5 * load.force * deflection(model_, load, moved);
     }
+  flow_.outside += external_work(model_, last_.external, now.external, moved);
   flow_.carriers += residual_work(last_.contacts, now.contacts);
 }
 
@@ -224,6 +228,7 @@ double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const
 void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
   const VehiclePassed passed = vehicle_passed(model_, model_.vehicle[b], last_.state, now.state);
   flow_.weight += passed.weight;
+  flow_.forces += passed.forces;
   flow_.dissipated += passed.dissipated;
   flow_.loss += passed.loss;
   flow_.guides += vehicle_passage(now, b);
@@ -303,6 +308,7 @@ void EnergyAccount::note() {
                           std::abs(flow_.loads),
                           std::abs(flow_.weight),
                           std::abs(flow_.forces),
+                          std::abs(flow_.outside),
                           std::abs(flow_.guides - (stored_.forward - start_.forward)),
                           std::abs(flow_.carriers),
                           flow_.dissipated};

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "energy_contact.h"
+#include "energy_external.h"
 #include "energy_line.h"
 #include "inputs.h"
 
@@ -23,12 +24,13 @@ struct StoredEnergy {
 struct EnergyFlow {
   double loads = 0.;       // work of loads, on the material points under them
   double weight = 0.;      // of the weight of track, wheelsets and vehicles
-  double forces = 0.;      // of forces on wheelsets
+  double forces = 0.;      // of forces on wheelsets and vehicles
+  double outside = 0.;     // of the forces of external wheels
   double guides = 0.;      // of what holds wheelsets and vehicles at their speed
   double dissipated = 0.;  // by the dampers, trapezoidal in the step
   double carriers = 0.;    // on the residual flexibility, see residual_work
   double loss = 0.;        // of the scheme, see EnergyAccount
-  double work() const { return loads + weight + forces + guides + carriers; }
+  double work() const { return loads + weight + forces + outside + guides + carriers; }
 };
 
 /// The balance of energy of a run, step by step.
@@ -47,7 +49,8 @@ struct EnergyFlow {
 ///
 /// The loss is what the scheme itself takes out (below 0: puts in), in closed form:
 /// - of banded lines see LineEnergy::loss; of wheelsets the same without C, and 0 where forces are
-///   held over the step, but for a table's force, held at its value at the step's end;
+///   held over the step, but for a table's force, held at its value at the step's end; of vehicles
+///   alike;
 /// - of contacts, with U the energy of Hertz springs and residual flexibility: f da + residual_work
 ///   - dU, a the approach and f = (f0 + f1)/2, or the force held over the step. With W = 0 that is
 ///   (f0 + f1)/2 (d1 - d0) - V(d1) + V(d0), or V'(d_theta)(d1 - d0) - V(d1) + V(d0), d_theta =
@@ -87,7 +90,8 @@ class EnergyAccount {
     State state;
     std::vector<LineMotion> lines;
     StandingContacts contacts;
-    std::vector<double> depth, speed;  // of one-sided springs, m, m/s
+    std::vector<double> depth, speed;       // of one-sided springs, m, m/s
+    std::vector<ExternalContact> external;  // as they pressed in the step that ended here
   };
   Standing stand(const State& state) const;
   StoredEnergy stored(const Standing& at) const;

@@ -21,6 +21,7 @@ const double* HeldInputs::next(const double* fresh, const double* good) noexcept
                           ? 1. - static_cast<double>(stopped_for_) / static_cast<double>(ramp_)
                           : 0.;
   for (std::size_t i = 0; i < count; ++i) value_[i] = left * base_[i];
+  for (const std::size_t i : places_) value_[i] = base_[i];
   return value_.data();
 }
 

@@ -1,19 +1,26 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace railstep {
 
 /// What frames are given when nothing comes from outside: the last inputs, and after a silence of
 /// `silence` frames a safe stop: from there on, for the rest of the run, the inputs go to 0 in
-/// equal steps over `ramp` frames and stay there, whatever comes. The silence counts from the first
-/// inputs on; before them all are 0.
+/// equal steps over `ramp` frames and stay there, whatever comes; but places, which are no forces,
+/// stay where they are. The silence counts from the first inputs on; before them all are 0.
 class HeldInputs {
  public:
   /// @param silence  frames; 0: inputs are held for ever
-  HeldInputs(std::size_t count, std::int64_t silence, std::int64_t ramp)
-      : silence_(silence), ramp_(ramp), value_(count, 0.), base_(count, 0.) {}
+  /// @param places   indices of inputs
+  HeldInputs(std::size_t count, std::int64_t silence, std::int64_t ramp,
+             std::vector<std::size_t> places = {})
+      : silence_(silence),
+        ramp_(ramp),
+        places_(std::move(places)),
+        value_(count, 0.),
+        base_(count, 0.) {}
 
   /// Of the next frame. @param fresh  [count], or null where nothing came
   /// @param good   [count] what the model holds: its last good inputs within their limits
@@ -28,6 +35,7 @@ class HeldInputs {
   std::int64_t silence_, ramp_;
   std::int64_t silent_ = 0, stopped_for_ = 0;  // frames
   bool heard_ = false;
+  std::vector<std::size_t> places_;
   std::vector<double> value_, base_;
 };
 

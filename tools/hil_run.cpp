@@ -8,12 +8,22 @@
 #include "heap_count.h"
 #include "hil_inputs.h"
 #include "hil_packet.h"
+#include "hil_response.h"
 #include "online/step/step.h"
 #include "online/step/trace_row.h"
 #include "simulate.h"
 
 namespace railstep {
 namespace {
+
+/// Which inputs are places of external wheels.
+std::vector<std::size_t> places_of(const Model& model) {
+  std::vector<std::size_t> at;
+  for (std::int32_t n = 0; n < model.external_wheels; ++n)
+    for (int d = 0; d < 2; ++d)
+      at.push_back(static_cast<std::size_t>(model.external_wheel[n].input + d));
+  return at;
+}
 
 /// All that a frame needs, made before the first one.
 class Stepper {
@@ -24,8 +34,11 @@ class Stepper {
         plan_(plan),
         exchanges_(exchanges),
         record_(record),
-        held_(static_cast<std::size_t>(run.model().inputs), plan.silence, plan.ramp),
-        row_(static_cast<std::size_t>(trace_columns(run.model()))) {
+        held_(static_cast<std::size_t>(run.model().inputs), plan.silence, plan.ramp,
+              places_of(run.model())),
+        columns_(static_cast<std::size_t>(trace_columns(run.model()))),
+        row_(columns_) {
+    if (plan.respond) row_.resize(columns_ + response_.emplace(run).count());
     publish_start(run.model(), run.state, outputs_);
     trace_row(run.model(), run.state, outputs_, row_.data());
     if (plan.keep_inputs)
@@ -43,6 +56,13 @@ class Stepper {
     return plan_.wait_s <= 0. || held_.heard();
   }
 
+  /// The start, from which a vehicle outside makes its first frame.
+  void begin() noexcept {
+    if (!response_) return;
+    respond(run_.state.input);
+    publish(-1, 0);
+  }
+
   /// @returns whether the run goes on
   bool frame(std::int64_t n) noexcept {
     const double* const given = give(n);
@@ -53,6 +73,7 @@ class Stepper {
     record_.first_bad_unknown = outputs_.first_bad_unknown;
     if (held_.stopping() && record_.safe_stop_frame < 0) record_.safe_stop_frame = n;
     trace_row(run_.model(), run_.state, outputs_, row_.data());
+    if (response_ && record_.first_bad_unknown < 0) respond(given);
     if (n == plan_.stall_frame) stall();
     publish(n, 0);
     record_.interrupted = interrupted();
@@ -69,12 +90,17 @@ class Stepper {
       const double* const came = exchange->inputs(n);
       if (fresh == nullptr) fresh = came;
     }
+    if (response_ && fresh != nullptr) response_->ask(fresh + run_.model().inputs);
     return n < 0 && fresh == nullptr ? nullptr : held_.next(fresh, run_.state.input);
   }
 
+  void respond(const double* given) noexcept {
+    asked_ = response_->answer(run_, given, row_.data() + columns_);
+  }
+
   void publish(std::int64_t n, std::uint32_t flags) noexcept {
-    const FrameOutputs made{n, outputs_.status, flags | (held_.stopping() ? kSafeStop : 0u),
-                            row_.data()};
+    const FrameOutputs made{n, outputs_.status | asked_,
+                            flags | (held_.stopping() ? kSafeStop : 0u), row_.data()};
     for (Exchange* const exchange : exchanges_) exchange->outputs(made);
   }
 
@@ -94,6 +120,9 @@ class Stepper {
   HilRecord& record_;
   HeldInputs held_;
   Outputs outputs_{};
+  std::optional<Response> response_;
+  Status asked_ = Status::ok;  // what the places of the next frame meet
+  std::size_t columns_;
   std::vector<double> row_;
   MonotonicClock clock_;
 };
@@ -120,6 +149,7 @@ void step_thread(const HilPlan& plan, Stepper& stepper, HilRecord& record) {
       empty, clock, [](std::int64_t) { return true; }, record.empty_wakeup, record.empty_frame);
   const rusage before = thread_usage();
   const std::int64_t heap = heap_calls();
+  stepper.begin();
   record.paced = pace(
       plan.schedule, clock, [&stepper](std::int64_t n) { return stepper.frame(n); }, record.wakeup,
       record.frame);

@@ -23,6 +23,7 @@ struct HilPlan {
   std::int64_t stall_frame = -1;       // a frame that is made to take longer, for tests
   std::int64_t stall_ns = 0;
   bool keep_inputs = false;                        // in the record
+  bool respond = false;                            // hil_response.h goes with the outputs
   const std::atomic<bool>* interrupted = nullptr;  // ends the run; or null
 };
 

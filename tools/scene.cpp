@@ -339,7 +339,7 @@ Scene read_track_scene(const Table& root) {
   scene.stops = read_stops(root, scene);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene, scene.inputs);
-  scene.vehicles = read_vehicles(root, scene);
+  scene.vehicles = read_vehicles(root, scene, scene.inputs);
   scene.external_wheels = read_external_wheels(root, scene);
   scene.irregularity = read_irregularity(root, scene);
   scene.defects = read_defects(root, scene);

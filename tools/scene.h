@@ -198,8 +198,8 @@ struct ExternalWheelScene {
 };
 
 struct BodyForceScene {
-  int direction;    // 0 x, 1 y, 2 z
-  TimeTable force;  // N, on the centre; empty of an input
+  int direction;    // 0 x, 1 y, 2 z; of a vehicle its coordinate
+  TimeTable force;  // N on the centre, or N m; empty of an input
   int input = -1;   // among Scene::inputs
 };
 
@@ -233,6 +233,7 @@ struct VehicleScene {
   double stiffness, damping;  // of a linear contact, N/m, N s/m
   bool gravity, may_leave_rail;
   std::vector<WheelTread> treads;
+  std::vector<BodyForceScene> forces;
 };
 
 double fastest(const VehicleScene& vehicle);

@@ -148,14 +148,6 @@ GuideScene read_guide(const Table& wheelset) {
   return g;
 }
 
-/// By a table over time, or given frame by frame.
-BodyForceScene read_body_force(const Table& t, std::vector<InputScene>& inputs) {
-  const int direction = static_cast<int>(t.choice("direction", {"x", "y", "z"}));
-  if (!t.has("input")) return {direction, read_time_table(t, "table", kForce)};
-  if (t.has("table")) t.refuse("table", "table is given beside input; one of them is accepted");
-  return {direction, {}, read_input(t, false, inputs)};
-}
-
 WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<InputScene>& inputs) {
   if (scene.track.rails != 2) t.refuse("", "a wheelset needs two rails; accepted with rails = 2");
   const Range inertia = above_upto(0.0, 1e6);
@@ -181,7 +173,9 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<Inpu
   w.carried_mass = t.number("carried_mass_kg", between(0.0, 1e6), 0.0);
   w.gravity = t.boolean("gravity", true);
   w.guide = read_guide(t);
-  for (const Table& force : t.tables("force")) w.forces.push_back(read_body_force(force, inputs));
+  for (const Table& force : t.tables("force"))
+    w.forces.push_back(read_body_force(
+        force, static_cast<int>(force.choice("direction", {"x", "y", "z"})), false, inputs));
   w.treads = read_treads(t, scene, w);
   if (const std::optional<Table> flange = t.table_if("flange"))
     w.flange = read_flange(*flange, scene);
@@ -231,6 +225,13 @@ std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Sc
     wheels.push_back({checked_name(t, "name", t.string("name")), read_side(t, scene),
                       t.number("limit_n", above_upto(0.0, 1e12))});
   return wheels;
+}
+
+BodyForceScene read_body_force(const Table& t, int direction, bool moment,
+                               std::vector<InputScene>& inputs) {
+  if (!t.has("input")) return {direction, read_time_table(t, "table", kForce)};
+  if (t.has("table")) t.refuse("table", "table is given beside input; one of them is accepted");
+  return {direction, {}, read_input(t, moment, inputs)};
 }
 
 int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {

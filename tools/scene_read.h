@@ -52,7 +52,9 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
 std::vector<TreadScene> read_treads(const Table& t, const Scene& scene, const WheelsetScene& own);
 /// [wheelset.flange].
 Flange read_flange(const Table& t, const Scene& scene);
-std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene);
+/// @param inputs  gets those that forces on them name
+std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
+                                        std::vector<InputScene>& inputs);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
 std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,
                                           const VehicleScene& own);
@@ -72,6 +74,9 @@ void check_path(const Table& t, const Scene& scene, double start, const SpeedSce
 std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene);
 /// `input` and `limit_n`, or of a moment `limit_n_m`. @returns its index
 int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
+/// A force by `table`, [[t_s, N or N m], ...], or given frame by frame.
+BodyForceScene read_body_force(const Table& t, int direction, bool moment,
+                               std::vector<InputScene>& inputs);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// On a rail, a sleeper, a wheelset or a vehicle.
 SensorScene read_sensor(const Table& t, const Scene& scene);

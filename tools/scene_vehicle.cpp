@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -128,8 +129,25 @@ void check_wheels(const Table& t, const Scene& scene, const VehicleScene& v,
   }
 }
 
+/// [[vehicle.force]] along the height or the pitch of a body.
+BodyForceScene read_force(const Table& t, const NamedVehicle& kind,
+                          std::vector<InputScene>& inputs) {
+  const std::string name = t.string("body");
+  const auto found = std::find(kind.bodies.begin(), kind.bodies.end(), name);
+  if (found == kind.bodies.end())
+    t.refuse("body", fmt::format("body = \"{}\" is no body of this vehicle; accepted are {}", name,
+                                 fmt::join(kind.bodies, ", ")));
+  const auto body = static_cast<std::size_t>(found - kind.bodies.begin());
+  const int pitch = static_cast<int>(t.choice("direction", {"z", "pitch"}));
+  if (pitch == 1 && kind.vehicle.bodies[body].pitch_inertia == 0.)
+    t.refuse("direction",
+             fmt::format("direction = \"pitch\", but {} does not pitch; accepted is \"z\"", name));
+  return read_body_force(t, first_coordinates(kind.vehicle)[body] + pitch, pitch == 1, inputs);
+}
+
 /// One vehicle for each rail that the table names.
-void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>& vehicles) {
+void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>& vehicles,
+                  std::vector<InputScene>& inputs) {
   VehicleScene v{};
   v.table = v.name = checked_name(t, "name", t.string("name"));
   const bool both = t.has("rail") && t.string("rail") == "both";
@@ -145,6 +163,8 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
   v.speeds = speed.table;
   v.gravity = t.boolean("gravity", true);
   v.treads = read_wheel_treads(t, scene, v);
+  for (const Table& force : t.tables("force"))
+    v.forces.push_back(read_force(force, v.kind, inputs));
   if (!v.may_leave_rail) check_wheels(t, scene, v, speed);
   if (!both) return vehicles.push_back(std::move(v));
   for (const Side side : {Side::left, Side::right}) {
@@ -160,9 +180,10 @@ double fastest(const VehicleScene& vehicle) {
   return travel_of({vehicle.speed, vehicle.speeds}).speed;
 }
 
-std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene) {
+std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
+                                        std::vector<InputScene>& inputs) {
   std::vector<VehicleScene> vehicles;
-  for (const Table& t : root.tables("vehicle")) read_vehicle(t, scene, vehicles);
+  for (const Table& t : root.tables("vehicle")) read_vehicle(t, scene, vehicles, inputs);
   return vehicles;
 }
 

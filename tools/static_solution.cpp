@@ -62,8 +62,10 @@ void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) 
 
 /// The loads of a vehicle's wheels on a level rail that does not give way.
 void add_vehicle(const Scene& scene, const VehicleScene& v, Problem& problem) try {
-  const VehicleRest rest =
-      vehicle_at_rest(vehicle_matrices(v.kind.vehicle, v.gravity ? kGravity : 0.));
+  VehicleMatrices matrices = vehicle_matrices(v.kind.vehicle, v.gravity ? kGravity : 0.);
+  for (const BodyForceScene& force : v.forces)
+    if (force.input < 0) matrices.weight[force.direction] -= force.force.at(0.);
+  const VehicleRest rest = vehicle_at_rest(matrices);
   for (std::size_t i = 0; i < v.kind.vehicle.wheels.size(); ++i)
     add_wheel(scene, problem, v.rail == Side::right ? 1 : 0,
               v.start + v.kind.vehicle.wheels[i].place, -rest.force[static_cast<Eigen::Index>(i)]);

@@ -43,12 +43,6 @@ Eigen::SparseMatrix<double> closing_of(const Track& track, const Line& line) {
 }
 
 /// Each force of a wheelset has a table or one of the inputs.
-void check_forces(const Wheelset& wheelset, std::int32_t inputs) {
-  for (const Wheelset::Force& force : wheelset.forces)
-    if (force.input >= inputs || (force.input >= 0) != force.table.empty())
-      throw std::invalid_argument("a force on a wheelset has a table, or an input of its own");
-}
-
 bool has_preload(const Track& track) {
   const std::vector<FixedPort> ports = fixed_ports(track);
   return std::any_of(ports.begin(), ports.end(),
@@ -124,9 +118,6 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
                                const std::array<Railhead, 2>& heads) {
   if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
   if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
-  if (wheelset.forces.size() > static_cast<std::size_t>(kMaxBodyForces))
-    throw std::invalid_argument("more than 4 forces on one wheelset");
-  check_forces(wheelset, model_.inputs);
   for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
                                wheelset.inertia_yaw, wheelset.radius})
     if (!(inertia > 0.))
@@ -158,12 +149,23 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   packed.tolerance = wheelset.tolerance;
   packed.alpha = wheelset.alpha;
   packed.beta = wheelset.beta;
-  for (const Wheelset::Force& force : wheelset.forces)
-    packed.force[packed.forces++] = {force.direction,
-                                     static_cast<std::int32_t>(force.table.size() / 2),
-                                     keep(force.table), force.input};
+  packed.forces = keep(wheelset.forces, packed.force, "wheelset");
   for (const std::size_t rail : {0u, 1u}) packed.tread[rail] = keep(wheelset.tread[rail]);
   if (wheelset.flange) add_flange(track, wheelset, heads);
+}
+
+std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce* force,
+                               const char* bearer) {
+  const std::string on = std::string(" on a ") + bearer;
+  if (forces.size() > static_cast<std::size_t>(kMaxBodyForces))
+    throw std::invalid_argument("more than 4 forces" + on);
+  for (const OuterForce& own : forces) {
+    if (own.input >= model_.inputs || (own.input >= 0) != own.table.empty())
+      throw std::invalid_argument("a force" + on + " has a table, or an input of its own");
+    *force++ = {own.direction, static_cast<std::int32_t>(own.table.size() / 2), keep(own.table),
+                own.input};
+  }
+  return static_cast<std::int32_t>(forces.size());
 }
 
 /// Of the wheelset that was added last. The face touches the gauge face, `clearance` further in.

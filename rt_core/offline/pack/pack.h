@@ -41,6 +41,13 @@ struct Flange {
   double stiffness = 0., damping = 0.;  // N/m, N s/m
 };
 
+/// A force from outside on a wheelset or a vehicle.
+struct OuterForce {
+  int direction;  // 0 x, 1 y, 2 z of a wheelset; of a vehicle its coordinate (first_coordinates())
+  std::vector<double> table = {};  // t (s), N, t, N, ...; empty: given each frame
+  int input = -1;                  // of a given one, among Traffic::input_limits
+};
+
 /// A rigid wheelset on both rails, as a scene gives it. Rolls without friction on cylinders.
 struct Wheelset {
   double mass = 0., inertia_roll = 0., inertia_spin = 0., inertia_yaw = 0.;  // kg, kg m2
@@ -53,12 +60,7 @@ struct Wheelset {
   int cap = 20;
   double tolerance = 1e-10;      // m, rad
   double alpha = 0., beta = 0.;  // of Baumgarte, 1/s
-  struct Force {
-    int direction;                   // 0 x, 1 y, 2 z
-    std::vector<double> table = {};  // t (s), N, t, N, ...; empty: given each frame
-    int input = -1;                  // of a given one, among Traffic::input_limits
-  };
-  std::vector<Force> forces = {};
+  std::vector<OuterForce> forces = {};
   std::array<Signal, 2> tread = {};  // of the left and right wheel, over the distance rolled
   std::optional<Flange> flange = std::nullopt;
 };
@@ -73,6 +75,7 @@ struct RunningVehicle {
   WheelContactKind contact = WheelContactKind::hertz;
   double stiffness = 0., damping = 0.;  // of a linear contact, N/m, N s/m
   std::vector<Signal> tread = {};       // of each wheel, over the distance rolled; or empty
+  std::vector<OuterForce> forces = {};
 };
 
 /// Of a bonded contact, N/m: a millionth of what the stiffest rail gives way under a wheel.
@@ -199,6 +202,10 @@ class PackedModel {
   void keep_tables(const Line& line, LineModel& packed, const Number& number);
   void add_load(const Track& track, const MovingLoad& load);
   SignalModel keep(const Signal& signal);
+  /// @param force   [kMaxBodyForces] overwritten
+  /// @param bearer  what they are on, for errors
+  /// @returns their number
+  std::int32_t keep(const std::vector<OuterForce>& forces, BodyForce* force, const char* bearer);
   void add_fixed_ports(const Track& track);
   void add_port_rows();
   void add_port_shapes();

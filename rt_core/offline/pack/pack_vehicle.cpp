@@ -109,6 +109,10 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   packed.inverse = keep(row_by_row(inverse));
   packed.row = keep(row_by_row(m.wheels));
   packed.give = keep(row_by_row(give));
+  for (const OuterForce& force : vehicle.forces)
+    if (force.direction < 0 || force.direction >= n)
+      throw std::invalid_argument("a force along a coordinate that its vehicle does not have");
+  packed.forces = keep(vehicle.forces, packed.force, "vehicle");
   packed.compliance = keep(row_by_row(.5 * (compliance + compliance.transpose())));
   for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i) {
     const Vehicle::Wheel& wheel = vehicle.vehicle.wheels[i];

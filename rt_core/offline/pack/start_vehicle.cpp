@@ -1,12 +1,14 @@
 #include "offline/pack/start_vehicle.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "offline/pack/static_lines.h"
 #include "online/model/course.h"
+#include "online/step/input.h"
 #include "online/step/travel.h"
 #include "online/step/wheel.h"
 
@@ -20,22 +22,42 @@ using Rows =
 /// The vehicles' matrices side by side.
 struct Together {
   Eigen::MatrixXd stiffness, row;  // [all][all], [wheels][all]
-  Eigen::VectorXd weight;          // [all] N
+  Eigen::VectorXd weight;          // [all] N, less what forces at the start lift
+  double borne;                    // N, by all wheels together
+  double stiff;                    // N/m: forces over it keep the pivots alike
 };
+
+/// What the wheels bear: the weight along the way on which all heights rise alike, which stretches
+/// no spring.
+double borne(const Together& all) {
+  const Eigen::Index n = all.weight.size(), wheels = all.row.rows();
+  Eigen::MatrixXd A(n + wheels, n);
+  A << all.stiffness / all.stiff, all.row;
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n + wheels);
+  b.tail(wheels).setOnes();
+  return all.weight.dot(A.colPivHouseholderQr().solve(b));
+}
 
 Together together(const Model& model) {
   Eigen::Index n = 0;
   for (std::int32_t b = 0; b < model.vehicles; ++b) n += model.vehicle[b].size;
   Together all{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(model.vehicle_wheels, n),
-               Eigen::VectorXd::Zero(n)};
+               Eigen::VectorXd::Zero(n), 0., 0.};
+  Eigen::VectorXd lift = Eigen::VectorXd::Zero(n);
   n = 0;
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const VehicleModel& v = model.vehicle[b];
     all.stiffness.block(n, n, v.size, v.size) = Rows(v.stiffness, v.size, v.size);
     all.row.block(v.first_wheel, n, v.wheels, v.size) = Rows(v.row, v.wheels, v.size);
     all.weight.segment(n, v.size) = Eigen::Map<const Eigen::VectorXd>(v.weight, v.size);
+    add_forces(v, 0., nullptr, lift.data() + n);
     n += v.size;
   }
+  all.stiff = std::max(all.stiffness.diagonal().maxCoeff(), 1e6);
+  all.borne = all.weight.sum();
+  if (lift.isZero(0.)) return all;
+  all.weight -= lift;
+  all.borne = borne(all);
   return all;
 }
 
@@ -57,11 +79,10 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
                                 const Eigen::VectorXd& free) {
   const Together all = together(model);
   const Eigen::Index n = all.weight.size(), wheels = free.size();
-  // Forces over a stiffness keep the pivots alike.
-  const double stiff = std::max(all.stiffness.diagonal().maxCoeff(), 1e6);
+  const double stiff = all.stiff;
   Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd force =
-      Eigen::VectorXd::Constant(wheels, all.weight.sum() / static_cast<double>(wheels));
+      Eigen::VectorXd::Constant(wheels, all.borne / static_cast<double>(wheels));
   for (Eigen::Index i = 0; i < wheels; ++i)
     if (model.vehicle_wheel[i].contact.hertz > 0. && !(force[i] > 0.))
       throw std::invalid_argument("no equilibrium in contact: nothing presses a vehicle down");
@@ -96,7 +117,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       if (lifted || std::abs(taken - force[i]) > 1e-10 * force.cwiseAbs().maxCoeff())
         settled = false;
       force[i] = taken;
-      if (taken < 1e-9 * std::abs(all.weight.sum()) && lifted) lifted_off = true;
+      if (taken < 1e-9 * std::abs(all.borne) && lifted) lifted_off = true;
     }
   }
   if (!settled)

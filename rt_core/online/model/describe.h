@@ -136,6 +136,17 @@ void describe(Archive& a, SignalModel& s) {
   a.reals(s.coefficient, s.intervals == 0 ? 0 : std::int64_t{s.intervals} + 3);
 }
 
+/// @param directions  the last one
+template <typename Archive>
+void describe(Archive& a, BodyForce& f, std::int32_t directions) {
+  a.count(f.direction, directions);
+  std::int32_t input = f.input + 1;  // 0: none
+  a.count(input, kMaxInputs);
+  f.input = input - 1;
+  a.count(f.points, kMostRows);
+  a.reals(f.table, std::int64_t{2} * f.points);
+}
+
 template <typename Archive>
 void describe(Archive& a, WheelsetModel& w) {
   a.count(w.first, kMostUnknowns);
@@ -149,15 +160,7 @@ void describe(Archive& a, WheelsetModel& w) {
   w.guide = static_cast<Guide>(guide);
   a.count(w.cap, kMostGuideTurns);
   a.count(w.forces, kMaxBodyForces);
-  for (std::int32_t i = 0; i < w.forces; ++i) {
-    BodyForce& f = w.force[i];
-    a.count(f.direction, 2);
-    std::int32_t input = f.input + 1;  // 0: none
-    a.count(input, kMaxInputs);
-    f.input = input - 1;
-    a.count(f.points, kMostRows);
-    a.reals(f.table, std::int64_t{2} * f.points);
-  }
+  for (std::int32_t i = 0; i < w.forces; ++i) describe(a, w.force[i], 2);
   for (std::int32_t& kind : w.kind) a.count(kind, kMaxPortKinds - 1);
   for (SignalModel& tread : w.tread) describe(a, tread);
 }
@@ -201,6 +204,8 @@ void describe(Archive& a, VehicleModel& v) {
   for (const double** of : {&v.damping, &v.stiffness, &v.inverse}) a.reals(*of, n * n);
   for (const double** of : {&v.row, &v.give}) a.reals(*of, wheels * n);
   a.reals(v.compliance, wheels * wheels);
+  a.count(v.forces, kMaxBodyForces);
+  for (std::int32_t i = 0; i < v.forces; ++i) describe(a, v.force[i], kMaxVehicleUnknowns - 1);
 }
 
 template <typename Archive>

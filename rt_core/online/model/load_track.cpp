@@ -118,6 +118,8 @@ bool flanges_hold(const Model& m) noexcept {
 bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
   if (v.first < m.bodies || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
     return false;
+  for (std::int32_t i = 0; i < v.forces; ++i)
+    if (v.force[i].direction >= v.size || !force_holds(m, v.force[i])) return false;
   return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_holds(v.travel) && v.mass &&
          v.damping && v.stiffness && v.weight && v.inverse && v.row && v.give && v.compliance &&
          are_above_zero(v.mass, v.size) && diagonal_is_above_zero(v.inverse, v.size) &&

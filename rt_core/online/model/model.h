@@ -16,8 +16,8 @@ inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxVehicles = 16;
 inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
 inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles, a flange as another
-inline constexpr int kMaxBodyForces = 4;
-inline constexpr int kMaxInputs = 96;  // forces and places given each frame
+inline constexpr int kMaxBodyForces = 4;        // on one wheelset or vehicle
+inline constexpr int kMaxInputs = 96;           // forces and places given each frame
 inline constexpr int kMaxExternalWheels = 16;
 inline constexpr int kMaxSignals = 32;     // irregularities and defects of the rails
 inline constexpr int kMaxFixedPorts = 32;  // one-sided springs of the track
@@ -126,9 +126,9 @@ struct LoadModel {
   std::int32_t kind;          // of port, for the residual flexibility
 };
 
-/// A force on a wheelset's centre, over time or given each frame.
+/// A force on a wheelset's centre or along a vehicle's coordinate, over time or given each frame.
 struct BodyForce {
-  std::int32_t direction, points;  // 0 x, 1 y, 2 z; rows of the table, 0: given
+  std::int32_t direction, points;  // 0 x, 1 y, 2 z, or the coordinate; rows of the table, 0: given
   const double* table;             // [points][2]  s, N; linear between, constant outside
   std::int32_t input;              // of a given one; -1
 };
@@ -196,7 +196,7 @@ struct VehicleWheel {
 };
 
 /// Rigid bodies on springs and dampers that bounce and pitch over one rail,
-///   M q'' + C q' + K q = B' f - weight,
+///   M q'' + C q' + K q = B' f + forces - weight,
 /// q from where they stand when the wheels touch a rail at rest without a force in any spring, B q
 /// the height of the wheels and f the rail's forces on them. Its equation holds at s of the step: 1
 /// at its end, as of banded lines; 1/2 where forces are held over it, as of condensed ones.
@@ -212,6 +212,8 @@ struct VehicleModel {
   const double* row;                  // [wheels][size] B
   const double* give;                 // [wheels][size] inverse B'
   const double* compliance;           // [wheels][wheels] B inverse B', m/N
+  std::int32_t forces;
+  BodyForce force[kMaxBodyForces];  // N, and N m on what pitches
 };
 
 /// Residual flexibility between ports of two kinds: of the first in element e at point p, of the

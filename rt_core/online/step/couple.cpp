@@ -159,7 +159,7 @@ CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspa
   respond(model, state, w, c);
   find_loaded(model, step, c);
   free_wheelsets(model, step, state, w, c);
-  free_vehicles(model, state, w, c);
+  free_vehicles(model, step, state, w, c);
   find_vehicle_laws(model, time, state, w, c);
   find_flange_laws(model, state, w, c);
   compliance(model, w, c);

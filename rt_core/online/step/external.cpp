@@ -132,12 +132,17 @@ void place_external(const Model& model, std::int64_t step, const double* input,
     place_wheel(model, model.external_wheel[n], step, input, seen, contact[n]);
 }
 
-void press_external(const Model& model, std::int64_t step, const State& s, Workspace& w,
-                    ExternalContact* contact) noexcept {
+void place_in_step(const Model& model, std::int64_t step, const State& s, double* scaled,
+                   ExternalContact* contact) noexcept {
   const double dt = model.condensed != 0 ? 0. : model.scheme.dt;  // as those of wheels are located
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.bodies; ++i) w.scaled[i] = s.u[i] + dt * s.v[i];
-  place_external(model, step, s.input, {w.scaled, {s.u, s.v}}, contact);
+  for (std::int32_t i = 0; i < model.bodies; ++i) scaled[i] = s.u[i] + dt * s.v[i];
+  place_external(model, step, s.input, {scaled, {s.u, s.v}}, contact);
+}
+
+void press_external(const Model& model, std::int64_t step, const State& s, Workspace& w,
+                    ExternalContact* contact) noexcept {
+  place_in_step(model, step, s, w.scaled, contact);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
     for (int d = 0; d < 3 && contact[n].on_rail; ++d) {
       const ExternalContact& at = contact[n];

@@ -20,7 +20,12 @@ struct ExternalContact {
 void place_external(const Model& model, std::int64_t step, const double* input,
                     const Configuration& seen, ExternalContact* contact) noexcept;
 
-/// Places them on a state whose inputs are those of the step, and presses the lines with their
+/// The same on the state at the step's start, whose inputs are those of the step.
+/// @param scaled  [unknowns] scratch
+void place_in_step(const Model& model, std::int64_t step, const State& state, double* scaled,
+                   ExternalContact* contact) noexcept;
+
+/// Places them so, and presses the lines with their
 /// forces: on the right-hand side of banded lines, held over the step on condensed ones, as those
 /// of wheels in the model are.
 void press_external(const Model& model, std::int64_t step, const State& state, Workspace& workspace,

@@ -1,5 +1,6 @@
 #include "online/step/vehicle.h"
 
+#include "online/step/input.h"
 #include "online/step/strike.h"
 #include "online/step/track_response.h"
 #include "online/step/travel.h"
@@ -82,8 +83,10 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
 
 }  // namespace
 
-void free_vehicles(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept {
+void free_vehicles(const Model& model, std::int64_t step, const State& s, const Workspace& w,
+                   Coupling& c) noexcept {
   const double kg = model.scheme.kg, kv = model.scheme.kv, held = held_at(model);
+  const double time = static_cast<double>(step) * model.scheme.dt;
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const VehicleModel& v = model.vehicle[b];
     const double *u_star = w.u_star + v.first, *v_star = w.v_star + v.first;
@@ -94,6 +97,7 @@ void free_vehicles(const Model& model, const State& s, const Workspace& w, Coupl
       moved[k] = -(1. - held) * s.u[v.first + k];
       c.vehicle[b][k] = 0.;
     }
+    add_forces(v, time, s.input, force);
     multiply_add(v.damping, rate, force, v.size);
     multiply_add(v.stiffness, moved, force, v.size);
     multiply_add(v.inverse, force, c.vehicle[b], v.size);

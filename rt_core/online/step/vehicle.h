@@ -6,8 +6,10 @@ namespace railstep {
 // Vehicles in a step's coupled problem. Their wheels stand behind those of the wheelsets.
 
 /// Where each vehicle goes without contact:
-///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 - weight.
-void free_vehicles(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
+///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 - weight
+///                             + its forces at the step's end.
+void free_vehicles(const Model& model, std::int64_t step, const State& s, const Workspace& w,
+                   Coupling& c) noexcept;
 
 /// Laws of the vehicles' wheels over the step. A damper takes the rate of the penetration at its
 /// end, kv (d - d*) + v* with what the wheel's way adds; of held forces (d - d0) / (theta dt).
