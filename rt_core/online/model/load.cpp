@@ -247,6 +247,7 @@ bool track_holds(const Model& m) noexcept {
 /// What a step takes for granted beyond the counts.
 bool holds(const Model& m) noexcept {
   if (!(m.scheme.dt > 0.) || m.steps_per_frame < 1 || m.steps < 0 || !inputs_hold(m)) return false;
+  if (m.cost.flops < 1 || m.cost.bytes < 1 || m.cost.instructions < 1) return false;
   if (m.lines < 1 && m.system.unknowns < 1) return false;
   if (m.lines > 0 && !track_holds(m)) return false;
   return m.system.unknowns == 0 || system_holds(m);

@@ -27,7 +27,7 @@ struct LoadResult {
 ///   numbers as describe.h orders them: each count, integer and real in 8 bytes, each array as
 ///   an int64 of its length and its values, padded to 8 bytes. Values are reals of 8 bytes,
 ///   integers of 4, or structures as they stand in memory, which have no gaps.
-inline constexpr std::int64_t kBlockFormat = 8;
+inline constexpr std::int64_t kBlockFormat = 9;
 inline constexpr std::size_t kBlockHeader = 8 + 8 + 8 + 32 + 8;
 
 /// Views over a block, which must outlive the model. Every number that a step uses as a size or an

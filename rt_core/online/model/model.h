@@ -285,6 +285,15 @@ struct ExternalWheelModel {
   std::int32_t kind;  // of port, for the residual flexibility
 };
 
+/// What a frame takes in the worst case: loads all on, contacts, ports and iterations at their
+/// caps.
+struct Cost {
+  std::int64_t
+      flops;  // additions, subtractions, multiplications, divisions, square roots, each one
+  std::int64_t bytes;  // of model, state and workspace: each kernel's operands and results, once
+  std::int64_t instructions;
+};
+
 /// Everything a step needs; immutable, may be shared by threads.
 struct Model {
   Scheme scheme;
@@ -312,6 +321,7 @@ struct Model {
   FixedPortModel fixed;
   const double* start;  // [start_doubles] state at step 0
   std::int64_t steps;   // of the scene's run
+  Cost cost;            // of a frame, most
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];
