@@ -15,8 +15,8 @@ int main(int count, char** text) {
   if (frames < 1 || count > 4 || (count == 4 && !caps)) {
     std::fputs(
         "usage: step_frames MODEL FRAMES [caps]\n"
-        "prints the instructions of a frame that the model states; caps: with all iterations of\n"
-        "guides and systems at their caps.\n",
+        "prints the instructions and the bytes of a frame that the model states; caps: with all\n"
+        "iterations of guides and systems at their caps.\n",
         stderr);
     return 2;
   }
@@ -26,6 +26,6 @@ int main(int count, char** text) {
   Outputs outputs{};
   for (long frame = 0; frame < frames; ++frame)
     (void)advance_frame(*file.model, file.state, file.workspace, outputs);
-  std::printf("%" PRId64 "\n", file.model->cost.instructions);
+  std::printf("%" PRId64 " %" PRId64 "\n", file.model->cost.instructions, file.model->cost.bytes);
   return 0;
 }

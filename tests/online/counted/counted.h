@@ -96,8 +96,6 @@ template <>
 struct numeric_limits<counted::Number> : numeric_limits<double> {};
 }  // namespace std
 
-// NOLINTBEGIN(bugprone-reserved-identifier)
 #define __builtin_sqrt(x) counted_functions::square_root(x)
 #define __builtin_fabs(x) counted_functions::magnitude(x)
-// NOLINTEND(bugprone-reserved-identifier)
 #define double counted::Number
