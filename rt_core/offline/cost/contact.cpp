@@ -1,6 +1,5 @@
 #include "offline/cost/line.h"
 #include "online/contact/locate.h"
-#include "online/contact/ports.h"
 
 namespace railstep {
 
@@ -29,18 +28,6 @@ Cost located_pair(const Model& model) {
         sum + kSeenNodes * 9 * (work(4, 6) + tables * cost.value) + 2 * kTurnSeats * cost.node_turn;
   }
   return sum;
-}
-
-/// One way through solve_ports(): its start, its capped iterations and what is left at the cap.
-Cost ports_cost(std::int64_t n) {
-  constexpr std::int64_t halvings = 3;  // of a step, at most, each with a look at its end
-  const Cost look = work(3 * n * n + 25 * n, n * n + 6 * n);
-  const Cost matrix = work(3 * n * n + 3 * n, 2 * n * n);
-  const Cost factor = work(n * n * n / 3 + 4 * n * n + 3 * n, n * n * n / 3 + 3 * n * n);
-  const Cost back = work(3 * n * n + 5 * n, n * n + 4 * n), next = work(70 * n, 12 * n);
-  const Cost halving = work(150 * n, 20 * n) + look;
-  const Cost iteration = matrix + factor + back + next + look + halvings * halving;
-  return work(2 * n * n + 60 * n, n * n + 8 * n) + kPortSweeps * iteration + 2 * look;
 }
 
 /// Wheels of vehicles: their laws, rows and offsets, and the vehicles' dense products.

@@ -16,6 +16,10 @@ Cost system_cost(const Model& model);
 /// Of one step's wheels, flanges and fixed ports, their rows and responses included.
 Cost contact_cost(const Model& model);
 
+/// Of one way through solve_ports() with n ports: its start, its capped iterations, each with its
+/// steps shortened as often as they may be, and what is left at the cap.
+Cost ports_cost(std::int64_t n);
+
 inline constexpr Cost operator+(Cost a, Cost b) {
   return {a.flops + b.flops, a.bytes + b.bytes, a.instructions + b.instructions};
 }
