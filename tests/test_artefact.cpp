@@ -8,7 +8,6 @@
 
 #include "block_mutations.h"
 #include "build.h"
-#include "offline/pack/cost.h"
 #include "small_model.h"
 
 using namespace railstep;
@@ -157,6 +156,18 @@ TEST_CASE("flanges that are of no wheelset, or have no law, are refused", "[arte
   CHECK(status([](Model& m) { m.flange[0].contact.hertz = 1e10; }) == LoadStatus::ok);
 }
 
+TEST_CASE("a model that does not say what a frame takes is refused", "[artefact]") {
+  const std::unique_ptr<PackedModel> packed = small_model(false, true);
+  for (std::int64_t Cost::*const of : {&Cost::flops, &Cost::bytes, &Cost::instructions}) {
+    Model model = packed->model();
+    CHECK(model.cost.*of > 0);
+    for (const std::int64_t value : {std::int64_t{0}, std::int64_t{-1}}) {
+      model.cost.*of = value;
+      CHECK(status_of(to_block(model, kText)) == LoadStatus::bad_content);
+    }
+  }
+}
+
 TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact][fuzz]") {
   std::mt19937_64 random(20240607);
   for (const bool modal : {false, true})
@@ -199,13 +210,13 @@ TEST_CASE("the flops of a frame are no fewer than those counted by hand", "[arte
   const auto one = model_of(1, true, false);
   const std::int64_t n = one->model().line[0].size;
   REQUIRE(n == 40);  // 33 modes, padded
-  CHECK(flops_per_frame(one->model()) >= n * (22 + 3 * 4 + 3 * 4));
-  CHECK(flops_per_frame(one->model()) <= 3 * n * (22 + 3 * 4 + 3 * 4));
+  CHECK(one->model().cost.flops >= n * (22 + 3 * 4 + 3 * 4));
+  CHECK(one->model().cost.flops <= 3 * n * (22 + 3 * 4 + 3 * 4));
   // Every pair of loads reads a table of 4 x 4 points: 4 + 1 cubics of 4 products and 3 sums, and
   // the weights of 4 + 1 of them, each 4 products of three differences.
   const auto many = model_of(32, true, true);
   const std::int64_t pairs = 32 * 31 * (5 * 7 + 5 * 4 * 5);
-  CHECK(flops_per_frame(many->model()) >= n * (22 + 32 * 24) + pairs);
+  CHECK(many->model().cost.flops >= n * (22 + 32 * 24) + pairs);
   // Banded: 22 of predicting and correcting an unknown, products with M and C by diagonals, and per
   // panel of 8 rows a product with `left` columns forth and back, and one with an 8 x 8 block.
   const auto band = model_of(1, false, false);
@@ -213,6 +224,6 @@ TEST_CASE("the flops of a frame are no fewer than those counted by hand", "[arte
   const std::int64_t solve = line.step.panels * (2 * 2 * 8 * std::int64_t{line.step.left} + 2 * 64);
   const std::int64_t products =
       2 * (line.mass.count + line.damping.count) * std::int64_t{line.size};
-  CHECK(flops_per_frame(band->model()) >= 22 * line.size + products + solve);
-  CHECK(flops_per_frame(band->model()) <= 2 * (22 * line.size + products + solve));
+  CHECK(band->model().cost.flops >= 22 * line.size + products + solve);
+  CHECK(band->model().cost.flops <= 2 * (22 * line.size + products + solve));
 }

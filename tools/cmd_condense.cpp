@@ -16,7 +16,6 @@
 #include "emit_c.h"
 #include "offline/pack/accuracy.h"
 #include "offline/pack/artefact.h"
-#include "offline/pack/cost.h"
 #include "write.h"
 
 namespace railstep {
@@ -51,7 +50,7 @@ int unknowns_of(const SystemModel& system) {
 struct Condensed {
   const Model& model;
   std::pair<int, int> unknowns;  // full, kept
-  nlohmann::ordered_json flops, static_error, receptance_error, transient_error, window_s;
+  nlohmann::ordered_json static_error, receptance_error, transient_error, window_s;
   double clipped;  // m/N
 
   BlockNotes notes() const {
@@ -72,7 +71,9 @@ nlohmann::ordered_json to_json(const Condensed& made, const std::vector<std::byt
           {"bytes", block.size()},
           {"state_bytes", size(state_doubles(made.model))},
           {"workspace_bytes", size(workspace_doubles(made.model))},
-          {"flops_per_frame", made.flops},
+          {"flops_per_frame", made.model.cost.flops},
+          {"bytes_per_frame", made.model.cost.bytes},
+          {"instructions_per_frame", made.model.cost.instructions},
           {"sha256", sum_of(block)},
           {"static_error", made.static_error},
           {"receptance_error", made.receptance_error},
@@ -97,13 +98,7 @@ nlohmann::ordered_json write(const std::vector<std::byte>& block, const Condense
 nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
   const Built built(scene);
   const PackedModel& packed = *built.packed;
-  Condensed made{packed.model(),
-                 unknowns_of(built.track, packed),
-                 flops_per_frame(packed.model()),
-                 {},
-                 {},
-                 {},
-                 {},
+  Condensed made{packed.model(),  unknowns_of(built.track, packed), {}, {}, {}, {},
                  packed.clipped()};
   if (!o.skip_errors) {
     made.static_error = static_error(built.track, packed);
@@ -118,12 +113,12 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
 }
 
 /// Nothing of a system is left out: what errors there are, are those of the track beside it, and 0
-/// without one. How many iterations a step takes is not known before it runs.
+/// without one.
 nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions& o) {
   const BuiltSystem built(scene);
   const Model& model = built.packed->model();
   const int own = unknowns_of(model.system);
-  Condensed made{model, {own, own}, {}, {}, {}, {}, {}, 0.};
+  Condensed made{model, {own, own}, {}, {}, {}, {}, 0.};
   if (!o.skip_errors) made.static_error = made.receptance_error = 0.;
   if (const PackedModel* const packed = built.packed->track()) {
     const Track track = track_of(*scene.track);
@@ -147,8 +142,9 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
              r["bytes"].get<std::int64_t>(), r["state_bytes"].get<std::int64_t>(),
              r["workspace_bytes"].get<std::int64_t>());
   fmt::print("sha256            {}\n", r["sha256"].get<std::string>());
-  const auto& flops = r["flops_per_frame"];
-  fmt::print("flops per frame   {}\n", flops.is_null() ? "not known" : flops.dump());
+  fmt::print("a frame, at most  {} flops, {} bytes, {} instructions\n",
+             r["flops_per_frame"].get<std::int64_t>(), r["bytes_per_frame"].get<std::int64_t>(),
+             r["instructions_per_frame"].get<std::int64_t>());
   fmt::print("static error      {}\n", error_text(r["static_error"]));
   fmt::print("receptance error  {}, {:g} to {:g} Hz\n", error_text(r["receptance_error"]),
              kReceptanceFrom, kReceptanceTo);

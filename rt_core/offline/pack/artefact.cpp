@@ -6,7 +6,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "offline/pack/cost.h"
 #include "online/math/sha256.h"
 #include "online/model/describe.h"
 #include "online/model/load.h"
@@ -89,7 +88,9 @@ BlockHeader stated(const Model& model, const BlockNotes& notes, const Check& che
   h.step_s = model.scheme.dt;
   h.steps_per_frame = model.steps_per_frame;
   h.caps = caps_of(model);
-  h.flops_per_frame = flops_per_frame(model);
+  h.flops_per_frame = model.cost.flops;
+  h.bytes_per_frame = model.cost.bytes;
+  h.instructions_per_frame = model.cost.instructions;
   h.state_bytes = state_doubles(model) * 8;
   h.workspace_bytes = workspace_doubles(model) * 8;
   h.static_error = notes.static_error;

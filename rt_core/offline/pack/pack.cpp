@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "offline/contact/hertz.h"
+#include "offline/cost/cost.h"
 #include "offline/pack/start.h"
 
 namespace railstep {
@@ -250,6 +251,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
   add_turn(track);
   set_start(start_released(*this));
+  model_.cost = cost_of(model_);
 }
 
 void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {

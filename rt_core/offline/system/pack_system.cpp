@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "offline/cost/cost.h"
 #include "offline/system/parts.h"
 #include "offline/system/start_system.h"
 #include "offline/system/track_ports.h"
@@ -231,6 +232,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   memory_->start = start.state;
   if (track != nullptr) memory_->widened.put_start(memory_->track->model(), model_, memory_->start);
   model_.start = memory_->start.data();
+  model_.cost = cost_of(model_);
 }
 
 Scheme energy_momentum(double dt) {

@@ -107,27 +107,27 @@ void begin(railstep_run& run) noexcept {
 
 }  // namespace
 
-std::int32_t railstep_version(void) { return RAILSTEP_VERSION; }
+std::int32_t railstep_version(void) noexcept { return RAILSTEP_VERSION; }
 
-const char* railstep_result_text(std::int32_t result) {
+const char* railstep_result_text(std::int32_t result) noexcept {
   constexpr std::int32_t count = sizeof kResults / sizeof kResults[0];
   return result >= 0 && result < count ? kResults[result] : "no result of this library";
 }
 
-const char* railstep_status_name(std::uint32_t status) {
+const char* railstep_status_name(std::uint32_t status) noexcept {
   const StatusText* const text = text_of(static_cast<Status>(status));
   return text != nullptr ? text->name : "";
 }
 
-const char* railstep_status_text(std::uint32_t status) {
+const char* railstep_status_text(std::uint32_t status) noexcept {
   const StatusText* const text = text_of(static_cast<Status>(status));
   return text != nullptr ? text->sentence : "";
 }
 
-std::size_t railstep_model_bytes(void) { return sizeof(railstep_model); }
+std::size_t railstep_model_bytes(void) noexcept { return sizeof(railstep_model); }
 
 std::int32_t railstep_load(const void* block, std::size_t block_bytes, void* memory,
-                           std::size_t memory_bytes, const railstep_model** model) {
+                           std::size_t memory_bytes, const railstep_model** model) noexcept {
   *model = nullptr;
   if (!is_aligned(memory)) return RAILSTEP_MISALIGNED;
   if (memory_bytes < sizeof(railstep_model)) return RAILSTEP_TOO_LITTLE_MEMORY;
@@ -141,41 +141,41 @@ std::int32_t railstep_load(const void* block, std::size_t block_bytes, void* mem
   return RAILSTEP_OK;
 }
 
-double railstep_frame_s(const railstep_model* model) {
+double railstep_frame_s(const railstep_model* model) noexcept {
   return model->model.scheme.dt * model->model.steps_per_frame;
 }
 
-std::int64_t railstep_frames(const railstep_model* model) {
+std::int64_t railstep_frames(const railstep_model* model) noexcept {
   return model->model.steps / model->model.steps_per_frame;
 }
 
-std::int32_t railstep_inputs(const railstep_model* model) { return model->inputs.count; }
-std::int32_t railstep_outputs(const railstep_model* model) { return model->outputs.count; }
+std::int32_t railstep_inputs(const railstep_model* model) noexcept { return model->inputs.count; }
+std::int32_t railstep_outputs(const railstep_model* model) noexcept { return model->outputs.count; }
 
-std::int32_t railstep_find_input(const railstep_model* model, const char* name) {
+std::int32_t railstep_find_input(const railstep_model* model, const char* name) noexcept {
   return find_name(model->inputs, name);
 }
-std::int32_t railstep_find_output(const railstep_model* model, const char* name) {
+std::int32_t railstep_find_output(const railstep_model* model, const char* name) noexcept {
   return find_name(model->outputs, name);
 }
 
 std::size_t railstep_input_name(const railstep_model* model, std::int32_t index, char* name,
-                                std::size_t bytes) {
+                                std::size_t bytes) noexcept {
   return copy_name(model->inputs, index, name, bytes);
 }
 std::size_t railstep_output_name(const railstep_model* model, std::int32_t index, char* name,
-                                 std::size_t bytes) {
+                                 std::size_t bytes) noexcept {
   return copy_name(model->outputs, index, name, bytes);
 }
 
-std::size_t railstep_run_bytes(const railstep_model* model) {
+std::size_t railstep_run_bytes(const railstep_model* model) noexcept {
   const std::int64_t doubles =
       state_doubles(model->model) + workspace_doubles(model->model) + model->outputs.count;
   return sizeof(railstep_run) + sizeof(double) * static_cast<std::size_t>(doubles);
 }
 
 std::int32_t railstep_start(const railstep_model* model, void* memory, std::size_t bytes,
-                            railstep_run** run) {
+                            railstep_run** run) noexcept {
   *run = nullptr;
   if (!is_aligned(memory)) return RAILSTEP_MISALIGNED;
   if (bytes < railstep_run_bytes(model)) return RAILSTEP_TOO_LITTLE_MEMORY;
@@ -192,18 +192,18 @@ std::int32_t railstep_start(const railstep_model* model, void* memory, std::size
   return RAILSTEP_OK;
 }
 
-void railstep_reset(railstep_run* run) {
+void railstep_reset(railstep_run* run) noexcept {
   reset(run->of->model, run->state);
   begin(*run);
 }
 
-std::int32_t railstep_self_check(railstep_run* run) {
+std::int32_t railstep_self_check(railstep_run* run) noexcept {
   const bool same = self_check(run->of->model, run->state, run->workspace, run->outputs, run->row);
   begin(*run);
   return same ? RAILSTEP_OK : RAILSTEP_OTHER_BITS;
 }
 
-std::uint32_t railstep_step(railstep_run* run, const double* inputs) {
+std::uint32_t railstep_step(railstep_run* run, const double* inputs) noexcept {
   const Model& model = run->of->model;
   const Status met = inputs != nullptr
                          ? advance_frame(model, inputs, run->state, run->workspace, run->outputs)
@@ -212,39 +212,39 @@ std::uint32_t railstep_step(railstep_run* run, const double* inputs) {
   return static_cast<std::uint32_t>(met);
 }
 
-void railstep_read(const railstep_run* run, double* outputs) {
+void railstep_read(const railstep_run* run, double* outputs) noexcept {
   std::memcpy(outputs, run->row, sizeof(double) * static_cast<std::size_t>(run->of->outputs.count));
 }
 
-std::int64_t railstep_steps(const railstep_run* run) { return run->state.steps; }
+std::int64_t railstep_steps(const railstep_run* run) noexcept { return run->state.steps; }
 
-double railstep_time_s(const railstep_run* run) {
+double railstep_time_s(const railstep_run* run) noexcept {
   return static_cast<double>(run->state.steps) * run->of->model.scheme.dt;
 }
 
-std::uint64_t railstep_hash(const railstep_run* run) {
+std::uint64_t railstep_hash(const railstep_run* run) noexcept {
   return state_hash(run->of->model, run->state);
 }
 
-std::int32_t railstep_external_wheels(const railstep_model* model) {
+std::int32_t railstep_external_wheels(const railstep_model* model) noexcept {
   return model->model.external_wheels;
 }
 
 std::uint32_t railstep_response(railstep_run* run, const double* inputs, double* free_motion,
-                                double* compliance) {
+                                double* compliance) noexcept {
   return static_cast<std::uint32_t>(external_response(run->of->model, inputs, run->state,
                                                       run->workspace, free_motion, compliance));
 }
 
-std::size_t railstep_snapshot_bytes(const railstep_model* model) {
+std::size_t railstep_snapshot_bytes(const railstep_model* model) noexcept {
   return snapshot_bytes(model->model);
 }
 
-void railstep_save(const railstep_run* run, void* snapshot) {
+void railstep_save(const railstep_run* run, void* snapshot) noexcept {
   save_snapshot(run->of->model, run->state, static_cast<unsigned char*>(snapshot));
 }
 
-std::int32_t railstep_restore(railstep_run* run, const void* snapshot, std::size_t bytes) {
+std::int32_t railstep_restore(railstep_run* run, const void* snapshot, std::size_t bytes) noexcept {
   const SnapshotStatus status = restore_snapshot(run->of->model, snapshot, bytes, run->state);
   if (status == SnapshotStatus::ok) begin(*run);
   return result_of(status);

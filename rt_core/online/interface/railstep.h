@@ -13,7 +13,10 @@
 #include <stdint.h>
 
 #ifdef __cplusplus
+#define RAILSTEP_NOTHROW noexcept
 extern "C" {
+#else
+#define RAILSTEP_NOTHROW
 #endif
 
 #define RAILSTEP_VERSION 1 /* of this interface; a larger one still has what this one has */
@@ -51,56 +54,59 @@ enum {
 };
 
 /* RAILSTEP_VERSION of the library. */
-int32_t railstep_version(void);
+int32_t railstep_version(void) RAILSTEP_NOTHROW;
 /* A sentence on a result; never null. */
-const char* railstep_result_text(int32_t result);
+const char* railstep_result_text(int32_t result) RAILSTEP_NOTHROW;
 /* The name of the lowest status bit that is set, as `railstep run` prints it, or "". */
-const char* railstep_status_name(uint32_t status);
+const char* railstep_status_name(uint32_t status) RAILSTEP_NOTHROW;
 /* What it means and what to do about it, or "". */
-const char* railstep_status_text(uint32_t status);
+const char* railstep_status_text(uint32_t status) RAILSTEP_NOTHROW;
 
 /* Memory that a model takes beside its block. */
-size_t railstep_model_bytes(void);
+size_t railstep_model_bytes(void) RAILSTEP_NOTHROW;
 /* Checks a block, sizes, indices and numbers, and makes a model of it. The block is not copied. */
 int32_t railstep_load(const void* block, size_t block_bytes, void* memory, size_t memory_bytes,
-                      const railstep_model** model);
+                      const railstep_model** model) RAILSTEP_NOTHROW;
 
 /* Simulated length of a frame, s, and how many frames the model's scene lasts. */
-double railstep_frame_s(const railstep_model* model);
-int64_t railstep_frames(const railstep_model* model);
+double railstep_frame_s(const railstep_model* model) RAILSTEP_NOTHROW;
+int64_t railstep_frames(const railstep_model* model) RAILSTEP_NOTHROW;
 
 /* Inputs are held over a frame's steps; outputs are those of its end, by the columns of a trace. */
-int32_t railstep_inputs(const railstep_model* model);
-int32_t railstep_outputs(const railstep_model* model);
+int32_t railstep_inputs(const railstep_model* model) RAILSTEP_NOTHROW;
+int32_t railstep_outputs(const railstep_model* model) RAILSTEP_NOTHROW;
 /* Which one has a name, from 0; -1: none. */
-int32_t railstep_find_input(const railstep_model* model, const char* name);
-int32_t railstep_find_output(const railstep_model* model, const char* name);
+int32_t railstep_find_input(const railstep_model* model, const char* name) RAILSTEP_NOTHROW;
+int32_t railstep_find_output(const railstep_model* model, const char* name) RAILSTEP_NOTHROW;
 /* Writes a name and a zero behind it, cut to `bytes`. Returns the length of the whole name; 0 where
  * there is no such input or output. */
-size_t railstep_input_name(const railstep_model* model, int32_t index, char* name, size_t bytes);
-size_t railstep_output_name(const railstep_model* model, int32_t index, char* name, size_t bytes);
+size_t railstep_input_name(const railstep_model* model, int32_t index, char* name,
+                           size_t bytes) RAILSTEP_NOTHROW;
+size_t railstep_output_name(const railstep_model* model, int32_t index, char* name,
+                            size_t bytes) RAILSTEP_NOTHROW;
 
 /* Memory of a run: its state, scratch and outputs. */
-size_t railstep_run_bytes(const railstep_model* model);
+size_t railstep_run_bytes(const railstep_model* model) RAILSTEP_NOTHROW;
 /* A run at the model's start. */
-int32_t railstep_start(const railstep_model* model, void* memory, size_t bytes, railstep_run** run);
+int32_t railstep_start(const railstep_model* model, void* memory, size_t bytes,
+                       railstep_run** run) RAILSTEP_NOTHROW;
 /* Back to the start; what was latched is cleared. */
-void railstep_reset(railstep_run* run);
+void railstep_reset(railstep_run* run) RAILSTEP_NOTHROW;
 
 /* Steps the model through the check that stands in its block, from the start and back to it, and
  * tells whether every bit is as where it was written: RAILSTEP_OK or RAILSTEP_OTHER_BITS. */
-int32_t railstep_self_check(railstep_run* run);
+int32_t railstep_self_check(railstep_run* run) RAILSTEP_NOTHROW;
 
 /* One frame. inputs: [railstep_inputs()], or null: as they are held. Returns what it met, and
  * what of nonfinite_input, nonfinite_state and force_saturated was met since the start. */
-uint32_t railstep_step(railstep_run* run, const double* inputs);
+uint32_t railstep_step(railstep_run* run, const double* inputs) RAILSTEP_NOTHROW;
 /* Outputs of the last frame, or of the start. outputs: [railstep_outputs()] overwritten. */
-void railstep_read(const railstep_run* run, double* outputs);
+void railstep_read(const railstep_run* run, double* outputs) RAILSTEP_NOTHROW;
 /* Steps made since the start, and their time, s. */
-int64_t railstep_steps(const railstep_run* run);
-double railstep_time_s(const railstep_run* run);
+int64_t railstep_steps(const railstep_run* run) RAILSTEP_NOTHROW;
+double railstep_time_s(const railstep_run* run) RAILSTEP_NOTHROW;
 /* Of the state's bits: equal states have equal hashes. */
-uint64_t railstep_hash(const railstep_run* run);
+uint64_t railstep_hash(const railstep_run* run) RAILSTEP_NOTHROW;
 
 /* Wheels of a vehicle outside the model ([[external_wheel]] of a scene). What the next frame makes
  * of the rail under them: with 3 n + d for direction d (x, y, z) of wheel n, their points will be
@@ -109,14 +115,14 @@ uint64_t railstep_hash(const railstep_run* run);
  * under forces on the rail, to rounding. The run is not changed. inputs: places as the frame will
  * have them; the forces among them are not looked at. free_motion: [3 n], m; compliance: [3 n][3
  * n], symmetric, m/N; both 0 for a wheel off the rail. Returns what was met. */
-int32_t railstep_external_wheels(const railstep_model* model);
+int32_t railstep_external_wheels(const railstep_model* model) RAILSTEP_NOTHROW;
 uint32_t railstep_response(railstep_run* run, const double* inputs, double* free_motion,
-                           double* compliance);
+                           double* compliance) RAILSTEP_NOTHROW;
 
 /* A run's state in bytes, the same on every machine, and back to the bit. */
-size_t railstep_snapshot_bytes(const railstep_model* model);
-void railstep_save(const railstep_run* run, void* snapshot);
-int32_t railstep_restore(railstep_run* run, const void* snapshot, size_t bytes);
+size_t railstep_snapshot_bytes(const railstep_model* model) RAILSTEP_NOTHROW;
+void railstep_save(const railstep_run* run, void* snapshot) RAILSTEP_NOTHROW;
+int32_t railstep_restore(railstep_run* run, const void* snapshot, size_t bytes) RAILSTEP_NOTHROW;
 
 #ifdef __cplusplus
 }

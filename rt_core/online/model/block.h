@@ -44,8 +44,7 @@ struct BlockHeader {
   double step_s;
   std::int64_t steps_per_frame;
   BlockCaps caps;
-  std::int64_t flops_per_frame;  // bounds
-  std::int64_t bytes_per_frame;
+  std::int64_t flops_per_frame, bytes_per_frame, instructions_per_frame;  // bounds: Cost
   std::int64_t state_bytes, workspace_bytes;
   double static_error, receptance_error, transient_error;  // of condensation; NaN: not known
   std::uint64_t check_hash;                                // of the state after check_frames
@@ -53,7 +52,7 @@ struct BlockHeader {
   std::uint64_t crc;  // CRC-32 of the bytes up to the payload, these 8 being 0
 };
 static_assert(sizeof(BlockHeader) == 8 + 4 + 2 + 2 + 4 + 4 + 8 + 16 * (1 + kSections) + 32 + 8 + 8 +
-                                         16 + 2 * 8 + 2 * 8 + 3 * 8 + 3 * 8);
+                                         16 + 3 * 8 + 2 * 8 + 3 * 8 + 3 * 8);
 
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 /// Another major one is refused. A larger minor one adds behind what is there: it is read.

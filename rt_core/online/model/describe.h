@@ -324,6 +324,7 @@ void describe(Archive& a, Model& m) {
   a.count(m.inputs, kMaxInputs);
   for (std::int32_t i = 0; i < m.inputs; ++i) a.real(m.input_limit[i]);
   a.integer(m.steps);
+  for (std::int64_t* most : {&m.cost.flops, &m.cost.bytes, &m.cost.instructions}) a.integer(*most);
   a.count(m.system.unknowns, m.unknowns);
   if (m.lines > 0) describe_track(a, m);
   if (m.system.unknowns > 0) describe(a, m.system, m.bodies);

@@ -133,7 +133,8 @@ bool states(const BlockHeader& h, const Model& m) noexcept {
   const BlockCaps own = caps_of(m);
   return h.step_s == m.scheme.dt && h.steps_per_frame == m.steps_per_frame &&
          h.caps.locate == own.locate && h.caps.ports == own.ports && h.caps.guides == own.guides &&
-         h.caps.system == own.system && h.flops_per_frame >= 0 && h.bytes_per_frame >= 0 &&
+         h.caps.system == own.system && h.flops_per_frame == m.cost.flops &&
+         h.bytes_per_frame == m.cost.bytes && h.instructions_per_frame == m.cost.instructions &&
          h.state_bytes == state_doubles(m) * 8 && h.workspace_bytes == workspace_doubles(m) * 8;
 }
 
@@ -149,6 +150,7 @@ bool check_holds(const BlockHeader& h) noexcept {
 bool holds(const Model& m) noexcept {
   if (!is_above_zero(m.scheme.dt) || m.steps_per_frame < 1 || m.steps < 0 || !inputs_hold(m))
     return false;
+  if (m.cost.flops < 1 || m.cost.bytes < 1 || m.cost.instructions < 1) return false;
   if (m.lines < 1 && m.system.unknowns < 1) return false;
   if (m.lines > 0 && !track_holds(m)) return false;
   return m.system.unknowns == 0 || system_holds(m);

@@ -295,6 +295,15 @@ struct CheckModel {
   const double* row;     // [columns] of the trace
 };
 
+/// What a frame takes in the worst case: loads all on, contacts, ports and iterations at their
+/// caps.
+struct Cost {
+  std::int64_t
+      flops;  // additions, subtractions, multiplications, divisions, square roots, each one
+  std::int64_t bytes;  // of model, state and workspace: each kernel's operands and results, once
+  std::int64_t instructions;
+};
+
 /// Everything a step needs; immutable, may be shared by threads.
 struct Model {
   Scheme scheme;
@@ -322,6 +331,7 @@ struct Model {
   FixedPortModel fixed;
   const double* start;  // [start_doubles] state at step 0
   std::int64_t steps;   // of the scene's run
+  Cost cost;            // of a frame, most
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];

@@ -1,0 +1,38 @@
+#pragma once
+#include "offline/cost/cost.h"
+
+namespace railstep {
+
+// Kernels of the track's lines: what each takes once. Doubles are those of its operands and
+// results, each read or written once.
+
+/// Of a line, banded or condensed.
+struct LineCost {
+  Cost value;      // an unknown's displacement
+  Cost row;        // the displacement along a row, or a force along it onto the right-hand side
+  Cost wheel_row;  // the same of a wheel's row, which the turns over its seats go into
+  Cost shape;      // a wheel's row among the modes
+  Cost unit;       // what a unit force under a wheel makes of the line, its row included
+  Cost read;       // that read under a wheel: an entry of W
+  Cost add;        // a multiple of such a response added to the line
+  Cost node_turn;  // the turn of a section
+};
+LineCost line_cost(const Model& model, const LineModel& line);
+
+/// Solve of one right-hand side: solve_band() takes the same for each.
+Cost solve_cost(const Band& band);
+
+/// The lines' own part of a step: its forces and responses apart.
+Cost advance_cost(const Model& model, const LineModel& line);
+
+/// Contacts that press a line.
+std::int64_t pressing(const Model& model, const LineModel& line);
+
+// Tables (step/table.h, contact/signal.h), as the tests count them.
+inline constexpr Cost kLookUp = branching(32, 5);  // a cubic
+inline constexpr Cost kPairLookUp =
+    branching(161 + 2, 20);                         // 4 x 4 points, times a force and added
+inline constexpr Cost kSignal = branching(61, 6);   // a spline with its slopes
+inline constexpr Cost kPlace = branching(130, 60);  // of a load: table, sine, row
+
+}  // namespace railstep

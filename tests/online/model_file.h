@@ -1,0 +1,54 @@
+#pragma once
+// A model file in memory with a state to step, for programs that need the online library alone.
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <vector>
+
+#include "online/model/load.h"
+#include "online/model/state.h"
+
+namespace railstep {
+
+class ModelFile {
+ public:
+  /// Of what is no model file of this version `model` is null, and it says so.
+  explicit ModelFile(const char* path) {
+    std::ifstream file(path, std::ios::binary);
+    const std::vector<char> content{std::istreambuf_iterator<char>(file), {}};
+    block_.resize(content.size() / sizeof(std::int64_t) + 1);  // whole words: aligned
+    if (!content.empty()) std::memcpy(block_.data(), content.data(), content.size());
+    auto loaded = std::make_unique<Model>();
+    if (load_model(block_.data(), content.size(), *loaded).status != LoadStatus::ok) {
+      std::fprintf(stderr, "error: %s: no model file of this version\n", path);
+      return;
+    }
+    model = std::move(loaded);
+    memory_.resize(static_cast<std::size_t>(state_doubles(*model)));
+    scratch_.resize(static_cast<std::size_t>(workspace_doubles(*model)));
+    state = state_on(*model, memory_.data());
+    workspace = workspace_on(*model, scratch_.data());
+    reset(*model, state);
+  }
+
+  /// Makes every guide and every system go on to its caps: nothing is near enough for them, and
+  /// Newton's matrix, where it is not kept, is made anew each time.
+  void go_to_caps() {
+    SystemModel& system = model->system;
+    system.tolerance = system.joint_tolerance = -1.;
+    if (system.renew == Renew::every_step) system.renew = Renew::every_iteration;
+    for (WheelsetModel& wheelset : model->wheelset) wheelset.tolerance = -1.;
+  }
+
+  std::unique_ptr<Model> model;
+  State state{};
+  Workspace workspace{};
+
+ private:
+  std::vector<std::int64_t> block_;
+  std::vector<double> memory_, scratch_;
+};
+
+}  // namespace railstep
