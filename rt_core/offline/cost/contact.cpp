@@ -44,6 +44,25 @@ Cost vehicles_cost(const Model& model, std::int64_t contacts) {
   return sum;
 }
 
+/// How far wheelsets and vehicles are, looked up a few times a step, and what pushes their bodies.
+Cost tables_cost(const Model& model) {
+  Cost sum{};
+  const auto forces = [&sum](const BodyForce* force, std::int32_t count) {
+    for (std::int32_t i = 0; i < count; ++i)
+      sum = sum + 2 * (branching(2, 4) + table_cost(force[i].points));
+  };
+  for (std::int32_t w = 0; w < model.wheelsets; ++w) {
+    sum = sum + 10 * table_cost(model.wheelset[w].travel.rows);
+    forces(model.wheelset[w].force, model.wheelset[w].forces);
+  }
+  for (std::int32_t v = 0; v < model.vehicles; ++v) {
+    const VehicleModel& own = model.vehicle[v];
+    sum = sum + (6 + 8 * own.wheels) * table_cost(own.travel.rows);
+    forces(own.force, own.forces);
+  }
+  return sum;
+}
+
 /// The track under all contacts: responses, W, penetrations, and the forces' way back.
 Cost responses_cost(const Model& model, const LineModel& line) {
   const std::int64_t wheels = pressing(model, line);
@@ -88,7 +107,10 @@ Cost contact_cost(const Model& model) {
   const std::int64_t pairs = contacts * (contacts + 1) / 2;
   sum = sum + pairs * (work(40, 20) + kPairLookUp);
   sum = sum + model.loads * (kPlace + contacts * kPairLookUp) + contacts * work(200, 100);
-  return sum + vehicles_cost(model, contacts) + fixed_cost(model) + coupled_cost(model, contacts);
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    sum = sum + table_cost(model.load[i].table_points) + table_cost(model.load[i].travel.rows);
+  return sum + tables_cost(model) + vehicles_cost(model, contacts) + fixed_cost(model) +
+         coupled_cost(model, contacts);
 }
 
 }  // namespace railstep

@@ -42,4 +42,11 @@ inline constexpr Cost branching(std::int64_t flops, std::int64_t doubles) {
   return {flops, 8 * doubles, 2 * flops + 3 * doubles};
 }
 
+/// Of finding the row of a time in a table by bisection, and the value there.
+inline constexpr Cost table_cost(std::int64_t rows) {
+  std::int64_t turns = 0;
+  for (std::int64_t left = rows; left > 0; left /= 2) ++turns;
+  return rows == 0 ? Cost{} : branching(8, 6 + 2 * turns);
+}
+
 }  // namespace railstep

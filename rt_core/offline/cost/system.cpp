@@ -70,16 +70,19 @@ class SystemCost {
            at(row.a).pull + at(row.b).pull;
   }
   Cost rates(const RowModel& row) const {
-    return kMotion + branching(75, 60) + (is_turned(row) ? kSines + branching(70, 20) : Cost{});
+    return motion() + branching(75, 60) + (is_turned(row) ? kSines + branching(70, 20) : Cost{});
   }
   std::int64_t track_ends() const { return part_ends(s_, s_.bodies + s_.beams); }
+
+  /// s(t) of a drive or a force.
+  Cost motion() const { return kMotion + table_cost(s_.pieces); }
 
   /// Where the iterations begin.
   Cost start() const {
     const std::int64_t u = s_.unknowns;
     return work(2 * u, 4 * u) + s_.ports * (9 * model_.lines) * work(9, 9) +
            s_.bodies * branching(39, 13) + (s_.mean != 0 ? poses() : Cost{}) +
-           std::int64_t{s_.spring_rows} * (kMotion + branching(20, 20));
+           std::int64_t{s_.spring_rows} * (motion() + branching(20, 20));
   }
 
   /// Parts placed, forces with their tangents and factors, rows with gradients and slopes.
@@ -93,7 +96,7 @@ class SystemCost {
     }
     sum = sum + work(0, 3 * u);
     for (std::int32_t f = 0; f < s_.forces; ++f)
-      sum = sum + kMotion + at(s_.force[f].marker).pull + branching(50, 60);
+      sum = sum + motion() + at(s_.force[f].marker).pull + branching(50, 60);
     for (std::int32_t r = 0; r < rows(); ++r) sum = sum + row(r);
     if (s_.hold == Hold::baumgarte)
       sum = sum + work(2 * u, 3 * u) + s_.bodies * branching(180, 40) + poses();
@@ -105,7 +108,7 @@ class SystemCost {
   Cost row(std::int32_t r) const {
     const RowModel& own = s_.row[r];
     const bool joint = r < s_.joint_rows;
-    Cost sum = kMotion + branching(25, 40) + (is_turned(own) ? kSines : Cost{}) + pulls(own);
+    Cost sum = motion() + branching(25, 40) + (is_turned(own) ? kSines : Cost{}) + pulls(own);
     if (has_slopes(s_)) sum = sum + pulls(own) + 2 * branching(30, 20);
     const bool plain = s_.hold == Hold::augmented_lagrangian || s_.hold == Hold::direct;
     if (joint ? !plain : s_.mean == 0) sum = sum + at(own.a).jet + at(own.b).jet + rates(own);

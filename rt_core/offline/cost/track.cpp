@@ -16,12 +16,20 @@ Cost external_cost(const Model& model) {
   return sum;
 }
 
+/// Of all loads once: where they are and how they press.
+Cost loads_cost(const Model& model) {
+  Cost sum = model.loads * kPlace;
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    sum = sum + table_cost(model.load[i].table_points) + table_cost(model.load[i].travel.rows);
+  return sum;
+}
+
 /// Of a frame's end: places, deflections, the residual flexibility between all that presses.
 Cost publish_cost(const Model& model) {
   const std::int64_t wheels = wheel_count(model);
   const std::int64_t forces = model.loads + wheels + model.external_wheels;
   Cost sum = work(5 * model.unknowns, 2 * model.unknowns) + forces * work(10, 8) +
-             forces * forces * kPairLookUp + model.loads * kPlace +
+             forces * forces * kPairLookUp + loads_cost(model) +
              wheels * (2 * kLookUp + work(20, 10));
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineCost line = line_cost(model, model.line[l]);
@@ -33,7 +41,7 @@ Cost publish_cost(const Model& model) {
 }
 
 Cost step_cost(const Model& model) {
-  Cost sum = work(20, 0) + model.loads * kPlace + model.external_wheels * external_cost(model);
+  Cost sum = work(20, 0) + loads_cost(model) + model.external_wheels * external_cost(model);
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     sum = sum + advance_cost(model, line) + work(2 * line.size, 2 * line.size);

@@ -2,19 +2,18 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "online/math/search.h"
+
 namespace railstep {
 
-/// Value of a table [points][2] of time and value: linear between its rows, constant outside them.
-/// At most `points` turns.
+/// Value of a table [points][2] of rising times and values: linear between its rows, constant
+/// outside them.
 inline double table_value(const double* table, std::int32_t points, double time) noexcept {
-  const double* row = table;
-  if (time <= row[0]) return row[1];
-  for (std::int32_t i = 1; i < points; ++i) {
-    const double* next = table + 2 * i;
-    if (time < next[0]) return row[1] + (time - row[0]) / (next[0] - row[0]) * (next[1] - row[1]);
-    row = next;
-  }
-  return row[1];
+  const std::int32_t at = row_at(table, 2, points, time);
+  const double* const row = table + std::ptrdiff_t{2} * at;
+  if (time <= row[0] || at == points - 1) return row[1];
+  const double* const next = row + 2;
+  return row[1] + (time - row[0]) / (next[0] - row[0]) * (next[1] - row[1]);
 }
 
 /// Weights of the four points around a place, of intervals + 1 equally spaced ones over [-1, 1].

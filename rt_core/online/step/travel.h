@@ -1,4 +1,5 @@
 #pragma once
+#include "online/math/search.h"
 #include "online/model/course.h"
 
 namespace railstep {
@@ -8,11 +9,11 @@ struct Travelled {
 };
 
 /// How far something is at a time, from the time alone: between two rows of a table the place is a
-/// parabola from the first of them. At most travel.rows turns.
+/// parabola from the first of them.
 inline Travelled travelled(const TravelModel& travel, double time) noexcept {
   if (travel.rows == 0) return {travel.speed * time, travel.speed, 0.};
-  const double* row = travel.table;
-  for (std::int32_t i = 1; i < travel.rows && time >= row[3]; ++i) row += 3;
+  const double* const row =
+      travel.table + std::ptrdiff_t{3} * row_at(travel.table, 3, travel.rows, time);
   const double since = time - row[0];
   const bool inside = since > 0. && row + 3 < travel.table + 3 * travel.rows;
   const double rate = inside ? (row[4] - row[1]) / (row[3] - row[0]) : 0.;

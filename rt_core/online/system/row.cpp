@@ -1,5 +1,6 @@
 #include "online/system/row.h"
 
+#include "online/math/search.h"
 #include "online/system/rotation.h"
 
 namespace railstep {
@@ -48,9 +49,7 @@ bool turns(const RowModel& row) noexcept { return row.kind == RowKind::square &&
 Jet motion_at(const SystemModel& system, std::int32_t motion, double time) noexcept {
   const MotionModel& own = system.motion[motion];
   const double* start = system.piece_start + own.first;
-  std::int32_t piece = 0;
-  for (std::int32_t i = 1; i < own.pieces; ++i)
-    if (start[i] <= time) piece = i;
+  const std::int32_t piece = row_at(start, 1, own.pieces, time);
   const double* c = system.piece + std::ptrdiff_t{kMotionCoefficients} * (own.first + piece);
   const double t = time - start[piece];
   Jet s{0., 0., 0.};
