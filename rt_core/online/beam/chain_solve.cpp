@@ -153,7 +153,7 @@ struct SweepOne : Sweep<W, 1, double> {
     double* x;  // the first one's first node
     int count;
     [[gnu::always_inline]] Wide get(int unknown) const noexcept {
-      Wide lanes;
+      Wide lanes{};
       for (int l = 0; l < kWide; ++l)
         lanes[l] = x[kElement * (l < count ? l : count - 1) + unknown];
       return lanes;
