@@ -97,7 +97,7 @@ TEST_CASE("a header states what its payload says, or is refused though its sums 
   CHECK(status([](Header& h) { h.workspace_bytes -= 8; }) == bad);
   CHECK(status([](Header& h) { h.check_frames = 0; }) == bad);
   CHECK(status([](Header& h) { h.check_frames = kMostCheckFrames + 1; }) == bad);
-  for (int s = 0; s < kSections; ++s)
+  for (std::size_t s = 0; s < kSections; ++s)
     for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{4}, ~std::uint64_t{0},
                                       ~std::uint64_t{7}, std::uint64_t{1} << 40}) {
       CAPTURE(s, value);

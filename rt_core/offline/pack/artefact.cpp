@@ -114,8 +114,7 @@ Bytes assemble(const Model& model, const std::string& columns, const BlockNotes&
   Bytes block(sizeof header);
   header.about = append(bytes_of(notes.about.data(), notes.about.size()), block);
   header.header_bytes = static_cast<std::uint32_t>(block.size());
-  for (int s = 0; s < kSections; ++s)
-    header.section[s] = append(sections[static_cast<std::size_t>(s)], block);
+  for (std::size_t s = 0; s < kSections; ++s) header.section[s] = append(sections[s], block);
   header.bytes = block.size();
   sha256(block.data() + header.header_bytes, block.size() - header.header_bytes, header.sum);
   std::memcpy(block.data(), &header, sizeof header);

@@ -13,7 +13,7 @@ struct BlockSection {
 };
 
 /// The payload's, in this order and without a gap.
-enum SectionName : int {
+enum SectionName : std::size_t {
   kColumns,     // names of a trace's columns, one a line; behind an empty line those of the inputs
   kWords,       // int64: every count, integer and length of an array
   kReals,       // doubles, of scalars and arrays

@@ -25,7 +25,7 @@ struct Rest {
 class Reader {
  public:
   Reader(const unsigned char* block, const BlockHeader& header) noexcept {
-    for (int s = 0; s < kSections; ++s)
+    for (std::size_t s = 0; s < kSections; ++s)
       rest_[s] = {block + header.section[s].at, header.section[s].bytes};
   }
 
