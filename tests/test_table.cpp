@@ -10,12 +10,16 @@ using namespace railstep;
 
 namespace {
 
+double at(const std::vector<double>& table, std::int32_t row, std::int32_t width) {
+  return table[static_cast<std::size_t>(row) * static_cast<std::size_t>(width)];
+}
+
 /// By going through all rows: what the search must find.
 std::int32_t last_not_above(const std::vector<double>& table, std::int32_t width, double value) {
   const auto rows = static_cast<std::int32_t>(table.size()) / width;
   std::int32_t found = 0;
   for (std::int32_t i = 0; i < rows; ++i)
-    if (table[static_cast<std::size_t>(i * width)] <= value) found = i;
+    if (at(table, i, width) <= value) found = i;
   return found;
 }
 
@@ -39,14 +43,13 @@ TEST_CASE("a table's row is found as by going through all", "[table]") {
     for (const std::int32_t rows : {1, 2, 3, 4, 5, 7, 8, 9, 31, 64, 1000}) {
       const std::vector<double> table = rising(rows, width, random);
       std::uniform_real_distribution<double> time(-4., table[table.size() - 1] + 600.);
-      const auto check = [&](double at) {
-        CAPTURE(width, rows, at);
-        CHECK(row_at(table.data(), width, rows, at) == last_not_above(table, width, at));
+      const auto check = [&](double value) {
+        CAPTURE(width, rows, value);
+        CHECK(row_at(table.data(), width, rows, value) == last_not_above(table, width, value));
       };
       for (int i = 0; i < 50; ++i) check(time(random));
       for (std::int32_t i = 0; i < std::min(rows, 10); ++i)  // on a row itself, and beside it
-        for (const double off : {0., -1e-9, 1e-9})
-          check(table[static_cast<std::size_t>(i * width)] + off);
+        for (const double off : {0., -1e-9, 1e-9}) check(at(table, i, width) + off);
     }
 }
 
