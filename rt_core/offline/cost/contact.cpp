@@ -106,9 +106,7 @@ Cost contact_cost(const Model& model) {
   for (std::int32_t l = 0; l < model.lines; ++l) sum = sum + responses_cost(model, model.line[l]);
   const std::int64_t pairs = contacts * (contacts + 1) / 2;
   sum = sum + pairs * (work(40, 20) + kPairLookUp);
-  sum = sum + model.loads * (kPlace + contacts * kPairLookUp) + contacts * work(200, 100);
-  for (std::int32_t i = 0; i < model.loads; ++i)
-    sum = sum + table_cost(model.load[i].table_points) + table_cost(model.load[i].travel.rows);
+  sum = sum + loads_cost(model) + model.loads * contacts * kPairLookUp + contacts * work(200, 100);
   return sum + tables_cost(model) + vehicles_cost(model, contacts) + fixed_cost(model) +
          coupled_cost(model, contacts);
 }

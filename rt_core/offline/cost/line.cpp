@@ -60,6 +60,13 @@ Cost advance_cost(const Model& model, const LineModel& line) {
   return shift + predicted + inertia + solve_cost(line.step) + corrected;
 }
 
+Cost loads_cost(const Model& model) {
+  Cost sum = model.loads * kPlace;
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    sum = sum + table_cost(model.load[i].table_points) + table_cost(model.load[i].travel.rows);
+  return sum;
+}
+
 std::int64_t pressing(const Model& model, const LineModel& line) {
   std::int64_t count = 0;
   for (std::int32_t i = 0; i < contact_count(model); ++i)

@@ -25,6 +25,9 @@ Cost solve_cost(const Band& band);
 /// The lines' own part of a step: its forces and responses apart.
 Cost advance_cost(const Model& model, const LineModel& line);
 
+/// Of all loads once: where they are and how they press.
+Cost loads_cost(const Model& model);
+
 /// Contacts that press a line.
 std::int64_t pressing(const Model& model, const LineModel& line);
 

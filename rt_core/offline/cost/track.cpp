@@ -16,14 +16,6 @@ Cost external_cost(const Model& model) {
   return sum;
 }
 
-/// Of all loads once: where they are and how they press.
-Cost loads_cost(const Model& model) {
-  Cost sum = model.loads * kPlace;
-  for (std::int32_t i = 0; i < model.loads; ++i)
-    sum = sum + table_cost(model.load[i].table_points) + table_cost(model.load[i].travel.rows);
-  return sum;
-}
-
 /// Of a frame's end: places, deflections, the residual flexibility between all that presses.
 Cost publish_cost(const Model& model) {
   const std::int64_t wheels = wheel_count(model);

@@ -1,6 +1,5 @@
 #include "offline/pack/artefact.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
