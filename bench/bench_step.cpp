@@ -46,7 +46,7 @@ Track peers_track(int bays, int elements_per_bay, int rails, Unknowns unknowns) 
 class MovingLoadRun {
  public:
   MovingLoadRun(const Track& track, double dt, int steps_per_frame,
-                const std::optional<ModalLimit>& modal = {})
+                const std::optional<Reduction>& modal = {})
       : frames_(static_cast<int>(std::lround((track.length() - kBay) / (kSpeed * kStep)))) {
     Traffic traffic;
     for (int rail = 0; rail < track.rails; ++rail)
@@ -59,7 +59,7 @@ class MovingLoadRun {
         track, traffic,
         PackOptions{.scheme = modal ? held_force(dt, .6) : generalised_alpha(dt, .6),
                     .steps_per_frame = steps_per_frame,
-                    .modal = modal});
+                    .reduction = modal});
     memory_.resize(static_cast<std::size_t>(state_doubles(packed_->model())));
     scratch_.resize(static_cast<std::size_t>(workspace_doubles(packed_->model())));
     state_ = state_on(packed_->model(), memory_.data());
@@ -161,7 +161,7 @@ void step_full(benchmark::State& run) { step(run, Unknowns::full); }
 /// loads do not move are left out, so that the 9-unknown track gives the same model.
 void step_condensed(benchmark::State& run) {
   const int bays = static_cast<int>(run.range(0));
-  const ModalLimit limit{static_cast<int>(bays * run.range(1) / 100), 1e9};
+  const Reduction limit{.limit = {static_cast<int>(bays * run.range(1) / 100), 1e9}};
   MovingLoadRun scene(peers_track(bays, 2, 2, Unknowns::vertical), kStep, 1, limit);
   MovingLoadRun fine_step(peers_track(bays, 2, 1, Unknowns::vertical), kStep / 10, 10, limit);
   compare(run, scene, fine_step, Unknowns::vertical);
@@ -173,8 +173,8 @@ void step_condensed(benchmark::State& run) {
 void step_fixed_ports(benchmark::State& run) {
   const int bays = static_cast<int>(run.range(0)), seats = static_cast<int>(run.range(1));
   Track track = peers_track(bays, 2, 1, Unknowns::vertical);
-  std::optional<ModalLimit> modal;
-  if (run.range(2) != 0) modal = ModalLimit{bays, 1e9};
+  std::optional<Reduction> modal;
+  if (run.range(2) != 0) modal = Reduction{.limit = {bays, 1e9}};
   MovingLoadRun springs(track, kStep, 1, modal);
   for (int i = 0; i < seats; ++i) {
     Seat seat = track.seat(bays / 4 + i);
@@ -190,7 +190,7 @@ void step_fixed_ports(benchmark::State& run) {
 
 /// One step of 1 to 16 wheels, each a mass on a spring under its own, over 64 bays: what each adds
 /// is the slope over the wheels. No error of its own: test_moving_mass.cpp has it.
-void step_wheels(benchmark::State& run, const std::optional<ModalLimit>& modal) {
+void step_wheels(benchmark::State& run, const std::optional<Reduction>& modal) {
   constexpr double dt = 50e-6;
   Track track = peers_track(64, 2, 1, Unknowns::vertical);
   Traffic traffic;
@@ -202,7 +202,7 @@ void step_wheels(benchmark::State& run, const std::optional<ModalLimit>& modal) 
   }
   PackedModel packed(track, traffic,
                      PackOptions{.scheme = modal ? held_force(dt, .6) : generalised_alpha(dt, .6),
-                                 .modal = modal});
+                                 .reduction = modal});
   packed.set_start(start_in_equilibrium(track, packed, 0.));
   const Model& model = packed.model();
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)));
@@ -217,7 +217,9 @@ void step_wheels(benchmark::State& run, const std::optional<ModalLimit>& modal) 
 }
 
 void step_wheels_banded(benchmark::State& run) { step_wheels(run, std::nullopt); }
-void step_wheels_condensed(benchmark::State& run) { step_wheels(run, ModalLimit{64, 1e9}); }
+void step_wheels_condensed(benchmark::State& run) {
+  step_wheels(run, Reduction{.limit = {64, 1e9}});
+}
 
 constexpr int kTimed = 100'000;  // steps
 

@@ -43,7 +43,7 @@ inline Track ring_of(int bays, int rails, int elements_per_bay = 4) {
 inline PackOptions ring_options(int bays, int modes, double dt) {
   PackOptions o;
   o.scheme = held_force(dt, .6);
-  o.modal = ModalLimit{modes * bays, std::numeric_limits<double>::infinity()};
+  o.reduction = Reduction{.limit = {modes * bays, std::numeric_limits<double>::infinity()}};
   o.endless = EndlessTrack{bays / 2};
   return o;
 }

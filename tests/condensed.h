@@ -45,8 +45,8 @@ inline Track s1_track(int bays, int elements_per_bay) {
 inline PackOptions condensed(const Track& track, double modes_per_bay, double dt,
                              double rho_inf = .6) {
   return {.scheme = held_force(dt, rho_inf),
-          .modal = ModalLimit{static_cast<int>(modes_per_bay * track.bays),
-                              std::numeric_limits<double>::infinity()}};
+          .reduction = Reduction{.limit = {static_cast<int>(modes_per_bay * track.bays),
+                                           std::numeric_limits<double>::infinity()}}};
 }
 
 inline PackOptions full_order(double dt, double rho_inf = .6) {

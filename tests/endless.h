@@ -41,7 +41,8 @@ inline MovingLoad moving_load(double start, int rail = 0) {
 inline PackOptions ring_options(const Track& ring, int modes_per_bay, double dt = 1e-3) {
   PackOptions o;
   o.scheme = held_force(dt, .6);
-  o.modal = ModalLimit{modes_per_bay * ring.bays, std::numeric_limits<double>::infinity()};
+  o.reduction =
+      Reduction{.limit = {modes_per_bay * ring.bays, std::numeric_limits<double>::infinity()}};
   o.endless = EndlessTrack{ring.bays / 2};
   return o;
 }

@@ -62,6 +62,28 @@ TEST_CASE("a model runs to the bits of its scene, full and condensed", "[condens
     }
 }
 
+TEST_CASE("every kind of condensed model runs from its file to the bits of its scene",
+          "[condense]") {
+  const auto folder = fresh_folder("kinds");
+  const auto file = folder / "made.model";
+  for (const char* kind : {"guyan", "irs", "craig-bampton", "krylov", "complex-modes"}) {
+    const std::string scene =
+        kScenes + "wheelset_on_track.toml --set step.duration_s=0.02 --set 'condense.kind=\"" +
+        kind + "\"' --set condense.modes_per_bay=2";
+    const Json made = condense(scene, file);
+    const Ran of_scene = railstep_program("run --json " + scene);
+    const Ran of_model = railstep_program("run --json " + file.string());
+    CAPTURE(kind, of_scene.err, of_model.err);
+    REQUIRE(of_scene.code == 0);
+    REQUIRE(of_model.code == 0);
+    const Json a = Json::parse(of_scene.out);
+    CHECK(a.at("state_hash") == Json::parse(of_model.out).at("state_hash"));
+    CHECK(a.at("allocations") == 0);
+    CHECK(made.at("kept_unknowns") < made.at("full_unknowns"));
+    CHECK(made.at("static_error") < 1e-3);  // the line of design section 8
+  }
+}
+
 TEST_CASE("a model of a system runs to the bits of its scene", "[condense]") {
   const auto folder = fresh_folder("system_bits");
   const auto file = folder / "made.model";
@@ -126,6 +148,10 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
         "flops_per_frame", "bytes_per_frame", "instructions_per_frame", "sha256", "static_error",
         "receptance_error", "transient_error"})
     CHECK(made.contains(key));
+  const std::pair<const char*, const char*> shares[] = {
+      {"model", "bytes"}, {"state", "state_bytes"}, {"workspace", "workspace_bytes"}};
+  for (const auto& [share, whole] : shares)
+    CHECK(made.at("bytes_per_bay").at(share) == (made.at(whole).get<int>() + 15) / 16);
   CHECK(made.at("full_unknowns") == 2 * 33 * 2);        // rails, nodes, r_z and b_x
   CHECK(made.at("kept_unknowns") == 2 * (16 + 17));     // rails, modes and seat dampers
   CHECK(made.at("state_bytes") == 4 * 2 * 40 * 8);      // u v a g, rails, 33 modes padded, double

@@ -176,7 +176,7 @@ TEST_CASE("a hammer blow in time has the same receptance", "[receptance]") {
     PackOptions options = full_order(dt);
     if (condensed) {
       options.scheme = held_force(dt, .6);
-      options.modal = ModalLimit{100'000, 2500.};
+      options.reduction = Reduction{.limit = {100'000, 2500.}};
     }
     ModelRun run(track, traffic, options);
     std::vector<Value> history[2];

@@ -155,7 +155,7 @@ TEST_CASE("the weight of a track alone gives what it stores, by either kind of m
   for (const bool condensed : {false, true}) {
     PackOptions options = plain(condensed ? held_force(5e-5, .6) : generalised_alpha(5e-5, .6));
     options.gravity = 9.81;
-    if (condensed) options.modal = {1000, 1e9};
+    if (condensed) options.reduction = Reduction{.limit = {1000, 1e9}};
     ModelRun run(track, {}, options);
     EnergyAccount energy(*run.packed, run.model(), run.state);
     follow(run, energy, 2000);

@@ -174,7 +174,8 @@ TEST_CASE("both ways make the same trace", "[supports]") {
   traffic.probes = probes(track);
   const double dt = contact ? 1e-4 : 1e-3;
   PackOptions options = condensed_lines ? condensed(track, 0., dt) : full_order(dt);
-  if (condensed_lines) options.modal = ModalLimit{100000, 1500.};  // every line up to 1500 Hz
+  if (condensed_lines)
+    options.reduction = Reduction{.limit = {100000, 1500.}};  // every line up to 1500 Hz
   options.steps_per_frame = contact ? 5 : 1;
   const Trace mirror = trace(in_equilibrium(track, traffic, options), 60);
   const Trace general = trace(in_equilibrium(generally(track), traffic, options), 60);

@@ -103,7 +103,7 @@ TEST_CASE("no shipped scene takes anything from the heap, snapshots included", "
       if (Scene* const track = std::get_if<Scene>(&scene)) {
         if (!track->step) continue;  // it is not run
         track->condense.kind =
-            kind == std::string("modal") ? Condensation::modal : Condensation::full;
+            kind == std::string("modal") ? std::optional(ReductionKind::modal) : std::nullopt;
       } else if (kind == std::string("modal")) {
         continue;  // a system has no modes
       }

@@ -205,9 +205,9 @@ TEST_CASE("damped modes with their residual are the full order's receptance", "[
   const Transfer transfer{on_rail(2.1, 2, .09),
                           {on_rail(2.1, 2, .09), on_rail(2.4, 2, -.08, 1), on_sleeper(3, 0)}};
   FullOrderReceptance full(track, transfer);
-  CondensedReceptance all(track, transfer, {10'000, kUnlimited});
-  CondensedReceptance some(track, transfer, {10'000, 3000.});
-  CondensedReceptance bare(track, transfer, {10'000, 3000.}, false);
+  CondensedReceptance all(track, transfer, {.limit = {10'000, kUnlimited}});
+  CondensedReceptance some(track, transfer, {.limit = {10'000, 3000.}});
+  CondensedReceptance bare(track, transfer, {.limit = {10'000, 3000.}}, false);
   CHECK(some.kept() < all.kept() / 2);
   for (const double hz : {20., 100., 250., 400.}) {
     const Eigen::VectorXcd want = full.at(hz);

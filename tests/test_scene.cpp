@@ -230,6 +230,15 @@ TEST_CASE("tables that need each other are asked for", "[scene]") {
   CHECK_THAT(with("moving_load", {"track.rails=1"}), Contains("rail = \"right\""));
   CHECK(with("moving_load", {"condense.kind=\"modal\""}) == "accepted");
   CHECK_THAT(with("moving_load", {"condense.modes_per_bay=-1"}), Contains("modes_per_bay"));
+  for (const char* kind : {"guyan", "irs", "craig-bampton", "krylov", "complex-modes"}) {
+    CHECK(with("moving_load", {std::string("condense.kind=\"") + kind + "\""}) == "accepted");
+    CHECK_THAT(with("endless_track", {std::string("condense.kind=\"") + kind + "\""}),
+               Contains("Floquet modes") && Contains("\"full\" and \"modal\""));
+  }
+  CHECK_THAT(with("moving_load", {"condense.kind=\"guyen\""}), Contains("\"guyan\""));
+  CHECK_THAT(with("moving_load", {"condense.nodes_per_bay=3"}), Contains("divisor"));
+  CHECK_THAT(with("moving_load", {"condense.band_hz=[500, 20]"}), Contains("does not rise"));
+  CHECK_THAT(with("moving_load", {"condense.expansion_hz=[0]"}), Contains("expansion_hz"));
   CHECK_THAT(with("moving_load", {"condense.modes_per_bay=2", "condense.highest_hz=900"}),
              Contains("one of them is accepted"));
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].guide={method=\"baumgarte\"}"}),

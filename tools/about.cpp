@@ -36,7 +36,7 @@ std::string lines(const std::filesystem::path& file, const std::string& sum, con
 }  // namespace
 
 std::string about(const Scene& scene) {
-  return lines(scene.file, scene.sum, *scene.step, scene.condense.kind == Condensation::modal);
+  return lines(scene.file, scene.sum, *scene.step, scene.condense.kind.has_value());
 }
 
 std::string about(const SystemScene& scene) {

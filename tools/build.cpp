@@ -172,7 +172,7 @@ namespace {
 
 Scheme scheme_of(const Scene& scene) {
   const StepScene& step = *scene.step;
-  if (scene.condense.kind == Condensation::modal) return held_force(step.dt, step.rho_inf);
+  if (scene.condense.kind) return held_force(step.dt, step.rho_inf);
   return step.scheme == TimeScheme::backward_euler ? backward_euler(step.dt)
                                                    : generalised_alpha(step.dt, step.rho_inf);
 }
@@ -256,17 +256,20 @@ PackOptions pack_options_of(const Scene& scene) {
                       .residual_flexibility = scene.condense.residual_flexibility,
                       .gravity = scene.track.gravity ? kGravity : 0.,
                       .steps = step.steps};
-  if (scene.condense.kind == Condensation::modal) options.modal = modal_limit_of(scene);
+  if (scene.condense.kind) options.reduction = reduction_of(scene);
   if (scene.track.endless) options.endless = EndlessTrack{bays_behind(scene)};
   return options;
 }
 
-ModalLimit modal_limit_of(const Scene& scene) {
+Reduction reduction_of(const Scene& scene) {
   const CondenseScene& c = scene.condense;
   const double per_bay = c.modes_per_bay.value_or(c.highest_hz ? 1000. : 1.);
   const double modes = per_bay * static_cast<double>(scene.track.bays);
-  return {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
-          c.highest_hz.value_or(std::numeric_limits<double>::infinity())};
+  return {.kind = c.kind.value_or(ReductionKind::modal),
+          .limit = {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
+                    c.highest_hz.value_or(std::numeric_limits<double>::infinity())},
+          .nodes_per_bay = c.nodes_per_bay,
+          .expansion_hz = c.expansion_hz};
 }
 
 Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scene)); }
@@ -368,7 +371,7 @@ Built::Built(const Scene& scene) try {
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   refuse_unstepped(scene);
   track = track_of(scene);
-  if (scene.condense.kind == Condensation::full) track.ring = false;  // a window, which has ends
+  if (!scene.condense.kind) track.ring = false;  // a window, which has ends
   TracedTraffic traced = traffic_of(scene, track);
   about = railstep::about(scene);
   columns = {"time_s"};

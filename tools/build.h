@@ -78,9 +78,9 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track);
 /// Throws InputError.
 PackOptions pack_options_of(const Scene& scene);
 
-/// How many modes a scene's condensed lines keep; of a scene of full order one per bay, unless it
-/// says otherwise.
-ModalLimit modal_limit_of(const Scene& scene);
+/// How a scene's lines are condensed and how much they keep; of a scene of full order what
+/// kind = "modal" would.
+Reduction reduction_of(const Scene& scene);
 
 /// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
 /// and support. Throws InputError, in one sentence, for what makes no model (a free rigid mode,

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -33,7 +34,7 @@ std::pair<int, int> unknowns_of(const Track& track, const PackedModel& packed) {
   int full = 0, kept = 0;
   for (const Line& line : assemble(track)) full += line.unknowns();
   for (const PackedLine& own : packed.lines())
-    kept += packed.model().condensed != 0 ? static_cast<int>(own.basis.omega.size())
+    kept += packed.model().condensed != 0 ? kept_coordinates(own.basis, own.modes)
                                           : own.line.unknowns();
   return {full, kept};
 }
@@ -52,6 +53,8 @@ struct Condensed {
   std::pair<int, int> unknowns;  // full, kept
   nlohmann::ordered_json static_error, receptance_error, transient_error, window_s;
   double clipped;  // m/N
+  std::array<double, 2> band_hz = CondenseScene{}.band_hz;
+  std::int64_t bays = 0;
 
   BlockNotes notes() const {
     const auto or_not_known = [](const nlohmann::ordered_json& error) {
@@ -64,20 +67,31 @@ struct Condensed {
   }
 };
 
+std::int64_t in_bytes(std::int64_t doubles) { return doubles * std::int64_t{sizeof(double)}; }
+
+/// What a bay takes on the average; null of a system without a track.
+nlohmann::ordered_json per_bay(const Condensed& made, std::size_t block) {
+  if (made.bays == 0) return nullptr;
+  const auto share = [&](std::int64_t bytes) { return (bytes + made.bays - 1) / made.bays; };
+  return {{"model", share(static_cast<std::int64_t>(block))},
+          {"state", share(in_bytes(state_doubles(made.model)))},
+          {"workspace", share(in_bytes(workspace_doubles(made.model)))}};
+}
+
 nlohmann::ordered_json to_json(const Condensed& made, const std::vector<std::byte>& block) {
-  const auto size = [](std::int64_t doubles) { return doubles * std::int64_t{sizeof(double)}; };
   return {{"full_unknowns", made.unknowns.first},
           {"kept_unknowns", made.unknowns.second},
           {"bytes", block.size()},
-          {"state_bytes", size(state_doubles(made.model))},
-          {"workspace_bytes", size(workspace_doubles(made.model))},
+          {"state_bytes", in_bytes(state_doubles(made.model))},
+          {"workspace_bytes", in_bytes(workspace_doubles(made.model))},
+          {"bytes_per_bay", per_bay(made, block.size())},
           {"flops_per_frame", made.model.cost.flops},
           {"bytes_per_frame", made.model.cost.bytes},
           {"instructions_per_frame", made.model.cost.instructions},
           {"sha256", sum_of(block)},
           {"static_error", made.static_error},
           {"receptance_error", made.receptance_error},
-          {"receptance_band_hz", {kReceptanceFrom, kReceptanceTo}},
+          {"receptance_band_hz", made.band_hz},
           {"transient_error", made.transient_error},
           {"transient_window_s", made.window_s},
           {"clipped_m_per_n", made.clipped}};
@@ -98,11 +112,18 @@ nlohmann::ordered_json write(const std::vector<std::byte>& block, const Condense
 nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
   const Built built(scene);
   const PackedModel& packed = *built.packed;
-  Condensed made{packed.model(),  unknowns_of(built.track, packed), {}, {}, {}, {},
-                 packed.clipped()};
+  Condensed made{packed.model(),
+                 unknowns_of(built.track, packed),
+                 {},
+                 {},
+                 {},
+                 {},
+                 packed.clipped(),
+                 scene.condense.band_hz,
+                 scene.track.bays};
   if (!o.skip_errors) {
     made.static_error = static_error(built.track, packed);
-    made.receptance_error = receptance_error(built.track, packed);
+    made.receptance_error = receptance_error(built.track, packed, scene.condense.band_hz);
   }
   if (!o.skip_errors && scene.external_wheels.empty()) {  // what runs elsewhere is not known here
     const TransientError transient = transient_error(scene, o.overrides);
@@ -124,9 +145,11 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
     const Track track = track_of(*scene.track);
     const auto [full, kept] = unknowns_of(track, *packed);
     made.unknowns = {own + full, own + kept};
+    made.band_hz = scene.track->condense.band_hz;
+    made.bays = scene.track->track.bays;
     if (!o.skip_errors) {
       made.static_error = static_error(track, *packed);
-      made.receptance_error = receptance_error(track, *packed);
+      made.receptance_error = receptance_error(track, *packed, made.band_hz);
     }
   }
   return write(block_of(built, made.notes()), made, o);
@@ -147,7 +170,7 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
              r["instructions_per_frame"].get<std::int64_t>());
   fmt::print("static error      {}\n", error_text(r["static_error"]));
   fmt::print("receptance error  {}, {:g} to {:g} Hz\n", error_text(r["receptance_error"]),
-             kReceptanceFrom, kReceptanceTo);
+             r["receptance_band_hz"][0].get<double>(), r["receptance_band_hz"][1].get<double>());
   const auto& window = r["transient_window_s"];
   fmt::print("transient error   {}{}\n", error_text(r["transient_error"]),
              window.is_null() ? "" : fmt::format(" in {:g} s", window.get<double>()));

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -63,9 +64,12 @@ class Progress {
 AnyScene scene_of(const RunOptions& o) {
   std::vector<std::string> overrides = o.overrides;
   if (o.model == "full") overrides.emplace_back("condense.kind=\"full\"");
-  if (o.model == "condensed") overrides.emplace_back("condense.kind=\"modal\"");
   if (o.step) overrides.push_back(fmt::format("step.dt_s={}", *o.step));
   if (o.duration) overrides.push_back(fmt::format("step.duration_s={}", *o.duration));
+  AnyScene scene = read_any_scene(o.input, overrides);
+  const Scene* const track = std::get_if<Scene>(&scene);
+  if (o.model != "condensed" || (track != nullptr && track->condense.kind)) return scene;
+  overrides.emplace_back("condense.kind=\"modal\"");  // where the scene names no other
   return read_any_scene(o.input, overrides);
 }
 
@@ -93,9 +97,13 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
   return std::llround(frames);
 }
 
-/// Whether the energies of a run can be told; of a model file, which has no matrices, they cannot.
+/// Whether the energies of a run can be told. They cannot of a model file, which has no matrices,
+/// and of truncated damped modes, whose forces do work that no matrix of theirs takes up.
 bool has_energies(const Simulation& run) {
-  return run.packed() != nullptr || run.system() != nullptr;
+  if (run.packed() == nullptr) return run.system() != nullptr;
+  const std::vector<PackedLine>& lines = run.packed()->lines();
+  return std::none_of(lines.begin(), lines.end(),
+                      [](const PackedLine& own) { return own.basis.flexibility.size() > 0; });
 }
 
 /// The energies of what was run, from a second pass over it; none where there are none, and of a

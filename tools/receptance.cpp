@@ -87,7 +87,7 @@ std::unique_ptr<Receptance> model_of(const std::string& name, const Scene& scene
                                      const Track& track, const Transfer& transfer) {
   if (name == "full") return std::make_unique<FullOrderReceptance>(track, transfer);
   if (name == "condensed")
-    return std::make_unique<CondensedReceptance>(track, transfer, modal_limit_of(scene),
+    return std::make_unique<CondensedReceptance>(track, transfer, reduction_of(scene),
                                                  scene.condense.residual_flexibility);
   const bool endless = name == "endless";
   return std::make_unique<ExactRailReceptance>(

@@ -201,20 +201,6 @@ std::int64_t whole_steps(const Table& t, std::string_view key, double time, doub
   return static_cast<std::int64_t>(steps);
 }
 
-CondenseScene read_condense(const Table& root) {
-  CondenseScene c{Condensation::full, std::nullopt, std::nullopt, true};
-  const std::optional<Table> t = root.table_if("condense");
-  if (!t) return c;
-  c.kind = t->choice("kind", {"full", "modal"}, 0) == 0 ? Condensation::full : Condensation::modal;
-  if (t->has("modes_per_bay")) c.modes_per_bay = t->number("modes_per_bay", between(0.0, 1000.0));
-  if (t->has("highest_hz")) c.highest_hz = t->number("highest_hz", above_upto(0.0, 1e6));
-  if (c.modes_per_bay && c.highest_hz)
-    t->refuse("highest_hz", "highest_hz is given beside modes_per_bay; one of them is accepted");
-  if (c.kind == Condensation::modal && !c.modes_per_bay && !c.highest_hz) c.modes_per_bay = 1.0;
-  c.residual_flexibility = t->boolean("residual_flexibility", true);
-  return c;
-}
-
 NewtonOptions read_statics(const Table& root) {
   NewtonOptions s;
   const std::optional<Table> t = root.table_if("static");
@@ -334,7 +320,7 @@ Scene read_track_scene(const Table& root) {
                    "start = \"moving\" wants a track that goes on as it is; accepted with "
                    "track.length = \"endless\"");
   }
-  scene.condense = read_condense(root);
+  scene.condense = read_condense(root, scene.track);
   scene.statics = read_statics(root);
   scene.stops = read_stops(root, scene);
   scene.loads = read_loads(root, scene);

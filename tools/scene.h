@@ -22,7 +22,6 @@ enum class Side { left, right };         // left is +y
 enum class TimeScheme { generalised_alpha, backward_euler, energy_momentum };
 enum class Start { equilibrium, released, moving };
 enum class GuideMethod { augmented_lagrangian, baumgarte };
-enum class Condensation { full, modal };
 enum class RailModel { linearised, nonlinear, timoshenko };
 enum class ReferenceLine { centroid, mid_height, foot, head };  // where the rails' nodes are
 
@@ -248,10 +247,12 @@ struct StepScene {
 };
 
 struct CondenseScene {
-  Condensation kind;
-  std::optional<double> modes_per_bay;
-  std::optional<double> highest_hz;
-  bool residual_flexibility;
+  std::optional<ReductionKind> kind = {};  // none: full order
+  std::optional<double> modes_per_bay = {}, highest_hz = {};
+  int nodes_per_bay = 1;
+  std::vector<double> expansion_hz = {};
+  std::array<double, 2> band_hz = {20., 1500.};  // in which the model is to be right
+  bool residual_flexibility = true;
 };
 
 struct RailSensor {

@@ -31,27 +31,6 @@ void refuse_foreign(const Table& root) {
                 "a scene of a track and bodies without it");
 }
 
-/// A track beside bodies is in full order, and its step sees no flexibility but its own.
-CondenseScene read_full_order(const Table& root) {
-  CondenseScene full{Condensation::full, std::nullopt, std::nullopt, false};
-  const std::optional<Table> t = root.table_if("condense");
-  if (!t) return full;
-  if (t->choice("kind", {"full", "modal"}, 0) != 0)
-    t->refuse("kind",
-              "kind = \"modal\" is not stepped beside bodies and beams; accepted is "
-              "\"full\"");
-  for (const char* key : {"modes_per_bay", "highest_hz"})
-    if (t->has(key))
-      t->refuse(key, fmt::format("{} is of a condensed track, which is not stepped beside bodies "
-                                 "and beams; accepted is kind = \"full\" without it",
-                                 key));
-  if (t->boolean("residual_flexibility", false))
-    t->refuse("residual_flexibility",
-              "residual_flexibility = true would leave out what joints and springs pull at the "
-              "rails; accepted beside bodies and beams is false");
-  return full;
-}
-
 StepScene read_step(const Table& t) {
   if (t.has("scheme") && t.string("scheme") == "energy-momentum")
     t.refuse("scheme",

@@ -32,6 +32,10 @@ void read_joints(const Table& root, const Table& rail, Scene& scene);
 /// Distance of the rails' centres whose heads' inner faces are `gauge` apart, 14 mm below the
 /// running surface, m. Throws InputError where a rail's section has no head.
 double spacing_of_gauge(const Table& track, const Scene& scene, double gauge);
+/// [condense].
+CondenseScene read_condense(const Table& root, const TrackScene& track);
+/// The same beside bodies and beams, where a track is in full order.
+CondenseScene read_full_order(const Table& root);
 /// dt, frame and duration of [step]; the scheme and the start are its reader's.
 StepScene read_times(const Table& step);
 /// [step] of a scene with a track.

@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "offline/track/track.h"
+
 namespace railstep {
 
 /// A line in fewer coordinates: u = shapes y, with shapes' M shapes = I and
@@ -8,6 +10,42 @@ namespace railstep {
 struct Basis {
   Eigen::VectorXd omega;   // [kept] rad/s, above 0, ascending
   Eigen::MatrixXd shapes;  // [unknowns of the line][kept]
+  /// What the stepped model gives way statically, [kept][kept]; empty where that is omega^-2, as of
+  /// all but truncated damped modes.
+  Eigen::MatrixXd flexibility = {};
+  /// Velocity that a force has at once beside the rate of the modes, [kept][kept], 1/kg; empty
+  /// beside an empty flexibility.
+  Eigen::MatrixXd at_once = {};
+
+  /// The y under forces shapes' f that stand still; [kept][any].
+  Eigen::MatrixXd give(const Eigen::MatrixXd& forces) const;
+  /// What the stepped model shows of omega^-2 p, the static y of all coordinates: that itself, or
+  /// where modes are truncated their part, give(p).
+  Eigen::VectorXd shown(const Eigen::VectorXd& y) const;
 };
+
+/// Throws std::invalid_argument where the lowest mode of a line is rigid (below 1e-3 Hz): it has no
+/// static answer.
+void refuse_free_mode(double lowest_hz);
+
+/// Galerkin's coordinates over all that some shapes span; what nearly depends on others is dropped.
+/// Real shapes over symmetric matrices: no energy is made, whatever is left out.
+/// @param shapes [unknowns][any]
+/// Throws std::invalid_argument on a free rigid mode, and where nothing is left.
+Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes);
+
+/// What the static shapes K^-1 f of forces add to shapes that are kept; orthonormal over the mass.
+/// @param kept    [unknowns][kept], orthonormal over the mass
+/// @param forces  [unknowns][any]
+Eigen::MatrixXd added_static_shapes(const Line& line, const Eigen::MatrixXd& kept,
+                                    const Eigen::MatrixXd& forces);
+
+/// Forces of the dampers of seats, one column each; those spread over zones at the ends are left
+/// out, as they are many and each too weak to have a shape of its own.
+Eigen::MatrixXd damper_forces(const Line& line);
+
+/// Columns of a matrix that hold anything.
+/// @param rows  of the result, whose argument may have no entries at all
+Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A, Eigen::Index rows);
 
 }  // namespace railstep

@@ -144,6 +144,18 @@ std::vector<double> ResidualFlexibility::from(Port port, const Functional& funct
   return to_vector(sum);
 }
 
+std::vector<double> ResidualFlexibility::at_once(Port port, const Functional& functional) const {
+  check_functional(track_, functional);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  for (const Pair& pair : pairs_) {
+    const auto i = static_cast<std::size_t>(pair.line - lines_.data());
+    const double w = weight(pair, port);
+    if (w == 0. || bases_.empty() || bases_[i].at_once.size() == 0) continue;
+    sum += w * ReducedLine(track_, *pair.line, bases_[i]).at_once(port, functional, points_);
+  }
+  return to_vector(sum);
+}
+
 double PairTable::at(int e, int p, int e2, int q) const {
   if (std::abs(e2 - e) > reach) return 0.;
   return value[place_in(*this, e, p, e2, q)];

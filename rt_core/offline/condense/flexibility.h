@@ -68,6 +68,9 @@ class ResidualFlexibility {
   /// What the model misses of the functional under a unit force of the port at each place;
   /// [elements][points + 1], m/N. Throws std::out_of_range if the functional is off the track.
   std::vector<double> from(Port port, const Functional& functional) const;
+  /// Velocity of a functional at once under a unit force of the port, which the modes' rates do not
+  /// show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.
+  std::vector<double> at_once(Port port, const Functional& functional) const;
 
  private:
   struct Pair;  // exact and model of one line

@@ -126,10 +126,13 @@ class ReducedLine : public LineFlexibility {
   Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override;
+  /// Velocity of the functional at once under a unit force of a port at each place;
+  /// [elements x (points + 1)], of a basis that has such.
+  Eigen::VectorXd at_once(const Port& port, const Functional& functional, int points) const;
 
  private:
-  /// shapes / omega at a port's places; [elements x (points + 1)][kept]
-  Eigen::MatrixXd scaled_shapes(const Port& port, int points) const;
+  /// The shapes at a port's places; [elements x (points + 1)][kept]
+  Eigen::MatrixXd port_shapes(const Port& port, int points) const;
 
   const Track& track_;
   const Line& line_;

@@ -1,10 +1,8 @@
 #include "offline/condense/modal.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -78,53 +76,6 @@ void complete(DampedModes& modes) {
         std::to_string(error) + "); change the number of modes or step the full track");
 }
 
-/// Columns of a matrix that hold anything, none of one without entries.
-Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A, Eigen::Index rows) {
-  std::vector<Eigen::VectorXd> found;
-  for (int j = 0; j < A.outerSize(); ++j)
-    if (A.col(j).norm() > 0.) found.emplace_back(A.col(j));
-  Eigen::MatrixXd result(rows, static_cast<Eigen::Index>(found.size()));
-  for (std::size_t j = 0; j < found.size(); ++j)
-    result.col(static_cast<Eigen::Index>(j)) = found[j];
-  return result;
-}
-
-/// What the static shapes of the dampers and of other rows add to shapes that are kept; orthonormal
-/// over the mass.
-Eigen::MatrixXd local_shapes(const Line& line, const Eigen::MatrixXd& kept,
-                             const Eigen::SparseMatrix<double>& rows) {
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
-  // Zones at the ends have as many dampers as unknowns, each too weak to have a shape of its own.
-  const Eigen::SparseMatrix<double> of_seats = line.damping - line.end_damping;
-  const Eigen::MatrixXd dampers = filled_columns(of_seats, line.unknowns()),
-                        others = filled_columns(rows, line.unknowns());
-  Eigen::MatrixXd forces(line.unknowns(), dampers.cols() + others.cols());
-  forces.leftCols(dampers.cols()) = dampers;
-  forces.rightCols(others.cols()) = others;
-  Eigen::MatrixXd shapes = factor.solve(forces);
-  if (shapes.cols() == 0) return shapes;
-  const auto norms = [&]() -> Eigen::VectorXd {
-    return shapes.cwiseProduct(line.mass * shapes).colwise().sum().cwiseSqrt().transpose();
-  };
-  for (int twice = 0; twice < 2; ++twice) {
-    const Eigen::VectorXd before = norms();
-    shapes -= kept * (kept.transpose() * (line.mass * shapes));
-    const Eigen::VectorXd after = norms();
-    for (Eigen::Index j = 0; j < shapes.cols(); ++j)  // what is left of a kept shape is rounding
-      shapes.col(j) *= after[j] > 1e-8 * before[j] ? 1. / after[j] : 0.;
-  }
-  // The columns of C have the rank of its dampers; what is left of the others is rounding.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(shapes.transpose() *
-                                                            (line.mass * shapes));
-  const double largest = gram.eigenvalues().maxCoeff();
-  Eigen::Index first = largest > 0. ? 0 : shapes.cols();
-  while (first < shapes.cols() && gram.eigenvalues()[first] < 1e-10 * largest) ++first;
-  const Eigen::Index rank = shapes.cols() - first;
-  Eigen::MatrixXd result = shapes * gram.eigenvectors().rightCols(rank);
-  result *= gram.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
-  return result;
-}
-
 }  // namespace
 
 Basis modal_basis(const Line& line, const ModalLimit& limit,
@@ -136,20 +87,16 @@ Basis modal_basis(const Line& line, const ModalLimit& limit,
   int count = std::min(limit.most, line.unknowns());
   if (std::isfinite(limit.highest_hz)) count = std::min(count, modes_below(line, limit.highest_hz));
   const Modes lowest = lowest_modes(line, std::max(count, 1));
-  if (lowest.frequency[0] < 1e-3)
-    throw std::invalid_argument(
-        "a condensed track is held in every direction in which it is moved: this one has a free "
-        "rigid mode");
+  refuse_free_mode(lowest.frequency[0]);
   const Eigen::MatrixXd kept = lowest.shape.leftCols(count);
-  const Eigen::MatrixXd added = local_shapes(line, kept, rows);
+  const Eigen::MatrixXd dampers = damper_forces(line),
+                        others = filled_columns(rows, line.unknowns());
+  Eigen::MatrixXd forces(line.unknowns(), dampers.cols() + others.cols());
+  forces << dampers, others;
+  const Eigen::MatrixXd added = added_static_shapes(line, kept, forces);
   Eigen::MatrixXd both(line.unknowns(), kept.cols() + added.cols());
-  both.leftCols(kept.cols()) = kept;
-  both.rightCols(added.cols()) = added;
-  if (both.cols() == 0)
-    throw std::invalid_argument("a condensed line without dampers keeps one mode or more");
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      both.transpose() * (line.stiffness * both), both.transpose() * (line.mass * both));
-  return {solver.eigenvalues().cwiseSqrt(), both * solver.eigenvectors()};
+  both << kept, added;
+  return ritz_basis(line, both);
 }
 
 DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping) {
@@ -180,6 +127,25 @@ DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& 
   }
   complete(result);
   return result;
+}
+
+DampedModes slowest(const DampedModes& all, Eigen::Index most) {
+  constexpr double kOneSpeed = 1e-9;
+  Eigen::Index count = std::min(most, all.rate.size());
+  while (count > 0 && count < all.rate.size() &&
+         std::abs(all.rate[count]) <= (1. + kOneSpeed) * std::abs(all.rate[count - 1]))
+    --count;
+  return {all.rate.head(count), all.shape.leftCols(count), all.damping};
+}
+
+Eigen::MatrixXd flexibility_of(const DampedModes& modes) {
+  const Eigen::MatrixXd F =
+      -(modes.shape * modes.rate.cwiseInverse().asDiagonal() * modes.shape.transpose()).real();
+  return .5 * (F + F.transpose());
+}
+
+Eigen::MatrixXd at_once_of(const DampedModes& modes) {
+  return (modes.shape * modes.shape.transpose()).real();
 }
 
 Eigen::VectorXcd DampedModes::from(const Eigen::VectorXd& y,

@@ -19,8 +19,7 @@ struct ModalLimit {
 /// The same shapes of `rows` are kept, so that the model answers a force along a row, and any force
 /// there, with the line's own statics.
 /// @param rows  [unknowns][rows] where local forces act; may have no columns
-/// Throws std::invalid_argument on a free rigid mode (below 1e-3 Hz), which has no static answer,
-/// and on lines of more than kMostModalUnknowns.
+/// Throws std::invalid_argument on a free rigid mode and on lines of more than kMostModalUnknowns.
 Basis modal_basis(const Line& line, const ModalLimit& limit,
                   const Eigen::SparseMatrix<double>& rows = {});
 
@@ -46,5 +45,14 @@ struct DampedModes {
 /// Throws std::invalid_argument where the check above misses by more than 1e-7: two modes at
 /// critical damping have one shape.
 DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping);
+
+/// The slowest of damped modes, those of one speed (|rate|) together or not at all. A truncation,
+/// no Galerkin: Re sum shape shape' of what is left is a velocity that a force has at once.
+DampedModes slowest(const DampedModes& all, Eigen::Index most);
+
+/// Statics of damped modes, -Re sum shape shape' / rate; [kept][kept], of all modes omega^-2.
+Eigen::MatrixXd flexibility_of(const DampedModes& modes);
+/// Re sum shape shape'; [kept][kept], of all modes 0.
+Eigen::MatrixXd at_once_of(const DampedModes& modes);
 
 }  // namespace railstep

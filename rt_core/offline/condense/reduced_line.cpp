@@ -12,10 +12,9 @@ ReducedLine::ReducedLine(const Track& track, const Line& line, const Basis& basi
     throw std::invalid_argument("a basis for residual flexibility has no free rigid mode");
 }
 
-Eigen::MatrixXd ReducedLine::scaled_shapes(const Port& port, int points) const {
+Eigen::MatrixXd ReducedLine::port_shapes(const Port& port, int points) const {
   double own[9];
   height_row(track_.lean(port.rail), port.y, port.z, own);
-  const Eigen::MatrixXd scaled = basis_.shapes * basis_.omega.cwiseInverse().asDiagonal();
   Eigen::MatrixXd result =
       Eigen::MatrixXd::Zero(track_.elements() * (points + 1), basis_.omega.size());
   for (int e = 0; e < track_.elements(); ++e)
@@ -26,7 +25,7 @@ Eigen::MatrixXd ReducedLine::scaled_shapes(const Port& port, int points) const {
           const int unknown = line_.element_unknown(port.rail, e, static_cast<int>(i), k);
           const double factor = sign_of(line_, port.rail, k) * own[k];
           if (unknown >= 0 && factor != 0.)
-            result.row(e * (points + 1) + p) += (n[i] * factor) * scaled.row(unknown);
+            result.row(e * (points + 1) + p) += (n[i] * factor) * basis_.shapes.row(unknown);
         }
     }
   return result;
@@ -34,37 +33,41 @@ Eigen::MatrixXd ReducedLine::scaled_shapes(const Port& port, int points) const {
 
 Eigen::VectorXd ReducedLine::under(const Port& port, const Port& seen, int points) const {
   const Eigen::Index places = tabled_elements(track_) * (points + 1);
-  return scaled_shapes(port, points)
-      .topRows(places)
-      .cwiseProduct(scaled_shapes(seen, points).topRows(places))
-      .rowwise()
-      .sum();
+  const Eigen::MatrixXd at = port_shapes(port, points).topRows(places),
+                        read = port_shapes(seen, points).topRows(places);
+  return read.cwiseProduct(basis_.give(at.transpose()).transpose()).rowwise().sum();
 }
 
 LineFlexibility::Strip ReducedLine::between(const Port& a, const Port& b, int points) const {
-  return [points, from = scaled_shapes(a, points),
-          to = scaled_shapes(b, points)](int element) -> Eigen::MatrixXd {
-    return from.middleRows(element * (points + 1), points + 1) * to.transpose();
+  const Eigen::MatrixXd read = port_shapes(b, points);
+  return [points, from = port_shapes(a, points),
+          to = basis_.give(read.transpose())](int element) -> Eigen::MatrixXd {
+    return from.middleRows(element * (points + 1), points + 1) * to;
   };
 }
 
 Eigen::VectorXd ReducedLine::from(const Port& port, const Functional& functional,
                                   int points) const {
   const Eigen::VectorXd load(functional_row(track_, line_, functional));
-  return scaled_shapes(port, points) *
-         (basis_.shapes.transpose() * load).cwiseQuotient(basis_.omega);
+  return port_shapes(port, points) * basis_.give(basis_.shapes.transpose() * load);
+}
+
+Eigen::VectorXd ReducedLine::at_once(const Port& port, const Functional& functional,
+                                     int points) const {
+  const Eigen::VectorXd load(functional_row(track_, line_, functional));
+  return port_shapes(port, points) * (basis_.at_once * (basis_.shapes.transpose() * load));
 }
 
 Eigen::VectorXd ReducedLine::flexibility(const std::vector<Functional>& reads,
                                          const Functional& force) const {
-  const auto moved = [&](const Functional& one) -> Eigen::VectorXd {
+  const auto part = [&](const Functional& one) -> Eigen::VectorXd {
     const Eigen::VectorXd row(functional_row(track_, line_, one));
-    return (basis_.shapes.transpose() * row).cwiseQuotient(basis_.omega);
+    return basis_.shapes.transpose() * row;
   };
-  const Eigen::VectorXd acting = moved(force);
+  const Eigen::VectorXd acting = basis_.give(part(force));
   Eigen::VectorXd result(static_cast<Eigen::Index>(reads.size()));
   for (std::size_t i = 0; i < reads.size(); ++i)
-    result[static_cast<Eigen::Index>(i)] = moved(reads[i]).dot(acting);
+    result[static_cast<Eigen::Index>(i)] = part(reads[i]).dot(acting);
   return result;
 }
 

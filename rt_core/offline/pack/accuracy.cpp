@@ -1,6 +1,5 @@
 #include "offline/pack/accuracy.h"
 
-#include <Eigen/LU>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -39,14 +38,15 @@ void add_receptances(const Track& track, const Line& line, const std::vector<Rai
 
 void add_receptances(const Track& track, const PackedLine& own,
                      const std::vector<RailPoint>& points, double omega, std::vector<Value>& sums) {
-  Eigen::MatrixXcd dynamic = Value(0., omega) * own.modes.damping.cast<Value>();
-  dynamic.diagonal().array() += (own.basis.omega.array().square() - omega * omega).cast<Value>();
-  const Eigen::PartialPivLU<Eigen::MatrixXcd> factor(dynamic);
+  const Value rate(0., omega);
+  const Eigen::ArrayXcd along = .5 * (rate - own.modes.rate.array()).inverse(),
+                        back = .5 * (rate - own.modes.rate.conjugate().array()).inverse();
   for (std::size_t i = 0; i < points.size(); ++i) {
     // Ports leave out the section's own strain.
     const Eigen::VectorXd row(point_row(track, own.line, points[i], false));
-    const Eigen::VectorXcd modal = (own.basis.shapes.transpose() * row).cast<Value>();
-    sums[i] += (modal.transpose() * factor.solve(modal))(0, 0);
+    const Eigen::ArrayXcd modal =
+        (own.modes.shape.transpose() * (own.basis.shapes.transpose() * row)).array();
+    sums[i] += (modal.square() * along + modal.conjugate().square() * back).sum();
   }
 }
 
@@ -95,11 +95,11 @@ double static_error(const Track& track, const PackedModel& packed) {
   // Exact at its end nodes, half-way of the tables.
   const Statics exact(refined(track, 2 * points));
   std::vector<double> places;
-  for (const int bay : {0, track.bays / 2, track.bays - 1})
-    for (int element = 0; element < track.elements_per_bay; ++element)
-      for (const int p : {1, points / 2, points - 2})
-        places.push_back(bay * track.bay_length +
-                         (element + (2 * p + 1.) / (2. * points)) * track.element_length());
+  const int intervals = track.elements() * points, count = std::min(kStaticPlaces, intervals);
+  for (int i = 0; i < count; ++i) {
+    const auto interval = static_cast<std::int64_t>(2 * i + 1) * intervals / (2 * count);
+    places.push_back((static_cast<double>(interval) + .5) / points * track.element_length());
+  }
   const Asked asked(packed, places);
   const std::vector<Value> got = receptances(track, packed, asked.points, asked.kinds, 0.);
   double largest = 0., error = 0.;
@@ -111,7 +111,8 @@ double static_error(const Track& track, const PackedModel& packed) {
   return largest > 0. ? error / largest : 0.;
 }
 
-double receptance_error(const Track& track, const PackedModel& packed) {
+double receptance_error(const Track& track, const PackedModel& packed,
+                        const std::array<double, 2>& band) {
   const Track fine = refined(track, 2);
   const std::vector<Line> lines = assemble(fine);
   const int bay = track.bays / 2;
@@ -119,8 +120,7 @@ double receptance_error(const Track& track, const PackedModel& packed) {
   double largest = 0., error = 0.;
   for (int i = 0; i < kReceptancePoints; ++i) {
     const double part = i / (kReceptancePoints - 1.);
-    const double omega =
-        2. * kPi * kReceptanceFrom * std::pow(kReceptanceTo / kReceptanceFrom, part);
+    const double omega = 2. * kPi * band[0] * std::pow(band[1] / band[0], part);
     std::vector<Value> want(asked.points.size(), 0.);
     for (const Line& line : lines) add_receptances(fine, line, asked.points, omega, want);
     const std::vector<Value> got = receptances(track, packed, asked.points, asked.kinds, omega);

@@ -1,20 +1,23 @@
 #pragma once
+#include <array>
+
 #include "offline/pack/pack.h"
 
 namespace railstep {
 
-/// Largest error of the static deflection under a unit force of every kind of port, over places in
-/// the first, middle and last bay half-way between the tables' own, against a track of elements so
-/// fine that these are nodes; over the largest deflection. 0 without ports.
-/// One-sided supports are open.
+/// Largest error of the static deflection under a unit force of every kind of port, over
+/// kStaticPlaces places at equal steps along the track, each half-way between two of the tables'
+/// own, against a track of elements so fine that these are nodes; over the largest deflection. 0
+/// without ports. One-sided supports are open.
 double static_error(const Track& track, const PackedModel& packed);
 
 /// The same of the receptance magnitude and phase together, |H - H_ref| over the largest |H_ref|,
-/// at the middle of the track's middle bay and over its seat, from kReceptanceFrom to kReceptanceTo
-/// at kReceptancePoints logarithmic steps, against a track of 2 times finer elements.
-double receptance_error(const Track& track, const PackedModel& packed);
+/// at the middle of the track's middle bay and over its seat, over a band in Hz at
+/// kReceptancePoints logarithmic steps, against a track of 2 times finer elements.
+double receptance_error(const Track& track, const PackedModel& packed,
+                        const std::array<double, 2>& band);
 
-inline constexpr double kReceptanceFrom = 20., kReceptanceTo = 1500.;  // Hz
+inline constexpr int kStaticPlaces = 64;  // fewer on a track of fewer intervals
 inline constexpr int kReceptancePoints = 40;
 
 }  // namespace railstep

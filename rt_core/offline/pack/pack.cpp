@@ -227,7 +227,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
     model_.crown_radius[rail] = heads[rail].crown_radius;
     model_.head_half_width[rail] = heads[rail].half_width;
   }
-  model_.condensed = options.modal ? 1 : 0;
+  model_.condensed = options.reduction ? 1 : 0;
   if (track.cant != 0. && !traffic.held.empty())
     throw std::invalid_argument("bodies hold on to rails that stand upright; accepted is no cant");
   if (options.endless) add_endless(track, traffic, options);
@@ -263,6 +263,11 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
     throw std::invalid_argument(
         "external wheels run on a track that is linear: beside loads, and without wheelsets, "
         "vehicles, stops and supports that do not pull");
+  for (const PackedLine& own : lines_)
+    if (own.basis.flexibility.size() > 0)
+      throw std::invalid_argument(
+          "truncated damped modes do not know the velocity under external wheels; accepted are the "
+          "other kinds of condensed tracks, and full order");
   if (model_.steps_per_frame != 1)
     throw std::invalid_argument("external wheels want a frame of one step");
   constexpr double kFar = 1e9;  // m

@@ -5,7 +5,7 @@
 
 #include "offline/condense/flexibility.h"
 #include "offline/condense/floquet.h"
-#include "offline/condense/modal.h"
+#include "offline/condense/reduction.h"
 #include "offline/irregularity/signal.h"
 #include "offline/track/fixed_port.h"
 #include "offline/vehicle/vehicle.h"
@@ -153,8 +153,8 @@ struct PackOptions {
   bool residual_flexibility = true;
   int residual_points = 16;  // intervals per element
   double gravity = 0.;       // m/s2 on rails and sleepers; 0: their weight is left off
-  std::optional<ModalLimit> modal = std::nullopt;  // of each line; none: full order
-  std::int64_t steps = 0;                          // of the scene's run
+  std::optional<Reduction> reduction = std::nullopt;  // of each line; none: full order
+  std::int64_t steps = 0;                             // of the scene's run
   std::optional<EndlessTrack> endless = std::nullopt;
 };
 
@@ -194,7 +194,7 @@ class PackedModel {
   void add_line(const Track& track, PackedLine packed, const PackOptions& options);
   void add_banded(const Track& track, const Line& line, LineModel& packed, double gravity);
   void add_condensed(const Track& track, PackedLine& own, LineModel& packed,
-                     const ModalLimit& limit);
+                     const Reduction& reduction);
   void add_endless(const Track& track, const Traffic& traffic, const PackOptions& options);
   BayShift ring_shift(const RingModes& ring, int padded);
   BayShift window_shift(const Track& track, const Line& line, int padded, double gravity);

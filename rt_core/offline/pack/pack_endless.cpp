@@ -56,7 +56,7 @@ std::string too_short(const Track& track, double span, double decay) {
 
 void PackedModel::add_endless(const Track& track, const Traffic& traffic,
                               const PackOptions& options) {
-  if (track.ring != options.modal.has_value())
+  if (track.ring != options.reduction.has_value())
     throw std::invalid_argument(
         "a track without end is a ring where it is condensed, and a window in full order");
   const double bay = track.bay_length;

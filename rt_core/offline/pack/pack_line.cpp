@@ -118,18 +118,16 @@ void PackedModel::add_banded(const Track& track, const Line& line, LineModel& pa
 }
 
 void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& packed,
-                                const ModalLimit& limit) {
-  // Of both rails in one line as many as of two.
-  const int rails = has_one_table(own.line) ? 1 : 2;
-  const ModalLimit most{rails * limit.most, limit.highest_hz};
+                                const Reduction& reduction) {
   RingModes ring;
   if (track.ring) {
-    ring = ring_modes(track, own.line, most);
+    ring = ring_modes(track, own.line, limit_of(own.line, reduction));
     own.basis = ring.basis;
     own.modes = ring.modes;
   } else {
-    own.basis = modal_basis(own.line, most, own.closing);
-    own.modes = damped_modes(own.basis, own.line.damping);
+    auto [basis, modes] = reduce(track, own.line, reduction, own.closing);
+    own.basis = std::move(basis);
+    own.modes = std::move(modes);
   }
   const auto modes = own.modes.rate.size();
   const auto padded = static_cast<std::size_t>((modes + 7) / 8 * 8);
@@ -180,14 +178,14 @@ void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions
   LineModel packed{};
   std::size_t twin = 0;
   while (twin < lines_.size() && !(same_but_for_the_rail(lines_[twin].line, own.line) &&
-                                   (!options.modal || same(lines_[twin].closing, own.closing))))
+                                   (!options.reduction || same(lines_[twin].closing, own.closing))))
     ++twin;
   if (twin < lines_.size()) {
     packed = model_.line[twin];
     own.basis = lines_[twin].basis;
     own.modes = lines_[twin].modes;
-  } else if (options.modal) {
-    add_condensed(track, own, packed, *options.modal);
+  } else if (options.reduction) {
+    add_condensed(track, own, packed, *options.reduction);
   } else {
     add_banded(track, own.line, packed, options.gravity);
   }

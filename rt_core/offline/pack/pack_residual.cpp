@@ -24,13 +24,15 @@ std::vector<std::vector<double>> ports_of(const Model& model, std::size_t kinds)
     const VehicleWheel& wheel = model.vehicle_wheel[i];
     add(wheel.kind, model.vehicle[wheel.vehicle].start + wheel.place);
   }
+  for (std::int32_t i = 0; i < model.external_wheels; ++i)
+    add(model.external_wheel[i].kind, 0.);  // where these are is not known before they run
   return places;
 }
 
 /// How many elements two ports of these places are apart at most: on a track without end they stay
 /// as they are, within the element that a contact's search may find beside the wheel.
 int farthest(const Model& model, const std::vector<double>& a, const std::vector<double>& b) {
-  if (model.endless.bays == 0) return model.elements;
+  if (model.endless.bays == 0 || model.external_wheels > 0) return model.elements;
   double distance = 0.;
   for (const double x : a)
     for (const double y : b) distance = std::max(distance, std::abs(x - y));
@@ -41,8 +43,8 @@ bool all_zero(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return v == 0.; });
 }
 
-void append(std::vector<double>& to, const std::vector<double>& values, double factor = 1.) {
-  for (const double v : values) to.push_back(factor * v);
+void append(std::vector<double>& to, const std::vector<double>& values) {
+  to.insert(to.end(), values.begin(), values.end());
 }
 
 /// What the model's lines give way within a step under a force of a port, m/N, at the places of its
@@ -159,12 +161,27 @@ void PackedModel::clip(int points, std::vector<double>& under) {
         step_compliance(model_, kinds_[kind], model_.residual.elements, points);
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[kind * places + i];
-      const double lowest = -.5 * lines[i];
+      const double lowest = lines[i] > 0. ? -.5 * lines[i] : -1.5 * lines[i];
       clipped_ = std::max(clipped_, lowest - value);
       value = std::max(value, lowest);
     }
   }
 }
+
+namespace {
+
+/// What a probe has of a unit force of a port beside the model's unknowns.
+std::vector<double> seen_at_once(const ResidualFlexibility& residual, const Port& port,
+                                 const Probe& probe) {
+  std::vector<double> sum = residual.from(port, probe.track);
+  for (double& value : sum) value *= probe.displacement;
+  if (probe.velocity == 0.) return sum;
+  const std::vector<double> speed = residual.at_once(port, probe.track);
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += probe.velocity * speed[i];
+  return sum;
+}
+
+}  // namespace
 
 void PackedModel::add_residual(const Track& track, const std::vector<Probe>& probes, int points) {
   if (kinds_.empty()) return;
@@ -205,9 +222,9 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
   std::int32_t tables = 0;
   for (const Probe& probe : probes) {
     std::vector<double> rows;
-    if (probe.displacement != 0. && probe.wheelset < 0 && probe.vehicle < 0)
-      for (const Port& port : kinds_)
-        append(rows, residual.from(port, probe.track), probe.displacement);
+    const bool of_track = probe.wheelset < 0 && probe.vehicle < 0;
+    if (of_track && (probe.displacement != 0. || probe.velocity != 0.))
+      for (const Port& port : kinds_) append(rows, seen_at_once(residual, port, probe));
     table.push_back(all_zero(rows) ? -1 : tables++);
     if (table.back() >= 0) append(values, rows);
   }

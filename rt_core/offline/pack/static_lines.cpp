@@ -28,8 +28,8 @@ void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines)
     const PackedLine& own = packed.lines()[l];
     rows.push_back(own.basis.shapes.transpose() * own.closing);
     moved.push_back(own.basis.omega.cwiseAbs2().cwiseInverse().asDiagonal() * rows.back());
-    W += rows.back().transpose() * moved.back();
-    free += rows.back().transpose() * lines[l];
+    W += rows.back().transpose() * own.basis.give(rows.back());
+    free += rows.back().transpose() * own.basis.shown(lines[l]);
   }
   std::array<PortLaw, kMaxFixedPorts> law;
   std::array<double, kMaxFixedPorts> force{}, depth{};
@@ -77,9 +77,10 @@ double height_of(const Track& track, const PackedModel& packed,
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const PackedLine& own = packed.lines()[l];
     const Eigen::SparseVector<double> row = row_of(track, packed, own.line, at);
-    sum += packed.model().condensed == 0
-               ? row.dot(lines[l])
-               : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(lines[l]);
+    sum +=
+        packed.model().condensed == 0
+            ? row.dot(lines[l])
+            : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(own.basis.shown(lines[l]));
   }
   return sum;
 }

@@ -8,18 +8,17 @@
 namespace railstep {
 
 CondensedReceptance::CondensedReceptance(const Track& track, const Transfer& transfer,
-                                         const ModalLimit& limit, bool residual)
+                                         const Reduction& reduction, bool residual)
     : residual_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(transfer.reads.size()))) {
   for (const Line& line : assemble(track)) {
     const Eigen::VectorXd force(functional_row(track, line, transfer.force));
     if (force.norm() == 0.) continue;
-    const Basis basis = modal_basis(line, limit);
-    const DampedModes modes = damped_modes(basis, line.damping);
+    const auto [basis, modes] = reduce(track, line, reduction);
     const Eigen::VectorXd acting = basis.shapes.transpose() * force;
     const Eigen::MatrixXd read = read_rows(track, line, transfer) * basis.shapes;
     const Eigen::VectorXcd taken = modes.shape.transpose() * acting;
-    parts_.push_back({modes.rate, (read * modes.shape) * taken.asDiagonal(),
-                      static_cast<int>(basis.omega.size())});
+    parts_.push_back(
+        {modes.rate, (read * modes.shape) * taken.asDiagonal(), kept_coordinates(basis, modes)});
     if (residual) residual_ += residual_statics(track, line, &basis, transfer);
   }
 }

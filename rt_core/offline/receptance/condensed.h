@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "offline/condense/modal.h"
+#include "offline/condense/reduction.h"
 #include "offline/receptance/receptance.h"
 
 namespace railstep {
@@ -11,10 +11,10 @@ namespace railstep {
 /// (residual_statics()).
 class CondensedReceptance : public Receptance {
  public:
-  /// @param limit  of each line
+  /// @param reduction  of each line
   /// @param residual  false leaves out what the modes miss
-  /// Throws std::invalid_argument as modal_basis() and damped_modes() do.
-  CondensedReceptance(const Track& track, const Transfer& transfer, const ModalLimit& limit,
+  /// Throws std::invalid_argument as reduce() does.
+  CondensedReceptance(const Track& track, const Transfer& transfer, const Reduction& reduction,
                       bool residual = true);
   Eigen::VectorXcd at(double hz) override;
   /// Coordinates kept, of all lines that the force moves.

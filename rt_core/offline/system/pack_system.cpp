@@ -132,7 +132,7 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
   if (!traffic.wheelsets.empty() || !traffic.vehicles.empty())
     throw std::invalid_argument(
         "a track beside a system of bodies carries no wheelsets and no vehicles");
-  if (track_options.modal)
+  if (track_options.reduction)
     throw std::invalid_argument("a track beside a system of bodies is taken in full order");
   if (options.hold == Hold::gear_gupta_leimkuhler)
     throw std::invalid_argument(

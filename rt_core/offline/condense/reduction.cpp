@@ -1,0 +1,126 @@
+#include "offline/condense/reduction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "offline/condense/component.h"
+#include "offline/condense/rational_krylov.h"
+
+namespace railstep {
+
+namespace {
+
+/// Up to so many unknowns damped modes are those of the line itself; of a longer line they are
+/// those of four times as many undamped modes and of its dampers.
+constexpr int kWholeUnknowns = 600;
+constexpr int kRichness = 4;
+
+Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd both(a.rows(), a.cols() + b.cols());
+  both << a, b;
+  return both;
+}
+
+/// A basis with the static shapes of local forces.
+Basis with_statics(const Line& line, const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& forces) {
+  if (forces.cols() == 0) return ritz_basis(line, shapes);
+  Basis own;
+  own.shapes = shapes;
+  if (shapes.cols() > 0) own = ritz_basis(line, shapes);
+  return ritz_basis(line, beside(own.shapes, added_static_shapes(line, own.shapes, forces)));
+}
+
+/// By how much a truncated model gives way more than the line under a force on some coordinate,
+/// over what the softest gives: one of two real modes that nearly share a shape is many times too
+/// soft without the other.
+double excess(const Basis& basis) {
+  const Eigen::ArrayXd whole = basis.omega.array().square().inverse();
+  return (basis.flexibility.diagonal().array() - whole).maxCoeff() / whole.maxCoeff();
+}
+constexpr double kMostExcess = 1e-2;
+
+/// A damper on what has no mass makes a motion of first order, which no undamped mode shows.
+void refuse_damped_massless(const Line& line) {
+  for (int i = 0; i < line.unknowns(); ++i)
+    if (!(line.mass.coeff(i, i) > 0.) && line.damping.coeff(i, i) > 0.)
+      throw std::invalid_argument(
+          "dampers hold a sleeper without mass, which a condensed track does not carry; accepted "
+          "are a mass, no damping there, or full order");
+}
+
+/// Shapes of the kinds that are not made of modes of the whole line.
+Eigen::MatrixXd own_shapes(const Track& track, const Line& line, const Reduction& reduction,
+                           const ModalLimit& most) {
+  if (reduction.kind == ReductionKind::krylov)
+    return rational_krylov_shapes(track, line, reduction.expansion_hz, most.most);
+  if (reduction.kind == ReductionKind::craig_bampton) {
+    const double per_bay = static_cast<double>(reduction.limit.most) / track.bays;
+    return craig_bampton_shapes(line, kept_unknowns(track, line, 1),
+                                static_cast<int>(std::lround(per_bay)), most.highest_hz);
+  }
+  const std::vector<int> kept = kept_unknowns(track, line, reduction.nodes_per_bay);
+  return reduction.kind == ReductionKind::irs ? irs_shapes(line, kept) : guyan_shapes(line, kept);
+}
+
+ReducedLineModel truncated(const Line& line, const ModalLimit& limit) {
+  const int whole = line.unknowns() <= kWholeUnknowns ? line.unknowns() : kRichness * limit.most;
+  const Basis rich = modal_basis(line, {whole, std::numeric_limits<double>::infinity()});
+  ReducedLineModel made{rich, damped_modes(rich, line.damping)};
+  const double fastest = 2. * M_PI * limit.highest_hz;
+  const auto below = (made.modes.rate.cwiseAbs().array() <= fastest).count();
+  const DampedModes all = made.modes;
+  Eigen::Index most = std::min<Eigen::Index>(below, limit.most);
+  do {
+    made.modes = slowest(all, most);
+    made.basis.flexibility = flexibility_of(made.modes);
+    most = made.modes.rate.size() - 1;
+  } while (most > 0 && excess(made.basis) > kMostExcess);
+  if (made.modes.rate.size() == 0 || excess(made.basis) > kMostExcess)
+    throw std::invalid_argument(
+        "no few damped modes stand for a line alone: it keeps one or more, and none without the "
+        "one that is alike but for near critical damping; accepted are more modes or another kind");
+  made.basis.at_once = at_once_of(made.modes);
+  return made;
+}
+
+}  // namespace
+
+ModalLimit limit_of(const Line& line, const Reduction& reduction) {
+  // Of both rails in one line, each in unknowns of its own, as many as of two.
+  const bool both = !line.mirrored && line.rail_factor[0] != 0. && line.rail_factor[1] != 0.;
+  return {(both ? 2 : 1) * reduction.limit.most, reduction.limit.highest_hz};
+}
+
+int kept_coordinates(const Basis& basis, const DampedModes& modes) {
+  return static_cast<int>(basis.flexibility.size() > 0 ? modes.rate.size() : basis.omega.size());
+}
+
+ReducedLineModel reduce(const Track& track, const Line& line, const Reduction& reduction,
+                        const Eigen::SparseMatrix<double>& rows) {
+  if (line.unknowns() > kMostModalUnknowns)
+    throw std::invalid_argument(
+        "a line of " + std::to_string(line.unknowns()) + " unknowns is condensed; accepted are " +
+        std::to_string(kMostModalUnknowns) + ": step the full track or cut it shorter");
+  refuse_damped_massless(line);
+  const ModalLimit most = limit_of(line, reduction);
+  if (reduction.kind == ReductionKind::complex_modes) {
+    if (filled_columns(rows, line.unknowns()).cols() > 0)
+      throw std::invalid_argument(
+          "truncated damped modes do not answer one-sided supports, stops and gaps; accepted for "
+          "such a track are the other kinds");
+    return truncated(line, most);
+  }
+  Basis basis;
+  if (reduction.kind == ReductionKind::modal)
+    basis = modal_basis(line, most, rows);
+  else
+    basis = with_statics(line, own_shapes(track, line, reduction, most),
+                         beside(damper_forces(line), filled_columns(rows, line.unknowns())));
+  DampedModes modes = damped_modes(basis, line.damping);
+  return {std::move(basis), std::move(modes)};
+}
+
+}  // namespace railstep

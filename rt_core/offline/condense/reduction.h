@@ -1,0 +1,42 @@
+#pragma once
+#include <vector>
+
+#include "offline/condense/modal.h"
+
+namespace railstep {
+
+/// How a line is condensed; docs/condensation.md says what each keeps and where it fails.
+enum class ReductionKind { modal, guyan, irs, craig_bampton, krylov, complex_modes };
+
+/// A kind with how much it keeps of a line that holds one rail; of one that holds both it is twice
+/// as much.
+struct Reduction {
+  ReductionKind kind = ReductionKind::modal;
+  /// Undamped modes (modal), those of each rail's bays together (craig_bampton), coordinates
+  /// (krylov) or damped modes (complex_modes); guyan and irs have none.
+  ModalLimit limit = {0, 0.};
+  int nodes_per_bay = 1;                  // of guyan and irs
+  std::vector<double> expansion_hz = {};  // of krylov
+};
+
+/// A line in few coordinates, and the modes in which it is stepped.
+struct ReducedLineModel {
+  Basis basis;
+  DampedModes modes;
+};
+
+/// Of one line, which holds one rail or both.
+ModalLimit limit_of(const Line& line, const Reduction& reduction);
+
+/// How many coordinates a model keeps; of truncated damped modes these.
+int kept_coordinates(const Basis& basis, const DampedModes& modes);
+
+/// All kinds but damped modes are Galerkin's, and keep the static shapes of every damper and of
+/// `rows` too.
+/// @param rows  [unknowns][rows] where local forces act; may have no columns
+/// Throws std::invalid_argument as ritz_basis() and damped_modes() do, and on lines of more than
+/// kMostModalUnknowns.
+ReducedLineModel reduce(const Track& track, const Line& line, const Reduction& reduction,
+                        const Eigen::SparseMatrix<double>& rows = {});
+
+}  // namespace railstep
