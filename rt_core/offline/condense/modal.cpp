@@ -88,7 +88,9 @@ Basis modal_basis(const Line& line, const ModalLimit& limit,
   if (std::isfinite(limit.highest_hz)) count = std::min(count, modes_below(line, limit.highest_hz));
   const Modes lowest = lowest_modes(line, std::max(count, 1));
   refuse_free_mode(lowest.frequency[0]);
-  const Eigen::MatrixXd kept = lowest.shape.leftCols(count);
+  // Unknowns without mass have no modes.
+  const Eigen::MatrixXd kept =
+      lowest.shape.leftCols(std::min<Eigen::Index>(count, lowest.shape.cols()));
   const Eigen::MatrixXd dampers = damper_forces(line),
                         others = filled_columns(rows, line.unknowns());
   Eigen::MatrixXd forces(line.unknowns(), dampers.cols() + others.cols());
