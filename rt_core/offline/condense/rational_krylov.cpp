@@ -40,8 +40,8 @@ Eigen::MatrixXcd response(const Line& line, const Eigen::MatrixXd& forces, doubl
   const Eigen::SparseLU<Eigen::SparseMatrix<std::complex<double>>> factor(
       dynamic_stiffness(line, {0., 2. * M_PI * hz}));
   if (factor.info() != Eigen::Success)
-    throw std::runtime_error("the track resonates without damping at the expansion point of " +
-                             std::to_string(hz) + " Hz; move it");
+    throw std::invalid_argument("the track resonates without damping at the expansion point of " +
+                                std::to_string(hz) + " Hz; accepted is another");
   return factor.solve(forces.cast<std::complex<double>>().eval());
 }
 

@@ -10,10 +10,10 @@ namespace railstep {
 /// in the middle of every bay. Of all these, Re and Im apart, the `most` directions that hold the
 /// most of their strain energy (singular vectors): what Galerkin's coordinates miss of a place's
 /// static compliance is the strain energy they miss. Away from statics it is a measure and no
-/// bound; a motion far softer than the expansion points hold little of it.
+/// bound; a motion far softer than the expansion points holds little of it.
 /// @param hz    expansion points, above 0
 /// @param most  columns of the result, fewer where there are no more
-/// Throws std::runtime_error where the line resonates without damping at an expansion point.
+/// Throws std::invalid_argument where the line resonates without damping at an expansion point.
 Eigen::MatrixXd rational_krylov_shapes(const Track& track, const Line& line,
                                        const std::vector<double>& hz, int most);
 
