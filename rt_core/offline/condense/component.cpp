@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/condense/modal.h"
+#include "offline/track/massless.h"
 
 namespace railstep {
 
@@ -29,14 +29,6 @@ struct Partition {
       if (!is_kept[static_cast<std::size_t>(i)]) following.push_back(i);
     pick_kept = picks(n, kept);
     pick_following = picks(n, following);
-  }
-
- private:
-  static Sparse picks(int unknowns, const std::vector<int>& chosen) {
-    Sparse result(unknowns, static_cast<int>(chosen.size()));
-    for (std::size_t j = 0; j < chosen.size(); ++j)
-      result.insert(chosen[j], static_cast<int>(j)) = 1.;
-    return result;
   }
 };
 

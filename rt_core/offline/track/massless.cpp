@@ -2,23 +2,17 @@
 
 #include <Eigen/SparseCholesky>
 #include <stdexcept>
-#include <vector>
 
 namespace railstep {
 
-namespace {
-
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Picks unknowns: [unknowns][chosen] with a 1 in each column.
 Sparse picks(int unknowns, const std::vector<int>& chosen) {
   Sparse result(unknowns, static_cast<int>(chosen.size()));
   for (std::size_t j = 0; j < chosen.size(); ++j)
     result.insert(chosen[j], static_cast<int>(j)) = 1.;
   return result;
 }
-
-}  // namespace
 
 MassiveLine without_massless(const Line& line) {
   std::vector<int> massive, massless;

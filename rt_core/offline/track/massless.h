@@ -1,7 +1,12 @@
 #pragma once
+#include <vector>
+
 #include "offline/track/track.h"
 
 namespace railstep {
+
+/// Picks unknowns: [unknowns][chosen] with a 1 in each column.
+Eigen::SparseMatrix<double> picks(int unknowns, const std::vector<int>& chosen);
 
 /// A line's undamped motion over the unknowns that carry mass; the others (a sleeper of 0 kg)
 /// follow them without inertia, which leaves out no mode.
