@@ -18,6 +18,7 @@
 #include "offline/track/statics.h"
 #include "online/step/step.h"
 #include "simulate.h"
+#include "trace.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -269,7 +270,8 @@ TEST_CASE("a state that stops being finite ends the run, names its place and kee
   const Scene scene = read_scene(kMovingLoad);
   Simulation run(scene);
   Trace trace(file, run.columns());
-  const RunRecord record = simulate(run, 100, &trace, false, [&](std::int64_t done) {
+  const RowSink to_trace = [&](std::span<const double> row) { trace.row(row); };
+  const RunRecord record = simulate(run, 100, to_trace, false, [&](std::int64_t done) {
     if (done == 10)
       run.state.u[run.model().line[1].first + 7] = std::numeric_limits<double>::infinity();
   });

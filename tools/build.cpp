@@ -13,6 +13,8 @@
 #include "build_endless.h"
 #include "build_irregularity.h"
 #include "build_joints.h"
+#include "build_unstepped.h"
+#include "cache_sizes.h"
 #include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
@@ -22,26 +24,9 @@
 #include "sense.h"
 
 namespace railstep {
-namespace {
+namespace {}  // namespace
 
-/// Refuses what a scene may say but a run does not step, so that nothing is left out in silence.
-void refuse_unstepped(const Scene& scene) {
-  const auto refuse = [&](bool wanted, const char* what) {
-    if (wanted) throw InputError(fmt::format("{}: run {}", scene.file.string(), what));
-  };
-  refuse(scene.loads.empty() && scene.wheelsets.empty() && scene.vehicles.empty() &&
-             scene.external_wheels.empty(),
-         "needs a [[load]], a [[wheelset]], a [[vehicle]] or an [[external_wheel]] and the scene "
-         "has none");
-  refuse(!scene.step, "and condense need a [step] and the scene has none");
-  refuse(scene.track.model != RailModel::linearised,
-         "and condense step the linearised rail; accepted is track.model = \"linearised\"");
-  refuse(scene.track.reference_line != ReferenceLine::centroid,
-         "and condense have the nodes on the centroid; accepted is track.reference_line = "
-         "\"centroid\"");
-  refuse(scene.step->steps % scene.step->steps_per_frame != 0,
-         "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
-}
+namespace {
 
 /// A scene's table is 0 before its first row; the model's keeps its first value. A row one bit
 /// earlier makes them the same function.
@@ -367,8 +352,7 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
 }
 
 Built::Built(const Scene& scene) try {
-  // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
-  Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
+  fix_cache_sizes();
   refuse_unstepped(scene);
   track = track_of(scene);
   if (!scene.condense.kind) track.ring = false;  // a window, which has ends

@@ -6,6 +6,7 @@
 
 #include "about.h"
 #include "build.h"
+#include "cache_sizes.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/scheme.h"
 #include "sense.h"
@@ -76,9 +77,7 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
 }  // namespace
 
 BuiltSystem::BuiltSystem(const SystemScene& scene) try
-    : names(scene.names), system(system_of(scene)) {
-  // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
-  Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
+    : names(scene.names), system((fix_cache_sizes(), system_of(scene))) {
   about = railstep::about(scene);
   columns = {"time_s"};
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);

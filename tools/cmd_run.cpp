@@ -1,7 +1,5 @@
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -14,12 +12,13 @@
 
 #include "command.h"
 #include "drawing.h"
-#include "energy.h"
-#include "energy_system.h"
 #include "inputs.h"
+#include "progress.h"
 #include "recording.h"
+#include "run_energy.h"
 #include "run_report.h"
 #include "simulate.h"
+#include "trace.h"
 #include "vtk_record.h"
 #include "write.h"
 
@@ -34,31 +33,6 @@ struct RunOptions {
   std::vector<std::string> overrides;
   std::optional<double> step, duration;  // s
   bool json = false;
-};
-
-/// A bar on stderr, when that is a terminal; moves once a percent.
-class Progress {
- public:
-  explicit Progress(std::int64_t frames) : frames_(frames), shown_(isatty(STDERR_FILENO) == 1) {}
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  ~Progress() {
-    if (shown_ && percent_ >= 0) std::fputs("\r\033[K", stderr);
-  }
-  void operator()(std::int64_t done) {
-    const int percent =
-        static_cast<int>(100. * static_cast<double>(done) / static_cast<double>(frames_));
-    if (!shown_ || percent == percent_) return;
-    percent_ = percent;
-    const auto full = static_cast<std::size_t>(percent / 4);
-    fmt::print(stderr, "\r[{}{}] {:3d} %", std::string(full, '#'), std::string(25 - full, ' '),
-               percent);
-  }
-
- private:
-  std::int64_t frames_;
-  bool shown_;
-  int percent_ = -1;
 };
 
 AnyScene scene_of(const RunOptions& o) {
@@ -95,30 +69,6 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
         fmt::format("--duration {:g}: accepted is a whole number of the model's frames of {:g} s",
                     *o.duration, frame));
   return std::llround(frames);
-}
-
-/// Whether the energies of a run can be told. They cannot of a model file, which has no matrices,
-/// and of truncated damped modes, whose forces do work that no matrix of theirs takes up.
-bool has_energies(const Simulation& run) {
-  if (run.packed() == nullptr) return run.system() != nullptr;
-  const std::vector<PackedLine>& lines = run.packed()->lines();
-  return std::none_of(lines.begin(), lines.end(),
-                      [](const PackedLine& own) { return own.basis.flexibility.size() > 0; });
-}
-
-/// The energies of what was run, from a second pass over it; none where there are none, and of a
-/// run that did not stay finite.
-std::optional<EnergyBalance> balance_of_run(const Simulation& run, const RunRecord& record,
-                                            std::int64_t frames, const FrameInputs& inputs,
-                                            Progress& bar) {
-  if (!has_energies(run) || record.first_bad_unknown >= 0) return std::nullopt;
-  const auto after = [&bar, frames](std::int64_t done) { bar(frames + done); };
-  const EnergyBalance found = run.system() != nullptr
-                                  ? balance_of(*run.system()->packed, frames, after, inputs)
-                                  : balance_of(*run.packed(), run.model(), frames, after, inputs);
-  if (found.hash != state_hash(run.model(), run.state))
-    throw std::runtime_error("a second run of the same model ended in another state");
-  return found;
 }
 
 /// What is not known is NaN, which JSON writes as null.
@@ -165,11 +115,7 @@ Exit verdict(const Simulation& run, const RunRecord& record) {
     if (name != "nonfinite_state")
       fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, record));
     else
-      fmt::print(stderr,
-                 "error: nonfinite_state: at step {}, t = {:.9g} s, unknown {} of the state ({}) "
-                 "is not finite\n",
-                 run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
-                 record.first_bad_unknown, unknown_place(run, record.first_bad_unknown));
+      fmt::print(stderr, "error: {}\n", nonfinite_sentence(run, record));
   }
   return has(record.status, Status::nonfinite_state) ? Exit::not_reached : Exit::done;
 }
@@ -225,19 +171,22 @@ Exit run(const RunOptions& o) {
   const FrameInputs inputs = inputs_of(o, *simulation);
   std::optional<Recording> recording;
   if (!o.record.empty()) recording.emplace(Recording::begin(*simulation, o.hash_every));
+  RowSink rows;
+  if (trace) rows = [&trace](std::span<const double> row) { trace->row(row); };
   RunRecord record;
   std::optional<EnergyBalance> energy;
   {
     Progress bar(has_energies(*simulation) ? 2 * frames : frames);
     record = simulate(
-        *simulation, frames, trace ? &*trace : nullptr, !o.report.empty(),
+        *simulation, frames, rows, !o.report.empty(),
         [&](std::int64_t done) {
           bar(done);
           if (vtk) vtk->frame(done);
           if (recording) record_frame(*simulation, inputs, done, *recording);
         },
         inputs);
-    energy = balance_of_run(*simulation, record, frames, inputs, bar);
+    energy = balance_of_run(*simulation, record, frames, inputs,
+                            [&](std::int64_t done) { bar(frames + done); });
   }
   if (trace) trace->finish();
   if (vtk) vtk->finish();

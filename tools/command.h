@@ -24,6 +24,7 @@ Command add_receptance(CLI::App& app);
 Command add_replay(CLI::App& app);
 Command add_run(CLI::App& app);
 Command add_static(CLI::App& app);
+Command add_sweep(CLI::App& app);
 Command add_rules(CLI::App& app);
 
 }  // namespace railstep

@@ -6,17 +6,20 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cache_sizes.h"
 #include "command.h"
 
 /// The program: parses, runs the chosen subcommand, and turns errors into one line and exit code 2.
 int main(int argc, char** argv) {
   using namespace railstep;
+  fix_cache_sizes();
   CLI::App app{"railstep: real-time, fixed-step simulation of flexible railway track"};
   app.name("railstep");
   app.require_subcommand(1);
-  const std::vector<Command> commands = {
-      add_fit(app), add_static(app), add_modes(app),   add_receptance(app), add_condense(app),
-      add_run(app), add_replay(app), add_compare(app), add_rules(app),      add_hil(app)};
+  const std::vector<Command> commands = {add_fit(app),        add_static(app),   add_modes(app),
+                                         add_receptance(app), add_condense(app), add_run(app),
+                                         add_sweep(app),      add_replay(app),   add_compare(app),
+                                         add_rules(app),      add_hil(app)};
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)

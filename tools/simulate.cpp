@@ -66,7 +66,7 @@ void note_redundant(const Simulation& run, const Outputs& outputs, RunRecord& re
 
 }  // namespace
 
-RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
+RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bool keep_rows,
                    const std::function<void(std::int64_t)>& after, const FrameInputs& inputs) {
   RunRecord record;
   Outputs outputs{};
@@ -78,9 +78,9 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
     record.constraint_violation =
         std::max(record.constraint_violation, outputs.constraint_violation);
     note_redundant(run, outputs, record);
-    if (!trace && !keep_rows) return;
+    if (!sink && !keep_rows) return;
     trace_row(run.model(), run.state, outputs, row.data());
-    if (trace) trace->row(row);
+    if (sink) sink(row);
     if (!keep_rows) return;
     record.rows.insert(record.rows.end(), row.begin(), row.end());
     record.violations.push_back(outputs.constraint_violation);
@@ -173,6 +173,13 @@ std::string unknown_place(const Simulation& run, std::int32_t unknown) {
   if (system.unknowns == 0 || unknown < system.first) return place_in_track(run.model(), unknown);
   const SystemNames* const names = run.system() != nullptr ? &run.system()->names : nullptr;
   return place_in_system(system, names, unknown - system.first);
+}
+
+std::string nonfinite_sentence(const Simulation& run, const RunRecord& record) {
+  return fmt::format(
+      "nonfinite_state: at step {}, t = {:.9g} s, unknown {} of the state ({}) is not finite",
+      run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
+      record.first_bad_unknown, unknown_place(run, record.first_bad_unknown));
 }
 
 double quantile(std::vector<double> values, double q) {

@@ -2,12 +2,12 @@
 #include <cstdint>
 #include <functional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "inputs.h"
 #include "simulation.h"
-#include "trace.h"
 
 namespace railstep {
 
@@ -35,12 +35,15 @@ struct RunRecord {
   std::vector<RailSnapshot> shapes;     // at kShapes times; only when asked for
 };
 
+/// What takes the rows of a trace, one after the other.
+using RowSink = std::function<void(std::span<const double>)>;
+
 /// Steps `frames` frames from the state as it stands; stops early when the state is not finite.
-/// @param trace     gets a row for the state at the start and one a frame; may be null
+/// @param sink      gets a row for the state at the start and one a frame; may be empty
 /// @param keep_rows also keep the rows in the record
 /// @param after     called after every frame with the number of frames done; may be empty
 /// @param inputs    what the frames are given
-RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep_rows,
+RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bool keep_rows,
                    const std::function<void(std::int64_t)>& after = {},
                    const FrameInputs& inputs = {});
 
@@ -48,6 +51,8 @@ RunRecord simulate(Simulation& run, std::int64_t frames, Trace* trace, bool keep
 std::vector<std::string> status_names(Status status);
 /// What a status bit means and what to do about it, by its name; with the joints it is about.
 std::string status_sentence(const std::string& name, const RunRecord& record);
+/// Says where and when a run stopped being finite: "nonfinite_state: at step ...".
+std::string nonfinite_sentence(const Simulation& run, const RunRecord& record);
 /// Where an unknown of the state sits, in words.
 std::string unknown_place(const Simulation& run, std::int32_t unknown);
 
