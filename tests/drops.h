@@ -39,6 +39,8 @@ struct Drop {
   double dissipated = 0.;  // J, by the dampers, trapezoidal in the step
 
   Drop(const Track& on, double x, double dt, const Fall& fall = {})
+      : Drop(on, x, generalised_alpha(dt, .6), fall) {}
+  Drop(const Track& on, double x, const Scheme& scheme, const Fall& fall)
       : track(on), lines(assemble(on)) {
     Wheelset w;
     w.mass = 2. * fall.mass;
@@ -49,7 +51,7 @@ struct Drop {
     const bool residual = on.bays > 1;
     packed = std::make_unique<PackedModel>(
         track, Traffic{.wheelsets = {w}},
-        PackOptions{.scheme = generalised_alpha(dt, .6), .residual_flexibility = residual});
+        PackOptions{.scheme = scheme, .residual_flexibility = residual});
     memory.assign(static_cast<std::size_t>(state_doubles(model())), 0.);
     scratch.assign(static_cast<std::size_t>(workspace_doubles(model())), 0.);
     state = state_on(model(), memory.data());

@@ -86,10 +86,10 @@ TEST_CASE("numbers out of range are refused though the sum is right", "[artefact
   const std::size_t counts = section_at(good, kWords);
   Model model;
   REQUIRE(read(good, model).status == LoadStatus::ok);
-  REQUIRE(word_of(good, counts) == model.lines);
-  // lines, loads, wheelsets, vehicles and their wheels, signals, elements, unknowns, condensed,
-  // bodies, steps_per_frame, inputs
-  for (std::size_t i = 0; i < 12; ++i)
+  REQUIRE(word_of(good, counts + 8) == model.lines);
+  // the scheme's mean, lines, loads, wheelsets, vehicles and their wheels, signals, elements,
+  // unknowns, condensed, bodies, steps_per_frame, inputs
+  for (std::size_t i = 0; i < 13; ++i)
     for (const std::int64_t value : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(),
                                      word_of(good, counts + 8 * i) + 1}) {
       Block bad = good;
@@ -118,6 +118,9 @@ TEST_CASE("numbers that would make a solve unsafe are refused though the sum is 
     CHECK(status([&](Model& m) { m.load[0].force = value; }) == bad);
     CHECK(status([&](Model& m) { m.rail_z[1] = value; }) == bad);
   }
+  CHECK(status([&](Model& m) { m.scheme.part = -.1; }) == bad);
+  CHECK(status([&](Model& m) { m.scheme.part = 1.; }) == bad);
+  CHECK(status([&](Model& m) { m.scheme.mean = 1; }) == bad);
   CHECK(status([&](Model& m) { m.load[0].stop = nan; }) == bad);
   CHECK(status([&](Model& m) { m.wheelset[0].mass[3] = 0.; }) == bad);
   CHECK(status([&](Model& m) { m.wheelset[0].hertz[1] = -1.; }) == bad);

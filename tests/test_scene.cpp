@@ -150,6 +150,21 @@ TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio", "[scene]") {
              Contains("frame_s = 0.00101 is not a whole number of steps of dt_s = 2.5e-05"));
   CHECK_THAT(with("moving_load", {"step.rho_inf=1.1"}),
              Contains("rho_inf = 1.1") && Contains("at least 0, at most 1"));
+  CHECK(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_gamma=0.6"}) == "accepted");
+  CHECK_THAT(with("moving_load", {"step.newmark_gamma=0.5"}),
+             Contains("newmark_gamma is not used here; accepted with scheme = \"newmark\""));
+  CHECK_THAT(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_gamma=0.25"}),
+             Contains("newmark_gamma = 0.25") && Contains("at least 0.5, at most 1"));
+  CHECK_THAT(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_beta=0.125"}),
+             Contains("newmark_beta = 0.125") && Contains("at least 0.25, at most 1"));
+  CHECK_THAT(with("moving_load", {"step.scheme=\"hht\"", "step.hht_alpha=-0.34"}),
+             Contains("hht_alpha = -0.34"));
+  CHECK(with("moving_load", {"step.scheme=\"hht\"", "step.hht_alpha=-0.3333333333333333"}) ==
+        "accepted");
+  CHECK(with("moving_load", {"step.scheme=\"tr-bdf2\""}) == "accepted");
+  CHECK_THAT(with("moving_load", {"step.scheme=\"tr-bdf2\"",
+                                  "external_wheel=[{name=\"w\", rail=\"left\", limit_n=1e6}]"}),
+             Contains("scheme = \"tr-bdf2\" has two stages") && Contains("external_wheel"));
   CHECK_THAT(with("moving_load", {"rail.poisson=0.5"}), Contains("above -1, below 0.5"));
   CHECK_THAT(with("moving_load", {"rail.poisson=-1"}), Contains("above -1, below 0.5"));
   CHECK(with("moving_load", {"rail.poisson=0.499"}) == "accepted");

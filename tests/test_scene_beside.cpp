@@ -95,6 +95,7 @@ TEST_CASE("what is not stepped beside bodies is refused by its key", "[scene]") 
   refused("step.scheme=\"energy-momentum\"",
           "scheme = \"energy-momentum\" is of bodies and beams "
           "without a track; accepted are \"generalised-alpha\"");
+  refused("step.scheme=\"tr-bdf2\"", "bodies and beams are not stepped; accepted are");
   refused("step.scheme=\"rk4\"", "accepted are \"generalised-alpha\", \"backward-euler\"");
   refused("step.frame_s=0.003", "whole frames");
   refused("joints.hold=\"gear-gupta-leimkuhler\"",

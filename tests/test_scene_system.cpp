@@ -321,7 +321,7 @@ TEST_CASE("a system's [step]", "[scene]") {
         TimeScheme::energy_momentum);
   CHECK_THAT(with(kPendulum, {"step.scheme=\"rk4\""}),
              Contains("accepted are \"generalised-alpha\", \"backward-euler\", "
-                      "\"energy-momentum\""));
+                      "\"newmark\", \"hht\", \"energy-momentum\""));
   CHECK_THAT(with("moving_load", {"step.scheme=\"energy-momentum\""}),
              Contains("accepted are \"generalised-alpha\", \"backward-euler\""));
   CHECK(system_scene(kPendulum).step.start == Start::released);

@@ -2,22 +2,14 @@
 
 #include <fmt/core.h>
 
+#include "step_scheme.h"
 #include "version.h"
 
 namespace railstep {
 namespace {
 
 std::string name_of(const StepScene& step, bool held) {
-  if (held) return fmt::format("exact under forces held over a step, rho_inf {:g}", step.rho_inf);
-  switch (step.scheme) {
-    case TimeScheme::backward_euler:
-      return "backward Euler";
-    case TimeScheme::energy_momentum:
-      return "energy-momentum";
-    case TimeScheme::generalised_alpha:
-      break;
-  }
-  return fmt::format("generalised-alpha, rho_inf {:g}", step.rho_inf);
+  return held ? held_scheme_text(step) : scheme_text(step);
 }
 
 std::string lines(const std::filesystem::path& file, const std::string& sum, const StepScene& step,

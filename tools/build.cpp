@@ -17,11 +17,11 @@
 #include "cache_sizes.h"
 #include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
-#include "offline/pack/scheme.h"
 #include "offline/pack/start.h"
 #include "offline/pack/travel_rows.h"
 #include "offline/track/buckling.h"
 #include "sense.h"
+#include "step_scheme.h"
 
 namespace railstep {
 namespace {}  // namespace
@@ -155,13 +155,6 @@ double rail_z(const Scene& scene, const RailSections& sections, const Track& tra
 
 namespace {
 
-Scheme scheme_of(const Scene& scene) {
-  const StepScene& step = *scene.step;
-  if (scene.condense.kind) return held_force(step.dt, step.rho_inf);
-  return step.scheme == TimeScheme::backward_euler ? backward_euler(step.dt)
-                                                   : generalised_alpha(step.dt, step.rho_inf);
-}
-
 Support support_of(const SupportScene& s, const Section& section, double axis_z) {
   return {.stiffness = {s.x.stiffness, s.y.stiffness, s.z.stiffness},
           .damping = {s.x.damping, s.y.damping, s.z.damping},
@@ -236,7 +229,7 @@ PackOptions pack_options_of(const Scene& scene) {
     throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
                                  scene.file.string(), step.steps_per_frame,
                                  std::numeric_limits<int>::max()));
-  PackOptions options{.scheme = scheme_of(scene),
+  PackOptions options{.scheme = scene.condense.kind ? held_scheme_of(step) : scheme_of(step),
                       .steps_per_frame = static_cast<int>(step.steps_per_frame),
                       .residual_flexibility = scene.condense.residual_flexibility,
                       .gravity = scene.track.gravity ? kGravity : 0.,

@@ -8,8 +8,8 @@
 #include "build.h"
 #include "cache_sizes.h"
 #include "offline/pack/artefact.h"
-#include "offline/pack/scheme.h"
 #include "sense.h"
+#include "step_scheme.h"
 
 namespace railstep {
 namespace {
@@ -22,18 +22,6 @@ void add_section(const BeamBar& made_of, const std::string& place, FlexibleBeam&
   beam.rule = bar.rule;
   beam.axis_z = axis_z_of(made_of.line, found.section);
   beam.half_height = .5 * found.section.height;
-}
-
-Scheme scheme_of(const StepScene& step) {
-  switch (step.scheme) {
-    case TimeScheme::backward_euler:
-      return backward_euler(step.dt);
-    case TimeScheme::energy_momentum:
-      return energy_momentum(step.dt);
-    case TimeScheme::generalised_alpha:
-      break;
-  }
-  return generalised_alpha(step.dt, step.rho_inf);
 }
 
 SystemOptions options_of(const SystemScene& scene) {

@@ -253,10 +253,7 @@ StepScene read_times(const Table& t) {
 
 StepScene read_track_step(const Table& t) {
   StepScene s = read_times(t);
-  s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.6);
-  s.scheme = t.choice("scheme", {"generalised-alpha", "backward-euler"}, 0) == 0
-                 ? TimeScheme::generalised_alpha
-                 : TimeScheme::backward_euler;
+  read_scheme(t, 0.6, false, s);
   constexpr Start kStarts[] = {Start::equilibrium, Start::released, Start::moving};
   s.start = kStarts[t.choice("start", {"equilibrium", "released", "moving"}, 0)];
   return s;
@@ -321,12 +318,14 @@ Scene read_track_scene(const Table& root) {
                    "track.length = \"endless\"");
   }
   scene.condense = read_condense(root, scene.track);
+  if (scene.step) read_contact(root, scene);
   scene.statics = read_statics(root);
   scene.stops = read_stops(root, scene);
   scene.loads = read_loads(root, scene);
   scene.wheelsets = read_wheelsets(root, scene, scene.inputs);
   scene.vehicles = read_vehicles(root, scene, scene.inputs);
   scene.external_wheels = read_external_wheels(root, scene);
+  check_stages(root, scene);
   scene.irregularity = read_irregularity(root, scene);
   scene.defects = read_defects(root, scene);
   scene.sensors = read_sensors(root, scene);

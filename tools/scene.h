@@ -19,7 +19,7 @@ namespace railstep {
 
 enum class Height { axis, head, foot };  // where in the section a force acts or a sensor sits
 enum class Side { left, right };         // left is +y
-enum class TimeScheme { generalised_alpha, backward_euler, energy_momentum };
+enum class TimeScheme { generalised_alpha, backward_euler, newmark, hht, tr_bdf2, energy_momentum };
 enum class Start { equilibrium, released, moving };
 enum class GuideMethod { augmented_lagrangian, baumgarte };
 enum class RailModel { linearised, nonlinear, timoshenko };
@@ -241,8 +241,11 @@ struct StepScene {
   double dt;  // s
   std::int64_t steps_per_frame;
   std::int64_t steps;  // of the whole run
-  double rho_inf;
   TimeScheme scheme;
+  double rho_inf;                      // of generalised-alpha, and of held contact forces
+  double newmark_gamma, newmark_beta;  // of Newmark
+  double hht_alpha;                    // of Hilber, Hughes and Taylor
+  bool mean_contact;                   // of condensed tracks: contact by the discrete gradient
   Start start;
 };
 

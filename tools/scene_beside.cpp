@@ -35,7 +35,11 @@ StepScene read_step(const Table& t) {
   if (t.has("scheme") && t.string("scheme") == "energy-momentum")
     t.refuse("scheme",
              "scheme = \"energy-momentum\" is of bodies and beams without a track; "
-             "accepted are \"generalised-alpha\", \"backward-euler\"");
+             "accepted are \"generalised-alpha\", \"backward-euler\", \"newmark\", \"hht\"");
+  if (t.has("scheme") && t.string("scheme") == "tr-bdf2")
+    t.refuse("scheme",
+             "scheme = \"tr-bdf2\" has two stages, by which bodies and beams are not stepped; "
+             "accepted are \"generalised-alpha\", \"backward-euler\", \"newmark\", \"hht\"");
   const StepScene step = read_track_step(t);
   check_frames(t, step);
   return step;

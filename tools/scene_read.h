@@ -40,6 +40,14 @@ CondenseScene read_full_order(const Table& root);
 StepScene read_times(const Table& step);
 /// [step] of a scene with a track.
 StepScene read_track_step(const Table& step);
+/// The scheme of [step] and its numbers.
+/// @param rho_inf    where the scene does not say it
+/// @param of_bodies  whether they are those of bodies and beams
+void read_scheme(const Table& step, double rho_inf, bool of_bodies, StepScene& read);
+/// How contact forces of [step] follow the penetration; of a scene whose [condense] is read.
+void read_contact(const Table& root, Scene& scene);
+/// Refuses a scheme of two stages where something presses at the ends of steps alone.
+void check_stages(const Table& root, const Scene& scene);
 /// Refuses a run that is no whole number of frames.
 void check_frames(const Table& step, const StepScene& read);
 /// How a track's nodes lie in its section: reference_line, the centroid by default.

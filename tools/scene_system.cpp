@@ -33,14 +33,10 @@ void read_whole(const Table& root, System& system) {
 }
 
 StepScene read_step(const Table& t) {
-  constexpr TimeScheme kSchemes[] = {TimeScheme::generalised_alpha, TimeScheme::backward_euler,
-                                     TimeScheme::energy_momentum};
   StepScene s = read_times(t);
   s.start =
       t.choice("start", {"equilibrium", "released"}, 1) == 0 ? Start::equilibrium : Start::released;
-  s.rho_inf = t.number("rho_inf", between(0.0, 1.0), 0.9);
-  s.scheme =
-      kSchemes[t.choice("scheme", {"generalised-alpha", "backward-euler", "energy-momentum"}, 0)];
+  read_scheme(t, 0.9, true, s);
   check_frames(t, s);
   return s;
 }

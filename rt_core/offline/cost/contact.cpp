@@ -91,8 +91,8 @@ Cost coupled_cost(const Model& model, std::int64_t contacts) {
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     lift += 2 * std::int64_t{model.vehicle[v].size} * model.vehicle[v].wheels;
   const std::int64_t ports = contacts + model.fixed.count;
-  return turns *
-         (ports_cost(ports) + work(lift + 3 * ports, lift) + model.wheelsets * work(150, 100));
+  return turns * (ports_cost(ports, model.scheme.mean != 0) + work(lift + 3 * ports, lift) +
+                  model.wheelsets * work(150, 100));
 }
 
 }  // namespace
@@ -107,6 +107,10 @@ Cost contact_cost(const Model& model) {
   const std::int64_t pairs = contacts * (contacts + 1) / 2;
   sum = sum + pairs * (work(40, 20) + kPairLookUp);
   sum = sum + loads_cost(model) + model.loads * contacts * kPairLookUp + contacts * work(200, 100);
+  if (model.scheme.mean != 0)  // where each contact was, and the residual displacement there
+    sum = sum + contacts * (work(50, 30) + contacts * kPairLookUp);
+  for (std::int32_t l = 0; l < model.lines && model.scheme.mean != 0; ++l)
+    sum = sum + contacts * line_cost(model, model.line[l]).read;
   return sum + tables_cost(model) + vehicles_cost(model, contacts) + fixed_cost(model) +
          coupled_cost(model, contacts);
 }

@@ -18,7 +18,8 @@ Cost contact_cost(const Model& model);
 
 /// Of one way through solve_ports() with n ports: its start, its capped iterations, each with its
 /// steps shortened as often as they may be, and what is left at the cap.
-Cost ports_cost(std::int64_t n);
+/// @param means  whether laws of contacts are means over the step
+Cost ports_cost(std::int64_t n, bool means = false);
 
 inline constexpr Cost operator+(Cost a, Cost b) {
   return {a.flops + b.flops, a.bytes + b.bytes, a.instructions + b.instructions};

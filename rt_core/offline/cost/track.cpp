@@ -32,7 +32,8 @@ Cost publish_cost(const Model& model) {
   return sum;
 }
 
-Cost step_cost(const Model& model) {
+/// Of a step, or of each of its stages.
+Cost stage_cost(const Model& model) {
   Cost sum = work(20, 0) + loads_cost(model) + model.external_wheels * external_cost(model);
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
@@ -43,6 +44,12 @@ Cost step_cost(const Model& model) {
   const std::int64_t bodies = model.unknowns - model.bodies;
   sum = sum + work(21 * bodies, 18 * bodies);
   return sum + contact_cost(model) + system_cost(model);
+}
+
+Cost step_cost(const Model& model) {
+  if (model.scheme.part == 0.) return stage_cost(model);
+  // Where a step starts is kept for its second stage.
+  return 2 * stage_cost(model) + work(2, 4 * std::int64_t{model.unknowns});
 }
 
 }  // namespace

@@ -208,6 +208,9 @@ void PackedModel::set_start(std::vector<double> state) {
 PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackOptions& options) {
   if (options.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
   model_.scheme = options.scheme;
+  if (options.scheme.mean != 0 && !options.reduction)
+    throw std::invalid_argument(
+        "contact forces that are means over the step are held over it, as with condensed tracks");
   model_.steps_per_frame = options.steps_per_frame;
   model_.steps = options.steps;
   take_inputs(traffic.input_limits, model_);
@@ -270,6 +273,10 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
           "other kinds of condensed tracks, and full order");
   if (model_.steps_per_frame != 1)
     throw std::invalid_argument("external wheels want a frame of one step");
+  if (model_.scheme.part > 0.)
+    throw std::invalid_argument(
+        "external wheels press at the ends of steps; accepted is a scheme of one stage, which "
+        "TR-BDF2 is not");
   constexpr double kFar = 1e9;  // m
   const std::int32_t input = model_.inputs;
   take_inputs({kFar, kFar, wheel.limit, wheel.limit, wheel.limit}, model_);

@@ -35,6 +35,8 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
   if (!(o.alpha >= 0.) || !(o.beta >= 0.))
     throw std::invalid_argument("Baumgarte's alpha and beta are not negative");
   const Scheme& c = o.scheme;
+  if (with_scheme && c.part > 0.)
+    throw std::invalid_argument("bodies and beams are stepped by schemes of one stage");
   const bool means = std::abs(c.kg * c.dt * c.dt - 2.) < 1e-9 &&
                      std::abs(c.kv * c.dt - 2.) < 1e-9;  // energy_momentum(dt)
   if (with_scheme && means != o.energy_momentum)
@@ -46,18 +48,19 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
         "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
 }
 
-/// Index 3 has -rho_inf as a double root: with rho_inf = 1 joint forces swing from step to step and
-/// grow (Cardona and Geradin 1989). Projections take that away, and so do rows of velocities.
+/// Index 3 has -rho_inf as a double root: of a scheme that does not damp joint forces swing from
+/// step to step and grow (Cardona and Geradin 1989). Projections take that away, and so do rows of
+/// velocities.
 void check_damping(const System& system, const SystemOptions& o, const Scheme& c) {
   const bool index_3 =
       o.hold == Hold::direct || (o.hold == Hold::augmented_lagrangian && o.projections == 0);
   if (!index_3 || o.energy_momentum || system.joints.empty()) return;
   // generalised_alpha: a0 / ag = alpha_f / (1 - alpha_f) = rho_inf
-  if (c.a0 >= (1. - 1e-9) * c.ag)
+  if (c.a0 >= (1. - 1e-9) * c.ag || radius_at_infinity(c) >= 1. - 1e-7)
     throw std::invalid_argument(
-        "hold = \"direct\", or \"augmented-lagrangian\" without projections, and rho_inf = 1: "
-        "nothing damps the joint forces, which swing from step to step and grow; accepted is "
-        "rho_inf below 1, or another hold");
+        "hold = \"direct\", or \"augmented-lagrangian\" without projections, and newmark_gamma = "
+        "0.5, hht_alpha = 0 or rho_inf = 1: nothing damps the joint forces, which swing from step "
+        "to step and grow; accepted is rho_inf below 1, or another hold");
 }
 
 /// By which the equilibrium is looked for: long steps of backward Euler, joints held without

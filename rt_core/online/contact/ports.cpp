@@ -31,7 +31,30 @@ double penetration(double force, double C) noexcept {
 
 double larger(double a, double b) noexcept { return a > b ? a : b; }
 
+/// [V(d) - V(e)] / (d - e) and its slope over d, of V = 2/5 C max(d, 0)^2.5: without a difference
+/// of like numbers, by r = sqrt d, s = sqrt e,
+///   0.4 C (r^4 + r^3 s + r^2 s^2 + r s^3 + s^4) / (r + s).
+struct Mean {
+  double force, slope;
+};
+Mean mean_at(double C, double d, double e) noexcept {
+  if (!(d > 0.0) && !(e > 0.0)) return {0.0, 0.0};
+  if (!(d > 0.0)) {
+    const double force = 0.4 * C * e * e * std::sqrt(e) / (e - d);
+    return {force, force / (e - d)};
+  }
+  const double r = std::sqrt(d);
+  if (!(e > 0.0)) {
+    const double force = 0.4 * C * d * d * r / (d - e);
+    return {force, (C * d * r - force) / (d - e)};
+  }
+  const double s = std::sqrt(e), sum = r + s;
+  return {0.4 * C * (d * d + d * r * s + d * e + r * s * e + e * e) / sum,
+          0.2 * C * (3.0 * d * r + 6.0 * d * s + 4.0 * r * e + 2.0 * s * e) / (sum * sum)};
+}
+
 double force_at(const PortLaw& law, double d) noexcept {
+  if (law.mean) return mean_at(law.hertz, d, law.from).force;
   if (law.pulls) return law.slope * d + law.jump;
   if (!(d > 0.0)) return 0.0;
   if (law.hertz > 0.0) return law.hertz * d * std::sqrt(d);
@@ -41,6 +64,7 @@ double force_at(const PortLaw& law, double d) noexcept {
 
 /// df/dd where there is a force.
 double stiffness_at(const PortLaw& law, double d) noexcept {
+  if (law.mean) return mean_at(law.hertz, d, law.from).slope;
   if (law.pulls) return law.slope;
   if (law.hertz > 0.0) return 1.5 * law.hertz * std::sqrt(d);
   return law.jump > 0.0 && d < kJumpDepth ? law.slope + law.jump / kJumpDepth : law.slope;
@@ -52,9 +76,26 @@ bool acts(const PortLaw& law, double force) noexcept { return law.pulls || force
 /// Force where a jump above 0 is all there.
 double knee(const PortLaw& law) noexcept { return law.slope * kJumpDepth + law.jump; }
 
+/// The penetration at which a mean law has a force: closed while that is all from `from` on the way
+/// out, else Newton's from above, which nears a convex rising law from one side.
+double mean_depth(const PortLaw& law, double force) noexcept {
+  const double e = law.from;
+  if (!(force > 0.0)) return 0.0;
+  const double held = e > 0.0 ? 0.4 * law.hertz * e * std::sqrt(e) : 0.0;  // at d = 0
+  if (force <= held) return e - held * e / force;
+  // f >= V'((d + e)/2) by convexity
+  double d = 2.0 * penetration(force, law.hertz) - e;
+  for (int i = 0; i < 6; ++i) {
+    const Mean at = mean_at(law.hertz, d, e);
+    d -= (at.force - force) / at.slope;
+  }
+  return d;
+}
+
 /// The penetration of a force > 0, or any of a port that pulls; at 0 that from which on there is
 /// one.
 double depth_of(const PortLaw& law, double force) noexcept {
+  if (law.mean) return mean_depth(law, force);
   if (law.pulls) return (force - law.jump) / law.slope;
   if (law.hertz > 0.0) return penetration(force, law.hertz);
   if (law.jump > 0.0 && force <= knee(law)) return force / knee(law) * kJumpDepth;
@@ -73,6 +114,24 @@ double lone_depth(const PortLaw& law, double d_free, double w) noexcept {
   if (law.jump > 0.0 && first < kJumpDepth) return first;
   const double second = (d_free - w * law.jump) / (1.0 + w * law.slope);
   return second < d_free ? second : d_free;
+}
+
+/// Where the search of a mean law's penetration starts: near where it would be alone, by three of
+/// Newton's steps from where the contact was or, from open, as if of an ordinary law.
+double mean_start(const PortLaw& law, double d_free, double w) noexcept {
+  double d = d_free;
+  if (law.from > 0.0) {
+    if (!(d > 0.0) || d > law.from) d = law.from;
+  } else {
+    if (!(d > 0.0)) return d;
+    const double root = cube_root(0.4 * w * law.hertz * std::sqrt(d));
+    d = d / (1.0 + root * root);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Mean at = mean_at(law.hertz, d, law.from);
+    d -= ((d + w * at.force) - d_free) / (1.0 + w * at.slope);
+  }
+  return d;
 }
 
 /// The problem, and one iterate with all that follows from it.
@@ -143,7 +202,9 @@ void advance(const Problem& p, const Point& x, const double* K, const double* de
   for (int i = 0; i < p.n; ++i) {
     const double w = p.W[i * p.n + i], next = x.d[i] + delta[i];
     const double force = x.f[i] + K[i] * delta[i];
-    if (K[i] > 0.0 && p.law[i].hertz > 0.0) {
+    if (p.law[i].mean) {  // convex: Newton's own step nears it from one side
+      d[i] = next;
+    } else if (K[i] > 0.0 && p.law[i].hertz > 0.0) {
       const double weight = w * K[i];
       const double by_force = force > 0.0 ? penetration(force, p.law[i].hertz) : 0.0;
       d[i] = (next + weight * by_force) / (1.0 + weight);
@@ -185,6 +246,7 @@ void iterate(const Problem& p, const Point& x, Point& next) noexcept {
 }
 
 bool is_law(const PortLaw& law) noexcept {
+  if (law.mean && !(std::isfinite(law.from) && law.hertz > 0.0 && !law.pulls)) return false;
   if (!std::isfinite(law.hertz) || !std::isfinite(law.slope) || !std::isfinite(law.jump))
     return false;
   if (law.pulls) return law.slope > 0.0;
@@ -207,6 +269,10 @@ void start(const Problem& p, const double* last, Point& x) noexcept {
   for (int i = 0; i < p.n; ++i)
     x.f[i] = std::isfinite(last[i]) && acts(p.law[i], last[i]) ? last[i] : 0.0;
   for (int i = 0; i < p.n; ++i) {
+    if (p.law[i].mean) {
+      x.d[i] = mean_start(p.law[i], p.d_free[i], p.W[i * p.n + i]);
+      continue;
+    }
     double free = p.d_free[i];
     for (int j = 0; j < p.n; ++j) free -= p.W[i * p.n + j] * x.f[j];
     x.d[i] = acts(p.law[i], x.f[i]) ? depth_of(p.law[i], x.f[i])

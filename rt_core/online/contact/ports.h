@@ -21,11 +21,18 @@ enum class PortStatus : std::uint8_t {
 /// A damper c that works while d > 0 has the velocity kv d + v0 at the end of a step: with it the
 /// slope is k + c kv and the jump c v0. One above 0 is jump min(1, d / kJumpDepth), so that the law
 /// has no gap; one below 0 leaves none, and what stands still has the spring's force at any depth.
+///
+/// Of a contact whose law is a mean (Gonzalez's discrete gradient) the force is
+///   [V(d) - V(from)] / (d - from),  V(d) = 2/5 hertz max(d, 0)^2.5:
+/// its work over the step is what V gains. It never falls with d either, and is above 0 wherever
+/// one of both ends is.
 struct PortLaw {
   double hertz;  // N/m^1.5
   double slope;  // N/m, > 0 unless hertz > 0
   double jump;   // N; below 0 of a port that opens
   bool pulls = false;
+  bool mean = false;
+  double from = 0.;  // m, of a mean: the penetration at the step's start
 };
 inline constexpr double kJumpDepth = 1e-6;  // m
 

@@ -19,9 +19,10 @@ namespace railstep {
 
 template <typename Archive>
 void describe(Archive& a, Scheme& s) {
-  for (double* x :
-       {&s.dt, &s.uv, &s.ua, &s.ug, &s.va, &s.vg, &s.kv, &s.kg, &s.ag, &s.a0, &s.aa, &s.theta})
+  for (double* x : {&s.dt, &s.uv, &s.ua, &s.ug, &s.va, &s.vg, &s.kv, &s.kg, &s.ag, &s.a0, &s.aa,
+                    &s.theta, &s.part, &s.over})
     a.real(*x);
+  a.count(s.mean, 1);
 }
 
 template <typename Archive>

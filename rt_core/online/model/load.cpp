@@ -146,10 +146,20 @@ bool check_holds(const BlockHeader& h) noexcept {
          h.section[kCheck].bytes % 8 == 0;
 }
 
+/// A step of two stages is of a track alone in full order, whose forces the model has at any time;
+/// contact forces that are means are held over the step.
+bool scheme_holds(const Model& m) noexcept {
+  if (m.scheme.mean != 0 && (m.condensed == 0 || m.scheme.theta != 1.)) return false;
+  if (!(m.scheme.part >= 0.) || !(m.scheme.part < 1.)) return false;
+  return m.scheme.part == 0. ||
+         (m.condensed == 0 && m.system.unknowns == 0 && m.external_wheels == 0);
+}
+
 /// What a step takes for granted beyond the counts.
 bool holds(const Model& m) noexcept {
   if (!is_above_zero(m.scheme.dt) || m.steps_per_frame < 1 || m.steps < 0 || !inputs_hold(m))
     return false;
+  if (!scheme_holds(m)) return false;
   if (m.cost.flops < 1 || m.cost.bytes < 1 || m.cost.instructions < 1) return false;
   if (m.lines < 1 && m.system.unknowns < 1) return false;
   if (m.lines > 0 && !track_holds(m)) return false;

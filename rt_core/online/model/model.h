@@ -6,6 +6,7 @@
 #include "online/math/diagonals.h"
 #include "online/math/modes.h"
 #include "online/model/cant.h"
+#include "online/model/scheme.h"
 #include "online/model/system.h"
 
 namespace railstep {
@@ -33,17 +34,6 @@ inline constexpr std::int64_t kMostEntries = 1 << 28;
 inline constexpr std::int64_t kMostPairPoints = 64;
 inline constexpr std::int64_t kMostSamples = 1 << 26;  // of an irregularity
 inline constexpr std::int64_t kMostGuideTurns = 1000;
-
-/// Coefficients of a one-step scheme with constant matrices, made offline. With g the true
-/// acceleration (M g + C v + K u = f at every step) and a the algorithmic one (Arnold and Bruls
-/// 2007):
-///   u* = u + uv v + ua a + ug g,   v* = v + va a + vg g,   (K + kv C + kg M) u1 = f + M kg u* +
-///   C (kv u* - v*),   v1 = v* + kv (u1 - u*),   g1 = kg (u1 - u*),   a1 = ag g1 + a0 g + aa a.
-struct Scheme {
-  double dt;  // s
-  double uv, ua, ug, va, vg, kv, kg, ag, a0, aa;
-  double theta;  // contact forces follow the penetration theta d1 + (1 - theta) d0; 1: at the end
-};
 
 /// How far the traffic of a track without end has gone at a step, exactly. Fractions count bays by
 /// 2^-62: n steps are n / period times `bays` whole ones, and n % period steps of `advance`.

@@ -42,6 +42,7 @@ struct Workspace {
   double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
   double* system;     // system/workspace.h
   double* external;   // [state_doubles] of models with external wheels: a state tried
+  double* start;      // [2][unknowns] of schemes of two stages: u and v at the step's start
 };
 
 /// What a frame publishes.
@@ -92,7 +93,8 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t contacts = contact_count(model);
   return (4 + contacts + model.condensed * (1 + 3 * contacts)) * model.unknowns +
          system_workspace_doubles(model.system) +
-         (model.external_wheels > 0 ? state_doubles(model) : 0);
+         (model.external_wheels > 0 ? state_doubles(model) : 0) +
+         (model.scheme.part > 0. ? 2LL * model.unknowns : 0);
 }
 
 /// Views over the caller's memory, which must be aligned to doubles.
@@ -121,15 +123,17 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns, solved = (1 + contact_count(model)) * n;
   double* const condensed = memory + 3 * n + solved;
   double* const row = condensed + model.condensed * solved;
+  double* const system = row + model.condensed * 2LL * contact_count(model) * n;
+  double* const external = system + system_workspace_doubles(model.system);
   return {memory,
           memory + n,
           memory + 2 * n,
           memory + 3 * n,
           condensed,
           row,
-          row + model.condensed * 2LL * contact_count(model) * n,
-          row + model.condensed * 2LL * contact_count(model) * n +
-              system_workspace_doubles(model.system)};
+          system,
+          external,
+          external + (model.external_wheels > 0 ? state_doubles(model) : 0)};
 }
 
 /// Puts the model's start into a state: step 0, with no matrix kept yet.

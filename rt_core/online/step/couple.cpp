@@ -3,6 +3,7 @@
 #include "online/step/fixed_port.h"
 #include "online/step/flange.h"
 #include "online/step/load.h"
+#include "online/step/mean_contact.h"
 #include "online/step/track_response.h"
 #include "online/step/turn.h"
 #include "online/step/vehicle.h"
@@ -16,27 +17,27 @@ namespace {
 /// Contacts where the forces of the step act: on u + dt v of bodies and banded lines at its end; in
 /// the middle of it where forces are held, with condensed lines as they stand (their fastest rates
 /// are far above 1/dt).
-void locate_contacts(const Model& model, std::int64_t step, const State& s, Workspace& w,
+void locate_contacts(const Model& model, const Stage& stage, const State& s, Workspace& w,
                      Coupling& c) noexcept {
-  const double ahead = (model.condensed != 0 ? .5 : 1.) * model.scheme.dt;
-  // Irregularities are those of where the penetration is taken.
-  const double later = model.scheme.theta * model.scheme.dt - ahead;
+  const double ahead = (model.condensed != 0 ? .5 : 1.) * stage.span;
+  // Irregularities are those of where the penetration is taken; of a mean, those of the middle.
+  const double later = model.scheme.mean != 0 ? 0. : model.scheme.theta * stage.span - ahead;
 #pragma omp simd
   for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
-    find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b,
-                  further(model, set, s, ahead));
+    find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b, later * s.v[set.first]);
     for (int side = 0; side < 2; ++side) {
       const int i = 2 * b + side;
       c.law[i] = {set.hertz[side], 0., 0.};
       c.place[i] = {set.kind[side], c.contact[i].row.element, c.contact[i].xi, 0.};
     }
   }
-  locate_flanges(model, s, w, ahead, c);
+  locate_flanges(model, s, w, later, c);
   for (std::int32_t v = 0; v < model.vehicles; ++v)
-    place_vehicle_wheels(model, model.vehicle[v], step, model.scheme.dt - ahead, c.contact, later);
+    place_vehicle_wheels(model, model.vehicle[v], stage.step, stage.before + (stage.span - ahead),
+                         c.contact, later);
   for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i)
     c.place[i] = {wheel_kind(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }
@@ -45,10 +46,10 @@ void locate_contacts(const Model& model, std::int64_t step, const State& s, Work
 bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground; }
 
 /// What the loads add to the rail under each wheel through the residual flexibility.
-void find_loaded(const Model& model, std::int64_t step, Coupling& c) noexcept {
+void find_loaded(const Model& model, const Stage& stage, Coupling& c) noexcept {
   for (int i = 0; i < c.wheels; ++i) c.loaded[i] = 0.;
   for (std::int32_t l = 0; l < model.loads; ++l) {
-    const PlacedLoad load = place(model, model.load[l], step);
+    const PlacedLoad load = place(model, model.load[l], stage.step, stage.before);
     if (!load.on_rail) continue;
     const RailForce at{model.load[l].kind, load.row.element, load.xi, load.force};
     for (int i = 0; i < c.wheels; ++i)
@@ -108,7 +109,7 @@ PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
 }
 
 /// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
-void solve_coupled(const Model& model, std::int64_t step, State& s, Workspace& w, Coupling& c,
+void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& w, Coupling& c,
                    CoupleResult& result) noexcept {
   const std::int32_t cap = guide_turns(model);
   bool settled = false, solved = false;
@@ -117,7 +118,7 @@ void solve_coupled(const Model& model, std::int64_t step, State& s, Workspace& w
     solved = ports.status == PortStatus::converged;
     if (ports.iterations > result.iterations) result.iterations = ports.iterations;
     result.violation = 0.;
-    settled = move_wheelsets(model, step, s, w, c, result.violation);
+    settled = move_wheelsets(model, stage, s, w, c, result.violation);
     if (turn + 1 > result.iterations) result.iterations = turn + 1;
   }
   if (!settled || !solved) result.status = result.status | Status::cap_reached;
@@ -149,24 +150,25 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
 
 }  // namespace
 
-CoupleResult couple(const Model& model, std::int64_t step, State& state, Workspace& w) noexcept {
+CoupleResult couple(const Model& model, const Stage& stage, State& state, Workspace& w) noexcept {
   CoupleResult result{};
   Coupling c;
   c.wheels = contact_count(model);
   c.ports = c.wheels + model.fixed.count;
-  const double time = static_cast<double>(step) * model.scheme.dt;
-  locate_contacts(model, step, state, w, c);
+  const double time = time_of(model.scheme, stage);
+  locate_contacts(model, stage, state, w, c);
   respond(model, state, w, c);
-  find_loaded(model, step, c);
-  free_wheelsets(model, step, state, w, c);
-  free_vehicles(model, step, state, w, c);
+  find_loaded(model, stage, c);
+  free_wheelsets(model, stage, state, w, c);
+  free_vehicles(model, time, state, w, c);
   find_vehicle_laws(model, time, state, w, c);
   find_flange_laws(model, state, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);
+  if (model.scheme.mean != 0) find_means(model, state, w, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
-  solve_coupled(model, step, state, w, c, result);
+  solve_coupled(model, stage, state, w, c, result);
   move_track(model, w, c);
   move_vehicles(model, w, c);
   if (model.fixed.count > 0) press_fixed_ports(model, c, state, w);

@@ -14,14 +14,14 @@ struct CoupleResult {
 };
 
 /// Wheelsets, their guides, vehicles, their contacts with the rails, and what of the track is
-/// one-sided: finds the contacts, solves the track for its own right-hand side (in
+/// one-sided: finds the contacts at a stage's end, solves the track for its own right-hand side (in
 /// workspace.solved[0]) and for each wheel, then all ports' forces and guides together, and leaves
 /// behind the displacements of all in solved[0].
-CoupleResult couple(const Model& model, std::int64_t step, State& state,
+CoupleResult couple(const Model& model, const Stage& stage, State& state,
                     Workspace& workspace) noexcept;
 
 /// After the scheme's correction: velocities and accelerations of guided coordinates are put onto
 /// the guide (augmented Lagrangian; the inertia is diagonal, so the projection is exact).
-void project_guides(const Model& model, std::int64_t step, State& state) noexcept;
+void project_guides(const Model& model, const Stage& stage, State& state) noexcept;
 
 }  // namespace railstep

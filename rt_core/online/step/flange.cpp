@@ -43,14 +43,14 @@ Rate rate_of(const Model& model, const State& s, const Workspace& w, const Wheel
 
 }  // namespace
 
-void locate_flanges(const Model& model, const State& s, const Workspace& w, double ahead,
+void locate_flanges(const Model& model, const State& s, const Workspace& w, double later,
                     Coupling& c) noexcept {
   const Configuration seen = located_on(model, s, w);
   for (std::int32_t f = 0; f < model.flanges; ++f) {
     const FlangeModel& flange = model.flange[f];
     const int first = wheel_count(model) + 2 * f;
     find_flanges(model, flange, seen, c.contact + first,
-                 further(model, model.wheelset[flange.wheelset], s, ahead));
+                 later * s.v[model.wheelset[flange.wheelset].first]);
     for (int i = first; i < first + 2; ++i) {
       WheelContact& at = c.contact[i];
       at.apart = at.on_rail && at.penetration < -kApart;

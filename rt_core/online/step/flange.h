@@ -7,16 +7,9 @@ namespace railstep {
 // does to the track and the wheelset is found as that of a tread is; it neither makes nor feels
 // residual displacements.
 
-/// By how far the irregularities under a wheelset are those of a place further on than where its
-/// contacts are located, m.
-/// @param ahead  of the step's start, at which they are located, s
-inline double further(const Model& model, const WheelsetModel& w, const State& s,
-                      double ahead) noexcept {
-  return (model.scheme.theta * model.scheme.dt - ahead) * s.v[w.first];
-}
-
 /// Contacts of all flanges where the forces of the step act, as of the treads.
-void locate_flanges(const Model& model, const State& s, const Workspace& w, double ahead,
+/// @param later  s, by how much the irregularities under them are those of a later time
+void locate_flanges(const Model& model, const State& s, const Workspace& w, double later,
                     Coupling& c) noexcept;
 
 /// Laws of the flanges over the step. A damper takes the rate of the penetration d at its end,

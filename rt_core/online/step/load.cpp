@@ -6,10 +6,11 @@
 
 namespace railstep {
 
-PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) noexcept {
-  const double time = static_cast<double>(step) * model.scheme.dt;
+PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step,
+                 double before) noexcept {
+  const double time = static_cast<double>(step) * model.scheme.dt - before;
   PlacedLoad at{};
-  at.place = load.start + way_at(model, load.travel, step).distance;
+  at.place = load.start + way_at(model, load.travel, step, before).distance;
   at.x = passed(model, step) + at.place;
   const double scaled = at.place / model.element_length;
   at.on_rail = scaled >= 0. && scaled <= model.elements;

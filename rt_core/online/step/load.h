@@ -13,7 +13,9 @@ struct PlacedLoad {
   RailRow row;  // of the loaded point's vertical displacement
 };
 
-PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step) noexcept;
+/// @param before  s, by how much it is looked for ahead of the step's end
+PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step,
+                 double before = 0.) noexcept;
 
 /// Vertical displacement of the loaded point by the lines alone, m.
 double deflection(const Model& model, const PlacedLoad& placed, const Configuration& at) noexcept;

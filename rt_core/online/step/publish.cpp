@@ -43,10 +43,14 @@ void start_frame(const Model& model, const State& state, Outputs& out) noexcept 
     out.flange_force_peak[i] = out.flange_impulse[i] = 0.;
 }
 
-void collect(const Model& model, const State& s, const CoupleResult& met, Outputs& out) noexcept {
+void collect_solve(const CoupleResult& met, Outputs& out) noexcept {
   out.status = out.status | met.status;
   if (met.violation > out.constraint_violation) out.constraint_violation = met.violation;
   if (met.iterations > out.iterations) out.iterations = met.iterations;
+}
+
+void collect(const Model& model, const State& s, const CoupleResult& met, Outputs& out) noexcept {
+  collect_solve(met, out);
   const double gone_by = passed(model, s.steps + 1);
   for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     const double force = s.wheel_force[i];

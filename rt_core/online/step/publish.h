@@ -17,6 +17,9 @@ inline Configuration standing(const Model& model, const State& s) noexcept {
 /// Before the first step of a frame.
 void start_frame(const Model& model, const State& state, Outputs& outputs) noexcept;
 
+/// Adds how a coupled solve went to the frame's outputs.
+void collect_solve(const CoupleResult& met, Outputs& outputs) noexcept;
+
 /// Adds what a step met to the frame's outputs.
 void collect(const Model& model, const State& state, const CoupleResult& met,
              Outputs& outputs) noexcept;

@@ -28,6 +28,17 @@ void predict(const Model& model, const State& s, Workspace& w) noexcept {
   }
 }
 
+/// The same of a scheme's second stage, from where the first came to.
+void predict_last(const Model& model, const State& s, Workspace& w) noexcept {
+  const double over = model.scheme.over, per_kv = 1. / model.scheme.kv;
+  const double *u0 = w.start, *v0 = w.start + model.unknowns;
+#pragma omp simd
+  for (std::int32_t i = 0; i < model.unknowns; ++i) {
+    w.v_star[i] = v0[i] + over * (s.v[i] - v0[i]);
+    w.u_star[i] = (u0[i] + over * (s.u[i] - u0[i])) + per_kv * w.v_star[i];
+  }
+}
+
 /// M kg u* + C (kv u* - v*) of every banded line onto the right-hand side.
 void add_inertia(const Model& model, Workspace& w) noexcept {
   const Scheme c = model.scheme;
@@ -88,9 +99,9 @@ void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
 }
 
 /// Right-hand sides of banded lines, and condensed ones without wheels at the step's end.
-void advance_track(const Model& model, State& s, Workspace& w) noexcept {
+void advance_track(const Model& model, const Stage& stage, State& s, Workspace& w) noexcept {
   if (model.condensed != 0 && !is_pressed(model)) return keep_modes(model, s, w);
-  forces(model, s.steps + 1, w.solved, w.imaginary);
+  forces(model, stage.step, w.solved, w.imaginary, stage.before);
   if (model.condensed == 0) return add_inertia(model, w);
   for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], s, w);
 }
@@ -114,27 +125,59 @@ void correct(const Model& model, State& s, const Workspace& w) noexcept {
   }
 }
 
+void finish_stage(const Model& model, const Stage& stage, State& s, const Workspace& w) noexcept {
+  correct(model, s, w);
+  if (model.wheelsets > 0) project_guides(model, stage, s);
+}
+
+/// Whether a stage's ports are solved together with its track.
+bool has_ports(const Model& model) noexcept {
+  return wheel_count(model) > 0 || model.fixed.count > 0;
+}
+
+/// The first of two stages: the state is where it leads to, the step's start in `w.start`.
+void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
+  const Stage stage = first_stage(model.scheme, state.steps + 1);
+#pragma omp simd
+  for (std::int32_t i = 0; i < model.unknowns; ++i) {
+    w.start[i] = state.u[i];
+    w.start[model.unknowns + i] = state.v[i];
+  }
+  predict(model, state, w);
+  advance_track(model, stage, state, w);
+  if (has_ports(model))
+    collect_solve(couple(model, stage, state, w), outputs);
+  else
+    solve_bands(model, w);
+  finish_stage(model, stage, state, w);
+}
+
 /// @param external  [external_wheels] overwritten
 void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
                ExternalContact* external) noexcept {
   follow_traffic(model, state.steps + 1, state, w);
-  predict(model, state, w);
-  advance_track(model, state, w);
+  const Stage stage = last_stage(model.scheme, state.steps + 1);
+  if (model.scheme.part > 0.) {
+    make_first_stage(model, state, w, outputs);
+    predict_last(model, state, w);
+  } else {
+    predict(model, state, w);
+  }
+  advance_track(model, stage, state, w);
   if (model.external_wheels > 0) press_external(model, state.steps + 1, state, w, external);
-  if (wheel_count(model) > 0 || model.fixed.count > 0)
-    collect(model, state, couple(model, state.steps + 1, state, w), outputs);
+  if (has_ports(model))
+    collect(model, state, couple(model, stage, state, w), outputs);
   else if (model.condensed == 0)
     solve_bands(model, w);
   if (model.system.unknowns > 0) collect(solve_system(model, state, w), outputs);
-  correct(model, state, w);
-  if (model.wheelsets > 0) project_guides(model, state.steps + 1, state);
+  finish_stage(model, stage, state, w);
   if (model.system.unknowns > 0) outputs.status = outputs.status | finish_system(model, state, w);
   ++state.steps;
 }
 
 }  // namespace
 
-void forces(const Model& model, std::int64_t step, double* re, double* im) noexcept {
+void forces(const Model& model, std::int64_t step, double* re, double* im, double before) noexcept {
   const double* constant = model.constant_force;
 #pragma omp simd
   for (std::int32_t i = 0; i < model.unknowns; ++i) re[i] = constant == nullptr ? 0. : constant[i];
@@ -142,7 +185,7 @@ void forces(const Model& model, std::int64_t step, double* re, double* im) noexc
   for (std::int32_t i = 0; i < model.condensed * model.bodies; ++i)
     im[i] = constant == nullptr ? 0. : constant[model.unknowns + i];
   for (std::int32_t i = 0; i < model.loads; ++i) {
-    const PlacedLoad at = place(model, model.load[i], step);
+    const PlacedLoad at = place(model, model.load[i], step, before);
     for (std::int32_t l = 0; l < model.lines && at.on_rail; ++l)
       if (model.condensed != 0)
         spread_modes(model.line[l], at.row, at.force, re, im);

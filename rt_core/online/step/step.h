@@ -37,7 +37,9 @@ inline constexpr std::size_t kStepStack = std::size_t{128} << 10;
 
 /// Forces of loads and weight on the unknowns at a step, N; on modes of condensed lines, complex.
 /// @param re, im  [unknowns] overwritten; im of condensed models only
-void forces(const Model& model, std::int64_t step, double* re, double* im) noexcept;
+/// @param before  s, by how much they are those ahead of the step
+void forces(const Model& model, std::int64_t step, double* re, double* im,
+            double before = 0.) noexcept;
 
 /// Outputs of a state from which no step was made: the first row of a trace. Wheels carry the
 /// forces that the state starts with.

@@ -1,6 +1,7 @@
 #include "online/step/vehicle.h"
 
 #include "online/step/input.h"
+#include "online/step/mean_contact.h"
 #include "online/step/strike.h"
 #include "online/step/track_response.h"
 #include "online/step/travel.h"
@@ -38,17 +39,6 @@ void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
 /// At what part of the step the equation of motion holds.
 double held_at(const Model& model) noexcept { return model.condensed != 0 ? .5 : 1.; }
 
-/// What the forces of the step before, at their new places, move the rail under a wheel by the
-/// residual flexibility.
-double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
-  double sum = c.loaded[i];
-  for (int j = 0; j < c.wheels; ++j)
-    if (c.contact[j].on_rail)
-      sum -= s.wheel_force[j] * (i != j ? residual_between(model, c.place[j], c.place[i])
-                                        : residual_under(model, c.place[i]));
-  return sum;
-}
-
 /// A damper's law over the step: its force is damping (per_metre d + before).
 struct Rate {
   double per_metre, before;  // 1/s, m/s
@@ -83,10 +73,9 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
 
 }  // namespace
 
-void free_vehicles(const Model& model, std::int64_t step, const State& s, const Workspace& w,
+void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
                    Coupling& c) noexcept {
   const double kg = model.scheme.kg, kv = model.scheme.kv, held = held_at(model);
-  const double time = static_cast<double>(step) * model.scheme.dt;
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const VehicleModel& v = model.vehicle[b];
     const double *u_star = w.u_star + v.first, *v_star = w.v_star + v.first;
@@ -131,6 +120,11 @@ double vehicle_offset(const Model& model, const State& s, const Coupling& c, int
 double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept {
   return dot(row_of(model, i), c.vehicle[vehicle_wheel(model, i).vehicle],
              vehicle_of(model, i).size);
+}
+
+double vehicle_lift_before(const Model& model, const State& s, int i) noexcept {
+  const VehicleModel& v = vehicle_of(model, i);
+  return dot(row_of(model, i), s.u + v.first, v.size);
 }
 
 void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept {

@@ -8,7 +8,7 @@ namespace railstep {
 /// Where each vehicle goes without contact:
 ///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 - weight
 ///                             + its forces at the step's end.
-void free_vehicles(const Model& model, std::int64_t step, const State& s, const Workspace& w,
+void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
                    Coupling& c) noexcept;
 
 /// Laws of the vehicles' wheels over the step. A damper takes the rate of the penetration at its
@@ -25,6 +25,9 @@ double vehicle_offset(const Model& model, const State& s, const Coupling& c, int
 
 /// Height of wheel i at the step's end without contact forces.
 double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept;
+
+/// Height of wheel i at the step's start.
+double vehicle_lift_before(const Model& model, const State& s, int i) noexcept;
 
 /// Moves the vehicles under the contact forces.
 void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept;

@@ -17,11 +17,10 @@ constexpr int kGuided[2] = {0, 5};  // x and yaw
 /// leaves 1/(1 + this) of the violation.
 constexpr double kPenalty = 1e3;
 
-/// Of a guided coordinate at a step's end; x counts from the start, or from the last bay border.
-Travelled target(const Model& model, const WheelsetModel& w, int guided,
-                 std::int64_t step) noexcept {
+/// Of a guided coordinate at a stage's end; x counts from the start, or from the last bay border.
+Travelled target(const Model& model, const WheelsetModel& w, int guided, const Stage& at) noexcept {
   if (guided != 0) return {0., 0., 0.};
-  return way_at(model, w.travel, step);
+  return way_at(model, w.travel, at.step, at.before);
 }
 
 /// Forces other than contact and guide: weight, tables, inputs and the gyroscopic terms of an
@@ -58,10 +57,10 @@ void move_body(const Model& model, int b, const Coupling& c, const double* multi
 
 }  // namespace
 
-void free_wheelsets(const Model& model, std::int64_t step, const State& s, const Workspace& w,
+void free_wheelsets(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                     Coupling& c) noexcept {
   const double kg = model.scheme.kg, kv = model.scheme.kv;
-  const double time = static_cast<double>(step) * model.scheme.dt;
+  const double time = time_of(model.scheme, stage);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     const double* p = w.u_star + set.first;
@@ -73,7 +72,7 @@ void free_wheelsets(const Model& model, std::int64_t step, const State& s, const
       c.wheelset[b].free[k] = p[k] + c.wheelset[b].compliance[k] * force[k];
     }
     for (const int k : kGuided) {
-      const Travelled goal = target(model, set, k, step);
+      const Travelled goal = target(model, set, k, stage);
       if (set.guide == Guide::augmented_lagrangian) {
         // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
         const double penalty = kPenalty * kg * set.mass[k];
@@ -124,6 +123,13 @@ double free_lift(const Model& model, const State& s, const Coupling& c, int i) n
   return sum;
 }
 
+double wheelset_lift_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+  const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
+  double sum = 0.;
+  for (int k = 0; k < 6; ++k) sum += c.contact[i].body_row[k] * s.u[first + k];
+  return sum;
+}
+
 std::int32_t guide_turns(const Model& model) noexcept {
   std::int32_t cap = 1;
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
@@ -132,7 +138,7 @@ std::int32_t guide_turns(const Model& model) noexcept {
   return cap;
 }
 
-bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& w,
+bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace& w,
                     const Coupling& c, double& violation) noexcept {
   bool settled = true;
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
@@ -141,7 +147,7 @@ bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& 
     move_body(model, b, c, s.multiplier + 2 * b, p);
     for (int i = 0; i < 2; ++i) {
       const int k = kGuided[i];
-      const double miss = p[k] - target(model, set, k, step).distance;
+      const double miss = p[k] - target(model, set, k, stage).distance;
       if (std::fabs(miss) > violation) violation = std::fabs(miss);
       if (set.guide != Guide::augmented_lagrangian) continue;
       s.multiplier[2 * b + i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
@@ -166,12 +172,12 @@ bool strikes_too_fast(const Model& model, const Coupling& c, const State& s, int
   return is_left_too_soon(set.hertz[wheel % 2], inverse_mass, speed, model.scheme.dt);
 }
 
-void project_guides(const Model& model, std::int64_t step, State& state) noexcept {
+void project_guides(const Model& model, const Stage& stage, State& state) noexcept {
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     if (set.guide != Guide::augmented_lagrangian) continue;
     for (const int k : kGuided) {
-      const Travelled goal = target(model, set, k, step);
+      const Travelled goal = target(model, set, k, stage);
       state.v[set.first + k] = goal.speed;
       state.a[set.first + k] = goal.acceleration;
       state.g[set.first + k] = goal.acceleration;

@@ -8,7 +8,7 @@ namespace railstep {
 
 /// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
 /// guide does not give way at all: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
-void free_wheelsets(const Model& model, std::int64_t step, const State& s, const Workspace& w,
+void free_wheelsets(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                     Coupling& c) noexcept;
 
 /// What a unit force at contact j adds to the approach of contact i through a wheelset that bears
@@ -23,13 +23,16 @@ double wheelset_offset(const Model& model, const State& s, const Workspace& w, c
 /// How far contact i goes from its rail over the step without contact forces.
 double free_lift(const Model& model, const State& s, const Coupling& c, int i) noexcept;
 
+/// How far contact i was from its rail at the step's start, in the step's geometry.
+double wheelset_lift_before(const Model& model, const State& s, const Coupling& c, int i) noexcept;
+
 /// Most turns of the guides' augmented Lagrangian around the contacts.
 std::int32_t guide_turns(const Model& model) noexcept;
 
 /// Moves the wheelsets under the contact forces and corrects the guides' multipliers.
 /// @param violation  raised to the largest of the guides, m or rad
 /// @returns whether every guide is kept to its tolerance
-bool move_wheelsets(const Model& model, std::int64_t step, State& s, Workspace& w,
+bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace& w,
                     const Coupling& c, double& violation) noexcept;
 
 /// Whether a wheel that closes now on its rail will have left it within 10 steps (strike.h), with

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+
+namespace railstep {
+
+/// Coefficients of a one-step scheme with constant matrices, made offline. With g the true
+/// acceleration (M g + C v + K u = f at every step) and a the algorithmic one (Arnold and Bruls
+/// 2007):
+///   u* = u + uv v + ua a + ug g,   v* = v + va a + vg g,   (K + kv C + kg M) u1 = f + M kg u* +
+///   C (kv u* - v*),   v1 = v* + kv (u1 - u*),   g1 = kg (u1 - u*),   a1 = ag g1 + a0 g + aa a.
+struct Scheme {
+  double dt;  // s
+  double uv, ua, ug, va, vg, kv, kg, ag, a0, aa;
+  double theta;  // contact forces follow the penetration theta d1 + (1 - theta) d0; 1: at the end
+  /// Of two stages with the same matrix the first, as above, ends at `part` of the step (0: there
+  /// is one stage); from the values 0 and p at its ends the second goes on with
+  ///   v* = v0 + over (vp - v0),   u* = u0 + over (up - u0) + v* / kv.
+  double part, over;
+  /// 1: the force of a Hertz contact is the mean of its law over the way that the penetration goes
+  /// in the step (PortLaw::mean), of forces held over the step with theta = 1.
+  std::int32_t mean;
+};
+
+/// What of a step is solved for at once: up to `before` seconds ahead of the end of `step`, from a
+/// state `span` seconds earlier.
+struct Stage {
+  std::int64_t step;
+  double before, span;  // s
+};
+inline double time_of(const Scheme& scheme, const Stage& at) noexcept {
+  return static_cast<double>(at.step) * scheme.dt - at.before;
+}
+/// The last stage of a step, or its only one.
+inline Stage last_stage(const Scheme& scheme, std::int64_t step) noexcept {
+  return {step, 0., scheme.dt - scheme.part * scheme.dt};
+}
+inline Stage first_stage(const Scheme& scheme, std::int64_t step) noexcept {
+  return {step, scheme.dt - scheme.part * scheme.dt, scheme.part * scheme.dt};
+}
+
+}  // namespace railstep
