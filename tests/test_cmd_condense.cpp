@@ -45,7 +45,7 @@ TEST_CASE("a model runs to the bits of its scene, full and condensed", "[condens
       std::string scene = kScenes + name + ".toml --set step.duration_s=0.05";
       scene += modal ? kCondensed : " --set 'condense={kind=\"full\"}'";
       const auto file = folder / "made.model";
-      const Json made = condense(scene, file);
+      const Json made = condense(scene + " --skip-errors", file);
       const Ran of_scene =
           railstep_program("run --json " + scene + " --trace " + (folder / "scene.csv").string());
       const Ran of_model = railstep_program("run --json " + file.string() + " --trace " +
@@ -161,6 +161,12 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
   CHECK(static_error > 0.);
   CHECK(static_error < 1e-4);
   CHECK(transient < 1e-3 + 2e-3);  // of the model, and of a reference of 2 elements per bay
+  const Json& parts = made.at("transient_error_parts");
+  const double mesh = parts.at("mesh"), condensation = parts.at("condensation"),
+               step = parts.at("step"), reference = made.at("transient_reference_error");
+  CHECK(transient <= (mesh + condensation + step) * (1. + 1e-9));
+  CHECK(mesh > 10. * reference);  // one element a bay: what the reference is refined from
+  CHECK(step < mesh);
   CHECK(made.at("receptance_error") > static_error);
   const std::string sum = made.at("sha256");
   CHECK(sum.find_first_not_of("0123456789abcdef") == std::string::npos);

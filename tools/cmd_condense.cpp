@@ -15,6 +15,7 @@
 #include "command.h"
 #include "condense_error.h"
 #include "emit_c.h"
+#include "model_size.h"
 #include "offline/pack/accuracy.h"
 #include "offline/pack/artefact.h"
 #include "write.h"
@@ -29,16 +30,6 @@ struct CondenseOptions {
   bool json = false;
 };
 
-/// Unknowns of the track, and those that the model carries of it; wheelsets stand beside.
-std::pair<int, int> unknowns_of(const Track& track, const PackedModel& packed) {
-  int full = 0, kept = 0;
-  for (const Line& line : assemble(track)) full += line.unknowns();
-  for (const PackedLine& own : packed.lines())
-    kept += packed.model().condensed != 0 ? kept_coordinates(own.basis, own.modes)
-                                          : own.line.unknowns();
-  return {full, kept};
-}
-
 /// Unknowns of bodies and beams that are not held.
 int unknowns_of(const SystemModel& system) {
   int sum = -system.held;
@@ -52,7 +43,8 @@ struct Condensed {
   const Model& model;
   std::pair<int, int> unknowns;  // full, kept
   nlohmann::ordered_json static_error, receptance_error, transient_error, window_s;
-  double clipped;  // m/N
+  nlohmann::ordered_json reference_error, parts;  // of the transient error
+  double clipped;                                 // m/N
   std::array<double, 2> band_hz = CondenseScene{}.band_hz;
   std::int64_t bays = 0;
 
@@ -94,6 +86,8 @@ nlohmann::ordered_json to_json(const Condensed& made, const std::vector<std::byt
           {"receptance_band_hz", made.band_hz},
           {"transient_error", made.transient_error},
           {"transient_window_s", made.window_s},
+          {"transient_reference_error", made.reference_error},
+          {"transient_error_parts", made.parts},
           {"clipped_m_per_n", made.clipped}};
 }
 
@@ -118,6 +112,8 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
                  {},
                  {},
                  {},
+                 {},
+                 {},
                  packed.clipped(),
                  scene.condense.band_hz,
                  scene.track.bays};
@@ -129,6 +125,10 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
     const TransientError transient = transient_error(scene, o.overrides);
     made.transient_error = transient.largest;
     made.window_s = transient.window_s;
+    made.reference_error = transient.reference_error;
+    made.parts = {{"mesh", transient.parts.mesh},
+                  {"condensation", transient.parts.condensation},
+                  {"step", transient.parts.step}};
   }
   return write(block_of(built, made.notes()), made, o);
 }
@@ -139,7 +139,7 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
   const BuiltSystem built(scene);
   const Model& model = built.packed->model();
   const int own = unknowns_of(model.system);
-  Condensed made{model, {own, own}, {}, {}, {}, {}, 0.};
+  Condensed made{model, {own, own}, {}, {}, {}, {}, {}, {}, 0.};
   if (!o.skip_errors) made.static_error = made.receptance_error = 0.;
   if (const PackedModel* const packed = built.packed->track()) {
     const Track track = track_of(*scene.track);
@@ -174,6 +174,12 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
   const auto& window = r["transient_window_s"];
   fmt::print("transient error   {}{}\n", error_text(r["transient_error"]),
              window.is_null() ? "" : fmt::format(" in {:g} s", window.get<double>()));
+  const auto& parts = r["transient_error_parts"];
+  if (!parts.is_null())
+    fmt::print(
+        "  of the mesh     {}\n  condensation    {}\n  step            {}\n  reference       {}\n",
+        error_text(parts["mesh"]), error_text(parts["condensation"]), error_text(parts["step"]),
+        error_text(r["transient_reference_error"]));
 }
 
 }  // namespace

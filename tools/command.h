@@ -20,11 +20,13 @@ Command add_compare(CLI::App& app);
 Command add_condense(CLI::App& app);
 Command add_hil(CLI::App& app);
 Command add_modes(CLI::App& app);
+Command add_pareto(CLI::App& app);
 Command add_receptance(CLI::App& app);
 Command add_replay(CLI::App& app);
 Command add_run(CLI::App& app);
 Command add_static(CLI::App& app);
 Command add_sweep(CLI::App& app);
+Command add_tune(CLI::App& app);
 Command add_rules(CLI::App& app);
 
 }  // namespace railstep

@@ -4,24 +4,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "simulate.h"
+#include "study/reference.h"
 
 namespace railstep {
 namespace {
 
-constexpr double kWindow = .1;  // s, at most
+/// Of a level of refinement: steps of elements, as many times as those of vertical unknowns. Some
+/// seconds.
+constexpr double kMostWork = 2e7;
 
-bool is_compared(const std::string& column) {
-  for (const char* quantity : {".deflection_z_m", ".rail_z_m"})
-    if (column.ends_with(quantity)) return true;
-  return false;
+/// Of a level with `finer` times the elements and the steps, for a second.
+double work_of(const Scene& scene, double finer) {
+  const auto elements =
+      static_cast<double>(scene.track.bays * scene.track.elements_per_bay * scene.track.rails);
+  // Unknowns and the width of their bands, and wheels, each with a solve of its own.
+  const double each = scene.track.unknowns == Unknowns::vertical ? 1. : 12.;
+  return each * elements * finer * finer / scene.step->dt;
 }
 
-std::vector<double> rows_of(const Scene& scene, std::int64_t frames) {
+/// Frames of the window: the second level, four times as fine, has to fit.
+std::int64_t frames_of(const Scene& scene, double frame) {
+  const double window =
+      std::min({kTransientWindow, scene.duration(), kMostWork / work_of(scene, 4.)});
+  return std::max<std::int64_t>(1, std::llround(std::floor(window / frame + 1e-9)));
+}
+
+TraceTable run_of(const Scene& scene, std::int64_t frames) {
   Simulation run(scene);
-  return simulate(run, frames, nullptr, true).rows;
+  return compared(run.columns(), simulate(run, frames, {}, true));
 }
 
 }  // namespace
@@ -29,30 +40,36 @@ std::vector<double> rows_of(const Scene& scene, std::int64_t frames) {
 TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides) {
   const StepScene& step = *scene.step;  // there, or no model would be
   const double frame = step.dt * static_cast<double>(step.steps_per_frame);
-  const double most = std::min(kWindow, scene.duration());
-  const auto frames = std::max<std::int64_t>(1, std::llround(std::floor(most / frame + 1e-9)));
-  std::vector<std::string> finer = overrides;
-  finer.push_back("condense.kind=\"full\"");
-  finer.push_back(fmt::format("track.elements_per_bay={}", 2 * scene.track.elements_per_bay));
-  finer.push_back(fmt::format("step.frame_s={:.17g}", frame));
-  finer.push_back(fmt::format("step.dt_s={:.17g}", .5 * step.dt));
-  const Simulation columns(scene);
-  const std::vector<double> got = rows_of(scene, frames);
-  const std::vector<double> want = rows_of(read_scene(scene.file, finer), frames);
-  const std::size_t width = columns.columns().size(), rows = got.size() / width;
-  if (got.size() != want.size()) throw std::runtime_error("the reference run ended early");
-  const std::size_t first = step.start == Start::released ? rows / 5 : 0;
-  TransientError result{static_cast<double>(frames) * frame, 0.};
-  for (std::size_t c = 0; c < width; ++c) {
-    if (!is_compared(columns.columns()[c])) continue;
-    double peak = 0., error = 0.;
-    for (std::size_t r = first; r < rows; ++r) {
-      peak = std::max(peak, std::abs(want[r * width + c]));
-      error = std::max(error, std::abs(got[r * width + c] - want[r * width + c]));
-    }
-    if (peak > 0.) result.largest = std::max(result.largest, error / peak);
-  }
-  return result;
+  const std::int64_t frames = frames_of(scene, frame);
+  const double window = static_cast<double>(frames) * frame;
+  Studied study{scene.file, overrides, frame, {}, frames};
+  if (step.start == Start::released) study.judged.from = .2 * window;
+  const auto by_small_steps = [&](bool in_full) {
+    std::vector<std::string> own = overrides;
+    if (in_full) own.insert(own.end(), {"condense.kind=\"full\"", "step.contact=\"penetration\""});
+    own.push_back(fmt::format("step.frame_s={:.17g}", frame));
+    own.push_back(fmt::format("step.dt_s={:.17g}", .25 * step.dt));
+    return run_of(read_scene(scene.file, own), frames);
+  };
+  const TraceTable got = run_of(scene, frames);
+  const auto own_mesh = static_cast<int>(scene.track.elements_per_bay);
+  const Reference reference =
+      refine(study, {.elements_per_bay = 2 * own_mesh,
+                     .step = .5 * step.dt,
+                     .target = 0.,
+                     .most_levels = window * work_of(scene, 8.) < kMostWork ? 3 : 2,
+                     .judged_run = &got});
+  const TraceTable full = by_small_steps(true);
+  const TraceTable model = scene.condense.kind ? by_small_steps(false) : full;
+  const auto off = [&](const TraceTable& a, const TraceTable& b) {
+    return errors_of(a, b, study.judged).judged;
+  };
+  return {window,
+          off(got, reference.trace),
+          reference.error,
+          {.step = off(got, model),
+           .condensation = off(model, full),
+           .mesh = off(full, reference.trace)}};
 }
 
 }  // namespace railstep

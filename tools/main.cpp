@@ -16,10 +16,10 @@ int main(int argc, char** argv) {
   CLI::App app{"railstep: real-time, fixed-step simulation of flexible railway track"};
   app.name("railstep");
   app.require_subcommand(1);
-  const std::vector<Command> commands = {add_fit(app),        add_static(app),   add_modes(app),
-                                         add_receptance(app), add_condense(app), add_run(app),
-                                         add_sweep(app),      add_replay(app),   add_compare(app),
-                                         add_rules(app),      add_hil(app)};
+  const std::vector<Command> commands = {
+      add_fit(app), add_static(app), add_modes(app),  add_receptance(app), add_condense(app),
+      add_run(app), add_sweep(app),  add_replay(app), add_compare(app),    add_rules(app),
+      add_hil(app), add_pareto(app), add_tune(app)};
   try {
     app.parse(argc, argv);
     for (const Command& command : commands)

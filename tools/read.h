@@ -120,6 +120,11 @@ Table read_toml(const std::filesystem::path& file, const std::vector<std::string
 Table read_toml_text(std::string_view text, const std::filesystem::path& file,
                      const std::vector<std::string>& overrides = {});
 
+/// The text of a TOML file with overrides applied, as it may stand at `place`: names of files,
+/// which are relative to the folder of the one they stand in, are made so there. Comments are lost.
+std::string rewritten(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                      const std::filesystem::path& place);
+
 /// The entry of `known` nearest to `word` by edit distance, where letters missing at the end of
 /// `word` cost an eighth ("stifness" is near "stiffness_z_n_per_m"). Empty if `known` is.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);

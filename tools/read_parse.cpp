@@ -85,9 +85,15 @@ std::string read_text(const std::filesystem::path& file, std::size_t most) {
     throw InputError(fmt::format("{}: is a folder; a file is accepted", name));
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(fmt::format("{}: cannot be opened; a readable file is accepted", name));
-  std::string text(most + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  std::string text;  // in pieces: what has no size in the file system is read too
+  for (std::size_t got = 1; got > 0 && text.size() <= most;) {
+    constexpr std::size_t kPiece = 1u << 20;
+    const std::size_t before = text.size();
+    text.resize(before + std::min(kPiece, most + 1 - before));
+    in.read(text.data() + before, static_cast<std::streamsize>(text.size() - before));
+    got = static_cast<std::size_t>(in.gcount());
+    text.resize(before + got);
+  }
   if (in.bad()) throw InputError(fmt::format("{}: cannot be read", name));
   if (text.size() > most)
     throw InputError(fmt::format("{}: is longer than {} bytes; at most {} MiB is accepted", name,

@@ -111,25 +111,42 @@ double static_error(const Track& track, const PackedModel& packed) {
   return largest > 0. ? error / largest : 0.;
 }
 
-double receptance_error(const Track& track, const PackedModel& packed,
-                        const std::array<double, 2>& band) {
+std::vector<double> receptance_frequencies(const std::array<double, 2>& band) {
+  std::vector<double> hz;
+  hz.reserve(kReceptancePoints);
+  for (int i = 0; i < kReceptancePoints; ++i)
+    hz.push_back(band[0] * std::pow(band[1] / band[0], i / (kReceptancePoints - 1.)));
+  return hz;
+}
+
+std::vector<double> receptance_errors(const Track& track, const PackedModel& packed,
+                                      const std::vector<double>& hz) {
   const Track fine = refined(track, 2);
   const std::vector<Line> lines = assemble(fine);
   const int bay = track.bays / 2;
   const Asked asked(packed, {(bay + .5) * track.bay_length, bay * track.bay_length});
-  double largest = 0., error = 0.;
-  for (int i = 0; i < kReceptancePoints; ++i) {
-    const double part = i / (kReceptancePoints - 1.);
-    const double omega = 2. * kPi * band[0] * std::pow(band[1] / band[0], part);
+  double largest = 0.;
+  std::vector<double> errors;
+  for (const double frequency : hz) {
+    const double omega = 2. * kPi * frequency;
     std::vector<Value> want(asked.points.size(), 0.);
     for (const Line& line : lines) add_receptances(fine, line, asked.points, omega, want);
     const std::vector<Value> got = receptances(track, packed, asked.points, asked.kinds, omega);
+    double error = 0.;
     for (std::size_t k = 0; k < want.size(); ++k) {
       largest = std::max(largest, std::abs(want[k]));
       error = std::max(error, std::abs(got[k] - want[k]));
     }
+    errors.push_back(error);
   }
-  return largest > 0. ? error / largest : 0.;
+  for (double& error : errors) error = largest > 0. ? error / largest : 0.;
+  return errors;
+}
+
+double receptance_error(const Track& track, const PackedModel& packed,
+                        const std::array<double, 2>& band) {
+  const std::vector<double> errors = receptance_errors(track, packed, receptance_frequencies(band));
+  return *std::max_element(errors.begin(), errors.end());
 }
 
 }  // namespace railstep

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <vector>
 
 #include "offline/pack/pack.h"
 
@@ -16,6 +17,13 @@ double static_error(const Track& track, const PackedModel& packed);
 /// kReceptancePoints logarithmic steps, against a track of 2 times finer elements.
 double receptance_error(const Track& track, const PackedModel& packed,
                         const std::array<double, 2>& band);
+
+/// The same at each of these frequencies, over the largest |H_ref| of them all. [hz]
+std::vector<double> receptance_errors(const Track& track, const PackedModel& packed,
+                                      const std::vector<double>& hz);
+
+/// kReceptancePoints frequencies at logarithmic steps over a band, Hz, its ends included.
+std::vector<double> receptance_frequencies(const std::array<double, 2>& band);
 
 inline constexpr int kStaticPlaces = 64;  // fewer on a track of fewer intervals
 inline constexpr int kReceptancePoints = 40;

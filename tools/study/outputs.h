@@ -1,0 +1,44 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "simulate.h"
+#include "trace_compare.h"
+
+namespace railstep {
+
+/// What is compared of traces, a kind of output each.
+enum class OutputKind { deflection, contact_force, support_force, sensor };
+inline constexpr OutputKind kOutputKinds[] = {OutputKind::deflection, OutputKind::contact_force,
+                                              OutputKind::support_force, OutputKind::sensor};
+
+/// "deflection": of the rail under loads and wheels (<load>.deflection_z_m, <wheel>.rail_z_m);
+/// "contact_force": mean of a frame (<wheel>.force_z_mean_n), which is the force below the frames'
+/// own frequency; "support_force" (support_<i>.force_z_n); "sensor" (<sensor>.dz_m).
+const char* name_of(OutputKind kind);
+
+/// What errors are told of: from when on, and which of the outputs count as the error.
+struct Judged {
+  double from = 0.;                  // s; what comes before is left out
+  std::vector<std::string> outputs;  // kinds or columns; empty: the first kind that there is
+};
+
+/// Over each column's largest value in the reference.
+struct KindError {
+  OutputKind kind;
+  double largest = 0., rms = 0.;  // the worst column's
+};
+
+struct TraceErrors {
+  double judged = 0.;            // the largest of the outputs that count
+  std::vector<KindError> kinds;  // those that the traces have
+};
+
+/// Of a run's trace what is compared, and the time.
+TraceTable compared(const std::vector<std::string>& columns, const RunRecord& record);
+
+/// Infinite where the run ended early or is not finite. Throws InputError where the reference does
+/// not have the columns or the times that are judged.
+TraceErrors errors_of(const TraceTable& got, const TraceTable& reference, const Judged& judged);
+
+}  // namespace railstep

@@ -1,0 +1,57 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene.h"
+
+namespace railstep {
+
+/// What can be chosen of how a scene is stepped.
+struct Setting {
+  /// "KIND[:AMOUNT][:bare][:UNKNOWNS]": the kind of [condense] or "full", how much it keeps
+  /// (modes_per_bay, of "guyan" and "irs" nodes_per_bay), without residual flexibility, and
+  /// track.unknowns where they are not the scene's.
+  std::string model;
+  int elements_per_bay;
+  /// "own" as the scene says. Of full order "generalised-alpha:RHO", "newmark", "hht:ALPHA",
+  /// "backward-euler", "tr-bdf2"; of condensed models "held:RHO", "discrete-gradient".
+  std::string scheme;
+  double step;  // s
+};
+
+bool is_condensed(const std::string& model);
+bool is_of_condensed(const std::string& scheme);
+
+/// "key=value" over a scene that make it so; frames stay as they are. Throws InputError for a model
+/// or a scheme that there is not.
+std::vector<std::string> overrides_of(const Setting& setting);
+
+/// "modal:2, 2 elements a bay, held:0.6, 50 us"
+std::string words_of(const Setting& setting);
+
+/// Lists of which all that go together are taken.
+struct Choices {
+  std::vector<std::string> models;
+  std::vector<int> meshes;  // elements per bay
+  std::vector<std::string> schemes;
+  std::vector<double> steps;  // s
+};
+
+/// What a user of the scene may choose among: models of both ends of the ladder, meshes and steps
+/// about the scene's own, the schemes that its contacts allow.
+Choices default_choices(const Scene& scene);
+
+/// The same where a list is empty; steps the longest first.
+Choices filled(Choices choices, const Scene& scene);
+
+/// Whether a model is stepped by a scheme.
+bool goes_with(const std::string& model, const std::string& scheme);
+
+/// Model by model, mesh by mesh, scheme by scheme, the longest step first.
+std::vector<Setting> settings_of(const Choices& choices);
+
+/// The scheme by which a model is run with small steps. Of full order generalised-alpha, but where
+/// the scene gives numbers of another scheme, which stand in its way, that one.
+std::string plain_scheme(const std::string& model, const StepScene& step);
+
+}  // namespace railstep
