@@ -31,18 +31,23 @@ struct State {
 inline constexpr Status kLatched =
     Status::nonfinite_input | Status::nonfinite_state | Status::force_saturated;
 
+struct Common;  // step/common.h
+
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
-  double* u_star;     // [unknowns]
-  double* v_star;     // [unknowns]
-  double* scaled;     // [unknowns]
-  double* solved;     // [1 + contacts][unknowns] right-hand side of the track without wheels, then
-                      // of a unit force at each contact; after the solve, the displacements
+  double* u_star;  // [unknowns]
+  double* v_star;  // [unknowns]
+  double* scaled;  // [unknowns]
+  double* solved;  // [unknowns] right-hand side of the track without wheels; after the solve, the
+                   // displacements
   double* imaginary;  // the same of condensed lines; solved is their real part
   double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
   double* system;     // system/workspace.h
   double* external;   // [state_doubles] of models with external wheels: a state tried
   double* start;      // [2][unknowns] of schemes of two stages: u and v at the step's start
+  double* unit;       // [contacts][unknowns] as solved, of a unit force at each contact
+  double* unit_imaginary;
+  Common* common = nullptr;  // with the states stepped beside this one; null: it is alone
 };
 
 /// What a frame publishes.
@@ -133,7 +138,9 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           row,
           system,
           external,
-          external + (model.external_wheels > 0 ? state_doubles(model) : 0)};
+          external + (model.external_wheels > 0 ? state_doubles(model) : 0),
+          memory + 4 * n,
+          condensed + model.condensed * n};
 }
 
 /// Puts the model's start into a state: step 0, with no matrix kept yet.

@@ -15,8 +15,8 @@ struct CoupleResult {
 
 /// Wheelsets, their guides, vehicles, their contacts with the rails, and what of the track is
 /// one-sided: finds the contacts at a stage's end, solves the track for its own right-hand side (in
-/// workspace.solved[0]) and for each wheel, then all ports' forces and guides together, and leaves
-/// behind the displacements of all in solved[0].
+/// workspace.solved) and for each wheel, then all ports' forces and guides together, and leaves
+/// behind the displacements of all in solved.
 CoupleResult couple(const Model& model, const Stage& stage, State& state,
                     Workspace& workspace) noexcept;
 

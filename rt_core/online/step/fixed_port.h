@@ -7,7 +7,7 @@ namespace railstep {
 // rows are fixed, so what a unit force along each does to the lines comes with the model.
 
 /// Puts the fixed ports behind the wheels: laws, penetrations without port forces, their part of W,
-/// and the last step's forces. The track without port forces is in workspace.solved[0].
+/// and the last step's forces. The track without port forces is in workspace.solved.
 ///
 /// Over a step a spring k and damper c are slope d + jump (PortLaw) in what the force follows:
 /// - of banded lines the depth d at the step's end, where the scheme has v1 = v* + kv (u1 - u*).

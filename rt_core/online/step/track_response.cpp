@@ -16,25 +16,28 @@ bool presses(const Coupling& c, int wheel, const LineModel& line) noexcept {
 }
 
 /// Solves each banded line for itself and for the wheels that touch it, together where they can be.
-void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
+void solve_bands(const Model& model, Workspace& w, const Coupling& c, bool own) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (int i = 0; i < c.wheels; ++i) {
-    double* rhs = w.solved + (i + 1) * stride;
+    double* rhs = w.unit + i * stride;
     for (std::int32_t k = 0; k < model.bodies; ++k) rhs[k] = 0.;
     if (!c.contact[i].on_rail) continue;
     for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], c.contact[i].row, 1., rhs);
   }
   for (std::int32_t l = 0; l < model.lines; ++l) {
     double* x = w.solved + model.line[l].first;
+    double* unit = w.unit + model.line[l].first;
     const bool both = model.line[l].rail_factor[0] != 0. && model.line[l].rail_factor[1] != 0.;
     const int together = both && c.wheels >= 2 ? 2 : 0;
-    if (together == 2)
+    if (together == 2 && own)
       solve_band<3>(model.line[l].step, x, stride);
-    else
+    else if (together == 2)
+      solve_band<2>(model.line[l].step, unit, stride);
+    else if (own)
       solve_band<1>(model.line[l].step, x, stride);
     for (int i = together; i < c.wheels; ++i)
       if (c.contact[i].on_rail && model.line[l].rail_factor[c.contact[i].row.rail] != 0.)
-        solve_band<1>(model.line[l].step, x + (i + 1) * stride, stride);
+        solve_band<1>(model.line[l].step, unit + i * stride, stride);
   }
 }
 
@@ -43,13 +46,13 @@ void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept
   const std::ptrdiff_t stride = model.unknowns;
   for (int i = 0; i < c.wheels; ++i) {
     double* re = w.row + 2 * i * stride;
-    const std::ptrdiff_t unit = (i + 1) * stride;
+    const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
       if (!presses(c, i, line)) continue;
       shape_row(line, c.contact[i].row, re, re + stride);
-      modes_multiply(line.modal.held_force, row_of(model, w, line, i), w.solved + unit + line.first,
-                     w.imaginary + unit + line.first, line.size);
+      modes_multiply(line.modal.held_force, row_of(model, w, line, i), w.unit + unit + line.first,
+                     w.unit_imaginary + unit + line.first, line.size);
     }
   }
 }
@@ -79,11 +82,9 @@ double line_under(const Model& model, const Workspace& w, const Coupling& c, con
 
 }  // namespace
 
-void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
-  if (model.condensed != 0)
-    respond_modes(model, w, c);
-  else
-    solve_bands(model, w, c);
+void respond(const Model& model, const State& s, Workspace& w, Coupling& c, bool found) noexcept {
+  if (!found && model.condensed != 0) respond_modes(model, w, c);
+  if (!found && model.condensed == 0) solve_bands(model, w, c, w.common == nullptr);
   for (int i = 0; i < c.wheels; ++i)
     c.seen[i] = model.condensed != 0 ? track_under(model, w, c, i, s.u, s.v)
                                      : track_under(model, w, c, i, w.scaled, nullptr);
@@ -99,11 +100,11 @@ double track_under(const Model& model, const Workspace& w, const Coupling& c, in
 
 double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
                         int j) noexcept {
-  const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(j + 1) * model.unknowns;
+  const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(j) * model.unknowns;
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
     if (presses(c, i, model.line[l]) && presses(c, j, model.line[l]))
-      sum += line_under(model, w, c, model.line[l], i, w.solved + unit, w.imaginary + unit);
+      sum += line_under(model, w, c, model.line[l], i, w.unit + unit, w.unit_imaginary + unit);
   return sum;
 }
 
@@ -119,9 +120,9 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
     int count = 0;
     for (int i = 0; i < c.wheels; ++i) {
       if (!presses(c, i, line)) continue;
-      const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i + 1) * model.unknowns + line.first;
-      re[count] = w.solved + unit;
-      im[count] = w.imaginary + unit;
+      const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i) * model.unknowns + line.first;
+      re[count] = w.unit + unit;
+      im[count] = w.unit_imaginary + unit;
       force[count++] = c.force[i];
     }
     subtract(re, force, count, line.size, w.solved + line.first);
