@@ -14,7 +14,7 @@ namespace {
 
 void compare(benchmark::State& run, MovingLoadRun& scene, MovingLoadRun& fine_step,
              Unknowns unknowns) {
-  const Reference& reference = reference_for(static_cast<int>(run.range(0)), unknowns);
+  const PassageReference& reference = reference_for(static_cast<int>(run.range(0)), unknowns);
   const std::vector<double> z = deflections(scene), fine = deflections(fine_step);
   for (auto _ : run) benchmark::DoNotOptimize(scene.frame());
   run.counters["error"] = largest_error(z, reference.z, kStartUp);

@@ -102,6 +102,7 @@ class MovingLoadRun {
   int unknowns() const { return packed_->model().unknowns; }
   /// Most of a frame, as the model states it.
   double flops() const { return static_cast<double>(packed_->model().cost.flops); }
+  double bytes() const { return static_cast<double>(packed_->model().cost.bytes); }
 
  private:
   int frames_, done_ = 0;
@@ -134,7 +135,7 @@ inline double largest_error(const std::vector<double>& z, const std::vector<doub
   return largest / peak;
 }
 
-struct Reference {
+struct PassageReference {
   std::vector<double> z;  // m, every 1 ms
   double own_error;       // after start-up, from halving mesh and step once more
 };
@@ -142,8 +143,8 @@ struct Reference {
 /// Eight elements per bay and 0.1 ms, and residual flexibility: without it the kink under a load
 /// inside an element is missed in proportion to the element's length, 4e-4 of the peak with eight
 /// per bay. The rails share nothing: one of them is enough.
-inline const Reference& reference_for(int bays, Unknowns unknowns) {
-  static std::map<std::pair<int, Unknowns>, Reference> made;
+inline const PassageReference& reference_for(int bays, Unknowns unknowns) {
+  static std::map<std::pair<int, Unknowns>, PassageReference> made;
   auto [at, fresh] = made.try_emplace({bays, unknowns});
   if (fresh) {
     const auto refined = [&](int per_bay, int steps) {

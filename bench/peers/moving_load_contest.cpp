@@ -14,7 +14,7 @@ namespace {
 template <class Run>
 Contestant contestant(const std::string& name, const Track& track, const std::shared_ptr<Run>& run,
                       const std::vector<double>* against = nullptr) {
-  const Reference& reference = reference_for(track.bays, Unknowns::vertical);
+  const PassageReference& reference = reference_for(track.bays, Unknowns::vertical);
   const std::vector<double> z = deflections(*run);
   if (against != nullptr)
     std::fprintf(stderr, "%s, %d elements: %.1e of the peak from railstep on the same model\n",

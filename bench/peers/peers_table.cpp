@@ -39,7 +39,8 @@ bool hold(const std::string& scene) {
 void write_references(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const int bays : kElements) {
-    const railstep::Reference& known = railstep::reference_for(bays, railstep::Unknowns::vertical);
+    const railstep::PassageReference& known =
+        railstep::reference_for(bays, railstep::Unknowns::vertical);
     std::ofstream out(folder / ("moving_load_" + std::to_string(bays) + ".csv"));
     out.precision(17);
     out << "# own_error=" << known.own_error << "\ntime_s,deflection_z_m\n";
