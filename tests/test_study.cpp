@@ -69,7 +69,8 @@ TEST_CASE("words of models and schemes are read whole", "[study]") {
   for (const char* model : {"", "modes", "full:2", "modal:", "modal:x", "modal:1:lateral"})
     CHECK_THROWS_WITH(overrides(model, "newmark"), Contains("accepted is KIND"));
   for (const char* scheme : {"", "held", "newmark:1", "hht", "rk4", "held:a"})
-    CHECK_THROWS_WITH(overrides("full", scheme), Contains("accepted are own, generalised-alpha:RHO"));
+    CHECK_THROWS_WITH(overrides("full", scheme),
+                      Contains("accepted are own, generalised-alpha:RHO"));
 }
 
 TEST_CASE("errors are over each column's peak, from a time on", "[study]") {

@@ -112,7 +112,7 @@ Command add_pareto(CLI::App& app) {
       ->allow_extra_args(false);
   sub->add_option(
          "--output", asked.judged.outputs,
-         "what counts as the error: deflection, contact_force, support_force, sensor, or a "
+         "what counts as the error: deflection, contact_force, support_force, sensor, stress, or a "
          "column; repeatable; by default the first that there is")
       ->take_all()
       ->allow_extra_args(false);

@@ -262,6 +262,7 @@ struct RailSensor {
   Side rail;
   double position;  // m
   Height at;
+  std::optional<double> gauge_length = {};  // of a strain gauge along the rail, m; none: no gauge
 };
 struct SleeperSensor {
   std::int64_t sleeper;      // from 0 along x

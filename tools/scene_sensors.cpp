@@ -45,6 +45,14 @@ RailSensor read_rail_sensor(const Table& t, const Scene& scene) {
   rail.position = t.number("position_m", between(0.0, (1.0 + 1e-12) * scene.track.length()));
   const Height heights[] = {Height::axis, Height::head, Height::foot};
   rail.at = heights[t.choice("at", {"axis", "head", "foot"}, 0)];
+  if (!t.has("gauge_length_m")) return rail;
+  rail.gauge_length = t.number("gauge_length_m", between(1e-3, 1.0));
+  const double half = 0.5 * *rail.gauge_length;
+  if (!scene.track.endless && (rail.position < half || rail.position > scene.track.length() - half))
+    t.refuse("gauge_length_m",
+             fmt::format("gauge_length_m = {:.15g} at position_m = {:.15g} is not on the rail; "
+                         "accepted is up to twice the distance to its end",
+                         *rail.gauge_length, rail.position));
   return rail;
 }
 

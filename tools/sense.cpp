@@ -98,6 +98,20 @@ void add_point(const std::string& name, const Point& point, Sensors& sensors) {
   add("vz_m_per_s", 2, {.velocity = 1.});
 }
 
+/// What a strain gauge on a rail reads, times Young's modulus: the mean strain along x over its
+/// length, of what the rail does from rest on.
+void add_gauge(const std::string& name, const RailSensor& sensor, double z, double young,
+               Sensors& sensors) {
+  const int rail = sensor.rail == Side::right ? 1 : 0;
+  const double length = *sensor.gauge_length;
+  Probe probe{.displacement = young};
+  for (const double side : {-1., 1.})
+    probe.track.rail.push_back(
+        {{rail, sensor.position + .5 * side * length, 0., z, 0}, side / length});
+  sensors.columns.push_back(name + ".stress_x_pa");
+  sensors.probes.push_back(std::move(probe));
+}
+
 /// The forces of a track's one-sided springs that `chosen` picks.
 template <typename Chosen>
 Probe press_of(const Track& track, const Chosen& chosen) {
@@ -155,6 +169,15 @@ void add_bodies(const VehicleScene& scene, int vehicle, Sensors& sensors) {
     }
 }
 
+void add_rail_sensor(const std::string& name, const RailSensor& sensor, const Scene& scene,
+                     const Track& track, const RailSections& sections, Sensors& sensors) {
+  const double z = height_z(sensor.at, section_of(sections, sensor.rail));
+  add_point(name, point_of(sensor, track, z, rail_z(scene, sections, track, sensor.rail)), sensors);
+  if (!sensor.gauge_length) return;
+  const bool right = sensor.rail == Side::right && scene.right_rail;
+  add_gauge(name, sensor, z, (right ? *scene.right_rail : scene.rail).young, sensors);
+}
+
 }  // namespace
 
 Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& sections,
@@ -166,10 +189,7 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
   for (SensorScene sensor : scene.sensors) {
     move_on(sensor, behind, track);
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
-      add_point(sensor.name,
-                point_of(*rail, track, height_z(rail->at, section_of(sections, rail->rail)),
-                         rail_z(scene, sections, track, rail->rail)),
-                sensors);
+      add_rail_sensor(sensor.name, *rail, scene, track, sections, sensors);
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
       add_point(sensor.name, point_of(*sleeper, track, height_z(Height::foot, sections[0])),
                 sensors);

@@ -21,7 +21,8 @@ const std::vector<KindNames> kNames = {
     {OutputKind::deflection, "deflection", {".deflection_z_m", ".rail_z_m"}},
     {OutputKind::contact_force, "contact_force", {".force_z_mean_n"}},
     {OutputKind::support_force, "support_force", {".force_z_n"}},
-    {OutputKind::sensor, "sensor", {".dz_m"}}};
+    {OutputKind::sensor, "sensor", {".dz_m"}},
+    {OutputKind::stress, "stress", {".stress_x_pa"}}};
 
 std::optional<OutputKind> kind_of(const std::string& column) {
   for (const KindNames& own : kNames)
@@ -88,7 +89,7 @@ void check_outputs(const TraceTable& got, const Judged& judged) {
     if (!found)
       throw InputError(fmt::format(
           "output \"{}\" is not there; accepted are deflection, contact_force, support_force, "
-          "sensor, or one of their columns, where the trace has them",
+          "sensor, stress, or one of their columns, where the trace has them",
           own));
   }
 }

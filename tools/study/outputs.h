@@ -8,13 +8,15 @@
 namespace railstep {
 
 /// What is compared of traces, a kind of output each.
-enum class OutputKind { deflection, contact_force, support_force, sensor };
+enum class OutputKind { deflection, contact_force, support_force, sensor, stress };
 inline constexpr OutputKind kOutputKinds[] = {OutputKind::deflection, OutputKind::contact_force,
-                                              OutputKind::support_force, OutputKind::sensor};
+                                              OutputKind::support_force, OutputKind::sensor,
+                                              OutputKind::stress};
 
 /// "deflection": of the rail under loads and wheels (<load>.deflection_z_m, <wheel>.rail_z_m);
 /// "contact_force": mean of a frame (<wheel>.force_z_mean_n), which is the force below the frames'
-/// own frequency; "support_force" (support_<i>.force_z_n); "sensor" (<sensor>.dz_m).
+/// own frequency; "support_force" (support_<i>.force_z_n); "sensor" (<sensor>.dz_m);
+/// "stress" of gauges (<sensor>.stress_x_pa).
 const char* name_of(OutputKind kind);
 
 /// What errors are told of: from when on, and which of the outputs count as the error.
