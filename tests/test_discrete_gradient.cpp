@@ -162,8 +162,10 @@ ModelRun falling(const Track& track, double x, const Scheme& scheme, bool residu
   RunningVehicle wheel;
   wheel.vehicle = point_mass(600.).vehicle;
   wheel.start = x;
-  PackOptions options{.scheme = scheme, .residual_flexibility = residual};
-  options.reduction = Reduction{.limit = {1'000'000, std::numeric_limits<double>::infinity()}};
+  const PackOptions options{
+      .scheme = scheme,
+      .residual_flexibility = residual,
+      .reduction = Reduction{.limit = {1'000'000, std::numeric_limits<double>::infinity()}}};
   return {track, {.vehicles = {wheel}}, options};
 }
 
