@@ -75,6 +75,7 @@ ParetoResult pareto(const ParetoRequest& request,
   ResumeFile kept(request.resume, key_of(request, choices, studied));
   const auto all = static_cast<std::int64_t>(settings.size()) + request.reference_levels;
   std::int64_t done = 0;
+  after(done, all);
   Reference reference = kept.reference() ? *kept.reference()
                                          : reference_of(request, studied, choices,
                                                         [&](int level) { after(level, all); });

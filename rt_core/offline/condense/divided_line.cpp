@@ -1,6 +1,7 @@
 #include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
+#include "offline/condense/selected_inverse.h"
 
 namespace railstep {
 
@@ -28,7 +29,21 @@ Eigen::MatrixXd gather(const Eigen::MatrixXd& from, const std::vector<int>& unkn
   return result;
 }
 
-/// Adds a change of every element's end-node stiffness along a rail.
+/// The inverse at the given unknowns, 0 where held.
+Eigen::MatrixXd gather(const SelectedInverse& inverse, const std::vector<int>& unknowns) {
+  const auto n = static_cast<Eigen::Index>(unknowns.size());
+  Eigen::MatrixXd result(n, n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const int row = unknowns[static_cast<std::size_t>(i)],
+                column = unknowns[static_cast<std::size_t>(j)];
+      result(i, j) = row < 0 || column < 0 ? 0. : inverse.at(row, column);
+    }
+  return result;
+}
+
+/// Adds a change of every element's end-node stiffness along a rail, and with one part a 0 wherever
+/// two of its unknowns meet: what the inverse is asked for.
 void add_change(const Track& track, const Line& line, int rail, const Superelement& element,
                 const Eigen::MatrixXd& change, std::vector<Eigen::Triplet<double>>& entries) {
   for (int e = 0; e < track.elements(); ++e) {
@@ -50,13 +65,12 @@ DividedLine::DividedLine(const Track& track, const Line& line, int parts)
     const std::vector<int> carried = carried_unknowns(line, rail);
     if (carried.empty() || (rail == 1 && line.mirrored)) continue;
     auto& own = element_[static_cast<std::size_t>(rail)].emplace(track, rail, carried, parts);
-    if (parts == 1) continue;
     const Superelement whole(track, rail, carried, 1);
     add_change(track, line, rail, own, own.stiffness() - whole.stiffness(), entries);
   }
   Eigen::SparseMatrix<double> change(line.unknowns(), line.unknowns());
   change.setFromTriplets(entries.begin(), entries.end());
-  factor(parts == 1 ? line.stiffness : Eigen::SparseMatrix<double>(change + line.stiffness));
+  factor(change + line.stiffness);
 }
 
 const Superelement& DividedLine::element(int rail) const {
@@ -109,10 +123,10 @@ Eigen::VectorXd DividedLine::under(const Port& port, const Port& seen, int point
   const Superelement& own = element(port.rail);
   const Superelement::Rows a = port_rows(port, points), b = port_rows(seen, points);
   const Eigen::VectorXd held = own.held(a, b).diagonal();
+  const SelectedInverse inverse(factor_);
   Eigen::VectorXd result(tabled_elements(track_) * (points + 1));
   for (int e = 0; e < tabled_elements(track_); ++e) {
-    const Eigen::MatrixXd ends =
-        gather(end_columns(port.rail, e), end_unknowns(line_, port.rail, own, e));
+    const Eigen::MatrixXd ends = gather(inverse, end_unknowns(line_, port.rail, own, e));
     for (int p = 0; p <= points; ++p)
       result[e * (points + 1) + p] = a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
   }

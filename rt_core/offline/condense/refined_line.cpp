@@ -1,11 +1,14 @@
 #include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
+#include "offline/condense/selected_inverse.h"
 #include "offline/element/shape.h"
 
 namespace railstep {
 
 namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
 
 /// A rail's unknowns where it stands, at the nodes of divided elements.
 Eigen::VectorXd divided_state(const Eigen::VectorXd& rail, int elements, int parts) {
@@ -30,6 +33,18 @@ Track divided(Track track, int parts) {
   return track;
 }
 
+/// The unknowns of each element of each rail, -1 where held.
+std::vector<std::vector<int>> element_unknowns(const Track& track, const Line& line) {
+  std::vector<std::vector<int>> all;
+  for (int rail = 0; rail < track.rails; ++rail)
+    for (int e = 0; e < track.elements(); ++e) {
+      std::vector<int>& own = all.emplace_back();
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 9; ++k) own.push_back(line.element_unknown(rail, e, i, k));
+    }
+  return all;
+}
+
 }  // namespace
 
 RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)
@@ -37,7 +52,7 @@ RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)
       elements_(track.elements()),
       parts_(parts),
       line_(matching(track_, line)) {
-  factor_.compute(line_.stiffness);
+  factor_.compute(grouped(line_.stiffness, element_unknowns(track_, line_)));
   held_ = is_held(factor_, line_.stiffness);
 }
 
@@ -61,11 +76,16 @@ Eigen::SparseMatrix<double> RefinedLine::columns(const Port& port, int element, 
 
 Eigen::VectorXd RefinedLine::under(const Port& port, const Port& seen, int points) const {
   refuse_free_modes();
-  Eigen::VectorXd result(elements_ * (points + 1));
+  const SelectedInverse inverse(factor_);
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(elements_ * (points + 1));
   for (int e = 0; e < elements_; ++e) {
-    const Eigen::MatrixXd moved = factor_.solve(Eigen::MatrixXd(columns(port, e, points)));
-    const Eigen::MatrixXd there = columns(seen, e, points).transpose() * moved;
-    result.segment(e * (points + 1), points + 1) = there.diagonal();
+    const Sparse acting = columns(port, e, points), read = columns(seen, e, points);
+    for (int p = 0; p <= points; ++p)
+      for (Sparse::InnerIterator b(read, p); b; ++b)
+        for (Sparse::InnerIterator a(acting, p); a; ++a)
+          result[e * (points + 1) + p] +=
+              b.value() * inverse.at(static_cast<int>(b.row()), static_cast<int>(a.row())) *
+              a.value();
   }
   return result;
 }
