@@ -167,6 +167,7 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
   CHECK(transient <= (mesh + condensation + step) * (1. + 1e-9));
   CHECK(mesh > 10. * reference);  // one element a bay: what the reference is refined from
   CHECK(step < mesh);
+  CHECK(parts.at("contact_law").is_null());  // loads have none
   CHECK(made.at("receptance_error") > static_error);
   const std::string sum = made.at("sha256");
   CHECK(sum.find_first_not_of("0123456789abcdef") == std::string::npos);
@@ -180,6 +181,26 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
       railstep_program("condense " + kMovingLoad + " --out " + (folder / "d.model").string());
   CHECK(table.code == 0);
   CHECK_THAT(table.out, Contains("132 of 132 unknowns"));
+}
+
+TEST_CASE("what a contact that is not Hertz's takes away is stated", "[condense]") {
+  const auto folder = fresh_folder("law");
+  const std::string bogie =
+      std::string(RAILSTEP_SOURCE) +
+      "/config/scenes/bogie_at_speed.toml --set track.bays=24 --set vehicle[0].start_m=6 --set "
+      "sensor[0].position_m=7.2 --set sensor[1].sleeper=12 "
+      "--set step.duration_s=0.05 --set vehicle[0].speed_m_per_s=30 ";
+  const auto law = [&](const std::string& contact) {
+    return condense(bogie + contact, folder / "a.model")
+        .at("transient_error_parts")
+        .at("contact_law");
+  };
+  const std::string linear = "--set 'vehicle[0].contact=\"linear\"' ",
+                    stiffness = "--set vehicle[0].contact_stiffness_n_per_m=";
+  CHECK(law("").is_null());
+  const double near = law(linear + stiffness + "1.3e9"), soft = law(linear + stiffness + "1e8");
+  CHECK(near > 0.);
+  CHECK(soft > 10. * near);
 }
 
 TEST_CASE("what is no model is refused in one sentence and nothing is written", "[condense]") {

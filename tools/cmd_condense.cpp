@@ -128,7 +128,9 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
     made.reference_error = transient.reference_error;
     made.parts = {{"mesh", transient.parts.mesh},
                   {"condensation", transient.parts.condensation},
-                  {"step", transient.parts.step}};
+                  {"step", transient.parts.step},
+                  {"contact_law", nullptr}};
+    if (transient.contact_law) made.parts["contact_law"] = *transient.contact_law;
   }
   return write(block_of(built, made.notes()), made, o);
 }
@@ -175,11 +177,13 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
   fmt::print("transient error   {}{}\n", error_text(r["transient_error"]),
              window.is_null() ? "" : fmt::format(" in {:g} s", window.get<double>()));
   const auto& parts = r["transient_error_parts"];
-  if (!parts.is_null())
-    fmt::print(
-        "  of the mesh     {}\n  condensation    {}\n  step            {}\n  reference       {}\n",
-        error_text(parts["mesh"]), error_text(parts["condensation"]), error_text(parts["step"]),
-        error_text(r["transient_reference_error"]));
+  if (parts.is_null()) return;
+  fmt::print(
+      "  of the mesh     {}\n  condensation    {}\n  step            {}\n  reference       {}\n",
+      error_text(parts["mesh"]), error_text(parts["condensation"]), error_text(parts["step"]),
+      error_text(r["transient_reference_error"]));
+  if (!parts["contact_law"].is_null())
+    fmt::print("contact law       {}, against Hertz's\n", error_text(parts["contact_law"]));
 }
 
 }  // namespace

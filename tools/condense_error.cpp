@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "study/reference.h"
 
@@ -35,6 +36,24 @@ TraceTable run_of(const Scene& scene, std::int64_t frames) {
   return compared(run.columns(), simulate(run, frames, {}, true));
 }
 
+/// Whether wheels hold on to the rail by what stands for Hertz's law. A single mass on a spring is
+/// that spring, whose law is no contact's.
+bool stands_for_hertz(const VehicleScene& v) {
+  return v.contact == WheelContactKind::bonded ||
+         (v.contact == WheelContactKind::linear && v.kind.vehicle.bodies.size() > 1);
+}
+
+/// The scene with Hertz's law there; none where there is nothing of the kind.
+std::optional<Scene> with_hertz(Scene scene) {
+  bool changed = false;
+  for (VehicleScene& v : scene.vehicles) {
+    if (!stands_for_hertz(v)) continue;
+    v.contact = WheelContactKind::hertz;
+    changed = true;
+  }
+  return changed ? std::optional(std::move(scene)) : std::nullopt;
+}
+
 }  // namespace
 
 TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides) {
@@ -44,12 +63,12 @@ TransientError transient_error(const Scene& scene, const std::vector<std::string
   const double window = static_cast<double>(frames) * frame;
   Studied study{scene.file, overrides, frame, {}, frames};
   if (step.start == Start::released) study.judged.from = .2 * window;
-  const auto by_small_steps = [&](bool in_full) {
+  const auto with_small_steps = [&](bool in_full) {
     std::vector<std::string> own = overrides;
     if (in_full) own.insert(own.end(), {"condense.kind=\"full\"", "step.contact=\"penetration\""});
     own.push_back(fmt::format("step.frame_s={:.17g}", frame));
     own.push_back(fmt::format("step.dt_s={:.17g}", .25 * step.dt));
-    return run_of(read_scene(scene.file, own), frames);
+    return read_scene(scene.file, own);
   };
   const TraceTable got = run_of(scene, frames);
   const auto own_mesh = static_cast<int>(scene.track.elements_per_bay);
@@ -59,17 +78,20 @@ TransientError transient_error(const Scene& scene, const std::vector<std::string
                      .target = 0.,
                      .most_levels = window * work_of(scene, 8.) < kMostWork ? 3 : 2,
                      .judged_run = &got});
-  const TraceTable full = by_small_steps(true);
-  const TraceTable model = scene.condense.kind ? by_small_steps(false) : full;
+  const Scene fine = with_small_steps(true);
+  const TraceTable full = run_of(fine, frames);
+  const TraceTable model = scene.condense.kind ? run_of(with_small_steps(false), frames) : full;
   const auto off = [&](const TraceTable& a, const TraceTable& b) {
     return errors_of(a, b, study.judged).judged;
   };
+  const std::optional<Scene> hertz = with_hertz(fine);
   return {window,
           off(got, reference.trace),
           reference.error,
           {.step = off(got, model),
            .condensation = off(model, full),
-           .mesh = off(full, reference.trace)}};
+           .mesh = off(full, reference.trace)},
+          hertz ? std::optional(off(full, run_of(*hertz, frames))) : std::nullopt};
 }
 
 }  // namespace railstep

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct TransientError {
   double largest;   // of loads' deflections and rails' heights under wheels, over each one's peak
   double reference_error;  // the reference's own, estimated
   ErrorParts parts;
+  /// What the law of contact takes away: what wheels with a linear contact, or bonded to the rail,
+  /// do otherwise than by Hertz's law. In no other number here; none where all follow it.
+  std::optional<double> contact_law;
 };
 
 /// Runs the scene and a reference of it: full order, elements and steps halved until its own error

@@ -1,7 +1,7 @@
+#include <algorithm>
 #include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
-#include "offline/condense/selected_inverse.h"
 
 namespace railstep {
 
@@ -16,34 +16,24 @@ std::vector<int> end_unknowns(const Line& line, int rail, const Superelement& wh
   return result;
 }
 
-/// Rows of `from` at the given unknowns, 0 where held.
-Eigen::MatrixXd gather(const Eigen::MatrixXd& from, const std::vector<int>& unknowns) {
-  Eigen::MatrixXd result(static_cast<Eigen::Index>(unknowns.size()), from.cols());
-  for (Eigen::Index i = 0; i < result.rows(); ++i) {
-    const int unknown = unknowns[static_cast<std::size_t>(i)];
-    if (unknown < 0)
-      result.row(i).setZero();
-    else
-      result.row(i) = from.row(unknown);
-  }
+/// What a solution is at the given unknowns, 0 where held.
+Eigen::VectorXd gather(const Stretch& from, const std::vector<int>& unknowns) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(unknowns.size()));
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    result[static_cast<Eigen::Index>(i)] = unknowns[i] < 0 ? 0. : from[unknowns[i]];
   return result;
 }
 
-/// The inverse at the given unknowns, 0 where held.
-Eigen::MatrixXd gather(const SelectedInverse& inverse, const std::vector<int>& unknowns) {
-  const auto n = static_cast<Eigen::Index>(unknowns.size());
-  Eigen::MatrixXd result(n, n);
-  for (Eigen::Index j = 0; j < n; ++j)
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int row = unknowns[static_cast<std::size_t>(i)],
-                column = unknowns[static_cast<std::size_t>(j)];
-      result(i, j) = row < 0 || column < 0 ? 0. : inverse.at(row, column);
-    }
+/// Loads on the given unknowns; what is held takes them itself.
+Eigen::SparseVector<double> spread_over(const Line& line, const std::vector<int>& unknowns,
+                                        const Eigen::VectorXd& loads) {
+  Eigen::SparseVector<double> result(line.unknowns());
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    if (unknowns[i] >= 0) result.coeffRef(unknowns[i]) += loads[static_cast<Eigen::Index>(i)];
   return result;
 }
 
-/// Adds a change of every element's end-node stiffness along a rail, and with one part a 0 wherever
-/// two of its unknowns meet: what the inverse is asked for.
+/// Adds a change of every element's end-node stiffness along a rail.
 void add_change(const Track& track, const Line& line, int rail, const Superelement& element,
                 const Eigen::MatrixXd& change, std::vector<Eigen::Triplet<double>>& entries) {
   for (int e = 0; e < track.elements(); ++e) {
@@ -65,12 +55,13 @@ DividedLine::DividedLine(const Track& track, const Line& line, int parts)
     const std::vector<int> carried = carried_unknowns(line, rail);
     if (carried.empty() || (rail == 1 && line.mirrored)) continue;
     auto& own = element_[static_cast<std::size_t>(rail)].emplace(track, rail, carried, parts);
+    if (parts == 1) continue;
     const Superelement whole(track, rail, carried, 1);
     add_change(track, line, rail, own, own.stiffness() - whole.stiffness(), entries);
   }
   Eigen::SparseMatrix<double> change(line.unknowns(), line.unknowns());
   change.setFromTriplets(entries.begin(), entries.end());
-  factor(change + line.stiffness);
+  factor(parts == 1 ? line.stiffness : Eigen::SparseMatrix<double>(change + line.stiffness));
 }
 
 const Superelement& DividedLine::element(int rail) const {
@@ -80,6 +71,23 @@ const Superelement& DividedLine::element(int rail) const {
 void DividedLine::factor(const Eigen::SparseMatrix<double>& stiffness) {
   factor_.compute(stiffness);
   held_ = is_held(factor_, stiffness);
+  if (!held_ || track_.ring) return;
+  local_.emplace(stiffness);
+  find_spans();
+}
+
+void DividedLine::find_spans() {
+  for (int e = 0; e < track_.elements(); ++e) {
+    auto& [lowest, highest] = span_.emplace_back(line_.unknowns(), -1);
+    for (const int rail : {0, 1}) {
+      if (!element_[static_cast<std::size_t>(rail)]) continue;
+      for (const int unknown : end_unknowns(line_, rail, element(rail), e)) {
+        if (unknown < 0) continue;
+        lowest = std::min(lowest, unknown);
+        highest = std::max(highest, unknown);
+      }
+    }
+  }
 }
 
 void DividedLine::refuse_free_modes() const {
@@ -108,45 +116,60 @@ Superelement::Rows DividedLine::port_rows(const Port& port, int points) const {
   return own.condense(rows);
 }
 
-/// Displacements of the line under unit forces on the end unknowns of an element; [unknowns][2d].
-Eigen::MatrixXd DividedLine::end_columns(int rail, int at) const {
+/// What moves the ends of some elements, on a ring of all.
+Stretch DividedLine::moved(const Eigen::SparseVector<double>& load, Elements around) const {
+  if (!local_) return {0, factor_.solve(Eigen::VectorXd(load))};
+  int first = line_.unknowns(), last = -1;
+  for (int e = around.first; e < around.last; ++e) {
+    const auto& [lowest, highest] = span_[static_cast<std::size_t>(e)];
+    first = std::min(first, lowest);
+    last = std::max(last, highest);
+  }
+  return local_->solve(load, std::min(first, last + 1), last + 1);
+}
+
+/// Of an element's end unknowns under unit forces on one another; [2d][2d].
+Eigen::MatrixXd DividedLine::end_flexibility(int rail, int at) const {
   const std::vector<int> place = end_unknowns(line_, rail, element(rail), at);
-  Eigen::MatrixXd unit =
-      Eigen::MatrixXd::Zero(line_.unknowns(), static_cast<Eigen::Index>(place.size()));
-  for (std::size_t j = 0; j < place.size(); ++j)
-    if (place[j] >= 0) unit(place[j], static_cast<Eigen::Index>(j)) = 1.;
-  return factor_.solve(unit);
+  const auto n = static_cast<Eigen::Index>(place.size());
+  Eigen::MatrixXd result(n, n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    result.col(j) =
+        gather(moved(spread_over(line_, place, Eigen::VectorXd::Unit(n, j)), {at, at + 1}), place);
+  return result;
 }
 
 Eigen::VectorXd DividedLine::under(const Port& port, const Port& seen, int points) const {
   refuse_free_modes();
-  const Superelement& own = element(port.rail);
   const Superelement::Rows a = port_rows(port, points), b = port_rows(seen, points);
-  const Eigen::VectorXd held = own.held(a, b).diagonal();
-  const SelectedInverse inverse(factor_);
+  const Eigen::VectorXd held = element(port.rail).held(a, b).diagonal();
   Eigen::VectorXd result(tabled_elements(track_) * (points + 1));
   for (int e = 0; e < tabled_elements(track_); ++e) {
-    const Eigen::MatrixXd ends = gather(inverse, end_unknowns(line_, port.rail, own, e));
+    const Eigen::MatrixXd ends = end_flexibility(port.rail, e);
     for (int p = 0; p <= points; ++p)
       result[e * (points + 1) + p] = a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
   }
   return result;
 }
 
-LineFlexibility::Strip DividedLine::between(const Port& a, const Port& b, int points) const {
+LineFlexibility::Strip DividedLine::between(const Port& a, const Port& b, int points,
+                                            int reach) const {
   refuse_free_modes();
   const Superelement::Rows from = port_rows(a, points), to = port_rows(b, points);
   const bool same = same_rail(line_, a.rail, b.rail);
   const Eigen::MatrixXd held = same ? element(a.rail).held(from, to) : Eigen::MatrixXd();
   return [=, this](int at) {
-    const Eigen::MatrixXd moved =
-        end_columns(a.rail, at) * from.ends.transpose();  // [unknowns][points]
-    Eigen::MatrixXd strip(points + 1, track_.elements() * (points + 1));
-    for (int e = 0; e < track_.elements(); ++e) {
-      const Eigen::MatrixXd ends = gather(moved, end_unknowns(line_, b.rail, element(b.rail), e));
-      strip.middleCols(e * (points + 1), points + 1) = (to.ends * ends).transpose();
+    const std::vector<int> acting = end_unknowns(line_, a.rail, element(a.rail), at);
+    const Elements around{std::max(at - reach, 0), std::min(at + reach + 1, track_.elements())};
+    Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(points + 1, (2 * reach + 1) * (points + 1));
+    for (int p = 0; p <= points; ++p) {
+      const Stretch x = moved(spread_over(line_, acting, from.ends.row(p).transpose()), around);
+      for (int shift = -reach; shift <= reach; ++shift)
+        if (const int e = shifted(track_, at, shift); e >= 0)
+          strip.row(p).segment((shift + reach) * (points + 1), points + 1) =
+              to.ends * gather(x, end_unknowns(line_, b.rail, element(b.rail), e));
     }
-    if (same) strip.middleCols(at * (points + 1), points + 1) += held;
+    if (same) strip.middleCols(reach * (points + 1), points + 1) += held;
     return strip;
   };
 }
@@ -166,7 +189,8 @@ Superelement::Rows DividedLine::rail_rows(const Functional::OnRail& point, int a
 
 DividedLine::Spread DividedLine::spread(const Functional& functional) const {
   const double part = part_in(track_, functional);
-  Spread result{sleeper_load(track_, line_, functional), {}};
+  const Eigen::VectorXd sleepers = sleeper_load(track_, line_, functional);
+  Spread result{sleepers.sparseView(), {}};
   for (const Functional::OnRail& point : functional.rail) {
     const int rail = point.at.rail;
     if (line_.rail_factor[static_cast<std::size_t>(rail)] == 0.) continue;
@@ -174,26 +198,28 @@ DividedLine::Spread DividedLine::spread(const Functional& functional) const {
     const Superelement::Rows row = rail_rows({point.at, part * point.factor}, at);
     const std::vector<int> ends = end_unknowns(line_, rail, element(rail), at);
     for (std::size_t i = 0; i < ends.size(); ++i)
-      if (ends[i] >= 0) result.load[ends[i]] += row.ends(0, static_cast<Eigen::Index>(i));
+      if (ends[i] >= 0) result.load.coeffRef(ends[i]) += row.ends(0, static_cast<Eigen::Index>(i));
     result.points.push_back({rail, at, row});
   }
   return result;
 }
 
-Eigen::VectorXd DividedLine::from(const Port& port, const Functional& functional,
-                                  int points) const {
+Eigen::VectorXd DividedLine::from(const Port& port, const Functional& functional, int points,
+                                  Elements at) const {
   refuse_free_modes();
   const Superelement& own = element(port.rail);
   const Superelement::Rows rows = port_rows(port, points);
   const Spread read = spread(functional);
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(track_.elements() * (points + 1));
+  const Stretch x = moved(read.load, at);
+  Eigen::VectorXd result(at.count() * (points + 1));
+  for (int e = at.first; e < at.last; ++e)
+    result.segment((e - at.first) * (points + 1), points + 1) =
+        rows.ends * gather(x, end_unknowns(line_, port.rail, own, e));
   for (const Spread::OnElement& point : read.points)
-    if (same_rail(line_, port.rail, point.rail))
-      result.segment(point.element * (points + 1), points + 1) += own.held(rows, point.rows).col(0);
-  const Eigen::VectorXd moved = factor_.solve(read.load);
-  for (int e = 0; e < track_.elements(); ++e)
-    result.segment(e * (points + 1), points + 1) +=
-        rows.ends * gather(moved, end_unknowns(line_, port.rail, own, e)).col(0);
+    if (same_rail(line_, port.rail, point.rail) && point.element >= at.first &&
+        point.element < at.last)
+      result.segment((point.element - at.first) * (points + 1), points + 1) +=
+          own.held(rows, point.rows).col(0);
   return result;
 }
 
@@ -201,11 +227,11 @@ Eigen::VectorXd DividedLine::flexibility(const std::vector<Functional>& reads,
                                          const Functional& force) const {
   refuse_free_modes();
   const Spread acting = spread(force);
-  const Eigen::VectorXd moved = factor_.solve(acting.load);
+  const Eigen::VectorXd x = factor_.solve(Eigen::VectorXd(acting.load));
   Eigen::VectorXd result(static_cast<Eigen::Index>(reads.size()));
   for (std::size_t i = 0; i < reads.size(); ++i) {
     const Spread read = spread(reads[i]);
-    double sum = read.load.dot(moved);
+    double sum = read.load.dot(x);
     for (const Spread::OnElement& a : acting.points)
       for (const Spread::OnElement& b : read.points)
         if (a.element == b.element && same_rail(line_, a.rail, b.rail))

@@ -17,6 +17,14 @@ std::vector<double> to_vector(const Eigen::VectorXd& values) {
   return {values.data(), values.data() + values.size()};
 }
 
+/// What of a functional counts as nothing, as a part of the most that a force makes of it: outputs
+/// do not jump where their tables end.
+constexpr double kFaded = 1e-8;
+/// Elements to either side that are looked at first, of functionals and of pairs. Where the outer
+/// quarter of what is looked at counts as nothing, so does what lies beyond: it fades.
+constexpr int kFirstLook = 96, kFirstPairLook = 24;
+bool has_faded(int reach, int look) { return 4 * reach <= 3 * look; }
+
 std::size_t place_in(const PairTable& table, int e, int p, int e2, int q) {
   const auto n = static_cast<std::size_t>(table.points) + 1;
   const auto blocks = 2 * static_cast<std::size_t>(table.reach) + 1;
@@ -25,22 +33,42 @@ std::size_t place_in(const PairTable& table, int e, int p, int e2, int q) {
   return (block * n + static_cast<std::size_t>(p)) * n + static_cast<std::size_t>(q);
 }
 
-/// The element that lies `shift` elements on, round a ring; -1: off the rail.
-int shifted(const Track& track, int e, int shift) {
-  const int elements = track.elements(), e2 = e + shift;
-  if (track.ring) return (e2 % elements + elements) % elements;
-  return e2 >= 0 && e2 < elements ? e2 : -1;
+/// All elements' strips in one table.
+PairTable table_of(const LineFlexibility::Strip& strip, int elements, int points, int reach) {
+  const int n = points + 1;
+  PairTable table{points, reach, {}};
+  table.value.reserve(place_in(table, elements, 0, elements - reach, 0));
+  for (int e = 0; e < elements; ++e) {
+    const Eigen::MatrixXd row = strip(e);
+    for (int shift = 0; shift <= 2 * reach; ++shift)
+      for (int p = 0; p < n; ++p)
+        for (int q = 0; q < n; ++q) table.value.push_back(row(p, shift * n + q));
+  }
+  return table;
 }
 
-/// Takes from the strip of element e what lies within the table's reach.
-void keep(const Eigen::MatrixXd& strip, int e, const Track& track, PairTable& table) {
-  const int n = table.points + 1;
-  for (int shift = -table.reach; shift <= table.reach; ++shift) {
-    const int e2 = shifted(track, e, shift);
-    for (int p = 0; p < n && e2 >= 0; ++p)
-      for (int q = 0; q < n; ++q)
-        table.value[place_in(table, e, p, e + shift, q)] = strip(p, e2 * n + q);
-  }
+/// The distance, in elements, beyond which all values stay below a limit.
+int reach_of(const PairTable& table, double limit) {
+  const auto n = static_cast<std::size_t>(table.points) + 1,
+             blocks = 2 * static_cast<std::size_t>(table.reach) + 1;
+  int reach = 0;
+  for (std::size_t i = 0; i < table.value.size(); ++i)
+    if (std::abs(table.value[i]) >= limit)
+      reach = std::max(reach, std::abs(static_cast<int>(i / (n * n) % blocks) - table.reach));
+  return reach;
+}
+
+/// The same table without what lies beyond a lesser reach.
+PairTable within(const PairTable& table, int reach) {
+  const auto n = static_cast<std::size_t>(table.points) + 1,
+             row = (2 * static_cast<std::size_t>(table.reach) + 1) * n * n,
+             dropped = static_cast<std::size_t>(table.reach - reach) * n * n;
+  PairTable kept{table.points, reach, {}};
+  kept.value.reserve(table.value.size() / row * (row - 2 * dropped));
+  for (std::size_t start = 0; start < table.value.size(); start += row)
+    kept.value.insert(kept.value.end(), table.value.data() + start + dropped,
+                      table.value.data() + start + row - dropped);
+  return kept;
 }
 
 /// Whether a vertical force moves any of these, on y = 0 of an upright rail or anywhere.
@@ -64,6 +92,23 @@ void check_functional(const Track& track, const Functional& functional) {
     if (at.seat < 0 || at.seat > track.bays || !track.seat(at.seat).sleeper)
       throw std::out_of_range("a functional names a sleeper that the track lacks");
   }
+}
+
+/// The elements that hold a functional's points, and those beside its sleepers.
+Elements elements_of(const Track& track, const Functional& functional) {
+  Elements all{track.elements(), 0};
+  const auto add = [&](int first, int last) {
+    all = {std::min(all.first, first), std::max(all.last, last)};
+  };
+  for (const Functional::OnRail& point : functional.rail) {
+    const int e = element_at(track, point.at.x);
+    add(e, e + 1);
+  }
+  for (const Functional::OnSleeper& at : functional.sleeper) {
+    const int e = at.seat * track.elements_per_bay;
+    add(std::max(e - 1, 0), std::min(e + 1, track.elements()));
+  }
+  return {std::min(all.first, all.last), all.last};
 }
 
 }  // namespace
@@ -133,25 +178,73 @@ std::vector<double> ResidualFlexibility::exact_under(Port port) const {
 }
 
 std::vector<double> ResidualFlexibility::from(Port port, const Functional& functional) const {
+  return to_vector(sums(port, functional, {0, track_.elements()}).missing);
+}
+
+ResidualFlexibility::Sums ResidualFlexibility::sums(Port port, const Functional& functional,
+                                                    Elements at) const {
   check_functional(track_, functional);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  Sums sum{Eigen::VectorXd::Zero(at.count() * (points_ + 1)), 0.};
+  Eigen::VectorXd exact = sum.missing;
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, port);
     if (w == 0.) continue;
-    sum += w * (pair.exact->from(port, functional, points_) -
-                pair.model->from(port, functional, points_));
+    const Eigen::VectorXd own = w * pair.exact->from(port, functional, points_, at);
+    exact += own;
+    sum.missing += own - w * pair.model->from(port, functional, points_, at);
   }
-  return to_vector(sum);
+  sum.largest_exact = exact.lpNorm<Eigen::Infinity>();
+  return sum;
 }
 
-std::vector<double> ResidualFlexibility::at_once(Port port, const Functional& functional) const {
+/// The first and the last that have more than nothing.
+Elements ResidualFlexibility::filled(const Sums& sums, Elements at) const {
+  Elements found{at.last, at.first};
+  for (int e = at.first; e < at.last; ++e) {
+    const auto there = sums.missing.segment((e - at.first) * (points_ + 1), points_ + 1);
+    if (there.lpNorm<Eigen::Infinity>() > kFaded * sums.largest_exact)
+      found = {std::min(found.first, e), e + 1};
+  }
+  return found;
+}
+
+ResidualFlexibility::Near ResidualFlexibility::near(const std::vector<Port>& ports,
+                                                    const Functional& functional) const {
+  const bool whole = !bases_.empty() || track_.ring;
+  const Elements all{0, track_.elements()};
+  const Elements own = whole ? all : elements_of(track_, functional);
+  for (int look = kFirstLook;; look *= 2) {
+    const Elements at{std::max(own.first - look, 0), std::min(own.last + look, all.last)};
+    Elements found = own;
+    std::vector<Sums> of_port;
+    of_port.reserve(ports.size());
+    for (const Port& port : ports) {
+      const Elements more = filled(of_port.emplace_back(sums(port, functional, at)), at);
+      found = {std::min(found.first, more.first), std::max(found.last, more.last)};
+    }
+    const int reach = std::max(own.first - found.first, found.last - own.last);
+    if (!has_faded(reach, look) && at.count() < all.count()) continue;
+    Near near{found, {}};
+    near.value.reserve(ports.size() * static_cast<std::size_t>(found.count() * (points_ + 1)));
+    for (const Sums& sum : of_port) {
+      const double* const first = sum.missing.data() + (found.first - at.first) * (points_ + 1);
+      near.value.insert(near.value.end(), first, first + found.count() * (points_ + 1));
+    }
+    return near;
+  }
+}
+
+std::vector<double> ResidualFlexibility::at_once(Port port, const Functional& functional,
+                                                 Elements at) const {
   check_functional(track_, functional);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(track_.elements() * (points_ + 1));
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(at.count() * (points_ + 1));
   for (const Pair& pair : pairs_) {
     const auto i = static_cast<std::size_t>(pair.line - lines_.data());
     const double w = weight(pair, port);
     if (w == 0. || bases_.empty() || bases_[i].at_once.size() == 0) continue;
-    sum += w * ReducedLine(track_, *pair.line, bases_[i]).at_once(port, functional, points_);
+    sum += w * ReducedLine(track_, *pair.line, bases_[i])
+                   .at_once(port, functional, points_)
+                   .segment(at.first * (points_ + 1), sum.size());
   }
   return to_vector(sum);
 }
@@ -162,7 +255,7 @@ double PairTable::at(int e, int p, int e2, int q) const {
 }
 
 /// Sum over the lines that both ports move.
-LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points) const {
+LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points, int reach) const {
   struct Part {
     double weight;
     LineFlexibility::Strip exact, model;
@@ -171,9 +264,10 @@ LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points) c
   for (const Pair& pair : pairs_) {
     const double w = weight(pair, a) * weight(pair, b);
     if (w != 0.)
-      parts.push_back({w, pair.exact->between(a, b, points), pair.model->between(a, b, points)});
+      parts.push_back(
+          {w, pair.exact->between(a, b, points, reach), pair.model->between(a, b, points, reach)});
   }
-  const Eigen::Index rows = points + 1, columns = track_.elements() * (points + 1);
+  const Eigen::Index rows = points + 1, columns = (2 * reach + 1) * rows;
   return [parts, rows, columns](int element) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows, columns);
     for (const Part& part : parts) sum += part.weight * (part.exact(element) - part.model(element));
@@ -189,27 +283,14 @@ double ResidualFlexibility::largest_exact(Port port) const {
 PairTable ResidualFlexibility::between(Port a, Port b, int points, int most) const {
   if (points < 1 || points_ % points != 0)
     throw std::invalid_argument("a table between ports takes a divisor of the points of the track");
-  const LineFlexibility::Strip strip = strips(a, b, points);
-  const int elements = tabled_elements(track_), n = points + 1;
   most = std::min(most, track_.elements() - 1);
-  // Two passes over the strips: the whole table would be elements^2 blocks.
-  std::vector<double> largest(static_cast<std::size_t>(most) + 1, 0.);  // by distance in elements
-  for (int e = 0; e < elements; ++e) {
-    const Eigen::MatrixXd row = strip(e);
-    for (int shift = -most; shift <= most; ++shift) {
-      const int e2 = shifted(track_, e, shift);
-      double& there = largest[static_cast<std::size_t>(std::abs(shift))];
-      if (e2 >= 0) there = std::max(there, row.middleCols(e2 * n, n).cwiseAbs().maxCoeff());
-    }
-  }
   const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
-  PairTable table{points, most, {}};
-  while (table.reach > 0 && largest[static_cast<std::size_t>(table.reach)] < limit) --table.reach;
-  table.value.assign(
-      static_cast<std::size_t>(elements * (2 * table.reach + 1)) * static_cast<std::size_t>(n * n),
-      0.);
-  for (int e = 0; e < elements; ++e) keep(strip(e), e, track_, table);
-  return table;
+  for (int look = std::min(most, kFirstPairLook);; look = std::min(most, 2 * look)) {
+    const PairTable table =
+        table_of(strips(a, b, points, look), tabled_elements(track_), points, look);
+    const int reach = reach_of(table, limit);
+    if (look == most || has_faded(reach, look)) return within(table, reach);
+  }
 }
 
 double most_negative(const std::vector<double>& table) {

@@ -70,12 +70,26 @@ class ResidualFlexibility {
   std::vector<double> from(Port port, const Functional& functional) const;
   /// Velocity of a functional at once under a unit force of the port, which the modes' rates do not
   /// show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.
-  std::vector<double> at_once(Port port, const Functional& functional) const;
+  std::vector<double> at_once(Port port, const Functional& functional, Elements at) const;
+  /// What from() gives of several ports at the elements that have something of it: beyond, all
+  /// stays below 1e-8 of the most that a force on the exact track makes of the functional. Of a
+  /// model in the coordinates of a basis, and of a ring, all.
+  struct Near {
+    Elements at;
+    std::vector<double> value;  // [ports][elements][points + 1]
+  };
+  Near near(const std::vector<Port>& ports, const Functional& functional) const;
 
  private:
-  struct Pair;  // exact and model of one line
+  struct Pair;                // exact and model of one line
+  struct Sums {               // over the lines that a port moves
+    Eigen::VectorXd missing;  // as from() gives it
+    double largest_exact;     // of the exact track
+  };
   double weight(const Pair& pair, Port port) const;
-  LineFlexibility::Strip strips(Port a, Port b, int points) const;
+  Sums sums(Port port, const Functional& functional, Elements at) const;
+  Elements filled(const Sums& sums, Elements at) const;
+  LineFlexibility::Strip strips(Port a, Port b, int points, int reach) const;
   double largest_exact(Port port) const;
 
   Track track_;

@@ -12,6 +12,12 @@ int tabled_elements(const Track& track) {
   return track.ring ? track.elements_per_bay : track.elements();
 }
 
+int shifted(const Track& track, int element, int shift) {
+  const int elements = track.elements(), e2 = element + shift;
+  if (track.ring) return (e2 % elements + elements) % elements;
+  return e2 >= 0 && e2 < elements ? e2 : -1;
+}
+
 std::vector<int> carried_unknowns(const Line& line, int rail) {
   std::vector<int> found;
   for (int k = 0; k < 9; ++k)
@@ -53,11 +59,12 @@ class StrainedLine : public LineFlexibility {
   Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override {
     return divided_->under(port, seen, points);
   }
-  Strip between(const Port& a, const Port& b, int points) const override {
-    return divided_->between(a, b, points);
+  Strip between(const Port& a, const Port& b, int points, int reach) const override {
+    return divided_->between(a, b, points, reach);
   }
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override {
-    return divided_->from(port, seen(functional), points);
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+                       Elements at) const override {
+    return divided_->from(port, seen(functional), points, at);
   }
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override {

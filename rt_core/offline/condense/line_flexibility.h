@@ -4,9 +4,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "offline/condense/basis.h"
+#include "offline/condense/local_inverse.h"
 #include "offline/condense/superelement.h"
 #include "offline/track/functional.h"
 
@@ -23,22 +25,33 @@ struct Port {
 /// other bay repeats.
 int tabled_elements(const Track& track);
 
+/// The element that lies `shift` elements on, round a ring; -1: off the rail.
+int shifted(const Track& track, int element, int shift);
+
+/// Elements from `first` on, up to `last` without it.
+struct Elements {
+  int first, last;
+  int count() const { return last - first; }
+};
+
 /// Static flexibility of one line between the places of ports, `points` intervals per element at
 /// equal steps of x, in the line's own coordinates: the weights of a port's rail in the line are
 /// left to the caller, those of a functional are in.
 class LineFlexibility {
  public:
-  /// Displacements of port b at all places under a unit force of port a at each place of one
-  /// element: [places of the element][elements x (points + 1)], m/N.
+  /// Displacements of port b at the places of the elements within a reach of one, under a unit
+  /// force of port a at each place of that: [places][(2 reach + 1) x (points + 1)], m/N; 0 off the
+  /// rail.
   using Strip = std::function<Eigen::MatrixXd(int element)>;
 
   virtual ~LineFlexibility() = default;
   /// G(x, x) from a port to another of its rail; [tabled elements x (points + 1)], m/N.
   virtual Eigen::VectorXd under(const Port& port, const Port& seen, int points) const = 0;
-  virtual Strip between(const Port& a, const Port& b, int points) const = 0;
-  /// The functional under a unit force of a port at each place; [elements x (points + 1)].
-  virtual Eigen::VectorXd from(const Port& port, const Functional& functional,
-                               int points) const = 0;
+  virtual Strip between(const Port& a, const Port& b, int points, int reach) const = 0;
+  /// The functional under a unit force of a port at each place of some elements, of a ring all;
+  /// [elements x (points + 1)].
+  virtual Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+                               Elements at) const = 0;
   /// Each of `reads` under a unit force spread by `force`, whatever their directions; m/N. Weights
   /// of rails are in.
   virtual Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
@@ -55,8 +68,9 @@ class DividedLine : public LineFlexibility {
 
   /// These throw std::invalid_argument if the line has a free rigid mode.
   Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
-  Strip between(const Port& a, const Port& b, int points) const override;
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
+  Strip between(const Port& a, const Port& b, int points, int reach) const override;
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+                       Elements at) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override;
   bool held() const override { return held_; }
@@ -68,7 +82,7 @@ class DividedLine : public LineFlexibility {
       int rail, element;
       Superelement::Rows rows;
     };
-    Eigen::VectorXd load;  // [unknowns]
+    Eigen::SparseVector<double> load;
     std::vector<OnElement> points;
   };
   Spread spread(const Functional& functional) const;
@@ -76,15 +90,19 @@ class DividedLine : public LineFlexibility {
   Superelement::Rows port_rows(const Port& port, int points) const;
   Superelement::Rows rail_rows(const Functional::OnRail& point, int element) const;
   void sign(int rail, Eigen::VectorXd& row) const;
-  Eigen::MatrixXd end_columns(int rail, int element) const;
+  Stretch moved(const Eigen::SparseVector<double>& load, Elements around) const;
+  Eigen::MatrixXd end_flexibility(int rail, int element) const;
   void factor(const Eigen::SparseMatrix<double>& stiffness);
+  void find_spans();
   void refuse_free_modes() const;
 
   const Track& track_;
   const Line& line_;
   std::array<std::optional<Superelement>, 2> element_;  // of each rail that the line has
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
-  bool held_ = false;  // no free rigid mode
+  std::optional<LocalInverse> local_;      // of a held track with ends
+  std::vector<std::pair<int, int>> span_;  // of each element's end unknowns: the first, the last
+  bool held_ = false;                      // no free rigid mode
 };
 
 /// The same of any track, pads with lengths too, which act on inner nodes: the track with every
@@ -96,8 +114,9 @@ class RefinedLine : public LineFlexibility {
 
   /// These throw std::invalid_argument if the line has a free rigid mode.
   Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
-  Strip between(const Port& a, const Port& b, int points) const override;
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
+  Strip between(const Port& a, const Port& b, int points, int reach) const override;
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+                       Elements at) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override;
   bool held() const override { return held_; }
@@ -107,6 +126,7 @@ class RefinedLine : public LineFlexibility {
   Eigen::SparseMatrix<double> columns(const Port& port, int element, int points) const;
   void refuse_free_modes() const;
 
+  const Track& whole_;
   Track track_;  // divided
   int elements_, parts_;
   Line line_;
@@ -122,8 +142,9 @@ class ReducedLine : public LineFlexibility {
   ReducedLine(const Track& track, const Line& line, const Basis& basis);
 
   Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
-  Strip between(const Port& a, const Port& b, int points) const override;
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points) const override;
+  Strip between(const Port& a, const Port& b, int points, int reach) const override;
+  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+                       Elements at) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override;
   /// Velocity of the functional at once under a unit force of a port at each place;

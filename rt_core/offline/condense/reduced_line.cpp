@@ -38,18 +38,25 @@ Eigen::VectorXd ReducedLine::under(const Port& port, const Port& seen, int point
   return read.cwiseProduct(basis_.give(at.transpose()).transpose()).rowwise().sum();
 }
 
-LineFlexibility::Strip ReducedLine::between(const Port& a, const Port& b, int points) const {
+LineFlexibility::Strip ReducedLine::between(const Port& a, const Port& b, int points,
+                                            int reach) const {
   const Eigen::MatrixXd read = port_shapes(b, points);
-  return [points, from = port_shapes(a, points),
-          to = basis_.give(read.transpose())](int element) -> Eigen::MatrixXd {
-    return from.middleRows(element * (points + 1), points + 1) * to;
+  return [this, n = points + 1, reach, from = port_shapes(a, points),
+          to = basis_.give(read.transpose())](int element) {
+    Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(n, (2 * reach + 1) * n);
+    for (int shift = -reach; shift <= reach; ++shift)
+      if (const int e2 = shifted(track_, element, shift); e2 >= 0)
+        strip.middleCols((shift + reach) * n, n) =
+            from.middleRows(element * n, n) * to.middleCols(e2 * n, n);
+    return strip;
   };
 }
 
-Eigen::VectorXd ReducedLine::from(const Port& port, const Functional& functional,
-                                  int points) const {
+Eigen::VectorXd ReducedLine::from(const Port& port, const Functional& functional, int points,
+                                  Elements at) const {
   const Eigen::VectorXd load(functional_row(track_, line_, functional));
-  return port_shapes(port, points) * basis_.give(basis_.shapes.transpose() * load);
+  return port_shapes(port, points).middleRows(at.first * (points + 1), at.count() * (points + 1)) *
+         basis_.give(basis_.shapes.transpose() * load);
 }
 
 Eigen::VectorXd ReducedLine::at_once(const Port& port, const Functional& functional,

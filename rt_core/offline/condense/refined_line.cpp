@@ -1,7 +1,6 @@
 #include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
-#include "offline/condense/selected_inverse.h"
 #include "offline/element/shape.h"
 
 namespace railstep {
@@ -33,26 +32,15 @@ Track divided(Track track, int parts) {
   return track;
 }
 
-/// The unknowns of each element of each rail, -1 where held.
-std::vector<std::vector<int>> element_unknowns(const Track& track, const Line& line) {
-  std::vector<std::vector<int>> all;
-  for (int rail = 0; rail < track.rails; ++rail)
-    for (int e = 0; e < track.elements(); ++e) {
-      std::vector<int>& own = all.emplace_back();
-      for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 9; ++k) own.push_back(line.element_unknown(rail, e, i, k));
-    }
-  return all;
-}
-
 }  // namespace
 
 RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)
-    : track_(divided(track, parts)),
+    : whole_(track),
+      track_(divided(track, parts)),
       elements_(track.elements()),
       parts_(parts),
       line_(matching(track_, line)) {
-  factor_.compute(grouped(line_.stiffness, element_unknowns(track_, line_)));
+  factor_.compute(line_.stiffness);
   held_ = is_held(factor_, line_.stiffness);
 }
 
@@ -75,40 +63,36 @@ Eigen::SparseMatrix<double> RefinedLine::columns(const Port& port, int element, 
 }
 
 Eigen::VectorXd RefinedLine::under(const Port& port, const Port& seen, int points) const {
-  refuse_free_modes();
-  const SelectedInverse inverse(factor_);
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(elements_ * (points + 1));
-  for (int e = 0; e < elements_; ++e) {
-    const Sparse acting = columns(port, e, points), read = columns(seen, e, points);
-    for (int p = 0; p <= points; ++p)
-      for (Sparse::InnerIterator b(read, p); b; ++b)
-        for (Sparse::InnerIterator a(acting, p); a; ++a)
-          result[e * (points + 1) + p] +=
-              b.value() * inverse.at(static_cast<int>(b.row()), static_cast<int>(a.row())) *
-              a.value();
-  }
+  const Strip strip = between(port, seen, points, 0);
+  Eigen::VectorXd result(tabled_elements(whole_) * (points + 1));
+  for (int e = 0; e < tabled_elements(whole_); ++e)
+    result.segment(e * (points + 1), points + 1) = strip(e).diagonal();
   return result;
 }
 
-LineFlexibility::Strip RefinedLine::between(const Port& a, const Port& b, int points) const {
+LineFlexibility::Strip RefinedLine::between(const Port& a, const Port& b, int points,
+                                            int reach) const {
   refuse_free_modes();
-  Eigen::SparseMatrix<double> seen(line_.unknowns(), elements_ * (points + 1));
-  for (int e = 0; e < elements_; ++e)
-    seen.middleCols(e * (points + 1), points + 1) = columns(b, e, points);
-  return [this, a, points, seen](int element) -> Eigen::MatrixXd {
+  return [=, this](int element) {
     const Eigen::MatrixXd moved = factor_.solve(Eigen::MatrixXd(columns(a, element, points)));
-    return (seen.transpose() * moved).transpose();
+    Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(points + 1, (2 * reach + 1) * (points + 1));
+    for (int shift = -reach; shift <= reach; ++shift)
+      if (const int e2 = shifted(whole_, element, shift); e2 >= 0)
+        strip.middleCols((shift + reach) * (points + 1), points + 1) =
+            (columns(b, e2, points).transpose() * moved).transpose();
+    return strip;
   };
 }
 
-Eigen::VectorXd RefinedLine::from(const Port& port, const Functional& functional,
-                                  int points) const {
+Eigen::VectorXd RefinedLine::from(const Port& port, const Functional& functional, int points,
+                                  Elements at) const {
   refuse_free_modes();
   const Eigen::VectorXd load = functional_row(track_, line_, functional);
   const Eigen::VectorXd moved = factor_.solve(load);
-  Eigen::VectorXd result(elements_ * (points + 1));
-  for (int e = 0; e < elements_; ++e)
-    result.segment(e * (points + 1), points + 1) = columns(port, e, points).transpose() * moved;
+  Eigen::VectorXd result(at.count() * (points + 1));
+  for (int e = at.first; e < at.last; ++e)
+    result.segment((e - at.first) * (points + 1), points + 1) =
+        columns(port, e, points).transpose() * moved;
   return result;
 }
 

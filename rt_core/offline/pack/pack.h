@@ -221,6 +221,7 @@ class PackedModel {
   void add_weight(const Track& track, double gravity);
   void add_probes(const Track& track, const std::vector<Probe>& probes);
   void add_residual(const Track& track, const std::vector<Probe>& probes, int points);
+  void add_probe_tables(const ResidualFlexibility& residual, const std::vector<Probe>& probes);
   void add_turn(const Track& track);
   void clip(int points, std::vector<double>& under);
   std::int32_t kind_of(const Port& port);

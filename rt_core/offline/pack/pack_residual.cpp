@@ -3,7 +3,7 @@
 #include <complex>
 
 #include "offline/pack/pack.h"
-#include "online/step/line.h"
+#include "offline/pack/step_compliance.h"
 
 namespace railstep {
 
@@ -45,44 +45,6 @@ bool all_zero(const std::vector<double>& values) {
 
 void append(std::vector<double>& to, const std::vector<double>& values) {
   to.insert(to.end(), values.begin(), values.end());
-}
-
-/// What the model's lines give way within a step under a force of a port, m/N, at the places of its
-/// table: theta row S^-1 row', or of condensed lines theta Re row held_force row.
-std::vector<double> step_compliance(const Model& model, const Port& port, std::int32_t elements,
-                                    int points) {
-  const auto n = static_cast<std::size_t>(model.unknowns);
-  std::vector<double> re(n), im(n), table;
-  for (std::int32_t element = 0; element < elements; ++element)
-    for (int p = 0; p <= points; ++p) {
-      RailRow row{port.rail, element, {}, 0, {}, {}};
-      double shape[3];
-      shape_functions(2. * p / points - 1., shape);
-      set_height_row(model.cant[port.rail], port.y, port.z, shape, row);
-      std::fill(re.begin(), re.end(), 0.);
-      std::fill(im.begin(), im.end(), 0.);
-      double sum = 0.;
-      for (std::int32_t l = 0; l < model.lines; ++l) {
-        const LineModel& line = model.line[l];
-        if (model.condensed != 0) {
-          spread_modes(line, row, 1., re.data(), im.data());
-          for (std::int32_t k = 0; k < line.size; ++k) {
-            const std::int32_t at = line.first + k;
-            const std::complex<double> c(re[static_cast<std::size_t>(at)],
-                                         im[static_cast<std::size_t>(at)]);
-            sum += (std::complex<double>(line.modal.held_force.re[k], line.modal.held_force.im[k]) *
-                    c * c)
-                       .real();
-          }
-        } else {
-          spread(line, row, 1., re.data());
-          solve_band<1>(line.step, re.data() + line.first, 0);
-          sum += motion(line, row, {re.data(), {}});
-        }
-      }
-      table.push_back(model.scheme.theta * sum);
-    }
-  return table;
 }
 
 }  // namespace
@@ -154,11 +116,12 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
 /// A contact needs a rail that gives way under it: where wheels stand, G_res takes no more than
 /// half of what the lines give way within a step.
 void PackedModel::clip(int points, std::vector<double>& under) {
+  if (wheel_count(model_) == 0) return;
+  const StepCompliance compliance(model_, lines_);
   const std::size_t places = under.size() / kinds_.size();
   for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
     const auto kind = static_cast<std::size_t>(wheel_kind(model_, wheel));
-    const std::vector<double> lines =
-        step_compliance(model_, kinds_[kind], model_.residual.elements, points);
+    const std::vector<double> lines = compliance.table(kinds_[kind], points);
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[kind * places + i];
       const double lowest = lines[i] > 0. ? -.5 * lines[i] : -1.5 * lines[i];
@@ -170,15 +133,17 @@ void PackedModel::clip(int points, std::vector<double>& under) {
 
 namespace {
 
-/// What a probe has of a unit force of a port beside the model's unknowns.
-std::vector<double> seen_at_once(const ResidualFlexibility& residual, const Port& port,
-                                 const Probe& probe) {
-  std::vector<double> sum = residual.from(port, probe.track);
-  for (double& value : sum) value *= probe.displacement;
-  if (probe.velocity == 0.) return sum;
-  const std::vector<double> speed = residual.at_once(port, probe.track);
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += probe.velocity * speed[i];
-  return sum;
+/// What a probe has of unit forces of ports beside the model's unknowns.
+ResidualFlexibility::Near seen_at_once(const ResidualFlexibility& residual,
+                                       const std::vector<Port>& ports, const Probe& probe) {
+  ResidualFlexibility::Near seen = residual.near(ports, probe.track);
+  for (double& value : seen.value) value *= probe.displacement;
+  if (probe.velocity == 0.) return seen;
+  auto value = seen.value.begin();
+  for (const Port& port : ports)
+    for (const double speed : residual.at_once(port, probe.track, seen.at))
+      *value++ += probe.velocity * speed;
+  return seen;
 }
 
 }  // namespace
@@ -217,20 +182,30 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
       if (all_zero(pair.value)) continue;
       model_.residual.pair[a][b] = {pair.points, pair.reach, keep(std::move(pair.value))};
     }
-  std::vector<std::int32_t> table;
+  add_probe_tables(residual, probes);
+}
+
+void PackedModel::add_probe_tables(const ResidualFlexibility& residual,
+                                   const std::vector<Probe>& probes) {
+  std::vector<std::int32_t> table, first, ends = {0};
   std::vector<double> values;
-  std::int32_t tables = 0;
   for (const Probe& probe : probes) {
-    std::vector<double> rows;
+    table.push_back(-1);
     const bool of_track = probe.wheelset < 0 && probe.vehicle < 0;
-    if (of_track && (probe.displacement != 0. || probe.velocity != 0.))
-      for (const Port& port : kinds_) append(rows, seen_at_once(residual, port, probe));
-    table.push_back(all_zero(rows) ? -1 : tables++);
-    if (table.back() >= 0) append(values, rows);
+    if (!of_track || (probe.displacement == 0. && probe.velocity == 0.)) continue;
+    const ResidualFlexibility::Near seen = seen_at_once(residual, kinds_, probe);
+    if (all_zero(seen.value)) continue;
+    table.back() = static_cast<std::int32_t>(first.size());
+    first.push_back(seen.at.first);
+    ends.push_back(ends.back() + seen.at.count());
+    append(values, seen.value);
   }
-  if (tables == 0) return;
-  model_.probe.tables = tables;
+  if (first.empty()) return;
   model_.probe.table = keep(std::move(table));
+  model_.probe.tables = static_cast<std::int32_t>(first.size());
+  model_.probe.first = keep(std::move(first));
+  model_.probe.elements = ends.back();
+  model_.probe.ends = keep(std::move(ends));
   model_.probe.residual = keep(std::move(values));
 }
 

@@ -246,8 +246,12 @@ void describe(Archive& a, ProbeModel& p, const Model& m) {
   a.integers(p.along, p.count);
   a.integers(p.table, p.count);
   a.count(p.tables, kMostRows);
-  const std::int64_t table = std::int64_t{m.residual.kinds} * m.elements * (m.residual.points + 1);
-  a.reals(p.residual, p.tables * table);
+  if (p.tables == 0) return;
+  a.count(p.elements, kMostEntries);
+  a.integers(p.first, p.tables);
+  a.integers(p.ends, p.tables + 1);
+  const std::int64_t of_element = std::int64_t{m.residual.kinds} * (m.residual.points + 1);
+  a.reals(p.residual, p.elements * of_element);
 }
 
 template <typename Archive>

@@ -161,6 +161,18 @@ bool turn_holds(const SeatTurnModel& t) noexcept {
          (t.elements_per_bay > 0 && t.points >= 3);
 }
 
+/// Every table lies within the track and behind the one before it.
+bool tables_hold(const Model& m) noexcept {
+  const ProbeModel& p = m.probe;
+  if (p.tables == 0) return true;
+  if (!p.first || !p.ends || p.ends[0] != 0 || p.ends[p.tables] != p.elements) return false;
+  for (std::int32_t i = 0; i < p.tables; ++i) {
+    const std::int64_t count = std::int64_t{p.ends[i + 1]} - p.ends[i];
+    if (count < 0 || p.first[i] < 0 || p.first[i] + count > m.elements) return false;
+  }
+  return true;
+}
+
 bool probes_hold(const Model& m) noexcept {
   const ProbeModel& p = m.probe;
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
@@ -168,7 +180,7 @@ bool probes_hold(const Model& m) noexcept {
     if (p.start[i] > p.start[i + 1]) return false;
   const std::int64_t values = std::int64_t{3} * m.unknowns + m.fixed.count;
   return within(p.index, p.entries, 0, values - 1) && within(p.table, p.count, -1, p.tables - 1) &&
-         (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value);
+         (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value) && tables_hold(m);
 }
 
 bool fixed_ports_hold(const Model& m) noexcept {

@@ -245,8 +245,11 @@ struct ProbeModel {
   const double* rest;         // [count]
   const std::int32_t* along;  // [count] 1: a place along the rail, which the traffic takes with it
   const std::int32_t* table;  // [count] of its residual, -1: none
-  std::int32_t tables;
-  const double* residual;  // [tables][kinds][model.elements][points + 1] per N, or null
+  /// Each table over the elements that have something of it, 0 on all others.
+  std::int32_t tables, elements;
+  const std::int32_t* first;  // [tables] the model's element that it begins with
+  const std::int32_t* ends;   // [tables + 1] of their elements in a row, 0 before the first
+  const double* residual;     // [tables][kinds][its elements][points + 1] per N, or null
 };
 
 /// One-sided springs and dampers that stand still: supports that do not pull, gaps, stops. Of each

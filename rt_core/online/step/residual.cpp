@@ -80,14 +80,19 @@ double residual_displacement(const Model& model, const RailForce* forces, int co
 
 double residual_of_probe(const Model& model, std::int32_t probe, const RailForce* forces,
                          int count) noexcept {
-  const std::int32_t table = model.probe.table[probe];
-  if (model.probe.residual == nullptr || table < 0) return 0.;
-  const double* values = model.probe.residual + static_cast<std::ptrdiff_t>(table) *
-                                                    model.residual.kinds * model.elements *
-                                                    (model.residual.points + 1);
+  const ProbeModel& p = model.probe;
+  const std::int32_t table = p.table[probe];
+  if (p.residual == nullptr || table < 0) return 0.;
+  const std::int32_t points = model.residual.points, elements = p.ends[table + 1] - p.ends[table];
+  const double* values =
+      p.residual + static_cast<std::ptrdiff_t>(p.ends[table]) * model.residual.kinds * (points + 1);
   double sum = 0.;
-  for (int i = 0; i < count; ++i)
-    sum += forces[i].force * look_up(model, values, model.elements, forces[i]);
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t at = forces[i].element - p.first[table];
+    if (forces[i].kind == kNoPortKind || at < 0 || at >= elements) continue;
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(forces[i].kind) * elements + at;
+    sum += forces[i].force * interpolate(values + row * (points + 1), points, forces[i].xi);
+  }
   return sum;
 }
 

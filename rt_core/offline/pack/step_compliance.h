@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "offline/condense/local_inverse.h"
+#include "offline/pack/pack.h"
+
+namespace railstep {
+
+/// What the lines of a packed model give way within a step under forces of ports: theta row S^-1
+/// row', or of condensed lines theta Re row held_force row.
+class StepCompliance {
+ public:
+  StepCompliance(const Model& model, const std::vector<PackedLine>& lines);
+  /// At the places of the model's tables over elements, m/N; [elements][points + 1].
+  std::vector<double> table(const Port& port, int points) const;
+
+ private:
+  const Model& model_;
+  const std::vector<PackedLine>& lines_;
+  std::vector<LocalInverse> inverse_;  // of banded lines
+};
+
+}  // namespace railstep
