@@ -51,8 +51,9 @@ TEST_CASE("a functional's table ends where nothing is left of it", "[flexibility
   const double peak = exact_line(t, lines[0], kPoints)
                           ->from(port, functional, kPoints, {0, t.elements()})
                           .lpNorm<Eigen::Infinity>();
-  const auto first = static_cast<std::size_t>(near.at.first * (kPoints + 1)),
-             last = static_cast<std::size_t>(near.at.last * (kPoints + 1));
+  constexpr std::size_t places = kPoints + 1;  // of an element
+  const std::size_t first = places * static_cast<std::size_t>(near.at.first),
+                    last = places * static_cast<std::size_t>(near.at.last);
   REQUIRE(near.value.size() == last - first);
   std::vector<double> difference = near.value;
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= whole[first + i];

@@ -20,9 +20,16 @@ std::vector<double> to_vector(const Eigen::VectorXd& values) {
 /// What of a functional counts as nothing, as a part of the most that a force makes of it: outputs
 /// do not jump where their tables end.
 constexpr double kFaded = 1e-8;
-/// Elements to either side that are looked at first, of functionals and of pairs. Where the outer
-/// quarter of what is looked at counts as nothing, so does what lies beyond: it fades.
-constexpr int kFirstLook = 96, kFirstPairLook = 24;
+/// Elements, and bays, to either side that are looked at first, of functionals and of pairs. Where
+/// the outer quarter of what is looked at counts as nothing, so does what lies beyond: in full
+/// order what a mesh misses fades with the distance.
+struct FirstLook {
+  int elements, bays;
+};
+constexpr FirstLook kFunctionalLook{96, 16}, kPairLook{24, 8};
+int first_look(const FirstLook& look, const Track& track) {
+  return std::max(look.elements, look.bays * track.elements_per_bay);
+}
 bool has_faded(int reach, int look) { return 4 * reach <= 3 * look; }
 
 std::size_t place_in(const PairTable& table, int e, int p, int e2, int q) {
@@ -47,28 +54,20 @@ PairTable table_of(const LineFlexibility::Strip& strip, int elements, int points
   return table;
 }
 
-/// The distance, in elements, beyond which all values stay below a limit.
-int reach_of(const PairTable& table, double limit) {
-  const auto n = static_cast<std::size_t>(table.points) + 1,
-             blocks = 2 * static_cast<std::size_t>(table.reach) + 1;
+/// The distance, in elements, beyond which all values of strips stay below a limit. Nothing is kept
+/// of them: far apart, all pairs of elements would be their number squared.
+int reach_of(const LineFlexibility::Strip& strip, int elements, int points, int look,
+             double limit) {
   int reach = 0;
-  for (std::size_t i = 0; i < table.value.size(); ++i)
-    if (std::abs(table.value[i]) >= limit)
-      reach = std::max(reach, std::abs(static_cast<int>(i / (n * n) % blocks) - table.reach));
+  for (int e = 0; e < elements; ++e) {
+    const Eigen::MatrixXd row = strip(e);
+    for (int shift = -look; shift <= look; ++shift)
+      if (std::abs(shift) > reach &&
+          row.middleCols((shift + look) * (points + 1), points + 1).lpNorm<Eigen::Infinity>() >=
+              limit)
+        reach = std::abs(shift);
+  }
   return reach;
-}
-
-/// The same table without what lies beyond a lesser reach.
-PairTable within(const PairTable& table, int reach) {
-  const auto n = static_cast<std::size_t>(table.points) + 1,
-             row = (2 * static_cast<std::size_t>(table.reach) + 1) * n * n,
-             dropped = static_cast<std::size_t>(table.reach - reach) * n * n;
-  PairTable kept{table.points, reach, {}};
-  kept.value.reserve(table.value.size() / row * (row - 2 * dropped));
-  for (std::size_t start = 0; start < table.value.size(); start += row)
-    kept.value.insert(kept.value.end(), table.value.data() + start + dropped,
-                      table.value.data() + start + row - dropped);
-  return kept;
 }
 
 /// Whether a vertical force moves any of these, on y = 0 of an upright rail or anywhere.
@@ -198,12 +197,11 @@ ResidualFlexibility::Sums ResidualFlexibility::sums(Port port, const Functional&
 }
 
 /// The first and the last that have more than nothing.
-Elements ResidualFlexibility::filled(const Sums& sums, Elements at) const {
+Elements ResidualFlexibility::filled(const Sums& sums, Elements at, double nothing) const {
   Elements found{at.last, at.first};
   for (int e = at.first; e < at.last; ++e) {
     const auto there = sums.missing.segment((e - at.first) * (points_ + 1), points_ + 1);
-    if (there.lpNorm<Eigen::Infinity>() > kFaded * sums.largest_exact)
-      found = {std::min(found.first, e), e + 1};
+    if (there.lpNorm<Eigen::Infinity>() > nothing) found = {std::min(found.first, e), e + 1};
   }
   return found;
 }
@@ -213,13 +211,16 @@ ResidualFlexibility::Near ResidualFlexibility::near(const std::vector<Port>& por
   const bool whole = !bases_.empty() || track_.ring;
   const Elements all{0, track_.elements()};
   const Elements own = whole ? all : elements_of(track_, functional);
-  for (int look = kFirstLook;; look *= 2) {
+  for (int look = first_look(kFunctionalLook, track_);; look *= 2) {
     const Elements at{std::max(own.first - look, 0), std::min(own.last + look, all.last)};
-    Elements found = own;
     std::vector<Sums> of_port;
     of_port.reserve(ports.size());
-    for (const Port& port : ports) {
-      const Elements more = filled(of_port.emplace_back(sums(port, functional, at)), at);
+    double largest = 0.;
+    for (const Port& port : ports)
+      largest = std::max(largest, of_port.emplace_back(sums(port, functional, at)).largest_exact);
+    Elements found = own;
+    for (const Sums& sum : of_port) {
+      const Elements more = filled(sum, at, kFaded * largest);
       found = {std::min(found.first, more.first), std::max(found.last, more.last)};
     }
     const int reach = std::max(own.first - found.first, found.last - own.last);
@@ -285,12 +286,15 @@ PairTable ResidualFlexibility::between(Port a, Port b, int points, int most) con
     throw std::invalid_argument("a table between ports takes a divisor of the points of the track");
   most = std::min(most, track_.elements() - 1);
   const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
-  for (int look = std::min(most, kFirstPairLook);; look = std::min(most, 2 * look)) {
-    const PairTable table =
-        table_of(strips(a, b, points, look), tabled_elements(track_), points, look);
-    const int reach = reach_of(table, limit);
-    if (look == most || has_faded(reach, look)) return within(table, reach);
+  const int elements = tabled_elements(track_);
+  // What a basis misses is not local.
+  int look = std::min(most, bases_.empty() ? first_look(kPairLook, track_) : most);
+  int reach = reach_of(strips(a, b, points, look), elements, points, look, limit);
+  while (look < most && !has_faded(reach, look)) {
+    look = std::min(most, 2 * look);
+    reach = reach_of(strips(a, b, points, look), elements, points, look, limit);
   }
+  return table_of(strips(a, b, points, reach), elements, points, reach);
 }
 
 double most_negative(const std::vector<double>& table) {

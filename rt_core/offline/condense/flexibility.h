@@ -72,8 +72,8 @@ class ResidualFlexibility {
   /// show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.
   std::vector<double> at_once(Port port, const Functional& functional, Elements at) const;
   /// What from() gives of several ports at the elements that have something of it: beyond, all
-  /// stays below 1e-8 of the most that a force on the exact track makes of the functional. Of a
-  /// model in the coordinates of a basis, and of a ring, all.
+  /// stays below 1e-8 of the most that a force of any on the exact track makes of the functional.
+  /// Of a model in the coordinates of a basis, and of a ring, all.
   struct Near {
     Elements at;
     std::vector<double> value;  // [ports][elements][points + 1]
@@ -88,7 +88,7 @@ class ResidualFlexibility {
   };
   double weight(const Pair& pair, Port port) const;
   Sums sums(Port port, const Functional& functional, Elements at) const;
-  Elements filled(const Sums& sums, Elements at) const;
+  Elements filled(const Sums& sums, Elements at, double nothing) const;
   LineFlexibility::Strip strips(Port a, Port b, int points, int reach) const;
   double largest_exact(Port port) const;
 

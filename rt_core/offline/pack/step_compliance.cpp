@@ -44,7 +44,7 @@ double condensed_give(const LineModel& line, const RailRow& row, std::vector<dou
   spread_modes(line, row, 1., re.data(), im.data());
   double sum = 0.;
   for (std::int32_t k = 0; k < line.size; ++k) {
-    const auto at = static_cast<std::size_t>(line.first + k);
+    const auto at = static_cast<std::size_t>(line.first) + static_cast<std::size_t>(k);
     const std::complex<double> c(re[at], im[at]);
     sum += (std::complex<double>(line.modal.held_force.re[k], line.modal.held_force.im[k]) * c * c)
                .real();
