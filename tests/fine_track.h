@@ -123,8 +123,9 @@ class KeptFlexibility {
       }
       const Basis& b = bases_[l];
       const Eigen::VectorXd force = point_row(statics_.track(), lines[l], port);
+      const Eigen::MatrixXd S = b.shapes.dense();
       for (Eigen::Index m = 0; m < b.omega.size(); ++m)
-        sum += row.dot(b.shapes.col(m)) * b.shapes.col(m).dot(force) / (b.omega[m] * b.omega[m]);
+        sum += row.dot(S.col(m)) * S.col(m).dot(force) / (b.omega[m] * b.omega[m]);
     }
     return sum;
   }

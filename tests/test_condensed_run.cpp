@@ -19,12 +19,12 @@ double energy(const ModelRun& run) {
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const PackedLine& own = run.packed->lines()[static_cast<std::size_t>(l)];
-    const auto n = own.modes.rate.size();
+    const auto n = own.modes.rate().size();
     Eigen::VectorXcd z(n);
     for (Eigen::Index k = 0; k < n; ++k)
       z[k] = {run.state.u[model.line[l].first + k], run.state.v[model.line[l].first + k]};
-    const Eigen::VectorXd y = (own.modes.shape * z).real(),
-                          velocity = (own.modes.shape * own.modes.rate.cwiseProduct(z)).real();
+    const Eigen::VectorXd y = own.modes.displacement(z),
+                          velocity = own.modes.displacement(own.modes.rate().cwiseProduct(z));
     sum += .5 * (velocity.squaredNorm() + own.basis.omega.cwiseProduct(y).squaredNorm());
   }
   const WheelsetModel& w = model.wheelset[0];

@@ -303,7 +303,7 @@ TEST_CASE("what makes no table is refused", "[flexibility]") {
   bad.push_back(good[0]);
   CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("one basis per line"));
   bad = good;
-  bad[0].shapes.conservativeResize(10, Eigen::NoChange);
+  bad[0].shapes = Eigen::MatrixXd(good[0].shapes.dense().topRows(10));
   CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("one row per unknown"));
   bad = good;
   bad[0].omega[0] = 0.;

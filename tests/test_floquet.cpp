@@ -51,7 +51,7 @@ TEST_CASE("ring modes are normal over the ring's own mass and stiffness") {
   const Track ring = full_ring(6);
   for (const Line& line : assemble(ring)) {
     const RingModes waves = ring_modes(ring, line, {18, std::numeric_limits<double>::infinity()});
-    const Eigen::MatrixXd& S = waves.basis.shapes;
+    const Eigen::MatrixXd S = waves.basis.shapes.dense();
     const Eigen::VectorXd square = waves.basis.omega.cwiseAbs2();
     const Eigen::Index n = square.size();
     // rounding, times the condition of K over the kept shapes (below 1e6)
@@ -59,8 +59,30 @@ TEST_CASE("ring modes are normal over the ring's own mass and stiffness") {
     CHECK(largest(S.transpose() * (line.stiffness * S) - Eigen::MatrixXd(square.asDiagonal())) <
           1e-9 * square.maxCoeff());
     // the damping couples no two waves: what the small systems have is all there is
-    CHECK(largest(S.transpose() * (line.damping * S) - waves.modes.damping) <
-          1e-9 * std::max(1., largest(waves.modes.damping)));
+    const Eigen::MatrixXd damping(waves.modes.damping());
+    CHECK(largest(S.transpose() * (line.damping * S) - damping) <
+          1e-9 * std::max(1., largest(damping)));
+  }
+}
+
+TEST_CASE("shapes kept wave by wave are those of the whole ring, row by row and in products") {
+  // sums of some hundred terms of size 1 in another order
+  for (const int bays : {6, 7}) {
+    const Track ring = full_ring(bays);
+    for (const Line& line : assemble(ring)) {
+      const Shapes shapes =
+          ring_modes(ring, line, {3 * bays, std::numeric_limits<double>::infinity()}).basis.shapes;
+      const Eigen::MatrixXd S = shapes.dense();
+      REQUIRE(S.rows() == line.unknowns());
+      REQUIRE(S.cols() == shapes.cols());
+      const Eigen::VectorXd load = Eigen::VectorXd::Random(S.rows()),
+                            y = Eigen::VectorXd::Random(S.cols());
+      const double scale = 1e-13 * largest(S) * std::sqrt(static_cast<double>(S.rows()));
+      CHECK(largest(shapes.project(load) - S.transpose() * load) < scale);
+      CHECK(largest(shapes.displacement(y) - S * y) < scale);
+      const Eigen::VectorXd one = Eigen::VectorXd::Unit(S.rows(), S.rows() / 2);
+      CHECK(largest(shapes.project(one) - S.transpose() * one) < scale);
+    }
   }
 }
 
@@ -68,8 +90,8 @@ TEST_CASE("a step back by a bay turns each wave's coordinates") {
   const Track ring = full_ring(6);
   for (const Line& line : assemble(ring)) {
     const RingModes waves = ring_modes(ring, line, {18, std::numeric_limits<double>::infinity()});
-    const Eigen::MatrixXcd shape = waves.basis.shapes * waves.modes.shape;
-    Eigen::VectorXcd z(waves.modes.rate.size()), turned(z.size());
+    const Eigen::MatrixXcd shape = waves.basis.shapes.dense() * waves.modes.shape();
+    Eigen::VectorXcd z(waves.modes.rate().size()), turned(z.size());
     for (Eigen::Index k = 0; k < z.size(); ++k)
       z[k] = {std::cos(1. + 3. * static_cast<double>(k)), std::sin(2. + static_cast<double>(k))};
     for (Eigen::Index k = 0; k < z.size(); ++k)
@@ -108,7 +130,7 @@ TEST_CASE("a ring's table of one bay gives two places of any bay their flexibili
         if (to > ring.length()) continue;
         const RailPoint a{0, x, 0., 0., 2}, b{0, to, 0., 0., 2};
         const auto row = [&](const RailPoint& at) -> Eigen::VectorXd {
-          return own.basis.shapes.transpose() * Eigen::VectorXd(point_row(ring, own.line, at));
+          return own.basis.shapes.project(Eigen::VectorXd(point_row(ring, own.line, at)));
         };
         const double modes =
             row(a).cwiseProduct(row(b)).cwiseQuotient(own.basis.omega.cwiseAbs2()).sum();

@@ -33,7 +33,7 @@ Basis basis_of(const Line& line, int modes) { return modal_basis(line, {modes, k
 
 /// What is left of shapes outside the span of a basis, over their size; norms over the mass.
 double outside(const Line& line, const Basis& basis, const Eigen::VectorXd& shape) {
-  const Eigen::VectorXd within = basis.shapes * (basis.shapes.transpose() * (line.mass * shape));
+  const Eigen::VectorXd within = basis.shapes.displacement(basis.shapes.project(line.mass * shape));
   const Eigen::VectorXd left = shape - within;
   return std::sqrt(left.dot(line.mass * left) / shape.dot(line.mass * shape));
 }
@@ -80,8 +80,9 @@ TEST_CASE("the basis is orthonormal over the mass and makes the stiffness diagon
     const auto m = basis.omega.size();
     CHECK(basis.omega.minCoeff() > 0.);
     CHECK(std::is_sorted(basis.omega.begin(), basis.omega.end()));
-    const Eigen::MatrixXd mass = basis.shapes.transpose() * (line.mass * basis.shapes);
-    const Eigen::MatrixXd stiffness = basis.shapes.transpose() * (line.stiffness * basis.shapes);
+    const Eigen::MatrixXd S = basis.shapes.dense();
+    const Eigen::MatrixXd mass = S.transpose() * (line.mass * S);
+    const Eigen::MatrixXd stiffness = S.transpose() * (line.stiffness * S);
     const Eigen::MatrixXd square = basis.omega.cwiseAbs2().asDiagonal();
     // sums of some hundred terms of size 1, with room 1e4 for the shapes' own cancellation
     CHECK((mass - Eigen::MatrixXd::Identity(m, m)).cwiseAbs().maxCoeff() < 1e-10);

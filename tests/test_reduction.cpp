@@ -51,7 +51,7 @@ Eigen::MatrixXcd receptance(const Line& line, const Eigen::MatrixXd& rows, doubl
 Eigen::MatrixXcd receptance(const ReducedLineModel& model, const Eigen::MatrixXd& rows, double hz) {
   const Value rate(0., 2. * M_PI * hz);
   const Eigen::MatrixXcd shape =
-      model.modes.shape.transpose() * (model.basis.shapes.transpose() * rows).cast<Value>();
+      model.modes.shape.transpose() * (model.basis.shapes.dense().transpose() * rows).cast<Value>();
   const Eigen::VectorXcd along = .5 * (rate - model.modes.rate.array()).inverse(),
                          back = .5 * (rate - model.modes.rate.conjugate().array()).inverse();
   const Eigen::MatrixXcd conjugate = shape.conjugate();
@@ -110,9 +110,9 @@ TEST_CASE("every kind but damped modes is Galerkin's", "[reduction]") {
         if (kind == ReductionKind::complex_modes) continue;
         const Basis basis = reduce(track, line, of(kind, track.bays)).basis;
         const auto m = basis.omega.size();
-        const Eigen::MatrixXd mass = basis.shapes.transpose() * (line.mass * basis.shapes);
-        const Eigen::MatrixXd stiffness =
-            basis.shapes.transpose() * (line.stiffness * basis.shapes);
+        const Eigen::MatrixXd S = basis.shapes.dense();
+        const Eigen::MatrixXd mass = S.transpose() * (line.mass * S);
+        const Eigen::MatrixXd stiffness = S.transpose() * (line.stiffness * S);
         const Eigen::MatrixXd square = basis.omega.cwiseAbs2().asDiagonal();
         CAPTURE(static_cast<int>(kind), line.unknowns(), m);
         // as test_modal has it: sums of some hundred terms of size 1, with room for cancellation
@@ -168,13 +168,13 @@ TEST_CASE("static condensation answers forces on what it keeps exactly", "[reduc
   for (const double seat : {0., 4., 7.}) {
     const Eigen::VectorXd force = vertical(track, line, seat * track.bay_length);
     const Eigen::VectorXd moved =
-        model.basis.shapes * model.basis.give(model.basis.shapes.transpose() * force);
+        model.basis.shapes.displacement(model.basis.give(model.basis.shapes.project(force)));
     const Eigen::VectorXd want = statics.solve({{{0, seat * track.bay_length, 0., 0., 2}, 1.}})[0];
     CHECK((moved - want).cwiseAbs().maxCoeff() < 1e-9 * want.cwiseAbs().maxCoeff());  // rounding
   }
   const Eigen::VectorXd between = vertical(track, line, 4.5 * track.bay_length);
   const Eigen::VectorXd there =
-      model.basis.shapes * model.basis.give(model.basis.shapes.transpose() * between);
+      model.basis.shapes.displacement(model.basis.give(model.basis.shapes.project(between)));
   const double got = between.dot(there);
   const RailPoint at{0, 4.5 * track.bay_length, 0., 0., 2};
   CHECK(got < (1. - 1e-3) * statics.flexibility(at, at));  // and no other: that is left to G_res
@@ -259,8 +259,8 @@ TEST_CASE("damped modes of all are the line, and the slowest answer slow forces"
     const ReducedLineModel slow = reduce(track, line, of(ReductionKind::complex_modes, 18));
     CHECK(kept_coordinates(slow.basis, slow.modes) <= 18);
     CHECK(kept_coordinates(slow.basis, slow.modes) >= 16);
-    const Eigen::MatrixXd acting = slow.basis.shapes.transpose() * rows;
-    const Eigen::MatrixXd whole_acting = whole.shapes.transpose() * rows;
+    const Eigen::MatrixXd acting = slow.basis.shapes.dense().transpose() * rows;
+    const Eigen::MatrixXd whole_acting = whole.shapes.dense().transpose() * rows;
     const Eigen::MatrixXd missing = whole_acting.transpose() * whole.give(whole_acting) -
                                     acting.transpose() * slow.basis.give(acting);
     for (const double hz : {5., 20., 60.}) {

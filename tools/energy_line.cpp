@@ -3,10 +3,13 @@
 namespace railstep {
 namespace {
 
+using ComplexSparse = Eigen::SparseMatrix<std::complex<double>>;
+
 /// [Re A, -Im A], which makes Re(A z) of [Re z, Im z].
-Eigen::MatrixXd real_form(const Eigen::MatrixXcd& A) {
-  Eigen::MatrixXd both(A.rows(), 2 * A.cols());
-  both << A.real(), -A.imag();
+Eigen::SparseMatrix<double> real_form(const ComplexSparse& A) {
+  Eigen::SparseMatrix<double> both(A.rows(), 2 * A.cols());
+  both.leftCols(A.cols()) = A.real();
+  both.rightCols(A.cols()) = -A.imag();
   return both;
 }
 
@@ -28,13 +31,13 @@ LineEnergy::LineEnergy(const PackedLine& own, const Model& model, const LineMode
       constant_ = Eigen::Map<const Eigen::VectorXd>(constant + first_, own.line.unknowns());
     return;
   }
-  const Eigen::Index modes = own.modes.rate.size();
+  const Eigen::Index modes = own.modes.rate().size();
   mass_ = diagonal(Eigen::VectorXd::Ones(own.basis.omega.size()));
-  damping_ = own.modes.damping.sparseView();
+  damping_ = own.modes.damping();
   stiffness_ = diagonal(own.basis.omega.cwiseAbs2());
-  const Eigen::MatrixXcd moving = own.modes.shape * own.modes.rate.asDiagonal();
-  shape_ = real_form(own.modes.shape);
-  rate_ = real_form(moving);
+  const ComplexSparse shape = own.modes.shape();
+  shape_ = real_form(shape);
+  rate_ = real_form(shape * own.modes.rate().asDiagonal());
   if (constant == nullptr) return;
   // of the modal force q = shape' p: Re shape rate shape' = I gives p back
   Eigen::VectorXd q(2 * modes);

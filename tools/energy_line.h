@@ -41,8 +41,8 @@ class LineEnergy {
   bool condensed_;
   Eigen::Index first_;  // of its unknowns among the state's
   Eigen::SparseMatrix<double> mass_, damping_, stiffness_;
-  Eigen::VectorXd constant_;      // N; empty: none
-  Eigen::MatrixXd shape_, rate_;  // [kept][2 modes] y and y' of [u, v]
+  Eigen::VectorXd constant_;                  // N; empty: none
+  Eigen::SparseMatrix<double> shape_, rate_;  // [kept][2 modes] y and y' of [u, v]
 };
 
 }  // namespace railstep

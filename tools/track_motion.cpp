@@ -6,11 +6,11 @@ namespace {
 Eigen::VectorXd displacements(const PackedLine& own, const LineModel& line, const State& state) {
   if (line.modal.count == 0)
     return Eigen::Map<const Eigen::VectorXd>(state.u + line.first, own.line.unknowns());
-  const Eigen::Index modes = own.modes.rate.size();
+  const Eigen::Index modes = own.modes.rate().size();
   Eigen::VectorXcd z(modes);
   z.real() = Eigen::Map<const Eigen::VectorXd>(state.u + line.first, modes);
   z.imag() = Eigen::Map<const Eigen::VectorXd>(state.v + line.first, modes);
-  return own.basis.shapes * Eigen::VectorXcd(own.modes.shape * z).real();
+  return own.basis.shapes.displacement(own.modes.displacement(z));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "offline/condense/shapes.h"
 #include "offline/track/track.h"
 
 namespace railstep {
@@ -8,8 +9,8 @@ namespace railstep {
 /// A line in fewer coordinates: u = shapes y, with shapes' M shapes = I and
 /// shapes' K shapes = diag(omega^2).
 struct Basis {
-  Eigen::VectorXd omega;   // [kept] rad/s, above 0, ascending
-  Eigen::MatrixXd shapes;  // [unknowns of the line][kept]
+  Eigen::VectorXd omega;  // [kept] rad/s, above 0, ascending
+  Shapes shapes;          // [unknowns of the line][kept]
   /// What the stepped model gives way statically, [kept][kept]; empty where that is omega^-2, as of
   /// all but truncated damped modes.
   Eigen::MatrixXd flexibility = {};

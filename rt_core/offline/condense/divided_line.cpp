@@ -129,10 +129,14 @@ Stretch DividedLine::moved(const Eigen::SparseVector<double>& load, Elements aro
 }
 
 /// Of an element's end unknowns under unit forces on one another; [2d][2d].
-Eigen::MatrixXd DividedLine::end_flexibility(int rail, int at) const {
+const Eigen::MatrixXd& DividedLine::end_flexibility(int rail, int at) const {
+  auto& known = end_flexibility_[line_.mirrored ? 0 : static_cast<std::size_t>(rail)];
+  known.resize(static_cast<std::size_t>(tabled_elements(track_)));
+  Eigen::MatrixXd& result = known[static_cast<std::size_t>(at)];
+  if (result.size() > 0) return result;
   const std::vector<int> place = end_unknowns(line_, rail, element(rail), at);
   const auto n = static_cast<Eigen::Index>(place.size());
-  Eigen::MatrixXd result(n, n);
+  result.resize(n, n);
   for (Eigen::Index j = 0; j < n; ++j)
     result.col(j) =
         gather(moved(spread_over(line_, place, Eigen::VectorXd::Unit(n, j)), {at, at + 1}), place);
@@ -145,7 +149,7 @@ Eigen::VectorXd DividedLine::under(const Port& port, const Port& seen, int point
   const Eigen::VectorXd held = element(port.rail).held(a, b).diagonal();
   Eigen::VectorXd result(tabled_elements(track_) * (points + 1));
   for (int e = 0; e < tabled_elements(track_); ++e) {
-    const Eigen::MatrixXd ends = end_flexibility(port.rail, e);
+    const Eigen::MatrixXd& ends = end_flexibility(port.rail, e);
     for (int p = 0; p <= points; ++p)
       result[e * (points + 1) + p] = a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
   }

@@ -207,9 +207,10 @@ Elements ResidualFlexibility::filled(const Sums& sums, Elements at, double nothi
 }
 
 ResidualFlexibility::Near ResidualFlexibility::near(const std::vector<Port>& ports,
-                                                    const Functional& functional) const {
+                                                    const Functional& functional,
+                                                    Elements among) const {
   const bool whole = !bases_.empty() || track_.ring;
-  const Elements all{0, track_.elements()};
+  const Elements all{among.first, std::min(among.last, track_.elements())};
   const Elements own = whole ? all : elements_of(track_, functional);
   for (int look = first_look(kFunctionalLook, track_);; look *= 2) {
     const Elements at{std::max(own.first - look, 0), std::min(own.last + look, all.last)};
@@ -243,9 +244,7 @@ std::vector<double> ResidualFlexibility::at_once(Port port, const Functional& fu
     const auto i = static_cast<std::size_t>(pair.line - lines_.data());
     const double w = weight(pair, port);
     if (w == 0. || bases_.empty() || bases_[i].at_once.size() == 0) continue;
-    sum += w * ReducedLine(track_, *pair.line, bases_[i])
-                   .at_once(port, functional, points_)
-                   .segment(at.first * (points_ + 1), sum.size());
+    sum += w * ReducedLine(track_, *pair.line, bases_[i]).at_once(port, functional, points_, at);
   }
   return to_vector(sum);
 }

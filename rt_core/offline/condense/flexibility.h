@@ -71,14 +71,15 @@ class ResidualFlexibility {
   /// Velocity of a functional at once under a unit force of the port, which the modes' rates do not
   /// show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.
   std::vector<double> at_once(Port port, const Functional& functional, Elements at) const;
-  /// What from() gives of several ports at the elements that have something of it: beyond, all
-  /// stays below 1e-8 of the most that a force of any on the exact track makes of the functional.
-  /// Of a model in the coordinates of a basis, and of a ring, all.
+  /// What from() gives of several ports at those of some elements that have something of it:
+  /// beyond, all stays below 1e-8 of the most that a force of any on the exact track makes of the
+  /// functional. Of a model in the coordinates of a basis, and of a ring, all of them.
   struct Near {
     Elements at;
     std::vector<double> value;  // [ports][elements][points + 1]
   };
-  Near near(const std::vector<Port>& ports, const Functional& functional) const;
+  Near near(const std::vector<Port>& ports, const Functional& functional,
+            Elements among = {0, std::numeric_limits<int>::max()}) const;
 
  private:
   struct Pair;                // exact and model of one line

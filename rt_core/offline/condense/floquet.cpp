@@ -188,7 +188,6 @@ class Builder {
  public:
   Builder(const Track& ring, const Line& line, const ModalLimit& limit)
       : bays_(ring.bays),
-        unknowns_(line.unknowns()),
         limit_{static_cast<int>(std::lround(static_cast<double>(limit.most) / ring.bays)),
                limit.highest_hz},
         cells_(cells_of(ring, line)),
@@ -203,13 +202,6 @@ class Builder {
   }
 
  private:
-  struct Placed {  // a wave on the ring: its real or its imaginary part
-    Basis basis;   // shapes over the ring
-    DampedModes modes;
-    int partner;  // among the placed
-    std::complex<double> turn;
-  };
-
   void add(int m) {
     const double t = static_cast<double>(m) / bays_;
     const Eigen::MatrixXcd T = turned_basis(cell_, t);
@@ -227,77 +219,53 @@ class Builder {
       const ModalLimit own{count[s], std::numeric_limits<double>::infinity()};
       Wave wave{parts[s], modal_basis(systems[s], own), {}};
       wave.modes = damped_modes(wave.basis, systems[s].damping);
-      const int first = static_cast<int>(placed_.size());
       if (alone) {
-        place(wave, m, s == 1, std::sqrt(1. / bays_), first);
+        place(wave, m, s == 1, std::sqrt(1. / bays_), 0);
       } else {
-        place(wave, m, false, std::sqrt(2. / bays_), first + 1);
-        place(wave, m, true, std::sqrt(2. / bays_), first);
+        place(wave, m, false, std::sqrt(2. / bays_), 1);
+        place(wave, m, true, std::sqrt(2. / bays_), -1);
       }
     }
   }
 
+  /// @param partner  where its partner's modes stand from its own, in times of their number
   void place(const Wave& wave, int m, bool imaginary, double scale, int partner) {
-    Placed own{{wave.basis.omega, Eigen::MatrixXd::Zero(unknowns_, wave.basis.omega.size())},
-               wave.modes,
-               partner,
-               phase(static_cast<double>(m) / bays_)};
-    if (imaginary) own.turn = std::conj(own.turn);
-    const Eigen::MatrixXcd x = wave.T * wave.basis.shapes;
-    for (int bay = 0; bay < bays_; ++bay) {
-      const std::int64_t turned = static_cast<std::int64_t>(m) * bay % bays_;
-      const Eigen::MatrixXcd at = x * phase(static_cast<double>(turned) / bays_);
-      const std::vector<int>& cell = cells_[static_cast<std::size_t>(bay)];
-      for (std::size_t i = 0; i < cell.size(); ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        own.basis.shapes.row(cell[i]) =
-            scale * (imaginary ? Eigen::MatrixXd(at.imag()) : Eigen::MatrixXd(at.real())).row(row);
-      }
-    }
-    placed_.push_back(std::move(own));
-  }
-
-  RingModes gathered() const {
-    Eigen::Index kept = 0, modes = 0;
-    std::vector<int> first;  // mode of each of the placed
-    for (const Placed& own : placed_) {
-      first.push_back(static_cast<int>(modes));
-      kept += own.basis.omega.size();
-      modes += own.modes.rate.size();
-    }
-    RingModes all;
-    all.basis = {Eigen::VectorXd(kept), Eigen::MatrixXd(unknowns_, kept)};
-    all.modes = {Eigen::VectorXcd(modes), Eigen::MatrixXcd::Zero(kept, modes),
-                 Eigen::MatrixXd::Zero(kept, kept)};
-    all.cosine.resize(modes);
-    all.sine.resize(modes);
-    Eigen::Index row = 0, column = 0;
-    for (const Placed& own : placed_) {
-      const Eigen::Index rows = own.basis.omega.size(), columns = own.modes.rate.size();
-      all.basis.omega.segment(row, rows) = own.basis.omega;
-      all.basis.shapes.middleCols(row, rows) = own.basis.shapes;
-      all.modes.rate.segment(column, columns) = own.modes.rate;
-      all.modes.shape.block(row, column, rows, columns) = own.modes.shape;
-      all.modes.damping.block(row, row, rows, rows) = own.modes.damping;
+    const std::complex<double> turn = phase(static_cast<double>(m) / bays_);
+    const Eigen::Index modes = wave.modes.rate.size();
+    for (Eigen::Index k = 0; k < modes; ++k) {
+      partner_.push_back(static_cast<int>(count_ + k + partner * modes));
       // u(b + 1): Re e^(ik) (Re, Im) of x e^(ikb), the sine's part with the other sign
-      all.cosine.segment(column, columns).setConstant(own.turn.real());
-      all.sine.segment(column, columns).setConstant(own.turn.imag());
-      for (Eigen::Index k = 0; k < columns; ++k)
-        all.partner.push_back(first[static_cast<std::size_t>(own.partner)] + static_cast<int>(k));
-      row += rows;
-      column += columns;
+      cosine_.push_back(turn.real());
+      sine_.push_back(partner == 0 ? 0. : (imaginary ? -turn.imag() : turn.imag()));
     }
-    for (std::size_t k = 0; k < all.partner.size(); ++k)
-      if (all.partner[k] == static_cast<int>(k)) all.sine[static_cast<Eigen::Index>(k)] = 0.;
-    return all;
+    count_ += modes;
+    omega_.insert(omega_.end(), wave.basis.omega.begin(), wave.basis.omega.end());
+    shapes_.push_back({scale * (wave.T * wave.basis.shapes.dense()), m, imaginary});
+    modes_.push_back(wave.modes);
   }
 
-  int bays_, unknowns_;
+  RingModes gathered() {
+    const auto vector = [](const std::vector<double>& values) {
+      return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+          values.data(), static_cast<Eigen::Index>(values.size())));
+    };
+    return {{vector(omega_), Shapes(std::move(cells_), std::move(shapes_))},
+            std::move(modes_),
+            std::move(partner_),
+            vector(cosine_),
+            vector(sine_)};
+  }
+
+  int bays_;
   ModalLimit limit_;
   std::vector<std::vector<int>> cells_;
   std::vector<CellUnknown> cell_;
   Blocks mass_, damping_, stiffness_;
-  std::vector<Placed> placed_;
+  Eigen::Index count_ = 0;  // of modes
+  std::vector<double> omega_, cosine_, sine_;
+  std::vector<int> partner_;
+  std::vector<Shapes::Wave> shapes_;
+  std::vector<DampedModes> modes_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "offline/condense/modal.h"
+#include "offline/condense/mode_groups.h"
 
 namespace railstep {
 
@@ -14,8 +14,8 @@ namespace railstep {
 /// rates and coordinates; that fixes the phases of what would be a degenerate pair. Each k keeps
 /// its lowest modes and the static shapes of its dampers, as modal_basis() does of a line.
 struct RingModes {
-  Basis basis;        // shapes over the ring; per k those of the cosine, then of the sine
-  DampedModes modes;  // in the same order, not by rate
+  Basis basis;       // shapes over the ring; per k those of the cosine, then of the sine
+  ModeGroups modes;  // a group to each of those
   /// How the modes look one bay further back, each in its own and its partner's coordinate:
   /// z' = cosine z + sine z[partner]. That of k = 0 and k = pi is itself.
   std::vector<int> partner;  // [modes]

@@ -61,7 +61,8 @@ class LineFlexibility {
 };
 
 /// The line with every element divided into `parts`, taken at their ends, where the element is
-/// exact; with one part it is the line itself. Cost grows with the line's own nodes only.
+/// exact; with one part it is the line itself. Cost grows with the line's own nodes only. Not for
+/// several threads at once.
 class DividedLine : public LineFlexibility {
  public:
   DividedLine(const Track& track, const Line& line, int parts);
@@ -91,7 +92,7 @@ class DividedLine : public LineFlexibility {
   Superelement::Rows rail_rows(const Functional::OnRail& point, int element) const;
   void sign(int rail, Eigen::VectorXd& row) const;
   Stretch moved(const Eigen::SparseVector<double>& load, Elements around) const;
-  Eigen::MatrixXd end_flexibility(int rail, int element) const;
+  const Eigen::MatrixXd& end_flexibility(int rail, int element) const;
   void factor(const Eigen::SparseMatrix<double>& stiffness);
   void find_spans();
   void refuse_free_modes() const;
@@ -103,6 +104,8 @@ class DividedLine : public LineFlexibility {
   std::optional<LocalInverse> local_;      // of a held track with ends
   std::vector<std::pair<int, int>> span_;  // of each element's end unknowns: the first, the last
   bool held_ = false;                      // no free rigid mode
+  /// Of each rail, made where it is first asked for: [tabled elements].
+  mutable std::array<std::vector<Eigen::MatrixXd>, 2> end_flexibility_;
 };
 
 /// The same of any track, pads with lengths too, which act on inner nodes: the track with every
@@ -149,11 +152,16 @@ class ReducedLine : public LineFlexibility {
                               const Functional& force) const override;
   /// Velocity of the functional at once under a unit force of a port at each place;
   /// [elements x (points + 1)], of a basis that has such.
-  Eigen::VectorXd at_once(const Port& port, const Functional& functional, int points) const;
+  Eigen::VectorXd at_once(const Port& port, const Functional& functional, int points,
+                          Elements at) const;
 
  private:
-  /// The shapes at a port's places; [elements x (points + 1)][kept]
-  Eigen::MatrixXd port_shapes(const Port& port, int points) const;
+  template <typename Take>
+  void read_port(const Port& port, int points, Elements at, const Take& take) const;
+  Eigen::VectorXd seen_by(const Port& port, int points, Elements at,
+                          const Eigen::VectorXd& y) const;
+  /// The shapes at a port's places, on a ring round it; [elements x (points + 1)][kept]
+  Eigen::MatrixXd port_shapes(const Port& port, int points, Elements at) const;
 
   const Track& track_;
   const Line& line_;

@@ -81,9 +81,10 @@ void complete(DampedModes& modes) {
 Basis modal_basis(const Line& line, const ModalLimit& limit,
                   const Eigen::SparseMatrix<double>& rows) {
   if (line.unknowns() > kMostModalUnknowns)
-    throw std::invalid_argument("modes of a line of " + std::to_string(line.unknowns()) +
-                                " unknowns; accepted are " + std::to_string(kMostModalUnknowns) +
-                                ": step the full track or cut it shorter");
+    throw std::invalid_argument(
+        "modes of a line of " + std::to_string(line.unknowns()) + " unknowns; accepted are " +
+        std::to_string(kMostModalUnknowns) +
+        ": step it in full order, cut it shorter, or drive on a track without end");
   int count = std::min(limit.most, line.unknowns());
   if (std::isfinite(limit.highest_hz)) count = std::min(count, modes_below(line, limit.highest_hz));
   const Modes lowest = lowest_modes(line, std::max(count, 1));
@@ -104,7 +105,8 @@ Basis modal_basis(const Line& line, const ModalLimit& limit,
 DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping) {
   const auto m = basis.omega.size();
   DampedModes result;
-  result.damping = basis.shapes.transpose() * (damping * basis.shapes);
+  const Eigen::MatrixXd S = basis.shapes.dense();
+  result.damping = S.transpose() * (damping * S);
   // First-order form over (omega y, y'), whose blocks are of one size.
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * m, 2 * m);
   A.topRightCorner(m, m).diagonal() = basis.omega;

@@ -27,10 +27,8 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 /// A basis with the static shapes of local forces.
 Basis with_statics(const Line& line, const Eigen::MatrixXd& shapes, const Eigen::MatrixXd& forces) {
   if (forces.cols() == 0) return ritz_basis(line, shapes);
-  Basis own;
-  own.shapes = shapes;
-  if (shapes.cols() > 0) own = ritz_basis(line, shapes);
-  return ritz_basis(line, beside(own.shapes, added_static_shapes(line, own.shapes, forces)));
+  const Eigen::MatrixXd own = shapes.cols() > 0 ? ritz_basis(line, shapes).shapes.dense() : shapes;
+  return ritz_basis(line, beside(own, added_static_shapes(line, own, forces)));
 }
 
 /// By how much a truncated model gives way more than the line under a force on some coordinate,
@@ -94,8 +92,8 @@ ModalLimit limit_of(const Line& line, const Reduction& reduction) {
   return {(both ? 2 : 1) * reduction.limit.most, reduction.limit.highest_hz};
 }
 
-int kept_coordinates(const Basis& basis, const DampedModes& modes) {
-  return static_cast<int>(basis.flexibility.size() > 0 ? modes.rate.size() : basis.omega.size());
+int kept_coordinates(const Basis& basis, const ModeGroups& modes) {
+  return static_cast<int>(basis.flexibility.size() > 0 ? modes.rate().size() : basis.omega.size());
 }
 
 ReducedLineModel reduce(const Track& track, const Line& line, const Reduction& reduction,
@@ -103,7 +101,8 @@ ReducedLineModel reduce(const Track& track, const Line& line, const Reduction& r
   if (line.unknowns() > kMostModalUnknowns)
     throw std::invalid_argument(
         "a line of " + std::to_string(line.unknowns()) + " unknowns is condensed; accepted are " +
-        std::to_string(kMostModalUnknowns) + ": step the full track or cut it shorter");
+        std::to_string(kMostModalUnknowns) +
+        ": step it in full order, cut it shorter, or drive on a track without end");
   refuse_damped_massless(line);
   const ModalLimit most = limit_of(line, reduction);
   if (reduction.kind == ReductionKind::complex_modes) {

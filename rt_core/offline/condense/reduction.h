@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "offline/condense/modal.h"
+#include "offline/condense/mode_groups.h"
 
 namespace railstep {
 
@@ -29,7 +29,7 @@ struct ReducedLineModel {
 ModalLimit limit_of(const Line& line, const Reduction& reduction);
 
 /// How many coordinates a model keeps; of truncated damped modes these.
-int kept_coordinates(const Basis& basis, const DampedModes& modes);
+int kept_coordinates(const Basis& basis, const ModeGroups& modes);
 
 /// All kinds but damped modes are Galerkin's, and keep the static shapes of every damper and of
 /// `rows` too.

@@ -39,13 +39,12 @@ void add_receptances(const Track& track, const Line& line, const std::vector<Rai
 void add_receptances(const Track& track, const PackedLine& own,
                      const std::vector<RailPoint>& points, double omega, std::vector<Value>& sums) {
   const Value rate(0., omega);
-  const Eigen::ArrayXcd along = .5 * (rate - own.modes.rate.array()).inverse(),
-                        back = .5 * (rate - own.modes.rate.conjugate().array()).inverse();
+  const Eigen::ArrayXcd along = .5 * (rate - own.modes.rate().array()).inverse(),
+                        back = .5 * (rate - own.modes.rate().conjugate().array()).inverse();
   for (std::size_t i = 0; i < points.size(); ++i) {
     // Ports leave out the section's own strain.
     const Eigen::VectorXd row(point_row(track, own.line, points[i], false));
-    const Eigen::ArrayXcd modal =
-        (own.modes.shape.transpose() * (own.basis.shapes.transpose() * row)).array();
+    const Eigen::ArrayXcd modal = own.modes.project(own.basis.shapes.project(row)).array();
     sums[i] += (modal.square() * along + modal.conjugate().square() * back).sum();
   }
 }

@@ -233,6 +233,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   model_.condensed = options.reduction ? 1 : 0;
   if (track.cant != 0. && !traffic.held.empty())
     throw std::invalid_argument("bodies hold on to rails that stand upright; accepted is no cant");
+  met_ = {0, track.elements()};
   if (options.endless) add_endless(track, traffic, options);
   std::vector<Line> lines = assemble(track);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -303,8 +304,7 @@ void PackedModel::add_weight(const Track& track, double gravity) {
       std::copy(own.begin(), own.end(), force.begin() + static_cast<std::ptrdiff_t>(first));
       continue;
     }
-    const Eigen::VectorXcd modal =
-        lines_[l].modes.shape.transpose() * (lines_[l].basis.shapes.transpose() * own);
+    const Eigen::VectorXcd modal = lines_[l].modes.project(lines_[l].basis.shapes.project(own));
     for (Eigen::Index k = 0; k < modal.size(); ++k) {
       force[first + static_cast<std::size_t>(k)] = modal[k].real();
       force[n + first + static_cast<std::size_t>(k)] = modal[k].imag();

@@ -164,7 +164,7 @@ struct PackedLine {
   std::size_t index;                    // among those of assemble(track)
   Eigen::SparseMatrix<double> closing;  // [unknowns][fixed ports] of the track
   Basis basis;                          // of a condensed line
-  DampedModes modes;                    // of a condensed line
+  ModeGroups modes;                     // of a condensed line
 };
 
 /// A model with the memory its views look into. Not copied: the views would look into the original.
@@ -231,6 +231,7 @@ class PackedModel {
   std::vector<PackedLine> lines_;
   std::vector<Port> kinds_;
   double clipped_ = 0.;
+  Elements met_{};  // by what runs, on a ring those it comes to, else all
   std::vector<std::unique_ptr<std::vector<double>>> reals_;
   std::vector<std::unique_ptr<std::vector<std::int32_t>>> integers_;
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -71,6 +72,14 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   const bool room = track.ring ? behind + before >= decay && behind >= bay && before >= bay
                                : behind >= decay && before >= decay;
   if (!room) throw std::invalid_argument(too_short(track, (last - first + bay), decay));
+  if (!track.ring || !traffic.external_wheels.empty() || !traffic.held.empty()) return;
+  // Of a ring's shapes and tables no more is ever read: from a bay before all that runs to one
+  // behind that to which it goes on, and the seats around a wheelset.
+  const auto border = [&](double x) { return static_cast<int>(std::floor((e.origin + x) / bay)); };
+  const bool turns = track.unknowns != Unknowns::vertical && !traffic.wheelsets.empty();
+  const int spare = 1 + (turns ? kTurnSeats / 2 : 0);
+  met_ = {std::max(border(first) - spare, 0) * track.elements_per_bay,
+          std::min(border(last) + 2 + spare, track.bays) * track.elements_per_bay};
 }
 
 BayShift PackedModel::ring_shift(const RingModes& ring, int padded) {

@@ -89,14 +89,17 @@ Diagonals PackedModel::keep_diagonals(const Eigen::SparseMatrix<double>& A, int 
   return {padded, count, keep(std::move(offsets)), keep(std::move(values))};
 }
 
-/// @param number  of an unknown k of a node, as the model has it
+/// @param number  of an unknown k of a node that is met, as the model has it
 template <typename Number>
 void PackedModel::keep_tables(const Line& line, LineModel& packed, const Number& number) {
   const auto keep_table = [&](const Line::RailUnknowns& table) {
-    std::vector<std::int32_t> unknowns;
-    for (const auto& node : table)
+    std::vector<std::int32_t> unknowns(9 * table.size(), -1);
+    const auto first = 3 * static_cast<std::size_t>(met_.first),
+               last = 3 * static_cast<std::size_t>(met_.last);
+    for (std::size_t node = first; node < last; ++node)
       for (std::size_t k = 0; k < 9; ++k)
-        unknowns.push_back(node[k] < 0 ? -1 : static_cast<std::int32_t>(number(node[k], k)));
+        if (table[node][k] >= 0)
+          unknowns[9 * node + k] = static_cast<std::int32_t>(number(table[node][k], k));
     return keep(std::move(unknowns));
   };
   packed.unknown_of[0] = packed.unknown_of[1] = keep_table(first_table(line));
@@ -122,19 +125,19 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
   RingModes ring;
   if (track.ring) {
     ring = ring_modes(track, own.line, limit_of(own.line, reduction));
-    own.basis = ring.basis;
-    own.modes = ring.modes;
+    own.basis = std::move(ring.basis);
+    own.modes = std::move(ring.modes);
   } else {
     auto [basis, modes] = reduce(track, own.line, reduction, own.closing);
     own.basis = std::move(basis);
     own.modes = std::move(modes);
   }
-  const auto modes = own.modes.rate.size();
+  const auto modes = own.modes.rate().size();
   const auto padded = static_cast<std::size_t>((modes + 7) / 8 * 8);
   const double dt = model_.scheme.dt;
   Eigen::VectorXcd held(modes), rising(modes), keep_rate(modes);
   for (Eigen::Index k = 0; k < modes; ++k) {
-    const std::complex<double> w = own.modes.rate[k] * dt;
+    const std::complex<double> w = own.modes.rate()[k] * dt;
     const auto [first, second] = held_and_rising(w);
     held[k] = dt * first;
     rising[k] = dt * second;
@@ -147,7 +150,7 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
   packed.size = static_cast<std::int32_t>(padded);
   if (track.ring) packed.shift = ring_shift(ring, packed.size);
   packed.modal = {packed.size,
-                  complex(own.modes.rate),
+                  complex(own.modes.rate()),
                   complex(keep_rate),
                   complex(held - rising),
                   complex(rising),
@@ -161,8 +164,7 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
     // The section's own strain (a_y, b_z) follows at once: it is in the residual flexibility.
     if (k == 4 || k == 8) return -1;
     if (const auto known = row_of.find(unknown); known != row_of.end()) return known->second;
-    const Eigen::VectorXcd row =
-        own.modes.shape.transpose() * own.basis.shapes.row(unknown).transpose();
+    const Eigen::VectorXcd row = own.modes.project(own.basis.shapes.row(unknown));
     const std::vector<double> values = parts(row, padded);
     shape.insert(shape.end(), values.begin(), values.end());
     return row_of[unknown] = static_cast<int>(count++);

@@ -82,8 +82,8 @@ void PackedModel::add_port_shapes() {
     for (std::size_t l = 0; l < lines_.size(); ++l) {
       const LineModel& line = model_.line[l];
       const PackedLine& own = lines_[l];
-      const Eigen::VectorXd row = own.basis.shapes.transpose() * own.closing.col(j);
-      const Eigen::VectorXcd modal = own.modes.shape.transpose() * row;
+      const Eigen::VectorXcd modal =
+          own.modes.project(own.basis.shapes.project(Eigen::VectorXd(own.closing.col(j))));
       for (Eigen::Index k = 0; k < modal.size(); ++k) {
         const std::size_t re = at + static_cast<std::size_t>(line.first + k);
         shape[re] = modal[k].real();

@@ -70,12 +70,12 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
         continue;
       }
       // Re sum (displacement + velocity rate) shape z, z = u + i v
-      const Eigen::VectorXd modal = own.basis.shapes.transpose() * Eigen::VectorXd(row);
+      const Eigen::VectorXd modal = own.basis.shapes.project(Eigen::VectorXd(row));
       if (modal.isZero(0.)) continue;
-      const Eigen::VectorXcd shape = own.modes.shape.transpose() * modal;
+      const Eigen::VectorXcd shape = own.modes.project(modal);
       for (Eigen::Index k = 0; k < shape.size(); ++k) {
         const std::complex<double> c =
-            (probe.displacement + probe.velocity * own.modes.rate[k]) * shape[k];
+            (probe.displacement + probe.velocity * own.modes.rate()[k]) * shape[k];
         entry(first + static_cast<int>(k), c.real());
         entry(velocity + static_cast<int>(k), -c.imag());
       }
@@ -135,8 +135,9 @@ namespace {
 
 /// What a probe has of unit forces of ports beside the model's unknowns.
 ResidualFlexibility::Near seen_at_once(const ResidualFlexibility& residual,
-                                       const std::vector<Port>& ports, const Probe& probe) {
-  ResidualFlexibility::Near seen = residual.near(ports, probe.track);
+                                       const std::vector<Port>& ports, const Probe& probe,
+                                       Elements met) {
+  ResidualFlexibility::Near seen = residual.near(ports, probe.track, met);
   for (double& value : seen.value) value *= probe.displacement;
   if (probe.velocity == 0.) return seen;
   auto value = seen.value.begin();
@@ -193,7 +194,7 @@ void PackedModel::add_probe_tables(const ResidualFlexibility& residual,
     table.push_back(-1);
     const bool of_track = probe.wheelset < 0 && probe.vehicle < 0;
     if (!of_track || (probe.displacement == 0. && probe.velocity == 0.)) continue;
-    const ResidualFlexibility::Near seen = seen_at_once(residual, kinds_, probe);
+    const ResidualFlexibility::Near seen = seen_at_once(residual, kinds_, probe, met_);
     if (all_zero(seen.value)) continue;
     table.back() = static_cast<std::int32_t>(first.size());
     first.push_back(seen.at.first);

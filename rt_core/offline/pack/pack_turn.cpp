@@ -1,4 +1,5 @@
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 
 #include "offline/condense/line_flexibility.h"
 #include "offline/pack/pack.h"
@@ -59,18 +60,20 @@ bool pads_are_off_the_axis(const Track& track) {
   return false;
 }
 
-/// SeatTurnModel::lever of one rail.
-std::vector<double> levers(const Track& track, const SeatShares& shares, int rail) {
+/// SeatTurnModel::lever of one rail, 0 on elements that are not met.
+std::vector<double> levers(const Track& track, const SeatShares& shares, int rail, Elements met) {
   const int per_bay = track.elements_per_bay;
   std::vector<double> lever(
       static_cast<std::size_t>(track.elements()) * kTurnSeats * (kTurnPoints + 1), 0.);
-  for (int seat = 0; seat <= track.bays; ++seat) {
+  const int around = kTurnSeats / 2, last = std::min(met.last / per_bay + around, track.bays);
+  for (int seat = std::max(met.first / per_bay - around, 0); seat <= last; ++seat) {
     const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
     if (pad.one_sided()) continue;  // over a gap
     const SeatShares::Shape shape(shares, rail, seat);
     for (int s = 0; s < kTurnSeats; ++s) {
       const int bay = seat - s + (kTurnSeats / 2 - 1);
-      for (int e = bay * per_bay; e < (bay + 1) * per_bay && bay >= 0 && bay < track.bays; ++e)
+      for (int e = std::max(bay * per_bay, met.first); e < std::min((bay + 1) * per_bay, met.last);
+           ++e)
         for (int p = 0; p <= kTurnPoints; ++p) {
           const double x = (e + static_cast<double>(p) / kTurnPoints) * track.element_length();
           const int at = (e * kTurnSeats + s) * (kTurnPoints + 1) + p;
@@ -95,8 +98,8 @@ void PackedModel::add_turn(const Track& track) {
   std::vector<Line> lines;
   for (const PackedLine& own : lines_) lines.push_back(all[own.index]);
   const SeatShares shares(reference, lines);
-  turn.lever[0] = keep(levers(reference, shares, 0));
-  turn.lever[1] = is_symmetric(track) ? turn.lever[0] : keep(levers(reference, shares, 1));
+  turn.lever[0] = keep(levers(reference, shares, 0, met_));
+  turn.lever[1] = is_symmetric(track) ? turn.lever[0] : keep(levers(reference, shares, 1, met_));
 }
 
 }  // namespace railstep

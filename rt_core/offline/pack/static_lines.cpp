@@ -26,7 +26,9 @@ void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines)
   Eigen::VectorXd free = -Eigen::Map<const Eigen::VectorXd>(fixed.gap, n);
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const PackedLine& own = packed.lines()[l];
-    rows.push_back(own.basis.shapes.transpose() * own.closing);
+    Eigen::MatrixXd& row = rows.emplace_back(own.basis.omega.size(), n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      row.col(j) = own.basis.shapes.project(Eigen::VectorXd(own.closing.col(j)));
     moved.push_back(own.basis.omega.cwiseAbs2().cwiseInverse().asDiagonal() * rows.back());
     W += rows.back().transpose() * own.basis.give(rows.back());
     free += rows.back().transpose() * own.basis.shown(lines[l]);
@@ -64,8 +66,8 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
     if (packed.model().fixed.count > 0) load += preload(statics.track(), own.line);
     for (const PointForce& f : forces)
       load += f.force * row_of(statics.track(), packed, own.line, f.at);
-    lines.push_back((own.basis.shapes.transpose() * load)
-                        .cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
+    lines.push_back(
+        own.basis.shapes.project(load).cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
   }
   if (packed.model().fixed.count > 0) press_ports(packed, lines);
   return lines;
@@ -77,10 +79,9 @@ double height_of(const Track& track, const PackedModel& packed,
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const PackedLine& own = packed.lines()[l];
     const Eigen::SparseVector<double> row = row_of(track, packed, own.line, at);
-    sum +=
-        packed.model().condensed == 0
-            ? row.dot(lines[l])
-            : (own.basis.shapes.transpose() * Eigen::VectorXd(row)).dot(own.basis.shown(lines[l]));
+    sum += packed.model().condensed == 0
+               ? row.dot(lines[l])
+               : own.basis.shapes.project(Eigen::VectorXd(row)).dot(own.basis.shown(lines[l]));
   }
   return sum;
 }

@@ -1,6 +1,7 @@
 #include "offline/pack/step_compliance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 
 #include "online/step/line.h"
@@ -65,7 +66,13 @@ StepCompliance::StepCompliance(const Model& model, const std::vector<PackedLine>
 std::vector<double> StepCompliance::table(const Port& port, int points) const {
   const auto n = static_cast<std::size_t>(model_.unknowns);
   std::vector<double> re(n), im(n), table;
-  for (std::int32_t element = 0; element < model_.residual.elements; ++element)
+  // Tables of one bay, of the one that traffic on a ring stands in.
+  const Endless& e = model_.endless;
+  const auto first =
+      model_.condensed != 0 && e.bays > 0
+          ? static_cast<std::int32_t>(std::lround(e.origin / e.bay_length)) * e.bay_elements
+          : 0;
+  for (std::int32_t element = first; element < first + model_.residual.elements; ++element)
     for (int p = 0; p <= points; ++p) {
       const RailRow row = row_of(model_, port, element, 2. * p / points - 1.);
       double sum = 0.;

@@ -14,8 +14,8 @@ CondensedReceptance::CondensedReceptance(const Track& track, const Transfer& tra
     const Eigen::VectorXd force(functional_row(track, line, transfer.force));
     if (force.norm() == 0.) continue;
     const auto [basis, modes] = reduce(track, line, reduction);
-    const Eigen::VectorXd acting = basis.shapes.transpose() * force;
-    const Eigen::MatrixXd read = read_rows(track, line, transfer) * basis.shapes;
+    const Eigen::VectorXd acting = basis.shapes.project(force);
+    const Eigen::MatrixXd read = read_rows(track, line, transfer) * basis.shapes.dense();
     const Eigen::VectorXcd taken = modes.shape.transpose() * acting;
     parts_.push_back(
         {modes.rate, (read * modes.shape) * taken.asDiagonal(), kept_coordinates(basis, modes)});
