@@ -5,6 +5,7 @@
 
 #include "endless_run.h"
 #include "offline/irregularity/defect.h"
+#include "offline/pack/step_compliance.h"
 
 using namespace railstep;
 
@@ -140,6 +141,12 @@ TEST_CASE("nothing is read of the elements that traffic on a ring never comes to
   for (int frame = 0; frame < 100; ++frame) run.step();
   CHECK(std::abs(run.body()[3]) > 1e-6);  // it rolls
   CHECK(state_hash(run.model(), run.state) == state_hash(poisoned.model, beside.state));
+  // nor when the model is made: what a bay gives way within a step is that of the traffic's
+  const std::vector<double> give =
+      StepCompliance(run.model(), run.packed->lines()).table(run.packed->kinds()[0], 8);
+  REQUIRE(give.size() == 2 * 9);
+  CHECK(*std::min_element(give.begin(), give.end()) > 0.);
+  CHECK_THAT(give.front(), Catch::Matchers::WithinRel(give.back(), 1e-9));  // one bay to the next
 }
 
 TEST_CASE("a window passes its track on without a jump") {
