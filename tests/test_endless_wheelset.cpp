@@ -52,7 +52,8 @@ struct Poisoned {
       ++line.modal.rows;
       line.modal.shape = shape.data();
     }
-    const auto places = static_cast<std::size_t>(kTurnSeats * (of.turn.points + 1));
+    const std::size_t places =
+        std::size_t{kTurnSeats} * (static_cast<std::size_t>(of.turn.points) + 1);
     for (const double*& lever : model.turn.lever) {
       std::vector<double>& own = reals.emplace_back(lever, lever + elements * places);
       for (std::size_t i = 0; i < own.size(); ++i)
@@ -133,6 +134,7 @@ TEST_CASE("nothing is read of the elements that traffic on a ring never comes to
   ring.support.roll_stiffness = .3e6;
   ring.support.height_z = -.085;
   Traffic traffic = wheelset_traffic(0.);
+  traffic.loads = {moving_load(-1.7), moving_load(-1.7, 1), moving_load(2.3), moving_load(2.3, 1)};
   traffic.irregularities.push_back({0, 2, dipped_joint(1.3, 1e-3, .5, {.01, 0.})});
   ModelRun run = moving_run(ring, traffic, ring_options(ring, 2, kDt));
   const Poisoned poisoned(run.model());
