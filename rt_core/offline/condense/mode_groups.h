@@ -14,9 +14,7 @@ class ModeGroups {
   ModeGroups(std::vector<DampedModes> groups);  // NOLINT: a list of them is one
   ModeGroups(DampedModes all) : ModeGroups(std::vector<DampedModes>{std::move(all)}) {}  // NOLINT
 
-  const std::vector<DampedModes>& groups() const { return groups_; }
   const Eigen::VectorXcd& rate() const { return rate_; }  // [modes] 1/s
-  Eigen::Index coordinates() const { return coordinates_; }
   /// shape' f, [modes], of forces over the coordinates.
   Eigen::VectorXcd project(const Eigen::VectorXd& force) const;
   /// y = Re shape z, [coordinates].
