@@ -75,28 +75,6 @@ std::string points_of(const char* name, double metre, const char* separator, con
   return text.str();
 }
 
-constexpr const char* kFootAndWeb = "0 0\n0.1 0\n0.1 0.02\n0.05 0.02\n0.05 0.1\n0 0.1\n";
-
-/// Exit 2, one sentence on stderr with these words, nothing on stdout, and nothing written.
-void check_refused(const std::string& name, const std::string& text, const std::string& options,
-                   const std::vector<std::string>& words) {
-  const Folder folder;
-  const std::string file = folder.file(name, text);
-  const Ran ran = fit(file + " " + options + " --out " + (folder.path / "section.toml").string() +
-                      " --report " + (folder.path / "page.html").string());
-  INFO(name << ": " << ran.error);
-  CHECK(ran.code == 2);
-  CHECK(ran.out.empty());
-  CHECK(std::count(ran.error.begin(), ran.error.end(), '\n') == 1);
-  CHECK_THAT(ran.error, Contains(name));
-  for (const std::string& word : words) CHECK_THAT(ran.error, Contains(word));
-  CHECK(folder.entries() == 1);
-}
-
-std::string profile_with(const std::string& rows) {
-  return "schema = 1\nname = \"p\"\nsource = \"s\"\nhalf_outline_mm = [" + rows + "]\n";
-}
-
 }  // namespace
 
 TEST_CASE("fit prints one JSON object with the contract's keys", "[cli]") {
@@ -211,31 +189,6 @@ TEST_CASE("the written section reads back bit for bit, and the page stands alone
   CHECK_THAT(table.out, Contains("outline") && Contains("head height, mm"));
 }
 
-TEST_CASE("bad profiles end with 2, one sentence, and nothing written", "[cli][bad_input]") {
-  const std::string mm = "--unit mm", m = "--unit m";
-  check_refused("empty.toml", "", "", {"empty"});
-  check_refused("empty.csv", "", mm, {"empty"});
-  check_refused("eight.csv", "0,0\n100,100\n100,0\n0,100\n", mm, {"crosses", "rows 2 and 4"});
-  check_refused("gap.toml", profile_with("[0,0,0],[50,0,0],[50,90,0],[10,100,0]"), "",
-                {"gap", "row 4", "10 mm"});
-  check_refused("two.csv", "0,0\n100,100\n", mm, {"2 points", "at least 3"});
-  check_refused("twice.csv", "0,0\n100,0\n100,0\n0,100\n", mm, {"rows 2 and 3", "same point"});
-  check_refused("unit.csv", "0,0\n75,0\n75,172\n0,172\n", m, {"172 m", "millimetres"});
-  check_refused("nan.csv", "0,0\n100,nan\n0,100\n", mm, {"nan.csv:2", "'nan'", "finite"});
-  check_refused("inf.csv", "0,0\n100,0\n0,-inf\n", mm, {"inf.csv:3", "'-inf'", "finite"});
-  check_refused("huge.csv", "0,0\n1e999,0\n0,100\n", mm, {"huge.csv:2", "'1e999'", "finite"});
-  check_refused("nan.toml", profile_with("[0,0,0],[nan,0,0],[50,90,0],[0,100,0]"), "",
-                {"half_outline_mm"});
-  check_refused("arc.toml", profile_with("[0,0,0],[50,0,0],[50,90,44],[0,100,0]"), "",
-                {"row 3", "44 mm", "half its chord of 90 mm"});
-  check_refused("comma.csv", "0 0\n73,5 0\n0 100\n", mm, {"comma.csv:2", "decimal comma"});
-  check_refused("comma2.csv", "0;0\n73,5;0,5\n0;100\n", mm, {"comma2.csv:2", "decimal comma"});
-  check_refused("key.toml", profile_with("[0,0,0],[50,0,0],[0,100,0]") + "sorce = 1\n", "",
-                {"unknown key 'sorce'", "'source'"});
-  check_refused("text.csv", "0,0\n100,abc\n0,100\n", mm, {"text.csv:2", "'abc'"});
-  check_refused("unitless.csv", kFootAndWeb, "", {"--unit"});
-}
-
 TEST_CASE("a usage error ends with 2 and names the option", "[cli][bad_input]") {
   const std::pair<const char*, const char*> cases[] = {
       {"", "--target"},
@@ -266,19 +219,6 @@ TEST_CASE("a plain rectangle is three rectangles of one width", "[cli]") {
   for (const char* key : {"foot_width_m", "web_width_m", "head_width_m"})
     CHECK_THAT(all["dimensions"][key].get<double>(), WithinAbs(0.03, 1e-9));  // the fit's own 1e-9
   CHECK_THAT(all["symmetric_difference_m2"].get<double>(), WithinAbs(0.0, 1e-10));
-}
-
-TEST_CASE("no good fit ends with 1 and states the errors", "[cli][bad_input]") {
-  const Folder folder;
-  const std::string out = (folder.path / "section.toml").string();
-  const Ran ran =
-      fit("--target area_m2=8700e-6,inertia_y_m4=90e-6,inertia_z_m4=6e-6,centroid_height_m=0.085,"
-          "height_m=0.1857375 --head-width-m 0.07461 --out " +
-          out);
-  CHECK(ran.code == 1);
-  CHECK(ran.out.empty());
-  CHECK_THAT(ran.error, Contains("closest found err by"));
-  CHECK(folder.entries() == 0);
 }
 
 TEST_CASE("a place that cannot be written ends with 1 and is named", "[cli]") {

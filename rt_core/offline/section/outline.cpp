@@ -101,6 +101,7 @@ Outline finish(std::vector<Segment> segments) {
   for (const Segment& s : segments) check_segment(s);
   const auto [low, high] = extent(segments);
   check_height(high - low);
+  check_width(segments);
   check_crossing(segments);
   if (moments_of(segments).area < 0.0) reverse(segments);
   const Moments m = moments_of(segments);

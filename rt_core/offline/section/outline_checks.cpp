@@ -74,7 +74,8 @@ std::vector<Chord> chords_of(const std::vector<Segment>& segments) {
   throw std::invalid_argument("the outline crosses itself: the segments that end at rows " +
                               std::to_string(std::min(p.number, q.number)) + " and " +
                               std::to_string(std::max(p.number, q.number)) + " meet near (" +
-                              millimetres(where[0]) + ", " + millimetres(where[1]) + ")");
+                              millimetres(where[0]) + ", " + millimetres(where[1]) +
+                              "); accepted is one that does not");
 }
 
 }  // namespace
@@ -82,8 +83,9 @@ std::vector<Chord> chords_of(const std::vector<Segment>& segments) {
 void check_rows(std::span<const OutlineRow> rows, std::size_t fewest) {
   for (const OutlineRow& row : rows)
     if (!std::isfinite(row.point[0]) || !std::isfinite(row.point[1]) || !std::isfinite(row.radius))
-      throw std::invalid_argument("row " + std::to_string(row.number) +
-                                  " of the outline holds a value that is not a finite number");
+      throw std::invalid_argument(
+          "row " + std::to_string(row.number) +
+          " of the outline holds a value that is not finite; finite numbers are accepted");
   if (rows.size() < fewest)
     throw std::invalid_argument("the outline has " + std::to_string(rows.size()) +
                                 " points; at least " + std::to_string(fewest) + " are needed");
@@ -94,19 +96,21 @@ void check_rows(std::span<const OutlineRow> rows, std::size_t fewest) {
     if (distance(rows[i - 1].point, rows[i].point) < kSamePlace)
       throw std::invalid_argument("rows " + std::to_string(rows[i - 1].number) + " and " +
                                   std::to_string(rows[i].number) +
-                                  " of the outline are the same point");
+                                  " of the outline are the same point; each differs from the one "
+                                  "before it");
 }
 
 void check_half(std::span<const OutlineRow> half) {
   for (const OutlineRow* end : {&half.front(), &half.back()})
     if (std::abs(end->point[0]) > kSamePlace)
-      throw std::invalid_argument("the half outline leaves a gap: its row " +
-                                  std::to_string(end->number) + " is " +
-                                  millimetres(end->point[0]) + " off the axis x = 0");
+      throw std::invalid_argument(
+          "the half outline leaves a gap: its row " + std::to_string(end->number) + " is " +
+          millimetres(end->point[0]) + " off the axis x = 0, on which its first and last rows lie");
   for (const OutlineRow& row : half)
     if (row.point[0] < -kSamePlace)
       throw std::invalid_argument("row " + std::to_string(row.number) + " of the half outline is " +
-                                  millimetres(-row.point[0]) + " left of the axis x = 0");
+                                  millimetres(-row.point[0]) +
+                                  " left of the axis x = 0; accepted is x from 0 on");
 }
 
 void check_closing(std::span<const OutlineRow> points) {
@@ -135,7 +139,8 @@ void check_segment(const Segment& s) {
   if (s.radius != 0.0 && std::abs(s.radius) < 0.5 * chord * (1.0 - 1e-9))
     throw std::invalid_argument("row " + std::to_string(s.number) + " has an arc radius of " +
                                 millimetres(std::abs(s.radius)) + ", under half its chord of " +
-                                millimetres(chord));
+                                millimetres(chord) + "; accepted is " + millimetres(0.5 * chord) +
+                                " and more, or 0 for a straight line");
 }
 
 void check_height(double height) {
@@ -152,6 +157,20 @@ void check_height(double height) {
                   1e3 * height);
     throw std::invalid_argument(text);
   }
+}
+
+void check_width(const std::vector<Segment>& segments) {
+  double low = segments.front().from[0], high = low;
+  for (const Segment& s : segments) {
+    low = std::min(low, s.from[0]);
+    high = std::max(high, s.from[0]);
+  }
+  if (high - low <= 1.0) return;
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "the outline is %.6g m wide, over the limit of 1 m: are these millimetres?",
+                high - low);
+  throw std::invalid_argument(text);
 }
 
 void check_crossing(const std::vector<Segment>& segments) {

@@ -22,6 +22,8 @@ void check_segment(const Segment& segment);
 
 /// Between 1 mm and 1 m: else the unit is wrong.
 void check_height(double height);
+/// At most 1 m between its points.
+void check_width(const std::vector<Segment>& segments);
 
 /// No two segments cross or touch, save neighbours at the point they share. Arcs are tested as
 /// chords that leave them by no more than 1 um.
