@@ -21,32 +21,26 @@ nlohmann::ordered_json to_json(const TraceComparison& found) {
   nlohmann::ordered_json result = {{"identical", found.identical},
                                    {"first_difference", nullptr},
                                    {"max_relative_difference", found.largest}};
-  const auto value = [](const std::optional<double>& of) {
-    return of ? nlohmann::ordered_json(*of) : nlohmann::ordered_json(nullptr);
-  };
   if (found.first)
     result["first_difference"] = {{"row", found.first->row},
                                   {"column", found.first->column},
-                                  {"a", value(found.first->a)},
-                                  {"b", value(found.first->b)}};
+                                  {"a", found.first->a},
+                                  {"b", found.first->b}};
   return result;
 }
 
-std::string shown(const std::optional<double>& value) {
-  return value ? fmt::format("{:.17g}", *value) : "nothing";
-}
-
 Exit run(const CompareOptions& o) {
-  const TraceComparison found = compare(TraceTable::read(o.a), TraceTable::read(o.b), o.a, o.b);
+  const TraceTable a = TraceTable::read(o.a), b = TraceTable::read(o.b);
+  const TraceComparison found = compare(a, b, o.a, o.b);
   if (o.json)
     fmt::print("{}\n", to_json(found).dump(2));
   else if (found.identical)
     fmt::print("identical\n");
   else
     fmt::print(
-        "first difference in row {}, {}: {} and {}\nlargest over its column's peak: {:.3g}\n",
-        found.first->row, found.first->column, shown(found.first->a), shown(found.first->b),
-        found.largest);
+        "first difference in row {}, {}: {:.17g} and {:.17g}\n"
+        "largest over its column's peak: {:.3g}\n",
+        found.first->row, found.first->column, found.first->a, found.first->b, found.largest);
   const bool within = o.tolerance && found.largest <= *o.tolerance;
   return found.identical || within ? Exit::done : Exit::not_reached;
 }
@@ -65,7 +59,8 @@ Command add_compare(CLI::App& app) {
       ->check(CLI::Range(0., 1e300));
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
-      "Rows count from 0. Exit code 1 where the traces differ, or by more than the tolerance.\n\n"
+      "Rows count from 0. Exit code 1 where the traces differ, or by more than the tolerance;\n"
+      "2 where their columns, steps or numbers of rows do.\n\n"
       "Example: railstep compare before.csv after.csv --tolerance 1e-9");
   return {sub, [o] { return run(*o); }};
 }

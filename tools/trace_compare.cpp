@@ -29,7 +29,7 @@ bool same_bits(double a, double b) {
   std::uint64_t bits_a = 0, bits_b = 0;
   std::memcpy(&bits_a, &a, sizeof bits_a);
   std::memcpy(&bits_b, &b, sizeof bits_b);
-  return bits_a == bits_b || (std::isnan(a) && std::isnan(b));
+  return bits_a == bits_b;
 }
 
 /// Over the column's peak; infinite for what cannot be told.
@@ -49,6 +49,26 @@ std::vector<double> peaks_of(const TraceTable& table) {
   return peaks;
 }
 
+/// From one row to the next, s; 0 where a table has no two times.
+double step_of(const TraceTable& table) {
+  if (table.columns.front() != "time_s" || table.rows() < 2) return 0.;
+  return table.values[table.columns.size()] - table.values.front();
+}
+
+/// Rows of other times do not belong to each other.
+void refuse_other_rows(const TraceTable& a, const TraceTable& b, const std::string& name_a,
+                       const std::string& name_b) {
+  const double step_a = step_of(a), step_b = step_of(b);
+  if (std::abs(step_a - step_b) > 1e-9 * std::abs(step_a) && step_a != 0. && step_b != 0.)
+    throw InputError(fmt::format(
+        "{} has a row each {:.9g} s and {} each {:.9g} s; accepted are traces with the same step",
+        name_a, step_a, name_b, step_b));
+  if (a.rows() != b.rows())
+    throw InputError(
+        fmt::format("{} has {} rows and {} has {}; accepted are traces with as many rows", name_a,
+                    a.rows(), name_b, b.rows()));
+}
+
 }  // namespace
 
 TraceTable TraceTable::read(const std::filesystem::path& file) {
@@ -57,6 +77,9 @@ TraceTable TraceTable::read(const std::filesystem::path& file) {
   if (lines.empty() || !is_column_name(lines.front().fields.front()))
     throw InputError(fmt::format(
         "{}: is not a trace; accepted is what `railstep run --trace` wrote", file.string()));
+  if (lines.size() < 2)
+    throw InputError(fmt::format(
+        "{}: holds no rows; accepted are a line of names and rows under it", file.string()));
   TraceTable table;
   table.columns.assign(lines.front().fields.begin(), lines.front().fields.end());
   table.values.reserve((lines.size() - 1) * table.columns.size());
@@ -81,24 +104,17 @@ TraceComparison compare(const TraceTable& a, const TraceTable& b, const std::str
       throw InputError(fmt::format(
           "column {} is {} in {} and {} in {}; accepted are traces with the same columns", c,
           a.columns[c], name_a, b.columns[c], name_b));
+  refuse_other_rows(a, b, name_a, name_b);
   TraceComparison result{true, std::nullopt, 0.};
   const std::vector<double> peaks = peaks_of(a);
-  const std::size_t both = std::min(a.values.size(), b.values.size()), width = a.columns.size();
-  const auto differ = [&](std::size_t i, std::optional<double> of_a, std::optional<double> of_b) {
-    result.identical = false;
-    if (!result.first) result.first = TraceDifference{i / width, a.columns[i % width], of_a, of_b};
-  };
-  for (std::size_t i = 0; i < both; ++i) {
+  const std::size_t width = a.columns.size();
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
     if (same_bits(a.values[i], b.values[i])) continue;
-    differ(i, a.values[i], b.values[i]);
+    if (!result.first)
+      result.first = TraceDifference{i / width, a.columns[i % width], a.values[i], b.values[i]};
+    result.identical = false;
     result.largest = std::max(result.largest, relative(a.values[i], b.values[i], peaks[i % width]));
   }
-  if (a.values.size() == b.values.size()) return result;
-  const auto next = [both](const TraceTable& t) {
-    return both < t.values.size() ? std::optional<double>(t.values[both]) : std::nullopt;
-  };
-  differ(both, next(a), next(b));
-  result.largest = std::numeric_limits<double>::infinity();
   return result;
 }
 
