@@ -203,38 +203,6 @@ TEST_CASE("what a contact that is not Hertz's takes away is stated", "[condense]
   CHECK(soft > 10. * near);
 }
 
-TEST_CASE("what is no model is refused in one sentence and nothing is written", "[condense]") {
-  const auto folder = fresh_folder("no_model");
-  const auto file = folder / "x.model";
-  condense(kMovingLoad + kCondensed, file);
-  const std::string good = text_of(file);
-  std::string flipped = good, newer = good;
-  flipped[good.size() / 2] ^= 4;
-  newer[offsetof(BlockHeader, major)] ^= 3;
-  const struct {
-    std::string bytes, said;
-  } cases[] = {
-      {good.substr(0, good.size() - 8), "cut short or run on"},
-      {good + "more", "cut short or run on"},
-      {good.substr(0, 100), "cut short or run on"},
-      {good.substr(0, 20), "cut short or run on"},
-      {flipped, "does not match its SHA-256"},
-      {newer, "of another format"},
-      {"", "x.model"},
-      {"railstep", "cut short or run on"},
-      {"railstep is a word, and this is a text of more than sixty-four bytes in all", "format"},
-      {std::string("\0\1\2\3", 4), "x.model"},
-  };
-  for (const auto& c : cases) {
-    std::ofstream(file, std::ios::binary) << c.bytes;
-    CAPTURE(c.said);
-    check_refused(
-        railstep_program("run " + file.string() + " --trace " + (folder / "t.csv").string()),
-        c.said);
-    CHECK(entries(folder) == 1);
-  }
-}
-
 TEST_CASE("a model is what it is: only its duration can be chosen", "[condense]") {
   const auto folder = fresh_folder("changes");
   const std::string file = (folder / "x.model").string();

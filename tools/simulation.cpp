@@ -3,8 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
-#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "online/model/load.h"
@@ -14,7 +15,14 @@
 namespace railstep {
 namespace {
 
-const char* sentence(LoadStatus status) {
+/// Of the format of a block that is long enough to say it.
+std::uint16_t major_of(const std::vector<std::byte>& block) {
+  std::uint16_t major = 0;
+  std::memcpy(&major, block.data() + offsetof(BlockHeader, major), sizeof major);
+  return major;
+}
+
+std::string sentence(LoadStatus status, const std::vector<std::byte>& block) {
   switch (status) {
     case LoadStatus::ok:
     case LoadStatus::misaligned:
@@ -22,7 +30,10 @@ const char* sentence(LoadStatus status) {
     case LoadStatus::not_a_model:
       return "is not a model; accepted is what `railstep condense` wrote";
     case LoadStatus::other_version:
-      return "is a model of another format; write it anew with `railstep condense`";
+      return fmt::format(
+          "is a model of format {}, and this program reads format {}; write it anew with `railstep "
+          "condense`",
+          major_of(block), kBlockMajor);
     case LoadStatus::other_byte_order:
       return "is a model of a machine with another byte order; write it anew with `railstep "
              "condense`";
@@ -35,7 +46,8 @@ const char* sentence(LoadStatus status) {
       return "is a model whose content does not match its SHA-256; write it anew with `railstep "
              "condense`";
     case LoadStatus::bad_content:
-      return "is a model with a number out of range; write it anew with `railstep condense`";
+      return "is a model with a number that is not finite or out of its range; write it anew with "
+             "`railstep condense`";
   }
   return "cannot be placed in memory";
 }
@@ -53,12 +65,25 @@ std::vector<std::string> lines_of(const char* text, std::size_t bytes) {
 }  // namespace
 
 std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored) ||
+      std::filesystem::is_character_file(file, ignored))  // which might never end
+    throw InputError(fmt::format("{}: is a folder or a device; a file is accepted", file.string()));
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be opened", file.string()));
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (!in)
+    throw InputError(
+        fmt::format("{}: cannot be opened; a readable file is accepted", file.string()));
+  std::vector<std::byte> bytes;
+  constexpr std::size_t kPiece = 1u << 20;
+  for (std::size_t got = 1; got > 0;) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kPiece);
+    in.read(reinterpret_cast<char*>(bytes.data() + before), kPiece);
+    got = static_cast<std::size_t>(in.gcount());
+    bytes.resize(before + got);
+  }
   if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  const auto* at = reinterpret_cast<const std::byte*>(text.data());
-  return {at, at + text.size()};
+  return bytes;
 }
 
 Simulation::Simulation(const Scene& scene)
@@ -89,14 +114,14 @@ Simulation::Simulation(std::vector<std::byte> block, const std::string& name)
 void Simulation::load(const std::string& name) {
   const LoadResult result = load_model(block_.data(), block_.size(), model_);
   if (result.status != LoadStatus::ok)
-    throw InputError(fmt::format("{} {}", name, sentence(result.status)));
+    throw InputError(fmt::format("{} {}", name, sentence(result.status, block_)));
   columns_ = lines_of(result.text, result.text_bytes);
   const auto end = std::find(columns_.begin(), columns_.end(), "");
   if (end != columns_.end()) inputs_.assign(end + 1, columns_.end());
   columns_.erase(end, columns_.end());
   if (columns_.size() != static_cast<std::size_t>(trace_columns(model_)) ||
       inputs_.size() != static_cast<std::size_t>(model_.inputs))
-    throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content)));
+    throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content, block_)));
   place();
 }
 
@@ -113,10 +138,19 @@ std::unique_ptr<Simulation> simulation_of(const AnyScene& scene) {
 }
 
 bool is_artefact(const std::filesystem::path& file) {
+  std::error_code ignored;  // what a pipe has given is gone, and a scene comes through one whole
+  if (!std::filesystem::is_regular_file(file, ignored)) return false;
   std::ifstream in(file, std::ios::binary);
-  char start[8] = {};
+  char start[64] = {};
   in.read(start, sizeof start);
-  return in && std::string(start, sizeof start) == "railstep";
+  const std::string_view text(start, static_cast<std::size_t>(in.gcount()));
+  if (text.starts_with("railstep")) return true;
+  if (text.find('\0') != std::string_view::npos)
+    throw InputError(fmt::format(
+        "{}: begins neither as a model does nor as text; accepted is a scene (TOML), or a model as "
+        "`railstep condense` wrote it",
+        file.string()));
+  return false;
 }
 
 }  // namespace railstep
