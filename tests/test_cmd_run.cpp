@@ -170,34 +170,6 @@ TEST_CASE("the options --set, --step and --duration change the scene as if writt
   CHECK(fine.back()[2] != plain.back()[2]);
 }
 
-TEST_CASE("bad scenes are refused in one sentence with exit 2 and nothing written", "[run]") {
-  const struct {
-    std::string words, said;
-  } cases[] = {
-      {kMovingLoad + " --set step.dt_s=0", "dt_s"},
-      {kMovingLoad + " --step nan", "dt_s"},
-      {kMovingLoad + " --set track.bays=abc", "bays"},
-      {kMovingLoad + " --set support.stifness_z=1", "stifness_z"},
-      {kMovingLoad + " --set step.start=\\\"equilibrium\\\" --set support.stiffness_z_n_per_m=0",
-       "free rigid mode"},
-      {kMovingLoad + " --set step.frame_s=7e-3", "frame_s"},
-      {kScenes + "no_such_scene.toml", "no_such_scene.toml"},
-  };
-  for (const auto& c : cases) {
-    const auto folder = fresh_folder("bad");
-    const Ran ran = railstep_program("run " + c.words + " --trace " + (folder / "t.csv").string() +
-                                     " --report " + (folder / "r.html").string());
-    CAPTURE(c.words, ran.err);
-    CHECK(ran.code == 2);
-    CHECK_THAT(ran.err, Contains(c.said));
-    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
-    CHECK(ran.out.empty());
-    CHECK(entries(folder) == 0);
-  }
-  CHECK(railstep_program("run").code == 2);
-  CHECK(railstep_program("run " + kMovingLoad + " --stepp 1").code == 2);
-}
-
 TEST_CASE("a trace or report that cannot be written is exit 1 and one sentence", "[run]") {
   const auto folder = fresh_folder("unwritable");
   const Ran none =

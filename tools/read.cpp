@@ -26,6 +26,7 @@ namespace {
 std::string shown(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (node.is_array()) return "an array";
+  if (const auto* n = node.as_floating_point()) return fmt::format("{}", n->get());
   std::ostringstream out;
   node.visit([&](const auto& n) {
     if constexpr (toml::is_value<decltype(n)>) out << n;

@@ -58,7 +58,7 @@ toml::table parse_entry(const std::string& name, const std::string& value,
     throw InputError(fmt::format(
         "{}: '{}' is not a TOML value; accepted are for example 0.5, true, [1, 2], \"text\" (the "
         "quotes included)",
-        option, value));
+        option, one_line(value.size() <= 60 ? value : value.substr(0, 57) + "...")));
   }
   if (entry.size() != 1) refuse_path(option);  // a newline in the value smuggled in a second key
   return entry;
@@ -97,7 +97,9 @@ toml::table& descend(toml::table& table, const Step& step, const std::string& op
 }  // namespace
 
 void apply_override(toml::table& root, const std::string& text) {
-  const std::string option = one_line("--set " + text);
+  // Errors name the option, but not all of one that a script made long.
+  const std::string option =
+      one_line("--set " + (text.size() <= 120 ? text : text.substr(0, 117) + "..."));
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) refuse_path(option);
   std::string_view path = std::string_view(text).substr(0, equals);

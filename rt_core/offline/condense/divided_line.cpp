@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
+#include "offline/track/statics.h"
 
 namespace railstep {
 
@@ -91,9 +92,10 @@ void DividedLine::find_spans() {
 }
 
 void DividedLine::refuse_free_modes() const {
-  if (!held_)
-    throw std::invalid_argument(
-        "residual flexibility needs a track that is held: it has a free rigid mode");
+  if (held_) return;
+  railstep::refuse_free_modes(line_);  // by its name
+  throw std::invalid_argument(
+      "residual flexibility needs a track that is held: it has a free rigid mode");
 }
 
 /// From a rail's own unknowns to the line's.

@@ -2,6 +2,7 @@
 
 #include "offline/condense/line_flexibility.h"
 #include "offline/element/shape.h"
+#include "offline/track/statics.h"
 
 namespace railstep {
 
@@ -45,9 +46,10 @@ RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)
 }
 
 void RefinedLine::refuse_free_modes() const {
-  if (!held_)
-    throw std::invalid_argument(
-        "residual flexibility needs a track that is held: it has a free rigid mode");
+  if (held_) return;
+  railstep::refuse_free_modes(line_);  // by its name
+  throw std::invalid_argument(
+      "residual flexibility needs a track that is held: it has a free rigid mode");
 }
 
 Eigen::SparseMatrix<double> RefinedLine::columns(const Port& port, int element, int points) const {

@@ -73,11 +73,12 @@ void refuse_buckled(const Track& given) {
   sentence.precision(7);
   if (left == right)
     sentence << "the rails carry a compression of " << -left << " N, and the track buckles at "
-             << critical_compression(track) << " N";
+             << critical_compression(track)
+             << " N; accepted are rail.axial_force_n and heat that press less";
   else
     sentence << "the rails carry compressions of " << -left << " N (left) and " << -right
              << " N (right), and the track buckles at " << critical_factor(track, 1. + 1e-11)
-             << " times these";
+             << " times these; accepted are rail.axial_force_n and heat that press less";
   throw std::invalid_argument(sentence.str());
 }
 

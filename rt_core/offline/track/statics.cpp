@@ -43,6 +43,10 @@ void refuse_free_modes(const Line& line,
 
 }  // namespace
 
+void refuse_free_modes(const Line& line) {
+  refuse_free_modes(line, Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(line.stiffness));
+}
+
 Statics::Statics(const Track& track)
     : track_(track), lines_(assemble(track_)), ports_(fixed_ports(track_)) {
   if (!ports_.empty()) one_sided_ = std::make_unique<OneSided>(track_, lines_, ports_);

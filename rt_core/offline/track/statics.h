@@ -14,6 +14,9 @@ struct PointForce {
   double force;  // N
 };
 
+/// Throws std::invalid_argument, naming what nothing holds, where a line has a free rigid mode.
+void refuse_free_modes(const Line& line);
+
 /// Factored stiffness of every line of a track, for many right-hand sides. Where some of the track
 /// is one-sided (fixed_port.h) each solution finds what of it presses.
 class Statics {
