@@ -268,7 +268,7 @@ TEST_CASE("bad words to hil get one sentence and exit code 2", "[hil][cli]") {
   CHECK_THAT(refused("--duration 0.1"), Contains("--rate is required"));
   CHECK_THAT(refused("--rate 100"), Contains("--duration is required"));
   CHECK_THAT(refused("--rate 0 --duration 1"), Contains("--rate"));
-  CHECK_THAT(refused("--rate nan --duration 1"), Contains("nan is no rate"));
+  CHECK_THAT(refused("--rate nan --duration 1"), Contains("--rate: 'nan' is no finite number"));
   CHECK_THAT(refused("--rate 100 --duration 0.001"), Contains("--duration 0.001"));
   CHECK_THAT(refused(good + "--policy later"), Contains("--policy"));
   CHECK_THAT(refused(good + "--priority 100"), Contains("--priority"));

@@ -101,8 +101,6 @@ void check(const FitOptions& o) {
     throw InputError(fmt::format("{}: a list of points wants --unit mm or --unit m", o.profile));
   if (!points && !o.unit.empty())
     throw InputError("--unit goes with a list of points; a profile has its unit in its keys");
-  if (!o.out.empty() && o.out == o.report)
-    throw InputError(fmt::format("--out and --report both name {}", o.out));
   if (!std::isnan(o.head_width) && !(o.head_width > 0.0 && std::isfinite(o.head_width)))
     throw InputError(
         fmt::format("--head-width-m = {} is not a finite number above 0", o.head_width));

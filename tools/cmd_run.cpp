@@ -154,8 +154,6 @@ void write_recording(const std::string& file, const Simulation& run, Recording& 
 }
 
 Exit run(const RunOptions& o) {
-  if (!o.trace.empty() && o.trace == o.report)
-    throw InputError(fmt::format("--trace and --report both name {}", o.trace));
   const bool artefact = is_artefact(o.input);
   if (artefact) refuse_changes(o);
   const std::optional<AnyScene> scene =

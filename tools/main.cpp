@@ -1,11 +1,13 @@
 #include <fmt/core.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
 
+#include "arguments.h"
 #include "cache_sizes.h"
 #include "command.h"
 
@@ -13,6 +15,8 @@
 int main(int argc, char** argv) {
   using namespace railstep;
   fix_cache_sizes();
+  // A file at the limit of its size is then a write that fails, as on a full disk, and is told.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{"railstep: real-time, fixed-step simulation of flexible railway track"};
   app.name("railstep");
   app.require_subcommand(1);
@@ -21,16 +25,20 @@ int main(int argc, char** argv) {
       add_run(app), add_sweep(app),  add_replay(app), add_compare(app),    add_rules(app),
       add_hil(app), add_pareto(app), add_tune(app)};
   try {
+    want_finite_numbers(app);
+    refuse_empty_words(argc, argv);
     app.parse(argc, argv);
     for (const Command& command : commands)
       if (command.parser->parsed()) {
+        refuse_same_files(*command.parser);
         const Exit exit = command.run();
         if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(exit);
         throw std::runtime_error(fmt::format("standard output: {}", std::strerror(errno)));
       }
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : static_cast<int>(Exit::bad_input);  // CLI11's own codes start at 100
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    fmt::print(stderr, "error: {}\n", usage_sentence(app, error));
+    return static_cast<int>(Exit::bad_input);
   } catch (const InputError& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return static_cast<int>(Exit::bad_input);

@@ -1,0 +1,22 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace railstep {
+
+/// Refuses words without a letter, as an unset variable of a shell leaves them: CLI11 takes an
+/// empty number for none. Throws InputError.
+void refuse_empty_words(int argc, const char* const* argv);
+
+/// Has every option that takes a number refuse what is not one, and what is not finite. To be
+/// called once all options are there.
+void want_finite_numbers(CLI::App& app);
+
+/// What is wrong with a command line that was not understood, in one sentence.
+std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error);
+
+/// Refuses, before anything is done, a file to be written that is also read, or that two options
+/// write. Throws InputError.
+void refuse_same_files(const CLI::App& command);
+
+}  // namespace railstep
