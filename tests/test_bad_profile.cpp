@@ -98,6 +98,8 @@ TEST_CASE("millimetres given as metres are refused with the unit named", "[bad_i
               " --unit m");
   fit_refuses("p.toml", profile("[0,0,0],[75000,0,0],[75000,172000,0],[0,172000,0]"),
               {"p.toml:4:", "172 m high", "millimetres"});
+  fit_refuses("p.toml", profile("[0,0,0],[1e200,0,0],[1e200,100,0],[0,100,0]"),
+              {"2e+197 m wide", "millimetres"});
   const BadInput bad("unit");
   bad.refused(
       "fit --target area_m2=8700,inertia_y_m4=39e6,inertia_z_m4=6e6,centroid_height_m=85,"
@@ -113,6 +115,12 @@ TEST_CASE("metres given as millimetres are refused with the unit named", "[bad_i
   fit_refuses("p.csv", "0,0\n.075,0\n.075,.172\n0,.172\n", {"0.172 mm high", "1 mm", "metres"});
   fit_refuses("p.toml", profile("[0,0,0],[0.075,0,0],[0.075,0.172,0],[0,0.172,0]"),
               {"p.toml:4:", "0.172 mm high", "metres"});
+}
+
+TEST_CASE("an outline that keeps too few points once they are rounded is refused",
+          "[bad_input][cli]") {
+  fit_refuses("p.toml", profile("[0,0,0],[1e-3,0,0],[1e-3,100,0],[0,100,0]"),
+              {"at least three points"});
 }
 
 TEST_CASE("NaN, infinity and numbers over the largest are refused in a profile",

@@ -74,6 +74,9 @@ TEST_CASE("defects that are none are refused") {
   CHECK_THROWS_AS(dipped_joint(0., .01, 1., {0., 0.}), std::invalid_argument);
   CHECK_THROWS_AS(dipped_joint(0., .01, 1., {1e-9, 0.}), std::invalid_argument);
   CHECK_THROWS_AS(corrugation(0., .1, .1, 1e-5, {1e-3, 0.}), std::invalid_argument);
+  // A ramp of a nanometre under a patch of 12 mm: 6e8 samples; of 1e-300 m, more than an int holds.
+  for (const double ramp : {1e-9, 1e-300})
+    CHECK_THROWS_AS(dipped_joint(0., .01, ramp, {ramp / 50., .012}), std::invalid_argument);
   CHECK_THROWS_AS(fresh_flat(.46, .5, {1e-3, 0.}), std::invalid_argument);
   CHECK_THROWS_AS(out_of_round(.46, 0, 1e-4, {1e-3, 0.}), std::invalid_argument);
 }

@@ -73,4 +73,10 @@ TEST_CASE("a file that is no record of irregularities is refused with its line")
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,nan\n1,1\n1.5,3\n"), Contains(":3:"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n0.5;2,5\n1,1\n1.5,3\n"), Contains("decimal comma"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5\n1,1\n1.5,3\n"), Contains("1 values"));
+  // What a spline would overflow on.
+  CHECK_THAT(refusal("distance_m,vertical_m\n-8e307,0\n-2.7e307,0\n2.7e307,0\n8e307,0\n"),
+             Contains(":2:") && Contains("at least -1000000000, at most 1000000000 m"));
+  CHECK_THAT(refusal("distance_m,left_z_m\n0,0\n1,1e308\n2,0\n3,0\n"),
+             Contains(":3:") && Contains("left_z = 1e+308 m"));
+  CHECK_THAT(refusal("distance_m,left_z_m\n0,0\n1e-9,0\n2e-9,0\n3e-9,0\n"), Contains("apart"));
 }

@@ -212,6 +212,8 @@ TEST_CASE("a bad outline is refused in a sentence that says why", "[outline][bad
              Contains("row 3") && Contains("finite"));
   CHECK_THAT(refusal(rows({{0, 0, 0}, {75, 0, 0}, {75, 172, 0}, {0, 172, 0}}), true),
              Contains("172 m high") && Contains("millimetres?"));
+  CHECK_THAT(refusal(rows({{0, 0, 0}, {1e197, 0, 0}, {1e197, 0.1, 0}, {0, 0.1, 0}}), false),
+             Contains("1e+197 m wide") && Contains("millimetres?"));
   CHECK_THAT(refusal(rows({{0, 0, 0}, {75e-6, 0, 0}, {75e-6, 172e-6, 0}}), false),
              Contains("metres?"));
   CHECK_THAT(refusal(rows({{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0.049}, {0, 0.1, 0}}), true),

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -79,6 +80,16 @@ TEST_CASE("every bit and every end of a recording is watched", "[recording]") {
     write(folder / "cut", {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)});
     CHECK_THROWS_AS(Recording::read(folder / "cut"), InputError);
   }
+}
+
+TEST_CASE("a recording whose hashes are farther apart than frames are counted is refused",
+          "[recording]") {
+  const auto folder = fresh_folder("recording_every");
+  Recording made = pushed();
+  made.every = std::numeric_limits<std::int64_t>::max();
+  made.hashes.resize(1);
+  write(folder / "far", made.bytes());
+  CHECK_THROWS_WITH(Recording::read(folder / "far"), Contains("number out of range"));
 }
 
 TEST_CASE("run --record and replay, by the program", "[recording][cli]") {

@@ -231,6 +231,18 @@ TEST_CASE("what is latched, and a state that is not finite, come back to the bit
   CHECK(state_hash(model, run->state) == hash);
 }
 
+TEST_CASE("a snapshot from where steps can no longer be counted is refused", "[snapshot]") {
+  const auto run = simulation_of(read_any_scene(kFolder + "spring_pendulum.toml"));
+  const Model& model = run->model();
+  for (const std::int64_t last :
+       {std::int64_t{1} << 53, std::numeric_limits<std::int64_t>::max()}) {
+    run->state.steps = last;
+    const Bytes bytes = saved(model, run->state);
+    CHECK((restore_snapshot(model, bytes.data(), bytes.size(), run->state) ==
+           SnapshotStatus::bad_content) == (last > std::int64_t{1} << 53));
+  }
+}
+
 TEST_CASE("a snapshot of another model is refused", "[snapshot]") {
   const std::string scene = kFolder + "moving_load.toml";
   const auto one = simulation_of(read_any_scene(scene, {"load[0].force_z_n=-50e3"}));

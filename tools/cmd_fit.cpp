@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "command.h"
+#include "fit_profile.h"
 #include "fit_report.h"
 #include "section_file.h"
 #include "write.h"
@@ -67,24 +68,15 @@ FitTargets parse_targets(const std::string& text) {
   return t;
 }
 
-FitResult fit_profile(Profile profile) {
-  FitResult r{.name = profile.name, .source = profile.source};
-  r.profile = std::move(profile);
-  const Outline& outline = r.profile->outline;
-  r.fit = fit_section(outline);
-  r.asymmetry = asymmetry(polygon(outline, kChordTolerance));
-  r.outline = {properties(outline), outline_shear(outline, r.asymmetry), outline.height};
-  r.section = fitted_section(r.fit, outline.height);
-  return r;
-}
-
-FitResult fit_to_targets(const FitTargets& t, double head_width) {
+FitResult fit_to_targets(const FitTargets& t, double head_width) try {
   FitResult r{.name = "targets", .source = "--target"};
   r.fit = fit_targets(t, head_width);
   r.asymmetry = kNone;
   r.outline = {t.area, {kNone, kNone, kNone, kNone}, t.height};
   r.section = fitted_section(r.fit, t.height);
   return r;
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("--target: {}", error.what()));
 }
 
 bool is_toml(const std::string& file) { return std::filesystem::path(file).extension() == ".toml"; }
@@ -108,10 +100,11 @@ void check(const FitOptions& o) {
 
 Exit run_fit(const FitOptions& o) {
   check(o);
-  const FitResult result = !o.target.empty() ? fit_to_targets(parse_targets(o.target), o.head_width)
-                           : is_toml(o.profile)
-                               ? fit_profile(read_profile(o.profile))
-                               : fit_profile(read_points(o.profile, o.unit == "mm" ? 1e-3 : 1.0));
+  const FitResult result =
+      !o.target.empty() ? fit_to_targets(parse_targets(o.target), o.head_width)
+      : is_toml(o.profile)
+          ? fit_profile(read_profile(o.profile), o.profile)
+          : fit_profile(read_points(o.profile, o.unit == "mm" ? 1e-3 : 1.0), o.profile);
   if (!o.out.empty()) write_file(o.out, to_toml(result));
   if (!o.report.empty()) write_file(o.report, to_html(result));
   fmt::print("{}\n", o.json ? to_json(result).dump(2) : to_table(result));

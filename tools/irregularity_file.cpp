@@ -14,8 +14,10 @@ namespace {
 
 constexpr std::string_view kNames[] = {"vertical", "alignment", "cross_level", "gauge",
                                        "left_z",   "right_z",   "left_y",      "right_y"};
-constexpr std::size_t kLargestRecord = std::size_t{64} << 20;  // bytes
-constexpr std::size_t kOfRails = 4;                            // the first of these
+constexpr std::size_t kLargestRecord = std::size_t{64} << 20;           // bytes
+constexpr std::size_t kOfRails = 4;                                     // the first of these
+const Range kPlace = between(-1e9, 1e9), kHeight = between(-10., 10.);  // m
+constexpr double kLeastStep = 1e-6;                                     // m
 constexpr std::string_view kAccepted =
     "distance_m, and of the track vertical, alignment, cross_level, gauge, or of the rails "
     "left_z, right_z, left_y, right_y, each ending in _m or _mm";
@@ -67,6 +69,16 @@ std::vector<Column> columns_of(const CsvLine& header) {
   return columns;
 }
 
+/// A number in metres. What lies farther than any rail would overflow in a spline.
+double metres_of(std::string_view field, const Column& column, const CsvLine& line) {
+  const double value = column.metres * csv_number(field, line.place);
+  const Range& accepted = column.name == std::size(kNames) ? kPlace : kHeight;
+  if (accepted.holds(value)) return value;
+  throw InputError(fmt::format("{}: {} = {:.9g} m is out of range; accepted is {} m", line.place,
+                               column.name == std::size(kNames) ? "distance" : kNames[column.name],
+                               value, accepted.text()));
+}
+
 /// Values of the columns, in their order; in metres.
 std::vector<std::vector<double>> values_of(const std::vector<CsvLine>& lines,
                                            const std::vector<Column>& columns) {
@@ -77,7 +89,7 @@ std::vector<std::vector<double>> values_of(const std::vector<CsvLine>& lines,
       throw InputError(fmt::format("{}: {} values where the first line names {} columns",
                                    line->place, line->fields.size(), columns.size()));
     for (std::size_t c = 0; c < columns.size(); ++c)
-      values[c].push_back(columns[c].metres * csv_number(line->fields[c], line->place));
+      values[c].push_back(metres_of(line->fields[c], columns[c], *line));
   }
   return values;
 }
@@ -97,6 +109,9 @@ double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& 
                       "{:.9g} m; rows at equal, rising distances are accepted",
                       lines[k + 1].place, distance[k], step, wanted));
   }
+  if (step < kLeastStep)
+    throw InputError(fmt::format("{}: rows {:.6g} m apart; at least {:g} m are accepted",
+                                 lines[1].place, step, kLeastStep));
   return step;
 }
 

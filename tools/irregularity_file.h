@@ -9,7 +9,8 @@ namespace railstep {
 /// `distance_m`, and at least one of vertical, alignment, cross_level, gauge (of the track), or of
 /// left_z, right_z, left_y, right_y (of the rails), each with its unit: `_m` or `_mm`.
 /// Throws InputError, with the line, on anything else, on both kinds together, on fewer than four
-/// rows, and on distances that do not rise by the same step within 1e-3 of it.
+/// rows, on distances that do not rise by the same step within 1e-3 of it, 1e-6 m or more, and on
+/// places beyond 1e9 m or heights beyond 10 m.
 RailSignals read_irregularities(const std::filesystem::path& file);
 
 }  // namespace railstep

@@ -138,8 +138,9 @@ Recording Recording::read(const std::filesystem::path& file) {
   const std::int64_t block = reader.word(), snapshot = reader.word();
   found.block = reader.block(block);
   found.snapshot = reader.block(snapshot);
-  const bool counted = found.frames >= 0 && found.frames < (std::int64_t{1} << 48) && width >= 0 &&
-                       width <= kMaxInputs && found.every > 0;
+  constexpr std::int64_t kMost = std::int64_t{1} << 48;  // sums and products below do not overflow
+  const bool counted = found.frames >= 0 && found.frames < kMost && width >= 0 &&
+                       width <= kMaxInputs && found.every > 0 && found.every < kMost;
   if (counted) {
     found.inputs = reader.values<double>(found.frames * width, get_double);
     found.hashes = reader.values<std::uint64_t>(found.hash_count(), get_word);

@@ -24,6 +24,9 @@ Signal around(double place, double half, const DefectGrid& grid, const Shape& sh
   // What lies within the patch of an end is beyond it after the mean.
   const int steps = whole_steps(half, grid.step);
   const double step = half / steps;
+  if (!(grid.patch / step < kMostSamples))
+    throw std::invalid_argument(
+        "a defect is so short that its contact patch holds over 1e7 of its steps");
   const int beyond = static_cast<int>(std::ceil(grid.patch / step)) + 1;
   std::vector<double> samples;
   for (int k = -steps - beyond; k <= steps + beyond; ++k)

@@ -70,20 +70,20 @@ Moments moments_of(const std::vector<Segment>& segments) {
   return m;
 }
 
-/// Lowest and highest z, arcs included.
-std::array<double, 2> extent(const std::vector<Segment>& segments) {
-  double low = segments.front().from[1], high = low;
+/// Least and largest coordinate, arcs included. @param axis  0 y, 1 z
+std::array<double, 2> extent(const std::vector<Segment>& segments, std::size_t axis) {
+  double low = segments.front().from[axis], high = low;
   for (const Segment& s : segments) {
-    low = std::min(low, s.to[1]);
-    high = std::max(high, s.to[1]);
+    low = std::min(low, s.to[axis]);
+    high = std::max(high, s.to[axis]);
     if (s.radius == 0.0) continue;
     const Arc a = arc_of(s);
     // The arc holds its circle's lowest or highest point if that lies within its half angle. A
     // crown whose centre is off the axis by the drawing's rounding rises 0.2 nm above its middle:
     // not meant.
-    const double bottom = a.centre[1] - a.radius, top = a.centre[1] + a.radius;
-    if (-a.outwards[1] > std::cos(a.half) && bottom < low - kRounding) low = bottom;
-    if (a.outwards[1] > std::cos(a.half) && top > high + kRounding) high = top;
+    const double bottom = a.centre[axis] - a.radius, top = a.centre[axis] + a.radius;
+    if (-a.outwards[axis] > std::cos(a.half) && bottom < low - kRounding) low = bottom;
+    if (a.outwards[axis] > std::cos(a.half) && top > high + kRounding) high = top;
   }
   return {low, high};
 }
@@ -99,9 +99,9 @@ void reverse(std::vector<Segment>& segments) {
 /// Checks, turns counter-clockwise, and moves the lowest point to z = 0 and the centroid to y = 0.
 Outline finish(std::vector<Segment> segments) {
   for (const Segment& s : segments) check_segment(s);
-  const auto [low, high] = extent(segments);
-  check_height(high - low);
-  check_width(segments);
+  const auto [left, right] = extent(segments, 0);
+  const auto [low, high] = extent(segments, 1);
+  check_size(right - left, high - low);
   check_crossing(segments);
   if (moments_of(segments).area < 0.0) reverse(segments);
   const Moments m = moments_of(segments);

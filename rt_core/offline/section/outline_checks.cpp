@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace railstep {
 namespace {
@@ -143,13 +144,15 @@ void check_segment(const Segment& s) {
                                 " and more, or 0 for a straight line");
 }
 
-void check_height(double height) {
+void check_size(double width, double height) {
   char text[120];
-  if (height > 1.0) {
-    std::snprintf(text, sizeof text,
-                  "the outline is %.6g m high, over the limit of 1 m: are these millimetres?",
-                  height);
-    throw std::invalid_argument(text);
+  for (const auto& [size, way] : {std::pair(height, "high"), std::pair(width, "wide")}) {
+    if (!(size <= 1.0)) {
+      std::snprintf(text, sizeof text,
+                    "the outline is %.6g m %s, over the limit of 1 m: are these millimetres?", size,
+                    way);
+      throw std::invalid_argument(text);
+    }
   }
   if (!(height > 1e-3)) {
     std::snprintf(text, sizeof text,
@@ -157,20 +160,6 @@ void check_height(double height) {
                   1e3 * height);
     throw std::invalid_argument(text);
   }
-}
-
-void check_width(const std::vector<Segment>& segments) {
-  double low = segments.front().from[0], high = low;
-  for (const Segment& s : segments) {
-    low = std::min(low, s.from[0]);
-    high = std::max(high, s.from[0]);
-  }
-  if (high - low <= 1.0) return;
-  char text[120];
-  std::snprintf(text, sizeof text,
-                "the outline is %.6g m wide, over the limit of 1 m: are these millimetres?",
-                high - low);
-  throw std::invalid_argument(text);
 }
 
 void check_crossing(const std::vector<Segment>& segments) {

@@ -20,10 +20,8 @@ void check_closing(std::span<const OutlineRow> points);
 /// An arc's radius is at least half its chord and at most 10 m.
 void check_segment(const Segment& segment);
 
-/// Between 1 mm and 1 m: else the unit is wrong.
-void check_height(double height);
-/// At most 1 m between its points.
-void check_width(const std::vector<Segment>& segments);
+/// At most 1 m, and the height at least 1 mm: else the unit is wrong.
+void check_size(double width, double height);
 
 /// No two segments cross or touch, save neighbours at the point they share. Arcs are tested as
 /// chords that leave them by no more than 1 um.

@@ -11,6 +11,8 @@ constexpr char kMagic[8] = {'r', 'a', 'i', 'l', 's', 'n', 'a', 'p'};
 constexpr std::size_t kFormatAt = 8, kSizeAt = 16, kModelAt = 24, kStepsAt = 56, kLatchedAt = 64,
                       kCountAt = 72;
 static_assert(kCountAt + 8 == kSnapshotHead);
+// A step's time is a double. Far from where one more step would overflow.
+constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;
 
 }  // namespace
 
@@ -44,7 +46,7 @@ SnapshotStatus restore_snapshot(const Model& model, const void* bytes, std::size
     return SnapshotStatus::wrong_size;
   const auto steps = static_cast<std::int64_t>(get_word(at + kStepsAt));
   const std::uint64_t latched = get_word(at + kLatchedAt);
-  if (steps < 0 || (latched & ~static_cast<std::uint64_t>(kLatched)) != 0)
+  if (steps < 0 || steps > kMostSteps || (latched & ~static_cast<std::uint64_t>(kLatched)) != 0)
     return SnapshotStatus::bad_content;
   state.steps = steps;
   state.latched = static_cast<Status>(latched);
