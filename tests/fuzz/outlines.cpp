@@ -1,0 +1,54 @@
+#include "outlines.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "fit_profile.h"
+#include "oracle.h"
+#include "section_file.h"
+
+namespace railstep::fuzz {
+namespace {
+
+constexpr std::size_t kMostSegments = 60;  // of an outline that is fitted
+constexpr double kShortest = 1e-3;         // m, of them: slivers take seconds to be triangulated
+
+bool is_coarse(const Outline& outline) {
+  for (const Segment& s : outline.segments)
+    if (std::hypot(s.to[0] - s.from[0], s.to[1] - s.from[1]) < kShortest) return false;
+  return outline.segments.size() <= kMostSegments;
+}
+
+bool are_finite(const AreaProperties<double>& a) {
+  return std::isfinite(a.area) && std::isfinite(a.centroid_height) && std::isfinite(a.inertia_y) &&
+         std::isfinite(a.inertia_z);
+}
+
+/// As `railstep fit --out` writes it and a scene reads it: 17 digits hold every bit.
+void check_written(const FitResult& result) {
+  const Section found = read_section(written("section.toml", to_toml(result)));
+  check(std::memcmp(&found.area, &result.section.area, sizeof found.area) == 0 &&
+            found.height == result.section.height,
+        "a section is not read as it is written");
+  check(!to_html(result).empty() && !to_table(result).empty(), "a fit without a report");
+}
+
+void fit(const Profile& profile) {
+  const FitResult r = fit_profile(profile, "input");
+  check(largest(r.fit.errors) < 1e-9, "a fit that misses the properties");
+  check(r.asymmetry >= 0., "an asymmetry below 0");
+  check_written(r);
+}
+
+}  // namespace
+
+void check_outline(const Profile& profile) {
+  const Outline& outline = profile.outline;
+  check(outline.segments.size() >= 3 && outline.height > 0. && outline.height <= 1.,
+        "an outline without a height");
+  const AreaProperties<double> own = properties(outline);
+  check(are_finite(own) && own.area > 0., "an outline without an area");
+  if (is_coarse(outline)) accepts([&] { fit(profile); });
+}
+
+}  // namespace railstep::fuzz
