@@ -37,8 +37,7 @@ BlockHeader header_of(const std::string& model) {
 
 template <typename T>
 std::string with(std::string model, std::size_t at, T value) {
-  std::memcpy(model.data() + at, &value, sizeof value);
-  return model;
+  return model.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 /// A model whose sums are those of what it now holds.

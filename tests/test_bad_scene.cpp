@@ -53,7 +53,7 @@ TEST_CASE("an unknown key is refused with the nearest", "[bad_input][cli]") {
 
 TEST_CASE("a key given twice is refused where it stands again", "[bad_input][cli]") {
   text_refused("bays = 16", "bays = 16\nbays = 3", {"bad.toml:9:", "bays"});
-  text_refused(moving_load() + "[support]\nat = \"foot\"\n", {"bad.toml:47:", "support"});
+  text_refused(moving_load() + "[support]\nat = \"foot\"\n", {"bad.toml:46:", "support"});
   text_refused("schema = 1\n", "schema = 1\nrail.rectangle = {}\n", {"bad.toml:13:", "rectangle"});
 }
 
