@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
@@ -11,7 +12,6 @@
 #include "online/model/block.h"
 
 using namespace railstep;
-using Catch::Contains;
 
 namespace {
 
@@ -112,7 +112,7 @@ TEST_CASE("a model cut at any byte is refused", "[bad_input][cli]") {
   for (const std::size_t size : {std::size_t{8}, std::size_t{15}, std::size_t{16}, head - 1, head,
                                  from, good.size() / 2, good.size() - 8, good.size() - 1})
     program_refuses(good.substr(0, size), {"cut short or run on"});
-  for (const std::size_t size : {0, 1, 7}) program_refuses(good.substr(0, size), {});
+  for (const std::size_t size : {0u, 1u, 7u}) program_refuses(good.substr(0, size), {});
 }
 
 TEST_CASE("a model with any bit turned over is refused", "[bad_input][cli]") {
@@ -171,7 +171,7 @@ TEST_CASE("counts whose product with a size wraps are refused, whatever the sums
 }
 
 TEST_CASE("a model with bytes behind its end is refused", "[bad_input][cli]") {
-  for (const std::size_t more : {1, 8, 4096}) {
+  for (const std::size_t more : {1u, 8u, 4096u}) {
     const std::string longer = good_model() + std::string(more, '\0');
     program_refuses(longer, {"cut short or run on"});
     CHECK(result_of(longer) == RAILSTEP_WRONG_SIZE);
@@ -204,7 +204,7 @@ TEST_CASE("memory that is misaligned or too small makes no model and no run", "[
   const railstep_model* model = nullptr;
   const auto load = [&](std::size_t block_off, std::size_t off, std::size_t given) {
     auto* const from = reinterpret_cast<char*>(block.data()) + block_off;
-    std::memmove(from, bytes.data(), bytes.size());
+    std::copy(bytes.begin(), bytes.end(), from);
     model = reinterpret_cast<const railstep_model*>(memory.data());
     const std::int32_t result = railstep_load(
         from, bytes.size(), reinterpret_cast<char*>(memory.data()) + off, given, &model);
@@ -244,7 +244,8 @@ TEST_CASE("a recording that is cut, changed or none is refused", "[bad_input][cl
   const auto refused = [&](const std::string& bytes, const std::string& said) {
     bad.refused("replay " + bad.file("bad.rec", bytes), {"bad.rec", said});
   };
-  for (const std::size_t size : {0, 5, 8, 30}) refused(good.substr(0, size), "is not a recording");
+  for (const std::size_t size : {0u, 5u, 8u, 30u})
+    refused(good.substr(0, size), "is not a recording");
   for (const std::size_t size : {std::size_t{100}, good.size() / 2, good.size() - 1})
     refused(good.substr(0, size), "and holds " + std::to_string(size));
   refused(good + "more", "record it anew");

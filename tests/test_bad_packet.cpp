@@ -203,7 +203,7 @@ TEST_CASE("of repeated packets and those out of order the newest is held",
   run.send(packet(1, 10.));
   run.receive_until(3);
   run.send(packet(5, 20.));
-  for (const std::uint64_t old : {5, 5, 4, 2, 1}) run.send(packet(old, 1e9));
+  for (const std::uint64_t old : {5u, 5u, 4u, 2u, 1u}) run.send(packet(old, 1e9));
   run.receive_until(40);
   run.send(packet(6, 30.));
   const auto told = run.end();

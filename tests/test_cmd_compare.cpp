@@ -6,7 +6,6 @@
 #include "program.h"
 
 using namespace railstep;
-using Catch::Contains;
 
 namespace {
 

@@ -158,7 +158,7 @@ void Caller::step(Slot& on) {
 
 void Caller::respond(Slot& on) {
   if (on.run == nullptr || railstep_external_wheels(on.model) == 0) return;
-  const auto n = static_cast<std::size_t>(3 * railstep_external_wheels(on.model));
+  const std::size_t n = 3 * static_cast<std::size_t>(railstep_external_wheels(on.model));
   std::vector<double> free(n), compliance(n * n);
   const std::vector<double> values = inputs(on.model);
   const std::uint64_t before = railstep_hash(on.run);

@@ -1,7 +1,6 @@
 #include "mutate.h"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <vector>
 
@@ -131,7 +130,7 @@ std::size_t mutate_text(std::uint8_t* data, std::size_t size, std::size_t most, 
   if (random() % 4 == 0) return LLVMFuzzerMutate(data, size, most);
   const std::string made = changed_text({reinterpret_cast<const char*>(data), size}, random);
   const std::size_t kept = std::min(made.size(), most);
-  std::memcpy(data, made.data(), kept);
+  std::copy_n(made.data(), kept, data);
   return kept;
 }
 

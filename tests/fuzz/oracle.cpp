@@ -51,7 +51,7 @@ const std::filesystem::path& folder() {
 }
 
 std::filesystem::path written(const std::string& name, std::string_view bytes) {
-  const std::filesystem::path file = folder() / name;
+  std::filesystem::path file = folder() / name;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();

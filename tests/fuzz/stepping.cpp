@@ -34,7 +34,7 @@ bool are_finite(const double* values, std::size_t count) {
 
 /// The response under external wheels changes no state, and is symmetric where it is finite.
 void check_response(Held& held) {
-  const auto n = static_cast<std::size_t>(3 * railstep_external_wheels(held.model()));
+  const std::size_t n = 3 * static_cast<std::size_t>(railstep_external_wheels(held.model()));
   if (n == 0) return;
   const auto inputs = inputs_of(static_cast<std::size_t>(railstep_inputs(held.model())), 1);
   std::vector<double> free(n), compliance(n * n);
