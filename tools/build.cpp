@@ -129,7 +129,8 @@ std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
                         .stiffness = v.stiffness,
                         .damping = v.damping,
                         .tread = treads_of(v),
-                        .forces = outer_forces(v.forces)});
+                        .forces = outer_forces(v.forces),
+                        .falling = v.falling});
   return vehicles;
 }
 

@@ -18,6 +18,7 @@ struct Command {
 Command add_fit(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_condense(CLI::App& app);
+Command add_hard(CLI::App& app);
 Command add_hil(CLI::App& app);
 Command add_modes(CLI::App& app);
 Command add_pareto(CLI::App& app);

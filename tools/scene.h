@@ -231,6 +231,7 @@ struct VehicleScene {
   WheelContactKind contact;
   double stiffness, damping;  // of a linear contact, N/m, N s/m
   bool gravity, may_leave_rail;
+  std::optional<Falling> falling;  // on the unloaded track; none: it stands on it
   std::vector<WheelTread> treads;
   std::vector<BodyForceScene> forces;
 };

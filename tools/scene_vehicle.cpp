@@ -145,6 +145,25 @@ BodyForceScene read_force(const Table& t, const NamedVehicle& kind,
   return read_body_force(t, first_coordinates(kind.vehicle)[body] + pitch, pitch == 1, inputs);
 }
 
+/// How it comes down on the track, where it does.
+std::optional<Falling> read_falling(const Table& t, const Scene& scene, const VehicleScene& v) {
+  const char* const keys[] = {"drop_height_m", "drop_speed_m_per_s"};
+  for (const char* key : keys) {
+    if (t.has(key) && v.contact != WheelContactKind::hertz)
+      t.refuse(key, fmt::format("{} is of a wheel that can leave the rail; accepted with contact = "
+                                "\"hertz\"",
+                                key));
+    if (t.has(key) && scene.step && scene.step->start != Start::released)
+      t.refuse(key,
+               fmt::format("{} is of a vehicle that does not stand on the track; accepted with "
+                           "step.start = \"released\"",
+                           key));
+  }
+  if (!t.has(keys[0]) && !t.has(keys[1])) return std::nullopt;
+  return Falling{t.number(keys[0], between(0.0, 10.0), 0.0),
+                 t.number(keys[1], between(0.0, 100.0), 0.0)};
+}
+
 /// One vehicle for each rail that the table names.
 void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>& vehicles,
                   std::vector<InputScene>& inputs) {
@@ -162,6 +181,7 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
   v.speed = speed.speed;
   v.speeds = speed.table;
   v.gravity = t.boolean("gravity", true);
+  v.falling = read_falling(t, scene, v);
   v.treads = read_wheel_treads(t, scene, v);
   for (const Table& force : t.tables("force"))
     v.forces.push_back(read_force(force, v.kind, inputs));

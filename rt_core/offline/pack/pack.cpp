@@ -254,7 +254,9 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   add_probes(track, traffic.probes);
   if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
   add_turn(track);
-  set_start(start_released(*this));
+  std::vector<double> start = start_released(*this);
+  put_falling(model_, traffic.vehicles, start);
+  set_start(std::move(start));
   model_.cost = cost_of(model_);
 }
 

@@ -65,6 +65,12 @@ struct Wheelset {
   std::optional<Flange> flange = std::nullopt;
 };
 
+/// How a vehicle comes down on an unloaded track: its springs at rest, and nothing under it.
+struct Falling {
+  double height = 0.;  // of its wheels over the level rail, m
+  double speed = 0.;   // down, m/s
+};
+
 /// A vehicle over one rail, as a scene gives it.
 struct RunningVehicle {
   Vehicle vehicle = {};
@@ -76,6 +82,7 @@ struct RunningVehicle {
   double stiffness = 0., damping = 0.;  // of a linear contact, N/m, N s/m
   std::vector<Signal> tread = {};       // of each wheel, over the distance rolled; or empty
   std::vector<OuterForce> forces = {};
+  std::optional<Falling> falling = std::nullopt;  // of a released start
 };
 
 /// Of a bonded contact, N/m: a millionth of what the stiffest rail gives way under a wheel.

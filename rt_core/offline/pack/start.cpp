@@ -229,6 +229,22 @@ std::vector<double> start_released(const PackedModel& packed) {
   return memory;
 }
 
+void put_falling(const Model& model, const std::vector<RunningVehicle>& vehicles,
+                 std::vector<double>& memory) {
+  State state = state_on(model, memory.data());
+  for (std::size_t b = 0; b < vehicles.size(); ++b) {
+    if (!vehicles[b].falling) continue;
+    const VehicleModel& own = model.vehicle[b];
+    const std::vector<int> first = first_coordinates(vehicles[b].vehicle);
+    for (std::size_t body = 0; body + 1 < first.size(); ++body) {
+      const std::int32_t z = own.first + first[body];
+      state.u[z] = vehicles[b].falling->height;
+      state.v[z] = -vehicles[b].falling->speed;
+      state.a[z] = state.g[z] = -vehicles[b].gravity;
+    }
+  }
+}
+
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
                                          double gravity) {
   const Model& model = packed.model();

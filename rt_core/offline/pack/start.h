@@ -11,6 +11,11 @@ namespace railstep {
 /// loads and weights act from then on.
 std::vector<double> start_released(const PackedModel& packed);
 
+/// Lets the vehicles that fall be where they begin to, with the acceleration of free fall.
+/// @param memory  of the model's state
+void put_falling(const Model& model, const std::vector<RunningVehicle>& vehicles,
+                 std::vector<double>& memory);
+
 /// The state at step 0 in static equilibrium under the loads, wheelsets, vehicles and weight,
 /// contact included: each frictionless wheel of a wheelset carries what the balance of vertical
 /// force and roll gives it. Velocities are those of the static shape moving along with loads and

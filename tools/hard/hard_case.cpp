@@ -1,0 +1,45 @@
+#include "hard/hard_case.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+namespace railstep {
+namespace {
+
+/// How far a check is on its way to its bound; over 1 beyond it.
+double way(const HardCheck& check) {
+  if (!check.passed()) return std::isnan(check.figure) ? INFINITY : 1. + std::abs(check.figure);
+  return check.bound == 0. ? 0. : check.figure / check.bound;
+}
+
+}  // namespace
+
+std::vector<HardCase> hard_cases() {
+  std::vector<HardCase> all;
+  for (const auto& part : {contact_cases(), element_cases(), joint_cases(), model_cases(),
+                           step_cases(), support_cases(), track_cases()})
+    all.insert(all.end(), part.begin(), part.end());
+  const auto number = [](const HardCase& own) { return std::atoi(own.id + 1); };
+  std::sort(all.begin(), all.end(),
+            [&](const HardCase& a, const HardCase& b) { return number(a) < number(b); });
+  return all;
+}
+
+const HardCheck& tightest(const HardResult& result) {
+  return *std::max_element(result.checks.begin(), result.checks.end(),
+                           [](const HardCheck& a, const HardCheck& b) { return way(a) < way(b); });
+}
+
+HardCheck off_by(std::string what, double value, double expected, double bound) {
+  return {std::move(what), std::abs(value - expected) / std::abs(expected), bound};
+}
+
+HardCheck apart_by(std::string what, double value, double expected, double bound) {
+  return {std::move(what), std::abs(value - expected), bound};
+}
+
+HardCheck holds(std::string what, bool is_true) { return {std::move(what), is_true ? 0. : 1., 0.}; }
+
+}  // namespace railstep
