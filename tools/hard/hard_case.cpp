@@ -10,7 +10,7 @@ namespace {
 
 /// How far a check is on its way to its bound; over 1 beyond it.
 double way(const HardCheck& check) {
-  if (!check.passed()) return std::isnan(check.figure) ? INFINITY : 1. + std::abs(check.figure);
+  if (!check.passed()) return std::isnan(check.figure) ? HUGE_VAL : 1. + std::abs(check.figure);
   return check.bound == 0. ? 0. : check.figure / check.bound;
 }
 
