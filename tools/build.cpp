@@ -18,6 +18,7 @@
 #include "offline/beam/linearise.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/start.h"
+#include "offline/pack/start_struck.h"
 #include "offline/pack/travel_rows.h"
 #include "offline/track/buckling.h"
 #include "sense.h"
@@ -362,6 +363,8 @@ Built::Built(const Scene& scene) try {
   const double gravity = scene.track.gravity ? kGravity : 0.;
   if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, gravity));
+  if (scene.step->start == Start::released)
+    packed->set_start(start_struck(track, *packed, gravity));
   if (scene.step->start == Start::moving) packed->set_start(start_moving(track, *packed, gravity));
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
