@@ -82,7 +82,7 @@ bool HardOutcome::passed() const {
 std::string margin_text(const HardCheck& check) {
   if (!check.passed()) return "over";
   if (check.bound == 0.) return "met";
-  if (check.figure == 0.) return "exact";
+  if (check.figure <= 0.) return check.figure == 0. ? "exact" : "under";
   return fmt::format("{:.3g}", check.bound / check.figure);
 }
 
