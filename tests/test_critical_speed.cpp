@@ -6,6 +6,7 @@
 
 #include "model_run.h"
 #include "offline/pack/scheme.h"
+#include "offline/track/critical_speed.h"
 #include "offline/track/statics.h"
 #include "sections.h"
 
@@ -186,6 +187,20 @@ TEST_CASE("at critical speed a deflection grows with the root of time", "[load]"
   CHECK(std::abs(grown / rate - 1.) < 1. / (at.frequency * std::sqrt(first_time * run.time())));
   CHECK(last / still > 5.);
   CHECK(run.seen == Status::ok);
+}
+
+TEST_CASE("the critical speed of a bed is that of its slowest wave", "[load]") {
+  // hard-cases.md R9, printed to 6 digits
+  Track track = bed(10);
+  CHECK(critical_speed(track).value() == Approx(754.04).epsilon(1e-5));
+  track.support.stiffness[2] = 1e8 / 6.;
+  CHECK(critical_speed(track).value() == Approx(1001.73).epsilon(1e-5));
+  // Pads of twice the stiffness on ballast of twice the stiffness, and sleepers without mass.
+  track.support.stiffness[2] = 2e8 / 6.;
+  track.sleeper = Sleeper{0., 1., {0., 0., 2e8 / 6.}, {}};
+  CHECK(critical_speed(track).value() == Approx(1001.73).epsilon(1e-5));
+  track.support.stiffness[2] = 0.;
+  CHECK_FALSE(critical_speed(track));
 }
 
 TEST_CASE("dampers hold the deflection at critical speed", "[load]") {

@@ -169,3 +169,26 @@ TEST_CASE("a swinging load and a table of speeds are read", "[scene]") {
              Contains("8 or more"));
   CHECK_THAT(told({"load[0].speed_table=[[0, 1]]"}), Contains("one of them is accepted"));
 }
+
+TEST_CASE("a vehicle that falls starts free, above the track", "[scene][vehicle]") {
+  const std::string mass =
+      "vehicle=[{name=\"m\", type=\"mass\", mass_kg=600.0, drop_height_m=0.01, "
+      "drop_speed_m_per_s=0.2, start_m=20.0, speed_m_per_s=0.0, contact=";
+  const Scene scene = read_scene(kScene, {mass + "\"hertz\"}]", "step.start=\"released\""});
+  REQUIRE(scene.vehicles.at(0).falling);
+  const Simulation run(scene);
+  const std::int32_t z = run.model().vehicle[0].first;
+  CHECK(run.state.u[z] == .01);
+  CHECK(run.state.v[z] == -.2);
+  CHECK(run.state.a[z] == -9.81);
+  const auto told = [&](const std::string& contact, const std::string& start) -> std::string {
+    try {
+      read_scene(kScene, {mass + contact + "}]", "step.start=" + start});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK_THAT(told("\"bonded\"", "\"released\""), Contains("drop_height_m is of a wheel that can"));
+  CHECK_THAT(told("\"hertz\"", "\"equilibrium\""), Contains("accepted with step.start"));
+}

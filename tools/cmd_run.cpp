@@ -18,6 +18,7 @@
 #include "run_energy.h"
 #include "run_report.h"
 #include "simulate.h"
+#include "speed_note.h"
 #include "trace.h"
 #include "vtk_record.h"
 #include "write.h"
@@ -110,7 +111,9 @@ void print_table(const nlohmann::ordered_json& result) {
 }
 
 /// Says in words what the run met.
-Exit verdict(const Simulation& run, const RunRecord& record) {
+/// @param near  speed_note() of it
+Exit verdict(const Simulation& run, const RunRecord& record, const std::string& near) {
+  if (!near.empty()) fmt::print(stderr, "note: {}\n", near);
   for (const std::string& name : status_names(record.status)) {
     if (name != "nonfinite_state")
       fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, record));
@@ -161,6 +164,8 @@ Exit run(const RunOptions& o) {
   const auto simulation = artefact ? std::make_unique<Simulation>(std::filesystem::path(o.input))
                                    : simulation_of(*scene);
   const std::int64_t frames = frames_of(o, artefact, simulation->model());
+  const Scene* const track = scene ? std::get_if<Scene>(&*scene) : nullptr;
+  const std::string near = track != nullptr ? speed_note(*track, simulation->track()) : "";
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
@@ -192,12 +197,13 @@ Exit run(const RunOptions& o) {
   if (!o.report.empty())
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
-  const nlohmann::ordered_json result = to_json(*simulation, record, energy);
+  nlohmann::ordered_json result = to_json(*simulation, record, energy);
+  result["warnings"] = near.empty() ? std::vector<std::string>{} : std::vector{near};
   if (o.json)
     fmt::print("{}\n", result.dump(2));
   else
     print_table(result);
-  return verdict(*simulation, record);
+  return verdict(*simulation, record, near);
 }
 
 }  // namespace
