@@ -206,10 +206,11 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
   }
 }
 
-/// Whether the matrix is made anew before iteration `done`.
+/// Whether the matrix is made anew before iteration `done`. In the second half of the cap always:
+/// a step that is so far off is not to end there for want of a matrix.
 bool is_renewed(const SystemModel& s, const SystemTangent& t, std::int32_t done,
                 bool slow) noexcept {
-  if (s.renew == Renew::every_iteration || slow) return true;
+  if (s.renew == Renew::every_iteration || slow || 2 * done >= s.cap) return true;
   if (done > 0) return false;
   return s.renew == Renew::every_step || !(*t.age > 0.) ||
          *t.age > static_cast<double>(s.keep_steps);
