@@ -48,6 +48,7 @@ std::vector<HardCase> contact_cases();
 std::vector<HardCase> element_cases();
 std::vector<HardCase> joint_cases();
 std::vector<HardCase> model_cases();
+std::vector<HardCase> stability_cases();
 std::vector<HardCase> step_cases();
 std::vector<HardCase> support_cases();
 std::vector<HardCase> track_cases();
