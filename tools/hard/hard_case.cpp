@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 namespace railstep {
@@ -10,7 +11,8 @@ namespace {
 
 /// How far a check is on its way to its bound; over 1 beyond it.
 double way(const HardCheck& check) {
-  if (!check.passed()) return std::isnan(check.figure) ? HUGE_VAL : 1. + std::abs(check.figure);
+  constexpr double kWorst = std::numeric_limits<double>::infinity();
+  if (!check.passed()) return std::isnan(check.figure) ? kWorst : 1. + std::abs(check.figure);
   return check.bound == 0. ? 0. : check.figure / check.bound;
 }
 
