@@ -52,6 +52,8 @@ std::vector<HardCase> stability_cases();
 std::vector<HardCase> step_cases();
 std::vector<HardCase> support_cases();
 std::vector<HardCase> track_cases();
+std::vector<HardCase> traffic_cases();
+std::vector<HardCase> wheel_cases();
 
 /// The check that is nearest to its bound, or furthest over it.
 const HardCheck& tightest(const HardResult& result);
