@@ -35,10 +35,10 @@ Convergence converge(const std::filesystem::path& scene, const std::string& colu
   return found;
 }
 
-void check_convergence(HardResult& result, const Convergence& found) {
-  // The scheme's second order, less half for where in a step a contact begins.
-  result.checks.push_back(
-      {"2 less the order of the force from 40 to 5 us", 2. - found.order(), .5});
+/// @param order  that the steps ought to show; half of one is left to where in a step blows fall
+void check_convergence(HardResult& result, const Convergence& found, double order) {
+  result.checks.push_back({fmt::format("{} less the order of the force from 40 to 5 us", order),
+                           order - found.order(), .5});
   result.checks.push_back({"force at 10 us less that at 1.25 us, over the largest",
                            found.error[2] / found.finest, 1e-2});
 }
@@ -63,7 +63,7 @@ HardResult drop_10_mm(const std::filesystem::path& scene) {
       {"rebound's speed over the fall's, less 1",
        run.largest("centre.vz_m_per_s") / (kGravity * falls) - 1., 0.}};
   check_energy(result, run, "", 1e-4, 1e-6);
-  check_convergence(result, converge(scene, force, "step.duration_s=0.06"));
+  check_convergence(result, converge(scene, force, "step.duration_s=0.06"), 2.);
   result.picture = {"time, s", "wheel-rail force, kN", {run.curve(force, "railstep", 1e-3)}};
   result.picture.curves.push_back({"sqrt(2 h / g)", {falls}, {0.}, true});
   result.frame_us = run.frame_us();
@@ -177,7 +177,9 @@ HardResult stiffness_jump(const std::filesystem::path& scene) {
                    {"largest force on even seats over that at the jump",
                     even.largest(force) / run.largest(force), 1.}};
   check_energy(result, run, "", 1e-3, 1e-5);
-  check_convergence(result, converge(scene, force, "step.duration_s=0.2"));
+  // First order: the rail's slope jumps where two elements meet, under the wheel within a step. On
+  // even seats it is the same, and 1.8 where the wheel does not run (H39).
+  check_convergence(result, converge(scene, force, "step.duration_s=0.2"), 1.);
   result.picture = {"time, s",
                     "wheel-rail force, kN",
                     {run.curve(force, "stiff seats from 9.6 to 14.4 m", 1e-3),
@@ -200,7 +202,9 @@ std::vector<HardCase> traffic_cases() {
            "The same on 200 bays with ends, and each bay against the one before.", window},
           {"H42", "h42_stiffness_jump", "Seats a thousand times stiffer from one to the next",
            "Stiffness jumps up and down again under a wheel at 60 m/s.",
-           "Energy, and the same at ever shorter steps.", stiffness_jump}};
+           "Energy, and the same at ever shorter steps: of first order, as a wheel meets the kinks "
+           "between elements within a step, on even seats too.",
+           stiffness_jump}};
 }
 
 }  // namespace railstep
