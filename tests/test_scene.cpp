@@ -202,6 +202,15 @@ TEST_CASE("row 20: a path must stay on the rail unless it may leave", "[scene]")
   CHECK_THAT(with("ballasted_track", {"step.duration_s=1"}), Contains("x = 34.5 m, off the rail"));
 }
 
+TEST_CASE("a wheelset starts from equilibrium on the rail alone", "[scene]") {
+  const Overrides beyond = {"wheelset[0].start_m=24.5", "wheelset[0].may_leave_rail=true"};
+  Overrides released = beyond;
+  released.emplace_back("step.start=\"released\"");
+  CHECK_THAT(with("ballasted_track", beyond),
+             Contains("start_m = 24.5 is off the rail") && Contains("0 to 24, or step.start"));
+  CHECK(with("ballasted_track", released) == "accepted");
+}
+
 TEST_CASE("row 23: a billion elements are refused with their bytes", "[scene]") {
   // 2 rails * 1e9 bays * 1 element; 4 unknowns each, 4 bands of 12 doubles: 2e9 * 4 * 12 * 32
   // bytes.

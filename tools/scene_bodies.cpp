@@ -148,6 +148,17 @@ GuideScene read_guide(const Table& wheelset) {
   return g;
 }
 
+/// Equilibrium is that of rails and wheels: one that nothing bears has none.
+void check_start(const Table& t, const Scene& scene, const WheelsetScene& w) {
+  const double length = scene.track.length();
+  const bool on_rail = w.start >= 0.0 && w.start <= length;
+  if (on_rail || scene.track.endless || !scene.step || scene.step->start == Start::released) return;
+  t.refuse("start_m", fmt::format("start_m = {:.15g} is off the rail, where the wheelset has no "
+                                  "equilibrium; accepted is 0 to {:.6g}, or step.start = "
+                                  "\"released\"",
+                                  w.start, length));
+}
+
 WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<InputScene>& inputs) {
   if (scene.track.rails != 2) t.refuse("", "a wheelset needs two rails; accepted with rails = 2");
   const Range inertia = above_upto(0.0, 1e6);
@@ -180,6 +191,7 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<Inpu
   if (const std::optional<Table> flange = t.table_if("flange"))
     w.flange = read_flange(*flange, scene);
   if (!w.may_leave_rail) check_path(t, scene, w.start, speed, std::nullopt);
+  check_start(t, scene, w);
   return w;
 }
 
