@@ -39,13 +39,14 @@ struct KnownDrop {
 
 /// Over a rail of 24 bays, as a user would type it.
 std::vector<std::string> on_supported_rail() {
+  std::string section = "rail.constants={area_m2=8.7e-3,inertia_y_m4=39e-6,inertia_z_m4=6e-6,";
+  section += "torsion_m4=1.9514e-6,shear_factor_y=0.4796,shear_factor_z=0.472,";
+  section += "centroid_height_m=0.085,shear_centre_height_m=0.0459,height_m=0.1857375}";
   return {"track.bays=24",
           "track.bay_m=0.6",
           "track.elements_per_bay=4",
           "rail.density_kg_per_m3=7850.0",
-          "rail.constants={area_m2=8.7e-3,inertia_y_m4=39e-6,inertia_z_m4=6e-6,"
-          "torsion_m4=1.9514e-6,shear_factor_y=0.4796,shear_factor_z=0.472,"
-          "centroid_height_m=0.085,shear_centre_height_m=0.0459,height_m=0.1857375}",
+          section,
           "support.stiffness_z_n_per_m=3e7",
           "support.damping_z_n_s_per_m=3e4",
           "condense.residual_flexibility=true",
