@@ -169,6 +169,13 @@ HardResult dip(const std::filesystem::path& scene) {
   constexpr double kJoint = 1.05;  // m from the start
   HardResult result = blows(
       scene, {{10., .109, 146.965e3, kJoint / 10. + .4745e-3, false}, {30., .04, 0., 0., true}});
+  const HardRun fast(scene, run_as({30., .04, 0., 0., true}, 1e-5));
+  const std::vector<double> force = fast.column("wheel.wheel_1.force_z_n");
+  const auto joint = force.begin() + std::lround(kJoint / 30. / 1e-5);
+  result.checks.push_back(
+      {"30 m/s: least force before the joint, N", *std::min_element(force.begin(), joint), 0.});
+  result.checks.push_back(
+      {"30 m/s: least force behind it, N", *std::min_element(joint, force.end()), 0.});
   // Jenkins, Stephenson, Clayton, Morland and Lyon (1974): 2 alpha = 0.02, contact linear at P0.
   const double rail = 150., wheel = 600., contact = 1.2151e9;
   const double p1 = 60e3 + .02 * 10. * std::sqrt(contact * rail / (1. + rail / wheel));
