@@ -1,0 +1,42 @@
+#include "hard/stability.h"
+
+#include <fmt/core.h>
+
+#include "hard/growth.h"
+
+namespace railstep {
+
+const std::vector<SteppedWay>& stepped_ways() {
+  static const std::vector<SteppedWay> ways = {
+      {"generalised-alpha 0.6", {}, true},
+      {"generalised-alpha 0", {"step.rho_inf=0.0"}, true},
+      {"generalised-alpha 1", {"step.rho_inf=1.0"}, false},
+      {"backward Euler", {"step.scheme=\"backward-euler\""}, true},
+      {"Newmark", {"step.scheme=\"newmark\""}, false},
+      {"HHT", {"step.scheme=\"hht\""}, true},
+      {"TR-BDF2", {"step.scheme=\"tr-bdf2\""}, true},
+      {"condensed, 0.6", {"condense.kind=\"modal\""}, true},
+      {"condensed, 0", {"condense.kind=\"modal\"", "step.rho_inf=0.0"}, true},
+      {"condensed, 1", {"condense.kind=\"modal\"", "step.rho_inf=1.0"}, false},
+      {"condensed, discrete gradient",
+       {"condense.kind=\"modal\"", "step.contact=\"discrete-gradient\""},
+       true}};
+  return ways;
+}
+
+std::vector<Growth> stability_map(const std::filesystem::path& scene, const SteppedWay& way) {
+  std::vector<Growth> map;
+  for (const double step : {1e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 2e-2})
+    for (const double pad : {1e6, 1e7, 1e8, 1e9, 1e11})
+      for (const double mass : {1., 30., 600., 2e4}) {
+        std::vector<std::string> overrides = way.overrides;
+        overrides.push_back(fmt::format("step.dt_s={}", step));
+        overrides.push_back(fmt::format("support.stiffness_z_n_per_m={}", pad));
+        overrides.push_back(fmt::format("vehicle[0].mass_kg={}", mass));
+        Simulation run(read_scene(scene, overrides));
+        map.push_back({&way, step, pad, mass, growth_of(run)});
+      }
+  return map;
+}
+
+}  // namespace railstep
