@@ -70,12 +70,16 @@ HardResult incompressible(const std::filesystem::path& scene) {
 
 HardResult slender(const std::filesystem::path& scene) {
   constexpr double kTip = 2e-4;  // P L^3/3EI, m
+  // Each entry of an assembled stiffness K is rounded. Were all 64 elements' rounded once, in the
+  // worst way, that would be half an ulp of u'|K|u / (P w), 3.0e-4; the nonlinear rail sums its
+  // forces from strains, and does not see it.
   struct Form {
     const char *name, *model, *unknowns;
+    double many;  // bound of 64 elements
   };
-  const Form forms[] = {{"nonlinear", "nonlinear", "full"},
-                        {"linearised", "linearised", "full"},
-                        {"deflection and turn alone", "linearised", "vertical"}};
+  const Form forms[] = {{"nonlinear", "nonlinear", "full", 1e-4},
+                        {"linearised", "linearised", "full", 3e-4},
+                        {"deflection and turn alone", "linearised", "vertical", 3e-4}};
   HardResult result;
   result.picture = {"elements", "relative error", {}, true, true};
   for (const Form& form : forms) {
@@ -87,7 +91,7 @@ HardResult slender(const std::filesystem::path& scene) {
       errors.y.push_back(std::max(std::abs(found / kTip - 1.), 1e-16));
       if (count == 4 || count == 64)
         result.checks.push_back(off_by(fmt::format("{}, {} elements", form.name, count), found,
-                                       kTip, count == 4 ? 1e-6 : 1e-4));
+                                       kTip, count == 4 ? 1e-6 : form.many));
     }
     result.picture.curves.push_back(errors);
   }
@@ -186,8 +190,7 @@ struct Roll {
 class RollingRail {
  public:
   explicit RollingRail(const std::filesystem::path& scene)
-      : section_(rail_section_of(read_scene(scene)).section),
-        rail_(track_of(read_scene(scene), rail_section_of(read_scene(scene)))) {}
+      : RollingRail(read_scene(scene, {model_is("nonlinear")})) {}
 
   Roll under(double aside, bool nonlinear) const {
     const Eigen::VectorXd load = aside * at(head_, 1) - kDown * at(head_, 2);
@@ -206,6 +209,8 @@ class RollingRail {
   }
 
  private:
+  explicit RollingRail(const Scene& scene)
+      : section_(rail_section_of(scene).section), rail_(track_of(scene)) {}
   struct Place {
     double y, z;  // m over the axis
   };
@@ -217,10 +222,16 @@ class RollingRail {
   Place head_{0., height_z(Height::head, section_)};
 };
 
-/// A run under 100 kN and a force aside, to rest.
+/// A run under 100 kN and a force aside, to rest. Both grow over half of it, so that the rail is
+/// not looked for beyond where it comes to stand.
 HardRun rolled(const std::filesystem::path& scene, double aside) {
-  const std::vector<double> given = {3.6, 0., 0., aside, -kDown};  // x, y and force of the wheel
-  return HardRun(scene, {}, [given](std::int64_t) { return given.data(); });
+  std::vector<double> given = {3.6, 0., 0., 0., 0.};  // x, y and force of the wheel
+  return HardRun(scene, {}, [given, aside](std::int64_t frame) mutable {
+    const double part = std::min(1., .02 * static_cast<double>(frame));
+    given[3] = part * aside;
+    given[4] = -part * kDown;
+    return given.data();
+  });
 }
 
 HardResult rolling(const std::filesystem::path& scene) {
@@ -314,40 +325,73 @@ double tenth(const std::vector<double>& values, std::size_t k) {
   return sum / static_cast<double>(n);
 }
 
+constexpr double kSpin = 300., kSteel = 7850., kYoung = 210e9;
+// The bar's inertia grows by rho w^2 L^2/5E, and as its momentum stays, so much slower it turns.
+constexpr double kRate = kSpin * (1. - kSteel * kSpin * kSpin / (5. * kYoung));
+constexpr double kStretch = kSteel * kRate * kRate / (12. * kYoung);  // m, of 1 m
+
+HardRun spun(const std::filesystem::path& scene, const char* scheme, double dt) {
+  return HardRun(scene,
+                 {fmt::format("step.scheme=\"{}\"", scheme), fmt::format("step.dt_s={}", dt)});
+}
+
+/// By how much the middle leaves its place, m.
+double off_middle(const HardRun& run) {
+  double off = 0.;
+  for (const char* column : {"middle.x_m", "middle.z_m"})
+    off = std::max({off, run.largest(column), -run.smallest(column)});
+  return off;
+}
+
+/// What the scheme that keeps energies has to do: keep them, rate and ringing too.
+void add_kept(const HardRun& run, HardResult& result) {
+  const Spin spin = spin_of(run);
+  const auto energy = run.energy();
+  double mean = 0.;
+  for (std::size_t k = 0; k < 10; ++k) mean += .1 * tenth(spin.stretch, k);
+  const std::string at = "energy-momentum: ";
+  result.checks.push_back(off_by(at + "stretch, mean of the run", mean, kStretch, 2e-3));
+  result.checks.push_back(off_by(at + "rate of the spin", tenth(spin.rate, 9), kRate, 1e-4));
+  result.checks.push_back(off_by(at + "rate, last tenth against the second", tenth(spin.rate, 9),
+                                 tenth(spin.rate, 1), 1e-6));
+  result.checks.push_back({at + "energy lost or made", energy ? energy->error : kNotFound, 1e-9});
+  result.checks.push_back({at + "the middle leaves its place by, m", off_middle(run), 1e-9});
+  result.checks.push_back(holds(at + "no status bit", run.status().empty()));
+}
+
+/// What one that damps has to do: lose the ringing, and of the spin what its order says.
+void add_damped(const HardRun& run, const HardRun& coarse, HardResult& result) {
+  const Spin spin = spin_of(run), wide = spin_of(coarse);
+  const auto off = [](const Spin& of) { return std::abs(tenth(of.rate, 9) - kRate) / kRate; };
+  const auto drift = [](const Spin& of) { return std::abs(tenth(of.rate, 9) - tenth(of.rate, 1)); };
+  const std::string at = "generalised-alpha: ";
+  result.checks.push_back(
+      off_by(at + "stretch, mean of the last tenth", tenth(spin.stretch, 9), kStretch, 2e-3));
+  result.checks.push_back(
+      {at + "rate of the spin, over (w dt)^2", off(spin) / std::pow(kSpin * 5e-5, 2), 1.});
+  result.checks.push_back(
+      {at + "its error over that of twice the step (second order)", off(spin) / off(wide), .3});
+  result.checks.push_back(
+      {at + "its drift over that of twice the step (third order)", drift(spin) / drift(wide), .2});
+  result.checks.push_back({at + "the middle leaves its place by, m", off_middle(run), 1e-9});
+  result.checks.push_back(holds(at + "no status bit", run.status().empty()));
+}
+
 HardResult spinning(const std::filesystem::path& scene) {
-  // rho w^2 L^3/12E of a bar about its middle; its inertia grows by rho w^2 L^2/5E, and as the
-  // momentum stays, so much slower it turns.
-  constexpr double kStart = 300., kSlower = 7850. * kStart * kStart / (5. * 210e9);
-  constexpr double kRate = kStart * (1. - kSlower);
-  constexpr double kStretch = 7850. * kRate * kRate / (12. * 210e9);
+  const HardRun kept = spun(scene, "energy-momentum", 5e-5);
+  const HardRun damped = spun(scene, "generalised-alpha", 5e-5);
   HardResult result;
+  add_kept(kept, result);
+  add_damped(damped, spun(scene, "generalised-alpha", 1e-4), result);
   result.picture = {"time, s", "stretch of the bar, mm", {}};
-  for (const char* scheme : {"energy-momentum", "generalised-alpha"}) {
-    const bool keeps = std::string(scheme) == "energy-momentum";
-    const HardRun run(scene, {fmt::format("step.scheme=\"{}\"", scheme)});
-    const Spin spin = spin_of(run);
-    const std::string at = std::string(scheme) + ": ";
-    result.checks.push_back(
-        off_by(at + "stretch, mean of the last tenth", tenth(spin.stretch, 9), kStretch, 2e-3));
-    result.checks.push_back(
-        off_by(at + "rate of the spin, mean of the last tenth", tenth(spin.rate, 9), kRate, 1e-4));
-    result.checks.push_back(off_by(at + "drift of the rate: last tenth against the second",
-                                   tenth(spin.rate, 9), tenth(spin.rate, 1), keeps ? 1e-6 : 1e-5));
-    double off = 0.;
-    for (const char* column : {"middle.x_m", "middle.z_m"})
-      off = std::max({off, run.largest(column), -run.smallest(column)});
-    result.checks.push_back({at + "the middle leaves its place by, m", off, 1e-9});
-    const auto energy = run.energy();
-    if (keeps)
-      result.checks.push_back(
-          {at + "energy lost or made", energy ? energy->error : kNotFound, 1e-9});
-    result.checks.push_back(holds(at + "no status bit", run.status().empty()));
-    HardCurve curve{scheme, run.time(), spin.stretch};
+  for (const auto& [name, run] :
+       {std::pair{"energy-momentum", &kept}, {"generalised-alpha", &damped}}) {
+    HardCurve curve{name, run->time(), spin_of(*run).stretch};
     for (double& value : curve.y) value *= 1e3;
     result.picture.curves.push_back(curve);
-    result.frame_us = run.frame_us();
   }
   result.picture.curves.push_back({"rho w^2 L^3/12E", {0., 1.}, {1e3 * kStretch, 1e3 * kStretch}});
+  result.frame_us = damped.frame_us();
   return result;
 }
 
@@ -362,7 +406,13 @@ std::vector<HardCase> element_cases() {
        incompressible},
       {"H12", "h12_slender", "Length over height 10 000",
        "Stretch is 1e8 times as stiff as bending: digits cancel, the more the finer the mesh.",
-       "P L^3/3EI. Shear and the shorter lever are 1e-8 of it.", slender},
+       "P L^3/3EI; shear and the shorter lever are 1e-8 of it. Of 64 elements some 1e-4 are lost "
+       "by "
+       "rounding: an assembly in doubles that shares nothing with this one, solved in 60 digits, "
+       "is "
+       "off by up to 1.3e-4 at 58 to 70 elements. So 1e-4 are asked of the nonlinear rail, and of "
+       "linear ones what half an ulp of each entry may make, 3e-4.",
+       slender},
       {"H13", "h13_preload", "A rail pressed by .9, .99 and 1.01 of its critical force",
        "The stiffness is nearly singular, then indefinite: no steps could follow the buckled rail.",
        "R7 of the reference solutions: with pinned ends f_n^2 = f_n0^2 - n^2 P/(4 m L^2) for every "
@@ -383,8 +433,10 @@ std::vector<HardCase> element_cases() {
       {"H46", "h46_spinning_beam", "A bar that spins at 300 rad/s",
        "150 kN pull at its middle, it rings at 2.6 kHz, and turns by 48 rounds: what is not "
        "invariant under turns drifts.",
-       "rho w^2 L^3/12E; strains of 3e-4 are left out, and the ringing's mean over 100 frames. "
-       "Momentum and energy stay.",
+       "rho w^2 L^3/12E at the rate that the momentum leaves; strains of 3e-4 are left out, and "
+       "the "
+       "mean of a ringing over 1000 frames errs by 1e-3. Energy-momentum keeps rate and energy; "
+       "generalised-alpha turns by its second order, and damps turns by its third.",
        spinning}};
 }
 
