@@ -87,7 +87,8 @@ std::vector<double> levers(const Track& track, const SeatShares& shares, int rai
 }  // namespace
 
 void PackedModel::add_turn(const Track& track) {
-  if (track.unknowns == Unknowns::vertical || model_.wheelsets == 0) return;
+  if (track.unknowns == Unknowns::vertical) return;
+  if (model_.wheelsets == 0 && model_.external_wheels == 0) return;  // nothing pushes aside
   if (!pads_are_off_the_axis(track)) return;
   SeatTurnModel& turn = model_.turn;
   turn.elements_per_bay = track.elements_per_bay;

@@ -63,6 +63,7 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
   }
   fill_rows(cant, shape, y, z, at);
   const double up[3] = {0., 0., 1.}, turn = turn_under(model, at.row[2], shape, seen);
+  at.turn = turn;
   double along[3];
   to_rail(cant, up, along);
   const double higher = add_turn(model, seen, turn, xi, y, z, up, at.row[2]);
@@ -162,6 +163,7 @@ void publish_external(const Model& model, const State& s, const ExternalContact*
     outputs.external_place[n] = at.place;
     outputs.external_force[n] = at.force[2];
     if (!at.on_rail) outputs.status = outputs.status | Status::off_rail;
+    if (at.turn * at.turn > kLargeTurnSquared) outputs.status = outputs.status | Status::large_turn;
     for (int d = 0; d < 3; ++d)
       outputs.external_displacement[n][d] =
           at.on_rail ? moved(model, at.row[d], {s.u, {s.u, s.v}}) + (d == 2 ? at.offset : 0.) : 0.;

@@ -10,6 +10,7 @@ struct ExternalContact {
   bool on_rail;
   RailRow row[3];   // displacement of that point of the railhead along x, y, z of the track
   double offset;    // of its height, of second order in the rail's turn, m: see turn.h
+  double turn;      // of the section under it, rad
   double place;     // along the model's elements, m
   double force[3];  // N on the rail, 0 off it
   RailForce port;   // of the vertical force, for the residual flexibility
