@@ -1,7 +1,414 @@
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "build.h"
 #include "hard/hard_run.h"
+#include "online/model/snapshot.h"
+#include "recording.h"
+#include "static_solution.h"
+#include "write.h"
 
 namespace railstep {
+namespace {
 
-std::vector<HardCase> model_cases() { return {}; }
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
+}
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+/// Inputs frame by frame, by a function of the frame and of the input.
+FrameInputs given(int count, std::function<double(std::int64_t, int)> value) {
+  std::vector<double> room(static_cast<std::size_t>(count));
+  return [room, value = std::move(value)](std::int64_t frame) mutable {
+    for (std::size_t i = 0; i < room.size(); ++i) room[i] = value(frame, static_cast<int>(i));
+    return room.data();
+  };
+}
+
+std::string kind_is(const char* kind) { return fmt::format("condense.kind=\"{}\"", kind); }
+
+// H26 ------------------------------------------------------------------------------------------
+
+/// What the car is pushed with, N; in some frames no number.
+double push(std::int64_t frame, bool bad) {
+  const auto good = [](std::int64_t at) { return 5e3 * std::sin(.02 * static_cast<double>(at)); };
+  if (300 <= frame && frame < 350) return bad ? kNan : good(299);
+  if (frame == 500) return bad ? kInfinity : good(499);
+  if (frame == 501) return bad ? -kInfinity : good(499);
+  return good(frame);
+}
+
+HardResult bad_input(const std::filesystem::path& scene) {
+  HardResult result;
+  for (const char* kind : {"full", "modal"}) {
+    const HardRun bad(scene, {kind_is(kind)},
+                      given(1, [](std::int64_t n, int) { return push(n, true); }));
+    const HardRun held(scene, {kind_is(kind)},
+                       given(1, [](std::int64_t n, int) { return push(n, false); }));
+    const std::string at = std::string(kind) + ": ";
+    result.checks.push_back(holds(at + "the bits of a run in which the last good force was held",
+                                  same_bits(bad.record().rows, held.record().rows)));
+    result.checks.push_back(
+        holds(at + "the status says so, and nothing else", bad.status() == "nonfinite_input"));
+    result.checks.push_back(holds(at + "no status bit of the other run", held.status().empty()));
+    result.checks.push_back(holds(at + "all finite", all_finite(bad.record().rows)));
+    if (kind == std::string("modal")) continue;
+    result.picture = {"time, s",
+                      "wheel-rail force, kN",
+                      {held.curve("car.wheel_1.force_z_n", "last good force held", 1e-3),
+                       bad.curve("car.wheel_1.force_z_n", "given NaN and infinity", 1e-3)}};
+    result.picture.curves[0].points = true;
+    result.frame_us = bad.frame_us();
+  }
+  return result;
+}
+
+// H33 ------------------------------------------------------------------------------------------
+
+/// A track of so many bays with its load and its sensor `ahead` of the seat in the middle.
+std::vector<std::string> bays(int count, double ahead) {
+  const double middle = .6 * (count / 2) + ahead;
+  return {fmt::format("track.bays={}", count), fmt::format("load[0].start_m={:.17g}", middle),
+          fmt::format("sensor[0].position_m={:.17g}", middle)};
+}
+
+/// What a model takes, of a size: bytes of its block and flops of a frame.
+struct Size {
+  double bytes, flops;
+};
+Size size_of(const HardRun& run) {
+  return {static_cast<double>(run.simulation().block().size()),
+          static_cast<double>(run.simulation().model().cost.flops)};
+}
+
+HardResult long_track(const std::filesystem::path& scene) {
+  HardResult result;
+  for (const double ahead : {0., .3}) {
+    const std::string at = ahead == 0. ? "over a seat: " : "mid-bay: ";
+    const auto deflection = [&](int count) {
+      return solve_static(read_scene(scene, bays(count, ahead))).points.at(0).displacement[2];
+    };
+    result.checks.push_back(
+        off_by(at + "static deflection, 10 000 bays", deflection(10000), deflection(40), 1e-10));
+    const HardRun few(scene, bays(40, ahead)), many(scene, bays(10000, ahead));
+    result.checks.push_back(off_by(at + "deflection after 20 steps, 10 000 bays",
+                                   many.last("load.deflection_z_m"),
+                                   few.last("load.deflection_z_m"), 1e-10));
+  }
+  result.picture = {"bays", "per bay", {}, true, true};
+  HardCurve bytes{"bytes of the model", {}, {}}, flops{"flops of a frame", {}, {}},
+      time{"microseconds of a frame", {}, {}};
+  std::vector<Size> sizes;
+  for (const int count : {1250, 2500, 5000, 10000}) {
+    const HardRun run(scene, bays(count, 0.));
+    const Size own = sizes.emplace_back(size_of(run));
+    for (HardCurve* curve : {&bytes, &flops, &time}) curve->x.push_back(count);
+    bytes.y.push_back(own.bytes / count);
+    flops.y.push_back(own.flops / count);
+    time.y.push_back(run.frame_us() / count);
+    result.frame_us = run.frame_us();
+  }
+  result.checks.push_back({"bytes of the model, 10 000 bays over 5 000, over 2",
+                           sizes[3].bytes / (2. * sizes[2].bytes), 1.01});
+  result.checks.push_back({"flops of a frame, 10 000 bays over 5 000, over 2",
+                           sizes[3].flops / (2. * sizes[2].flops), 1.01});
+  result.picture.curves = {bytes, flops, time};
+  return result;
+}
+
+// H35 ------------------------------------------------------------------------------------------
+
+using Bytes = std::vector<unsigned char>;
+
+Bytes saved(const Simulation& run) {
+  Bytes bytes(snapshot_bytes(run.model()));
+  save_snapshot(run.model(), run.state, bytes.data());
+  return bytes;
+}
+
+/// Overwrites the state and all scratch by what is no number: nothing may be left in them.
+void foul(Simulation& run) {
+  std::fill_n(run.state.u, state_doubles(run.model()), kNan);
+  std::fill_n(run.workspace.u_star, workspace_doubles(run.model()), kNan);
+}
+
+/// A whole run: the trace, the hash of the state after each frame, a snapshot after one of them.
+struct Whole {
+  std::unique_ptr<Simulation> run;
+  RunRecord record;
+  std::vector<std::uint64_t> hashes;
+  Bytes snapshot;
+  std::int64_t frames;
+
+  Whole(std::unique_ptr<Simulation> of, std::int64_t snapshot_after)
+      : run(std::move(of)), frames(run->model().steps / run->model().steps_per_frame) {
+    record = simulate(*run, frames, nullptr, true, [&](std::int64_t done) {
+      hashes.push_back(state_hash(run->model(), run->state));
+      if (done == snapshot_after) snapshot = saved(*run);
+    });
+  }
+  /// Frames from here on whose state, in `other` restored to the snapshot, has other bits; all of
+  /// them where it is not restored. The trace's end has to be the same too.
+  std::int64_t differing(Simulation& other, std::int64_t from) const {
+    foul(other);
+    if (restore_snapshot(other.model(), snapshot.data(), snapshot.size(), other.state) !=
+        SnapshotStatus::ok)
+      return frames - from;
+    std::int64_t count = 0;
+    const RunRecord rest = simulate(other, frames - from, nullptr, true, [&](std::int64_t done) {
+      if (state_hash(other.model(), other.state) !=
+          hashes[static_cast<std::size_t>(from + done - 1)])
+        ++count;
+    });
+    const std::size_t width = other.columns().size();
+    const std::vector<double> last(rest.rows.end() - static_cast<std::ptrdiff_t>(width),
+                                   rest.rows.end()),
+        known(record.rows.end() - static_cast<std::ptrdiff_t>(width), record.rows.end());
+    return count + (same_bits(last, known) ? 0 : 1);
+  }
+};
+
+HardResult snapshots(const std::filesystem::path& scene) {
+  HardResult result;
+  for (const char* kind : {"full", "modal"}) {
+    const auto fresh = [&] { return simulation_of(read_any_scene(scene, {kind_is(kind)})); };
+    const HardRun run(scene, {kind_is(kind)});
+    const auto force = run.column("wheel.wheel_1.force_z_n");
+    const auto peak = std::max_element(force.begin(), force.end()) - force.begin();
+    const auto lost =
+        std::find_if(force.begin() + peak, force.end(), [](double f) { return f <= 0.; }) -
+        force.begin();
+    const std::string at = std::string(kind) + ": ";
+    result.checks.push_back(holds(at + "the wheel strikes and leaves",
+                                  peak > 1 && lost < static_cast<std::int64_t>(force.size())));
+    const std::pair<const char*, std::int64_t> moments[] = {{"step 1", 1},
+                                                            {"the blow's half", peak / 2},
+                                                            {"its peak", peak},
+                                                            {"last touch", lost - 1},
+                                                            {"in the air", lost + 10}};
+    for (const auto& [name, frame] : moments) {
+      const Whole whole(fresh(), frame);
+      const auto other = fresh();
+      result.checks.push_back({fmt::format("{}restored at {}: frames of other bits", at, name),
+                               static_cast<double>(whole.differing(*other, frame)), 0.});
+    }
+    result.picture.curves.push_back(run.curve("wheel.wheel_1.force_z_n", kind, 1e-3));
+    HardCurve cuts{std::string(kind) + ", restored here", {}, {}, true};
+    for (const auto& [name, frame] : moments) {
+      cuts.x.push_back(run.time()[static_cast<std::size_t>(frame)]);
+      cuts.y.push_back(1e-3 * force[static_cast<std::size_t>(frame)]);
+    }
+    result.picture.curves.push_back(cuts);
+    result.frame_us = run.frame_us();
+  }
+  result.picture.x_label = "time, s";
+  result.picture.y_label = "wheel-rail force, kN";
+  return result;
+}
+
+// H36 ------------------------------------------------------------------------------------------
+
+bool refused(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const InputError&) {
+    return true;
+  }
+  return false;
+}
+
+/// Changed copies of a block that are taken all the same: a bit of every byte near which there is
+/// one in a thousand, first and last among them.
+double taken(const std::vector<std::byte>& block) {
+  double count = 0.;
+  const std::size_t apart = std::max<std::size_t>(block.size() / 1000, 1);
+  for (std::size_t at = 0; at < block.size(); at += at + apart < block.size() ? apart : 1) {
+    std::vector<std::byte> changed = block;
+    changed[at] ^= static_cast<std::byte>(1u << (at % 8));
+    if (!refused([&] { Simulation(changed, "a changed model"); })) ++count;
+    if (at + apart >= block.size() && at + 8 < block.size()) at = block.size() - 8;
+  }
+  return count;
+}
+
+HardResult changed_model(const std::filesystem::path& scene) {
+  const auto one = simulation_of(read_any_scene(scene));
+  const auto stiffer = simulation_of(read_any_scene(scene, {"support.stiffness_z_n_per_m=3.1e7"}));
+  HardResult result;
+  result.checks.push_back({"blocks with a changed bit that were taken", taken(one->block()), 0.});
+
+  const Whole run(simulation_of(read_any_scene(scene)), 500);
+  const std::uint64_t before = state_hash(stiffer->model(), stiffer->state);
+  const SnapshotStatus status =
+      restore_snapshot(stiffer->model(), run.snapshot.data(), run.snapshot.size(), stiffer->state);
+  result.checks.push_back(holds("a state of pads of 30 kN/mm is refused by a model of 31",
+                                status == SnapshotStatus::other_model));
+  result.checks.push_back(holds("which leaves that model's state alone",
+                                state_hash(stiffer->model(), stiffer->state) == before));
+  result.checks.push_back(
+      {"frames of other bits on its own model", static_cast<double>(run.differing(*one, 500)), 0.});
+
+  Recording made = Recording::begin(*simulation_of(read_any_scene(scene)), 100);
+  result.checks.push_back(
+      holds("a recording of that model is replayed", replay(made, "its own").identical));
+  made.block = stiffer->block();
+  result.checks.push_back(
+      holds("and refused with the other model in it", refused([&] { replay(made, "the other"); })));
+  const HardRun shown(scene), other(scene, {"support.stiffness_z_n_per_m=3.1e7"});
+  result.checks.push_back(holds("the two models do differ in what they do",
+                                !same_bits(shown.record().rows, other.record().rows)));
+  result.picture = {"time, s",
+                    "wheel-rail force, kN",
+                    {shown.curve("wheel.wheel_1.force_z_n", "pads of 30 kN/mm", 1e-3),
+                     other.curve("wheel.wheel_1.force_z_n", "pads of 31 kN/mm", 1e-3)}};
+  result.frame_us = shown.frame_us();
+  return result;
+}
+
+// H47 ------------------------------------------------------------------------------------------
+
+/// A file that goes when it is no longer used.
+struct ModelFile {
+  std::filesystem::path path;
+  explicit ModelFile(const std::vector<std::byte>& block)
+      : path(std::filesystem::temp_directory_path() /
+             fmt::format("railstep_hard_{}.model", getpid())) {
+    write_file(path, {reinterpret_cast<const char*>(block.data()), block.size()});
+  }
+  ModelFile(const ModelFile&) = delete;
+  ModelFile& operator=(const ModelFile&) = delete;
+  ~ModelFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
+HardResult model_file(const std::filesystem::path& scene) {
+  HardResult result;
+  result.picture = {"time, s", "wheel-rail force, kN", {}};
+  for (const char* kind : {"full", "modal"}) {
+    const Scene read = read_scene(scene, {kind_is(kind)});
+    const ModelFile file(block_of(Built(read)));
+    constexpr std::int64_t kMiddle = 500;
+    const Whole whole(std::make_unique<Simulation>(read), kMiddle);
+    const Whole written(std::make_unique<Simulation>(file.path), kMiddle);
+    Simulation other(file.path);
+    const std::string at = std::string(kind) + ": ";
+    result.checks.push_back(
+        holds(at + "100 000 steps of the model file: the bits of the scene",
+              same_bits(written.record.rows, whole.record.rows) && written.hashes == whole.hashes));
+    result.checks.push_back(holds(at + "the file has the scene's columns",
+                                  written.run->columns() == whole.run->columns()));
+    result.checks.push_back({at + "restored in the middle: frames of other bits",
+                             static_cast<double>(whole.differing(other, kMiddle)), 0.});
+    result.checks.push_back(holds(at + "the motion goes on to the end",
+                                  whole.hashes[whole.hashes.size() - 2] != whole.hashes.back() &&
+                                      all_finite(whole.record.rows) &&
+                                      whole.record.status == Status::ok));
+    const std::vector<std::string>& names = whole.run->columns();
+    const std::size_t column = static_cast<std::size_t>(
+        std::find(names.begin(), names.end(), "car.wheel_1.force_z_n") - names.begin());
+    HardCurve curve{kind, {}, {}};
+    for (std::size_t i = 0; i < whole.record.rows.size(); i += names.size()) {
+      curve.x.push_back(whole.record.rows[i]);
+      curve.y.push_back(1e-3 * whole.record.rows[i + column]);
+    }
+    result.picture.curves.push_back(curve);
+    result.frame_us = quantile(whole.record.frame_us, .5);
+  }
+  return result;
+}
+
+// H48 ------------------------------------------------------------------------------------------
+
+constexpr double kLimit = 2e4;           // N and N m, of both inputs
+constexpr std::int64_t kFlooded = 1000;  // frames
+
+/// A flood of inputs: what is given, and what of it is to be applied.
+struct Flood {
+  const char* name;
+  std::vector<double> values, applied;  // turn by turn
+  const char* status;
+};
+
+FrameInputs flood(const std::vector<double>& values) {
+  return given(2, [values](std::int64_t frame, int) {
+    return frame < kFlooded ? values[static_cast<std::size_t>(frame) % values.size()] : 0.;
+  });
+}
+
+HardResult flooded(const std::filesystem::path& scene) {
+  const Flood floods[] = {{"NaN", {kNan}, {0.}, "nonfinite_input"},
+                          {"1e308", {1e308}, {kLimit}, "force_saturated"},
+                          {"in turn 1e308, NaN, -1e308 and infinity",
+                           {1e308, kNan, -1e308, kInfinity},
+                           {kLimit, kLimit, -kLimit, -kLimit},
+                           "nonfinite_input force_saturated"}};
+  const HardRun quiet(scene, {}, flood({0.}));
+  HardResult result;
+  result.picture = {"time, s", "height of the frame, mm", {}};
+  for (const Flood& own : floods) {
+    const HardRun bad(scene, {}, flood(own.values)), good(scene, {}, flood(own.applied));
+    const std::string at = std::string(own.name) + ": ";
+    result.checks.push_back(holds(at + "all finite", all_finite(bad.record().rows)));
+    result.checks.push_back(holds(at + "the bits of a run given what may be applied",
+                                  same_bits(bad.record().rows, good.record().rows)));
+    result.checks.push_back(
+        holds(at + "the status says so, and nothing else", bad.status() == own.status));
+    const auto height = bad.column("frame.z_m"), rest = quiet.column("frame.z_m");
+    double most = 0.;
+    for (std::size_t i = 0; i < height.size(); ++i)
+      most = std::max(most, std::abs(height[i] - rest[i]));
+    if (most > 0.)
+      result.checks.push_back({at + "apart from the run without, at the end over the most",
+                               std::abs(height.back() - rest.back()) / most, 1e-6});
+    result.picture.curves.push_back(bad.curve("frame.z_m", own.name, 1e3));
+    result.frame_us = bad.frame_us();
+  }
+  result.picture.curves.push_back(quiet.curve("frame.z_m", "zero", 1e3));
+  return result;
+}
+
+}  // namespace
+
+std::vector<HardCase> model_cases() {
+  return {
+      {"H26", "h26_bad_input", "A force from outside that is not a number",
+       "One NaN in a state stays there for good.",
+       "An invariant: the last good force is held, so the bits are those of a run that is given "
+       "that.",
+       bad_input},
+      {"H33", "h33_long_track", "A load on 10 000 bays", "Rounding and cost grow with the track.",
+       "The same load on 40 bays, whose ends the load feels by 3e-12: 1e-10. Counted cost has to "
+       "be linear.",
+       long_track},
+      {"H35", "h35_snapshot", "A run that is cut in two at a blow",
+       "What a step remembers beside the state (where a search began, say) is lost there.",
+       "An invariant: state and scratch of a model are overwritten by NaN, restored, and go on "
+       "with the same bits.",
+       snapshots},
+      {"H36", "h36_changed_model", "A model changed behind its back",
+       "A model carries factors of its parameters: one that is changed does not fit them, and a "
+       "state does not fit another model.",
+       "An invariant: refused by the sum.", changed_model},
+      {"H47", "h47_model_file", "1e5 steps from the model file, restored in the middle",
+       "What is written must be all of the model, to the bit.",
+       "An invariant: the bits of the scene.", model_file},
+      {"H48", "h48_flooded_inputs", "Inputs of NaN and 1e308 for 1000 frames",
+       "What is wrong for long must neither be applied nor leave anything behind.",
+       "An invariant: the bits of a run that is given what may be applied, the last good value or "
+       "the limit; after that the motion fades to that of no input.",
+       flooded}};
+}
 
 }  // namespace railstep
