@@ -292,7 +292,7 @@ HardResult jerked_drive(const std::filesystem::path& scene) {
       {"energy that the drive's work does not explain", energy ? energy->error : HUGE_VAL, 1e-3},
       holds("no status bit", run.status().empty() && half.status().empty())};
   result.picture = {
-      "time, s", "place of the rod's end along x, m", {run.curve("end.x_m", "100 us")}};
+      "time, s", "place of the loose end along x, m", {run.curve("end.x_m", "100 us")}};
   HardCurve known{"Runge-Kutta", {}, {}, true};
   Angle rod(rod_pull, 0., 0., 1e-5);
   for (int i = 0; i <= 20000; ++i, rod.advance()) {

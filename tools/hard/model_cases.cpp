@@ -77,7 +77,7 @@ HardResult bad_input(const std::filesystem::path& scene) {
 
 /// A track of so many bays with its load and its sensor `ahead` of the seat in the middle.
 std::vector<std::string> bays(int count, double ahead) {
-  const double middle = .6 * (count / 2) + ahead;
+  const double middle = .3 * count + ahead;  // of an even number
   return {fmt::format("track.bays={}", count), fmt::format("load[0].start_m={:.17g}", middle),
           fmt::format("sensor[0].position_m={:.17g}", middle)};
 }
