@@ -100,12 +100,13 @@ void add_elements(const Track& track, int rail, Assembly& part) {
   }
 }
 
+/// Of each piece between cuts its first node alone: were all held, what lengthens the rail under a
+/// force would push springs away, the more the longer the rail is.
 void hold_along(const Track& track, int rail, Assembly& part) {
   for (int node = 0; node < track.nodes(); ++node) {
     const int own = part.line.unknown(rail, node, 0),
               ahead = part.line.unknown_ahead(rail, node, 0);
-    Assembly::add(part.stiffness, {{own, 1.}}, own < 0 ? 0. : track.hold_along);
-    if (ahead != own)
+    if (node == 0 || ahead != own)
       Assembly::add(part.stiffness, {{ahead, 1.}}, ahead < 0 ? 0. : track.hold_along);
   }
 }

@@ -6,7 +6,7 @@ namespace railstep {
 
 namespace {
 
-constexpr double kHold = 1e-9;  // of a bay's stiffness along x
+constexpr double kHold = 1e-6;  // of a bay's stiffness along x, at one node
 
 /// f of part_of_pad(). @param ratio  L/l  @param spacing  d/l
 double spread(double ratio, double spacing) {

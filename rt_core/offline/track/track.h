@@ -85,8 +85,8 @@ struct Track {
   /// The last bay border is the first: a track without ends, whatever runs on it runs round. Its
   /// seats are alike, its pads points; x goes from 0 to length() all the same.
   bool ring = false;
-  /// Of every rail node to the ground along x, N/m: so soft that it holds only what nothing else
-  /// does.
+  /// Of the first node of a rail, and of each piece of one that is cut, to the ground along x, N/m:
+  /// so soft that it holds only what nothing else does.
   double hold_along = 0.;
   std::optional<RailBar> right;  // the right rail, where it differs from section, material, force
   Support support;               // of every seat but those changed
