@@ -36,8 +36,8 @@ std::string drawn_picture(const HardCase& of, const HardPicture& picture) {
   }
   if (plot.empty()) return {};
   return drawn(fmt::format(
-      "set terminal svg size 900,330 name '{}' noenhanced font 'sans,12'\nset xlabel '{}'\n"
-      "set ylabel '{}'\nset grid\nset key outside right top Left reverse samplen 1\n{}{}{}"
+      "set terminal svg size 900,330 name '{}' noenhanced font 'sans,12'\nset xlabel \"{}\"\n"
+      "set ylabel \"{}\"\nset grid\nset key outside right top Left reverse samplen 1\n{}{}{}"
       "plot{}\n",
       of.id, picture.x_label, picture.y_label, picture.log_x ? "set logscale x\n" : "",
       picture.log_y ? "set logscale y\nset format y '%.0e'\n" : "", data, plot));
