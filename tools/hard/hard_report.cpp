@@ -10,15 +10,26 @@
 namespace railstep {
 namespace {
 
-constexpr std::size_t kPoints = 300;  // of a curve, evenly thinned
+constexpr std::size_t kPieces = 150;  // of a curve: of each its lowest and highest point are drawn
 
 std::string curve_data(const HardCurve& curve, const HardPicture& picture) {
   std::string data;
-  const std::size_t every = curve.points ? 1 : curve.x.size() / kPoints + 1;
-  for (std::size_t i = 0; i < curve.x.size(); i += every) {
+  const auto draw = [&](std::size_t i) {
     const bool drawn = (!picture.log_x || curve.x[i] > 0.) && (!picture.log_y || curve.y[i] > 0.);
     if (drawn && std::isfinite(curve.y[i]))
       data += fmt::format("{:.6g} {:.5g}\n", curve.x[i], curve.y[i]);
+  };
+  const std::size_t size = curve.x.size();
+  const std::size_t every = curve.points ? 1 : std::max<std::size_t>(1, size / kPieces);
+  for (std::size_t from = 0; from < size; from += every) {
+    const std::size_t to = std::min(from + every, size);
+    const auto [low, high] =
+        std::minmax_element(curve.y.begin() + static_cast<std::ptrdiff_t>(from),
+                            curve.y.begin() + static_cast<std::ptrdiff_t>(to));
+    const auto a = static_cast<std::size_t>(low - curve.y.begin());
+    const auto b = static_cast<std::size_t>(high - curve.y.begin());
+    draw(std::min(a, b));
+    if (a != b) draw(std::max(a, b));
   }
   return data;
 }
