@@ -51,6 +51,20 @@ double timed_frame(Simulation& run, const FrameInputs& inputs, std::int64_t fram
   return std::chrono::duration<double, std::micro>(end - start).count();
 }
 
+/// Where there are too many, every second one goes, and the stride doubles.
+void keep_time(double us, std::int64_t frame, RunRecord& record) {
+  record.slowest_us = std::max(record.slowest_us, us);
+  if (frame % record.frame_stride != 0) return;
+  std::vector<double>& kept = record.frame_us;
+  if (kept.size() == kMostTimes) {
+    for (std::size_t i = 0; 2 * i < kept.size(); ++i) kept[i] = kept[2 * i];
+    kept.resize(kMostTimes / 2);
+    record.frame_stride *= 2;
+    if (frame % record.frame_stride != 0) return;
+  }
+  kept.push_back(us);
+}
+
 /// A model file has no names: its joints are numbered as the scene has them.
 std::string joint_name(const Simulation& run, std::int32_t joint) {
   return run.system() != nullptr ? run.system()->names.joints[static_cast<std::size_t>(joint)]
@@ -88,7 +102,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bo
   publish_start(run.model(), run.state, outputs);
   take();
   for (std::int64_t n = 0; n < frames && record.first_bad_unknown < 0; ++n) {
-    record.frame_us.push_back(timed_frame(run, inputs, n, outputs, record.allocations));
+    keep_time(timed_frame(run, inputs, n, outputs, record.allocations), n, record);
     take();
     // at 1/8, 3/8, 5/8 and 7/8 of the run
     if (keep_rows && (2 * kShapes * (n + 1)) / frames != (2 * kShapes * n) / frames &&

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <set>
@@ -12,6 +13,9 @@
 namespace railstep {
 
 inline constexpr int kShapes = 4;  // times at which a run keeps the rails' shapes
+
+/// Times of frames that a run keeps, so that its memory does not grow with its length.
+inline constexpr std::size_t kMostTimes = std::size_t{1} << 20;
 
 /// A rail's axis at one time, at all nodes of the track.
 struct RailSnapshot {
@@ -28,7 +32,9 @@ struct RunRecord {
   double constraint_violation = 0.;     // largest, m or rad
   int iterations = 0;                   // largest of a step
   std::set<std::string> redundant;      // joints that redundant rows belong to
-  std::vector<double> frame_us;         // [frames] wall time of the steps alone, us
+  std::vector<double> frame_us;         // wall time of the steps alone, us: of every frame_stride-th
+  std::int64_t frame_stride = 1;        // 1 up to kMostTimes frames
+  double slowest_us = 0.;               // of all frames
   std::int64_t allocations = 0;         // calls of new within the frames, see heap_count.h
   std::vector<double> rows;             // the trace, row after row; only when asked for
   std::vector<double> violations;       // [frames + 1] of the constraints; with the rows

@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <complex>
+#include <limits>
 
 #include "online/step/step.h"
 
@@ -46,7 +48,10 @@ double growth_of(Simulation& run) {
   }
   std::copy(start.data(), start.data() + start.size(), run.state.u);
   run.state.steps = steps;
-  return map.eigenvalues().cwiseAbs().maxCoeff();
+  // The complex solver: the real one divides by zero at some pairs of equal roots.
+  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(map.cast<std::complex<double>>(), false);
+  if (solver.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
+  return solver.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace railstep
