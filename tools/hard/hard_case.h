@@ -46,6 +46,7 @@ struct HardCase {
 std::vector<HardCase> hard_cases();
 std::vector<HardCase> contact_cases();
 std::vector<HardCase> element_cases();
+std::vector<HardCase> input_cases();
 std::vector<HardCase> joint_cases();
 std::vector<HardCase> model_cases();
 std::vector<HardCase> stability_cases();

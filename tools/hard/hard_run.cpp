@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <iterator>
 #include <utility>
 
@@ -65,6 +66,12 @@ HardCurve HardRun::curve(const std::string& name, const std::string& title, doub
   HardCurve curve{title, time(), column(name)};
   for (double& value : curve.y) value *= scale;
   return curve;
+}
+
+std::string condensed_to(const char* kind) { return fmt::format("condense.kind=\"{}\"", kind); }
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
 }
 
 std::string refusal(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {

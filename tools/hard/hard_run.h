@@ -46,6 +46,11 @@ class HardRun {
   FrameInputs inputs_;
 };
 
+/// `condense.kind=...`, as an override.
+std::string condensed_to(const char* kind);
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
+
 /// What the program says of a scene that it refuses; empty where it takes it.
 std::string refusal(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
 
