@@ -190,4 +190,7 @@ TEST_CASE("tune says no where error or deadline cannot be met", "[tune]") {
   CHECK(entries(folder) == 0);
   CHECK(railstep_program("tune " + kMovingLoad + " --max-error 0").code == 2);
   CHECK(railstep_program("tune " + kMovingLoad).code == 2);
+  const Ran model = railstep_program("tune " + kMovingLoad + " --max-error 1e-2 --models modes");
+  CHECK(model.code == 2);
+  CHECK_THAT(model.err, Contains("model \"modes\": accepted is KIND"));
 }

@@ -193,6 +193,8 @@ TuneResult tune(const TuneRequest& request, const std::function<void(const std::
   const Studied studied = study_of(request.scene, request.overrides, request.judged);
   const Scene scene = read_scene(request.scene, request.overrides);
   const Choices choices = choices_of(request, scene);
+  // names that are none are refused here; what this scene cannot have is passed over later
+  for (const Setting& each : settings_of(choices)) static_cast<void>(overrides_of(each));
   constexpr int kLevels = 4;
   Fine fine{*std::max_element(choices.meshes.begin(), choices.meshes.end()), choices.steps.back()};
   after("reference");
