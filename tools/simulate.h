@@ -32,7 +32,7 @@ struct RunRecord {
   double constraint_violation = 0.;     // largest, m or rad
   int iterations = 0;                   // largest of a step
   std::set<std::string> redundant;      // joints that redundant rows belong to
-  std::vector<double> frame_us;         // wall time of the steps alone, us: of every frame_stride-th
+  std::vector<double> frame_us;         // wall time of steps alone, us: of each frame_stride-th
   std::int64_t frame_stride = 1;        // 1 up to kMostTimes frames
   double slowest_us = 0.;               // of all frames
   std::int64_t allocations = 0;         // calls of new within the frames, see heap_count.h
