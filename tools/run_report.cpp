@@ -173,9 +173,9 @@ std::string run_report(const std::string& title, const Simulation& run, const Ru
       "</tr>\n<tr><td>{3}</td><td>{4:.6g}</td><td>{5:.3g}</td><td>{6:.3g}</td><td>{7:.3g}</td>"
       "</tr>\n</table>\n{8}{9}<h2>Wall time of a frame</h2>\n"
       "{10}\n</body>\n</html>\n",
-      escaped(title), kReportStyle, status, run.state.steps / run.model().steps_per_frame, run.model().scheme.dt,
-      quantile(record.frame_us, .5), quantile(record.frame_us, .99), record.slowest_us,
-      system_plots(run, record) + all_curves(run.columns(), record), shapes,
+      escaped(title), kReportStyle, status, run.state.steps / run.model().steps_per_frame,
+      run.model().scheme.dt, quantile(record.frame_us, .5), quantile(record.frame_us, .99),
+      record.slowest_us, system_plots(run, record) + all_curves(run.columns(), record), shapes,
       drawn(histogram_script(record)));
 }
 
