@@ -34,6 +34,12 @@ bool diagonal_is_above_zero(const double* matrix, std::int64_t n) noexcept {
   return true;
 }
 
+bool diagonal_is_not_negative(const double* matrix, std::int64_t n) noexcept {
+  for (std::int64_t i = 0; i < n; ++i)
+    if (!(matrix[i * n + i] >= 0.)) return false;
+  return true;
+}
+
 /// A force that grows with the penetration.
 bool contact_holds(const ContactModel& c) noexcept {
   return c.hertz > 0. || (c.stiffness > 0. && c.damping >= 0.);
@@ -187,8 +193,9 @@ bool fixed_ports_hold(const Model& m) noexcept {
   const FixedPortModel& p = m.fixed;
   if (p.count == 0) return true;
   if (!p.stiffness || !p.damping || !p.gap || !p.response || !p.compliance) return false;
+  // One on what is held has no compliance.
   if (!are_not_negative(p.stiffness, p.count) || !are_not_negative(p.damping, p.count) ||
-      !diagonal_is_above_zero(p.compliance, p.count))
+      !diagonal_is_not_negative(p.compliance, p.count))
     return false;
   if (m.condensed != 0) return p.shape != nullptr;
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
