@@ -1,5 +1,6 @@
 #pragma once
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -164,12 +165,14 @@ inline std::string text_of(const RandomScene& s) {
 
 /// The scene as the program reads it.
 inline Scene read(const RandomScene& s) {
-  const auto file =
-      std::filesystem::temp_directory_path() / fmt::format("railstep_random_{}.toml", fmt::ptr(&s));
+  const auto file = std::filesystem::temp_directory_path() /
+                    fmt::format("railstep_random_{}_{}.toml", getpid(), s.seed);
   std::ofstream(file) << text_of(s);
-  Scene scene = read_scene(file);
-  std::filesystem::remove(file);
-  return scene;
+  const struct Removed {
+    const std::filesystem::path& file;
+    ~Removed() { std::filesystem::remove(file); }
+  } removed{file};
+  return read_scene(file);
 }
 
 /// Track, step and steps of a seed; nothing runs on it yet.

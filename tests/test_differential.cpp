@@ -188,6 +188,7 @@ TEST_CASE("full order is the dense trapezoidal rule, but for round-off", "[diffe
   // A step's solve is off by eps times the condition of its scaled matrix; that is a velocity of
   // twice as much a step, which may go on for as many steps as there are, and so may each step's.
   double worst = 0., most = 0., loosest = 0.;
+  int failed = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     RandomScene scene = loaded(seed, 1e-5, 5e-3, 100, false);
@@ -196,9 +197,10 @@ TEST_CASE("full order is the dense trapezoidal rule, but for round-off", "[diffe
     worst = std::max(worst, found.error / found.bound);
     most = std::max(most, found.error);
     loosest = std::max(loosest, found.bound);
-    if (found.fails())
-      report(scene, fmt::format("off by {:.3g}, bound {:.3g}", found.error, found.bound),
-             [](const RandomScene& s) { return against_same_step(s).fails(); });
+    if (!found.fails()) continue;
+    report(scene, fmt::format("off by {:.3g}, bound {:.3g}", found.error, found.bound),
+           [](const RandomScene& s) { return against_same_step(s).fails(); });
+    if (++failed == 3) break;
   }
   CAPTURE(worst, most, loosest);
   CHECK(loosest < 1e-6);
@@ -213,6 +215,7 @@ TEST_CASE("a condensed track that leaves nothing out is the dense one, stepped e
                                     "krylov", "complex-modes");
   std::vector<double> bounds;
   double worst = 0., most = 0.;
+  int failed = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(kind, seed);
     const RandomScene scene = all_kept(seed, kind);
@@ -220,9 +223,10 @@ TEST_CASE("a condensed track that leaves nothing out is the dense one, stepped e
     bounds.push_back(found.bound);
     worst = std::max(worst, found.error / found.bound);
     most = std::max(most, found.error);
-    if (found.fails())
-      report(scene, fmt::format("off by {:.3g}, bound {:.3g}", found.error, found.bound),
-             [](const RandomScene& s) { return against_small_steps(s).fails(); });
+    if (!found.fails()) continue;
+    report(scene, fmt::format("off by {:.3g}, bound {:.3g}", found.error, found.bound),
+           [](const RandomScene& s) { return against_small_steps(s).fails(); });
+    if (++failed == 3) break;
   }
   std::sort(bounds.begin(), bounds.end());
   CAPTURE(kind, worst, most, bounds[bounds.size() / 2], bounds.back());
