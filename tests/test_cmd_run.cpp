@@ -1,3 +1,4 @@
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -77,6 +78,13 @@ std::vector<std::vector<double>> rows_of(const std::string& csv) {
       rows.back().push_back(std::strtod(cell.c_str(), nullptr));  // takes subnormals, stod does not
   }
   return rows;
+}
+
+/// Memory of the largest child so far, KiB.
+long memory_of_children() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return usage.ru_maxrss;
 }
 
 }  // namespace
@@ -333,4 +341,22 @@ TEST_CASE("the wheelset of the paper stands still, then drifts sideways", "[run]
   CHECK_THAT(at(1000, "wheel_left.force_z_n"), WithinRel(490.5, 1e-6));
   CHECK_THAT(at(999, "wheelset.dy_m"), WithinAbs(0., 1e-12));   // the push begins in the row of 1 s
   CHECK_THAT(at(2000, "wheelset.dy_m"), WithinRel(.05, 2e-3));  // y = 0.05 t^2
+}
+
+TEST_CASE("a run's memory does not grow with its frames", "[run][cli]") {
+  const std::filesystem::path folder = fresh_folder("long");
+  const std::string model = (folder / "ring.model").string();
+  // of a model file no energies are told, so that frames are all there is
+  REQUIRE(railstep_program("condense " + std::string(RAILSTEP_SOURCE) +
+                           "/config/hard/h34_ten_million_steps.toml --set step.frame_s=1e-3 "
+                           "--skip-errors --out " +
+                           model)
+              .code == 0);
+  const auto run = [&](int seconds) {
+    const Ran ran = railstep_program("run " + model + " --duration " + std::to_string(seconds));
+    REQUIRE(ran.code == 0);
+    return memory_of_children();
+  };
+  const long once = run(1500), twice = run(3000);  // 1.5 and 3 million frames, 12 MB of times more
+  CHECK(twice <= once + 512);
 }
