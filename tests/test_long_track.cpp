@@ -103,7 +103,7 @@ TEST_CASE("what a vertical track's few unknowns miss does not grow with its leng
     t.support.height_z = -.085;   // and squeeze it over each seat
     t.bays = bays;
     const std::vector<Line> lines = assemble(t);
-    const Functional middle{.rail = {{{0, bays / 2 * t.bay_length, 0., kHeadZ, 2}, 1.}}};
+    const Functional middle{.rail = {{{0, .5 * t.length(), 0., kHeadZ, 2}, 1.}}};
     return exact_line(t, lines[0], kPoints)->flexibility({middle}, middle)[0];
   };
   CHECK_THAT(under_middle(10000), Catch::Matchers::WithinRel(under_middle(40), 1e-11));
