@@ -31,7 +31,8 @@ struct StepEnergies {
 /// geometry: E = kinetic and strain energy of lines and vehicle, its weight's potential, one-sided
 /// springs, V(a - G f) and f' G f / 2. Between two steps whatever carries the wheels along moves
 /// them over a track that stands still; what that changes of E is its work, so that it is left out
-/// by taking both ends of a step with the wheels where that step has them.
+/// by taking both ends of a step with the wheels where that step has them. Places, rows and G are
+/// the step's own: that they are right is for other tests, here any that fit one another pass.
 class PassiveRun {
  public:
   explicit PassiveRun(const RandomScene& scene)
@@ -39,6 +40,7 @@ class PassiveRun {
     for (std::size_t l = 0; l < run_.packed()->lines().size(); ++l) {
       const PackedLine& own = run_.packed()->lines()[l];
       lines_.emplace_back(own, model_, model_.line[l]);
+      damping_.push_back(own.line.damping);
       // What a step's matrix is made of, in size.
       sizes_.push_back(own.line.stiffness.cwiseAbs() + own.line.damping.cwiseAbs() * (2. / dt_) +
                        own.line.mass.cwiseAbs() * (4. / (dt_ * dt_)));
@@ -129,6 +131,29 @@ class PassiveRun {
     return of_bodies(at) + of_weight(at) + of_contacts(wheels(at, step), at.wheel_force);
   }
 
+  /// What dampers of lines and vehicles take in a step of the trapezoidal rule, whose way is that
+  /// of the mean velocity: h v' C v.
+  double damped() const {
+    double sum = 0.;
+    for (std::size_t l = 0; l < damping_.size(); ++l) {
+      const auto n = damping_[l].rows();
+      const Eigen::Map<const Eigen::VectorXd> v0(old_.v + model_.line[l].first, n);
+      const Eigen::Map<const Eigen::VectorXd> v1(run_.state.v + model_.line[l].first, n);
+      const Eigen::VectorXd mean = .5 * (v0 + v1);
+      sum += mean.dot(damping_[l] * mean);
+    }
+    for (std::int32_t i = 0; i < model_.vehicles; ++i) {
+      const VehicleModel& own = model_.vehicle[i];
+      for (int j = 0; j < own.size; ++j)
+        for (int k = 0; k < own.size; ++k) {
+          const int a = own.first + j, b = own.first + k;
+          sum += .25 * own.damping[j * own.size + k] * (old_.v[a] + run_.state.v[a]) *
+                 (old_.v[b] + run_.state.v[b]);
+        }
+    }
+    return dt_ * sum;
+  }
+
   /// Of the last step.
   StepEnergies energies() {
     const std::int64_t step = run_.state.steps;
@@ -175,6 +200,7 @@ class PassiveRun {
   const Model& model_;
   double dt_;
   std::vector<LineEnergy> lines_;
+  std::vector<Eigen::SparseMatrix<double>> damping_;
   std::vector<Eigen::SparseMatrix<double>> sizes_;  // |K| + |C| 2/dt + |M| 4/dt^2
   std::vector<double> memory_;
   State old_{};

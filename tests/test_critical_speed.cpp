@@ -203,6 +203,93 @@ TEST_CASE("the critical speed of a bed is that of its slowest wave", "[load]") {
   CHECK_FALSE(critical_speed(track));
 }
 
+namespace {
+
+/// The same bed with sleepers of half a mass of 25 kg each .1 m on ballast of 1/6 of 1e8 N/m each.
+Track on_sleepers(int bays, double pad, double damping) {
+  Track track = bed(bays);
+  track.support.stiffness[2] = pad;
+  track.support.damping[2] = damping;
+  track.sleeper = Sleeper{50., 1., {0., 0., 1e8 / 6.}, {}};
+  track.sleeper->ballast_damping[2] = damping;
+  return track;
+}
+
+/// Deflection under a force that has always run along the rail, smeared: every wave number's.
+double steady_on_sleepers(const Track& track, double force, double speed) {
+  const Bed rail(track);
+  const double l = track.bay_length, mass = .5 * track.sleeper->mass / l;
+  double sum = 0.;
+  const double dk = 2e-4;
+  for (double k = .5 * dk; k < 200.; k += dk) {
+    const double W = k * speed;
+    const std::complex<double> pad(rail.stiffness, rail.damping * W);
+    const std::complex<double> ballast(track.sleeper->ballast_stiffness[2] / l - mass * W * W,
+                                       track.sleeper->ballast_damping[2] / l * W);
+    const std::complex<double> held =
+        rail.shear * k * k + pad * ballast / (pad + ballast) - rail.mass * W * W;
+    const double turns = rail.bending * k * k + rail.shear - rail.rotary * W * W;
+    sum += (turns / (held * turns - rail.shear * k * rail.shear * k)).real();
+  }
+  return force * sum * dk / M_PI;
+}
+
+}  // namespace
+
+TEST_CASE("on sleepers a force is at critical speed where its deflection is largest", "[load]") {
+  // Pads of 5e6 N/m: the lower branch has no least omega / k. Of 1e9: it has one.
+  for (const double pad : {5e6, 1e9}) {
+    const Track track = on_sleepers(10, pad, 30.);
+    const double critical = critical_speed(track).value();
+    double most = 0., at = 0.;
+    for (double part = .5; part < 1.5; part += .01) {
+      const double found = std::abs(steady_on_sleepers(track, 1., part * critical));
+      if (found > most) at = part;
+      most = std::max(most, found);
+    }
+    CAPTURE(pad, critical, at);
+    CHECK(std::abs(at - 1.) < .015);  // a step of the scan; dampers draw it down by less
+    CHECK(most > 2. * std::abs(steady_on_sleepers(track, 1., .1 * critical)));
+  }
+  // What sleepers that move with the rail would have, 329 m/s, is far below.
+  CHECK(critical_speed(on_sleepers(10, 5e6, 0.)).value() == Approx(786.).epsilon(1e-3));
+}
+
+TEST_CASE("deflections on sleepers are those of the smeared bed", "[load]") {
+  const Track track = on_sleepers(1000, 5e6, 1e3);
+  const double critical = critical_speed(track).value(), still = steady_on_sleepers(track, 1., 1.);
+  for (const double part : {.42, .9}) {  // .42: where sleepers that move with the rail would be
+    const double speed = part * critical, dt = .1 / speed / 3.;
+    ModelRun run(track,
+                 {.loads = {{.start = 10.05,
+                             .speed = speed,
+                             .stop = track.length(),
+                             .force = -1e5,
+                             .table = soft(50. / speed)}}},
+                 {.scheme = generalised_alpha(dt, .6)});
+    run.until(70. / speed);
+    double sum = 0.;
+    const int steps = 150;  // over 50 seats
+    for (int i = 0; i < steps; ++i) {
+      run.step();
+      sum += run.outputs.load_deflection[0] / steps;
+    }
+    const double want = steady_on_sleepers(track, -1e5, speed);
+    CAPTURE(part, sum, want, want / (-1e5 * still));
+    CHECK(std::abs(sum / want - 1.) < .01);  // H14
+  }
+}
+
+TEST_CASE("no critical speed where the axial force would buckle the rail", "[load]") {
+  Track track = bed(10);
+  const Bed rail(track);
+  const double buckles = 2. * std::sqrt(rail.stiffness * rail.bending);  // Euler-Bernoulli's
+  track.axial_force = -.5 * buckles;
+  CHECK(critical_speed(track).value() < 754.);
+  track.axial_force = -1.1 * buckles;
+  CHECK_FALSE(critical_speed(track));
+}
+
 TEST_CASE("dampers hold the deflection at critical speed", "[load]") {
   // Of a bed with damping c a length: F / (2 m omega sqrt(alpha delta)), delta = c / 2m, to the
   // first order of delta / omega. The force has run for 8 time constants.

@@ -63,7 +63,7 @@ struct Problem {
   int n;
   std::vector<double> W, free, start;
   std::vector<PortLaw> law;
-  double condition;  // of W
+  double condition, least;  // of W's eigenvalues: largest over least, and the least, m/N
 };
 
 PortLaw random_law(Draw& draw) {
@@ -83,7 +83,7 @@ PortLaw random_law(Draw& draw) {
 
 /// Compliances of one size and angles between them: A A' of a random A, and a part of the diagonal.
 Problem random_problem(Draw& draw, int n) {
-  Problem p{n, {}, {}, {}, {}, 1.};
+  Problem p{n, {}, {}, {}, {}, 1., 0.};
   const double size = draw.of_any_size(1e-12, 1e-6), own = draw.of_any_size(1e-2, 1.);
   Eigen::MatrixXd A(n, n);
   for (int i = 0; i < n; ++i)
@@ -91,6 +91,7 @@ Problem random_problem(Draw& draw, int n) {
   const Eigen::MatrixXd W = size * (A * A.transpose() + own * Eigen::MatrixXd::Identity(n, n));
   const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(W).eigenvalues();
   p.condition = values[n - 1] / values[0];
+  p.least = values[0];
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) p.W.push_back(i <= j ? W(i, j) : W(j, i));
     p.law.push_back(random_law(draw));
@@ -197,9 +198,11 @@ TEST_CASE("coupled ports' solve is what bisection of one after the other finds",
     if (x.result.status != PortStatus::converged && x.result.residual > 4.L * round_off(p, x))
       ++(mean ? capped_means : capped);
     const Real bound = std::sqrt(static_cast<Real>(p.n)) * (1.L + p.condition) * left_by(x);
-    Real off = 0.L;
-    for (std::size_t i = 0; i < x.d.size(); ++i)
+    Real off = 0.L;  // forces by what they are of the bound on them
+    for (std::size_t i = 0; i < x.d.size(); ++i) {
       off = std::fmax(off, std::fabs(x.d[i] - x.slow_d[i]));
+      off = std::fmax(off, std::fabs(x.f[i] - x.slow_f[i]) * p.least * (1.L + p.condition));
+    }
     worst = std::max(worst, static_cast<double>(off / bound));
     slowest = std::max(slowest, static_cast<double>(x.left / x.scale));
     CAPTURE(seed, p.n, p.condition, x.result.iterations, x.result.residual);

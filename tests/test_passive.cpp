@@ -104,7 +104,8 @@ double carried(const PassiveRun& run) {
 }
 
 /// The trapezoidal rule on linear contacts: every step keeps the energy but for what dampers take
-/// and what comes in by the way. Not the first, whose accelerations are the start's own.
+/// and what comes in by the way, to round-off on both sides. Not the first, whose accelerations are
+/// the start's own.
 Worst is_kept(const RandomScene& scene) {
   PassiveRun run(scene);
   Worst worst;
@@ -114,10 +115,9 @@ Worst is_kept(const RandomScene& scene) {
     run.step();
     const StepEnergies e{before, run.of_all(run.state(), run.state().steps), 0.};
     before = e.after;
-    const double made = e.after - e.before - carried(run), bound = run.bound(e);
-    const double counts = scene.damped() ? made : std::abs(made);
-    worst.made = std::max(worst.made, counts / bound);
-    worst.made_in = std::max(worst.made_in, counts / run.reference());
+    const double off = std::abs(e.after - e.before + run.damped() - carried(run));
+    worst.made = std::max(worst.made, off / run.bound(e));
+    worst.made_in = std::max(worst.made_in, off / run.reference());
     for (int i = 0; i < wheel_count(run.model()); ++i)
       worst.pressed += run.state().wheel_force[i] != 0. ? 1 : 0;
     if (!std::isfinite(e.after)) worst.made = std::numeric_limits<double>::infinity();
@@ -158,8 +158,10 @@ double largest_rebound(double n, double steps) {
 }
 
 /// How much a rebound's speed may gain, of one mass on a spring between d^1.5, a rigid rail's, and
-/// d, a soft one's. Where a spring k lets go within a step, the chord over the force's kink is over
-/// the force itself by k v h/8 in the mean: (omega h)^2/8 of the speed, omega h = pi / steps.
+/// d, a soft one's. Where a spring k lets go in the middle of a step, which is the worst place, the
+/// chord over the force's kink is over the force itself by k v h/8 in the step's mean (by k v h/12
+/// of all places): (omega h)^2/8 of the speed, omega h = pi / steps. Of many steps that is what a
+/// linear spring comes to; Hertz's, which lets go without a kink, has a third of it.
 double gain(double steps) {
   return 1. + std::numbers::pi * std::numbers::pi / (8. * steps * steps);
 }
@@ -259,6 +261,7 @@ TEST_CASE("backward Euler takes energy of every fall, in each step", "[passive]"
       never_grows);
   CAPTURE(worst.steps, worst.pressed, worst.made, worst.made_in, worst.all);
   CHECK(worst.pressed > worst.steps / 20);  // they do meet
+  CHECK(worst.all < 1e-9);                  // a thousand steps' round-off
 }
 
 TEST_CASE("no condensed track makes energy of a fall, by forces that are means of Hertz's law",
@@ -312,7 +315,7 @@ TEST_CASE("generalised-alpha lets a rebound gain what the chord over its end doe
   // Hertz's spring gains 1.2 % at 3.0 steps a contact, and more between whole numbers of them.
   CHECK_THAT(largest_rebound(1.5, 3.), Catch::Matchers::WithinAbs(1.012, 5e-4));
   CHECK(largest_rebound(1.5, 3.25) > 1.03);
-  for (double steps = 3.; steps < 40.; steps += .25) {
+  for (double steps = 3.; steps < 102.; steps += .25) {
     CAPTURE(steps);
     CHECK(largest_rebound(1.5, steps) < gain(steps));
     CHECK(largest_rebound(1., steps) < gain(steps));

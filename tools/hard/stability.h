@@ -9,7 +9,8 @@ namespace railstep {
 struct SteppedWay {
   const char* name;
   std::vector<std::string> overrides;
-  bool damps;  // else roots of modulus 1 may be double: rounding moves them by its root, 1e-8
+  /// Growth over 1 that is not the step's own, at most.
+  double bound;
 };
 
 /// All that a track may be stepped by.

@@ -15,7 +15,7 @@ HardCheck largest_growth(const std::vector<Growth>& map) {
       map.begin(), map.end(), [](const Growth& a, const Growth& b) { return a.factor < b.factor; });
   return {fmt::format("{}: growth of a step, over 1, at most at {:g} s, {:g} N/m, {:g} kg",
                       worst.way->name, worst.step, worst.pad, worst.mass),
-          worst.factor - 1., worst.way->damps ? 1e-9 : 1e-6};
+          worst.factor - 1., worst.way->bound};
 }
 
 /// Of a wheel of 600 kg on pads of 1e8 N/m.
