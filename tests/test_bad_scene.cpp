@@ -106,6 +106,42 @@ TEST_CASE("millimetres given as metres are refused in a scene", "[bad_input][cli
   run_refuses(kWheelset, {"wheelset[0].radius_m=460"}, {"radius_m = 460", "millimetres"});
 }
 
+TEST_CASE("a stiffness out of range is not asked whether it was in millimetres",
+          "[bad_input][cli]") {
+  const Ran ran = railstep_program("run " + kMovingLoad + set("support.stiffness_z_n_per_m=3e13"));
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.err, Catch::Contains("stiffness_z_n_per_m = 30000000000000 is out of range"));
+  CHECK_THAT(ran.err, !Catch::Contains("millimetres"));
+}
+
+TEST_CASE("constants that no section has are refused", "[bad_input][cli]") {
+  // A rail's, with cm4 times 1e-6 instead of 1e-8.
+  run_refuses(kWheelset,
+              {"rail={constants={area_m2=7.67e-3, inertia_y_m4=3038e-6, inertia_z_m4=512e-6, "
+               "torsion_m4=2e-6, shear_factor_y=0.5, shear_factor_z=0.4, centroid_height_m=0.08, "
+               "shear_centre_height_m=0.04, height_m=0.172}}"},
+              {"[rail.constants]", "inertia_y_m4 = 0.003038", "accepted is at most", "5.645e-05"});
+  const BadInput bad("section");
+  const std::string file =
+      bad.file("section.toml",
+               "schema = 1\n[section]\narea_m2 = 7670.0\ninertia_y_m4 = 3.038e-5\n"
+               "inertia_z_m4 = 5.12e-6\ntorsion_m4 = 2e-6\nshear_factor_y = 0.5\n"
+               "shear_factor_z = 0.4\ncentroid_height_m = 0.08\nshear_centre_height_m = 0.04\n"
+               "height_m = 0.172\n");
+  bad.refused("run " + kWheelset + set("rail={section=\"" + file + "\"}"),
+              {"section.toml:3:", "area_m2 = 7670", "at most 1"});
+}
+
+TEST_CASE("a record of places that the track has not is refused with both", "[bad_input][cli]") {
+  const BadInput bad("record");
+  std::string rows = "distance_m,vertical_mm\n";
+  for (int i = 0; i < 40; ++i) rows += std::to_string(12345 + i) + ",0.5\n";
+  const std::string file = bad.file("chainage.csv", rows);
+  bad.refused("run " + shipped("corrugation") + set("defect=[]") +
+                  set("irregularity={file=\"" + file + "\"}"),
+              {"chainage.csv", "m, and the track from 0 to 24 m", "accepted"});
+}
+
 TEST_CASE("a step of 0, of NaN and over the duration is refused", "[bad_input][cli]") {
   for (const char* step : {"0", "-1e-3", "nan", "inf", "1", "1e-300"})
     run_refuses(kMovingLoad, {"step.dt_s=" + std::string(step)},

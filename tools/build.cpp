@@ -78,7 +78,7 @@ Wheelset wheelset_of(const WheelsetScene& w) {
   set.inertia_roll = w.inertia_roll;
   set.inertia_spin = w.inertia_spin;
   set.inertia_yaw = w.inertia_yaw;
-  set.weight = ((w.gravity ? w.mass : 0.) + w.carried_mass) * kGravity;
+  set.weight = w.gravity ? (w.mass + w.carried_mass) * kGravity : 0.;
   set.radius = w.radius;
   set.tread_half_width = w.tread_half_width;
   set.start = w.start;

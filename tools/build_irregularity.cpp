@@ -31,8 +31,25 @@ void check_record(const Scene& scene, const IrregularityScene& own, const RailSi
                   scene.step->dt));
 }
 
+/// A record that no place of the track lies in says nothing of it: chainage is not a scene's x.
+void check_place(const Scene& scene, const IrregularityScene& own, const RailSignals& rails) {
+  const double length = scene.track.length();
+  for (const auto* pair : {&rails.y, &rails.z})
+    for (const Signal& signal : *pair) {
+      if (signal.coefficient.empty()) continue;
+      const double last =
+          signal.start + signal.step * static_cast<double>(signal.coefficient.size() - 3);
+      if (last >= 0. && (scene.track.endless || signal.start <= length)) continue;
+      throw InputError(fmt::format(
+          "{}: the record, with what its ends run out in, goes from distance {:.6g} m to "
+          "{:.6g} m, and the track from 0 to {:.6g} m; accepted are records of places on the track",
+          own.file.string(), signal.start, last, length));
+    }
+}
+
 RailSignals recorded(const Scene& scene, const IrregularityScene& own) {
   RailSignals rails = read_irregularities(own.file);
+  check_place(scene, own, rails);
   check_record(scene, own, rails);
   for (auto* pair : {&rails.y, &rails.z})
     for (Signal& signal : *pair) signal = averaged(signal, own.options.patch);

@@ -56,7 +56,7 @@ Command add_compare(CLI::App& app) {
          "--tolerance", o->tolerance,
          "accept differences up to this part of a column's peak in A; without it, the same "
          "bits")
-      ->check(CLI::Range(0., 1e300));
+      ->check(within(0., 1e300));
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Rows count from 0. Exit code 1 where the traces differ, or by more than the tolerance;\n"

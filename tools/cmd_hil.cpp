@@ -338,11 +338,11 @@ void add_exchange_options(CLI::App& sub, HilOptions& o) {
   sub.add_flag("--response", o.respond,
                "how the track gives way under external wheels in the next frame, in each output");
   sub.add_option("--wait", o.wait, "s to wait for the first inputs before the clock starts (0)")
-      ->check(CLI::Range(0., 1e6));
+      ->check(within(0., 1e6));
   sub.add_option("--silence", o.silence,
                  "s without inputs behind which they go to 0 for good; 0: they are held (0)")
-      ->check(CLI::Range(0., 1e6));
-  sub.add_option("--ramp", o.ramp, "s that this takes (0.1)")->check(CLI::Range(0., 1e6));
+      ->check(within(0., 1e6));
+  sub.add_option("--ramp", o.ramp, "s that this takes (0.1)")->check(within(0., 1e6));
 }
 
 }  // namespace
@@ -351,27 +351,27 @@ Command add_hil(CLI::App& app) {
   auto o = std::make_shared<HilOptions>();
   CLI::App* sub = app.add_subcommand("hil", "Run paced by the clock, with inputs and outputs");
   sub->add_option("SCENE", o->input, "scene file (TOML) or model file")->required();
-  sub->add_option("--rate", o->rate, "frames a second")->required()->check(CLI::Range(1e-3, 1e6));
+  sub->add_option("--rate", o->rate, "frames a second")->required()->check(within(1e-3, 1e6));
   sub->add_option("--duration", o->duration, "s by the clock")
       ->required()
-      ->check(CLI::Range(1e-6, 1e9));
+      ->check(within(1e-6, 1e9));
   sub->add_option("--policy", o->policy,
                   "about frames that end late: stop, skip (default), "
                   "catch-up or free-run")
       ->check(CLI::IsMember({"stop", "skip", "catch-up", "free-run"}));
   sub->add_option("--grace", o->grace, "s at the start that are not counted (0.1 or a tenth)")
-      ->check(CLI::Range(0., 1e9));
+      ->check(within(0., 1e9));
   sub->add_option("--cpu", o->cpu, "which the stepping thread is pinned to")
-      ->check(CLI::Range(0, 1 << 20));
+      ->check(within(0, 1 << 20));
   sub->add_option("--priority", o->priority,
                   "of SCHED_FIFO, 1 to 99 (50; free-run 0); 0: it is not asked for")
-      ->check(CLI::Range(0, 99));
+      ->check(within(0, 99));
   add_exchange_options(*sub, *o);
   sub->add_option("--report", o->report, "write a page with histograms (HTML)");
   sub->add_option("--record", o->record, "write model and inputs, for `railstep replay`");
   sub->add_option("--stall-frame", o->stall_frame, "a frame to be made late, to see what follows")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
-  sub->add_option("--stall-us", o->stall_us, "us that it takes longer")->check(CLI::Range(0., 1e8));
+      ->check(within(std::int64_t{0}, std::int64_t{1} << 40));
+  sub->add_option("--stall-us", o->stall_us, "us that it takes longer")->check(within(0., 1e8));
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

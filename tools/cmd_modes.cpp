@@ -43,7 +43,7 @@ Command add_modes(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("modes", "Natural frequencies and damping of a track");
   sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
   sub->add_option("--count", o->count, "how many, the lowest first (default 10)")
-      ->check(CLI::Range(1, 1000));
+      ->check(within(1, 1000));
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

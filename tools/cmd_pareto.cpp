@@ -100,7 +100,7 @@ Command add_pareto(CLI::App& app) {
   sub->add_option("--meshes", asked.choices.meshes, "list, elements per bay")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::Range(1, 1000));
+      ->check(within(1, 1000));
   sub->add_option(
          "--schemes", asked.choices.schemes,
          "list: generalised-alpha:RHO_INF, newmark, hht:ALPHA, backward-euler, tr-bdf2; of "
@@ -117,17 +117,17 @@ Command add_pareto(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   sub->add_option("--from", asked.judged.from, "leave out what comes before, s")
-      ->check(CLI::Range(0., 1e7));
+      ->check(within(0., 1e7));
   sub->add_option("--reference-error", asked.reference_error,
                   "refine the reference until its own error is below")
-      ->check(CLI::Range(1e-15, 1.));
+      ->check(within(1e-15, 1.));
   sub->add_option("--reference-levels", asked.reference_levels, "levels of refinement at most")
-      ->check(CLI::Range(2, 10));
+      ->check(within(2, 10));
   CLI::Option* trace = sub->add_option("--reference", asked.reference,
                                        "trace (CSV) to measure against, of the scene's frames");
   sub->add_option("--own-error", asked.reference_own_error, "of that trace, as its maker states it")
       ->needs(trace)
-      ->check(CLI::Range(0., 1.));
+      ->check(within(0., 1.));
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Example: railstep pareto config/scenes/moving_load.toml --report pareto.html --csv "

@@ -32,7 +32,7 @@ void run(ReceptanceOptions& o) {
 }
 
 void add_options(CLI::App& sub, ReceptanceOptions& o) {
-  const CLI::Range hz(1e-3, 1e5);
+  const CLI::Validator hz = within(1e-3, 1e5);
   const auto directions = CLI::IsMember({"z", "y"});
   sub.add_option("SCENE", o.scene, "scene file (TOML)")->required();
   sub.add_option("--at", o.at, "sensor where the force acts")->required();
@@ -44,7 +44,7 @@ void add_options(CLI::App& sub, ReceptanceOptions& o) {
   sub.add_option("--to-hz", o.to_hz, "last frequency, Hz")->required()->check(hz);
   CLI::Option* points =
       sub.add_option("--points", o.points, "frequencies, logarithmic (default 200)")
-          ->check(CLI::Range(2, 100'000));
+          ->check(within(2, 100'000));
   sub.add_option("--step-hz", o.step, "equal steps instead, Hz")->check(hz)->excludes(points);
   sub.add_option("--model", o.model, "full (default) or condensed")
       ->check(CLI::IsMember({"full", "condensed"}));

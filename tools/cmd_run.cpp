@@ -226,7 +226,7 @@ Command add_run(CLI::App& app) {
       "until the next)");
   sub->add_option("--record", o->record, "write model, inputs and hashes, for `railstep replay`");
   sub->add_option("--hash-every", o->hash_every, "frames from one hash of a recording to the next")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40));
+      ->check(within(std::int64_t{1}, std::int64_t{1} << 40));
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

@@ -67,14 +67,13 @@ Command add_sweep(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   sub->add_option("--from", o->from, "sum traces up from this time on, s; leaves out the start")
-      ->check(CLI::Range(0., 1e7));
+      ->check(within(0., 1e7));
   CLI::Option* shard = sub->add_option(
       "--shard", o->shard,
       "I/N: every N-th run from the I-th on, I = 1 to N (0 is N); into a table of its own");
   sub->add_flag("--merge", o->merge, "run nothing: the table of all runs, whose rows must be there")
       ->excludes(shard);
-  sub->add_option("--jobs", o->jobs, "runs at once; all cores by default")
-      ->check(CLI::Range(1, 1024));
+  sub->add_option("--jobs", o->jobs, "runs at once; all cores by default")->check(within(1, 1024));
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Table and rows are the same whatever the jobs, shards and interruptions. Exit code 1 where\n"

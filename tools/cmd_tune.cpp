@@ -122,9 +122,9 @@ Command add_tune(CLI::App& app) {
   sub->add_option("SCENE", asked.scene, "scene file (TOML)")->required();
   sub->add_option("--max-error", asked.max_error, "largest error over peak that is accepted")
       ->required()
-      ->check(CLI::Range(1e-12, 1.));
+      ->check(within(1e-12, 1.));
   sub->add_option("--deadline-us", asked.deadline_us, "of a frame's median on this machine, us")
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(within(1e-3, 1e9));
   sub->add_option("--out", o->out, "scene to write; by default SCENE.tuned.toml here");
   sub->add_option("--set", asked.overrides,
                   "key.path=value, as if written in the scene; repeatable")
@@ -136,7 +136,7 @@ Command add_tune(CLI::App& app) {
   sub->add_option("--meshes", asked.choices.meshes, "list, elements per bay")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::Range(1, 1000));
+      ->check(within(1, 1000));
   sub->add_option("--schemes", asked.choices.schemes, "list, as of pareto")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -148,7 +148,7 @@ Command add_tune(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   sub->add_option("--from", asked.judged.from, "leave out what comes before, s")
-      ->check(CLI::Range(0., 1e7));
+      ->check(within(0., 1e7));
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Each part of the error, of step, condensation and mesh, is held to a third of it. Exit code "

@@ -1,6 +1,9 @@
 #pragma once
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 
 #include "read.h"
 
@@ -14,6 +17,20 @@ struct Command {
   CLI::App* parser;
   std::function<Exit()> run;
 };
+
+/// Accepts numbers from low to high, and says in short which they are.
+template <typename T>
+CLI::Validator within(T low, T high) {
+  const std::string accepted =
+      fmt::format("{:g} to {:g}", static_cast<double>(low), static_cast<double>(high));
+  return {[low, high, accepted](std::string& text) {
+            T value{};
+            const bool read = CLI::detail::lexical_cast(text, value);
+            if (read && value >= low && value <= high) return std::string();
+            return fmt::format("{} is out of range; accepted is {}", text.substr(0, 60), accepted);
+          },
+          accepted};
+}
 
 Command add_fit(CLI::App& app);
 Command add_compare(CLI::App& app);

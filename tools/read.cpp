@@ -149,7 +149,8 @@ struct Table::Entry {
       refuse(at, fmt::format("{} is not finite; accepted is {}", found, accepted.text()));
     if (accepted.holds(value)) return value;
     // Millimetres typed as metres are the likeliest slip: say so where it would explain the value.
-    const bool millimetres = key.ends_with("_m") && accepted.holds(value / 1000.0);
+    const bool millimetres =
+        key.ends_with("_m") && !key.ends_with("_per_m") && accepted.holds(value / 1000.0);
     refuse(at, fmt::format("{} is out of range; accepted is {}{}", found, accepted.text(),
                            millimetres ? " (metres; was it given in millimetres?)" : ""));
   }

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "scene_read.h"
+#include "section_file.h"
 
 namespace railstep {
 namespace {
@@ -8,21 +9,6 @@ namespace {
 // A rail's section is under a metre in every direction; what is larger was given in millimetres.
 const Range kSize = between(1e-4, 1.0);
 const Range kShearFactor = above_upto(0.0, 1.2);
-
-Section read_constants(const Table& t) {
-  Section s{};
-  const Range inertia = above_upto(0.0, 0.1);
-  s.area.area = t.number("area_m2", above_upto(0.0, 1.0));
-  s.area.inertia_y = t.number("inertia_y_m4", inertia);
-  s.area.inertia_z = t.number("inertia_z_m4", inertia);
-  s.shear.torsion = t.number("torsion_m4", inertia);
-  s.shear.shear_factor_y = t.number("shear_factor_y", kShearFactor);
-  s.shear.shear_factor_z = t.number("shear_factor_z", kShearFactor);
-  s.height = t.number("height_m", kSize);
-  s.area.centroid_height = t.number("centroid_height_m", above_upto(0.0, s.height));
-  s.shear.shear_centre_height = t.number("shear_centre_height_m", between(-1.0, 1.0));
-  return s;
-}
 
 RectangleSizes read_rectangles(const Table& t) {
   const RectangleSizes r{t.number("foot_width_m", kSize), t.number("foot_height_m", kSize),

@@ -1,5 +1,7 @@
 #include "section_file.h"
 
+#include <fmt/core.h>
+
 #include <limits>
 
 #include "offline/section/outline_mirror.h"
@@ -50,21 +52,36 @@ Section read_profile_section(const std::filesystem::path& file) {
   return fitted_section(fit_section(outline), outline.height);
 }
 
+Section read_constants(const Table& t) {
+  Section s{};
+  const Range inertia = above_upto(0.0, 0.1), factor = above_upto(0.0, 1.2);
+  s.area.area = t.number("area_m2", above_upto(0.0, 1.0));
+  s.area.inertia_y = t.number("inertia_y_m4", inertia);
+  s.area.inertia_z = t.number("inertia_z_m4", inertia);
+  s.shear.torsion = t.number("torsion_m4", inertia);
+  s.shear.shear_factor_y = t.number("shear_factor_y", factor);
+  s.shear.shear_factor_z = t.number("shear_factor_z", factor);
+  s.height = t.number("height_m", between(1e-4, 1.0));
+  s.area.centroid_height = t.number("centroid_height_m", above_upto(0.0, s.height));
+  s.shear.shear_centre_height =
+      t.number("shear_centre_height_m", between(-s.height, 2. * s.height));
+  // Of all shapes of this height and centroid the one with its area at foot and head has the most.
+  const double most = s.area.area * s.area.centroid_height * (s.height - s.area.centroid_height);
+  if (!(s.area.inertia_y <= most))
+    t.refuse("inertia_y_m4",
+             fmt::format("inertia_y_m4 = {:g} is that of no shape of this area, height and "
+                         "centroid; accepted is at most A c (h - c) = {:.4g}",
+                         s.area.inertia_y, most));
+  return s;
+}
+
 Section read_section(const std::filesystem::path& file) {
   const Table root = read_toml(file);
   static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
   static_cast<void>(root.string("name", "-"));
   static_cast<void>(root.string("source", "-"));
   static_cast<void>(root.number("symmetric_difference_m2", at_least(0.0), 0.0));
-  const Table t = root.table("section");
-  const auto positive = [&t](const char* key) { return t.number(key, above(0.0)); };
-  const Section section{{positive("area_m2"), positive("centroid_height_m"),
-                         positive("inertia_y_m4"), positive("inertia_z_m4")},
-                        {positive("torsion_m4"), positive("shear_factor_y"),
-                         positive("shear_factor_z"), positive("shear_centre_height_m")},
-                        t.number("height_m", above_upto(0.0, 1.0))};
-  if (section.area.centroid_height >= section.height)
-    t.refuse("centroid_height_m", "is not below height_m");
+  const Section section = read_constants(root.table("section"));
   pass_over(root, "outline", kSectionKeys);
   pass_over(root, "target", kSectionKeys);
   pass_over(root, "dimensions",

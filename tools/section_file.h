@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "read.h"
 #include "section_fit.h"
 
 namespace railstep {
@@ -20,6 +21,11 @@ Section fitted_section(const SectionFit& fit, double height);
 /// Reads a profile and fits it: what a scene's `profile` names. Throws InputError on a bad file,
 /// std::runtime_error where no three rectangles fit.
 Section read_profile_section(const std::filesystem::path& file);
+
+/// Constants of a section, from [rail.constants] or a section file's [section]. Throws InputError
+/// where no shape has them: a second moment over A c (h - c), which is that of all the area at foot
+/// and head, say.
+Section read_constants(const Table& t);
 
 /// Reads a section file, as `railstep fit --out` writes it: what a scene's `section` names. Only
 /// its table [section] is used; the others say where it came from. Throws InputError.

@@ -56,7 +56,7 @@ void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) 
           fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
                       "forces that are 0 at t = 0",
                       scene.file.string(), w.name));
-  const double weight = ((w.gravity ? w.mass : 0.) + w.carried_mass) * kGravity;
+  const double weight = w.gravity ? (w.mass + w.carried_mass) * kGravity : 0.;
   for (const int rail : {0, 1}) add_wheel(scene, problem, rail, w.start, -.5 * weight);
 }
 

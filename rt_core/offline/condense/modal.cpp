@@ -3,8 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "offline/track/statics.h"
@@ -69,11 +70,14 @@ void orthogonalise(DampedModes& modes) {
 void complete(DampedModes& modes) {
   if (!(incompleteness(modes) < kOrthogonal) && modes.shape.allFinite()) orthogonalise(modes);
   const double error = incompleteness(modes);
-  if (!(error < kMostIncomplete))
-    throw std::invalid_argument(
-        "the damping brings modes so near to critical that they share one shape (completeness is "
-        "missed by " +
-        std::to_string(error) + "); change the number of modes or step the full track");
+  if (error < kMostIncomplete) return;
+  std::ostringstream text;
+  text << "modes share one shape, as their damping is near to critical or many have one rate "
+          "(completeness is missed by "
+       << std::setprecision(2) << error
+       << "); change the number of modes, let like supports differ a little "
+          "(stiffness_scatter), or step the full track";
+  throw std::invalid_argument(text.str());
 }
 
 }  // namespace

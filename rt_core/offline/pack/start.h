@@ -31,7 +31,8 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
 /// and a bay later again. Loads and wheels press with the force they have at the start, wheels with
 /// their static one, on an even track. Of a ring under loads exact, wave by wave, from one passage
 /// of the model itself: with z1 = k^n z0 + r turned by the bays gone, z1 = z0. Wheelsets, vehicles
-/// and a window then pass bays until each is as the one before to 1e-9.
+/// and a window then pass bays until each is as the one before to 1e-9. Traffic that stands is in
+/// equilibrium.
 /// @returns state_doubles() values
 /// Throws std::invalid_argument as start_in_equilibrium(), where the track has ends, where no whole
 /// number of steps up to 2^20 is a whole number of bays, and where nothing settles.

@@ -251,6 +251,7 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
     if (side_force(model.wheelset[b]) != 0.)
       throw std::invalid_argument(
           "a start on the move takes no lateral force on a wheelset at the start");
+  if (model.endless.course.bays == 0) return start_in_equilibrium(track, packed, gravity);
   const Model even = evened(model);
   if (model.condensed == 0) {
     std::vector<double> memory = start_in_equilibrium(track, packed, gravity);

@@ -11,8 +11,9 @@ namespace railstep {
 ///
 /// From zero accelerations a stiffly damped mass lags by half a step; from F / m generalised-alpha
 /// is thrown back by half of F / k. Second order means steps of 0.15 rad and less of a motion: of
-/// one that turns by more a step, up to 1 rad, the start from F / m errs by half as much. For full order without one-sided springs; others are left as they
-/// are.
+/// one that turns by more a step, up to 1 rad, the start from F / m errs by half as much.
+///
+/// For full order without one-sided springs; others are left as they are.
 /// @returns state_doubles() values
 std::vector<double> start_struck(const Track& track, const PackedModel& packed, double gravity);
 

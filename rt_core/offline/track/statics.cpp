@@ -19,12 +19,13 @@ std::string place_of(const Line& line, int unknown) {
     for (std::size_t node = 0; node < table.size(); ++node)
       for (std::size_t k = 0; k < 9; ++k)
         if (table[node][k] == unknown)
-          return std::string(names[k]) + " of rail node " + std::to_string(node);
+          return "the " + std::string(names[k]) + " of rail node " + std::to_string(node);
   for (const auto& cuts : line.cuts)
     for (const auto& [node, ahead] : cuts)
       for (std::size_t k = 0; k < 9; ++k)
         if (ahead[k] == unknown)
-          return std::string(names[k]) + " ahead of the joint at rail node " + std::to_string(node);
+          return "the " + std::string(names[k]) + " ahead of the joint at rail node " +
+                 std::to_string(node);
   return "a sleeper's motion";
 }
 
@@ -36,7 +37,7 @@ void refuse_free_modes(const Line& line,
   for (int i = 0; i < pivots.size(); ++i) {
     if (pivots[i] > 1e-12 * diagonal[i]) continue;
     const int unknown = factor.permutationPinv().indices()[i];
-    throw std::invalid_argument("the track has a free rigid mode: nothing holds the " +
+    throw std::invalid_argument("the track has a free rigid mode: nothing holds " +
                                 place_of(line, unknown));
   }
 }

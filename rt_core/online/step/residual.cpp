@@ -1,5 +1,7 @@
 #include "online/step/residual.h"
 
+#include <cmath>
+
 #include "online/step/table.h"
 
 namespace railstep {
@@ -14,6 +16,22 @@ double look_up(const Model& model, const double* table, std::int32_t elements,
   const std::ptrdiff_t row =
       static_cast<std::ptrdiff_t>(at.kind) * elements + at.element % elements;
   return interpolate(table + row * (points + 1), points, at.xi);
+}
+
+/// Whether places are within an element's length of each other.
+bool close(const RailForce& a, const RailForce& b) noexcept {
+  const double apart = (b.element - a.element) + .5 * (b.xi - a.xi);
+  return apart * apart < 1.;
+}
+
+/// No more than the geometric mean of what both have under themselves: else two opposite forces
+/// would find a flexibility below 0, and their wheels run away from each other. Tables between
+/// places round off the kink at the force, by some percent of what is under it.
+double at_most_mean(const Model& model, const RailForce& a, const RailForce& b,
+                    double between) noexcept {
+  const double own = residual_under(model, a), other = residual_under(model, b);
+  const bool over = own > 0. && other > 0. && between > 0. && between * between > own * other;
+  return over ? std::sqrt(own * other) : between;
 }
 
 }  // namespace
@@ -66,7 +84,7 @@ double residual_between(const Model& model, const RailForce& force, const RailFo
   double sum = 0.;
   for (int i = 0; i < 4; ++i)
     sum += along.weight[i] * interpolate(block + (along.first + i) * (points + 1), points, at.xi);
-  return sum;
+  return close(force, at) ? at_most_mean(model, force, at, sum) : sum;
 }
 
 double residual_displacement(const Model& model, const RailForce* forces, int count,
