@@ -26,6 +26,17 @@ constexpr std::initializer_list<const char*> kSectionKeys = {
 constexpr double kMostAsymmetry = 0.05;  // of the area; beyond, a shear centre off the axis is felt
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
+/// Refuses what no shape has.
+void check_shape(const Table& t, const Section& s) {
+  // Of all shapes of this height and centroid the one with its area at foot and head has the most.
+  const double most = s.area.area * s.area.centroid_height * (s.height - s.area.centroid_height);
+  if (!(s.area.inertia_y <= most))
+    t.refuse("inertia_y_m4",
+             fmt::format("inertia_y_m4 = {:g} is that of no shape of this area, height and "
+                         "centroid; accepted is at most A c (h - c) = {:.4g}",
+                         s.area.inertia_y, most));
+}
+
 }  // namespace
 
 /// Mean of both halves, each mirrored; NaN where the outline is too lopsided for that.
@@ -65,13 +76,6 @@ Section read_constants(const Table& t) {
   s.area.centroid_height = t.number("centroid_height_m", above_upto(0.0, s.height));
   s.shear.shear_centre_height =
       t.number("shear_centre_height_m", between(-s.height, 2. * s.height));
-  // Of all shapes of this height and centroid the one with its area at foot and head has the most.
-  const double most = s.area.area * s.area.centroid_height * (s.height - s.area.centroid_height);
-  if (!(s.area.inertia_y <= most))
-    t.refuse("inertia_y_m4",
-             fmt::format("inertia_y_m4 = {:g} is that of no shape of this area, height and "
-                         "centroid; accepted is at most A c (h - c) = {:.4g}",
-                         s.area.inertia_y, most));
   return s;
 }
 
@@ -81,7 +85,9 @@ Section read_section(const std::filesystem::path& file) {
   static_cast<void>(root.string("name", "-"));
   static_cast<void>(root.string("source", "-"));
   static_cast<void>(root.number("symmetric_difference_m2", at_least(0.0), 0.0));
-  const Section section = read_constants(root.table("section"));
+  const Table constants = root.table("section");
+  const Section section = read_constants(constants);
+  check_shape(constants, section);
   pass_over(root, "outline", kSectionKeys);
   pass_over(root, "target", kSectionKeys);
   pass_over(root, "dimensions",

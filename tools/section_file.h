@@ -22,13 +22,13 @@ Section fitted_section(const SectionFit& fit, double height);
 /// std::runtime_error where no three rectangles fit.
 Section read_profile_section(const std::filesystem::path& file);
 
-/// Constants of a section, from [rail.constants] or a section file's [section]. Throws InputError
-/// where no shape has them: a second moment over A c (h - c), which is that of all the area at foot
-/// and head, say.
+/// Constants of a section, from [rail.constants] or a section file's [section]. Throws InputError.
 Section read_constants(const Table& t);
 
 /// Reads a section file, as `railstep fit --out` writes it: what a scene's `section` names. Only
-/// its table [section] is used; the others say where it came from. Throws InputError.
+/// its table [section] is used; the others say where it came from. Throws InputError, also where no
+/// shape has its constants: a second moment over A c (h - c), that of all the area at foot and
+/// head.
 Section read_section(const std::filesystem::path& file);
 
 /// The three rectangles of a section file, where it has [dimensions]. Throws InputError.
