@@ -214,7 +214,8 @@ HardResult resonance(const std::filesystem::path& scene) {
     result.checks.push_back(off_by(fmt::format("{:.0f} us: part of the closed form at 0.05 s, "
                                                "against one mass by the same rule ({:.3f})",
                                                1e6 * dt, reached_by_one_mass(dt, until)),
-                                   reached, reached_by_one_mass(dt, until), .02));
+                                   reached, reached_by_one_mass(dt, until),
+                                   dt == 1e-4 ? .02 : .01));
     if (dt == 1e-5 || dt == 1e-4)
       result.picture.curves.push_back(run.curve(kMiddle, fmt::format("{:.0f} us", 1e6 * dt), 1e3));
     result.frame_us = run.frame_us();
