@@ -143,14 +143,39 @@ TEST_CASE("a disk that fills while tracing leaves the old trace whole", "[bad_in
   fails("condense " + kMovingLoad + " --skip-errors" + model, "x.model");
 }
 
-TEST_CASE("a place that is a folder, or in none, ends with 1", "[bad_input][cli]") {
+TEST_CASE("a place that is a folder, or in none, is refused before the run", "[bad_input][cli]") {
   const BadInput bad("places");
   std::filesystem::create_directory(bad.path("folder"));
-  const std::string run = "run " + kMovingLoad + " --duration 0.01 ";
-  bad.refused(run + "--trace " + bad.path("folder"), {"folder: cannot be written"}, 1);
-  bad.refused(run + "--trace " + bad.path("none/t.csv"), {"none/t.csv: cannot be written"}, 1);
-  bad.refused("condense " + kMovingLoad + " --skip-errors --out " + bad.path("none/x.model"),
-              {"none/x.model: cannot be written"}, 1);
+  // A year of simulated time: found at its end, the fault would not be told here.
+  const std::string run = "run " + kMovingLoad + " --set step.duration_s=3e7 ";
+  const std::vector<std::string> writers = {
+      run + "--trace",
+      run + "--record",
+      run + "--report",
+      "condense " + kMovingLoad + " --out",
+      "condense " + kMovingLoad + " --out x.model --emit-c",
+      "fit " + kProfile + " --out",
+      "fit " + kProfile + " --report",
+      "static " + kMovingLoad + " --shape",
+      "hil " + kWheelset + " --rate 1 --duration 1e6 --record",
+      "pareto " + kMovingLoad + " --csv",
+      "hard --report"};
+  for (const std::string& writer : writers) {
+    const std::string option = writer.substr(writer.rfind("--"));
+    bad.refused(writer + " " + bad.path("folder"), {option, "folder: cannot be written"});
+    bad.refused(writer + " " + bad.path("none/x"),
+                {option, "none/x: cannot be written: there is no folder"});
+  }
+}
+
+TEST_CASE("an option that has no effect without another is refused", "[bad_input][cli]") {
+  const BadInput bad("needs");
+  const std::string hil = "hil " + kWheelset + " --rate 100 --duration 0.1 ";
+  bad.refused("run " + kMovingLoad + " --hash-every 3", {"--hash-every requires --record"});
+  bad.refused(hil + "--stall-us 100", {"--stall-us requires --stall-frame"});
+  bad.refused(hil + "--stall-frame 3", {"--stall-frame requires --stall-us"});
+  bad.refused(hil + "--ramp 0.2", {"--ramp requires --silence"});
+  bad.refused(hil + "--grace 0.2", {"--grace 0.2", "up to --duration, 0.1"});
 }
 
 TEST_CASE("a processor that is not there is refused", "[bad_input][cli]") {

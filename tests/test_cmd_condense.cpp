@@ -260,7 +260,7 @@ TEST_CASE("condense refuses in one sentence and writes nothing", "[condense]") {
   CHECK(railstep_program("condense " + kMovingLoad).code == 2);  // no --out
   const Ran unwritable = railstep_program("condense " + kMovingLoad + " --out " +
                                           (folder / "no_folder/x.model").string());
-  CHECK(unwritable.code == 1);
+  CHECK(unwritable.code == 2);
   CHECK_THAT(unwritable.err, Contains("no_folder/x.model: cannot be written"));
   CHECK(entries(folder) == 0);
 }

@@ -187,6 +187,18 @@ TEST_CASE("energies of a system: kept by energy-momentum, lost by the others as 
   CHECK(std::abs(alpha) < .1 * euler);
 }
 
+TEST_CASE("a step so long that the scheme makes energy is told", "[run]") {
+  const std::string noted = "the scheme made energy";
+  const Ran wild = railstep_program("run " + kPendulum +
+                                    " --json --set step.dt_s=0.01 --set "
+                                    "step.frame_s=0.01");
+  CHECK_THAT(wild.err, Contains("note: " + noted));
+  const auto told = nlohmann::json::parse(wild.out);
+  CHECK(told["numerical_loss"].get<double>() < -.05);
+  CHECK_THAT(told["warnings"].at(0).get<std::string>(), Contains(noted));
+  CHECK_THAT(railstep_program("run " + kPendulum).err, !Contains(noted));
+}
+
 TEST_CASE("a drive's work and a damper's heat close the balance, whatever holds the joints",
           "[run]") {
   // Means over a step are of second order, and so are the schemes: half the step, a quarter of the

@@ -93,6 +93,35 @@ TEST_CASE("pads that do not pull have their force in the trace", "[supports]") {
   }
 }
 
+TEST_CASE("six loose pads in a row are condensed as those that differ a little", "[supports]") {
+  // Without its pads each of these sleepers stands alone on its ballast: six shapes of one rate. A
+  // transition by 1e-5 tells them apart.
+  const auto run = [](const std::string& kind, const std::string& transition) {
+    return traced(std::string(RAILSTEP_SOURCE) +
+                  "/config/scenes/ballasted_track.toml --set track.bays=24 --set "
+                  "step.duration_s=0.05 --set sensor[0].sleeper=9 --set sensor[1].position_m=5.4 "
+                  "--set 'support_change=[{from=7, to=12, support.unilateral=true" +
+                  transition + "}]' --set 'condense.kind=\"" + kind + "\"'");
+  };
+  const Rows alike = run("modal", ""), full = run("full", ""),
+             apart = run("modal", ", ballast.stiffness_factor=[1.0, 1.00001]");
+  const auto off = [&alike](const Rows& other, const std::string& name) {
+    const std::size_t at = alike.column(name);
+    double most = 0., apart_by = 0.;
+    for (std::size_t i = 0; i < alike.row.size(); ++i) {
+      most = std::max(most, std::abs(alike.row[i][at]));
+      apart_by = std::max(apart_by, std::abs(alike.row[i][at] - other.row[i][at]));
+    }
+    return apart_by / most;
+  };
+  for (const std::string name :
+       {"sleeper.dz_m", "pad.dz_m", "wheel_left.force_z_n", "support_9.force_z_n"}) {
+    CAPTURE(name, off(apart, name), off(full, name));
+    CHECK(off(apart, name) < 1e-4);
+    CHECK(off(full, name) < 3e-2);  // what the mesh of two elements a bay leaves between the two
+  }
+}
+
 TEST_CASE("scenes say what does not pull, seat by seat", "[supports]") {
   CHECK(fixed_ports(track_of(with({}))).size() == 6);
   // One value, a transition, one side, and what a later change takes back.

@@ -198,6 +198,23 @@ TEST_CASE("slow real roots that cluster are told apart by what they must add up 
   CHECK(residual(basis, modes) < 1e-9);
 }
 
+TEST_CASE("rates that are one have shapes of their own", "[modal]") {
+  // Five directions of six are alike in mass, stiffness and damping; the seventh couples to none.
+  // Any mixture of their shapes is a shape, and some have no product with themselves.
+  for (const double c : {0., 60., 900.}) {
+    Eigen::VectorXd omega = Eigen::VectorXd::Constant(7, 300.), along(7);
+    omega[6] = 500.;
+    along << .3, -.5, .2, .6, -.4, .1, 0.;
+    const Eigen::MatrixXd D = c * Eigen::MatrixXd::Identity(7, 7) + 40. * along * along.transpose();
+    const DampedModes modes =
+        damped_modes({omega, Eigen::MatrixXd::Identity(7, 7)}, D.sparseView());
+    CAPTURE(c);
+    CHECK(modes.rate.size() == (c == 900. ? 13 : 7));
+    CHECK(incompleteness(modes) < 1e-9);
+    CHECK(residual({omega, Eigen::MatrixXd::Identity(7, 7)}, modes) < 1e-9);
+  }
+}
+
 TEST_CASE("near critical damping the answer is right or it is refused", "[modal]") {
   CHECK_THROWS_WITH(one_coordinate(300., 600.), Contains("critical"));
   const double omega = 300., t = 2. / omega;

@@ -129,6 +129,8 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
              Contains("\"gauge\" is none that ore_low has"));
   CHECK_THAT(refusal(ore + "geometries = [\"vertical\", \"vertical\"]\n"), Contains("twice"));
   CHECK_THAT(refusal(ore + "longest_wavelength_m = 2.0\n"), Contains("longest_wavelength_m"));
+  CHECK_THAT(refusal(ore + "shortest_wavelength_m = 30.0\n"),  // over the default longest
+             Contains("shortest_wavelength_m = 30") && Contains("25"));
   // 30 m/s at 1 ms: eight steps are 0.24 m.
   CHECK(refusal(ore + "shortest_wavelength_m = 0.241\n", {"step.dt_s=1e-3"}) == "accepted");
   CHECK_THAT(refusal(ore + "shortest_wavelength_m = 0.239\n", {"step.dt_s=1e-3"}),
@@ -136,6 +138,7 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
   const std::string dip = "[[defect]]\nkind = \"dipped_joint\"\nat_m = 9.0\n";
   CHECK(refusal(dip + "depth_m = 1e-3\nramp_m = 0.5\n") == "accepted");
   CHECK_THAT(refusal(dip + "depth_m = 5.0\nramp_m = 0.5\n"), Contains("depth_m"));
+  CHECK_THAT(refusal(dip + "depth_m = 1e-3\nramp_m = 1e-9\n"), Contains("ramp_m"));
   CHECK_THAT(refusal(dip + "depth_m = 1e-3\nramp_m = 0.5\nwavelength_m = 1.0\n"),
              Contains("wavelength_m"));
   CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 9.0\nto_m = 9.05\n"

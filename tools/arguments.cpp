@@ -43,6 +43,12 @@ bool is_written(const std::string& name) {
   return std::find(std::begin(kWritten), std::end(kWritten), name) != std::end(kWritten);
 }
 
+/// Whether the option names a folder that the command makes.
+bool makes_folders(const CLI::App& command, const CLI::Option& option) {
+  return option.get_name() == "--vtk" ||
+         (command.get_name() == "sweep" && option.get_name() == "--out");
+}
+
 bool is_read(const std::string& name) {
   constexpr std::string_view kRead[] = {"SCENE", "PROFILE", "RECORDING", "--inputs", "--reference"};
   return std::find(std::begin(kRead), std::end(kRead), name) != std::end(kRead);
@@ -119,6 +125,23 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error) {
     said = fmt::format("'{}' is one word too many", shown);
   std::replace(said.begin(), said.end(), '\n', ' ');
   return fmt::format("{}{} see `railstep {}--help`", said, said.ends_with('?') ? "" : ";", name);
+}
+
+void refuse_impossible_places(const CLI::App& command) {
+  std::error_code ignored;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!is_written(option->get_name()) || option->empty()) continue;
+    const std::filesystem::path file = option->results().front(), folder = file.parent_path();
+    if (makes_folders(command, *option)) continue;
+    if (std::filesystem::is_directory(file, ignored))
+      throw InputError(fmt::format("{} {}: cannot be written: it is a folder; accepted is a file",
+                                   option->get_name(), file.string()));
+    if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+      throw InputError(
+          fmt::format("{} {}: cannot be written: there is no folder {}; accepted is a "
+                      "file in a folder that is there",
+                      option->get_name(), file.string(), folder.string()));
+  }
 }
 
 void refuse_same_files(const CLI::App& command) {

@@ -15,6 +15,10 @@ void want_finite_numbers(CLI::App& app);
 /// What is wrong with a command line that was not understood, in one sentence.
 std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error);
 
+/// Refuses, before anything is done, a file to be written that is a folder, or in none that is
+/// there. Throws InputError.
+void refuse_impossible_places(const CLI::App& command);
+
 /// Refuses, before anything is done, a file to be written that is also read, or that two options
 /// write. Throws InputError.
 void refuse_same_files(const CLI::App& command);

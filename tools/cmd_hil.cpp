@@ -76,6 +76,9 @@ HilPlan plan_of(const HilOptions& o) {
   HilPlan plan;
   plan.schedule = {1e9 / o.rate, slots_of(o), 0, policy_of(o.policy)};
   const double grace = o.grace.value_or(std::min(.1, .1 * o.duration));
+  if (grace > o.duration)
+    throw InputError(
+        fmt::format("--grace {:g}: accepted is up to --duration, {:g}", grace, o.duration));
   plan.schedule.grace = std::min<std::int64_t>(std::llround(grace * o.rate), plan.schedule.slots);
   plan.empty_slots =
       std::clamp<std::int64_t>(std::llround(std::min(.5, .25 * o.duration) * o.rate), 1, 1'000'000);
@@ -339,10 +342,13 @@ void add_exchange_options(CLI::App& sub, HilOptions& o) {
                "how the track gives way under external wheels in the next frame, in each output");
   sub.add_option("--wait", o.wait, "s to wait for the first inputs before the clock starts (0)")
       ->check(within(0., 1e6));
-  sub.add_option("--silence", o.silence,
-                 "s without inputs behind which they go to 0 for good; 0: they are held (0)")
-      ->check(within(0., 1e6));
-  sub.add_option("--ramp", o.ramp, "s that this takes (0.1)")->check(within(0., 1e6));
+  CLI::Option* silence =
+      sub.add_option("--silence", o.silence,
+                     "s without inputs behind which they go to 0 for good; 0: they are held (0)")
+          ->check(within(0., 1e6));
+  sub.add_option("--ramp", o.ramp, "s that this takes (0.1)")
+      ->check(within(0., 1e6))
+      ->needs(silence);
 }
 
 }  // namespace
@@ -369,9 +375,13 @@ Command add_hil(CLI::App& app) {
   add_exchange_options(*sub, *o);
   sub->add_option("--report", o->report, "write a page with histograms (HTML)");
   sub->add_option("--record", o->record, "write model and inputs, for `railstep replay`");
-  sub->add_option("--stall-frame", o->stall_frame, "a frame to be made late, to see what follows")
-      ->check(within(std::int64_t{0}, std::int64_t{1} << 40));
-  sub->add_option("--stall-us", o->stall_us, "us that it takes longer")->check(within(0., 1e8));
+  CLI::Option* stall_frame = sub->add_option("--stall-frame", o->stall_frame,
+                                             "a frame to be made late, to see what follows")
+                                 ->check(within(std::int64_t{0}, std::int64_t{1} << 40));
+  CLI::Option* stall_us = sub->add_option("--stall-us", o->stall_us, "us that it takes longer")
+                              ->check(within(0., 1e8))
+                              ->needs(stall_frame);
+  stall_frame->needs(stall_us);
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

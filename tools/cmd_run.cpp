@@ -110,10 +110,21 @@ void print_table(const nlohmann::ordered_json& result) {
                result["numerical_loss"].get<double>());
 }
 
+/// Where the scheme made more energy than a step that follows its motion does: of no use to a user.
+std::string energy_note(const std::optional<EnergyBalance>& energy) {
+  constexpr double kMuch = .05;
+  if (!energy || !(energy->numerical_loss < -kMuch)) return {};
+  return fmt::format(
+      "the scheme made energy, {:.2g} of all that was turned over: the step is too long for this "
+      "motion; halve it, or take a scheme that keeps energy",
+      -energy->numerical_loss);
+}
+
 /// Says in words what the run met.
-/// @param near  speed_note() of it
-Exit verdict(const Simulation& run, const RunRecord& record, const std::string& near) {
-  if (!near.empty()) fmt::print(stderr, "note: {}\n", near);
+/// @param notes  what is to be said of the choice of speed and of energy
+Exit verdict(const Simulation& run, const RunRecord& record,
+             const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
   for (const std::string& name : status_names(record.status)) {
     if (name != "nonfinite_state")
       fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, record));
@@ -198,12 +209,15 @@ Exit run(const RunOptions& o) {
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
   nlohmann::ordered_json result = to_json(*simulation, record, energy);
-  result["warnings"] = near.empty() ? std::vector<std::string>{} : std::vector{near};
+  std::vector<std::string> notes;
+  for (const std::string& note : {near, energy_note(energy)})
+    if (!note.empty()) notes.push_back(note);
+  result["warnings"] = notes;
   if (o.json)
     fmt::print("{}\n", result.dump(2));
   else
     print_table(result);
-  return verdict(*simulation, record, near);
+  return verdict(*simulation, record, notes);
 }
 
 }  // namespace
@@ -224,9 +238,11 @@ Command add_run(CLI::App& app) {
       "--inputs", o->inputs,
       "what the scene's inputs are given (CSV: time_s, then inputs by name; a row holds "
       "until the next)");
-  sub->add_option("--record", o->record, "write model, inputs and hashes, for `railstep replay`");
+  CLI::Option* record = sub->add_option("--record", o->record,
+                                        "write model, inputs and hashes, for `railstep replay`");
   sub->add_option("--hash-every", o->hash_every, "frames from one hash of a recording to the next")
-      ->check(within(std::int64_t{1}, std::int64_t{1} << 40));
+      ->check(within(std::int64_t{1}, std::int64_t{1} << 40))
+      ->needs(record);
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);

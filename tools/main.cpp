@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
     for (const Command& command : commands)
       if (command.parser->parsed()) {
         refuse_same_files(*command.parser);
+        refuse_impossible_places(*command.parser);
         const Exit exit = command.run();
         if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(exit);
         throw std::runtime_error(fmt::format("standard output: {}", std::strerror(errno)));

@@ -87,8 +87,10 @@ void read_generated(const Table& t, const Scene& scene, IrregularityScene& own) 
   own.geometries = read_geometries(t, scene, *spectra);
   GenerateOptions& o = own.options;
   o.seed = static_cast<std::uint64_t>(t.integer("seed", 0, INT64_MAX, 1));
-  o.shortest = t.number("shortest_wavelength_m", between(0.01, 1e3), 3.0);
-  o.longest = t.number("longest_wavelength_m", between(o.shortest, 1e3), 25.0);
+  constexpr double kLongest = 25.0;
+  const double most = t.has("longest_wavelength_m") ? 1e3 : kLongest;
+  o.shortest = t.number("shortest_wavelength_m", between(0.01, most), 3.0);
+  o.longest = t.number("longest_wavelength_m", between(o.shortest, 1e3), kLongest);
   o.length = t.number(
       "period_m", between(o.longest, 1e6),
       std::max(scene.track.endless ? kEndlessPeriod : scene.track.length(), 4. * o.longest));
@@ -127,7 +129,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
     if (d.kind == DefectKind::dipped_joint) {
       d.at = t.number("at_m", on_rail);
       d.depth = t.number("depth_m", kHeight);
-      d.ramp = t.number("ramp_m", above_upto(0.0, 100.0));
+      d.ramp = t.number("ramp_m", between(1e-4, 100.0));
     } else {
       d.length = t.number("wavelength_m", above_upto(1e-3, 100.0));
       d.amplitude = t.number("amplitude_m", kHeight);

@@ -25,10 +25,70 @@ std::vector<Eigen::Index> kept(const Eigen::VectorXcd& rates) {
   return order;
 }
 
+constexpr double kOneRate = 1e-12;        // of the fastest: rates this close are one
 constexpr double kMostIncomplete = 1e-7;  // what is accepted
 constexpr double kOrthogonal = 1e-9;      // beyond it the eigen solver's vectors are worked on
 constexpr int kMostTurns = 6;             // each squares what is missed: 1e-2 becomes 1e-16 in 3
 constexpr double kSquared = 1e-6;         // missed before the last turn
+
+/// Puts rates that are one next to each other, and gives all of them their mean: the solver tells
+/// them no better apart.
+/// @return  where each group of one rate begins, and the end
+std::vector<Eigen::Index> group(const Eigen::VectorXcd& rates, std::vector<Eigen::Index>& order,
+                                Eigen::VectorXcd& grouped) {
+  const double one = kOneRate * rates.cwiseAbs().maxCoeff();
+  std::vector<Eigen::Index> begins;
+  grouped.resize(static_cast<Eigen::Index>(order.size()));
+  for (auto from = order.begin(); from != order.end();) {
+    const std::complex<double> rate = rates[*from];
+    const auto to = std::stable_partition(from, order.end(), [&](Eigen::Index i) {
+      return std::abs(rates[i] - rate) <= one && (rates[i].imag() > 0.) == (rate.imag() > 0.);
+    });
+    std::complex<double> sum = 0.;
+    for (auto i = from; i != to; ++i) sum += rates[*i];
+    begins.push_back(from - order.begin());
+    grouped.segment(begins.back(), to - from).setConstant(sum / static_cast<double>(to - from));
+    from = to;
+  }
+  begins.push_back(static_cast<Eigen::Index>(order.size()));
+  return begins;
+}
+
+/// Q with Q' P Q = I, the plain transpose, of a symmetric P. What has the largest product with
+/// itself is taken first, or the sum of two that have a larger one with each other; the rest is
+/// freed of it.
+Eigen::MatrixXcd unit_congruence(Eigen::MatrixXcd P) {
+  const Eigen::Index n = P.rows();
+  Eigen::MatrixXcd Q = Eigen::MatrixXcd::Identity(n, n);
+  for (Eigen::Index done = 0; done < n; ++done) {
+    const auto left = P.bottomRightCorner(n - done, n - done);
+    Eigen::Index i = 0, j = 0, own = 0;
+    const double most = left.cwiseAbs().maxCoeff(&i, &j);
+    const bool alone = left.diagonal().cwiseAbs().maxCoeff(&own) >= .5 * most;
+    Eigen::MatrixXcd T = Eigen::MatrixXcd::Identity(n, n);
+    if (!alone) T(done + j, done + i) = 1.;
+    T.col(done + (alone ? own : i)).swap(T.col(done));
+    P = (T.transpose() * P * T).eval();
+    const std::complex<double> root = std::sqrt(P(done, done));
+    Eigen::MatrixXcd freed = Eigen::MatrixXcd::Identity(n, n);
+    freed.row(done).tail(n - done - 1) = -P.row(done).tail(n - done - 1) / P(done, done);
+    freed(done, done) = 1. / root;
+    P = (freed.transpose() * P * freed).eval();
+    Q = (Q * T * freed).eval();
+  }
+  return Q;
+}
+
+/// Mixes shapes X of one rate so that X' (2 rate + D) X = I with the plain transpose. Any mixture
+/// of them is a shape as well, and the solver's may have products of 0 with themselves.
+void normalise(std::complex<double> rate, const Eigen::MatrixXd& damping,
+               Eigen::Ref<Eigen::MatrixXcd> X) {
+  if (X.cols() > 1)
+    X = Eigen::MatrixXcd(Eigen::HouseholderQR<Eigen::MatrixXcd>(X).householderQ() *
+                         Eigen::MatrixXcd::Identity(X.rows(), X.cols()));
+  const Eigen::MatrixXcd with = 2. * rate * X + damping * X;
+  X = (X * unit_congruence(X.transpose() * with)).eval();
+}
 
 /// What Re sum shape shape' = 0 and Re sum rate shape shape' = I are missed by.
 double incompleteness(const DampedModes& modes) {
@@ -72,11 +132,9 @@ void complete(DampedModes& modes) {
   const double error = incompleteness(modes);
   if (error < kMostIncomplete) return;
   std::ostringstream text;
-  text << "modes share one shape, as their damping is near to critical or many have one rate "
-          "(completeness is missed by "
-       << std::setprecision(2) << error
-       << "); change the number of modes, let like supports differ a little "
-          "(stiffness_scatter), or step the full track";
+  text << "modes share one shape, as their damping is near to critical (completeness is missed "
+          "by "
+       << std::setprecision(2) << error << "); change the number of modes, or step the full track";
   throw std::invalid_argument(text.str());
 }
 
@@ -119,19 +177,18 @@ DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& 
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   if (solver.info() != Eigen::Success)
     throw std::invalid_argument("the damped modes of a line were not found");
-  const std::vector<Eigen::Index> order = kept(solver.eigenvalues());
-  const auto count = static_cast<Eigen::Index>(order.size());
-  result.rate.resize(count);
-  result.shape.resize(m, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const std::complex<double> rate = solver.eigenvalues()[order[static_cast<std::size_t>(i)]];
-    Eigen::VectorXcd x = solver.eigenvectors()
-                             .col(order[static_cast<std::size_t>(i)])
-                             .head(m)
-                             .cwiseQuotient(basis.omega.cast<std::complex<double>>());
-    const std::complex<double> norm = (x.transpose() * (2. * rate * x + result.damping * x))(0, 0);
-    result.rate[i] = rate;
-    result.shape.col(i) = x * std::sqrt((rate.imag() > 0. ? 2. : 1.) / norm);
+  std::vector<Eigen::Index> order = kept(solver.eigenvalues());
+  const std::vector<Eigen::Index> begins = group(solver.eigenvalues(), order, result.rate);
+  result.shape.resize(m, result.rate.size());
+  for (Eigen::Index i = 0; i < result.rate.size(); ++i)
+    result.shape.col(i) = solver.eigenvectors()
+                              .col(order[static_cast<std::size_t>(i)])
+                              .head(m)
+                              .cwiseQuotient(basis.omega.cast<std::complex<double>>());
+  for (std::size_t g = 0; g + 1 < begins.size(); ++g) {
+    auto shapes = result.shape.middleCols(begins[g], begins[g + 1] - begins[g]);
+    normalise(result.rate[begins[g]], result.damping, shapes);
+    if (result.rate[begins[g]].imag() > 0.) shapes *= std::sqrt(2.);
   }
   complete(result);
   return result;
