@@ -1,12 +1,16 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "condensed.h"
+#include "offline/condense/damped_shapes.h"
 #include "offline/condense/modal.h"
 #include "offline/track/statics.h"
 #include "sections.h"
@@ -213,6 +217,83 @@ TEST_CASE("rates that are one have shapes of their own", "[modal]") {
     CHECK(incompleteness(modes) < 1e-9);
     CHECK(residual({omega, Eigen::MatrixXd::Identity(7, 7)}, modes) < 1e-9);
   }
+}
+
+TEST_CASE("alike cells in any mixture have the rates of one cell, each as often", "[modal]") {
+  // Two coupled coordinates whose dampers do not share the springs' shapes: by the dampers'
+  // strength two pairs, a pair and two real rates, four real rates. A rotation mixes the cells.
+  constexpr int kCells = 16, kSize = 2 * kCells;
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd any =
+      Eigen::MatrixXd::NullaryExpr(kSize, kSize, [&] { return normal(random); });
+  const Eigen::MatrixXd Q = any.householderQr().householderQ();
+  for (const double strength : {1., 30., 1e3, 1e5}) {
+    Eigen::Matrix2d spring, damper;
+    spring << 9e4, -2e4, -2e4, 4e4;
+    damper << 40., 15., 15., 20.;
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(kSize, kSize), D = K;
+    for (int c = 0; c < kCells; ++c) {
+      K.block<2, 2>(2 * c, 2 * c) = spring;
+      D.block<2, 2>(2 * c, 2 * c) = strength * damper;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Q * K * Q.transpose()),
+        one_solver(spring);
+    const auto basis_of_solver = [](const auto& s) {
+      return Basis{s.eigenvalues().cwiseSqrt(),
+                   Eigen::MatrixXd::Identity(s.eigenvalues().size(), s.eigenvalues().size())};
+    };
+    const auto in = [](const auto& s,
+                       const Eigen::MatrixXd& matrix) -> Eigen::SparseMatrix<double> {
+      const Eigen::MatrixXd own = s.eigenvectors().transpose() * matrix * s.eigenvectors();
+      return own.sparseView();
+    };
+    const Basis basis = basis_of_solver(solver);
+    const DampedModes all = damped_modes(basis, in(solver, Q * D * Q.transpose())),
+                      one = damped_modes(basis_of_solver(one_solver),
+                                         in(one_solver, strength * damper));
+    CAPTURE(strength, one.rate.transpose());
+    REQUIRE(all.rate.size() == kCells * one.rate.size());
+    CHECK(incompleteness(all) < 1e-9);
+    const double fastest = one.rate.cwiseAbs().maxCoeff();
+    // Slow rates have the round-off of the fastest.
+    CHECK(residual(basis, all) < 1e-9 + 2.3e-16 * fastest / std::abs(one.rate[0]));
+    for (Eigen::Index k = 0; k < all.rate.size(); ++k)
+      CHECK(std::abs(all.rate[k] - one.rate[k / kCells]) < 1e-11 * fastest);
+  }
+}
+
+TEST_CASE("shapes that the solver leaves parallel are found anew", "[modal]") {
+  // Two of three coordinates are alike. The solver's second shape of theirs is the first, and
+  // round-off along the third.
+  const Eigen::Vector3d omega(300., 300., 500.), c(60., 60., 80.);
+  Eigen::VectorXcd rates(6);
+  Eigen::MatrixXcd vectors = Eigen::MatrixXcd::Zero(6, 6);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    rates[2 * k] = {-.5 * c[k], std::sqrt(omega[k] * omega[k] - .25 * c[k] * c[k])};
+    rates[2 * k + 1] = std::conj(rates[2 * k]);
+    for (const Eigen::Index column : {2 * k, 2 * k + 1}) {
+      vectors(k == 2 ? 2 : 0, column) = 1.;
+      if (k == 1) vectors(2, column) = 1e-13;
+    }
+  }
+  const DampedModes modes = normalised_modes(omega, c.asDiagonal(), rates, vectors);
+  REQUIRE(modes.rate.size() == 3);
+  CHECK(incompleteness(modes) < 1e-9);
+  CHECK(residual({omega, Eigen::MatrixXd::Identity(3, 3)}, modes) < 1e-9);
+}
+
+TEST_CASE("slow rates beside very fast ones are their own", "[modal]") {
+  // -Omega^2 x / (D x): 8e-5 1/s apart beside rates of 1e8, of which 1e-12 is more than they are.
+  Eigen::Matrix2d D;
+  D << .7e8, .2e8, .2e8, 1e8;
+  const DampedModes modes =
+      damped_modes({Eigen::Vector2d(100., 110.), Eigen::MatrixXd::Identity(2, 2)}, D.sparseView());
+  REQUIRE(modes.rate.size() == 4);
+  const Eigen::Matrix2d spring = Eigen::Vector2d(1e4, 1.21e4).asDiagonal();
+  const Eigen::VectorXd slow =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(spring, D).eigenvalues();
+  for (Eigen::Index k = 0; k < 2; ++k) CHECK_THAT(-modes.rate[k].real(), WithinRel(slow[k], 1e-4));
 }
 
 TEST_CASE("near critical damping the answer is right or it is refused", "[modal]") {

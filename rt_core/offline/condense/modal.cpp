@@ -4,91 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "offline/condense/damped_shapes.h"
 #include "offline/track/statics.h"
 
 namespace railstep {
 
 namespace {
 
-/// Eigenvalues to keep, one of each conjugate pair, slowest first.
-std::vector<Eigen::Index> kept(const Eigen::VectorXcd& rates) {
-  std::vector<Eigen::Index> order;
-  for (Eigen::Index i = 0; i < rates.size(); ++i)
-    if (rates[i].imag() >= 0.) order.push_back(i);
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return std::abs(rates[a]) < std::abs(rates[b]);
-  });
-  return order;
-}
-
-constexpr double kOneRate = 1e-12;        // of the fastest: rates this close are one
 constexpr double kMostIncomplete = 1e-7;  // what is accepted
+constexpr double kMostResidual = 1e-6;    // of a mode's equation, over the sizes of its terms
 constexpr double kOrthogonal = 1e-9;      // beyond it the eigen solver's vectors are worked on
 constexpr int kMostTurns = 6;             // each squares what is missed: 1e-2 becomes 1e-16 in 3
 constexpr double kSquared = 1e-6;         // missed before the last turn
-
-/// Puts rates that are one next to each other, and gives all of them their mean: the solver tells
-/// them no better apart.
-/// @return  where each group of one rate begins, and the end
-std::vector<Eigen::Index> group(const Eigen::VectorXcd& rates, std::vector<Eigen::Index>& order,
-                                Eigen::VectorXcd& grouped) {
-  const double one = kOneRate * rates.cwiseAbs().maxCoeff();
-  std::vector<Eigen::Index> begins;
-  grouped.resize(static_cast<Eigen::Index>(order.size()));
-  for (auto from = order.begin(); from != order.end();) {
-    const std::complex<double> rate = rates[*from];
-    const auto to = std::stable_partition(from, order.end(), [&](Eigen::Index i) {
-      return std::abs(rates[i] - rate) <= one && (rates[i].imag() > 0.) == (rate.imag() > 0.);
-    });
-    std::complex<double> sum = 0.;
-    for (auto i = from; i != to; ++i) sum += rates[*i];
-    begins.push_back(from - order.begin());
-    grouped.segment(begins.back(), to - from).setConstant(sum / static_cast<double>(to - from));
-    from = to;
-  }
-  begins.push_back(static_cast<Eigen::Index>(order.size()));
-  return begins;
-}
-
-/// Q with Q' P Q = I, the plain transpose, of a symmetric P. What has the largest product with
-/// itself is taken first, or the sum of two that have a larger one with each other; the rest is
-/// freed of it.
-Eigen::MatrixXcd unit_congruence(Eigen::MatrixXcd P) {
-  const Eigen::Index n = P.rows();
-  Eigen::MatrixXcd Q = Eigen::MatrixXcd::Identity(n, n);
-  for (Eigen::Index done = 0; done < n; ++done) {
-    const auto left = P.bottomRightCorner(n - done, n - done);
-    Eigen::Index i = 0, j = 0, own = 0;
-    const double most = left.cwiseAbs().maxCoeff(&i, &j);
-    const bool alone = left.diagonal().cwiseAbs().maxCoeff(&own) >= .5 * most;
-    Eigen::MatrixXcd T = Eigen::MatrixXcd::Identity(n, n);
-    if (!alone) T(done + j, done + i) = 1.;
-    T.col(done + (alone ? own : i)).swap(T.col(done));
-    P = (T.transpose() * P * T).eval();
-    const std::complex<double> root = std::sqrt(P(done, done));
-    Eigen::MatrixXcd freed = Eigen::MatrixXcd::Identity(n, n);
-    freed.row(done).tail(n - done - 1) = -P.row(done).tail(n - done - 1) / P(done, done);
-    freed(done, done) = 1. / root;
-    P = (freed.transpose() * P * freed).eval();
-    Q = (Q * T * freed).eval();
-  }
-  return Q;
-}
-
-/// Mixes shapes X of one rate so that X' (2 rate + D) X = I with the plain transpose. Any mixture
-/// of them is a shape as well, and the solver's may have products of 0 with themselves.
-void normalise(std::complex<double> rate, const Eigen::MatrixXd& damping,
-               Eigen::Ref<Eigen::MatrixXcd> X) {
-  if (X.cols() > 1)
-    X = Eigen::MatrixXcd(Eigen::HouseholderQR<Eigen::MatrixXcd>(X).householderQ() *
-                         Eigen::MatrixXcd::Identity(X.rows(), X.cols()));
-  const Eigen::MatrixXcd with = 2. * rate * X + damping * X;
-  X = (X * unit_congruence(X.transpose() * with)).eval();
-}
 
 /// What Re sum shape shape' = 0 and Re sum rate shape shape' = I are missed by.
 double incompleteness(const DampedModes& modes) {
@@ -96,6 +28,7 @@ double incompleteness(const DampedModes& modes) {
   const Eigen::MatrixXd velocity =
       (modes.shape * modes.rate.asDiagonal() * modes.shape.transpose()).real();
   const auto n = velocity.rows();
+  if (!position.allFinite() || !velocity.allFinite()) return HUGE_VAL;
   return std::max((velocity - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(),
                   std::abs(modes.rate[0]) * position.cwiseAbs().maxCoeff());
 }
@@ -114,27 +47,51 @@ void orthogonalise(DampedModes& modes) {
     V.col(k).tail(m) = modes.rate[k] * V.col(k).head(m);
     if (pair) V.col(column++) = V.col(k).conjugate();
   }
+  double before = HUGE_VAL;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     Eigen::MatrixXcd AV(2 * m, 2 * m);
     AV.topRows(m) = modes.damping * V.topRows(m) + V.bottomRows(m);
     AV.bottomRows(m) = V.topRows(m);
     const Eigen::MatrixXcd W = V.transpose() * AV;
+    const double missed =
+        (W - Eigen::MatrixXcd::Identity(2 * m, 2 * m)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+    if (!(missed < before)) return;  // it leads away
+    before = missed;
     V = (1.5 * V - .5 * (V * W)).eval();
-    if ((W - Eigen::MatrixXcd::Identity(2 * m, 2 * m)).cwiseAbs().maxCoeff() < kSquared) break;
+    if (missed < kSquared) break;
   }
   for (Eigen::Index k = 0; k < kept; ++k)
     modes.shape.col(k) = V.col(k).head(m) / (modes.rate[k].imag() > 0. ? half : 1.);
 }
 
+/// Largest of what (rate^2 + rate D + Omega^2) shape = 0 is missed by, over its terms' sizes;
+/// round-off of the fastest rate, which any eigen solver leaves in the others, makes no part of it.
+double residual(const DampedModes& modes, const Eigen::VectorXd& omega) {
+  const Eigen::MatrixXcd damped = modes.damping * modes.shape;
+  const double round_off =
+      64. * std::numeric_limits<double>::epsilon() * modes.rate.cwiseAbs().maxCoeff();
+  double most = 0.;
+  for (Eigen::Index k = 0; k < modes.rate.size(); ++k) {
+    const std::complex<double> rate = modes.rate[k];
+    const auto x = modes.shape.col(k);
+    const Eigen::VectorXcd inertia = rate * rate * x, damper = rate * damped.col(k),
+                           spring = omega.cwiseAbs2().cwiseProduct(x);
+    const double terms = inertia.norm() + damper.norm() + spring.norm();
+    const double unknown = round_off * (2. * rate * x + damped.col(k)).norm();
+    most = std::max(most, ((inertia + damper + spring).norm() - unknown) / terms);
+  }
+  return most;
+}
+
 /// Throws where modes share a shape, so that the others cannot be all.
-void complete(DampedModes& modes) {
+void complete(DampedModes& modes, const Eigen::VectorXd& omega) {
   if (!(incompleteness(modes) < kOrthogonal) && modes.shape.allFinite()) orthogonalise(modes);
-  const double error = incompleteness(modes);
-  if (error < kMostIncomplete) return;
+  const double error = incompleteness(modes), off = residual(modes, omega);
+  if (error < kMostIncomplete && off < kMostResidual) return;
   std::ostringstream text;
-  text << "modes share one shape, as their damping is near to critical (completeness is missed "
-          "by "
-       << std::setprecision(2) << error << "); change the number of modes, or step the full track";
+  text << "modes share one shape, as their damping is near to critical (completeness is missed by "
+       << std::setprecision(2) << error << ", their equation by " << off
+       << "); change the number of modes, or step the full track";
   throw std::invalid_argument(text.str());
 }
 
@@ -166,31 +123,19 @@ Basis modal_basis(const Line& line, const ModalLimit& limit,
 
 DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping) {
   const auto m = basis.omega.size();
-  DampedModes result;
   const Eigen::MatrixXd S = basis.shapes.dense();
-  result.damping = S.transpose() * (damping * S);
+  const Eigen::MatrixXd D = S.transpose() * (damping * S);
   // First-order form over (omega y, y'), whose blocks are of one size.
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * m, 2 * m);
   A.topRightCorner(m, m).diagonal() = basis.omega;
   A.bottomLeftCorner(m, m).diagonal() = -basis.omega;
-  A.bottomRightCorner(m, m) = -result.damping;
+  A.bottomRightCorner(m, m) = -D;
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   if (solver.info() != Eigen::Success)
     throw std::invalid_argument("the damped modes of a line were not found");
-  std::vector<Eigen::Index> order = kept(solver.eigenvalues());
-  const std::vector<Eigen::Index> begins = group(solver.eigenvalues(), order, result.rate);
-  result.shape.resize(m, result.rate.size());
-  for (Eigen::Index i = 0; i < result.rate.size(); ++i)
-    result.shape.col(i) = solver.eigenvectors()
-                              .col(order[static_cast<std::size_t>(i)])
-                              .head(m)
-                              .cwiseQuotient(basis.omega.cast<std::complex<double>>());
-  for (std::size_t g = 0; g + 1 < begins.size(); ++g) {
-    auto shapes = result.shape.middleCols(begins[g], begins[g + 1] - begins[g]);
-    normalise(result.rate[begins[g]], result.damping, shapes);
-    if (result.rate[begins[g]].imag() > 0.) shapes *= std::sqrt(2.);
-  }
-  complete(result);
+  DampedModes result =
+      normalised_modes(basis.omega, D, solver.eigenvalues(), solver.eigenvectors());
+  complete(result, basis.omega);
   return result;
 }
 
