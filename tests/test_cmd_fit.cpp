@@ -221,8 +221,8 @@ TEST_CASE("a plain rectangle is three rectangles of one width", "[cli]") {
   CHECK_THAT(all["symmetric_difference_m2"].get<double>(), WithinAbs(0.0, 1e-10));
 }
 
-TEST_CASE("a place that cannot be written ends with 1 and is named", "[cli]") {
+TEST_CASE("a place that cannot be written is refused and named", "[cli]") {
   const Ran ran = fit(profile_file("60e1").string() + " --out /no/such/folder/section.toml");
-  CHECK(ran.code == 1);
+  CHECK(ran.code == 2);
   CHECK_THAT(ran.error, Contains("/no/such/folder/section.toml"));
 }
