@@ -277,7 +277,8 @@ TEST_CASE("shapes that the solver leaves parallel are found anew", "[modal]") {
       if (k == 1) vectors(2, column) = 1e-13;
     }
   }
-  const DampedModes modes = normalised_modes(omega, c.asDiagonal(), rates, vectors);
+  const DampedShapes found = damped_shapes(omega, c.asDiagonal(), rates, vectors);
+  const DampedModes modes{found.rate, found.shape, c.asDiagonal()};
   REQUIRE(modes.rate.size() == 3);
   CHECK(incompleteness(modes) < 1e-9);
   CHECK(residual({omega, Eigen::MatrixXd::Identity(3, 3)}, modes) < 1e-9);

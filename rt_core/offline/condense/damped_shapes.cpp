@@ -115,12 +115,12 @@ Eigen::MatrixXcd shapes_of(Complex rate, const Eigen::VectorXd& omega,
 
 }  // namespace
 
-DampedModes normalised_modes(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
-                             const Eigen::VectorXcd& rates, const Eigen::MatrixXcd& vectors) {
+DampedShapes damped_shapes(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
+                           const Eigen::VectorXcd& rates, const Eigen::MatrixXcd& vectors) {
   const OneRate one{rates.cwiseAbs().maxCoeff()};
   std::vector<Eigen::Index> order = kept(rates, one);
   const Eigen::Index m = omega.size(), count = static_cast<Eigen::Index>(order.size());
-  DampedModes modes{Eigen::VectorXcd(count), Eigen::MatrixXcd(m, count), damping};
+  DampedShapes modes{Eigen::VectorXcd(count), Eigen::MatrixXcd(m, count)};
   for (auto from = order.begin(); from != order.end();) {
     const Complex first = rates[*from];
     const auto to = std::stable_partition(

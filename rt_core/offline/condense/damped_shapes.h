@@ -1,12 +1,17 @@
 #pragma once
 #include <Eigen/Core>
-
-#include "offline/condense/modal.h"
+#include <complex>
 
 namespace railstep {
 
+/// Rates and shapes of damped modes, as DampedModes (modal.h) has them.
+struct DampedShapes {
+  Eigen::VectorXcd rate;   // [modes] 1/s, slowest first
+  Eigen::MatrixXcd shape;  // [kept][modes]
+};
+
 /// Damped modes of y'' + D y' + Omega^2 y = 0 from the eigenvalues and eigenvectors of its
-/// first-order form over (Omega y, y'), normalised as DampedModes says, but not yet checked.
+/// first-order form over (Omega y, y'), normalised, but not yet checked.
 ///
 /// Rates that lie within what an eigen solver leaves of them are one: they get their mean. Any
 /// mixture of their shapes is a shape as well; the solver's may be parallel, or have no product
@@ -15,7 +20,7 @@ namespace railstep {
 /// @param damping  [kept][kept] D, 1/s, symmetric
 /// @param rates    [2 kept] 1/s
 /// @param vectors  [2 kept][2 kept]
-DampedModes normalised_modes(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
-                             const Eigen::VectorXcd& rates, const Eigen::MatrixXcd& vectors);
+DampedShapes damped_shapes(const Eigen::VectorXd& omega, const Eigen::MatrixXd& damping,
+                           const Eigen::VectorXcd& rates, const Eigen::MatrixXcd& vectors);
 
 }  // namespace railstep

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "offline/condense/damped_shapes.h"
@@ -133,8 +134,8 @@ DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& 
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   if (solver.info() != Eigen::Success)
     throw std::invalid_argument("the damped modes of a line were not found");
-  DampedModes result =
-      normalised_modes(basis.omega, D, solver.eigenvalues(), solver.eigenvectors());
+  DampedShapes found = damped_shapes(basis.omega, D, solver.eigenvalues(), solver.eigenvectors());
+  DampedModes result{std::move(found.rate), std::move(found.shape), D};
   complete(result, basis.omega);
   return result;
 }
