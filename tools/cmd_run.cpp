@@ -110,7 +110,7 @@ void print_table(const nlohmann::ordered_json& result) {
                result["numerical_loss"].get<double>());
 }
 
-/// Where the scheme made more energy than a step that follows its motion does: of no use to a user.
+/// Says so where the scheme made energy, more than a step that follows the motion; else empty.
 std::string energy_note(const std::optional<EnergyBalance>& energy) {
   constexpr double kMuch = .05;
   if (!energy || !(energy->numerical_loss < -kMuch)) return {};

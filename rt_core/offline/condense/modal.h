@@ -42,8 +42,8 @@ struct DampedModes {
   Eigen::VectorXcd from(const Eigen::VectorXd& y, const Eigen::VectorXd& velocity) const;
 };
 
-/// Throws std::invalid_argument where the check above misses by more than 1e-7: two modes at
-/// critical damping have one shape.
+/// Throws std::invalid_argument where the check above misses by more than 1e-7, or a mode its
+/// equation by more than 1e-6: two modes at critical damping have one shape.
 DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping);
 
 /// The slowest of damped modes, those of one speed (|rate|) together or not at all. A truncation,
