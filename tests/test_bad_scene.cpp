@@ -73,7 +73,8 @@ TEST_CASE("masses, stiffnesses and lengths that are none are refused", "[bad_inp
   const struct {
     std::string scene, override, said;
   } cases[] = {
-      {kMovingLoad, "rail.young_pa=0", "young_pa = 0 is out of range; accepted is at least 100000"},
+      {kMovingLoad, "rail.young_pa=0",
+       "young_pa = 0 is out of range; accepted is at least 1000000000"},
       {kMovingLoad, "rail.density_kg_per_m3=-7850", "density_kg_per_m3 = -7850 is out of range"},
       {kMovingLoad, "rail.rectangle.width_m=0", "width_m = 0 is out of range"},
       {kMovingLoad, "track.bay_m=-0.6", "bay_m = -0.6 is out of range; accepted is at least 0.05"},
@@ -104,6 +105,11 @@ TEST_CASE("millimetres given as metres are refused in a scene", "[bad_input][cli
                                "rail.rectangle.height_m=231.9", "support.half_spread_m=70"})
     run_refuses(kMovingLoad, {override}, {"out of range", "was it given in millimetres?"});
   run_refuses(kWheelset, {"wheelset[0].radius_m=460"}, {"radius_m = 460", "millimetres"});
+}
+
+TEST_CASE("a rail's modulus given in N/mm2 is refused with the unit named", "[bad_input][cli]") {
+  run_refuses(kMovingLoad, {"rail.young_pa=210e3"},
+              {"young_pa = 210000 is out of range", "(Pa; was it given in N/mm2?)"});
 }
 
 TEST_CASE("a stiffness out of range is not asked whether it was in millimetres",

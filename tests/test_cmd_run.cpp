@@ -220,6 +220,29 @@ TEST_CASE("a load that leaves the rail is said in words and is no failure", "[ru
   CHECK_THAT(ran.err, Contains("lengthen the track"));
 }
 
+TEST_CASE("a rail that sinks farther than tracks do raises the question of units", "[run]") {
+  const std::string short_run =
+      "run " + kMovingLoad + " --json --duration 0.01 --set 'step.start=\"equilibrium\"'";
+  const std::string sank = "a rail sank by";
+  CHECK_THAT(railstep_program(short_run).err, !Contains(sank));
+  const Ran kilonewtons = railstep_program(short_run + " --set support.stiffness_z_n_per_m=30e3");
+  CHECK(kilonewtons.code == 0);
+  CHECK_THAT(kilonewtons.err, Contains("note: " + sank) && Contains("stiffnesses given in N/m"));
+  const auto warnings = nlohmann::json::parse(kilonewtons.out).at("warnings");
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0].get<std::string>(), Contains(sank));
+}
+
+TEST_CASE("constants of no shape raise the question of units", "[run]") {
+  const std::string hammer = "run " + kScenes + "impact_hammer.toml --json --duration 1e-3";
+  const std::string asked = "is it given in m4?";
+  CHECK_THAT(railstep_program(hammer).err, !Contains(asked));
+  const Ran hundredfold = railstep_program(hammer + " --set rail.constants.inertia_y_m4=3.0383e-3");
+  CHECK(hundredfold.code == 0);
+  CHECK_THAT(hundredfold.err, Contains("note: inertia_y_m4 = 0.0030383") && Contains(asked));
+  CHECK(nlohmann::json::parse(hundredfold.out).at("warnings").size() == 1);
+}
+
 TEST_CASE("from equilibrium a load that stands still moves nothing", "[run]") {
   const Scene scene = read_scene(
       kMovingLoad, {"step.start=\"equilibrium\"", "load[0].speed_m_per_s=0",

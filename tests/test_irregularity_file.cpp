@@ -66,8 +66,11 @@ TEST_CASE("a file that is no record of irregularities is refused with its line")
   CHECK_THAT(refusal("distance_m,gauge_mm,gauge_m\n"), Contains("twice"));
   CHECK_THAT(refusal("distance_m,gauge_mm,left_z_mm\n"), Contains("one kind"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n"), Contains("3 rows"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n1.7,3\n"), Contains("equal steps"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n3,1\n2,2\n1,3\n0,3\n"), Contains(":2:"));
+  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n1.7,3\n"),
+             Contains(":5:") && Contains("1.7 m behind one of 1 m") && Contains("equal steps"));
+  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n2,3\n2.5,3\n3,3\n"),  // 1.5 is missing
+             Contains(":5:") && Contains("2 m behind one of 1 m"));
+  CHECK_THAT(refusal("distance_m,gauge_mm\n3,1\n2,2\n1,3\n0,3\n"), Contains(":3:"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,x\n1.5,3\n"),
              Contains(":4:") && Contains("'x'"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,nan\n1,1\n1.5,3\n"), Contains(":3:"));

@@ -144,6 +144,22 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
   CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 9.0\nto_m = 9.05\n"
                      "wavelength_m = 0.06\namplitude_m = 1e-5\n"),
              Contains("to_m"));
+  // Samples of a thousandth of the shape over all it spans are too many.
+  CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 0.0\nto_m = 1e6\n"
+                     "wavelength_m = 0.06\namplitude_m = 1e-5\n"),
+             Contains("to_m: 1e+06 m in samples") && Contains("too many; accepted are 2e+07"));
+  CHECK_THAT(refusal(dip + "depth_m = 1e-3\nramp_m = 0.5\ncontact_patch_m = 1e-9\n"),
+             Contains("contact_patch_m: 1 m in samples 2.5e-10 m apart"));
+  CHECK_THAT(refusal("[[wheelset.tread]]\nkind = \"fresh_flat\"\nlength_m = 1e-7\n",
+                     {"wheelset[0].speed_m_per_s=0"}),
+             Contains("length_m: ") && Contains("too many"));
+  // Steeper than 45 degrees.
+  CHECK_THAT(refusal("[[wheelset.tread]]\nkind = \"out_of_round\"\norder = 200\n"
+                     "amplitude_m = 0.1\n"),
+             Contains("amplitude_m = 0.1 is out of range; accepted is at least -0.0023"));
+  CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 0.0\nto_m = 5.0\n"
+                     "wavelength_m = 0.06\namplitude_m = 0.02\n"),
+             Contains("amplitude_m = 0.02 is out of range; accepted is at least -0.00954"));
   const std::string flat = "[[wheelset.tread]]\nkind = \"rounded_flat\"\nlength_m = 0.04\n";
   CHECK(refusal(flat) == "accepted");
   CHECK_THAT(refusal(flat + flat), Contains("one of each wheel"));

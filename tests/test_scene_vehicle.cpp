@@ -71,6 +71,17 @@ TEST_CASE("every type of vehicle is read with its defaults", "[scene][vehicle]")
   CHECK(whole.kind.vehicle.wheels[3].place == -6.5);
 }
 
+TEST_CASE("bogies that stand in each other are refused", "[scene][vehicle]") {
+  const std::string car =
+      "name=\"c\", type=\"vehicle\", body_mass_kg=1e4, body_inertia_kg_m2=1e6, "
+      "secondary_stiffness_n_per_m=4e5, frame_mass_kg=1e3, frame_inertia_kg_m2=700.0, "
+      "wheel_mass_kg=600.0, wheelbase_m=3.0, primary_stiffness_n_per_m=1e6, " +
+      kSpeed;
+  CHECK(sentence(car + ", bogie_distance_m=3.1") == "accepted");
+  CHECK_THAT(sentence(car + ", bogie_distance_m=3.0"),
+             Contains("bogie_distance_m = 3 is out of range; accepted is above 3, at most 1000"));
+}
+
 TEST_CASE("shipped vehicles are read, and stand where they say", "[scene][vehicle]") {
   for (const auto& [file, wheels, bodies] : {std::tuple{"manchester_passenger", 4u, 7u},
                                              {"manchester_bogie", 2u, 3u},

@@ -66,25 +66,21 @@ RailSignals generated(const IrregularityScene& own) {
   return rails_of(geometry);
 }
 
-/// Samples of what a patch smooths anyway, and no fewer than 50 over the shape itself.
-DefectGrid grid(double patch, double shape) {
-  return {patch > 0. ? std::min(patch / 4., shape / 50.) : shape / 500., patch};
-}
-
 Signal signal_of(const DefectScene& d) {
   return d.kind == DefectKind::dipped_joint
-             ? dipped_joint(d.at, d.depth, d.ramp, grid(d.patch, d.ramp))
-             : corrugation(d.from, d.to, d.length, d.amplitude, grid(d.patch, d.length));
+             ? dipped_joint(d.at, d.depth, d.ramp, defect_grid(d.patch, d.ramp))
+             : corrugation(d.from, d.to, d.length, d.amplitude, defect_grid(d.patch, d.length));
 }
 
 Signal signal_of(const TreadScene& d, double radius) {
   switch (d.kind) {
     case TreadKind::fresh_flat:
-      return fresh_flat(radius, d.length, grid(d.patch, d.length));
+      return fresh_flat(radius, d.length, defect_grid(d.patch, d.length));
     case TreadKind::rounded_flat:
-      return rounded_flat(radius, d.length, d.depth, grid(d.patch, d.length));
+      return rounded_flat(radius, d.length, d.depth, defect_grid(d.patch, d.length));
     default:
-      return out_of_round(radius, d.order, d.amplitude, grid(d.patch, 2. * kPi * radius / d.order));
+      return out_of_round(radius, d.order, d.amplitude,
+                          defect_grid(d.patch, 2. * kPi * radius / d.order));
   }
 }
 

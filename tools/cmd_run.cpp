@@ -20,6 +20,7 @@
 #include "simulate.h"
 #include "speed_note.h"
 #include "trace.h"
+#include "unit_note.h"
 #include "vtk_record.h"
 #include "write.h"
 
@@ -121,7 +122,7 @@ std::string energy_note(const std::optional<EnergyBalance>& energy) {
 }
 
 /// Says in words what the run met.
-/// @param notes  what is to be said of the choice of speed and of energy
+/// @param notes  what is to be said of speed, energy and depth
 Exit verdict(const Simulation& run, const RunRecord& record,
              const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
@@ -176,7 +177,8 @@ Exit run(const RunOptions& o) {
                                    : simulation_of(*scene);
   const std::int64_t frames = frames_of(o, artefact, simulation->model());
   const Scene* const track = scene ? std::get_if<Scene>(&*scene) : nullptr;
-  const std::string near = track != nullptr ? speed_note(*track, simulation->track()) : "";
+  std::vector<std::string> notes;
+  if (track != nullptr) notes = {speed_note(*track, simulation->track()), constants_note(*track)};
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
@@ -209,9 +211,8 @@ Exit run(const RunOptions& o) {
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
   nlohmann::ordered_json result = to_json(*simulation, record, energy);
-  std::vector<std::string> notes;
-  for (const std::string& note : {near, energy_note(energy)})
-    if (!note.empty()) notes.push_back(note);
+  notes.insert(notes.end(), {energy_note(energy), depth_note(record)});
+  std::erase(notes, "");
   result["warnings"] = notes;
   if (o.json)
     fmt::print("{}\n", result.dump(2));

@@ -94,6 +94,20 @@ std::vector<std::vector<double>> values_of(const std::vector<CsvLine>& lines,
   return values;
 }
 
+/// The first row whose distance from the one before is off by `much` of what most rows have, if
+/// that is above 0, so that a row that is missing is found where it is.
+std::size_t first_off(const std::vector<double>& distance, double much) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < distance.size(); ++k) steps.push_back(distance[k] - distance[k - 1]);
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const auto off = std::find_if(steps.begin(), steps.end(), [&](double step) {
+    return !(step > 0.) || !(std::fabs(step - *middle) <= much * *middle);
+  });
+  return off == steps.end() ? 0 : static_cast<std::size_t>(off - steps.begin()) + 1;
+}
+
 /// Checks that rows stand at equal distances. @returns the step
 double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& lines) {
   if (distance.size() < 4)
@@ -101,13 +115,16 @@ double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& 
                                  lines.front().place, distance.size()));
   const double step =
       (distance.back() - distance.front()) / static_cast<double>(distance.size() - 1);
+  constexpr double kMuch = 1e-3;
   for (std::size_t k = 0; k < distance.size(); ++k) {
     const double wanted = distance.front() + step * static_cast<double>(k);
-    if (!(step > 0.) || !(std::fabs(distance[k] - wanted) <= 1e-3 * step))
-      throw InputError(
-          fmt::format("{}: distance {:.9g} m where equal steps of {:.6g} m want "
-                      "{:.9g} m; rows at equal, rising distances are accepted",
-                      lines[k + 1].place, distance[k], step, wanted));
+    if (step > 0. && std::fabs(distance[k] - wanted) <= kMuch * step) continue;
+    const std::size_t one = first_off(distance, kMuch), off = one > 0 ? one : k;
+    throw InputError(
+        fmt::format("{}: distance {:.9g} m behind one of {:.9g} m, where all rows want equal "
+                    "steps, of {:.6g} m on the average; rows at equal, rising distances are "
+                    "accepted",
+                    lines[off + 1].place, distance[off], distance[off - 1], step));
   }
   if (step < kLeastStep)
     throw InputError(fmt::format("{}: rows {:.6g} m apart; at least {:g} m are accepted",

@@ -79,6 +79,14 @@ std::string bracketed(const std::string& name) { return name.empty() ? "" : "[" 
       one_line(fmt::format("{}: {}{}", place(source, document.file), bracketed(table), sentence)));
 }
 
+/// The unit that would explain a value out of its range, as a question; else empty.
+const char* likely_slip(std::string_view key, double value, const Range& accepted) {
+  if (key.ends_with("_m") && !key.ends_with("_per_m") && accepted.holds(value / 1000.0))
+    return " (metres; was it given in millimetres?)";
+  if (key.ends_with("_pa") && accepted.holds(value * 1e6)) return " (Pa; was it given in N/mm2?)";
+  return "";
+}
+
 std::vector<std::string> to_vector(const std::set<std::string, std::less<>>& keys) {
   return {keys.begin(), keys.end()};
 }
@@ -148,11 +156,8 @@ struct Table::Entry {
     if (!std::isfinite(value))
       refuse(at, fmt::format("{} is not finite; accepted is {}", found, accepted.text()));
     if (accepted.holds(value)) return value;
-    // Millimetres typed as metres are the likeliest slip: say so where it would explain the value.
-    const bool millimetres =
-        key.ends_with("_m") && !key.ends_with("_per_m") && accepted.holds(value / 1000.0);
     refuse(at, fmt::format("{} is out of range; accepted is {}{}", found, accepted.text(),
-                           millimetres ? " (metres; was it given in millimetres?)" : ""));
+                           likely_slip(key, value, accepted)));
   }
   [[nodiscard]] std::size_t choice(const toml::node& at, Names names) const {
     const std::string found = fmt::format("{} = {}", key, shown(at));

@@ -325,7 +325,7 @@ Scene read_track_scene(const Table& root) {
   scene.wheelsets = read_wheelsets(root, scene, scene.inputs);
   scene.vehicles = read_vehicles(root, scene, scene.inputs);
   scene.external_wheels = read_external_wheels(root, scene);
-  check_stages(root, scene);
+  check_external_wheels(root, scene);
   scene.irregularity = read_irregularity(root, scene);
   scene.defects = read_defects(root, scene);
   scene.sensors = read_sensors(root, scene);

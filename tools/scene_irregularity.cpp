@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "offline/irregularity/defect.h"
 #include "scene_read.h"
 
 namespace railstep {
@@ -14,6 +15,13 @@ namespace {
 constexpr double kTwoPi = 6.28318530717958647692;
 const Range kPatch = between(0.0, 0.5);
 const Range kHeight = between(-0.1, 0.1);
+
+/// Of a cosine wave: nowhere steeper than 45 degrees.
+Range wave_height(double wavelength) {
+  const double most = std::min(0.1, wavelength / kTwoPi);
+  return between(-most, most);
+}
+
 constexpr double kEndlessPeriod = 1000.;  // m
 
 /// One of the two, or both.
@@ -41,6 +49,21 @@ void check_wave(const Table& t, std::string_view key, double wavelength, double 
                        "{:.6g}; accepted are 8 steps or more: a shorter step.dt_s, a longer "
                        "wave",
                        wavelength, speed, wavelength / (speed * scene.step->dt), scene.step->dt));
+}
+
+/// Refuses a defect of more samples than a signal may hold.
+/// @param key    of its length
+/// @param half   of what it spans, m
+/// @param shape  what its samples have to resolve beside the contact patch, m
+void check_samples(const Table& t, std::string_view key, double half, double patch, double shape) {
+  const double step = defect_grid(patch, shape).step;
+  if (std::max(half, patch) < kMostDefectSteps * step) return;
+  const bool of_patch = patch > 0. && step < shape / 50.;
+  t.refuse(of_patch ? "contact_patch_m" : key,
+           fmt::format("{}: {:.6g} m in samples {:.3g} m apart, which a contact patch of {:.6g} m "
+                       "and a shape of {:.6g} m want, are too many; accepted are {:g}",
+                       of_patch ? "contact_patch_m" : key, 2. * half, step, patch, shape,
+                       2. * kMostDefectSteps));
 }
 
 /// The names of the geometries that a spectrum has.
@@ -130,11 +153,13 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
       d.at = t.number("at_m", on_rail);
       d.depth = t.number("depth_m", kHeight);
       d.ramp = t.number("ramp_m", between(1e-4, 100.0));
+      check_samples(t, "ramp_m", d.ramp, d.patch, d.ramp);
     } else {
       d.length = t.number("wavelength_m", above_upto(1e-3, 100.0));
-      d.amplitude = t.number("amplitude_m", kHeight);
+      d.amplitude = t.number("amplitude_m", wave_height(d.length));
       d.from = t.number("from_m", on_rail);
       d.to = t.number("to_m", between(d.from + 2. * d.length, 1e9));
+      check_samples(t, "to_m", .5 * (d.to - d.from), d.patch, d.length);
       check_wave(t, "wavelength_m", d.length, fastest(scene), scene);
     }
     defects.push_back(d);
@@ -155,15 +180,16 @@ TreadScene read_tread(const Table& t, const Scene& scene, double radius, double 
   double wave;
   if (d.kind == TreadKind::out_of_round) {
     d.order = static_cast<int>(t.integer("order", 1, 200));
-    d.amplitude = t.number("amplitude_m", kHeight);
     wave = kTwoPi * radius / d.order;
+    d.amplitude = t.number("amplitude_m", wave_height(wave));
   } else {
     wave = d.length = t.number("length_m", above_upto(0.0, .9 * radius));
     if (d.kind == TreadKind::rounded_flat)
       d.depth = t.number("depth_m", above_upto(0.0, 0.1), d.length * d.length / (16. * radius));
   }
-  check_wave(t, d.kind == TreadKind::out_of_round ? "order" : "length_m", wave, std::fabs(speed),
-             scene);
+  const char* const key = d.kind == TreadKind::out_of_round ? "order" : "length_m";
+  check_wave(t, key, wave, std::fabs(speed), scene);
+  check_samples(t, key, .5 * kTwoPi * radius, d.patch, wave);
   return d;
 }
 

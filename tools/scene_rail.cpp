@@ -9,6 +9,8 @@ namespace {
 // A rail's section is under a metre in every direction; what is larger was given in millimetres.
 const Range kSize = between(1e-4, 1.0);
 const Range kShearFactor = above_upto(0.0, 1.2);
+// A beam may be of rubber; a rail of under 1 GPa was given in N/mm2.
+const Range kRailYoung = between(1e9, 1e13), kBeamYoung = between(1e5, 1e13);  // Pa
 
 RectangleSizes read_rectangles(const Table& t) {
   const RectangleSizes r{t.number("foot_width_m", kSize), t.number("foot_height_m", kSize),
@@ -86,12 +88,10 @@ int read_section_points(const Table& t, const SectionSource& shape) {
   return points;
 }
 
-}  // namespace
-
-BarScene read_bar(const Table& bar) {
+BarScene read_bar_of(const Table& bar, const Range& young) {
   BarScene r;
   r.shape = read_shape(bar);
-  r.young = bar.number("young_pa", between(1e5, 1e13), 210e9);
+  r.young = bar.number("young_pa", young, 210e9);
   // Beyond these a material makes work out of nothing; at 0.5 it cannot be compressed at all.
   r.poisson = bar.number("poisson", {-1.0, 0.5, false, false}, 0.3);
   r.density = bar.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
@@ -105,9 +105,13 @@ BarScene read_bar(const Table& bar) {
   return r;
 }
 
+}  // namespace
+
+BarScene read_bar(const Table& bar) { return read_bar_of(bar, kBeamYoung); }
+
 RailScene read_rail(const Table& rail) {
   RailScene r;
-  static_cast<BarScene&>(r) = read_bar(rail);
+  static_cast<BarScene&>(r) = read_bar_of(rail, kRailYoung);
   r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), 0.3);
   r.axial_force = rail.number("axial_force_n", between(-1e10, 1e10), 0.0);
   r.temperature_rise = rail.number("temperature_rise_k", between(-300.0, 300.0), 0.0);
@@ -125,7 +129,7 @@ RailScene read_right_rail(const Table& right, const RailScene& left) {
       r.shear_factor_z = read_override(right, "shear_factor_z");
       break;
     }
-  r.young = right.number("young_pa", between(1e5, 1e13), left.young);
+  r.young = right.number("young_pa", kRailYoung, left.young);
   r.poisson = right.number("poisson", {-1.0, 0.5, false, false}, left.poisson);
   r.density = right.number("density_kg_per_m3", between(1.0, 1e5), left.density);
   r.crown_radius = right.number("crown_radius_m", between(0.01, 10.0), left.crown_radius);

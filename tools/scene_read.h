@@ -46,8 +46,9 @@ StepScene read_track_step(const Table& step);
 void read_scheme(const Table& step, double rho_inf, bool of_bodies, StepScene& read);
 /// How contact forces of [step] follow the penetration; of a scene whose [condense] is read.
 void read_contact(const Table& root, Scene& scene);
-/// Refuses a scheme of two stages where something presses at the ends of steps alone.
-void check_stages(const Table& root, const Scene& scene);
+/// Refuses what external wheels cannot stand beside: what is not linear, frames of several steps,
+/// a scheme of two stages.
+void check_external_wheels(const Table& root, const Scene& scene);
 /// Refuses a run that is no whole number of frames.
 void check_frames(const Table& step, const StepScene& read);
 /// How a track's nodes lie in its section: reference_line, the centroid by default.

@@ -48,13 +48,42 @@ void read_contact(const Table& root, Scene& scene) {
         "with condense.kind = \"modal\", \"guyan\", \"irs\", \"craig-bampton\", \"krylov\"");
 }
 
-void check_stages(const Table& root, const Scene& scene) {
-  const bool two = scene.step && scene.step->scheme == TimeScheme::tr_bdf2 && !scene.condense.kind;
-  if (two && !scene.external_wheels.empty())
-    root.table("step").refuse(
-        "scheme",
-        "scheme = \"tr-bdf2\" has two stages, and an [[external_wheel]] presses at the ends of "
-        "steps; accepted are \"generalised-alpha\", \"backward-euler\", \"newmark\", \"hht\"");
+namespace {
+
+/// What a scene has whose forces follow from its own motion, and which an external wheel's, held
+/// over a step, would not meet; null: nothing.
+const char* contact_beside(const Scene& scene) {
+  if (!scene.wheelsets.empty()) return "[[wheelset]]";
+  if (!scene.vehicles.empty()) return "[[vehicle]]";
+  if (!scene.stops.empty()) return "[[stop]]";
+  if (scene.support && (scene.support->unilateral || scene.support->gap > 0.))
+    return "[support] of pads that do not pull";
+  if (scene.sleeper && (scene.sleeper->ballast_unilateral || scene.sleeper->ballast_gap > 0.))
+    return "[ballast] that does not pull";
+  return nullptr;
+}
+
+}  // namespace
+
+void check_external_wheels(const Table& root, const Scene& scene) {
+  if (scene.external_wheels.empty()) return;
+  if (const char* const other = contact_beside(scene))
+    root.tables("external_wheel")
+        .front()
+        .refuse("", fmt::format("an external wheel runs on a track that is linear, and the scene "
+                                "has a {}; accepted is one of the two",
+                                other));
+  if (!scene.step) return;
+  const Table step = root.table("step");
+  if (scene.step->scheme == TimeScheme::tr_bdf2 && !scene.condense.kind)
+    step.refuse("scheme",
+                "scheme = \"tr-bdf2\" has two stages, and an [[external_wheel]] presses at the "
+                "ends of steps; accepted are \"generalised-alpha\", \"backward-euler\", "
+                "\"newmark\", \"hht\"");
+  if (scene.step->steps_per_frame != 1)
+    step.refuse("frame_s", fmt::format("an [[external_wheel]] wants a frame of one step, and this "
+                                       "one has {}; accepted is frame_s = dt_s",
+                                       scene.step->steps_per_frame));
 }
 
 }  // namespace railstep

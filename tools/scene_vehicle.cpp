@@ -44,7 +44,7 @@ NamedVehicle read_car(const Table& t) {
   c.bogie = read_bogie(t);
   c.body_mass = t.number("body_mass_kg", kMass);
   c.body_inertia = t.number("body_inertia_kg_m2", kInertia);
-  c.bogie_distance = t.number("bogie_distance_m", above_upto(0.0, 1000.0));
+  c.bogie_distance = t.number("bogie_distance_m", above_upto(c.bogie.wheelbase, 1000.0));
   c.secondary_stiffness = t.number("secondary_stiffness_n_per_m", kStiffness);
   c.secondary_damping = t.number("secondary_damping_n_s_per_m", kDamping, 0.0);
   return car(c);

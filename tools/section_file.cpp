@@ -28,8 +28,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Refuses what no shape has.
 void check_shape(const Table& t, const Section& s) {
-  // Of all shapes of this height and centroid the one with its area at foot and head has the most.
-  const double most = s.area.area * s.area.centroid_height * (s.height - s.area.centroid_height);
+  const double most = most_inertia(s);
   if (!(s.area.inertia_y <= most))
     t.refuse("inertia_y_m4",
              fmt::format("inertia_y_m4 = {:g} is that of no shape of this area, height and "
@@ -61,6 +60,11 @@ Section fitted_section(const SectionFit& fit, double height) {
 Section read_profile_section(const std::filesystem::path& file) {
   const Outline outline = read_profile(file).outline;
   return fitted_section(fit_section(outline), outline.height);
+}
+
+double most_inertia(const Section& section) {
+  const double centroid = section.area.centroid_height;
+  return section.area.area * centroid * (section.height - centroid);
 }
 
 Section read_constants(const Table& t) {

@@ -25,6 +25,10 @@ Section read_profile_section(const std::filesystem::path& file);
 /// Constants of a section, from [rail.constants] or a section file's [section]. Throws InputError.
 Section read_constants(const Table& t);
 
+/// The largest second moment for vertical bending that a shape with a section's area, height and
+/// centroid can have, m4: that of all its area at foot and head, A c (h - c).
+double most_inertia(const Section& section);
+
 /// Reads a section file, as `railstep fit --out` writes it: what a scene's `section` names. Only
 /// its table [section] is used; the others say where it came from. Throws InputError, also where no
 /// shape has its constants: a second moment over A c (h - c), that of all the area at foot and

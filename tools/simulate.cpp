@@ -78,6 +78,18 @@ void note_redundant(const Simulation& run, const Outputs& outputs, RunRecord& re
   }
 }
 
+/// The lowest of a rail's points under loads and wheels, up, m; 0 where none sank.
+double lowest(const Model& model, const Outputs& outputs) {
+  double least = 0.;
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    least = std::min(least, outputs.load_deflection[i]);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i)
+    least = std::min(least, outputs.wheel_rail_z[i]);
+  for (std::int32_t i = 0; i < model.external_wheels; ++i)
+    least = std::min(least, outputs.external_displacement[i][2]);
+  return least;
+}
+
 }  // namespace
 
 RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bool keep_rows,
@@ -91,6 +103,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bo
     record.iterations = std::max(record.iterations, outputs.iterations);
     record.constraint_violation =
         std::max(record.constraint_violation, outputs.constraint_violation);
+    record.deepest = std::min(record.deepest, lowest(run.model(), outputs));
     note_redundant(run, outputs, record);
     if (!sink && !keep_rows) return;
     trace_row(run.model(), run.state, outputs, row.data());

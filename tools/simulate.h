@@ -35,6 +35,7 @@ struct RunRecord {
   std::vector<double> frame_us;         // wall time of steps alone, us: of each frame_stride-th
   std::int64_t frame_stride = 1;        // 1 up to kMostTimes frames
   double slowest_us = 0.;               // of all frames
+  double deepest = 0.;                  // a rail's place under traffic, up, m; never above 0
   std::int64_t allocations = 0;         // calls of new within the frames, see heap_count.h
   std::vector<double> rows;             // the trace, row after row; only when asked for
   std::vector<double> violations;       // [frames + 1] of the constraints; with the rows

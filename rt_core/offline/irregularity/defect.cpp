@@ -1,5 +1,6 @@
 #include "offline/irregularity/defect.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -10,10 +11,9 @@ namespace railstep {
 namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
-constexpr double kMostSamples = 1e7;
 
 int whole_steps(double length, double step) {
-  if (!(length > 0.) || !(step > 0.) || !(length / step < kMostSamples))
+  if (!(length > 0.) || !(step > 0.) || !(length / step < kMostDefectSteps))
     throw std::invalid_argument("a defect's length and step are above 0, with 1e7 steps at most");
   return static_cast<int>(std::ceil(length / step * (1. - 1e-12)));
 }
@@ -24,7 +24,7 @@ Signal around(double place, double half, const DefectGrid& grid, const Shape& sh
   // What lies within the patch of an end is beyond it after the mean.
   const int steps = whole_steps(half, grid.step);
   const double step = half / steps;
-  if (!(grid.patch / step < kMostSamples))
+  if (!(grid.patch / step < kMostDefectSteps))
     throw std::invalid_argument(
         "a defect is so short that its contact patch holds over 1e7 of its steps");
   const int beyond = static_cast<int>(std::ceil(grid.patch / step)) + 1;
@@ -50,6 +50,10 @@ void want_flat(double radius, double length) {
 }
 
 }  // namespace
+
+DefectGrid defect_grid(double patch, double shape) {
+  return {patch > 0. ? std::min(patch / 4., shape / 50.) : shape / 500., patch};
+}
 
 Signal dipped_joint(double place, double depth, double ramp, const DefectGrid& grid) {
   return around(place, ramp, grid, [=](double x) { return -depth * (1. - std::fabs(x) / ramp); });

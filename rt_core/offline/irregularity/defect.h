@@ -11,6 +11,13 @@ struct DefectGrid {
   double patch = 0.;  // m
 };
 
+/// Steps that half of a shape, or a contact patch, may hold.
+inline constexpr double kMostDefectSteps = 1e7;
+
+/// Steps of a fourth of the patch, which smooths what is shorter, and 50 or more of them over a
+/// shape of that length; 500 without a patch.
+DefectGrid defect_grid(double patch, double shape);
+
 /// A joint whose ends hang: straight ramps down to `depth` at `place`, each `ramp` long. The dip
 /// angle of Jenkins and others (1974) is 2 alpha = 2 depth / ramp.
 Signal dipped_joint(double place, double depth, double ramp, const DefectGrid& grid);
