@@ -81,6 +81,22 @@ TEST_CASE("a block that starts between words is not placed", "[artefact]") {
   }
 }
 
+TEST_CASE("what fills a block up between its sections is zero", "[artefact]") {
+  const Block good = small_block(true, true);
+  const BlockHeader header = header_of(good.data());
+  int gaps = 0;
+  for (std::size_t s = 0; s < kSections; ++s)
+    for (std::size_t at = header.section[s].at + header.section[s].bytes; at % 8 != 0; ++at) {
+      Block bad = good;
+      bad[at] = std::byte{1};
+      CHECK(status_of(bad) == LoadStatus::wrong_sum);
+      sign(bad);
+      CHECK(status_of(bad) == LoadStatus::bad_content);
+      ++gaps;
+    }
+  CHECK(gaps > 0);
+}
+
 TEST_CASE("numbers out of range are refused though the sum is right", "[artefact]") {
   const Block good = small_block(true, true);
   const std::size_t counts = section_at(good, kWords);
@@ -177,7 +193,7 @@ TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact]
     for (const bool wheels : {false, true}) {
       const Block good = small_block(modal, wheels);
       int loaded = 0, refused = 0;
-      for (int round = 0; round < 1500; ++round) {
+      for (int round = 0; round < 2000; ++round) {
         const Block bad = mutated(good, random);
         Model model;
         if (read(bad, model).status != LoadStatus::ok) {

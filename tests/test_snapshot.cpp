@@ -10,6 +10,7 @@
 
 #include "online/model/course.h"
 #include "online/model/snapshot.h"
+#include "online/model/system_workspace.h"
 #include "online/step/step.h"
 #include "simulation.h"
 
@@ -229,6 +230,39 @@ TEST_CASE("what is latched, and a state that is not finite, come back to the bit
   REQUIRE(restore_snapshot(model, bytes.data(), bytes.size(), run->state) == SnapshotStatus::ok);
   CHECK(run->state.latched == Status::nonfinite_state);
   CHECK(state_hash(model, run->state) == hash);
+}
+
+TEST_CASE("a snapshot whose kept matrix cannot be solved with is refused", "[snapshot]") {
+  const auto run =
+      simulation_of(read_any_scene(kFolder + "slider_crank.toml", {"joints.tangent=\"kept\""}));
+  const Model& model = run->model();
+  const std::int32_t rows = system_rows(model.system);
+  REQUIRE(rows > 1);
+  const auto status = [&] {
+    const Bytes bytes = saved(model, run->state);
+    return restore_snapshot(model, bytes.data(), bytes.size(), run->state);
+  };
+  const SystemTangent kept = system_tangent_on(model.system, run->state.kept);
+  kept.order[0] = 1 << 30;
+  CHECK(status() == SnapshotStatus::ok);  // none is kept at the start
+  Outputs outputs{};
+  publish_start(model, run->state, outputs);
+  static_cast<void>(advance_frame(model, run->state, run->workspace, outputs));
+  REQUIRE(*kept.age > 0.);
+  CHECK(status() == SnapshotStatus::ok);
+  const std::int32_t first = kept.order[0], last = kept.order[rows - 1];
+  for (const std::int32_t bad : {-1, rows, 1 << 30, last}) {
+    kept.order[0] = bad;
+    CHECK(status() == SnapshotStatus::bad_content);
+  }
+  kept.order[0] = first;
+  const double rank = *kept.rank;
+  for (const double bad : {-1., 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    *kept.rank = bad;
+    CHECK(status() == SnapshotStatus::bad_content);
+  }
+  *kept.rank = rank;
+  CHECK(status() == SnapshotStatus::ok);
 }
 
 TEST_CASE("a snapshot from where steps can no longer be counted is refused", "[snapshot]") {

@@ -204,7 +204,8 @@ std::string unknown_place(const Simulation& run, std::int32_t unknown) {
 
 std::string nonfinite_sentence(const Simulation& run, const RunRecord& record) {
   return fmt::format(
-      "nonfinite_state: at step {}, t = {:.9g} s, unknown {} of the state ({}) is not finite",
+      "nonfinite_state: at step {}, t = {:.9g} s, unknown {} of the state ({}) is not finite, "
+      "or beyond 1.6e60",
       run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
       record.first_bad_unknown, unknown_place(run, record.first_bad_unknown));
 }

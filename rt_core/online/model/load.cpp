@@ -49,13 +49,13 @@ class Reader {
   }
   void real(double& value) noexcept {
     bound(value);
-    if (!is_finite(value)) good_ = false;
+    if (!is_moderate(value)) good_ = false;
   }
   void reals(const double*& values, std::int64_t n) noexcept {
     array(values, kReals, n, true);
     if (values == nullptr) return;
     for (std::int64_t i = 0; i < n; ++i)
-      if (!is_finite(values[i])) good_ = false;
+      if (!is_moderate(values[i])) good_ = false;
   }
   void integers(const std::int32_t*& values, std::int64_t n) noexcept {
     array(values, kIntegers, n, false);
@@ -111,6 +111,18 @@ bool sections_hold(const BlockHeader& h) noexcept {
   return at == h.bytes;
 }
 
+/// What fills a block up between its sections is 0, so that a model has one form.
+bool gaps_are_zero(const unsigned char* at, const BlockHeader& h) noexcept {
+  const auto zero_behind = [at](const BlockSection& s) {
+    for (std::uint64_t i = s.at + s.bytes; i < s.at + padded(s.bytes); ++i)
+      if (at[i] != 0) return false;
+    return true;
+  };
+  for (const BlockSection& s : h.section)
+    if (!zero_behind(s)) return false;
+  return zero_behind(h.about);
+}
+
 /// Of a block as it was given, up to its sums.
 LoadStatus check_header(const unsigned char* at, std::size_t bytes, BlockHeader& h) noexcept {
   if (bytes < 8 || !same_bytes(at, "railstep", 8)) return LoadStatus::not_a_model;
@@ -125,7 +137,8 @@ LoadStatus check_header(const unsigned char* at, std::size_t bytes, BlockHeader&
   if (h.real_bytes != sizeof(double) || !sections_hold(h)) return LoadStatus::bad_content;
   unsigned char sum[32];
   sha256(at + h.header_bytes, bytes - h.header_bytes, sum);
-  return same_bytes(sum, h.sum, 32) ? LoadStatus::ok : LoadStatus::wrong_sum;
+  if (!same_bytes(sum, h.sum, 32)) return LoadStatus::wrong_sum;
+  return gaps_are_zero(at, h) ? LoadStatus::ok : LoadStatus::bad_content;
 }
 
 /// Whether a header states what its payload says.

@@ -11,7 +11,7 @@ namespace {
 template <int N>
 bool are_finite(const double (&values)[N]) noexcept {
   for (const double x : values)
-    if (!is_finite(x)) return false;
+    if (!is_moderate(x)) return false;
   return true;
 }
 
@@ -78,7 +78,7 @@ bool beam_holds(const SystemModel& s, const BeamChainModel& b) noexcept {
   if (b.first_held < 0 || b.held < 0 || std::int64_t{b.first_held} + b.held > s.held) return false;
   for (int k = 0; k < 3; ++k)
     if (!is_above_zero(b.mass[k])) return false;
-  return is_finite(b.mass[3]) && is_above_zero(b.slope_scale) &&
+  return is_moderate(b.mass[3]) && is_above_zero(b.slope_scale) &&
          is_above_zero(b.element.per_length) &&
          are_indices(s.held_unknown + b.first_held, b.held, b.unknowns);
 }

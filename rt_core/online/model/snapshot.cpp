@@ -2,6 +2,7 @@
 
 #include "online/math/bytes.h"
 #include "online/math/sha256.h"
+#include "online/model/system_workspace.h"
 
 namespace railstep {
 
@@ -13,6 +14,33 @@ constexpr std::size_t kFormatAt = 8, kSizeAt = 16, kModelAt = 24, kStepsAt = 56,
 static_assert(kCountAt + 8 == kSnapshotHead);
 // A step's time is a double. Far from where one more step would overflow.
 constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;
+
+/// Whether the order of a factored matrix's rows names each of them once.
+bool names_each(const unsigned char* order, std::int32_t rows) noexcept {
+  const auto at = [order](std::int32_t i) {
+    return static_cast<std::int32_t>(get_word(order + 8 * (i / 2)) >> (32 * (i % 2)));
+  };
+  for (std::int32_t i = 0; i < rows; ++i) {
+    if (at(i) < 0 || at(i) >= rows) return false;
+    for (std::int32_t k = 0; k < i; ++k)
+      if (at(k) == at(i)) return false;
+  }
+  return true;
+}
+
+/// Whether the matrix that a state keeps, if it keeps one, can be solved with.
+/// @param numbers  the state's, in bytes
+bool kept_holds(const Model& model, const State& state, const unsigned char* numbers) noexcept {
+  const SystemModel& system = model.system;
+  if (system.unknowns == 0 || system.renew != Renew::kept) return true;
+  const SystemTangent kept = system_tangent_on(system, state.kept);
+  const auto at = [&](const void* place) {
+    return numbers + (static_cast<const char*>(place) - reinterpret_cast<const char*>(state.u));
+  };
+  if (!(get_double(at(kept.age)) > 0.)) return true;
+  const double rank = get_double(at(kept.rank));
+  return rank >= 0. && rank <= system.joint_rows && names_each(at(kept.order), system_rows(system));
+}
 
 }  // namespace
 
@@ -48,6 +76,7 @@ SnapshotStatus restore_snapshot(const Model& model, const void* bytes, std::size
   const std::uint64_t latched = get_word(at + kLatchedAt);
   if (steps < 0 || steps > kMostSteps || (latched & ~static_cast<std::uint64_t>(kLatched)) != 0)
     return SnapshotStatus::bad_content;
+  if (!kept_holds(model, state, at + kSnapshotHead)) return SnapshotStatus::bad_content;
   state.steps = steps;
   state.latched = static_cast<Status>(latched);
   for (std::size_t i = 0; i < doubles; ++i) state.u[i] = get_double(at + kSnapshotHead + 8 * i);

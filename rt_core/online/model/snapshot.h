@@ -12,7 +12,8 @@ enum class SnapshotStatus : std::uint8_t {
   wrong_size,      // cut short, run on, or of a model with another number of unknowns
   wrong_sum,       // its bytes are not those that were written
   other_model,     // it was taken of another model
-  bad_content,     // steps below 0 or above 2^53, or status bits that do not stay set
+  bad_content,     // steps below 0 or above 2^53, status bits that do not stay set, a kept matrix
+                   // that cannot be solved with
 };
 
 /// A state in bytes, the same on every machine; numbers are little-endian, from the first byte:

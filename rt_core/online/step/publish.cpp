@@ -1,5 +1,9 @@
 #include "online/step/publish.h"
 
+#include <bit>
+#include <cstdint>
+
+#include "online/math/finite.h"
 #include "online/step/common.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
@@ -10,14 +14,32 @@ namespace railstep {
 
 namespace {
 
-/// First unknown that is not finite, or -1. x - x is 0 for finite x alone.
-std::int32_t first_bad(const Model& model, const State& s) noexcept {
-  double sum = 0.;
-  for (std::int32_t i = 0; i < model.unknowns; ++i) sum += (s.u[i] - s.u[i]) + (s.v[i] - s.v[i]);
-  if (sum == 0.) return -1;
-  for (std::int32_t i = 0; i < model.unknowns; ++i)
-    if (!(s.u[i] - s.u[i] == 0.) || !(s.v[i] - s.v[i] == 0.)) return i;
+/// Its highest bit is set where |x| is kMostNumber and more, or x is no number: but for the sign,
+/// bits rise with the numbers they stand for. In integers, so that several are looked at together.
+std::uint64_t lifted(double x) noexcept {
+  constexpr std::uint64_t sign = std::uint64_t{1} << 63;
+  return (std::bit_cast<std::uint64_t>(x) & ~sign) +
+         (sign - std::bit_cast<std::uint64_t>(kMostNumber));
+}
+
+/// First coordinate of a wheelset that is nowhere any more, or -1: gaps take high powers of its
+/// roll and yaw, which overflow long before these do.
+std::int32_t first_lost(const Model& model, const Outputs& out) noexcept {
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
+    if (!is_moderate(out.wheel_gap[i])) return model.wheelset[i / 2].first;
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
+    if (!is_moderate(out.flange_gap[i])) return model.wheelset[model.flange[i / 2].wheelset].first;
   return -1;
+}
+
+/// First unknown that is too large, or -1.
+std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) noexcept {
+  std::uint64_t any = 0;
+  for (std::int32_t i = 0; i < model.unknowns; ++i) any |= lifted(s.u[i]) | lifted(s.v[i]);
+  if (any >> 63 == 0) return first_lost(model, out);
+  std::int32_t first = 0;
+  while ((lifted(s.u[first]) | lifted(s.v[first])) >> 63 == 0) ++first;
+  return first;
 }
 
 void collect_flanges(const Model& model, const State& s, const double* gap, Outputs& out) noexcept {
@@ -107,7 +129,7 @@ void publish(const Model& model, const State& state, Outputs& outputs, Common* c
     if (outputs.external_on_rail[i])
       outputs.external_displacement[i][2] +=
           residual_displacement(model, force, count, model.loads + wheel_count(model) + i);
-  outputs.first_bad_unknown = first_bad(model, state);
+  outputs.first_bad_unknown = first_bad(model, state, outputs);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
 }
 
