@@ -336,6 +336,16 @@ TEST_CASE("a system that no physics has is refused", "[artefact][system]") {
     CHECK(refused([=](Open& o, SystemModel&) { o.row.back().damping = negative; }));
     CHECK(refused([=](Open&, SystemModel& s) { s.alpha = negative; }));
   }
+  for (const double none : {nan, -std::numeric_limits<double>::infinity(), 1e61}) {
+    CAPTURE(none);
+    CHECK(refused([=](Open& o, SystemModel&) { o.row[0].offset = none; }));
+    CHECK(refused([=](Open& o, SystemModel&) { o.row.back().offset = none; }));
+    CHECK(refused([=](Open& o, SystemModel&) { o.beam[0].element.stiffness[0] = none; }));
+    CHECK(refused([=](Open& o, SystemModel&) { o.marker[0].position[2] = none; }));
+    CHECK(refused([=](Open& o, SystemModel&) { o.marker[0].frame[8] = none; }));
+    CHECK(refused([=](Open& o, SystemModel&) { o.marker[0].value[1] = none; }));
+    CHECK(refused([=](Open& o, SystemModel&) { o.force[0].direction[0] = none; }));
+  }
   CHECK(refused([](Open& o, SystemModel&) { o.row.back().stiffness = o.row.back().damping = 0.; }));
   CHECK(refused([](Open& o, SystemModel&) {
     for (RowModel& row : o.row)

@@ -9,7 +9,7 @@ namespace railstep {
 namespace {
 
 template <int N>
-bool are_finite(const double (&values)[N]) noexcept {
+bool are_moderate(const double (&values)[N]) noexcept {
   for (const double x : values)
     if (!is_moderate(x)) return false;
   return true;
@@ -68,7 +68,7 @@ bool body_holds(const RigidBodyModel& b) noexcept {
   if (!columns_hold(b) || !is_above_zero(b.mass) || !is_above_zero(b.radius)) return false;
   for (const int diagonal : {0, 4, 8})
     if (!(b.inertia[diagonal] > 0.) || !(b.inverse_inertia[diagonal] > 0.)) return false;
-  return are_finite(b.inertia) && are_finite(b.inverse_inertia) && are_finite(b.rest);
+  return are_moderate(b.inertia) && are_moderate(b.inverse_inertia) && are_moderate(b.rest);
 }
 
 bool beam_holds(const SystemModel& s, const BeamChainModel& b) noexcept {
@@ -79,12 +79,14 @@ bool beam_holds(const SystemModel& s, const BeamChainModel& b) noexcept {
   for (int k = 0; k < 3; ++k)
     if (!is_above_zero(b.mass[k])) return false;
   return is_moderate(b.mass[3]) && is_above_zero(b.slope_scale) &&
-         is_above_zero(b.element.per_length) &&
+         is_above_zero(b.element.per_length) && are_moderate(b.element.preload) &&
+         are_moderate(b.element.stiffness) &&
          are_indices(s.held_unknown + b.first_held, b.held, b.unknowns);
 }
 
 bool port_holds(const Model& m, const RailPortModel& p) noexcept {
-  return (p.rail == 0 || p.rail == 1) && is_index(p.element, m.elements);
+  return (p.rail == 0 || p.rail == 1) && is_index(p.element, m.elements) && are_moderate(p.value) &&
+         are_moderate(p.rest);
 }
 
 /// Parts stand one behind the other: bodies, beams, ports, less than a panel of padding.
@@ -106,6 +108,7 @@ bool parts_hold(const Model& m) noexcept {
 }
 
 bool marker_holds(const SystemModel& s, const MarkerModel& m) noexcept {
+  if (!are_moderate(m.position) || !are_moderate(m.frame) || !are_moderate(m.value)) return false;
   switch (m.kind) {
     case PartKind::ground:
       return true;
@@ -147,6 +150,8 @@ bool motions_hold(const SystemModel& s) noexcept {
 /// Its law alone; what it names is looked at beside.
 bool law_holds(const SystemModel& s, std::int32_t r) noexcept {
   const RowModel& row = s.row[r];
+  for (const double x : {row.offset, row.compliance, row.stiffness, row.damping})
+    if (!is_moderate(x)) return false;
   if (r >= s.joint_rows)
     return row.kind == RowKind::spring && is_not_negative(row.stiffness) &&
            is_not_negative(row.damping) && row.stiffness + row.damping > 0.;
@@ -194,7 +199,8 @@ bool ends_hold(const SystemModel& s) noexcept {
 bool force_holds(const SystemModel& s, const PointForceModel& f, std::int32_t inputs) noexcept {
   const bool given = f.motion == -1 && is_index(f.input, inputs);
   const bool timed = is_index(f.motion, s.motions) && f.input == -1;
-  if (!is_index(f.marker, placed(s)) || !(given || timed)) return false;
+  if (!is_index(f.marker, placed(s)) || !(given || timed) || !are_moderate(f.direction))
+    return false;
   const PartKind on = s.marker[f.marker].kind;
   return f.moment == 0 || (f.moment == 1 && on == PartKind::body);
 }

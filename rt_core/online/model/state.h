@@ -53,7 +53,7 @@ struct Workspace {
 /// What a frame publishes.
 struct Outputs {
   Status status;
-  std::int32_t first_bad_unknown;       // -1: all finite, all below kMostNumber
+  std::int32_t first_bad_unknown;       // -1: all finite
   double load_x[kMaxLoads];             // m; where the load is, or was when taken off
   double load_place[kMaxLoads];         // the same along the model's elements, m
   double load_deflection[kMaxLoads];    // of the loaded point, m, up positive

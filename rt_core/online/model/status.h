@@ -9,7 +9,7 @@ enum class Status : std::uint32_t {
   off_rail = 1u << 0,         // a load or wheel left the rail, its force is 0: lengthen the track
   contact_lost = 1u << 1,     // a wheel stood free of its rail during the frame
   cap_reached = 1u << 2,      // contact, joint or projection hit its cap: shorten dt
-  nonfinite_state = 1u << 3,  // the state is not finite or beyond 1.6e60: Outputs name where first
+  nonfinite_state = 1u << 3,  // the state is no longer finite: Outputs name the first bad unknown
   contact_unresolved = 1u << 4,  // a wheel struck its rail for fewer than 10 steps: shorten dt
   redundant_joint = 1u << 5,     // a joint row hung on others: it carries no force of its own
   large_turn = 1u << 6,          // a rail under a wheel rolled so far that its linear form is off

@@ -9,6 +9,7 @@
 #include "online/step/residual.h"
 #include "online/step/vehicle_contact.h"
 #include "online/step/wheel.h"
+#include "online/system/marker.h"
 
 namespace railstep {
 
@@ -22,13 +23,29 @@ std::uint64_t lifted(double x) noexcept {
          (sign - std::bit_cast<std::uint64_t>(kMostNumber));
 }
 
-/// First coordinate of a wheelset that is nowhere any more, or -1: gaps take high powers of its
-/// roll and yaw, which overflow long before these do.
-std::int32_t first_lost(const Model& model, const Outputs& out) noexcept {
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
-    if (!is_moderate(out.wheel_gap[i])) return model.wheelset[i / 2].first;
-  for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
-    if (!is_moderate(out.flange_gap[i])) return model.wheelset[model.flange[i / 2].wheelset].first;
+/// Of whose wheel or flange a contact is.
+std::int32_t first_unknown_of(const Model& model, std::int32_t contact) noexcept {
+  if (is_flange(model, contact)) return model.wheelset[flange_of(model, contact).wheelset].first;
+  return contact < 2 * model.wheelsets ? model.wheelset[contact / 2].first
+                                       : model.vehicle[vehicle_wheel(model, contact).vehicle].first;
+}
+
+/// First unknown of what has a contact, an orientation or a joint whose numbers are too large, or
+/// -1: they take high powers of unknowns, which overflow long before these do.
+std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) noexcept {
+  const std::int32_t wheels = wheel_count(model);
+  for (std::int32_t i = 0; i < contact_count(model); ++i) {
+    const double gap = i < wheels ? out.wheel_gap[i] : out.flange_gap[i - wheels];
+    if (!is_moderate(gap) || !is_moderate(s.wheel_force[i])) return first_unknown_of(model, i);
+  }
+  const SystemModel& system = model.system;
+  for (std::int32_t i = 0; i < 4 * system.bodies; ++i)
+    if (!is_moderate(s.quaternion[i])) return system.body[i / 4].first;
+  for (std::int32_t i = 0; i < system_rows(system); ++i) {
+    if (is_moderate(s.row_force[i])) continue;
+    const Reach b = reach(system, system.marker[system.row[i].b]);
+    return b.count > 0 ? b.first : reach(system, system.marker[system.row[i].a]).first;
+  }
   return -1;
 }
 
@@ -36,7 +53,7 @@ std::int32_t first_lost(const Model& model, const Outputs& out) noexcept {
 std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) noexcept {
   std::uint64_t any = 0;
   for (std::int32_t i = 0; i < model.unknowns; ++i) any |= lifted(s.u[i]) | lifted(s.v[i]);
-  if (any >> 63 == 0) return first_lost(model, out);
+  if (any >> 63 == 0) return first_lost(model, s, out);
   std::int32_t first = 0;
   while ((lifted(s.u[first]) | lifted(s.v[first])) >> 63 == 0) ++first;
   return first;
