@@ -144,7 +144,7 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
   CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 9.0\nto_m = 9.05\n"
                      "wavelength_m = 0.06\namplitude_m = 1e-5\n"),
              Contains("to_m"));
-  // Samples of a thousandth of the shape over all it spans are too many.
+  // Samples of a fiftieth of the shape over all it spans are too many.
   CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 0.0\nto_m = 1e6\n"
                      "wavelength_m = 0.06\namplitude_m = 1e-5\n"),
              Contains("to_m: 1e+06 m in samples") && Contains("too many; accepted are 2e+07"));
