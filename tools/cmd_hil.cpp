@@ -267,10 +267,7 @@ Exit verdict(const HilRecord& record, const Simulation& run) {
     return Exit::not_reached;
   };
   if (record.first_bad_unknown >= 0)
-    return failed(fmt::format(
-        "nonfinite_state: at step {}, unknown {} of the state ({}) is not "
-        "finite, or beyond 1.6e60",
-        run.state.steps, record.first_bad_unknown, unknown_place(run, record.first_bad_unknown)));
+    return failed(nonfinite_sentence(run, record.first_bad_unknown));
   if (record.paced.stopped)
     return failed(fmt::format("frame {} ended {:.1f} us after its slot, and the policy is to stop",
                               record.paced.frames - 1,

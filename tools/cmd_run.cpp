@@ -130,7 +130,7 @@ Exit verdict(const Simulation& run, const RunRecord& record,
     if (name != "nonfinite_state")
       fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, record));
     else
-      fmt::print(stderr, "error: {}\n", nonfinite_sentence(run, record));
+      fmt::print(stderr, "error: {}\n", nonfinite_sentence(run, record.first_bad_unknown));
   }
   return has(record.status, Status::nonfinite_state) ? Exit::not_reached : Exit::done;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "heap_count.h"
+#include "online/math/finite.h"
 #include "online/model/system_workspace.h"
 #include "online/step/line.h"
 #include "online/step/step.h"
@@ -202,12 +203,15 @@ std::string unknown_place(const Simulation& run, std::int32_t unknown) {
   return place_in_system(system, names, unknown - system.first);
 }
 
-std::string nonfinite_sentence(const Simulation& run, const RunRecord& record) {
+std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown) {
+  const std::int32_t at = first_bad_unknown;
+  const bool itself = !is_moderate(run.state.u[at]) || !is_moderate(run.state.v[at]);
   return fmt::format(
-      "nonfinite_state: at step {}, t = {:.9g} s, unknown {} of the state ({}) is not finite, "
+      "nonfinite_state: at step {}, t = {:.9g} s, {}unknown {} of the state ({}){} is not finite, "
       "or beyond 1.6e60",
       run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
-      record.first_bad_unknown, unknown_place(run, record.first_bad_unknown));
+      itself ? "" : "what follows from ", at, unknown_place(run, at),
+      itself ? "" : ", a gap, an orientation or a contact's or joint's force,");
 }
 
 double quantile(std::vector<double> values, double q) {

@@ -58,8 +58,9 @@ RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bo
 std::vector<std::string> status_names(Status status);
 /// What a status bit means and what to do about it, by its name; with the joints it is about.
 std::string status_sentence(const std::string& name, const RunRecord& record);
-/// Says where and when a run stopped being finite: "nonfinite_state: at step ...".
-std::string nonfinite_sentence(const Simulation& run, const RunRecord& record);
+/// Says where and when a run stopped being finite, by Outputs::first_bad_unknown:
+/// "nonfinite_state: at step ...".
+std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown);
 /// Where an unknown of the state sits, in words.
 std::string unknown_place(const Simulation& run, std::int32_t unknown);
 

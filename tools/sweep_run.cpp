@@ -74,7 +74,7 @@ SweepRow run_scene(const AnyScene& scene, double from) {
   made.status = status_names(record.status);
   made.steps = run->state.steps;
   if (record.first_bad_unknown >= 0) {
-    made.error = nonfinite_sentence(*run, record);
+    made.error = nonfinite_sentence(*run, record.first_bad_unknown);
     return made;
   }
   const double unknown = std::numeric_limits<double>::quiet_NaN();

@@ -34,6 +34,11 @@ std::string curve_data(const HardCurve& curve, const HardPicture& picture) {
   return data;
 }
 
+/// Gnuplot's eight colours, then the same dashed.
+std::string line_style(int number) {
+  return fmt::format("lines lw 1.5 dt {}", 1 + (number - 1) / 8);
+}
+
 std::string drawn_picture(const HardCase& of, const HardPicture& picture) {
   std::string data, plot;
   int number = 0;
@@ -43,12 +48,12 @@ std::string drawn_picture(const HardCase& of, const HardPicture& picture) {
     if (points.empty()) continue;
     data += fmt::format("$c{} << EOD\n{}EOD\n", number, points);
     plot += fmt::format("{} $c{} with {} title \"{}\"", plot.empty() ? "" : ",", number,
-                        curve.points ? "points pt 7 ps .6" : "lines lw 1.5", curve.name);
+                        curve.points ? "points pt 7 ps .6" : line_style(number), curve.name);
   }
   if (plot.empty()) return {};
   return drawn(fmt::format(
       "set terminal svg size 900,330 name '{}' noenhanced font 'sans,12'\nset xlabel \"{}\"\n"
-      "set ylabel \"{}\"\nset grid\nset key outside right top Left reverse samplen 1\n{}{}{}"
+      "set ylabel \"{}\"\nset grid\nset key outside right top Left reverse samplen 2\n{}{}{}"
       "plot{}\n",
       of.id, picture.x_label, picture.y_label, picture.log_x ? "set logscale x\n" : "",
       picture.log_y ? "set logscale y\nset format y '%.0e'\n" : "", data, plot));

@@ -268,7 +268,7 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
   if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.fixed.count > 0)
     throw std::invalid_argument(
         "external wheels run on a track that is linear: beside loads, and without wheelsets, "
-        "vehicles, stops and supports that do not pull");
+        "vehicles, stops, joints with a gap and supports that do not pull");
   for (const PackedLine& own : lines_)
     if (own.basis.flexibility.size() > 0)
       throw std::invalid_argument(
