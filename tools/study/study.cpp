@@ -50,7 +50,8 @@ SettingRow Study::row_of(const Setting& setting) try {
   row.kept_unknowns = unknowns_of(run.track(), *run.packed()).second;
   const TraceTable trace = compared(run.columns(), record);
   row.errors = errors_of(trace, reference_.trace, studied_.judged);
-  if (record.first_bad_unknown >= 0) row.failure = nonfinite_sentence(run, record.first_bad_unknown);
+  if (record.first_bad_unknown >= 0)
+    row.failure = nonfinite_sentence(run, record.first_bad_unknown);
   if (!row.failure.empty()) return row;
   row.parts = {
       errors_of(trace, by_small_steps(setting.model, setting.elements_per_bay), studied_.judged)
