@@ -8,9 +8,9 @@
 
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
-#include "online/step/line.h"
 #include "online/step/residual.h"
 #include "online/step/step.h"
+#include "online/track/line.h"
 #include "sections.h"
 
 namespace railstep {

@@ -7,7 +7,7 @@
 
 #include "model_run.h"
 #include "offline/pack/scheme.h"
-#include "online/step/line.h"
+#include "online/track/line.h"
 #include "sections.h"
 
 namespace railstep {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "dense_newmark.h"
-#include "online/step/line.h"
 #include "online/step/step.h"
+#include "online/track/line.h"
 #include "simulation.h"
 
 // Doubles are wanted in long double arithmetic here.

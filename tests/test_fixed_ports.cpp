@@ -251,7 +251,7 @@ TEST_CASE("ports that make no sense leave a status and a finite state", "[ports]
   Model broken = run.model();
   broken.fixed.compliance = &nan;
   Outputs outputs{};
-  CHECK(has(advance_frame(broken, run.state, run.workspace, outputs), Status::cap_reached));
+  CHECK(has(advance_frame(broken, run.state, run.workspace, outputs), Status::contact_ill_posed));
   CHECK(outputs.first_bad_unknown == -1);
   // And the next whole step recovers.
   run.seen = Status::ok;

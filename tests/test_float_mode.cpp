@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "online/step/float_mode.h"
+#include "online/math/float_mode.h"
 
 using namespace railstep;
 

@@ -11,8 +11,8 @@
 #include "offline/pack/pack.h"
 #include "offline/pack/scheme.h"
 #include "offline/track/statics.h"
-#include "online/step/line.h"
 #include "online/step/step.h"
+#include "online/track/line.h"
 #include "sections.h"
 
 using namespace railstep;

@@ -35,7 +35,7 @@ double log_uniform(double low, double high, std::mt19937& random) {
 /// to 1e3 for 1e-8 m/N and to 1e4 for 1e-7 m/N.
 Case random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::contacts) {
   std::normal_distribution<double> normal;
-  std::uniform_int_distribution<int> coin(0, 1), rank(1, n);
+  std::uniform_int_distribution<int> coin(0, 1), rank(std::min(n, 1), n);
   Case c{n, std::vector<double>(static_cast<std::size_t>(n * n), 0.0), {}, {}};
   const int columns = rank(random);
   std::vector<double> B(static_cast<std::size_t>(n * columns));
@@ -189,6 +189,44 @@ TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
   // whose root (some 30) enters when the worst port is the softest.
   CHECK(worst <= 30e-12);
   CHECK(compared > 9000);
+}
+
+TEST_CASE("any number of ports up to the cap is solved: the laws hold and nothing is left",
+          "[ports]") {
+  // Equations and laws together say all of a convex problem: what meets both is the answer.
+  const Laws laws = GENERATE(Laws::contacts, Laws::springs, Laws::both, Laws::pulling);
+  std::mt19937 random(7);
+  int most = 0;
+  for (int i = 0; i < 3 * (kPorts + 1); ++i) {
+    const Case c = random_case(i % (kPorts + 1), 1e-8, random, laws);
+    const auto n = static_cast<std::size_t>(c.n);
+    std::vector<double> f(n, 0.0), d(n);
+    const PortResult got =
+        solve_ports(c.n, c.W.data(), c.law.data(), c.d_free.data(), f.data(), d.data());
+    INFO(c.n << " ports, residual " << got.residual << " of " << length(c, f));
+    REQUIRE(got.status == PortStatus::converged);
+    most = std::max(most, got.iterations);
+    // The sum of n + 1 terms is rounded within (n + 1) eps of the length.
+    CHECK(static_cast<double>(true_residual(c, f, d)) <=
+          (kPortTolerance + (c.n + 1) * 0x1p-52) * length(c, f));
+    for (std::size_t k = 0; k < n; ++k) {
+      const double want = static_cast<double>(force_of(c.law[k], d[k]));
+      const double terms = c.law[k].slope * std::abs(d[k]) + std::abs(c.law[k].jump);
+      CHECK(std::abs(f[k] - want) <= 4 * 0x1p-52 * (std::abs(want) + terms));
+    }
+  }
+  INFO("most iterations " << most);
+  CHECK(most <= kPortSweeps);
+}
+
+TEST_CASE("compliances that no structure has are told as that", "[ports]") {
+  // W_01 beyond sqrt(W_00 W_11): two ports that push each other apart by themselves.
+  const double W[4] = {1e-8, 3e-8, 3e-8, 1e-8}, d_free[2] = {1e-3, 1e-3};
+  const PortLaw law[2] = {{1e11, 0., 0.}, {1e11, 0., 0.}};
+  double f[2] = {}, d[2];
+  const PortResult got = solve_ports(2, W, law, d_free, f, d);
+  CHECK(got.status == PortStatus::indefinite);
+  CHECK((std::isfinite(f[0]) && std::isfinite(f[1])));
 }
 
 TEST_CASE("an extreme case is solved or says how far it came", "[ports]") {

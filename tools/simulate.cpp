@@ -12,9 +12,9 @@
 #include "heap_count.h"
 #include "online/math/finite.h"
 #include "online/model/system_workspace.h"
-#include "online/step/line.h"
 #include "online/step/step.h"
 #include "online/step/trace_row.h"
+#include "online/track/line.h"
 
 namespace railstep {
 namespace {

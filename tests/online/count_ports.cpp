@@ -1,5 +1,6 @@
 // Solves random ports, hard ones among them, with arithmetic that counts (counted/counted.h). Fails
-// where a solve takes more than rt_core/offline/cost states, or if none ends at its cap.
+// where a solve takes more than rt_core/offline/cost states, where one with a W that has energy
+// does not converge, or if no other uses its whole cap.
 #include "offline/cost/cost.h"
 #include "online/contact/ports.h"
 
@@ -30,7 +31,7 @@ struct Ports {
   PortLaw law[kPorts];
 };
 
-/// @param indefinite  W has no energy: what the solver must end at its cap with
+/// @param indefinite  W has no energy: most such solves use their whole cap
 /// @param means       some contacts' laws are means over a step
 void fill(Random& random, int n, bool indefinite, bool means, Ports& ports) {
   for (int i = 0; i < n; ++i)
@@ -49,8 +50,9 @@ void fill(Random& random, int n, bool indefinite, bool means, Ports& ports) {
   }
 }
 
-/// The most of random solves. @param capped  counts those that end at the cap
-std::int64_t most_flops(int n, bool means, int& capped) {
+/// The most of random solves. @param capped  counts those that use the whole cap
+/// @param lost  counts those with a W that has energy that do not converge
+std::int64_t most_flops(int n, bool means, int& capped, int& lost) {
   Random random;
   static Ports ports;
   std::int64_t most = 0;
@@ -59,7 +61,8 @@ std::int64_t most_flops(int n, bool means, int& capped) {
     counted::flops = 0;
     const PortResult got = solve_ports(n, ports.W, ports.law, ports.d_free, ports.f, ports.d);
     if (counted::flops > most) most = counted::flops;
-    if (got.status == PortStatus::cap_reached) ++capped;
+    if (got.iterations == kPortSweeps) ++capped;
+    if (trial % 2 == 0 && got.status != PortStatus::converged) ++lost;
   }
   return most;
 }
@@ -67,17 +70,18 @@ std::int64_t most_flops(int n, bool means, int& capped) {
 }  // namespace
 
 int main() {
-  int capped = 0;
+  int capped = 0, lost = 0;
   std::printf("ports     most   stated\n");
   for (const bool means : {false, true})
-    for (const int n : {1, 2, 4, 8, 16, 32, 48, 64}) {
-      const std::int64_t most = most_flops(n, means, capped), stated = ports_cost(n, means).flops;
+    for (int n = 1; n <= kPorts; n += n < 8 ? 1 : 4) {
+      const std::int64_t most = most_flops(n, means, capped, lost),
+                         stated = ports_cost(n, means).flops;
       std::printf("%5d %8" PRId64 " %8" PRId64 "\n", n, most, stated);
       if (most > stated) {
         std::fprintf(stderr, "error: %d ports take more flops than is stated\n", n);
         return 1;
       }
     }
-  std::printf("%d solves ended at the cap\n", capped);
-  return capped > 100 ? 0 : 1;
+  std::printf("%d solves used their whole cap, %d were lost\n", capped, lost);
+  return capped > 100 && lost == 0 ? 0 : 1;
 }

@@ -11,9 +11,9 @@
 #include <memory>
 #include <vector>
 
+#include "online/math/float_mode.h"
 #include "online/model/load.h"
 #include "online/model/state.h"
-#include "online/step/float_mode.h"
 #include "online/step/probe.h"
 #include "online/step/self_check.h"
 #include "online/step/step.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "online/step/line.h"
+#include "online/track/line.h"
 
 namespace railstep {
 namespace {

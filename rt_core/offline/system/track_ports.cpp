@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 
 #include "online/model/state.h"
-#include "online/step/line.h"
 #include "online/system/track_ports.h"
+#include "online/track/line.h"
 
 namespace railstep {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "online/model/caps.h"
+#include "online/contact/caps.h"
 
 namespace railstep {
 

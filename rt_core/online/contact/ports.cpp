@@ -176,8 +176,9 @@ double slope(const Problem& p, const Point& x, const double* step) noexcept {
   return sum;
 }
 
-/// delta = -(I + W K)^-1 F, K = df/dd, through the symmetric I + sqrt(K) W sqrt(K).
-void newton_step(const Problem& p, const Point& x, const double* K, double* delta) noexcept {
+/// delta = -(I + W K)^-1 F, K = df/dd, through the symmetric I + sqrt(K) W sqrt(K). Where that
+/// cannot be solved the coupling between ports is neglected.
+SmallSolve newton_step(const Problem& p, const Point& x, const double* K, double* delta) noexcept {
   double S[kPorts], t[kPorts], A[kPorts * kPorts];
   for (int i = 0; i < p.n; ++i) S[i] = std::sqrt(K[i]);
   for (int i = 0; i < p.n; ++i) {
@@ -185,12 +186,14 @@ void newton_step(const Problem& p, const Point& x, const double* K, double* delt
     for (int j = 0; j < p.n; ++j)
       A[i * p.n + j] = S[i] * p.W[i * p.n + j] * S[j] + (i == j ? 1.0 : 0.0);
   }
-  if (!solve_small(A, t, p.n))  // W is not semidefinite: neglect the coupling
+  const SmallSolve solve = solve_small(A, t, p.n);
+  if (solve != SmallSolve::solved)
     for (int i = 0; i < p.n; ++i) t[i] = -S[i] * x.F[i] / (1.0 + K[i] * p.W[i * p.n + i]);
   for (int i = 0; i < p.n; ++i) {
     delta[i] = -x.F[i];
     for (int j = 0; j < p.n; ++j) delta[i] -= p.W[i * p.n + j] * S[j] * t[j];
   }
+  return solve;
 }
 
 /// The next penetrations: back from Newton's step to the law, on the line along which the port
@@ -221,18 +224,18 @@ void advance(const Problem& p, const Point& x, const double* K, const double* de
 /// left 193 unsolved after 8 iterations, 30 left 6, 1000 and no guard at all left 1.
 constexpr double kOvershoot = 1000.0;
 
-/// One globalised iteration x -> next.
-void iterate(const Problem& p, const Point& x, Point& next) noexcept {
+/// One globalised iteration x -> next; how its linear system was solved.
+SmallSolve iterate(const Problem& p, const Point& x, Point& next) noexcept {
   double K[kPorts], delta[kPorts], step[kPorts];
   for (int i = 0; i < p.n; ++i)
     K[i] = acts(p.law[i], x.f[i]) ? stiffness_at(p.law[i], x.d[i]) : 0.0;
-  newton_step(p, x, K, delta);
+  const SmallSolve solve = newton_step(p, x, K, delta);
   advance(p, x, K, delta, next.d);
   evaluate(p, next);
   for (int halving = 0; halving < 3; ++halving) {
     for (int i = 0; i < p.n; ++i) step[i] = next.f[i] - x.f[i];
     const double before = slope(p, x, step), after = slope(p, next, step);
-    if (!(before < 0.0) || !(after > -kOvershoot * before)) return;
+    if (!(before < 0.0) || !(after > -kOvershoot * before)) break;
     // Far past the minimum of the convex function on this line: back to the secant's zero.
     const double part = before / (before - after);
     for (int i = 0; i < p.n; ++i) {
@@ -243,6 +246,7 @@ void iterate(const Problem& p, const Point& x, Point& next) noexcept {
     }
     evaluate(p, next);
   }
+  return solve;
 }
 
 bool is_law(const PortLaw& law) noexcept {
@@ -300,8 +304,9 @@ PortResult solve_ports(int n, const double* W, const PortLaw* law, const double*
   best->scale = 0.0;
   start(p, f, *x);
   int iterations = 0;
+  bool indefinite = false;
   while (!done(*x) && iterations < cap) {
-    iterate(p, *x, *next);
+    if (iterate(p, *x, *next) == SmallSolve::indefinite) indefinite = true;
     Point* const free = x->residual < best->residual ? best : x;
     if (free == best) best = x;
     x = next;
@@ -318,8 +323,10 @@ PortResult solve_ports(int n, const double* W, const PortLaw* law, const double*
     f[i] = best->f[i];
     d[i] = best->d[i];
   }
-  return {done(*best) ? PortStatus::converged : PortStatus::cap_reached, iterations,
-          best->residual};
+  const PortStatus status = indefinite    ? PortStatus::indefinite
+                            : done(*best) ? PortStatus::converged
+                                          : PortStatus::cap_reached;
+  return {status, iterations, best->residual};
 }
 
 }  // namespace railstep

@@ -2,16 +2,16 @@
 
 #include <cstdint>
 
-#include "online/model/caps.h"
+#include "online/contact/caps.h"
 
 namespace railstep {
-
-inline constexpr int kPorts = 64;  // most ports of one solve
 
 enum class PortStatus : std::uint8_t {
   converged,    // residual within kPortTolerance
   cap_reached,  // the forces are the best found, the residual says how good
-  bad_input,    // a number is not finite, a law is none, W_ii < 0 or n out of range: forces 0
+  indefinite,  // W is not positive semidefinite: couplings were neglected in a step, the forces are
+               // the best found and may not be the only ones
+  bad_input,   // a number is not finite, a law is invalid, W_ii < 0 or n is out of range: forces 0
 };
 
 /// Force of a port over its penetration d, which never falls: of one that pulls too slope d + jump
@@ -53,7 +53,7 @@ inline constexpr double kPortTolerance = 1e-12;
 /// on the active set; its step is taken partly in d and partly in f, weighted so that a lone
 /// contact converges cubically, and shortened if it runs far past the minimum on its line. A lone
 /// spring and damper is solved in one.
-/// @param n       ports, 0 to 64
+/// @param n       ports, 0 to kPorts
 /// @param W       [n][n] compliance, m/N, symmetric, positive semidefinite
 /// @param law     [n]
 /// @param d_free  [n] penetrations without port forces, m

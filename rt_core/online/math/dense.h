@@ -39,15 +39,19 @@ inline double dot(const double* x, const double* y, int n) noexcept {
   return lane_sum(sum);
 }
 
-inline constexpr int kSmall = 48;  // largest system of solve_small()
+enum class SmallSolve : unsigned char {
+  solved,
+  indefinite,  // a pivot is not above 0
+  not_finite,  // a pivot is not a number
+};
 
-/// Solves A x = b by LDL' without pivoting, n <= 48, A symmetric positive definite.
+/// Solves A x = b by LDL' without pivoting, A symmetric positive definite, n >= 0.
 ///
 /// @param A  [n][n], lower triangle read; overwritten by L below and 1/D on the diagonal
 /// @param b  [n], b in, x out
-/// @return   false if a pivot is not a positive number (b is then meaningless) or n is out of range
-inline bool solve_small(double* A, double* b, int n) noexcept {
-  if (n < 0 || n > kSmall) return false;
+/// Unless it returns `solved`, b is meaningless. Work: n^3 / 3 multiplications and as many
+/// additions.
+[[nodiscard]] inline SmallSolve solve_small(double* A, double* b, int n) noexcept {
   for (int j = 0; j < n; ++j) {
     double* row = A + j * n;
     // Row j of L still times D; dividing it as the pivot is taken saves a pass.
@@ -58,7 +62,7 @@ inline bool solve_small(double* A, double* b, int n) noexcept {
       row[j] -= row[k] * scaled;
       row[k] = scaled;
     }
-    if (!(row[j] > 0.0)) return false;
+    if (!(row[j] > 0.0)) return row[j] <= 0.0 ? SmallSolve::indefinite : SmallSolve::not_finite;
     row[j] = 1.0 / row[j];
   }
   for (int j = 0; j < n; ++j)
@@ -66,7 +70,7 @@ inline bool solve_small(double* A, double* b, int n) noexcept {
   for (int j = 0; j < n; ++j) b[j] *= A[j * n + j];
   for (int j = n - 1; j >= 0; --j)
     for (int k = j + 1; k < n; ++k) b[j] -= A[k * n + j] * b[k];
-  return true;
+  return SmallSolve::solved;
 }
 
 }  // namespace railstep

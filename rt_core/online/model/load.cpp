@@ -2,10 +2,10 @@
 
 #include <cstring>
 
+#include "online/contact/caps.h"
 #include "online/math/bytes.h"
 #include "online/math/finite.h"
 #include "online/math/sha256.h"
-#include "online/model/caps.h"
 #include "online/model/describe.h"
 #include "online/model/load_system.h"
 #include "online/model/load_track.h"

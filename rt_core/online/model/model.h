@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 
+#include "online/contact/caps.h"
 #include "online/contact/signal.h"
 #include "online/math/band.h"
 #include "online/math/diagonals.h"
@@ -16,15 +17,13 @@ inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxVehicles = 16;
 inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
-inline constexpr int kMaxWheels = 32;           // of wheelsets and vehicles, a flange as another
 inline constexpr int kMaxBodyForces = 4;        // on one wheelset or vehicle
 inline constexpr int kMaxInputs = 96;           // forces and places given each frame
 inline constexpr int kMaxExternalWheels = 16;
-inline constexpr int kMaxSignals = 32;     // irregularities and defects of the rails
-inline constexpr int kMaxFixedPorts = 32;  // one-sided springs of the track
-inline constexpr int kTurnSeats = 6;       // around a wheel, half of them on each side of its bay
-inline constexpr int kMaxPortKinds = 4;    // rails and heights at which vertical forces act
-inline constexpr int kNoPortKind = -1;     // of what has no part in the residual flexibility
+inline constexpr int kMaxSignals = 32;   // irregularities and defects of the rails
+inline constexpr int kTurnSeats = 6;     // around a wheel, half of them on each side of its bay
+inline constexpr int kMaxPortKinds = 4;  // rails and heights at which vertical forces act
+inline constexpr int kNoPortKind = -1;   // of what has no part in the residual flexibility
 
 // What a model may not exceed; a block that claims more is refused.
 inline constexpr std::int64_t kMostElements = 100'000;

@@ -42,13 +42,19 @@ struct Workspace {
                    // displacements
   double* imaginary;  // the same of condensed lines; solved is their real part
   double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
-  double* system;     // system/workspace.h
+  double* system;     // see system_workspace.h
   double* external;   // [state_doubles] of models with external wheels: a state tried
   double* start;      // [2][unknowns] of schemes of two stages: u and v at the step's start
   double* unit;       // [contacts][unknowns] as solved, of a unit force at each contact
   double* unit_imaginary;
   Common* common = nullptr;  // with the states stepped beside this one; null: it is alone
 };
+
+/// What an input holds; 0 where there is no state yet.
+/// @param input  State::input, or null before there is one
+inline double held_input(const double* input, std::int32_t at) noexcept {
+  return input == nullptr ? 0. : input[at];
+}
 
 /// What a frame publishes.
 struct Outputs {

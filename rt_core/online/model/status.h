@@ -15,6 +15,7 @@ enum class Status : std::uint32_t {
   large_turn = 1u << 6,          // a rail under a wheel rolled so far that its linear form is off
   nonfinite_input = 1u << 7,     // an input was not finite: its last good value was held
   force_saturated = 1u << 8,     // an input was beyond its limit, and cut to it
+  contact_ill_posed = 1u << 9,   // compliances of contacts that no track and vehicle have
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {
@@ -53,6 +54,9 @@ inline constexpr StatusText kStatusTexts[] = {
      "an input was not a finite number, and its last good value was held"},
     {Status::force_saturated, "force_saturated",
      "an input was beyond its limit, and was cut to it: see limit_n of its force"},
+    {Status::contact_ill_posed, "contact_ill_posed",
+     "the compliance between contacts is not positive or not finite, and their forces are not "
+     "right: set condense.residual_flexibility = false"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 

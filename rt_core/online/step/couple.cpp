@@ -115,16 +115,20 @@ PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
 void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& w, Coupling& c,
                    CoupleResult& result) noexcept {
   const std::int32_t cap = guide_turns(model);
-  bool settled = false, solved = false;
+  bool settled = false;
+  PortStatus met = PortStatus::converged;
   for (std::int32_t turn = 0; turn < cap && !settled; ++turn) {
     const PortResult ports = solve(model, s, c);
-    solved = ports.status == PortStatus::converged;
+    met = ports.status;
     if (ports.iterations > result.iterations) result.iterations = ports.iterations;
     result.violation = 0.;
     settled = move_wheelsets(model, stage, s, w, c, result.violation);
     if (turn + 1 > result.iterations) result.iterations = turn + 1;
   }
-  if (!settled || !solved) result.status = result.status | Status::cap_reached;
+  if (!settled || met == PortStatus::cap_reached)
+    result.status = result.status | Status::cap_reached;
+  if (met == PortStatus::indefinite || met == PortStatus::bad_input)
+    result.status = result.status | Status::contact_ill_posed;
 }
 
 bool closes_too_fast(const Model& model, const Coupling& c, const State& s, int i) noexcept {

@@ -28,6 +28,5 @@ struct Coupling {
   double force[kPorts];        // N
   double penetration[kPorts];  // m
 };
-static_assert(kMaxWheels + kMaxFixedPorts <= kPorts);
 
 }  // namespace railstep

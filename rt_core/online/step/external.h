@@ -1,6 +1,6 @@
 #pragma once
-#include "online/step/line.h"
 #include "online/step/residual.h"
+#include "online/track/line.h"
 
 namespace railstep {
 

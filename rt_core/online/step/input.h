@@ -10,11 +10,6 @@ namespace railstep {
 /// @returns what was met
 Status take_inputs(const Model& model, const double* value, State& state) noexcept;
 
-/// What an input holds; 0 where there is no state yet.
-inline double held_input(const double* input, std::int32_t at) noexcept {
-  return input == nullptr ? 0. : input[at];
-}
-
 /// A force on a wheelset or a vehicle at a time, N or N m.
 /// @param input  State::input, or null before there is one
 inline double force_at(const BodyForce& force, double time, const double* input) noexcept {

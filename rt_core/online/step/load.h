@@ -1,5 +1,5 @@
 #pragma once
-#include "online/step/line.h"
+#include "online/track/line.h"
 
 namespace railstep {
 

@@ -1,7 +1,7 @@
 #include "online/step/many.h"
 
+#include "online/math/float_mode.h"
 #include "online/step/common.h"
-#include "online/step/float_mode.h"
 #include "online/step/input.h"
 #include "online/step/stages.h"
 

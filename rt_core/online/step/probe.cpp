@@ -1,7 +1,7 @@
 #include "online/step/probe.h"
 
+#include "online/math/float_mode.h"
 #include "online/model/course.h"
-#include "online/step/float_mode.h"
 #include "online/step/residual.h"
 
 namespace railstep {

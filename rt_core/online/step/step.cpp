@@ -2,12 +2,12 @@
 
 #include <cstring>
 
+#include "online/math/float_mode.h"
 #include "online/math/tiny.h"
 #include "online/model/course.h"
 #include "online/step/common.h"
 #include "online/step/couple.h"
 #include "online/step/external.h"
-#include "online/step/float_mode.h"
 #include "online/step/follow.h"
 #include "online/step/hold.h"
 #include "online/step/input.h"

@@ -1,7 +1,7 @@
 #pragma once
 #include "online/contact/locate.h"
 #include "online/model/state.h"
-#include "online/step/line.h"
+#include "online/track/line.h"
 
 namespace railstep {
 

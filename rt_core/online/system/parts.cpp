@@ -1,7 +1,7 @@
 #include "online/system/parts.h"
 
 #include "online/model/beam_chain.h"
-#include "online/step/input.h"
+#include "online/model/state.h"
 #include "online/system/marker.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"

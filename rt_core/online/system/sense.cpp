@@ -1,6 +1,6 @@
 #include "online/system/sense.h"
 
-#include "online/step/float_mode.h"
+#include "online/math/float_mode.h"
 #include "online/system/marker.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"

@@ -1,7 +1,7 @@
 #include "online/system/track_ports.h"
 
-#include "online/step/line.h"
 #include "online/system/marker.h"
+#include "online/track/line.h"
 
 namespace railstep {
 

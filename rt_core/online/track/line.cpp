@@ -1,4 +1,4 @@
-#include "online/step/line.h"
+#include "online/track/line.h"
 
 namespace railstep {
 
