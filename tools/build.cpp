@@ -25,8 +25,6 @@
 #include "step_scheme.h"
 
 namespace railstep {
-namespace {}  // namespace
-
 namespace {
 
 /// A scene's table is 0 before its first row; the model's keeps its first value. A row one bit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "offline/contact/hertz.h"
@@ -43,7 +44,7 @@ Eigen::SparseMatrix<double> closing_of(const Track& track, const Line& line) {
   return closing;
 }
 
-/// Each force of a wheelset has a table or one of the inputs.
+/// Whether a one-sided spring of the unloaded track is under force.
 bool has_preload(const Track& track) {
   const std::vector<FixedPort> ports = fixed_ports(track);
   return std::any_of(ports.begin(), ports.end(),
@@ -74,7 +75,8 @@ std::int32_t PackedModel::kind_of(const Port& port) {
     if (kinds_[i].rail == port.rail && kinds_[i].z == port.z && kinds_[i].y == port.y)
       return static_cast<std::int32_t>(i);
   if (kinds_.size() == static_cast<std::size_t>(kMaxPortKinds))
-    throw std::invalid_argument("vertical forces act at more than 2 heights of a rail");
+    throw std::invalid_argument("vertical forces act at more than " +
+                                std::to_string(kMaxPortKinds) + " heights, counted for each rail");
   kinds_.push_back(port);
   return static_cast<std::int32_t>(kinds_.size()) - 1;
 }
@@ -86,7 +88,8 @@ std::int32_t PackedModel::kind_of_wheel(int rail) {
 }
 
 void PackedModel::add_load(const Track& track, const MovingLoad& load) {
-  if (model_.loads == kMaxLoads) throw std::invalid_argument("more than 32 loads");
+  if (model_.loads == kMaxLoads)
+    throw std::invalid_argument("more than " + std::to_string(kMaxLoads) + " loads");
   if (load.rail < 0 || load.rail >= track.rails)
     throw std::invalid_argument("a load stands on a rail that the track does not have");
   LoadModel& packed = model_.load[model_.loads++];
@@ -106,7 +109,8 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
 
 void PackedModel::add_irregularity(const Track& track, const RailIrregularity& irregularity) {
   if (model_.signals == kMaxSignals)
-    throw std::invalid_argument("more than 32 irregularities and defects of the rails");
+    throw std::invalid_argument("more than " + std::to_string(kMaxSignals) +
+                                " irregularities and defects of the rails");
   if (irregularity.rail < 0 || irregularity.rail >= track.rails)
     throw std::invalid_argument("an irregularity of a rail that the track does not have");
   if (irregularity.direction != 1 && irregularity.direction != 2)
@@ -118,7 +122,8 @@ void PackedModel::add_irregularity(const Track& track, const RailIrregularity& i
 void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
                                const std::array<Railhead, 2>& heads) {
   if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
-  if (model_.wheelsets == kMaxWheelsets) throw std::invalid_argument("more than 4 wheelsets");
+  if (model_.wheelsets == kMaxWheelsets)
+    throw std::invalid_argument("more than " + std::to_string(kMaxWheelsets) + " wheelsets");
   for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
                                wheelset.inertia_yaw, wheelset.radius})
     if (!(inertia > 0.))
@@ -159,7 +164,7 @@ std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce*
                                const char* bearer) {
   const std::string on = std::string(" on a ") + bearer;
   if (forces.size() > static_cast<std::size_t>(kMaxBodyForces))
-    throw std::invalid_argument("more than 4 forces" + on);
+    throw std::invalid_argument("more than " + std::to_string(kMaxBodyForces) + " forces" + on);
   for (const OuterForce& own : forces) {
     if (own.input >= model_.inputs || (own.input >= 0) != own.table.empty())
       throw std::invalid_argument("a force" + on + " has a table, or an input of its own");
@@ -177,7 +182,7 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
     throw std::invalid_argument("flanges meet the heads of upright rails; accepted is no cant");
   FlangeModel& packed = model_.flange[model_.flanges++];
   if (contact_count(model_) > kMaxWheels)
-    throw std::invalid_argument("more than 32 wheels and flanges");
+    throw std::invalid_argument("more than " + std::to_string(kMaxWheels) + " wheels and flanges");
   packed.wheelset = model_.wheelsets - 1;
   packed.normal[0] = -std::sin(flange.angle);
   packed.normal[1] = std::cos(flange.angle);
@@ -262,7 +267,8 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
 
 void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
   if (model_.external_wheels == kMaxExternalWheels)
-    throw std::invalid_argument("more than 16 external wheels");
+    throw std::invalid_argument("more than " + std::to_string(kMaxExternalWheels) +
+                                " external wheels");
   if (wheel.rail < 0 || wheel.rail >= track.rails)
     throw std::invalid_argument("an external wheel is on a rail that the track does not have");
   if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.fixed.count > 0)
@@ -288,7 +294,8 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
 
 void take_inputs(const std::vector<double>& limits, Model& model) {
   for (const double limit : limits) {
-    if (model.inputs == kMaxInputs) throw std::invalid_argument("more than 96 inputs");
+    if (model.inputs == kMaxInputs)
+      throw std::invalid_argument("more than " + std::to_string(kMaxInputs) + " inputs");
     if (!(limit > 0.) || !std::isfinite(limit))
       throw std::invalid_argument("an input's limit is a finite number above 0");
     model.input_limit[model.inputs++] = limit;

@@ -1,6 +1,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "offline/contact/hertz.h"
 #include "offline/pack/pack.h"
@@ -81,14 +82,17 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
                               const std::array<Railhead, 2>& heads) {
   if (vehicle.rail < 0 || vehicle.rail >= track.rails)
     throw std::invalid_argument("a vehicle stands on a rail that the track does not have");
-  if (model_.vehicles == kMaxVehicles) throw std::invalid_argument("more than 16 vehicles");
+  if (model_.vehicles == kMaxVehicles)
+    throw std::invalid_argument("more than " + std::to_string(kMaxVehicles) + " vehicles");
   const VehicleMatrices m = vehicle_matrices(vehicle.vehicle, vehicle.gravity);
   const auto n = static_cast<std::int32_t>(m.mass.rows());
   const auto wheels = static_cast<std::int32_t>(m.wheels.rows());
   if (n > kMaxVehicleUnknowns)
-    throw std::invalid_argument("more than 16 coordinates of one vehicle");
+    throw std::invalid_argument("more than " + std::to_string(kMaxVehicleUnknowns) +
+                                " coordinates of one vehicle");
   if (contact_count(model_) + wheels > kMaxWheels)
-    throw std::invalid_argument("more than 32 wheels of wheelsets and vehicles");
+    throw std::invalid_argument("more than " + std::to_string(kMaxWheels) +
+                                " wheels of wheelsets and vehicles");
   if (!vehicle.tread.empty() && vehicle.tread.size() != vehicle.vehicle.wheels.size())
     throw std::invalid_argument("treads of a vehicle that are not one for each wheel");
   const auto rail = static_cast<std::size_t>(vehicle.rail);

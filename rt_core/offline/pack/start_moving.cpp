@@ -3,6 +3,7 @@
 #include <complex>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "offline/pack/start.h"
 #include "offline/pack/start_flange.h"
@@ -77,7 +78,8 @@ Model evened(const Model& model) {
 Model with_forces(const Model& even) {
   Model carried = even;
   if (carried.loads + wheel_count(even) > kMaxLoads)
-    throw std::invalid_argument("a start on the move takes 32 loads and wheels at most");
+    throw std::invalid_argument("a start on the move takes " + std::to_string(kMaxLoads) +
+                                " loads and wheels at most");
   int wheel = 0;
   for (const double force : static_forces(even))
     carried.load[carried.loads++] = load_of(even, wheel++, force);
