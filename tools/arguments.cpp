@@ -22,6 +22,7 @@ std::string refused_number(std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   const bool whole = !text.empty() && text.front() != ' ' && *end == '\0';
+  if (whole && value == 0.) text = "0";  // of -0.0 too
   if (whole && std::isfinite(value)) return {};
   return fmt::format("'{}' is no {}number; accepted is a finite number", text.substr(0, 60),
                      whole ? "finite " : "");

@@ -43,8 +43,8 @@ std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& section
   std::vector<MovingLoad> loads;
   for (const LoadScene& l : scene.loads) {
     const std::vector<double> speeds = l.speeds ? l.speeds->rows() : std::vector<double>{};
-    const double never =
-        std::copysign(std::numeric_limits<double>::infinity(), travel_table(l.speed, speeds).speed);
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    const double never = travel_table(l.speed, speeds).speed < 0. ? -kFar : kFar;
     loads.push_back({.rail = l.rail == Side::right ? 1 : 0,
                      .start = l.start,
                      .speed = l.speed,

@@ -57,7 +57,7 @@ double csv_number(std::string_view field, const std::string& place) {
     throw InputError(fmt::format("{}: '{}' is not a finite number", place, field.substr(0, 40)));
   if (error != std::errc() || end != digits.data() + digits.size())
     throw InputError(fmt::format("{}: '{}' is not a number", place, field.substr(0, 40)));
-  return value;
+  return value + 0.;  // -0.0 is 0.0
 }
 
 void refuse_decimal_comma(const CsvLine& line, std::size_t wanted) {

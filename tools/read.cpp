@@ -155,7 +155,7 @@ struct Table::Entry {
     const double value = *at.value<double>();
     if (!std::isfinite(value))
       refuse(at, fmt::format("{} is not finite; accepted is {}", found, accepted.text()));
-    if (accepted.holds(value)) return value;
+    if (accepted.holds(value)) return value + 0.;  // -0.0 is 0.0: no sign without a size
     refuse(at, fmt::format("{} is out of range; accepted is {}{}", found, accepted.text(),
                            likely_slip(key, value, accepted)));
   }

@@ -91,6 +91,13 @@ bool force_holds(const Model& m, const BodyForce& f) noexcept {
   return f.input >= 0 ? f.input < m.inputs : f.points > 0 && f.table != nullptr;
 }
 
+/// A load is not taken off before it has begun, on the side that it comes from (step/load.cpp).
+bool load_holds(const LoadModel& l) noexcept {
+  if (l.table_points > 0 && l.table == nullptr) return false;
+  const bool ahead = l.travel.speed >= 0. ? l.stop > -kMostNumber : l.stop < kMostNumber;
+  return ahead && travel_holds(l.travel);
+}
+
 /// External wheels stand on a track alone with loads, a step a frame; each has its own inputs.
 bool external_wheels_hold(const Model& m) noexcept {
   if (m.external_wheels == 0) return true;
@@ -212,9 +219,7 @@ bool track_holds(const Model& m) noexcept {
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_holds(m, m.line[i])) return false;
   for (std::int32_t i = 0; i < m.loads; ++i)
-    if ((m.load[i].table_points > 0 && m.load[i].table == nullptr) ||
-        !travel_holds(m.load[i].travel))
-      return false;
+    if (!load_holds(m.load[i])) return false;
   for (const Cant& cant : m.cant)
     if (!turns(cant)) return false;
   for (std::int32_t i = 0; i < m.wheelsets; ++i)
