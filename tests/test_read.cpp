@@ -11,6 +11,7 @@
 
 using namespace railstep;
 using Catch::Contains;
+using Catch::EndsWith;
 using Overrides = std::vector<std::string>;
 
 namespace {
@@ -124,13 +125,17 @@ TEST_CASE("an unknown key is refused with the nearest known one, in any opened t
   (void)loads[0].string("name");
   (void)loads[0].number("force_z_n", any_number(), 0.0);
   CHECK(sentence([&] { root.finish(); }) ==
-        "bay.toml:5:1: [load[0]] unknown key 'force_z'; did you mean 'force_z_n'?");
+        "bay.toml:5:1: [load[0]] unknown key 'force_z'; did you mean 'force_z_n'? Unknown too: "
+        "[support] 'stifness' ('stiffness_z_n_per_m'?)");
   const Table only = parse("[support]\nstifness = 3e7\n");
   (void)only.table("support").number("stiffness_z_n_per_m", at_least(0), 0.0);
   (void)only.table("support").number("at", at_least(0), 0.0);
   CHECK(sentence([&] { only.finish(); }) ==
         "bay.toml:2:1: [support] unknown key 'stifness'; did you mean 'stiffness_z_n_per_m'?");
   CHECK_THAT(parse_sentence("a = 1"), Contains("bay.toml:1:1: unknown key 'a'"));
+  CHECK(parse_sentence("a = 1\nb = 2\n[c]\n") ==
+        "bay.toml:1:1: unknown key 'a'; no key is accepted here. Unknown too: 'b', 'c'");
+  CHECK_THAT(parse_sentence("a=1\nb=1\nc=1\nd=1\ne=1\nf=1\ng=1\n"), EndsWith("and 2 more"));
 }
 
 TEST_CASE("a missing key is named, with the misspelt one where there is one", "[read]") {

@@ -71,47 +71,12 @@ std::string listed(std::initializer_list<std::string_view> names) {
   return text;
 }
 
-std::string bracketed(const std::string& name) { return name.empty() ? "" : "[" + name + "] "; }
-
-[[noreturn]] void refuse_at(const toml::source_region& source, const Document& document,
-                            const std::string& table, std::string_view sentence) {
-  throw InputError(
-      one_line(fmt::format("{}: {}{}", place(source, document.file), bracketed(table), sentence)));
-}
-
 /// The unit that would explain a value out of its range, as a question; else empty.
 const char* likely_slip(std::string_view key, double value, const Range& accepted) {
   if (key.ends_with("_m") && !key.ends_with("_per_m") && accepted.holds(value / 1000.0))
     return " (metres; was it given in millimetres?)";
   if (key.ends_with("_pa") && accepted.holds(value * 1e6)) return " (Pa; was it given in N/mm2?)";
   return "";
-}
-
-std::vector<std::string> to_vector(const std::set<std::string, std::less<>>& keys) {
-  return {keys.begin(), keys.end()};
-}
-
-/// Refuses unknown keys of `table` and of all opened tables in it.
-void check_keys(const Document& document, const toml::table& table, const std::string& name) {
-  const auto found = document.known.find(&table);
-  if (found == document.known.end()) return;  // never opened: its reader did not want it
-  for (const auto& [key, value] : table) {
-    const std::string word(key.str());
-    if (!found->second.contains(word)) {
-      const std::string near = nearest(word, to_vector(found->second));
-      const std::string shown_word = word.substr(0, 60);
-      refuse_at(key.source(), document, name,
-                near.empty()
-                    ? fmt::format("unknown key '{}'; no key is accepted here", shown_word)
-                    : fmt::format("unknown key '{}'; did you mean '{}'?", shown_word, near));
-    }
-    const std::string below = name.empty() ? word : fmt::format("{}.{}", name, word);
-    if (const toml::table* sub = value.as_table()) check_keys(document, *sub, below);
-    if (const toml::array* array = value.as_array())
-      for (std::size_t i = 0; i < array->size(); ++i)
-        if (const toml::table* sub = array->get(i)->as_table())
-          check_keys(document, *sub, fmt::format("{}[{}]", below, i));
-  }
 }
 
 }  // namespace

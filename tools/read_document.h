@@ -21,6 +21,12 @@ struct Document {
 
 /// "file:line:col", or the option's text for a value that came from --set.
 std::string place(const toml::source_region& source, const std::filesystem::path& file);
+/// Throws InputError: "place: [table] sentence".
+[[noreturn]] void refuse_at(const toml::source_region& source, const Document& document,
+                            const std::string& table, std::string_view sentence);
+/// Refuses unknown keys of `table` and of all opened tables in it: the first with its place, and
+/// names a few others.
+void check_keys(const Document& document, const toml::table& table, const std::string& name);
 /// `text` with control characters as '?', so that a quoted value cannot break the sentence.
 std::string one_line(std::string text);
 /// Parses; `name` is what errors and source regions call the text. Throws InputError.
