@@ -198,3 +198,23 @@ TEST_CASE("a scene with a bad profile names the profile", "[bad_input][cli]") {
   bad.refused("run " + scene + bad.old("--trace", "t.csv"),
               {"p.toml:4:", "rows 2 and 3", "same point"});
 }
+
+TEST_CASE("points, a section and a profile that stand for one another are told what they are",
+          "[bad_input][cli]") {
+  const BadInput bad("stands_for");
+  const std::string points = bad.file("points.csv", "y,z\n0,0\n70,0\n70,10\n");
+  const std::string outline = bad.file("p.toml", profile("[0, 0, 0], [70, 0, 0], [0, 150, 0]"));
+  const std::string section = bad.path("section.toml");
+  REQUIRE(railstep_program("fit '" RAILSTEP_SOURCE "/config/profiles/60e1.toml' --out " + section)
+              .code == 0);
+  const auto refused = [&](const std::string& key, const std::string& file, const Words& said) {
+    bad.refused("run " + shipped("moving_load") + " --set 'rail={" + key + "=\"" + file + "\"}'" +
+                    bad.old("--trace", "t.csv"),
+                said);
+  };
+  const Words of_points = {"points.csv: is a list of points", "`railstep fit", "as section"};
+  refused("profile", points, of_points);
+  refused("section", points, of_points);
+  refused("profile", section, {"section.toml:", "is a section", "in the place of profile"});
+  refused("section", outline, {"p.toml:", "is a profile", "in the place of section"});
+}

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -60,11 +61,36 @@ std::vector<OutlineRow> rows_of(const std::string& text, const std::string& file
   return rows;
 }
 
+/// Lines of numbers, where a TOML file has keys.
+bool is_points(const std::string& text, const std::string& file) {
+  const std::vector<CsvLine> lines = csv_lines(text, file);
+  const auto is_number = [](const CsvLine& line) {
+    return std::string_view("0123456789+-.").find(line.fields.front().front()) !=
+           std::string_view::npos;
+  };
+  return text.find('=') == std::string::npos && std::any_of(lines.begin(), lines.end(), is_number);
+}
+
 }  // namespace
 
+Table read_shape_file(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
+  if (is_points(text, file.string()))
+    throw InputError(
+        fmt::format("{0}: is a list of points, of which `railstep fit {0} --unit mm --out FILE` "
+                    "makes a section; "
+                    "accepted are that FILE as section, and a profile (TOML) as profile",
+                    file.string()));
+  return read_toml_text(text, file);
+}
+
 Profile read_profile(const std::filesystem::path& file) {
-  const Table root = read_toml(file);
+  const Table root = read_shape_file(file);
   static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
+  if (!root.has("half_outline_mm") && root.has("section"))
+    root.refuse("section",
+                "the file is a section, as `railstep fit --out` writes it; accepted as "
+                "section in the place of profile");
   Profile profile{root.string("name"), root.string("source"), {}, nothing_published()};
   const std::vector<double> values = root.rows("half_outline_mm", 3);
   if (const auto published = root.table_if("published"))

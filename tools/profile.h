@@ -22,6 +22,11 @@ struct Profile {
   Published published;
 };
 
+class Table;
+
+/// A profile or a section file (TOML). Throws InputError, on a list of points with what to do.
+Table read_shape_file(const std::filesystem::path& file);
+
 /// Reads a profile: TOML as in config/README.md, "Profiles". Throws InputError.
 Profile read_profile(const std::filesystem::path& file);
 

@@ -84,8 +84,12 @@ Section read_constants(const Table& t) {
 }
 
 Section read_section(const std::filesystem::path& file) {
-  const Table root = read_toml(file);
+  const Table root = read_shape_file(file);
   static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
+  if (!root.has("section") && root.has("half_outline_mm"))
+    root.refuse("half_outline_mm",
+                "the file is a profile; accepted as profile in the place of "
+                "section");
   static_cast<void>(root.string("name", "-"));
   static_cast<void>(root.string("source", "-"));
   static_cast<void>(root.number("symmetric_difference_m2", at_least(0.0), 0.0));
@@ -103,7 +107,7 @@ Section read_section(const std::filesystem::path& file) {
 }
 
 std::optional<Rectangles<double>> read_dimensions(const std::filesystem::path& file) {
-  const std::optional<Table> t = read_toml(file).table_if("dimensions");
+  const std::optional<Table> t = read_shape_file(file).table_if("dimensions");
   if (!t) return std::nullopt;
   const auto size = [&t](const char* key) { return t->number(key, above_upto(0.0, 1.0)); };
   return Rectangles<double>{{size("foot_width_m"), size("web_width_m"), size("head_width_m")},
