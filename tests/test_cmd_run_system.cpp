@@ -199,6 +199,19 @@ TEST_CASE("a step so long that the scheme makes energy is told", "[run]") {
   CHECK_THAT(railstep_program("run " + kPendulum).err, !Contains(noted));
 }
 
+TEST_CASE("a balance that is off is told of condensed tracks too", "[run]") {
+  const std::string noted = "note: the energy balance is off by 0.";
+  const std::string run = "run " + kScenes +
+                          "moving_load.toml --set 'condense.kind=\"modal\"' --json "
+                          "--set step.frame_s=0.005 --set step.dt_s=";
+  const Ran off = railstep_program(run + "0.005");
+  CHECK_THAT(off.err, Contains(noted));
+  const auto told = nlohmann::json::parse(off.out);
+  CHECK(told["energy_balance_error"].get<double>() > .05);
+  CHECK(told["warnings"].size() == 1);
+  CHECK_THAT(railstep_program(run + "0.001").err, !Contains(noted));
+}
+
 TEST_CASE("a drive's work and a damper's heat close the balance, whatever holds the joints",
           "[run]") {
   // Means over a step are of second order, and so are the schemes: half the step, a quarter of the

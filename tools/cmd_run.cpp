@@ -111,14 +111,22 @@ void print_table(const nlohmann::ordered_json& result) {
                result["numerical_loss"].get<double>());
 }
 
-/// Says so where the scheme made energy, more than a step that follows the motion; else empty.
+/// Says so where the scheme made energy, more than a step that follows the motion, or where the
+/// balance is off by as much for another reason; else empty.
 std::string energy_note(const std::optional<EnergyBalance>& energy) {
   constexpr double kMuch = .05;
-  if (!energy || !(energy->numerical_loss < -kMuch)) return {};
+  if (!energy) return {};
+  if (energy->numerical_loss < -kMuch)
+    return fmt::format(
+        "the scheme made energy, {:.2g} of all that was turned over: the step is too long for this "
+        "motion; halve it, or take a scheme that keeps energy",
+        -energy->numerical_loss);
+  if (!(energy->error >= kMuch)) return {};
   return fmt::format(
-      "the scheme made energy, {:.2g} of all that was turned over: the step is too long for this "
-      "motion; halve it, or take a scheme that keeps energy",
-      -energy->numerical_loss);
+      "the energy balance is off by {:.2g} of all that was turned over, of which the scheme took "
+      "{:.2g}: the step is too long for this motion, or on a condensed track for the sums of work "
+      "and heat; halve it",
+      energy->error, energy->numerical_loss);
 }
 
 /// Says in words what the run met.
