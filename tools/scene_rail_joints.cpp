@@ -121,10 +121,12 @@ void check_gaps(const Table& root, const Scene& scene, int rail, std::vector<Joi
     if (closed) check_plates(t, joints[cuts[i].second].joint);
     if (!closed && grown > gap.cold.value_or(0.0))
       t.refuse("gap_m",
-               fmt::format("gap_m = {:.15g}, but at temperature_rise_k = {:.15g} the rails grow by "
-                           "{:.3g} m into it, which not all of the rail's gaps do; accepted are "
-                           "gaps in all joints that heat leaves all open or closes all",
-                           gap.cold.value_or(0.0), own.temperature_rise, grown));
+               fmt::format(
+                   "{}, but at temperature_rise_k = {:.15g} the rails grow by {:.3g} m into "
+                   "it, which not all of the rail's gaps do; accepted are gaps in all "
+                   "joints that heat leaves all open or closes all",
+                   gap.cold ? fmt::format("gap_m = {:.15g}", *gap.cold) : "the joint has no gap_m",
+                   own.temperature_rise, grown));
   }
 }
 
