@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -157,6 +158,14 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
   return write(block_of(built, made.notes()), made, o);
 }
 
+/// Of either kind of scene. What the errors' own models refuse is of the scene too.
+nlohmann::ordered_json condense(const CondenseOptions& o) try {
+  return std::visit([&o](const auto& scene) { return condense(scene, o); },
+                    read_any_scene(o.scene, o.overrides));
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: {}", o.scene, error.what()));
+}
+
 std::string error_text(const nlohmann::ordered_json& error) {
   return error.is_null() ? "not known" : fmt::format("{:.2e}", error.get<double>());
 }
@@ -202,9 +211,7 @@ Command add_condense(CLI::App& app) {
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep condense config/scenes/ballasted_track.toml --out track.model");
   return {sub, [o] {
-            const nlohmann::ordered_json result =
-                std::visit([&o](const auto& scene) { return condense(scene, *o); },
-                           read_any_scene(o->scene, o->overrides));
+            const nlohmann::ordered_json result = condense(*o);
             if (o->json)
               fmt::print("{}\n", result.dump(2));
             else

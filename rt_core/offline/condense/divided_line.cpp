@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
-#include "offline/track/statics.h"
+#include "offline/track/free_motion.h"
 
 namespace railstep {
 
@@ -93,7 +93,7 @@ void DividedLine::find_spans() {
 
 void DividedLine::refuse_free_modes() const {
   if (held_) return;
-  railstep::refuse_free_modes(line_);  // by its name
+  railstep::refuse_free_modes(track_, {line_}, {});  // by its name
   throw std::invalid_argument(
       "residual flexibility needs a track that is held: it has a free rigid mode");
 }

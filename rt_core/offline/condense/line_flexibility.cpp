@@ -25,13 +25,6 @@ std::vector<int> carried_unknowns(const Line& line, int rail) {
   return found;
 }
 
-bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
-             const Eigen::SparseMatrix<double>& stiffness) {
-  if (factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd diagonal = factor.permutationP() * Eigen::VectorXd(stiffness.diagonal());
-  return (factor.vectorD().array() > 1e-12 * diagonal.array()).all();
-}
-
 Line matching(const Track& other, const Line& line) {
   const auto carries_all = [&](const Line& there, int rail) {
     const std::vector<int> more = carried_unknowns(there, rail),

@@ -168,10 +168,6 @@ class ReducedLine : public LineFlexibility {
   const Basis& basis_;
 };
 
-/// A factored stiffness is held if all pivots are above 1e-12 of their diagonal, as Statics has it.
-bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
-             const Eigen::SparseMatrix<double>& stiffness);
-
 /// Unknowns of a rail's node that a line carries, from an inner one: ends may hold some of theirs.
 std::vector<int> carried_unknowns(const Line& line, int rail);
 

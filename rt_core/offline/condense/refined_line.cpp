@@ -2,7 +2,7 @@
 
 #include "offline/condense/line_flexibility.h"
 #include "offline/element/shape.h"
-#include "offline/track/statics.h"
+#include "offline/track/free_motion.h"
 
 namespace railstep {
 
@@ -47,7 +47,7 @@ RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)
 
 void RefinedLine::refuse_free_modes() const {
   if (held_) return;
-  railstep::refuse_free_modes(line_);  // by its name
+  railstep::refuse_free_modes(track_, {line_}, {});  // by its name
   throw std::invalid_argument(
       "residual flexibility needs a track that is held: it has a free rigid mode");
 }

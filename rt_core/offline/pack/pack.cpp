@@ -9,6 +9,7 @@
 #include "offline/contact/hertz.h"
 #include "offline/cost/cost.h"
 #include "offline/pack/start.h"
+#include "offline/track/free_motion.h"
 
 namespace railstep {
 
@@ -240,14 +241,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
     throw std::invalid_argument("bodies hold on to rails that stand upright; accepted is no cant");
   met_ = {0, track.elements()};
   if (options.endless) add_endless(track, traffic, options);
-  std::vector<Line> lines = assemble(track);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const Eigen::SparseMatrix<double> closing = closing_of(track, lines[i]);
-    const bool closes = closing.cols() > 0 && closing.norm() > 0.;
-    if (closes || is_moved(track, lines[i], traffic, options.gravity))
-      add_line(track, {std::move(lines[i]), i, closing, {}, {}}, options);
-  }
-  if (lines_.empty()) throw std::invalid_argument("nothing moves the track");
+  add_lines(track, traffic, options);
   model_.bodies = model_.unknowns;
   for (const MovingLoad& load : traffic.loads) add_load(track, load);
   for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
@@ -263,6 +257,27 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   put_falling(model_, traffic.vehicles, start);
   set_start(std::move(start));
   model_.cost = cost_of(model_);
+}
+
+void PackedModel::add_lines(const Track& track, const Traffic& traffic,
+                            const PackOptions& options) {
+  std::vector<Line> lines = assemble(track), moved;
+  std::vector<PackedLine> kept;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Eigen::SparseMatrix<double> closing = closing_of(track, lines[i]);
+    const bool closes = closing.cols() > 0 && closing.norm() > 0.;
+    if (!closes && !is_moved(track, lines[i], traffic, options.gravity)) continue;
+    kept.push_back({{}, i, closing, {}, {}});
+    moved.push_back(std::move(lines[i]));
+  }
+  if (moved.empty()) throw std::invalid_argument("nothing moves the track");
+  // Whatever the start: what runs on it would push the track away.
+  refuse_free_modes(track, moved,
+                    options.reduction ? std::vector<FixedPort>{} : fixed_ports(track));
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    kept[i].line = std::move(moved[i]);
+    add_line(track, std::move(kept[i]), options);
+  }
 }
 
 void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {

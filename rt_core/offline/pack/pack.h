@@ -198,6 +198,7 @@ class PackedModel {
   const double* keep(std::vector<double> values);
   const std::int32_t* keep(std::vector<std::int32_t> values);
   Diagonals keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded);
+  void add_lines(const Track& track, const Traffic& traffic, const PackOptions& options);
   void add_line(const Track& track, PackedLine packed, const PackOptions& options);
   void add_banded(const Track& track, const Line& line, LineModel& packed, double gravity);
   void add_condensed(const Track& track, PackedLine& own, LineModel& packed,

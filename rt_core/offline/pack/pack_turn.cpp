@@ -1,8 +1,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
-#include "offline/condense/line_flexibility.h"
 #include "offline/pack/pack.h"
+#include "offline/track/free_motion.h"
 
 namespace railstep {
 

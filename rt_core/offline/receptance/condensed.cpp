@@ -4,6 +4,7 @@
 
 #include "offline/receptance/full_order.h"
 #include "offline/receptance/residual_statics.h"
+#include "offline/track/free_motion.h"
 
 namespace railstep {
 
@@ -13,6 +14,7 @@ CondensedReceptance::CondensedReceptance(const Track& track, const Transfer& tra
   for (const Line& line : assemble(track)) {
     const Eigen::VectorXd force(functional_row(track, line, transfer.force));
     if (force.norm() == 0.) continue;
+    refuse_free_modes(track, {line}, {});
     const auto [basis, modes] = reduce(track, line, reduction);
     const Eigen::VectorXd acting = basis.shapes.project(force);
     const Eigen::MatrixXd read = read_rows(track, line, transfer) * basis.shapes.dense();

@@ -14,50 +14,26 @@ using Factor = Eigen::SimplicialLDLT<Sparse>;
 
 constexpr int kMostTurns = 200;
 
-/// No pivot within 1e-12 of its diagonal, as Statics counts free modes.
-bool holds(const Factor& factor, const Sparse& stiffness) {
-  if (factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd size = factor.permutationP() * Eigen::VectorXd(stiffness.diagonal());
-  return (factor.vectorD().array() > 1e-12 * size.array()).all();
-}
-
 }  // namespace
 
 OneSided::OneSided(const Track& track, const std::vector<Line>& lines, std::vector<FixedPort> ports)
-    : ports_(std::move(ports)), first_{0} {
-  std::vector<Eigen::Triplet<double>> entries, rows;
-  for (const Line& line : lines) {
-    const auto first = static_cast<int>(first_.back());
-    for (int j = 0; j < line.unknowns(); ++j)
-      for (Sparse::InnerIterator it(line.stiffness, j); it; ++it)
-        entries.emplace_back(first + static_cast<int>(it.row()), first + j, it.value());
-    for (std::size_t p = 0; p < ports_.size(); ++p) {
-      const Eigen::SparseVector<double> row = closing_row(track, line, ports_[p]);
-      for (Eigen::SparseVector<double>::InnerIterator it(row); it; ++it)
-        rows.emplace_back(first + static_cast<int>(it.index()), static_cast<int>(p), it.value());
-    }
-    first_.push_back(first_.back() + line.unknowns());
-  }
-  lines_.resize(first_.back(), first_.back());
-  lines_.setFromTriplets(entries.begin(), entries.end());
-  closing_.resize(first_.back(), static_cast<Eigen::Index>(ports_.size()));
-  closing_.setFromTriplets(rows.begin(), rows.end());
+    : ports_(std::move(ports)), joined_(join(track, lines, ports_)) {
   const Sparse all = stiffness(Closed(ports_.size(), true));
   all_closed_.compute(all);
-  if (!holds(all_closed_, all))
-    throw std::invalid_argument(
-        "the track has a free rigid mode even where all its one-sided supports press");
+  if (is_held(all_closed_, all)) return;
+  refuse_free_modes(track, lines, ports_);  // by its name
+  throw std::invalid_argument("the track's stiffness cannot be factored");
 }
 
 OneSided::Sparse OneSided::stiffness(const Closed& closed) const {
   Eigen::VectorXd k(static_cast<Eigen::Index>(ports_.size()));
   for (std::size_t p = 0; p < ports_.size(); ++p)
     k[static_cast<Eigen::Index>(p)] = closed[p] ? ports_[p].stiffness : 0.;
-  return lines_ + Sparse(closing_ * k.asDiagonal() * closing_.transpose());
+  return joined_.stiffness + Sparse(joined_.closing * k.asDiagonal() * joined_.closing.transpose());
 }
 
 Eigen::VectorXd OneSided::depth(const Eigen::VectorXd& u) const {
-  Eigen::VectorXd d = closing_.transpose() * u;
+  Eigen::VectorXd d = joined_.closing.transpose() * u;
   for (std::size_t p = 0; p < ports_.size(); ++p) d[static_cast<Eigen::Index>(p)] -= ports_[p].gap;
   return d;
 }
@@ -74,23 +50,23 @@ Eigen::VectorXd OneSided::gradient(const Eigen::VectorXd& u, const Eigen::Vector
   Eigen::VectorXd pressed = depth(u).cwiseMax(0.);
   for (std::size_t p = 0; p < ports_.size(); ++p)
     pressed[static_cast<Eigen::Index>(p)] *= ports_[p].stiffness;
-  return lines_ * u + closing_ * pressed - load;
+  return joined_.stiffness * u + joined_.closing * pressed - load;
 }
 
 /// Where too few press to hold the track, the step that all of them would allow: it goes down too.
 Eigen::VectorXd OneSided::newton_step(const Closed& closed, const Eigen::VectorXd& g) const {
   const Sparse held = stiffness(closed);
   const Factor factor(held);
-  return holds(factor, held) ? factor.solve(-g) : all_closed_.solve(-g);
+  return is_held(factor, held) ? factor.solve(-g) : all_closed_.solve(-g);
 }
 
 /// The t >= 0 of the least E(u + t step): its slope rises in t along straight pieces that end where
 /// a spring closes or opens.
 double OneSided::minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& step,
                                const Eigen::VectorXd& load) const {
-  const Eigen::VectorXd d = depth(u), s = closing_.transpose() * step;
-  const Eigen::VectorXd Ks = lines_ * step;
-  const double start = step.dot(lines_ * u - load), rise = step.dot(Ks);
+  const Eigen::VectorXd d = depth(u), s = joined_.closing.transpose() * step;
+  const Eigen::VectorXd Ks = joined_.stiffness * step;
+  const double start = step.dot(joined_.stiffness * u - load), rise = step.dot(Ks);
   const auto slope = [&](double t) {
     double sum = start + t * rise;
     for (std::size_t p = 0; p < ports_.size(); ++p) {
@@ -121,8 +97,9 @@ double OneSided::minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& 
 }
 
 std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>& load) const {
-  Eigen::VectorXd f(first_.back());
-  for (std::size_t l = 0; l < load.size(); ++l) f.segment(first_[l], load[l].size()) = load[l];
+  Eigen::VectorXd f(joined_.first.back());
+  for (std::size_t l = 0; l < load.size(); ++l)
+    f.segment(joined_.first[l], load[l].size()) = load[l];
   // All closed is where a track rests that carries what it is made for.
   Eigen::VectorXd gaps(static_cast<Eigen::Index>(ports_.size()));
   double largest_gap = 0.;  // m; what rests pressed does not move at all
@@ -130,7 +107,7 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
     gaps[static_cast<Eigen::Index>(p)] = ports_[p].stiffness * ports_[p].gap;
     largest_gap = std::max(largest_gap, std::abs(ports_[p].gap));
   }
-  Eigen::VectorXd u = all_closed_.solve(f + closing_ * gaps);
+  Eigen::VectorXd u = all_closed_.solve(f + joined_.closing * gaps);
   Closed closed = pressing(u);
   bool done = false;
   for (int turn = 0; turn < kMostTurns && !done; ++turn) {
@@ -149,14 +126,14 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
         "no equilibrium was found: the one-sided supports open and close without end");
   std::vector<Eigen::VectorXd> result;
   for (std::size_t l = 0; l < load.size(); ++l)
-    result.emplace_back(u.segment(first_[l], load[l].size()));
+    result.emplace_back(u.segment(joined_.first[l], load[l].size()));
   return result;
 }
 
 std::vector<double> OneSided::forces(const std::vector<Eigen::VectorXd>& displacement) const {
-  Eigen::VectorXd u(first_.back());
+  Eigen::VectorXd u(joined_.first.back());
   for (std::size_t l = 0; l < displacement.size(); ++l)
-    u.segment(first_[l], displacement[l].size()) = displacement[l];
+    u.segment(joined_.first[l], displacement[l].size()) = displacement[l];
   const Eigen::VectorXd d = depth(u);
   std::vector<double> result;
   for (std::size_t p = 0; p < ports_.size(); ++p)

@@ -2,7 +2,7 @@
 #include <Eigen/SparseCholesky>
 #include <vector>
 
-#include "offline/track/fixed_port.h"
+#include "offline/track/free_motion.h"
 
 namespace railstep {
 
@@ -35,9 +35,7 @@ class OneSided {
                        const Eigen::VectorXd& load) const;
 
   std::vector<FixedPort> ports_;
-  std::vector<Eigen::Index> first_;  // [lines + 1] where a line's unknowns begin
-  Sparse lines_;                     // K of all lines
-  Sparse closing_;                   // [unknowns][ports]
+  JoinedLines joined_;
   Eigen::SimplicialLDLT<Sparse> all_closed_;
 };
 

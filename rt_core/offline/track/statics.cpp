@@ -1,52 +1,11 @@
 #include "offline/track/statics.h"
 
-#include <cmath>
 #include <stdexcept>
-#include <string>
 
+#include "offline/track/free_motion.h"
 #include "offline/track/functional.h"
 
 namespace railstep {
-
-namespace {
-
-/// Where unknown `i` of a line sits, in words, for messages.
-std::string place_of(const Line& line, int unknown) {
-  static const char* const names[9] = {
-      "x position",         "lateral position", "height", "lateral slope a_x", "a_y", "roll a_z",
-      "vertical slope b_x", "roll b_y",         "b_z"};
-  for (const Line::RailUnknowns& table : line.unknown_of)
-    for (std::size_t node = 0; node < table.size(); ++node)
-      for (std::size_t k = 0; k < 9; ++k)
-        if (table[node][k] == unknown)
-          return "the " + std::string(names[k]) + " of rail node " + std::to_string(node);
-  for (const auto& cuts : line.cuts)
-    for (const auto& [node, ahead] : cuts)
-      for (std::size_t k = 0; k < 9; ++k)
-        if (ahead[k] == unknown)
-          return "the " + std::string(names[k]) + " ahead of the joint at rail node " +
-                 std::to_string(node);
-  return "a sleeper's motion";
-}
-
-void refuse_free_modes(const Line& line,
-                       const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor) {
-  const Eigen::VectorXd pivots = factor.vectorD();
-  const Eigen::VectorXd diagonal =
-      factor.permutationP() * Eigen::VectorXd(line.stiffness.diagonal());
-  for (int i = 0; i < pivots.size(); ++i) {
-    if (pivots[i] > 1e-12 * diagonal[i]) continue;
-    const int unknown = factor.permutationPinv().indices()[i];
-    throw std::invalid_argument("the track has a free rigid mode: nothing holds " +
-                                place_of(line, unknown));
-  }
-}
-
-}  // namespace
-
-void refuse_free_modes(const Line& line) {
-  refuse_free_modes(line, Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(line.stiffness));
-}
 
 Statics::Statics(const Track& track)
     : track_(track), lines_(assemble(track_)), ports_(fixed_ports(track_)) {
@@ -54,9 +13,9 @@ Statics::Statics(const Track& track)
   factors_ = std::vector<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(lines_.size());
   for (std::size_t i = 0; i < lines_.size() && ports_.empty(); ++i) {
     factors_[i].compute(lines_[i].stiffness);
-    if (factors_[i].info() != Eigen::Success)
-      throw std::invalid_argument("the track's stiffness cannot be factored");
-    refuse_free_modes(lines_[i], factors_[i]);
+    if (is_held(factors_[i], lines_[i].stiffness)) continue;
+    refuse_free_modes(track_, lines_, {});  // by its name
+    throw std::invalid_argument("the track's stiffness cannot be factored");
   }
 }
 

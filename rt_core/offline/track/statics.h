@@ -14,16 +14,12 @@ struct PointForce {
   double force;  // N
 };
 
-/// Throws std::invalid_argument, naming what nothing holds, where a line has a free rigid mode.
-void refuse_free_modes(const Line& line);
-
 /// Factored stiffness of every line of a track, for many right-hand sides. Where some of the track
 /// is one-sided (fixed_port.h) each solution finds what of it presses.
 class Statics {
  public:
-  /// Throws std::invalid_argument when a line has a free rigid mode (a pivot below 1e-12 of the
-  /// largest after scaling by the diagonal), naming where it moves most; of a track with one-sided
-  /// supports, when it has one with all of them closed.
+  /// Throws std::invalid_argument, as refuse_free_modes (free_motion.h) does, when a line has a
+  /// free rigid mode; of a track with one-sided supports, when it has one with all of them closed.
   explicit Statics(const Track& track);
 
   /// Displacements of each line's unknowns under the forces, and the track's weight if asked.

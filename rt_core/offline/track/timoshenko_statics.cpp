@@ -7,6 +7,7 @@
 
 #include "offline/element/timoshenko.h"
 #include "offline/track/fixed_port.h"
+#include "offline/track/free_motion.h"
 #include "offline/track/pad.h"
 
 namespace railstep {
@@ -129,11 +130,9 @@ void TimoshenkoStatics::assemble(int unknowns) {
 
 void TimoshenkoStatics::factorise() {
   factor_.compute(stiffness_);
-  const Eigen::VectorXd pivots = factor_.vectorD();
-  const Eigen::VectorXd diagonal = factor_.permutationP() * Eigen::VectorXd(stiffness_.diagonal());
-  // Pivots of a long beam fall with the cube of elements per length; round-off leaves 1e-15.
-  if (factor_.info() != Eigen::Success || !((pivots.array() > 1e-12 * diagonal.array()).all()))
-    throw std::invalid_argument("the track has a free rigid mode: ends and pads do not hold it");
+  if (is_held(factor_, stiffness_)) return;
+  refuse_free_modes(track_, railstep::assemble(track_), {});  // by its name
+  throw std::invalid_argument("the track has a free rigid mode: ends and pads do not hold it");
 }
 
 Eigen::VectorXd TimoshenkoStatics::load(const std::vector<PointForce>& forces,
