@@ -1,12 +1,14 @@
-// What nothing holds is refused whatever the start and whoever steps it, with the motion, the place
-// and the key.
+// What nothing holds, and what buckles, is refused whatever the start and whoever steps it, with
+// the motion, the place and the key.
 #include <catch2/catch.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bad_input.h"
 #include "condensed.h"
 #include "offline/receptance/condensed.h"
+#include "offline/track/buckling.h"
 #include "offline/track/functional.h"
 #include "offline/track/statics.h"
 #include "offline/track/timoshenko_statics.h"
@@ -147,4 +149,22 @@ TEST_CASE("what has no track that moves, or is held by its ends, needs no pads",
   // Nothing moves the rails sideways there.
   CHECK(refusal("moving_load", {"track.unknowns=\"full\"", "support.stiffness_y_n_per_m=0"}) ==
         "accepted");
+}
+
+TEST_CASE("a track that buckles says where", "[not_held]") {
+  Track t = r6_track();
+  t.bays = 30;
+  for (int seat = 12; seat <= 17; ++seat) t.changed_seats[seat] = {};
+  t.axial_force = -5e7;
+  try {
+    refuse_buckled(t);
+    FAIL("it does not buckle");
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what();
+    CAPTURE(said);
+    const std::size_t at = said.find(" N, most at x = ");
+    REQUIRE(at != std::string::npos);
+    // Seats 11 and 18 are the last that hold: the middle of the gap is 14.5 bays on.
+    CHECK(std::abs(std::stod(said.substr(at + 16)) - 14.5 * t.bay_length) < .5 * t.bay_length);
+  }
 }
