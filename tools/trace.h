@@ -1,31 +1,26 @@
 #pragma once
-#include <cstdio>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "write.h"
+
 namespace railstep {
 
-/// A trace as it grows: CSV, 17 significant digits. It is written beside its place and renamed into
-/// it by `finish`, so that a reader never sees half a trace.
+/// A trace as it grows: CSV, 17 significant digits.
 class Trace {
  public:
-  /// Opens the file and writes the header. Throws std::runtime_error naming file and reason.
+  /// Opens the file and writes the header. Throws as OutputFile, which leaves nothing behind where
+  /// the trace is not finished.
   Trace(std::filesystem::path file, const std::vector<std::string>& columns);
-  Trace(const Trace&) = delete;
-  Trace& operator=(const Trace&) = delete;
-  ~Trace();  // an unfinished trace leaves nothing behind
 
   void row(std::span<const double> values);
-  /// Closes and puts the trace in its place. Throws as the constructor.
-  void finish();
+  /// Closes and puts the trace in its place.
+  void finish() { out_.finish(); }
 
  private:
-  [[noreturn]] void fail(int reason);
-
-  std::filesystem::path file_, beside_;
-  std::FILE* out_;
+  OutputFile out_;
 };
 
 }  // namespace railstep

@@ -1,12 +1,34 @@
 #pragma once
+#include <cstdio>
 #include <filesystem>
 #include <string_view>
 
 namespace railstep {
 
-/// Writes a whole file: first beside its place, then renamed into it, so that a reader never sees
-/// half a file and a failed write leaves the old one. Throws std::runtime_error naming the file
-/// and the reason (no such folder, disk full); nothing is left beside it then.
+/// A file as it grows: written beside its place under a name of its own, and renamed into it once
+/// it is whole, so that a reader never sees half a file, a failed write leaves the old one, and of
+/// two programs that write one file the last to end has it. A device or a pipe is written in place.
+/// Throws std::runtime_error naming the file and the reason (no such folder, disk full).
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path file);
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile();  // an unfinished file leaves nothing behind
+
+  void write(std::string_view bytes);
+  /// Closes the file and puts it in its place.
+  void finish();
+
+ private:
+  void drop() noexcept;
+  [[noreturn]] void fail(int reason);
+
+  std::filesystem::path file_, beside_;  // beside_ is empty where the file is written in place
+  std::FILE* out_ = nullptr;
+};
+
+/// Writes a whole file. Throws as OutputFile.
 void write_file(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace railstep
