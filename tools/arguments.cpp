@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "files.h"
 #include "read.h"
 
 namespace railstep {
@@ -150,6 +151,7 @@ void refuse_same_files(const CLI::App& command) {
   for (auto to = options.begin(); to != options.end(); ++to) {
     if (!is_written((*to)->get_name()) || (*to)->empty()) continue;
     const std::string file = (*to)->results().front();
+    if (!makes_folders(command, **to)) announce_output((*to)->get_name(), file);
     for (auto other = options.begin(); other != options.end(); ++other) {
       const std::string name = (*other)->get_name();
       const bool taken = is_read(name) || (other < to && is_written(name));

@@ -19,8 +19,9 @@ std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error);
 /// there. Throws InputError.
 void refuse_impossible_places(const CLI::App& command);
 
-/// Refuses, before anything is done, a file to be written that is also read, or that two options
-/// write. Throws InputError.
+/// Refuses, before anything is done, a file to be written that an option has read, or that two
+/// options write, and announces the others: what the scene reads is not known yet (files.h). Throws
+/// InputError.
 void refuse_same_files(const CLI::App& command);
 
 }  // namespace railstep

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "files.h"
 #include "study/tune.h"
 #include "write.h"
 
@@ -85,10 +86,7 @@ void print_row(const SettingRow& row) {
 }
 
 Exit run(const TuneOptions& o) {
-  if (std::filesystem::exists(place_of(o)) &&
-      std::filesystem::equivalent(place_of(o), o.request.scene))
-    throw InputError(fmt::format("--out {}: is the scene itself; accepted is another name",
-                                 place_of(o).string()));
+  announce_output("--out", place_of(o));
   TuneResult result;
   {
     const Doing doing;

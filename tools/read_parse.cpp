@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "files.h"
 #include "read.h"
 #include "read_document.h"
 
@@ -85,6 +86,7 @@ std::string read_text(const std::filesystem::path& file, std::size_t most) {
     throw InputError(fmt::format("{}: is a folder; a file is accepted", name));
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(fmt::format("{}: cannot be opened; a readable file is accepted", name));
+  note_read_file(file);
   std::string text;  // in pieces: what has no size in the file system is read too
   for (std::size_t got = 1; got > 0 && text.size() <= most;) {
     constexpr std::size_t kPiece = 1u << 20;

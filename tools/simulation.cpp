@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "files.h"
 #include "online/model/load.h"
 #include "online/step/self_check.h"
 #include "online/step/trace_row.h"
@@ -73,6 +74,7 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
   if (!in)
     throw InputError(
         fmt::format("{}: cannot be opened; a readable file is accepted", file.string()));
+  note_read_file(file);
   std::vector<std::byte> bytes;
   constexpr std::size_t kPiece = 1u << 20;
   for (std::size_t got = 1; got > 0;) {

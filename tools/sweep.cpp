@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "files.h"
 #include "in_parallel.h"
 #include "progress.h"
 #include "read.h"
@@ -112,6 +113,9 @@ SweepResult Sweep::finish(const std::vector<std::int64_t>& runs, const std::stri
 
 SweepResult Sweep::run(const Shard& shard) {
   const std::vector<std::int64_t> runs = shard.runs(plan_.grid.runs());
+  const std::string table =
+      shard.whole() ? "table.csv" : fmt::format("table_{}_of_{}.csv", shard.number, shard.of);
+  refuse_read_file(plan_.out / table);
   rows_.create();
   const std::vector<std::int64_t> missing = without_row(runs);
   {
@@ -121,9 +125,7 @@ SweepResult Sweep::run(const Shard& shard) {
       bar.one_done();
     });
   }
-  SweepResult result =
-      finish(runs, shard.whole() ? "table.csv"
-                                 : fmt::format("table_{}_of_{}.csv", shard.number, shard.of));
+  SweepResult result = finish(runs, table);
   result.made = static_cast<std::int64_t>(missing.size());
   return result;
 }

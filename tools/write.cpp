@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "files.h"
+
 namespace railstep {
 namespace {
 
@@ -29,6 +31,7 @@ int open_beside(const std::filesystem::path& file, std::filesystem::path& beside
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
+  refuse_read_file(file_);
   // A device or a pipe (/dev/full, /dev/stdout) cannot be renamed over.
   std::error_code ignored;
   const bool in_place =
