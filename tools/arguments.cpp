@@ -138,6 +138,11 @@ void refuse_impossible_places(const CLI::App& command) {
     if (std::filesystem::is_directory(file, ignored))
       throw InputError(fmt::format("{} {}: cannot be written: it is a folder; accepted is a file",
                                    option->get_name(), file.string()));
+    // To rename over /dev/stdout would take it from the whole machine, where the user may.
+    if (folder == "/dev" && std::filesystem::is_regular_file(file, ignored))
+      throw InputError(fmt::format(
+          "{} {}: cannot be written: it stands for an open file; accepted is that file's own name",
+          option->get_name(), file.string()));
     if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
       throw InputError(
           fmt::format("{} {}: cannot be written: there is no folder {}; accepted is a "
