@@ -178,6 +178,38 @@ TEST_CASE("an option that has no effect without another is refused", "[bad_input
   bad.refused(hil + "--grace 0.2", {"--grace 0.2", "up to --duration, 0.1"});
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which take all addresses
+TEST_CASE("what does not fit into memory is refused in a sentence", "[bad_input][cli]") {
+  const BadInput bad("memory");
+  const auto refused = [&bad](const std::string& words, const std::string& said) {
+    const auto before = bad.content();
+    const Ran ran = behind("ulimit -v 200000;", words);
+    CAPTURE(words, ran.err);
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+    CHECK_THAT(ran.err, Contains(said) && !Contains("bad_alloc"));
+    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
+    CHECK(bad.content() == before);
+  };
+  const std::string input =
+      " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]' ";
+  const std::string record = bad.old("--record", "r.bin");
+  refused("hil " + kWheelset + input + "--rate 1e6 --duration 900" + record,
+          "--record keeps 900000000 numbers, which take 14400000000 bytes");
+  refused("run " + kWheelset + input + "--set step.duration_s=9e5" + record, "--record keeps");
+  refused("static " + kMovingLoad + " --set track.bays=1000 --set track.elements_per_bay=50" +
+              bad.old("--shape", "s.csv"),
+          "there is not enough memory");
+}
+#endif
+
+TEST_CASE("what is quoted stays in one line", "[bad_input][cli]") {
+  const BadInput bad("lines");
+  const std::string hil = "hil " + kWheelset + " --rate 100 --duration 0.1 ";
+  bad.refused(hil + "--udp \"$(printf 'a\\nb')\"", {"--udp a?b: accepted is HOST:PORT"});
+  bad.refused(hil + "--shm \"$(printf 'a\\nb')\"", {"--shm a?b: accepted are up to 200"});
+}
+
 TEST_CASE("a processor that is not there is refused", "[bad_input][cli]") {
   const BadInput bad("cpu");
   const std::string hil =

@@ -19,6 +19,7 @@
 #include "hil_run.h"
 #include "hil_shm.h"
 #include "hil_udp.h"
+#include "memory.h"
 #include "recording.h"
 #include "simulate.h"
 #include "write.h"
@@ -91,7 +92,6 @@ HilPlan plan_of(const HilOptions& o) {
   plan.stall_frame = o.stall_frame;
   plan.stall_ns = std::llround(1e3 * o.stall_us);
   plan.respond = o.respond;
-  plan.keep_inputs = !o.record.empty();
   plan.interrupted = &interrupted;
   if (o.cpu) {
     const std::vector<int> allowed = allowed_cpus();
@@ -289,21 +289,24 @@ std::optional<Recording> begun_recording(const HilOptions& o, const HilPlan& pla
   if (static_cast<double>(plan.schedule.slots) * run.model().inputs > kMostInputs)
     throw InputError(fmt::format("--record keeps {} inputs of {} frames, and at most {:g} numbers",
                                  run.model().inputs, plan.schedule.slots, kMostInputs));
-  return Recording::begin(run, plan.schedule.slots + 1);
+  const std::int64_t numbers = plan.schedule.slots * run.model().inputs;
+  want_recording_memory(numbers);
+  Recording made = Recording::begin(run, plan.schedule.slots + 1);
+  made.inputs.resize(static_cast<std::size_t>(numbers));
+  return made;
 }
 
 void write_recording(const std::string& file, const Simulation& run, const HilRecord& record,
                      Recording& recording) {
   recording.frames = record.paced.frames;
-  recording.inputs.assign(record.given.begin(),
-                          record.given.begin() + recording.frames * run.model().inputs);
+  recording.inputs.resize(static_cast<std::size_t>(recording.frames * run.model().inputs));
   recording.finish(run);
   const std::vector<std::byte> bytes = recording.bytes();
   write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 Exit run(const HilOptions& o) {
-  const HilPlan plan = plan_of(o);
+  HilPlan plan = plan_of(o);
   const std::unique_ptr<Simulation> simulation = simulation_of(o);
   const ExchangeLayout layout = layout_of(o, plan, *simulation);
   std::optional<Recording> recording = begun_recording(o, plan, *simulation);
@@ -329,6 +332,7 @@ Exit run(const HilOptions& o) {
   else
     print_table(told);
   return verdict(record, *simulation);
+  if (recording) plan.given = recording->inputs.data();
 }
 
 void add_exchange_options(CLI::App& sub, HilOptions& o) {

@@ -13,6 +13,7 @@
 #include "command.h"
 #include "drawing.h"
 #include "inputs.h"
+#include "memory.h"
 #include "progress.h"
 #include "recording.h"
 #include "run_energy.h"
@@ -194,7 +195,10 @@ Exit run(const RunOptions& o) {
   if (vtk) vtk->frame(0);
   const FrameInputs inputs = inputs_of(o, *simulation);
   std::optional<Recording> recording;
-  if (!o.record.empty()) recording.emplace(Recording::begin(*simulation, o.hash_every));
+  if (!o.record.empty()) {
+    want_recording_memory(frames * simulation->model().inputs);
+    recording.emplace(Recording::begin(*simulation, o.hash_every));
+  }
   RowSink rows;
   if (trace) rows = [&trace](std::span<const double> row) { trace->row(row); };
   RunRecord record;

@@ -41,8 +41,6 @@ class Stepper {
     if (plan.respond) row_.resize(columns_ + response_.emplace(run).count());
     publish_start(run.model(), run.state, outputs_);
     trace_row(run.model(), run.state, outputs_, row_.data());
-    if (plan.keep_inputs)
-      record.given.resize(static_cast<std::size_t>(plan.schedule.slots * run.model().inputs));
   }
 
   /// @returns whether inputs came in time, or none are waited for
@@ -66,8 +64,8 @@ class Stepper {
   /// @returns whether the run goes on
   bool frame(std::int64_t n) noexcept {
     const double* const given = give(n);
-    if (plan_.keep_inputs)
-      std::copy_n(given, run_.model().inputs, record_.given.begin() + n * run_.model().inputs);
+    if (plan_.given != nullptr)
+      std::copy_n(given, run_.model().inputs, plan_.given + n * run_.model().inputs);
     record_.status =
         record_.status | advance_frame(run_.model(), given, run_.state, run_.workspace, outputs_);
     record_.first_bad_unknown = outputs_.first_bad_unknown;

@@ -22,8 +22,8 @@ struct HilPlan {
   double wait_s = 0.;                  // for the first inputs, before the clock starts
   std::int64_t stall_frame = -1;       // a frame that is made to take longer, for tests
   std::int64_t stall_ns = 0;
-  bool keep_inputs = false;                        // in the record
-  bool respond = false;                            // hil_response.h goes with the outputs
+  double* given = nullptr;  // [slots][inputs] what frames were given; or null
+  bool respond = false;     // hil_response.h goes with the outputs
   const std::atomic<bool>* interrupted = nullptr;  // ends the run; or null
 };
 
@@ -35,7 +35,6 @@ struct HilRecord {
   Status status = Status::ok;
   std::int32_t first_bad_unknown = -1;
   std::int64_t safe_stop_frame = -1;  // from which inputs went to 0
-  std::vector<double> given;          // [slots][inputs] what frames were given, where it is kept
   std::int64_t allocations = 0;       // calls of new within the paced run, by any thread
   std::int64_t minor_faults = 0, major_faults = 0;  // pages, of the step thread within it
   std::int64_t preemptions = 0;                     // of the step thread within it

@@ -4,12 +4,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 #include <vector>
 
 #include "arguments.h"
 #include "cache_sizes.h"
 #include "command.h"
+#include "one_line.h"
 
 /// The program: parses, runs the chosen subcommand, and turns errors into one line and exit code 2.
 int main(int argc, char** argv) {
@@ -41,10 +43,16 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "error: {}\n", usage_sentence(app, error));
     return static_cast<int>(Exit::bad_input);
   } catch (const InputError& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    fmt::print(stderr, "error: {}\n", one_line(error.what()));
+    return static_cast<int>(Exit::bad_input);
+  } catch (const std::bad_alloc&) {  // says no more than its name
+    fmt::print(
+        stderr,
+        "error: there is not enough memory, on this machine or under its limits (ulimit -v); "
+        "accepted is a smaller scene, a shorter run, or fewer --jobs\n");
     return static_cast<int>(Exit::bad_input);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    fmt::print(stderr, "error: {}\n", one_line(error.what()));
     return static_cast<int>(Exit::not_reached);
   }
   return static_cast<int>(Exit::bad_input);

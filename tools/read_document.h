@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "one_line.h"
+
 namespace railstep {
 
 /// A parsed file and what has been asked of it so far.
@@ -27,8 +29,6 @@ std::string place(const toml::source_region& source, const std::filesystem::path
 /// Refuses unknown keys of `table` and of all opened tables in it: the first with its place, and
 /// names a few others.
 void check_keys(const Document& document, const toml::table& table, const std::string& name);
-/// `text` with control characters as '?', so that a quoted value cannot break the sentence.
-std::string one_line(std::string text);
 /// Parses; `name` is what errors and source regions call the text. Throws InputError.
 toml::table parse_toml(std::string_view text, const std::string& name);
 /// The entry of `unread` that looks like `wanted` misspelt: at most a third of its letters away.
