@@ -354,6 +354,22 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
   CHECK(WEXITSTATUS(status) == 0);
 }
 
+}
+
+TEST_CASE("memory that is cut short gives zeros and is known as lost", "[hil]") {
+  const std::string file = "/dev/shm/" + own_name();
+  std::vector<std::string> many(2000, "x");  // over several pages
+  for (const int left : {0, 4096}) {
+    SharedExchange exchange(own_name(), {many, many, 1e6, -1});
+    const std::vector<double> values(many.size(), 1.);
+    CHECK_FALSE(exchange.lost());
+    REQUIRE(truncate(file.c_str(), left) == 0);
+    exchange.outputs({0, Status::ok, 0, values.data()});
+    CHECK(exchange.lost());
+    CHECK(exchange.inputs(1) == nullptr);
+    exchange.outputs({1, Status::ok, 0, values.data()});
+  }
+  CHECK(access(file.c_str(), F_OK) != 0);
 TEST_CASE("the memory says what is in it, and goes with the exchange", "[hil]") {
   const std::string path = "/dev/shm/" + own_name();
   {

@@ -6,7 +6,9 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cerrno>
+#include <limits>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "hil_pace.h"
@@ -42,7 +44,11 @@ struct FakeClock {
   std::int64_t* time;
   std::int64_t wakes_late = 0;
   std::int64_t now() const noexcept { return *time; }
-  void sleep_until(std::int64_t ns) const noexcept { *time = ns + wakes_late; }
+  std::int64_t until = std::numeric_limits<std::int64_t>::max();  // when it is interrupted
+  bool sleep_until(std::int64_t ns) const noexcept {
+    *time = ns + wakes_late;
+    return ns < until;
+  }
 };
 
 struct Told {
@@ -151,6 +157,32 @@ TEST_CASE("a frame may end the run", "[hil]") {
   CHECK(met.frames == 5);
   CHECK(met.ended);
   CHECK_FALSE(met.stopped);
+}
+
+TEST_CASE("an interrupted sleep ends the run before its frame", "[hil]") {
+  std::int64_t time = 0;
+  Latency wakeup, work;
+  const FakeClock clock{&time, 0, static_cast<std::int64_t>(5.5 * kPeriod)};
+  const Paced met = pace(
+      {kPeriod, 10, 0, Policy::skip}, clock, [](std::int64_t) { return true; }, wakeup, work);
+  CHECK(met.frames == 5);  // the first one a period behind the start
+  CHECK(met.ended);
+}
+
+TEST_CASE("a sleep ends where it is asked to, however long it was to be", "[hil]") {
+  std::atomic<bool> interrupted{false};
+  const MonotonicClock clock{&interrupted};
+  CHECK(clock.sleep_until(clock.now() + 1'000'000));
+  constexpr std::int64_t kThousand = 1'000'000'000'000;  // s in ns
+  const std::int64_t before = clock.now();
+  std::thread other([&] {
+    usleep(10'000);
+    interrupted = true;
+  });
+  CHECK_FALSE(clock.sleep_until(before + kThousand));
+  other.join();
+  CHECK(clock.now() < before + kThousand);
+  CHECK_FALSE(clock.sleep_until(before));
 }
 
 TEST_CASE("slots do not drift, and the first from a time on is that", "[hil]") {

@@ -42,7 +42,8 @@ ExchangeLayout layout_of(const Simulation& run) {
 HilPlan plan_of(std::int64_t frames) {
   HilPlan plan;
   plan.schedule = {1e6, frames, 0, Policy::free_run};
-  plan.empty_slots = 1;
+  plan.empty = plan.schedule;
+  plan.empty.slots = 1;
   plan.respond = true;
   return plan;
 }

@@ -45,11 +45,17 @@ struct HilOptions {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-/// Ctrl-C ends the run between two frames, and what was met is told all the same.
+/// Ctrl-C ends the run between two frames, and what was met is told all the same. A second one
+/// kills, and leaves no shared memory behind.
 void end_on_signals() {
   struct sigaction action {};
-  action.sa_handler = [](int) { interrupted.store(true, std::memory_order_relaxed); };
-  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);  // a second one kills
+  action.sa_handler = [](int number) {
+    if (!interrupted.exchange(true)) return;
+    SharedExchange::unlink_at_once();
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+  };
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
@@ -73,6 +79,15 @@ std::int64_t frames_of(double seconds, double rate) {
   return seconds <= 0. ? 0 : std::max<std::int64_t>(1, std::llround(seconds * rate));
 }
 
+/// Of the empty loop: a quarter of the run, half a second at most, at its rate or at 100 Hz where
+/// that is slower. It is there to be measured, and none of its overruns ends it.
+Schedule empty_schedule(const HilOptions& o, const Schedule& run) {
+  constexpr double kSlowest = 100.;  // Hz
+  const double rate = std::max(o.rate, kSlowest), seconds = std::min(.5, .25 * o.duration);
+  return {1e9 / rate, std::clamp<std::int64_t>(std::llround(seconds * rate), 1, 1'000'000), 0,
+          run.policy == Policy::stop ? Policy::skip : run.policy};
+}
+
 HilPlan plan_of(const HilOptions& o) {
   HilPlan plan;
   plan.schedule = {1e9 / o.rate, slots_of(o), 0, policy_of(o.policy)};
@@ -81,8 +96,7 @@ HilPlan plan_of(const HilOptions& o) {
     throw InputError(
         fmt::format("--grace {:g}: accepted is up to --duration, {:g}", grace, o.duration));
   plan.schedule.grace = std::min<std::int64_t>(std::llround(grace * o.rate), plan.schedule.slots);
-  plan.empty_slots =
-      std::clamp<std::int64_t>(std::llround(std::min(.5, .25 * o.duration) * o.rate), 1, 1'000'000);
+  plan.empty = empty_schedule(o, plan.schedule);
   // alone on its CPU and never asleep, it would shut out what runs there
   const bool free_run = plan.schedule.policy == Policy::free_run;
   plan.realtime = {o.cpu, o.priority.value_or(free_run ? 0 : kPriority)};
@@ -257,6 +271,14 @@ void warn_of_refusals(const std::vector<Setting>& settings) {
                  each.reason);
 }
 
+/// Why others ended the run; empty where they did not.
+std::string ended_by_others(const HilRecord& record) {
+  if (record.lost)
+    return "--shm: another process cut the shared memory short, or wrote over its first word; the "
+           "run ended";
+  return record.interrupted ? "the run was ended by a signal" : "";
+}
+
 /// Says in words what the run met.
 Exit verdict(const HilRecord& record, const Simulation& run) {
   for (const std::string& name : status_names(record.status))
@@ -272,7 +294,7 @@ Exit verdict(const HilRecord& record, const Simulation& run) {
     return failed(fmt::format("frame {} ended {:.1f} us after its slot, and the policy is to stop",
                               record.paced.frames - 1,
                               1e-3 * static_cast<double>(record.paced.most_behind_ns)));
-  if (record.interrupted) return failed("the run was ended by a signal");
+  if (const std::string ended = ended_by_others(record); !ended.empty()) return failed(ended);
   if (record.safe_stop_frame >= 0)
     return failed(
         fmt::format("nothing came any more: a safe stop from frame {} on", record.safe_stop_frame));
@@ -310,15 +332,19 @@ Exit run(const HilOptions& o) {
   const std::unique_ptr<Simulation> simulation = simulation_of(o);
   const ExchangeLayout layout = layout_of(o, plan, *simulation);
   std::optional<Recording> recording = begun_recording(o, plan, *simulation);
+  if (recording) plan.given = recording->inputs.data();
   end_on_signals();  // from here on something would be left behind
   Exchanges exchanges(o, layout);
   if (!o.names.empty()) write_file(o.names, names_text(layout));
   const HilRecord record = run_paced(*simulation, plan, exchanges.all);
   if (exchanges.udp) exchanges.udp->finish();
   warn_of_refusals(record.settings);
-  if (record.unheard)
+  if (record.unheard) {
+    const std::string ended = ended_by_others(record);
+    if (!ended.empty()) throw std::runtime_error(ended);
     throw std::runtime_error(
         fmt::format("no inputs came within the {:g} s of --wait, and nothing was run", o.wait));
+  }
   nlohmann::ordered_json told = to_json(o, plan, record, *simulation);
   add_exchanges(exchanges, told);
   if (recording) write_recording(o.record, *simulation, record, *recording);
@@ -332,7 +358,6 @@ Exit run(const HilOptions& o) {
   else
     print_table(told);
   return verdict(record, *simulation);
-  if (recording) plan.given = recording->inputs.data();
 }
 
 void add_exchange_options(CLI::App& sub, HilOptions& o) {

@@ -26,6 +26,8 @@ class Exchange {
   /// @param frame  that begins
   virtual const double* inputs(std::int64_t frame) noexcept = 0;
   virtual void outputs(const FrameOutputs& made) noexcept = 0;
+  /// Whether another process took away what it is made over.
+  virtual bool lost() const noexcept { return false; }
 };
 
 }  // namespace railstep

@@ -1,6 +1,6 @@
 #include "hil_pace.h"
 
-#include <cerrno>
+#include <algorithm>
 #include <ctime>
 
 namespace railstep {
@@ -16,9 +16,15 @@ std::int64_t MonotonicClock::now() const noexcept {
   return time.tv_sec * kSecond + time.tv_nsec;
 }
 
-void MonotonicClock::sleep_until(std::int64_t ns) const noexcept {
-  const timespec time{ns / kSecond, ns % kSecond};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr) == EINTR) {
+bool MonotonicClock::sleep_until(std::int64_t ns) const noexcept {
+  // A signal wakes any one of the threads: this one looks by itself.
+  constexpr std::int64_t kLook = kSecond / 10;
+  for (;;) {
+    if (interrupted != nullptr && interrupted->load(std::memory_order_relaxed)) return false;
+    const std::int64_t until = std::min(ns, now() + kLook);
+    const timespec time{until / kSecond, until % kSecond};
+    if (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr) == 0 && until == ns)
+      return true;
   }
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 
@@ -47,15 +48,18 @@ struct Paced {
   std::int64_t skipped = 0;         // slots without a frame
   std::int64_t most_behind_ns = 0;  // longest time by which a frame ended after its slot
   bool stopped = false;             // by policy, at an overrun
-  bool ended = false;               // by the frame itself, before the last slot
+  bool ended = false;               // by the frame itself or the clock, before the last slot
 };
 
 /// CLOCK_MONOTONIC, which no one can set: a jump of the time of day does not reach it.
 struct MonotonicClock {
+  const std::atomic<bool>* interrupted = nullptr;  // ends a sleep within 0.1 s; or null
+
   std::int64_t now() const noexcept;  // ns; no system call where the kernel has a vDSO
-  /// Until an absolute time, so that what a frame took does not add up; signals do not cut it
-  /// short.
-  void sleep_until(std::int64_t ns) const noexcept;
+  /// Until an absolute time, so that what a frame took does not add up; signals alone do not cut
+  /// it short.
+  /// @returns false where it was interrupted
+  bool sleep_until(std::int64_t ns) const noexcept;
 };
 
 /// Makes frames on their schedule. The clock is a parameter so that a test can be the time itself.
@@ -71,7 +75,10 @@ Paced pace(const Schedule& plan, const Clock& clock, Frame&& frame, Latency& wak
     const bool paced = plan.policy != Policy::free_run, graced = slot < plan.grace;
     const std::int64_t due = start + plan.begin(slot);
     const bool sleeps = paced && clock.now() < due;
-    if (sleeps) clock.sleep_until(due);
+    if (sleeps && !clock.sleep_until(due)) {
+      met.ended = true;
+      break;
+    }
     const std::int64_t begun = clock.now();
     const bool goes_on = frame(met.frames);
     const std::int64_t done = clock.now();

@@ -37,7 +37,8 @@ class Stepper {
         held_(static_cast<std::size_t>(run.model().inputs), plan.silence, plan.ramp,
               places_of(run.model())),
         columns_(static_cast<std::size_t>(trace_columns(run.model()))),
-        row_(columns_) {
+        row_(columns_),
+        clock_{plan.interrupted} {
     if (plan.respond) row_.resize(columns_ + response_.emplace(run).count());
     publish_start(run.model(), run.state, outputs_);
     trace_row(run.model(), run.state, outputs_, row_.data());
@@ -47,7 +48,7 @@ class Stepper {
   bool wait() noexcept {
     constexpr std::int64_t kLook = 1'000'000;  // ns
     const std::int64_t end = clock_.now() + static_cast<std::int64_t>(1e9 * plan_.wait_s);
-    while (plan_.wait_s > 0. && !held_.heard() && !interrupted() && clock_.now() < end) {
+    while (plan_.wait_s > 0. && !held_.heard() && !is_over() && clock_.now() < end) {
       give(-1);
       clock_.sleep_until(clock_.now() + kLook);
     }
@@ -74,8 +75,16 @@ class Stepper {
     if (response_ && record_.first_bad_unknown < 0) respond(given);
     if (n == plan_.stall_frame) stall();
     publish(n, 0);
-    record_.interrupted = interrupted();
-    return record_.first_bad_unknown < 0 && !record_.interrupted;
+    return record_.first_bad_unknown < 0 && !is_over();
+  }
+
+  /// Whether a signal came or an exchange is lost, and notes it.
+  bool is_over() noexcept {
+    record_.interrupted =
+        plan_.interrupted != nullptr && plan_.interrupted->load(std::memory_order_relaxed);
+    for (const Exchange* const exchange : exchanges_)
+      record_.lost = record_.lost || exchange->lost();
+    return record_.interrupted || record_.lost;
   }
 
   /// The last frame's outputs again, and that it was the last.
@@ -108,10 +117,6 @@ class Stepper {
     }
   }
 
-  bool interrupted() const noexcept {
-    return plan_.interrupted != nullptr && plan_.interrupted->load(std::memory_order_relaxed);
-  }
-
   Simulation& run_;
   const HilPlan& plan_;
   const std::vector<Exchange*>& exchanges_;
@@ -138,19 +143,17 @@ void step_thread(const HilPlan& plan, Stepper& stepper, HilRecord& record) {
     record.unheard = true;
     return;
   }
-  const MonotonicClock clock;
-  Schedule empty = plan.schedule;
-  empty.slots = plan.empty_slots;
-  empty.grace = 0;
-  if (empty.policy == Policy::stop) empty.policy = Policy::skip;  // it is there to be measured
+  const MonotonicClock clock{plan.interrupted};
   pace(
-      empty, clock, [](std::int64_t) { return true; }, record.empty_wakeup, record.empty_frame);
+      plan.empty, clock, [&stepper](std::int64_t) { return !stepper.is_over(); },
+      record.empty_wakeup, record.empty_frame);
   const rusage before = thread_usage();
   const std::int64_t heap = heap_calls();
   stepper.begin();
   record.paced = pace(
       plan.schedule, clock, [&stepper](std::int64_t n) { return stepper.frame(n); }, record.wakeup,
       record.frame);
+  if (record.paced.ended) stepper.is_over();
   record.allocations = heap_calls() - heap;
   const rusage after = thread_usage();
   record.minor_faults = after.ru_minflt - before.ru_minflt;

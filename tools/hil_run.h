@@ -16,7 +16,7 @@ namespace railstep {
 /// How a paced run goes.
 struct HilPlan {
   Schedule schedule;
-  std::int64_t empty_slots = 0;  // of the loop with an empty step, before the run
+  Schedule empty;  // of the loop with an empty step, before the run
   RealtimeWish realtime;
   std::int64_t silence = 0, ramp = 1;  // frames, of HeldInputs
   double wait_s = 0.;                  // for the first inputs, before the clock starts
@@ -40,6 +40,7 @@ struct HilRecord {
   std::int64_t preemptions = 0;                     // of the step thread within it
   bool unheard = false;  // no inputs came within wait_s, and nothing was run
   bool interrupted = false;
+  bool lost = false;  // an exchange, and the run ended
 };
 
 /// Paces a simulation's frames in a thread of its own, which has the real-time settings; between

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <new>
 
@@ -18,6 +19,42 @@ namespace {
 
 using Word = SeqLock::Word;
 constexpr int kTries = 8;  // a bound on a frame's work, whatever the writer does
+constexpr char kMagic[] = "railshm1";
+constexpr std::size_t kLongestName = 200;
+
+/// What handlers of signals need of the exchange.
+struct Guarded {
+  std::atomic<unsigned char*> memory{nullptr};
+  std::atomic<std::size_t> bytes{0};
+  char file[sizeof "/dev/shm/" + kLongestName] = {};  // written before the memory is told
+};
+Guarded guarded;
+
+/// What a process touches of a file that was cut short: zeros from here on, and no file.
+void replace_lost_pages(int, siginfo_t* met, void*) {
+  unsigned char* const memory = guarded.memory.load();
+  const auto* const at = static_cast<const unsigned char*>(met->si_addr);
+  const bool own = memory != nullptr && at >= memory && at < memory + guarded.bytes.load();
+  if (!own || mmap(memory, guarded.bytes.load(), PROT_READ | PROT_WRITE,
+                   MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == MAP_FAILED)
+    std::signal(SIGBUS, SIG_DFL);  // it is met again at once
+}
+
+void guard(const std::string& name, void* memory, std::size_t bytes) {
+  std::strcpy(guarded.file, ("/dev/shm/" + name).c_str());
+  guarded.bytes = bytes;
+  guarded.memory = static_cast<unsigned char*>(memory);
+  struct sigaction action {};
+  action.sa_sigaction = replace_lost_pages;
+  action.sa_flags = SA_SIGINFO;
+  sigaction(SIGBUS, &action, nullptr);
+}
+
+std::uint64_t magic_word() noexcept {
+  std::uint64_t word = 0;
+  std::memcpy(&word, kMagic, sizeof word);
+  return word;
+}
 
 constexpr std::size_t whole_lines(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
 
@@ -25,7 +62,7 @@ std::string path_of(const std::string& name) {
   const bool plain =
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") ==
       std::string::npos;
-  if (name.empty() || name.size() > 200 || !plain || name.front() == '.')
+  if (name.empty() || name.size() > kLongestName || !plain || name.front() == '.')
     throw InputError(
         fmt::format("--shm {}: accepted are up to 200 letters, digits, '.', '_' and '-'", name));
   return "/" + name;
@@ -73,6 +110,7 @@ SharedExchange::SharedExchange(const std::string& name, const ExchangeLayout& la
   const std::size_t names_at = outputs_at_ + whole_lines(8 * (kBlockLock + out_.size()));
   bytes_ = names_at + names.size();
   memory_ = mapped(name, bytes_);
+  guard(name, memory_, bytes_);
   lay_out(layout, names);
 }
 
@@ -82,16 +120,15 @@ void SharedExchange::lay_out(const ExchangeLayout& layout, const std::string& na
   for (std::size_t i = 0; i < (bytes_ - names.size()) / 8; ++i) new (word + i) Word(0);
   const std::size_t names_at = bytes_ - names.size();
   std::copy(names.begin(), names.end(), bytes + names_at);
-  std::uint64_t magic = 0;
-  std::memcpy(&magic, "railshm1", 8);
   const std::uint64_t head[kSharedHead] = {
-      magic,       0,        layout.inputs.size(), layout.outputs.size(), inputs_at_,
-      outputs_at_, names_at, names.size()};
+      magic_word(), 0,        layout.inputs.size(), layout.outputs.size(), inputs_at_,
+      outputs_at_,  names_at, names.size()};
   for (std::size_t i = 0; i < kSharedHead; ++i) word[i].store(head[i], std::memory_order_relaxed);
   word[1].store(1, std::memory_order_release);
 }
 
 SharedExchange::~SharedExchange() {
+  guarded.memory = nullptr;
   munmap(memory_, bytes_);
   shm_unlink(("/" + name_).c_str());
 }
@@ -103,6 +140,7 @@ const double* SharedExchange::inputs(std::int64_t frame) noexcept {
     ++counts_.torn;
     return nullptr;
   }
+  if (lost()) return nullptr;  // behind the reading: zeros are no inputs
   ++counts_.fresh;
   const auto meant = static_cast<std::int64_t>(in_[1]);
   if (meant >= 0 && meant < frame) ++counts_.late;
@@ -118,6 +156,14 @@ void SharedExchange::outputs(const FrameOutputs& made) noexcept {
   for (std::size_t i = kBlockHead; i < out_.size(); ++i)
     out_[i] = std::bit_cast<std::uint64_t>(made.values[i - kBlockHead]);
   block(memory_, outputs_at_, out_.size()).write(out_.data());
+}
+
+bool SharedExchange::lost() const noexcept {
+  return static_cast<const Word*>(memory_)->load(std::memory_order_acquire) != magic_word();
+}
+
+void SharedExchange::unlink_at_once() noexcept {
+  if (guarded.memory.load() != nullptr) unlink(guarded.file);
 }
 
 }  // namespace railstep

@@ -30,6 +30,10 @@ struct SharedCounts {
 };
 
 /// Inputs and outputs of each frame in shared memory of that name; it is taken away at the end.
+/// Another process of the same user may cut the memory short at any time, and whoever touches it
+/// then gets SIGBUS. Its handler, of one exchange at a time, lays pages of zeros in the place of
+/// all of it: nothing waits for a look at its size, and what is lost shows by the missing first
+/// word.
 class SharedExchange : public Exchange {
  public:
   /// Throws InputError where it cannot be made, or stands there already.
@@ -38,6 +42,11 @@ class SharedExchange : public Exchange {
 
   const double* inputs(std::int64_t frame) noexcept override;
   void outputs(const FrameOutputs& made) noexcept override;
+  /// Whether another process cut the memory short or wrote over its first word.
+  bool lost() const noexcept override;
+
+  /// For a handler of signals that ends the program: takes the name away.
+  static void unlink_at_once() noexcept;
 
   const SharedCounts& counts() const noexcept { return counts_; }
 
