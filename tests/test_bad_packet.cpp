@@ -11,12 +11,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "bad_input.h"
 #include "hil_packet.h"
 #include "online/model/status.h"
+#include "started.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -108,16 +108,13 @@ class PacedRun {
                       " --json --rate 200 --grace 0 --policy catch-up --wait 60 ";
     all += "--duration " + std::to_string(seconds) + " " + words + " --names " + names +
            " --udp 127.0.0.1:" + std::to_string(port_);
-    thread_ = std::thread([this, all] { ran_ = railstep_program(all); });
-    while (!std::filesystem::exists(names)) usleep(1000);
+    hil_ = std::make_unique<Started>(all);
+    hil_->await(std::filesystem::path(names));
     read_outputs(text_of(names));
     peer_ = std::make_unique<Sender>(port_);
   }
   PacedRun(const PacedRun&) = delete;
   PacedRun& operator=(const PacedRun&) = delete;
-  ~PacedRun() {
-    if (thread_.joinable()) thread_.join();
-  }
 
   void send(const Bytes& bytes) const { peer_->send(bytes); }
   /// From another sender.
@@ -147,7 +144,7 @@ class PacedRun {
   }
   /// What the program said at its end.
   nlohmann::json end(int code = 0) {
-    thread_.join();
+    ran_ = hil_->end();
     CAPTURE(ran_.err);
     CHECK(ran_.code == code);
     return nlohmann::json::parse(ran_.out);
@@ -168,7 +165,7 @@ class PacedRun {
   std::vector<std::string> outputs_;
   std::unique_ptr<Sender> peer_;
   Ran ran_{};
-  std::thread thread_;
+  std::unique_ptr<Started> hil_;
 };
 
 }  // namespace

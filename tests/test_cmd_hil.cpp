@@ -7,9 +7,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 
 #include "program.h"
+#include "started.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -147,18 +147,14 @@ TEST_CASE("an overrun in the grace is counted apart", "[hil][cli]") {
 TEST_CASE("the program and the client over UDP", "[hil][cli]") {
   const auto folder = fresh_folder("hil_udp");
   const std::string address = free_address(), names = (folder / "names").string();
-  Ran ran;
-  std::thread hil([&] {
-    ran = ran_in(folder / "hil", RAILSTEP_PROGRAM,
-                 "hil " + kPushed +
-                     " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --names " +
-                     names + " --udp " + address);
-  });
-  while (!std::filesystem::exists(names)) usleep(1000);
+  Started hil("hil " + kPushed +
+              " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --names " + names +
+              " --udp " + address);
+  hil.await(std::filesystem::path(names));
   const Ran client =
       ran_in(folder / "client", RAILSTEP_HIL_CLIENT,
              "--seconds 60 --input push.force_n=30 --udp " + address + " --names " + names);
-  hil.join();
+  const Ran ran = hil.end();
   CAPTURE(ran.err, client.out, client.err);
   REQUIRE(ran.code == 0);
   CHECK(client.code == 0);
@@ -176,16 +172,12 @@ TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
   const auto folder = fresh_folder("hil_shm");
   const std::string name = "railstep_cli_" + std::to_string(getpid());
   const std::string recording = (folder / "recording").string();
-  Ran ran;
-  std::thread hil([&] {
-    ran = ran_in(folder / "hil", RAILSTEP_PROGRAM,
-                 "hil " + kPushed +
-                     " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --record " +
-                     recording + " --shm " + name);
-  });
+  Started hil("hil " + kPushed +
+              " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --record " +
+              recording + " --shm " + name);
   const Ran client =
       ran_in(folder / "client", RAILSTEP_HIL_CLIENT, "--seconds 60 --input 0=30 --shm " + name);
-  hil.join();
+  const Ran ran = hil.end();
   CAPTURE(ran.err, client.out, client.err);
   REQUIRE(ran.code == 0);
   CHECK(client.code == 0);
@@ -201,18 +193,13 @@ TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
 TEST_CASE("a silence ends in a safe stop, and in exit code 1", "[hil][cli]") {
   const auto folder = fresh_folder("hil_silence");
   const std::string name = "railstep_silence_" + std::to_string(getpid());
-  Ran ran;
-  std::thread hil([&] {
-    ran = ran_in(folder / "hil", RAILSTEP_PROGRAM,
-                 "hil " + kPushed +
-                     " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --silence "
-                     "0.1 --ramp 0.05 "
-                     "--shm " +
-                     name);
-  });
+  Started hil("hil " + kPushed +
+              " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --silence 0.1 "
+              "--ramp 0.05 --shm " +
+              name);
   const Ran client = ran_in(folder / "client", RAILSTEP_HIL_CLIENT,
                             "--seconds 60 --frames 3 --input 0=30 --shm " + name);
-  hil.join();
+  const Ran ran = hil.end();
   CAPTURE(ran.err, client.err);
   CHECK(ran.code == 1);
   CHECK_THAT(ran.err, Contains("a safe stop from frame"));
@@ -224,20 +211,6 @@ TEST_CASE("without inputs in time nothing is run", "[hil][cli]") {
                                    " --rate 100 --duration 1 --wait 0.05 --udp " + free_address());
   CHECK(ran.code == 1);
   CHECK_THAT(ran.err, Contains("no inputs came within"));
-}
-
-TEST_CASE("a signal ends a run between two frames, and it is told", "[hil][cli]") {
-  const auto folder = fresh_folder("hil_signal");
-  const std::string names = (folder / "names").string();
-  const Ran ran = ran_in(folder, "/bin/sh",
-                         "-c \"'" RAILSTEP_PROGRAM "' hil " + kWheelset +
-                             " --rate 100 --duration 600 --names " + names +
-                             " --json & hil=\\$!; while [ ! -e " + names +
-                             " ]; do sleep 0.05; done; sleep 0.3; kill -INT \\$hil; wait \\$hil\"");
-  CAPTURE(ran.out, ran.err);
-  CHECK(ran.code == 1);
-  CHECK_THAT(ran.err, Contains("ended by a signal"));
-  CHECK(nlohmann::json::parse(ran.out)["interrupted"] == true);
 }
 
 TEST_CASE("hil --report writes histograms", "[hil][cli]") {

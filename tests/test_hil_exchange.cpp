@@ -89,11 +89,13 @@ std::vector<unsigned char> inputs_packet(std::uint64_t sequence, double value,
 
 /// Waits until an exchange has this input.
 void await(Exchange& exchange, std::int64_t frame, double value) {
-  for (;;) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+  while (std::chrono::steady_clock::now() < end) {
     const double* const fresh = exchange.inputs(frame);
     if (fresh != nullptr && *fresh == value) return;
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
+  FAIL("an input did not come");
 }
 
 /// A name that no other test's process has.
@@ -328,7 +330,7 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
     }
     const SeqLock in(word + word[5].load() / 8, kBlockHead + 3);
     std::uint64_t got[kBlockHead + 3] = {}, seen = 0;
-    while (!in.read(got, 1, seen) || got[1] != 41) usleep(100);
+    for (int n = 0; n < 1'000'000 && (!in.read(got, 1, seen) || got[1] != 41); ++n) usleep(100);
     const bool right = got[2] == (2ULL << 32 | 64) && std::bit_cast<double>(got[5]) == 7.5;
     _exit(right ? 0 : 1);
   }
@@ -354,8 +356,6 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
   CHECK(WEXITSTATUS(status) == 0);
 }
 
-}
-
 TEST_CASE("memory that is cut short gives zeros and is known as lost", "[hil]") {
   const std::string file = "/dev/shm/" + own_name();
   std::vector<std::string> many(2000, "x");  // over several pages
@@ -370,6 +370,8 @@ TEST_CASE("memory that is cut short gives zeros and is known as lost", "[hil]") 
     exchange.outputs({1, Status::ok, 0, values.data()});
   }
   CHECK(access(file.c_str(), F_OK) != 0);
+}
+
 TEST_CASE("the memory says what is in it, and goes with the exchange", "[hil]") {
   const std::string path = "/dev/shm/" + own_name();
   {

@@ -13,6 +13,7 @@
 #include "hil_run.h"
 #include "online/step/step.h"
 #include "program.h"
+#include "started.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -276,18 +277,14 @@ TEST_CASE("the example's vehicle over UDP, paced, is that of the C interface",
   for (int rate = 100; rate >= 10 && !in_time; rate -= 30) {
     std::filesystem::remove(file("names"));
     const std::string address = "127.0.0.1:" + std::to_string(free_port());
-    Ran hil;
-    std::thread track([&] {
-      hil = railstep_program("hil " + file("model") + " --rate " + std::to_string(rate) +
-                             " --duration " + std::to_string(70. / rate) +
-                             " --response --wait 60 --json --names " + file("names") + " --udp " +
-                             address);
-    });
-    while (!std::filesystem::exists(file("names"))) usleep(1000);
+    Started track("hil " + file("model") + " --rate " + std::to_string(rate) + " --duration " +
+                  std::to_string(70. / rate) + " --response --wait 60 --json --names " +
+                  file("names") + " --udp " + address);
+    track.await(std::filesystem::path(file("names")));
     const int code = std::system((std::string(HIL_VEHICLE) + " " + address + " " + file("names") +
                                   " 1e-3 0.05 9e10 > " + file("udp.csv") + " 2> " + file("said"))
                                      .c_str());
-    track.join();
+    const Ran hil = track.end();
     CAPTURE(hil.err, text_of(file("said")));
     REQUIRE(hil.code == 0);
     CHECK_THAT(hil.out, Contains("\"allocations\": 0"));
