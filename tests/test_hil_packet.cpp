@@ -165,6 +165,19 @@ TEST_CASE("foreign packets and other senders change nothing", "[hil]") {
   CHECK(ear.counts().lost == 0);
 }
 
+TEST_CASE("one number far ahead does not shut out those that follow", "[hil]") {
+  Ear ear;
+  CHECK(ear.take(packet(1)));
+  CHECK_FALSE(ear.take(packet(Receiver::kMostSequence)));
+  CHECK(ear.counts().foreign == 1);
+  CHECK(ear.take(packet(2)));
+  CHECK(ear.take(packet(2 + Receiver::kMostAhead)));
+  CHECK(ear.counts().lost == static_cast<std::int64_t>(Receiver::kMostAhead - 1));
+  ear.now += Receiver::kPeerSilence;
+  CHECK(ear.take(packet(Receiver::kMostSequence)));  // the sender begins anew there
+  CHECK(ear.counts().lost == static_cast<std::int64_t>(Receiver::kMostAhead - 1));
+}
+
 TEST_CASE("behind a silence another sender is taken, and one that starts anew", "[hil]") {
   Ear ear;
   CHECK(ear.take(packet(100)));

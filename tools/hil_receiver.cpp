@@ -8,11 +8,14 @@ bool Receiver::take(std::span<const unsigned char> bytes, std::uint64_t sender, 
                     std::int64_t begun, double* values) noexcept {
   const bool open = !started_ || now - last_good_ >= kPeerSilence;
   const auto head = decode(bytes, PacketKind::inputs, names_, count_, kept_.data());
-  if (!head || head->sequence > kMostSequence || (!open && sender != sender_)) {
+  // One number far ahead, forged or not, would shut out all that follow and count them as lost.
+  const bool strange = started_ && (sender != sender_ || (head && head->sequence > newest_ &&
+                                                          head->sequence - newest_ > kMostAhead));
+  if (!head || head->sequence > kMostSequence || (!open && strange)) {
     ++counts_.foreign;
     return false;
   }
-  if (open && (sender != sender_ || head->sequence <= newest_)) started_ = false;
+  if (open && (strange || head->sequence <= newest_)) started_ = false;
   if (!follows(head->sequence)) return false;
   sender_ = sender;
   last_good_ = now;

@@ -19,13 +19,14 @@ struct PacketCounts {
   std::int64_t foreign = 0;    // short, long, damaged, of another kind, version, model or sender
 };
 
-/// Tells new packets from others: the newest wins. A sender that starts its sequence numbers anew,
-/// and another sender, is taken after kPeerSilence without a good packet.
+/// Tells new packets from others: the newest wins. A sender that starts its sequence numbers anew
+/// or far ahead, and another sender, is taken after kPeerSilence without a good packet.
 class Receiver {
  public:
   static constexpr std::int64_t kPeerSilence = 1'000'000'000;  // ns
   static constexpr std::uint64_t kMemory = 64;                 // packets behind the newest
   static constexpr std::uint64_t kMostSequence = 1ULL << 48;   // beyond: foreign
+  static constexpr std::uint64_t kMostAhead = 1'000'000;  // of the newest; beyond: not its like
 
   /// @param names, count  of the model's inputs
   Receiver(std::uint32_t names, std::uint32_t count) : names_(names), count_(count), kept_(count) {}
