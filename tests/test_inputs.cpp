@@ -195,6 +195,8 @@ TEST_CASE("bad tables of inputs and bad inputs of scenes get one sentence", "[in
   CHECK_THAT(told("push.force_n,time_s\n0,1\n", kPushed), Contains("time_s, then"));
   CHECK_THAT(told("time_s,push.force_n\n0,1\n0,2\n", kPushed), Contains("in.csv:3:"));
   CHECK_THAT(told("time_s,push.force_n\n-1,1\n", kPushed), Contains("times from 0 on"));
+  CHECK_THAT(told("time_s,push.force_n\n1e308,1\n", kPushed),
+             Contains("time_s = 1e+308") && Contains("below") && Contains("1e+15 frames"));
   CHECK_THAT(told("time_s,push.force_n\n0,nan\n", kPushed), Contains("not a"));
   CHECK_THAT(told("time_s,push.force_n\n0\n", kPushed), Contains("in.csv:2: 1 values"));
   CHECK_THAT(told("time_s,push.force_n\n", kPushed), Contains("holds no rows"));

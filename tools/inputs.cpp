@@ -39,10 +39,14 @@ std::vector<std::size_t> columns_of(const CsvLine& header, const std::vector<std
 
 /// The first frame that begins at a time or later.
 std::int64_t frame_from(const CsvLine& line, double time, double frame_s) {
+  constexpr double kMostFrames = 1e15;
   const double frames = std::ceil(time / frame_s - 1e-6);
-  if (!(time >= 0.) || !(frames < 1e15))
+  if (!(time >= 0.))
     throw InputError(
         fmt::format("{}: time_s = {:g}; accepted are times from 0 on", line.place, time));
+  if (!(frames < kMostFrames))
+    throw InputError(fmt::format("{}: time_s = {:g}; accepted are times below {:g}, {:g} frames",
+                                 line.place, time, kMostFrames * frame_s, kMostFrames));
   return static_cast<std::int64_t>(std::max(frames, 0.));
 }
 
