@@ -100,6 +100,21 @@ TEST_CASE("inputs act, bad ones are refused and told of, and a reset forgets", "
   CHECK(railstep_step(held.run, nullptr) == 0);
 }
 
+TEST_CASE("a response to null is that to the inputs that are held", "[interface]") {
+  const Simulation run(
+      read_scene(kFolder + "open_track.toml", {"step.dt_s=1e-3", "step.frame_s=1e-3"}));
+  const Held held(run.block());
+  REQUIRE(railstep_external_wheels(held.model) == 1);
+  const std::vector<double> inputs = {3.1, .001, 10., 200., -5e4};  // place and forces
+  REQUIRE(railstep_inputs(held.model) == 5);
+  CHECK(railstep_step(held.run, inputs.data()) == 0);
+  double given[12] = {}, as_held[12] = {};
+  CHECK(railstep_response(held.run, inputs.data(), given, given + 3) == 0);
+  CHECK(railstep_response(held.run, nullptr, as_held, as_held + 3) == 0);
+  CHECK(given[11] > 0.);
+  for (int i = 0; i < 12; ++i) CHECK(as_held[i] == given[i]);
+}
+
 TEST_CASE("snapshots go from one run to another", "[interface]") {
   const Simulation run(read_scene(kFolder + "wheelset_flange.toml", {}));
   const Held held(run.block()), other(run.block());
@@ -147,6 +162,18 @@ TEST_CASE("blocks and memory that do not do are refused, with a sentence each", 
   for (std::int32_t result = RAILSTEP_OK; result <= RAILSTEP_OTHER_MODEL; ++result)
     CHECK(std::strlen(railstep_result_text(result)) > 5);
   CHECK(std::string(railstep_result_text(99)).find("no result") == 0);
+  CHECK(railstep_load(nullptr, 64, memory.data(), room, &model) == RAILSTEP_NOT_A_MODEL);
+  CHECK(load(block.size(), nullptr, room) == RAILSTEP_TOO_LITTLE_MEMORY);
+  CHECK(model == nullptr);
+  CHECK(railstep_load(block.data(), block.size(), memory.data(), room, nullptr) ==
+        RAILSTEP_TOO_LITTLE_MEMORY);
+  REQUIRE(load(block.size(), memory.data(), room) == RAILSTEP_OK);
+  CHECK(railstep_start(model, nullptr, railstep_run_bytes(model), &made) ==
+        RAILSTEP_TOO_LITTLE_MEMORY);
+  CHECK(railstep_start(model, place.data(), railstep_run_bytes(model), nullptr) ==
+        RAILSTEP_TOO_LITTLE_MEMORY);
+  REQUIRE(railstep_start(model, place.data(), railstep_run_bytes(model), &made) == RAILSTEP_OK);
+  CHECK(railstep_restore(made, nullptr, 64) == RAILSTEP_NOT_A_SNAPSHOT);
   CHECK(railstep_version() == RAILSTEP_VERSION);
 }
 

@@ -128,9 +128,11 @@ std::size_t railstep_model_bytes(void) noexcept { return sizeof(railstep_model);
 
 std::int32_t railstep_load(const void* block, std::size_t block_bytes, void* memory,
                            std::size_t memory_bytes, const railstep_model** model) noexcept {
+  if (model == nullptr) return RAILSTEP_TOO_LITTLE_MEMORY;
   *model = nullptr;
   if (!is_aligned(memory)) return RAILSTEP_MISALIGNED;
-  if (memory_bytes < sizeof(railstep_model)) return RAILSTEP_TOO_LITTLE_MEMORY;
+  if (memory == nullptr || memory_bytes < sizeof(railstep_model)) return RAILSTEP_TOO_LITTLE_MEMORY;
+  if (block == nullptr) return RAILSTEP_NOT_A_MODEL;
   auto* const made = static_cast<railstep_model*>(memory);
   const LoadResult result = load_model(block, block_bytes, made->model);
   if (result.status != LoadStatus::ok) return result_of(result.status);
@@ -176,9 +178,10 @@ std::size_t railstep_run_bytes(const railstep_model* model) noexcept {
 
 std::int32_t railstep_start(const railstep_model* model, void* memory, std::size_t bytes,
                             railstep_run** run) noexcept {
+  if (run == nullptr) return RAILSTEP_TOO_LITTLE_MEMORY;
   *run = nullptr;
   if (!is_aligned(memory)) return RAILSTEP_MISALIGNED;
-  if (bytes < railstep_run_bytes(model)) return RAILSTEP_TOO_LITTLE_MEMORY;
+  if (memory == nullptr || bytes < railstep_run_bytes(model)) return RAILSTEP_TOO_LITTLE_MEMORY;
   std::memset(memory, 0, railstep_run_bytes(model));
   auto* const made = static_cast<railstep_run*>(memory);
   auto* const state = reinterpret_cast<double*>(made + 1);
@@ -232,7 +235,8 @@ std::int32_t railstep_external_wheels(const railstep_model* model) noexcept {
 
 std::uint32_t railstep_response(railstep_run* run, const double* inputs, double* free_motion,
                                 double* compliance) noexcept {
-  return static_cast<std::uint32_t>(external_response(run->of->model, inputs, run->state,
+  const double* const given = inputs != nullptr ? inputs : run->state.input;
+  return static_cast<std::uint32_t>(external_response(run->of->model, given, run->state,
                                                       run->workspace, free_motion, compliance));
 }
 
@@ -245,6 +249,7 @@ void railstep_save(const railstep_run* run, void* snapshot) noexcept {
 }
 
 std::int32_t railstep_restore(railstep_run* run, const void* snapshot, std::size_t bytes) noexcept {
+  if (snapshot == nullptr) return RAILSTEP_NOT_A_SNAPSHOT;
   const SnapshotStatus status = restore_snapshot(run->of->model, snapshot, bytes, run->state);
   if (status == SnapshotStatus::ok) begin(*run);
   return result_of(status);

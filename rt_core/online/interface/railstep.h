@@ -7,7 +7,12 @@
  * the caller's, aligned to 8 bytes, and stays in use until the caller takes it back. Nothing here
  * allocates, throws, locks, reads a clock or does input or output, but for the texts nothing is
  * static, and every loop is capped: one thread may step one run while others step theirs of the
- * same model. SI units; x along the rail, y lateral, z up. */
+ * same model. SI units; x along the rail, y lateral, z up.
+ *
+ * Null is no block (RAILSTEP_NOT_A_MODEL), no snapshot (RAILSTEP_NOT_A_SNAPSHOT), no memory and no
+ * place for a result (RAILSTEP_TOO_LITTLE_MEMORY); as inputs it stands for those that are held. All
+ * other pointers must be good: a model and a run are what railstep_load() and railstep_start()
+ * made, and null is not looked for. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -114,7 +119,7 @@ uint64_t railstep_hash(const railstep_run* run) RAILSTEP_NOTHROW;
  * displaced by
  *   free_motion + compliance * forces
  * under forces on the rail, to rounding. The run is not changed. inputs: places as the frame will
- * have them; the forces among them are not looked at. free_motion: [3 n], m; compliance: [3 n][3
+ * have them, or null: as they are held; the forces among them are not looked at. free_motion: [3 n], m; compliance: [3 n][3
  * n], symmetric, m/N; both 0 for a wheel off the rail. Returns what was met. */
 int32_t railstep_external_wheels(const railstep_model* model) RAILSTEP_NOTHROW;
 uint32_t railstep_response(railstep_run* run, const double* inputs, double* free_motion,
