@@ -166,23 +166,29 @@ TEST_CASE("one coordinate has its textbook rates and shapes", "[modal]") {
   CHECK_THAT(over.rate[1].real(), WithinRel(-2. * omega, 1e-12));
 }
 
-TEST_CASE("displacement and velocity come back from their modes", "[modal]") {
+TEST_CASE("what forces hold and velocity come back from their modes", "[modal]") {
   for (const Line& line : lines_under_test()) {
-    const DampedModes modes = damped_modes(basis_of(line, 8), line.damping);
+    const Basis basis = basis_of(line, 8);
+    const DampedModes modes = damped_modes(basis, line.damping);
     const auto m = modes.shape.rows();
-    Eigen::VectorXd y(m), velocity(m);
+    Eigen::VectorXd force(m), velocity(m);
     for (Eigen::Index i = 0; i < m; ++i) {
-      y[i] = std::sin(1. + 3. * static_cast<double>(i));
+      force[i] = 1e4 * std::sin(1. + 3. * static_cast<double>(i));
       velocity[i] = 100. * std::cos(2. + 5. * static_cast<double>(i));
     }
-    const Eigen::VectorXcd z = modes.from(y, velocity);
-    const Eigen::VectorXd back = (modes.shape * z).real(),
+    const Eigen::VectorXcd z = modes.from(force, velocity);
+    const Eigen::VectorXd y = force.cwiseQuotient(Eigen::VectorXd(basis.omega.cwiseAbs2())),
+                          back = (modes.shape * z).real(),
                           rate = (modes.shape * modes.rate.cwiseProduct(z)).real();
-    // y = [Re sum rate shape shape'] y + [Re sum shape shape'] (D y + y'), y' alike with terms D
-    // y': completeness of 1e-9 counts by these terms
-    const double terms = (modes.damping * y + velocity).norm();
-    CHECK((back - y).norm() < 1e-9 * (y.norm() + terms / std::abs(modes.rate[0])));
-    CHECK((rate - velocity).norm() < 1e-9 * modes.damping.norm() * (y.norm() + velocity.norm()));
+    // y = -[Re sum shape shape' / rate] f + [Re sum shape shape'] y', y' alike with one rate more:
+    // completeness of 1e-9 counts by these terms
+    const double slowest = std::abs(modes.rate[0]);
+    CHECK((back - y).norm() < 1e-9 * (y.norm() + velocity.norm() / slowest));
+    CHECK((rate - velocity).norm() < 1e-9 * (force.norm() / slowest + velocity.norm()));
+    // held alone, each mode is where its force holds it
+    const Eigen::VectorXcd held = modes.from(force, Eigen::VectorXd::Zero(m)),
+                           forces = modes.shape.transpose() * force;
+    CHECK((modes.rate.cwiseProduct(held) + forces).norm() < 1e-14 * forces.norm());
   }
 }
 
@@ -309,7 +315,8 @@ TEST_CASE("near critical damping the answer is right or it is refused", "[modal]
       continue;
     }
     ++accepted;
-    const Eigen::VectorXcd z = modes.from(Eigen::VectorXd::Ones(1), Eigen::VectorXd::Zero(1));
+    const Eigen::VectorXcd z =
+        modes.from(Eigen::VectorXd::Constant(1, omega * omega), Eigen::VectorXd::Zero(1));
     double y = 0.;
     for (Eigen::Index k = 0; k < z.size(); ++k)
       y += (modes.shape(0, k) * std::exp(modes.rate[k] * t) * z[k]).real();

@@ -160,10 +160,9 @@ Eigen::MatrixXd at_once_of(const DampedModes& modes) {
   return (modes.shape * modes.shape.transpose()).real();
 }
 
-Eigen::VectorXcd DampedModes::from(const Eigen::VectorXd& y,
+Eigen::VectorXcd DampedModes::from(const Eigen::VectorXd& force,
                                    const Eigen::VectorXd& velocity) const {
-  const Eigen::VectorXd momentum = damping * y + velocity;
-  return rate.cwiseProduct(shape.transpose() * y) + shape.transpose() * momentum;
+  return shape.transpose() * velocity - (shape.transpose() * force).cwiseQuotient(rate);
 }
 
 }  // namespace railstep

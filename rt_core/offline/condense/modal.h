@@ -38,8 +38,10 @@ struct DampedModes {
   Eigen::MatrixXcd shape;   // [kept][modes]
   Eigen::MatrixXd damping;  // [kept][kept] D, 1/s
 
-  /// The z of given y and y'.
-  Eigen::VectorXcd from(const Eigen::VectorXd& y, const Eigen::VectorXd& velocity) const;
+  /// The z of the y that forces hold, Omega^2 y = force, and of y': each mode where its force holds
+  /// it. rate shape' y + shape' D y says the same, as a difference of far larger numbers where
+  /// modes are fast and strongly damped.
+  Eigen::VectorXcd from(const Eigen::VectorXd& force, const Eigen::VectorXd& velocity) const;
 };
 
 /// Throws std::invalid_argument where the check above misses by more than 1e-7, or a mode its

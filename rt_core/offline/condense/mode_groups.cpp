@@ -64,12 +64,14 @@ Eigen::VectorXd ModeGroups::displacement(const Eigen::VectorXcd& z) const {
   return result;
 }
 
-Eigen::VectorXcd ModeGroups::from(const Eigen::VectorXd& y, const Eigen::VectorXd& velocity) const {
+Eigen::VectorXcd ModeGroups::from(const Eigen::VectorXd& force,
+                                  const Eigen::VectorXd& velocity) const {
   Eigen::VectorXcd result(rate_.size());
   Eigen::Index mode = 0, at = 0;
   for (const DampedModes& group : groups_) {
     const Eigen::Index n = group.shape.rows();
-    result.segment(mode, group.rate.size()) = group.from(y.segment(at, n), velocity.segment(at, n));
+    result.segment(mode, group.rate.size()) =
+        group.from(force.segment(at, n), velocity.segment(at, n));
     mode += group.rate.size();
     at += n;
   }

@@ -19,8 +19,8 @@ class ModeGroups {
   Eigen::VectorXcd project(const Eigen::VectorXd& force) const;
   /// y = Re shape z, [coordinates].
   Eigen::VectorXd displacement(const Eigen::VectorXcd& z) const;
-  /// The z of given y and y'.
-  Eigen::VectorXcd from(const Eigen::VectorXd& y, const Eigen::VectorXd& velocity) const;
+  /// The z of the y that forces hold and of y', as DampedModes has it.
+  Eigen::VectorXcd from(const Eigen::VectorXd& force, const Eigen::VectorXd& velocity) const;
   Eigen::SparseMatrix<std::complex<double>> shape() const;  // [coordinates][modes]
   Eigen::SparseMatrix<double> damping() const;              // [coordinates][coordinates] 1/s
 

@@ -31,7 +31,7 @@ struct Pose {
   std::vector<double> wheel_force;  // [contacts] of wheelsets, N
 };
 
-/// Puts displacements and velocities of a line into a state.
+/// Puts static displacements and velocities of a line into a state.
 void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
          const Eigen::VectorXd& v, State& state) {
   if (line.modal.count == 0) {
@@ -39,7 +39,7 @@ void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
     std::copy(v.begin(), v.end(), state.v + line.first);
     return;
   }
-  const Eigen::VectorXcd z = own.modes.from(u, v);
+  const Eigen::VectorXcd z = own.modes.from(own.basis.omega.cwiseAbs2().cwiseProduct(u), v);
   for (Eigen::Index k = 0; k < z.size(); ++k) {
     state.u[line.first + k] = z[k].real();
     state.v[line.first + k] = z[k].imag();
