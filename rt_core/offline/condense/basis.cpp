@@ -1,5 +1,6 @@
 #include "offline/condense/basis.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -42,6 +43,19 @@ Eigen::MatrixXd Basis::give(const Eigen::MatrixXd& forces) const {
 Eigen::VectorXd Basis::shown(const Eigen::VectorXd& y) const {
   if (flexibility.size() == 0) return y;
   return flexibility * omega.cwiseAbs2().cwiseProduct(y);
+}
+
+Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs) {
+  if (springs.norm() == 0.) return basis;
+  // Over omega y, in which the lines' own stiffness is 1: sizes that differ by far cancel nothing.
+  const Eigen::MatrixXd unit = basis.shapes.dense() * basis.omega.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd held = unit.transpose() * (springs * unit);
+  const auto n = held.rows();
+  const Eigen::MatrixXd give =
+      (Eigen::MatrixXd::Identity(n, n) + held).llt().solve(Eigen::MatrixXd::Identity(n, n));
+  const auto scale = basis.omega.cwiseInverse().asDiagonal();
+  basis.flexibility = scale * (.5 * (give + give.transpose())) * scale;
+  return basis;
 }
 
 Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes) {

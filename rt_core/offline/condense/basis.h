@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "offline/condense/shapes.h"
 #include "offline/track/track.h"
@@ -24,6 +25,12 @@ struct Basis {
   /// where modes are truncated their part, give(p).
   Eigen::VectorXd shown(const Eigen::VectorXd& y) const;
 };
+
+/// The same coordinates where springs press that were open as they were chosen: what gives way is
+/// (omega^2 + shapes' springs shapes)^-1.
+/// @param springs  [unknowns][unknowns] of the line, N/m, symmetric, none below 0
+/// @param basis    whose flexibility is omega^-2
+Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs);
 
 /// Throws std::invalid_argument where the lowest mode of a line is rigid (below 1e-3 Hz): it has no
 /// static answer.

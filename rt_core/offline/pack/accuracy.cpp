@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "offline/beam/linearise.h"
+#include "offline/pack/port_statics.h"
 #include "offline/track/krylov.h"
 #include "offline/track/squeeze.h"
 #include "offline/track/statics.h"
@@ -57,17 +58,25 @@ std::vector<Value> receptances(const Track& track, const PackedModel& packed,
   for (std::size_t i = 0; i < points.size(); ++i)
     sums.emplace_back(
         residual_under(packed.model(), rail_force(packed.model(), kinds[i], points[i].x, 1.)));
-  for (const PackedLine& own : packed.lines())
-    if (packed.model().condensed != 0)
-      add_receptances(track, own, points, omega, sums);
-    else
-      add_receptances(track, own.line, points, omega, sums);
+  if (packed.model().condensed == 0) {
+    const Track at_rest = linear_about_rest(track);
+    const std::vector<Line> lines = assemble(at_rest);
+    for (const PackedLine& own : packed.lines())
+      add_receptances(at_rest, lines[own.index], points, omega, sums);
+    return sums;
+  }
+  for (const PackedLine& own : packed.lines()) add_receptances(track, own, points, omega, sums);
+  const PressedPorts pressed(track, packed, points);
+  Eigen::Map<Eigen::VectorXcd> all(sums.data(), static_cast<Eigen::Index>(sums.size()));
+  Eigen::VectorXcd less = all;
+  pressed.subtract(omega, less);
+  all = less;
   return sums;
 }
 
-/// What a model is measured against: a finer mesh, all open, with the section's strain.
+/// What a model is measured against: a finer mesh about rest, with the section's strain.
 Track refined(const Track& of, int times) {
-  Track track = with_strain(all_open(of));
+  Track track = with_strain(linear_about_rest(of));
   track.elements_per_bay *= times;
   return track.state ? linearised_under_weight(track, track.state->gravity) : track;
 }
@@ -87,6 +96,12 @@ struct Asked {
   }
 };
 
+/// Over the largest deflection, 0 where there is none.
+double largest_error(const Eigen::VectorXd& got, const Eigen::VectorXd& want) {
+  const double largest = want.size() > 0 ? want.maxCoeff() : 0.;
+  return largest > 0. ? (got - want).lpNorm<Eigen::Infinity>() / largest : 0.;
+}
+
 }  // namespace
 
 double static_error(const Track& track, const PackedModel& packed) {
@@ -100,14 +115,19 @@ double static_error(const Track& track, const PackedModel& packed) {
     places.push_back((static_cast<double>(interval) + .5) / points * track.element_length());
   }
   const Asked asked(packed, places);
-  const std::vector<Value> got = receptances(track, packed, asked.points, asked.kinds, 0.);
-  double largest = 0., error = 0.;
-  for (std::size_t i = 0; i < got.size(); ++i) {
-    const double want = exact.flexibility(asked.points[i], asked.points[i]);
-    largest = std::max(largest, want);
-    error = std::max(error, std::abs(got[i] - want));
+  const std::vector<Value> at_rest = receptances(track, packed, asked.points, asked.kinds, 0.);
+  Eigen::VectorXd got(static_cast<Eigen::Index>(at_rest.size())), want(got.size());
+  for (std::size_t i = 0; i < at_rest.size(); ++i) {
+    got[static_cast<Eigen::Index>(i)] = at_rest[i].real();
+    want[static_cast<Eigen::Index>(i)] = exact.flexibility(asked.points[i], asked.points[i]);
   }
-  return largest > 0. ? error / largest : 0.;
+  const double error = largest_error(got, want);
+  if (packed.model().fixed.count == 0) return error;
+  const std::vector<FixedPort> ports = fixed_ports(track);
+  return std::max(
+      error,
+      largest_error(pressed_under(ports, port_statics(track, packed, asked.points), got),
+                    pressed_under(ports, port_statics(track, exact.track(), asked.points), want)));
 }
 
 std::vector<double> receptance_frequencies(const std::array<double, 2>& band) {

@@ -9,12 +9,14 @@ namespace railstep {
 /// Largest error of the static deflection under a unit force of every kind of port, over
 /// kStaticPlaces places at equal steps along the track, each half-way between two of the tables'
 /// own, against a track of elements so fine that these are nodes; over the largest deflection. 0
-/// without ports. One-sided supports are open.
+/// without ports. Of a track with one-sided supports the larger of two: of the track at rest, in
+/// which those without a gap are springs and those with one open, and where under each force alone
+/// those press that it presses, gaps counting as nothing.
 double static_error(const Track& track, const PackedModel& packed);
 
 /// The same of the receptance magnitude and phase together, |H - H_ref| over the largest |H_ref|,
 /// at the middle of the track's middle bay and over its seat, over a band in Hz at
-/// kReceptancePoints logarithmic steps, against a track of 2 times finer elements.
+/// kReceptancePoints logarithmic steps, against a track of 2 times finer elements; both at rest.
 double receptance_error(const Track& track, const PackedModel& packed,
                         const std::array<double, 2>& band);
 

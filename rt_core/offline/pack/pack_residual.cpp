@@ -151,16 +151,17 @@ ResidualFlexibility::Near seen_at_once(const ResidualFlexibility& residual,
 
 void PackedModel::add_residual(const Track& track, const std::vector<Probe>& probes, int points) {
   if (kinds_.empty()) return;
-  // What is one-sided without a gap mostly presses: then its force is not one that the tables know
-  // of, and they are those of the track in which it is a spring. A condensed track is held without.
-  const bool condensed = model_.condensed != 0;
-  const Track reference = condensed ? track : linear_about_rest(track);
+  // What is one-sided without a gap mostly presses: tables are those of the track in which it is a
+  // spring. About it the model misses what is near a port alone, whatever then presses; about a
+  // track that is open there it would miss what the whole of its rail bends between other seats.
+  const Track reference = linear_about_rest(track);
   const std::vector<Line> all = assemble(reference);
   std::vector<Line> lines;
   std::vector<Basis> bases;
   for (const PackedLine& own : lines_) {
     lines.push_back(all[own.index]);
-    if (condensed) bases.push_back(own.basis);
+    if (model_.condensed != 0)
+      bases.push_back(with_springs(own.basis, lines.back().stiffness - own.line.stiffness));
   }
   const ResidualFlexibility residual(reference, lines, bases, points);
   model_.residual.elements = tabled_elements(reference);

@@ -137,17 +137,9 @@ Track linear_about_rest(Track track) {
   return track;
 }
 
-Track all_open(Track track) {
-  change_sides(track, [](auto& spring) {
-    if (!spring.one_sided()) return;
-    spring.stiffness[2] = spring.damping[2] = 0.;
-  });
-  for (RailJoint& joint : track.joints) {
-    joint.end_stiffness = joint.end_damping = 0.;
-    joint.gap = joint.pressed = {};
-  }
-  track.stops.clear();
-  return track;
+bool presses_at_rest(const FixedPort& port) {
+  if (port.of == FixedPort::Of::stop) return false;
+  return port.of == FixedPort::Of::joint ? port.preload > 0. : port.gap == 0.;
 }
 
 }  // namespace railstep

@@ -37,7 +37,7 @@ Eigen::VectorXd preload(const Track& track, const Line& line);
 /// heat presses, are taken for springs that do; what has a gap, and stops, stay out of its lines.
 Track linear_about_rest(Track track);
 
-/// The track with everything one-sided away.
-Track all_open(Track track);
+/// Whether the port is such a spring.
+bool presses_at_rest(const FixedPort& port);
 
 }  // namespace railstep
