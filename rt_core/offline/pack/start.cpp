@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "offline/pack/start_flange.h"
 #include "offline/pack/start_vehicle.h"
+#include "offline/pack/start_wheelset.h"
 #include "offline/pack/static_lines.h"
 #include "offline/track/statics.h"
 #include "online/model/course.h"
@@ -46,106 +46,84 @@ void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
   }
 }
 
-/// Residual displacement of each contact's rail; a flange knows none.
-std::array<double, 3> missed_under(const Model& model, const Leaning& leaning, Acting acting) {
-  const std::size_t loads = acting.ports.size();
-  for (const std::size_t i : {0u, 1u}) {
-    const WheelContact& c = leaning.contact[i];
-    acting.ports.push_back(rail_force(model, model.wheelset[0].kind[i], c.x,
-                                      -leaning.force[static_cast<int>(i)] * c.normal[2]));
-  }
-  const auto under = [&](std::size_t port) {
-    return residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
-                                 static_cast<int>(port));
-  };
-  return {under(loads), under(loads + 1), 0.};
-}
-
-/// Equilibrium of a wheelset that leans on its flange, alone under loads: turn by turn the forces
-/// that balance it where it is, the rails under these, and its way to the depths they want. The
-/// forces hang on the rails by their small turns alone, so each turn leaves 1e-3 of the last or
-/// less.
-Pose leaning_equilibrium(const Statics& statics, const PackedModel& packed, double gravity,
-                         double time, const Acting& loads) {
-  const Model& model = packed.model();
-  const FlangeModel& flange = model.flange[0];
-  std::vector<double> memory = start_released(packed);
-  State state = state_on(model, memory.data());
-  const Configuration at{state.u, {state.u, state.v}, passed(model, 0)};
-  double* const p = state.u + model.wheelset[0].first;
-  const int side = side_force(model.wheelset[0]) > 0. ? 0 : 1;
-  const std::int32_t contact = wheel_count(model) + side;
-  p[0] = travelled(model.wheelset[0].travel, 0.).speed * time;
-  p[1] = model.rail_y[side] + flange.gauge[side][0] - flange.point[side][0];
-  Pose pose;
-  constexpr int kMostTurns = 30;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
-    Acting acting = loads;
-    for (const PointForce& f : forces_on_rails(lean(model, at))) acting.forces.push_back(f);
-    pose.lines = static_lines(packed, statics, acting.forces, gravity);
-    for (std::size_t l = 0; l < pose.lines.size(); ++l)
-      put(packed.lines()[l], model.line[l], pose.lines[l],
-          Eigen::VectorXd::Zero(pose.lines[l].size()), state);
-    const Leaning now = lean(model, at);
-    const Eigen::Vector3d way = way_to_depths(model, now, missed_under(model, now, loads));
-    for (int k = 0; k < 3; ++k) p[1 + k] += way[k];
-    pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
-    for (const int i : {0, 1}) pose.wheel_force[static_cast<std::size_t>(i)] = now.force[i];
-    pose.wheel_force[static_cast<std::size_t>(contact)] = now.force[2];
-    if (!(way.cwiseAbs().maxCoeff() < 1e-15)) continue;
-    pose.wheelsets = {{0., p[1], p[2], p[3], 0., 0.}};
-    return pose;
-  }
-  throw std::invalid_argument("no equilibrium was found of a wheelset that leans on its flange");
-}
-
-/// Equilibrium with everything that moves shifted by `time`.
-Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
+/// The loads with everything that moves shifted by `time`.
+Acting loads_at(const Statics& statics, const PackedModel& packed, double time) {
   const Model& model = packed.model();
   Acting acting;
-  std::vector<PointForce>& forces = acting.forces;
-  std::vector<RailForce>& ports = acting.ports;
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const LoadModel& load = model.load[i];
     const PlacedLoad at = place(model, load, 0);
     const double x = at.place + travelled(load.travel, 0.).speed * time;
     if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
-    forces.push_back({point_of(packed, load.kind, x), at.force});
-    ports.push_back(rail_force(model, load.kind, x, at.force));
+    acting.forces.push_back({point_of(packed, load.kind, x), at.force});
+    acting.ports.push_back(rail_force(model, load.kind, x, at.force));
   }
-  if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
-    return leaning_equilibrium(statics, packed, gravity, time, acting);
-  const std::size_t loads = forces.size();
-  for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    for (const int rail : {0, 1}) {
-      const WheelsetModel& w = model.wheelset[b];
-      const double x = w.start + travelled(w.travel, 0.).speed * time;
-      forces.push_back({point_of(packed, w.kind[rail], x), -wheel_load(w)});
-      ports.push_back(rail_force(model, w.kind[rail], x, -wheel_load(w)));
-    }
-  SettledVehicles vehicles;
-  if (model.vehicles > 0) vehicles = settle_on_track(statics, packed, gravity, time, acting);
-  Pose pose{static_lines(packed, statics, forces, gravity), {}, std::move(vehicles), {}};
-  pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
+  return acting;
+}
+
+/// Wheelsets where they touch rails at rest; one that a force pushes aside touches with its flange.
+void put_wheelsets(const Model& model, double time, State& state) {
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
-    const double up[3] = {0., 0., 1.}, rolled = travelled(w.travel, 0.).speed * time;
-    const double x = w.start + rolled;
-    std::array<double, 2> height;
-    for (const std::size_t rail : {0u, 1u}) {
-      const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
-      height[rail] = height_of(statics.track(), packed, pose.lines, forces[port].at) +
-                     residual_displacement(model, ports.data(), static_cast<int>(ports.size()),
-                                           static_cast<int>(port)) +
-                     irregularity(model, w.tread[rail], static_cast<int>(rail), up,
-                                  x + passed(model, 0), rolled)
-                         .depth;
-    }
-    pose.wheelsets.push_back(standing_wheelset(model, w, height));
-    for (const std::int32_t i : {2 * b, 2 * b + 1})
-      pose.wheel_force[static_cast<std::size_t>(i)] = wheel_load(w);
+    double* const p = state.u + w.first;
+    p[0] = travelled(w.travel, 0.).speed * time;
+    const double aside = side_force(w);
+    if (aside == 0.) continue;
+    const FlangeModel& flange = model.flange[0];
+    const int side = aside > 0. ? 0 : 1;
+    p[1] = model.rail_y[side] + flange.gauge[side][0] - flange.point[side][0];
   }
-  return pose;
+}
+
+/// What all stands on, turn by turn: the forces that balance the wheelsets where they are, the
+/// rails and vehicles under these, and each wheelset's way to the depths that its forces want.
+/// Contacts are those that the step finds, so that it keeps the start. The forces hang on the rails
+/// by their small turns alone, so each turn leaves 1e-3 of the last or less, down to rounding.
+/// Everything that moves is shifted by `time`.
+Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
+  constexpr int kMostTurns = 30;
+  constexpr double kNothing = 1e-15, kRounding = 1e-12;  // m, rad
+  const Model& model = packed.model();
+  const Acting loads = loads_at(statics, packed, time);
+  std::vector<double> memory = start_released(packed);
+  State state = state_on(model, memory.data());
+  const Configuration at{state.u, {state.u, state.v}, passed(model, 0)};
+  put_wheelsets(model, time, state);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) (void)wheel_load(model.wheelset[b]);
+  Pose pose;
+  double before = HUGE_VAL;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    Acting acting = loads;
+    std::vector<std::size_t> port;
+    for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+      port.push_back(acting.ports.size());
+      add_forces(model, stance_of(model, b, at), acting);
+    }
+    if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
+    pose.lines = static_lines(packed, statics, acting, gravity);
+    for (std::size_t l = 0; l < pose.lines.size(); ++l)
+      put(packed.lines()[l], model.line[l], pose.lines[l],
+          Eigen::VectorXd::Zero(pose.lines[l].size()), state);
+    pose.wheelsets.clear();
+    pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
+    double most = 0.;
+    for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+      const Stance now = stance_of(model, b, at);
+      const Eigen::VectorXd way = way_to_depths(
+          model, now, missed_under(model, now, acting, port[static_cast<std::size_t>(b)]));
+      double* const p = state.u + model.wheelset[b].first;
+      for (int i = 0; i < now.count; ++i) {
+        p[now.first_coordinate() + i] += way[i];
+        pose.wheel_force[static_cast<std::size_t>(now.number[static_cast<std::size_t>(i)])] =
+            now.force[i];
+      }
+      most = std::max(most, way.cwiseAbs().maxCoeff());
+      pose.wheelsets.push_back({0., p[1], p[2], p[3], 0., 0.});
+    }
+    if (most <= kNothing || (most < kRounding && !(most < before))) return pose;
+    before = most;
+  }
+  throw std::invalid_argument("no equilibrium was found of a wheelset on its rails");
 }
 
 /// Forces of the fixed ports where the lines stand and move.

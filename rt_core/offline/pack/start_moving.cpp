@@ -6,8 +6,8 @@
 #include <string>
 
 #include "offline/pack/start.h"
-#include "offline/pack/start_flange.h"
 #include "offline/pack/start_vehicle.h"
+#include "offline/pack/start_wheelset.h"
 #include "online/model/course.h"
 #include "online/step/step.h"
 #include "online/step/table.h"

@@ -175,14 +175,15 @@ struct Under {
   const Statics& statics;
   const PackedModel& packed;
   double gravity;
-  const std::vector<PointForce>& others;
+  const Acting& others;
   const Wheels& wheels;
 
   /// @param force  [wheels] on the wheels, up, N
   Eigen::VectorXd heights(const Eigen::VectorXd& force) const {
-    std::vector<PointForce> all = others;
+    Acting all = others;
     for (std::size_t i = 0; i < wheels.count(); ++i)
-      if (wheels.on_rail[i]) all.push_back({wheels.point[i], -force[static_cast<Eigen::Index>(i)]});
+      if (wheels.on_rail[i])
+        all.forces.push_back({wheels.point[i], -force[static_cast<Eigen::Index>(i)]});
     return of(static_lines(packed, statics, all, gravity));
   }
   /// -d(heights)/d(force), m/N.
@@ -194,7 +195,7 @@ struct Under {
       const auto column = static_cast<Eigen::Index>(j);
       if (!wheels.on_rail[j]) continue;
       if (linear)
-        G.col(column) = of(static_lines(packed, statics, {{wheels.point[j], 1.}}, 0.));
+        G.col(column) = of(static_lines(packed, statics, {{{wheels.point[j], 1.}}, {}, {}}, 0.));
       else
         G.col(column) =
             (at - heights(force + more * Eigen::VectorXd::Unit(force.size(), column))) / more;
@@ -222,7 +223,7 @@ SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packe
                                 double time, Acting& acting) {
   const Model& model = packed.model();
   const Wheels wheels = wheels_of(packed, statics.track(), time, acting);
-  const Under under{statics, packed, gravity, acting.forces, wheels};
+  const Under under{statics, packed, gravity, acting, wheels};
   const Eigen::Index n = model.vehicle_wheels;
   const bool linear = model.fixed.count == 0;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(n);

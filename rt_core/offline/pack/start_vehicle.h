@@ -2,9 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "offline/pack/pack.h"
-#include "offline/track/statics.h"
-#include "online/step/residual.h"
+#include "offline/pack/static_lines.h"
 
 namespace railstep {
 
@@ -23,12 +21,6 @@ struct SettledVehicles {
 /// a wheel would leave its rail.
 SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexibility,
                                 const Eigen::VectorXd& free);
-
-/// Forces that act on the track, and the same for the residual flexibility.
-struct Acting {
-  std::vector<PointForce> forces;
-  std::vector<RailForce> ports;
-};
 
 /// The vehicles of a model at rest on its track under what acts, `time` later than at the start,
 /// and adds the forces of their wheels to it. Where the track is one-sided the heights under the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "online/contact/ports.h"
 
@@ -14,6 +15,24 @@ namespace {
 Eigen::SparseVector<double> row_of(const Track& track, const PackedModel& packed, const Line& line,
                                    const RailPoint& at) {
   return point_row(track, line, at, packed.model().condensed == 0);
+}
+
+/// A contact's row, as the step spreads it.
+Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRow& row) {
+  const bool strains = packed.model().condensed == 0;
+  const double factor = line.rail_factor[static_cast<std::size_t>(row.rail)];
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(line.unknowns());
+  const auto add = [&](int unknown, int k, double value) {
+    if (unknown >= 0) result[unknown] += factor * sign_of(line, row.rail, k) * value;
+  };
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k)
+      if (strains || (k != 4 && k != 8))
+        add(line.element_unknown(row.rail, row.element, i, k), k, row.coefficient[i][k]);
+  for (int s = 0; s < row.seats; ++s)
+    for (const int k : {5, 7})
+      add(line.unknown(row.rail, row.seat[s], k), k, (k == 5 ? .5 : -.5) * row.lever[s]);
+  return result;
 }
 
 /// Displacements of each line of a condensed model under its fixed ports' forces too.
@@ -53,10 +72,14 @@ void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines)
 }  // namespace
 
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
-                                          const std::vector<PointForce>& forces, double gravity) {
+                                          const Acting& acting, double gravity) {
   std::vector<Eigen::VectorXd> lines;
   if (packed.model().condensed == 0) {
-    const std::vector<Eigen::VectorXd> all = statics.solve(forces, gravity);
+    std::vector<Eigen::VectorXd> load = statics.loads(acting.forces, gravity);
+    for (const PackedLine& own : packed.lines())
+      for (const ContactForce& f : acting.contacts)
+        load[own.index] += f.force * row_of(packed, own.line, f.row);
+    const std::vector<Eigen::VectorXd> all = statics.under(std::move(load));
     for (const PackedLine& own : packed.lines()) lines.push_back(all[own.index]);
     return lines;
   }
@@ -64,8 +87,9 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
     Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
     if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
     if (packed.model().fixed.count > 0) load += preload(statics.track(), own.line);
-    for (const PointForce& f : forces)
+    for (const PointForce& f : acting.forces)
       load += f.force * row_of(statics.track(), packed, own.line, f.at);
+    for (const ContactForce& f : acting.contacts) load += f.force * row_of(packed, own.line, f.row);
     lines.push_back(
         own.basis.shapes.project(load).cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
   }

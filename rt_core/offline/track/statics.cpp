@@ -34,10 +34,13 @@ std::vector<Eigen::VectorXd> Statics::loads(const std::vector<PointForce>& force
 
 std::vector<Eigen::VectorXd> Statics::solve(const std::vector<PointForce>& forces,
                                             double gravity) const {
-  std::vector<Eigen::VectorXd> result = loads(forces, gravity);
-  if (one_sided_) return one_sided_->solve(result);
-  for (std::size_t i = 0; i < lines_.size(); ++i) result[i] = factors_[i].solve(result[i]).eval();
-  return result;
+  return under(loads(forces, gravity));
+}
+
+std::vector<Eigen::VectorXd> Statics::under(std::vector<Eigen::VectorXd> load) const {
+  if (one_sided_) return one_sided_->solve(load);
+  for (std::size_t i = 0; i < lines_.size(); ++i) load[i] = factors_[i].solve(load[i]).eval();
+  return load;
 }
 
 std::vector<double> Statics::port_forces(const std::vector<Eigen::VectorXd>& displacement) const {

@@ -26,6 +26,8 @@ class Statics {
   /// Throws std::invalid_argument where one-sided supports leave no equilibrium.
   std::vector<Eigen::VectorXd> solve(const std::vector<PointForce>& forces,
                                      double gravity = 0.) const;
+  /// The same under loads over each line's unknowns, as loads() gives them.
+  std::vector<Eigen::VectorXd> under(std::vector<Eigen::VectorXd> load) const;
   /// Displacement of a point, m, given the lines' displacements.
   double at(const std::vector<Eigen::VectorXd>& displacement, const RailPoint& point) const;
   /// Flexibility G(a, b): displacement at a under a unit force at b, m/N. Symmetric. Of a track
