@@ -146,7 +146,7 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
   for (const char* key :
        {"full_unknowns", "kept_unknowns", "bytes", "state_bytes", "workspace_bytes",
         "flops_per_frame", "bytes_per_frame", "instructions_per_frame", "sha256", "static_error",
-        "receptance_error", "transient_error"})
+        "receptance_error", "transient_error", "one_sided_supports"})
     CHECK(made.contains(key));
   const std::pair<const char*, const char*> shares[] = {
       {"model", "bytes"}, {"state", "state_bytes"}, {"workspace", "workspace_bytes"}};
@@ -181,6 +181,13 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
       railstep_program("condense " + kMovingLoad + " --out " + (folder / "d.model").string());
   CHECK(table.code == 0);
   CHECK_THAT(table.out, Contains("132 of 132 unknowns"));
+  CHECK_THAT(table.out, !Contains("one-sided"));
+  const Ran pads = railstep_program("condense " + kMovingLoad +
+                                    " --set support.unilateral=true --set track.bays=15 --set "
+                                    "step.duration_s=0.05 --set 'track.ends=\"pinned\"'" +
+                                    " --out " + (folder / "e.model").string());
+  CHECK(pads.code == 0);
+  CHECK_THAT(pads.out, Contains("32 supports: as springs, or where each force alone presses them"));
 }
 
 TEST_CASE("what a contact that is not Hertz's takes away is stated", "[condense]") {

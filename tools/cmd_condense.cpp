@@ -89,7 +89,8 @@ nlohmann::ordered_json to_json(const Condensed& made, const std::vector<std::byt
           {"transient_window_s", made.window_s},
           {"transient_reference_error", made.reference_error},
           {"transient_error_parts", made.parts},
-          {"clipped_m_per_n", made.clipped}};
+          {"clipped_m_per_n", made.clipped},
+          {"one_sided_supports", made.model.fixed.count}};
 }
 
 std::string_view bytes_of(const std::vector<std::byte>& block) {
@@ -180,6 +181,10 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
              r["flops_per_frame"].get<std::int64_t>(), r["bytes_per_frame"].get<std::int64_t>(),
              r["instructions_per_frame"].get<std::int64_t>());
   fmt::print("static error      {}\n", error_text(r["static_error"]));
+  if (const int ports = r["one_sided_supports"].get<int>(); ports > 0)
+    fmt::print(
+        "  one-sided       {} supports: as springs, or where each force alone presses them\n",
+        ports);
   fmt::print("receptance error  {}, {:g} to {:g} Hz\n", error_text(r["receptance_error"]),
              r["receptance_band_hz"][0].get<double>(), r["receptance_band_hz"][1].get<double>());
   const auto& window = r["transient_window_s"];
