@@ -9,8 +9,8 @@
 using namespace railstep;
 
 TEST_CASE("supports of strongly damped pads start with the forces of the statics", "[start]") {
-  // Modes of nearly real rates, 1e7 N s/m over pads of 2e10 N/m: a speed of 6e-8 m/s at the start is
-  // a force of half a newton, and of a coarse basis of hundreds.
+  // Modes of nearly real rates, 1e7 N s/m over pads of 2e10 N/m: a speed of 6e-8 m/s at the start
+  // is a force of half a newton, and of a coarse basis of hundreds.
   const std::string scene =
       "schema = 1\n"
       "track = {unknowns=\"vertical\", rails=1, bays=5, bay_m=0.6, elements_per_bay=1, "
