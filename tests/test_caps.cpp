@@ -1,4 +1,5 @@
-// What a model may hold: each kind at its cap, by a second way to the same numbers, and one beyond it.
+// What a model may hold: each kind at its cap, by a second way to the same numbers, and one beyond
+// it.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -147,7 +148,8 @@ TEST_CASE("heights at which vertical forces act are counted rail by rail", "[cap
 }
 
 TEST_CASE("a track may fall into as many lines as a model has room for", "[caps]") {
-  // Under gravity each sleeper without pads is a line, twice in mirror coordinates, beside the rails.
+  // Under gravity each sleeper without pads is a line, twice in mirror coordinates, beside the
+  // rails.
   const auto hanging = [](int count) {
     Track t = s1_track(24, 1);
     t.unknowns = Unknowns::vertical;

@@ -119,8 +119,9 @@ uint64_t railstep_hash(const railstep_run* run) RAILSTEP_NOTHROW;
  * displaced by
  *   free_motion + compliance * forces
  * under forces on the rail, to rounding. The run is not changed. inputs: places as the frame will
- * have them, or null: as they are held; the forces among them are not looked at. free_motion: [3 n], m; compliance: [3 n][3
- * n], symmetric, m/N; both 0 for a wheel off the rail. Returns what was met. */
+ * have them, or null: as they are held; the forces among them are not looked at. free_motion: [3
+ * n], m; compliance: [3 n][3 n], symmetric, m/N; both 0 for a wheel off the rail. Returns what was
+ * met. */
 int32_t railstep_external_wheels(const railstep_model* model) RAILSTEP_NOTHROW;
 uint32_t railstep_response(railstep_run* run, const double* inputs, double* free_motion,
                            double* compliance) RAILSTEP_NOTHROW;
