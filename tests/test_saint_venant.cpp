@@ -307,6 +307,24 @@ TEST_CASE("the half section's mesh fills it with well-shaped triangles", "[saint
   CHECK(flattest < 1.5 + 1e-9);  // Ruppert's bound as asked for, circumradius over shortest edge
 }
 
+TEST_CASE("a rectangle of any size is triangulated", "[saint_venant]") {
+  // Of the first the middle of a side is left of both of its triangles, to rounding.
+  for (int i = 0; i < 200; ++i) {
+    const double width = i == 0 ? 0.061 * (1.0 - 1e-14) : 1e-3 * (20 + i * 37 % 80);
+    const double height = i == 0 ? 0.115 : 1e-3 * (20 + i * 53 % 120);
+    const double unit = std::sqrt(width * height);
+    const SectionMesh mesh = mesh_half(right_half(rectangle(width / unit, height / unit)), 0.1);
+    double area = 0.0;
+    for (const auto& t : mesh.triangles) {
+      const auto& a = mesh.points[static_cast<std::size_t>(t[0])];
+      const auto& b = mesh.points[static_cast<std::size_t>(t[1])];
+      const auto& c = mesh.points[static_cast<std::size_t>(t[2])];
+      area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+    }
+    CHECK_THAT(area, Catch::WithinRel(0.5, 1e-12));
+  }
+}
+
 TEST_CASE("what is not a section is refused in one sentence", "[saint_venant][bad_input]") {
   const Polygon good = rectangle(0.1, 0.2);
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,6 @@
 #include "offline/section/delaunay.h"
 
-#include <stdexcept>
+#include <algorithm>
 
 namespace railstep {
 namespace {
@@ -47,7 +47,28 @@ int Delaunay::locate(const Point& p) const {
     if (onward < 0) return static_cast<int>(t);
     t = static_cast<std::size_t>(onward);
   }
-  throw std::invalid_argument("the section's outline is too fine to be triangulated");
+  return nearest(p);
+}
+
+/// A point on an edge, to rounding, may lie outside both of its triangles, between which the walk
+/// then goes to and fro. Of all triangles the one that it is the least outside of, by its own area.
+int Delaunay::nearest(const Point& p) const {
+  int best = -1;
+  double inmost = 0.0;
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    if (!triangles_[t].alive) continue;
+    const auto corner = [&](std::size_t i) {
+      return points_[static_cast<std::size_t>(triangles_[t].corner[i])];
+    };
+    const double area = turn(corner(0), corner(1), corner(2));
+    const double least = std::min({turn(corner(0), corner(1), p), turn(corner(1), corner(2), p),
+                                   turn(corner(2), corner(0), p)}) /
+                         area;
+    if (best >= 0 && !(least > inmost)) continue;
+    best = static_cast<int>(t);
+    inmost = least;
+  }
+  return best;
 }
 
 bool Delaunay::sees(int triangle, const Point& p) const {

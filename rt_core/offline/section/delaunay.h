@@ -32,6 +32,7 @@ class Delaunay {
   };
 
   int locate(const Point& p) const;
+  int nearest(const Point& p) const;
   bool sees(int triangle, const Point& p) const;
   std::vector<Edge> carve(int start, const Point& p);
   void fill(const std::vector<Edge>& border, int apex);
