@@ -3,6 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "section_solve.h"
 
 namespace railstep {
 namespace {
@@ -30,15 +33,33 @@ double lateral_excess(const FitTargets& t, double foot, double head) {
   return properties(with_heights(t, foot, head)).inertia_z / t.area.inertia_z - 1.0;
 }
 
-bool all_positive(const Rectangles<double>& r) {
-  const auto positive = [](double v) { return v > 0.0; };
-  return std::all_of(r.width.begin(), r.width.end(), positive) &&
-         std::all_of(r.height.begin(), r.height.end(), positive);
+/// Of a plain rectangle every split in three is exact, so that nothing is left to bracket or to
+/// follow: thirds stand for all of them.
+std::optional<Rectangles<double>> plain_rectangle(const FitTargets& t) {
+  const double width = t.area.area / t.height, third = t.height / 3.0;
+  const Rectangles<double> thirds{{width, width, width}, {third, third, third}};
+  return largest(relative_errors(t, thirds)) < kExact ? std::make_optional(thirds) : std::nullopt;
+}
+
+/// By halving between foot heights at which the error of Iz has two signs.
+std::optional<Rectangles<double>> exact_between(const FitTargets& t, double low, double high,
+                                                double head) {
+  const bool below = lateral_excess(t, low, head) < 0.0;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    ((lateral_excess(t, middle, head) < 0.0) == below ? low : high) = middle;
+  }
+  const Rectangles<double> section = with_heights(t, 0.5 * (low + high), head);
+  // A sign change over a pole of the widths is no root.
+  const bool exact = is_section(section) &&
+                     std::abs(properties(section).inertia_z / t.area.inertia_z - 1.0) < 1e-6;
+  return exact ? std::make_optional(section) : std::nullopt;
 }
 
 }  // namespace
 
 std::vector<Rectangles<double>> section_family(const FitTargets& t, int head_heights) {
+  if (const auto plain = plain_rectangle(t)) return {*plain};
   std::vector<Rectangles<double>> found;
   const int n = 400;  // foot heights
   for (int j = 1; j < head_heights; ++j) {
@@ -46,24 +67,27 @@ std::vector<Rectangles<double>> section_family(const FitTargets& t, int head_hei
     const double room = t.height - head;
     double last = lateral_excess(t, room / n, head);
     for (int i = 2; i < n; ++i) {
-      double low = room * (i - 1) / n, high = room * i / n;
-      const double next = lateral_excess(t, high, head);
-      const bool bracketed = (last < 0.0) != (next < 0.0);
-      const double low_value = last;
-      last = next;
-      if (!bracketed) continue;
-      for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (low + high);
-        ((lateral_excess(t, middle, head) < 0.0) == (low_value < 0.0) ? low : high) = middle;
-      }
-      const Rectangles<double> section = with_heights(t, 0.5 * (low + high), head);
-      // A sign change over a pole of the widths is no root.
-      if (all_positive(section) &&
-          std::abs(properties(section).inertia_z / t.area.inertia_z - 1.0) < 1e-6)
-        found.push_back(section);
+      const double low = room * (i - 1) / n, high = room * i / n, at_low = last;
+      last = lateral_excess(t, high, head);
+      if ((at_low < 0.0) == (last < 0.0)) continue;
+      if (const auto section = exact_between(t, low, high, head)) found.push_back(*section);
     }
   }
   return found;
+}
+
+std::optional<Rectangles<double>> section_beside(const FitTargets& t,
+                                                 const Rectangles<double>& section, double head) {
+  constexpr int kSteps = 50;
+  const double step = 0.05 * t.height / kSteps, foot = section.height[0];
+  for (int i = 0; i < kSteps; ++i)  // outwards, by turns below and above
+    for (const double low : {foot - (i + 1) * step, foot + i * step}) {
+      const double high = low + step;
+      if (!(low > 0.0 && high + head < t.height)) continue;
+      if ((lateral_excess(t, low, head) < 0.0) == (lateral_excess(t, high, head) < 0.0)) continue;
+      if (const auto found = exact_between(t, low, high, head)) return found;
+    }
+  return std::nullopt;
 }
 
 }  // namespace railstep

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "section_fit.h"
@@ -11,5 +12,10 @@ namespace railstep {
 /// to about 1e-12 relative; only positive dimensions. Neighbours along a branch are not adjacent in
 /// the list.
 std::vector<Rectangles<double>> section_family(const FitTargets& targets, int head_heights);
+
+/// The exact section of this head height, m, whose foot is next to that of a given one, within a
+/// twentieth of the height; nothing where there is none.
+std::optional<Rectangles<double>> section_beside(const FitTargets& targets,
+                                                 const Rectangles<double>& section, double head);
 
 }  // namespace railstep

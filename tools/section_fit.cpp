@@ -28,13 +28,43 @@ std::array<double, 2> head_widths(const std::vector<Rectangles<double>>& family)
 void refuse_empty(const std::vector<Rectangles<double>>& family, const FitTargets& t) {
   if (!family.empty()) return;
   const RelativeErrors e = relative_errors(t, closest(t));
-  throw std::runtime_error(
+  throw NoSection(
       fmt::format("no three rectangles {:.6g} m high have the area {:.6g} m2, inertias {:.6g} and "
                   "{:.6g} m4 and "
                   "centroid height {:.6g} m; the closest found err by {:+.2e}, {:+.2e}, {:+.2e} "
                   "and {:+.2e} of them",
                   t.height, t.area.area, t.area.inertia_y, t.area.inertia_z, t.area.centroid_height,
                   e.area, e.inertia_y, e.inertia_z, e.centroid_height));
+}
+
+/// The least difference among the sections that lie within a level of the search, by the golden
+/// section of the head height: where the family turns back in its head width, which descend()
+/// follows, it goes on in this.
+template <typename Difference>
+Rectangles<double> lowest_beside(const FitTargets& targets, const Difference& difference,
+                                 const Rectangles<double>& section) {
+  const double level = targets.height / kHeadHeights, golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  Rectangles<double> best = section;
+  const auto at = [&](double head) {
+    const auto found = section_beside(targets, section, head);
+    if (!found) return std::numeric_limits<double>::infinity();
+    const double here = difference(*found);
+    if (here < difference(best)) best = *found;
+    return here;
+  };
+  double low = section.height[2] - level, high = section.height[2] + level;
+  double left = high - golden * (high - low), right = low + golden * (high - low);
+  double at_left = at(left), at_right = at(right);
+  for (int i = 0; i < 60; ++i) {
+    const bool to_left = at_left < at_right;
+    (to_left ? high : low) = to_left ? right : left;
+    (to_left ? right : left) = to_left ? left : right;
+    (to_left ? at_right : at_left) = to_left ? at_left : at_right;
+    double& fresh = to_left ? left : right;
+    fresh = to_left ? high - golden * (high - low) : low + golden * (high - low);
+    (to_left ? at_left : at_right) = at(fresh);
+  }
+  return best;
 }
 
 SectionFit describe(const FitTargets& targets, const Rectangles<double>& section,
@@ -82,8 +112,19 @@ SectionFit fit_section(const Outline& outline, const std::optional<Rectangles<do
   int iterations = 0;
   bool from_start = false;
   if (!solve_exact(targets, true, best, iterations))
-    throw std::runtime_error("Ceres did not bring the section's four errors to round-off");
-  bool flat = descend(targets, points, best, iterations);
+    throw NoSection("Ceres did not bring the section's four errors to round-off");
+  // Downhill may lead past the end of a valley, or along a family that is all but a plain
+  // rectangle's: then what it started from stands.
+  Rectangles<double> lower = best;
+  bool flat = descend(targets, points, lower, iterations);
+  if (difference(lower) <= difference(best))
+    best = lower;
+  else
+    flat = false;
+  if (!flat) {
+    best = lowest_beside(targets, difference, best);
+    solve_exact(targets, true, best, iterations);  // halving leaves 1e-12 of the properties
+  }
   if (start) {
     Rectangles<double> other = *start;
     // A start may lead to the end of the family or to a lesser minimum: then the search's stands.
@@ -120,7 +161,7 @@ SectionFit fit_targets(const FitTargets& targets, double head_width) {
       best = section;
   }
   if (!best)
-    throw std::runtime_error(
+    throw NoSection(
         fmt::format("no three rectangles have these properties with a head {:.6g} m wide; head "
                     "widths of {:.6g} to {:.6g} m can be had",
                     head_width, least, most));

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <stdexcept>
 
 #include "offline/section/outline.h"
 #include "offline/section/rectangles.h"
@@ -11,6 +12,11 @@ namespace railstep {
 struct FitTargets {
   AreaProperties<double> area;
   double height;  // m
+};
+
+/// No three rectangles can be had, said in one sentence.
+struct NoSection : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// Signed, got / wanted - 1.
@@ -38,7 +44,7 @@ double largest(const RelativeErrors& errors);
 /// then, among the sections that have them, the least symmetric difference with the outline on the
 /// same axis and foot line. Unique: the whole family of exact sections is searched.
 /// @param start  where Ceres begins, instead of at the family's best point; changes nothing but
-/// time Throws std::runtime_error, in one sentence, when no three rectangles have these properties.
+/// time. Throws NoSection when no three rectangles have these properties.
 SectionFit fit_section(const Outline& outline,
                        const std::optional<Rectangles<double>>& start = std::nullopt);
 

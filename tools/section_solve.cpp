@@ -41,12 +41,6 @@ Rectangles<double> rectangles_of(const Unknowns& u, double height) {
   return {{u.p[0], u.p[2], u.head}, {u.p[1], height - u.p[1] - u.p[3], u.p[3]}};
 }
 
-bool all_positive(const Rectangles<double>& r) {
-  const auto positive = [](double v) { return v > 0.0 && std::isfinite(v); };
-  return std::all_of(r.width.begin(), r.width.end(), positive) &&
-         std::all_of(r.height.begin(), r.height.end(), positive);
-}
-
 /// To round-off: no tolerance stops early, only steps that no longer change anything.
 ceres::Solver::Options to_round_off() {
   ceres::Solver::Options options;
@@ -64,6 +58,23 @@ void add_properties(ceres::Problem& problem, const FitTargets& targets, Unknowns
   problem.AddResidualBlock(
       new ceres::AutoDiffCostFunction<PropertyResidual, 4, 1, 4>(new PropertyResidual{targets}),
       nullptr, &u.head, u.p.data());
+}
+
+/// The minimum of the sum of squares that a start leads to.
+Rectangles<double> least_squares(const FitTargets& targets, Unknowns u) {
+  ceres::Problem problem;
+  add_properties(problem, targets, u);
+  const double least = kThinnest * targets.height;
+  problem.SetParameterLowerBound(&u.head, 0, least);
+  for (int i = 0; i < 4; ++i) problem.SetParameterLowerBound(u.p.data(), i, least);
+  ceres::Solver::Summary summary;
+  ceres::Solve(to_round_off(), &problem, &summary);
+  return rectangles_of(u, targets.height);
+}
+
+double sum_of_squares(const RelativeErrors& e) {
+  return e.area * e.area + e.inertia_y * e.inertia_y + e.inertia_z * e.inertia_z +
+         e.centroid_height * e.centroid_height;
 }
 
 /// Derivatives of the four relative errors.
@@ -141,6 +152,14 @@ bool solve_slope(const FitTargets& targets, std::span<const Point> polygon, doub
 
 }  // namespace
 
+bool is_section(const Rectangles<double>& r) {
+  const double height = r.height[0] + r.height[1] + r.height[2];
+  return std::all_of(r.width.begin(), r.width.end(),
+                     [](double w) { return w > 0.0 && std::isfinite(w); }) &&
+         std::all_of(r.height.begin(), r.height.end(),
+                     [height](double h) { return h >= kThinnest * height; });
+}
+
 RelativeErrors relative_errors(const FitTargets& targets, const Rectangles<double>& section) {
   const AreaProperties<double> got = properties(section);
   return {
@@ -158,21 +177,31 @@ bool solve_exact(const FitTargets& targets, bool head_width_fixed, Rectangles<do
   ceres::Solve(to_round_off(), &problem, &summary);
   iterations += static_cast<int>(summary.iterations.size());
   const Rectangles<double> found = rectangles_of(u, targets.height);
-  if (!all_positive(found) || !(largest(relative_errors(targets, found)) < 1e-9)) return false;
+  if (!is_section(found) || !(largest(relative_errors(targets, found)) < kExact)) return false;
   section = found;
   return true;
 }
 
 Rectangles<double> closest(const FitTargets& targets) {
-  const double H = targets.height;
-  Unknowns u{0.4 * H, {0.8 * H, 0.15 * H, 0.1 * H, 0.25 * H}};  // a rail's proportions
-  ceres::Problem problem;
-  add_properties(problem, targets, u);
-  problem.SetParameterLowerBound(&u.head, 0, 1e-3 * H);
-  for (int i = 0; i < 4; ++i) problem.SetParameterLowerBound(u.p.data(), i, 1e-3 * H);
-  ceres::Solver::Summary summary;
-  ceres::Solve(to_round_off(), &problem, &summary);
-  return rectangles_of(u, H);
+  // Least squares has many minima here: of a circle, a rail's proportions lead to one that errs ten
+  // times as much as the least.
+  constexpr std::array<double, 4> kShares = {0.06, 0.17, 0.34, 0.55};  // of the height
+  const double H = targets.height, mean = targets.area.area / H;
+  Rectangles<double> best{};
+  double least = std::numeric_limits<double>::infinity();
+  for (const double foot : kShares)
+    for (const double head : kShares)
+      for (const double waist : {0.15, 1.0, 3.0}) {  // the web's width over the outer ones'
+        if (foot + head > 0.95) continue;
+        const double outer = mean / (foot + head + waist * (1.0 - foot - head));
+        const Rectangles<double> found =
+            least_squares(targets, {outer, {outer, foot * H, waist * outer, head * H}});
+        const double error = sum_of_squares(relative_errors(targets, found));
+        if (!is_section(found) || !(error < least)) continue;
+        least = error;
+        best = found;
+      }
+  return best;
 }
 
 double slope(const FitTargets& targets, std::span<const Point> polygon,
