@@ -49,10 +49,16 @@ RailSection from(const SectionFile& file, const BarScene& bar) {
   return result;
 }
 
+SaintVenant shear_of(const Outline& outline) {
+  const OutlineShear found = outline_shear(outline, 0.);
+  if (!found.missing.empty()) throw std::invalid_argument(found.missing);
+  return found.constants;
+}
+
 RailSection from(const ProfileFile& file, const BarScene& bar) {
   const Outline outline = read_profile(file.path).outline;
   if (file.exact)
-    return {{properties(outline), outline_shear(outline, 0.), outline.height}, moments(outline)};
+    return {{properties(outline), shear_of(outline), outline.height}, moments(outline)};
   const SectionFit fit = fit_section(outline);
   return {fitted_section(fit, outline.height), integrated(fit.section, bar.section_points)};
 }
@@ -71,6 +77,8 @@ RailSection bar_section(const BarScene& bar, bool nonlinear, const std::string& 
         place, bar.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
   return found;
 } catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{} {}", place, error.what()));
+} catch (const NoSection& error) {
   throw InputError(fmt::format("{} {}", place, error.what()));
 }
 

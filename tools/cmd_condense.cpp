@@ -19,6 +19,7 @@
 #include "model_size.h"
 #include "offline/pack/accuracy.h"
 #include "offline/pack/artefact.h"
+#include "unit_note.h"
 #include "write.h"
 
 namespace railstep {
@@ -106,6 +107,7 @@ nlohmann::ordered_json write(const std::vector<std::byte>& block, const Condense
 }
 
 nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
+  print_note(lopsided_note(scene));
   const Built built(scene);
   const PackedModel& packed = *built.packed;
   Condensed made{packed.model(),

@@ -68,15 +68,13 @@ FitTargets parse_targets(const std::string& text) {
   return t;
 }
 
-FitResult fit_to_targets(const FitTargets& t, double head_width) try {
+FitResult fit_to_targets(const FitTargets& t, double head_width) {
   FitResult r{.name = "targets", .source = "--target"};
   r.fit = fit_targets(t, head_width);
-  r.asymmetry = kNone;
+  r.lopsided.share = kNone;
   r.outline = {t.area, {kNone, kNone, kNone, kNone}, t.height};
   r.section = fitted_section(r.fit, t.height);
   return r;
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("--target: {}", error.what()));
 }
 
 bool is_toml(const std::string& file) { return std::filesystem::path(file).extension() == ".toml"; }
@@ -105,10 +103,13 @@ Exit run_fit(const FitOptions& o) {
       : is_toml(o.profile)
           ? fit_profile(read_profile(o.profile), o.profile)
           : fit_profile(read_points(o.profile, o.unit == "mm" ? 1e-3 : 1.0), o.profile);
-  if (!o.out.empty()) write_file(o.out, to_toml(result));
-  if (!o.report.empty()) write_file(o.report, to_html(result));
+  const bool fits = result.refusal.empty();
+  if (fits && !o.out.empty()) write_file(o.out, to_toml(result));
+  if (fits && !o.report.empty()) write_file(o.report, to_html(result));
   fmt::print("{}\n", o.json ? to_json(result).dump(2) : to_table(result));
-  return Exit::done;
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (!fits) fmt::print(stderr, "error: {}: {}\n", o.profile, result.refusal);
+  return fits ? Exit::done : Exit::not_reached;
 }
 
 }  // namespace

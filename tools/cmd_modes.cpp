@@ -11,6 +11,7 @@
 #include "command.h"
 #include "offline/track/damped.h"
 #include "offline/track/fixed_port.h"
+#include "unit_note.h"
 
 namespace railstep {
 namespace {
@@ -25,7 +26,9 @@ struct ModesOptions {
 NaturalModes solve(const ModesOptions& o) try {
   // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
-  return natural_modes(linear_about_rest(track_of(read_scene(o.scene, o.overrides))), o.count);
+  const Scene scene = read_scene(o.scene, o.overrides);
+  print_note(lopsided_note(scene));
+  return natural_modes(linear_about_rest(track_of(scene)), o.count);
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", o.scene, error.what()));
 }

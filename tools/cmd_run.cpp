@@ -187,7 +187,9 @@ Exit run(const RunOptions& o) {
   const std::int64_t frames = frames_of(o, artefact, simulation->model());
   const Scene* const track = scene ? std::get_if<Scene>(&*scene) : nullptr;
   std::vector<std::string> notes;
-  if (track != nullptr) notes = {speed_note(*track, simulation->track()), constants_note(*track)};
+  if (track != nullptr)
+    notes = {speed_note(*track, simulation->track()), constants_note(*track),
+             lopsided_note(*track)};
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());

@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "static_solution.h"
+#include "unit_note.h"
 #include "write.h"
 
 namespace railstep {
@@ -63,7 +64,9 @@ std::string to_csv(const StaticSolution& solution) {
 Exit run_static(const StaticOptions& o) {
   std::vector<std::string> overrides = o.overrides;
   if (!o.model.empty()) overrides.push_back(fmt::format("track.model=\"{}\"", o.model));
-  const StaticSolution solution = solve_static(read_scene(o.scene, overrides));
+  const Scene scene = read_scene(o.scene, overrides);
+  print_note(lopsided_note(scene));
+  const StaticSolution solution = solve_static(scene);
   if (!solution.converged) print_history(o.scene, solution);
   if (o.json)
     fmt::print("{}\n", to_json(solution).dump(2));

@@ -5,8 +5,9 @@
 
 namespace railstep {
 
-/// Fits a profile, and finds what there is to compare of its outline. Throws InputError, naming the
-/// file, where the outline is too thin or ragged, std::runtime_error where no rectangles fit.
+/// Finds what there is to say of a profile's outline, and fits it. Where no rectangles fit, the
+/// result has the outline and a refusal. Throws InputError, naming the file, where the outline is
+/// too thin or ragged.
 FitResult fit_profile(Profile profile, const std::string& file);
 
 }  // namespace railstep

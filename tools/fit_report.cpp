@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace railstep {
 namespace {
@@ -56,6 +58,29 @@ std::array<Error, 4> errors_of(const RelativeErrors& e) {
            {"inertia_y", e.inertia_y},
            {"inertia_z", e.inertia_z},
            {"centroid_height", e.centroid_height}}};
+}
+
+/// What only an outline that is not symmetric has; empty of others.
+std::vector<Row> lopsided_rows(const FitResult& r) {
+  const Lopsided& l = r.lopsided;
+  if (!(l.share >= 1e-6)) return {};
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return {
+      {"outline and mirror image", "share_of_area", l.share, none, 1.0},
+      {"Iyz, 1e6 mm4", "product_of_inertia_m4", l.product_of_inertia, none, 1e6},
+      {"principal axis, degrees", "principal_angle_rad",
+       principal_angle(r.outline.area, l.product_of_inertia), none, 180.0 / std::numbers::pi},
+      {"centroid beside foot, mm", "centroid_offset_m", l.centroid_offset, none, 1e3},
+      {"shear centre beside, mm", "shear_centre_offset_m", l.shear_centre_offset, none, 1e3},
+  };
+}
+
+/// All that is compared, and what the outline has alone.
+std::vector<Row> all_rows(const FitResult& r) {
+  const auto rows = rows_of(r);
+  std::vector<Row> all(rows.begin(), rows.end());
+  for (const Row& row : lopsided_rows(r)) all.push_back(row);
+  return all;
 }
 
 std::string number(const Row& row, double value) {
@@ -136,6 +161,13 @@ constexpr const char* kStyle =
 nlohmann::ordered_json to_json(const FitResult& r) {
   nlohmann::ordered_json json;
   for (const Row& row : rows_of(r)) json["outline"][row.key] = row.outline;
+  for (const Row& row : lopsided_rows(r)) json["asymmetry"][row.key] = row.outline;
+  json["warnings"] = r.warnings;
+  if (!r.refusal.empty()) {
+    json["section"] = nullptr;
+    json["refusal"] = r.refusal;
+    return json;
+  }
   for (const Row& row : rows_of(r)) json["section"][row.key] = row.section;
   for (const Dimension& d : dimensions_of(r.fit.section)) json["dimensions"][d.key] = d.metres;
   for (const Error& e : errors_of(r.fit.errors)) json["relative_errors"][e.key] = e.value;
@@ -146,16 +178,22 @@ nlohmann::ordered_json to_json(const FitResult& r) {
       {"iterations", r.fit.iterations},
       {"exact_sections_compared", r.fit.family_points},
       {"stationarity_m", r.fit.stationarity},
-      {"outline_asymmetry", r.asymmetry},
+      {"outline_asymmetry", r.lopsided.share},
       {"sensitivity_m",
        {{"foot_width", s[0]}, {"foot_height", s[1]}, {"web_width", s[2]}, {"head_height", s[3]}}}};
   return json;
 }
 
 std::string to_table(const FitResult& r) {
+  if (!r.refusal.empty()) {
+    std::string text = fmt::format("{}\n{:<26}{:>14}\n", r.name, "", "outline");
+    for (const Row& row : all_rows(r))
+      text += fmt::format("{:<26}{:>14}\n", row.label, number(row, row.outline));
+    return text;
+  }
   std::string text = fmt::format("{}\n{:<26}{:>14}{:>14}{:>12}\n", r.name, "",
                                  r.profile ? "outline" : "target", "section", "difference");
-  for (const Row& row : rows_of(r))
+  for (const Row& row : all_rows(r))
     text += fmt::format("{:<26}{:>14}{:>14}{:>12}\n", row.label, number(row, row.outline),
                         number(row, row.section), difference(row));
   for (const Dimension& d : dimensions_of(r.fit.section))
@@ -177,6 +215,9 @@ std::string to_toml(const FitResult& r) {
   for (const Row& row : rows_of(r)) put(row.key, row.section);
   text += r.profile ? "\n[outline]\n" : "\n[target]\n";
   for (const Row& row : rows_of(r)) put(row.key, row.outline);
+  const std::vector<Row> lopsided = lopsided_rows(r);
+  if (!lopsided.empty()) text += "\n[asymmetry]\n";
+  for (const Row& row : lopsided) put(row.key, row.outline);
   text += "\n[dimensions]\n";
   for (const Dimension& d : dimensions_of(r.fit.section)) put(d.key, d.metres);
   text += "\n[relative_errors]\n";
@@ -188,19 +229,22 @@ std::string to_html(const FitResult& r) {
   std::string table = fmt::format(
       "<table>\n<tr><th></th><th>{}</th><th>section</th><th>relative difference</th></tr>\n",
       r.profile ? "outline" : "target");
-  for (const Row& row : rows_of(r))
+  for (const Row& row : all_rows(r))
     table += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", row.label,
                          number(row, row.outline), number(row, row.section), difference(row));
   table += "</table>\n<table>\n<tr><th>dimension</th><th>mm</th></tr>\n";
   for (const Dimension& d : dimensions_of(r.fit.section))
     table += fmt::format("<tr><td>{}</td><td>{:.4f}</td></tr>\n", d.label, 1e3 * d.metres);
+  std::string warnings;
+  for (const std::string& warning : r.warnings)
+    warnings += fmt::format("<p>Warning: {}.</p>\n", escaped(warning));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}: three "
       "rectangles</title>\n<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n<p>{2}</p>\n{3}<p>Area "
-      "of the symmetric difference: {4}. Grey: outline; red: rectangles.</p>\n{5}</table>\n"
+      "of the symmetric difference: {4}. Grey: outline; red: rectangles.</p>\n{6}{5}</table>\n"
       "</body>\n</html>\n",
       escaped(r.name), kStyle, escaped(r.source), drawing(r), area_of(r.fit.symmetric_difference),
-      table);
+      table, warnings);
 }
 
 }  // namespace railstep

@@ -2,20 +2,25 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "lopsided.h"
 #include "profile.h"
 #include "section_fit.h"
 
 namespace railstep {
 
 /// All that `fit` found. Without an outline the outline's area properties are the targets, and what
-/// only an outline has is NaN (null in JSON).
+/// only an outline has is NaN (null in JSON). Where `refusal` says that no rectangles fit, only the
+/// outline is described.
 struct FitResult {
   std::string name, source;
   std::optional<Profile> profile = {};
   Section outline = {}, section = {};
   SectionFit fit = {};
-  double asymmetry = 0.0;  // of the outline, as asymmetry()
+  Lopsided lopsided = {};  // of the outline
+  std::string refusal = {};
+  std::vector<std::string> warnings = {};  // sentences
 };
 
 /// The keys of the command line's contract.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "build.h"
 #include "offline/receptance/condensed.h"
@@ -17,6 +18,7 @@
 #include "offline/track/end_zone.h"
 #include "offline/track/fixed_port.h"
 #include "sense.h"
+#include "unit_note.h"
 
 namespace railstep {
 namespace {
@@ -241,6 +243,8 @@ ReceptanceAnswer solve(const ReceptanceRequest& request, const Scene& scene) {
     add_resonances(track, *at, *model, answer);
   if (request.reflection) add_reflection(track, force, answer);
   warn({&force, &read}, end_zones(track) > 0, answer);
+  if (std::string note = lopsided_note(scene); !note.empty())
+    answer.warnings.push_back(std::move(note));
   if (request.decay) add_decay(request, scene, track, force, answer);
   return answer;
 }

@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "offline/section/outline_mirror.h"
 #include "offline/section/saint_venant.h"
@@ -23,7 +25,7 @@ constexpr std::initializer_list<const char*> kSectionKeys = {
     "area_m2",    "height_m",       "centroid_height_m", "inertia_y_m4",         "inertia_z_m4",
     "torsion_m4", "shear_factor_y", "shear_factor_z",    "shear_centre_height_m"};
 
-constexpr double kMostAsymmetry = 0.05;  // of the area; beyond, a shear centre off the axis is felt
+constexpr double kMostAsymmetry = 0.05;  // of the area, of halves whose mean says something
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Refuses what no shape has.
@@ -38,23 +40,39 @@ void check_shape(const Table& t, const Section& s) {
 
 }  // namespace
 
-/// Mean of both halves, each mirrored; NaN where the outline is too lopsided for that.
-SaintVenant outline_shear(const Outline& outline, double uneven) {
+OutlineShear outline_shear(const Outline& outline, double uneven) {
   const std::vector<Point> points = polygon(outline, 0.5 * kChordTolerance);
-  if (uneven > kMostAsymmetry) return {kNone, kNone, kNone, kNone};
-  const SaintVenant right =
-      saint_venant(mirrored_side(points, 1, 0.5 * kChordTolerance), kFitPoisson);
-  if (uneven < 1e-6) return right;
-  const SaintVenant left =
-      saint_venant(mirrored_side(points, -1, 0.5 * kChordTolerance), kFitPoisson);
-  const auto mean = [](double a, double b) { return 0.5 * (a + b); };
-  return {mean(right.torsion, left.torsion), mean(right.shear_factor_y, left.shear_factor_y),
-          mean(right.shear_factor_z, left.shear_factor_z),
-          mean(right.shear_centre_height, left.shear_centre_height)};
+  const auto of_side = [&points](int side) {
+    return saint_venant(mirrored_side(points, side, 0.5 * kChordTolerance), kFitPoisson);
+  };
+  std::string missing;
+  double factor_y = kNone, factor_z = kNone;
+  if (uneven > kMostAsymmetry) {
+    missing = fmt::format(
+        "Cowper's are of forces along an axis of symmetry, and outline and mirror image differ by "
+        "{:.2g} of the area",
+        std::min(uneven, 2.0));
+  } else {
+    try {
+      const SaintVenant right = of_side(1);
+      if (uneven < 1e-6) return {right, 0.0, {}};
+      const SaintVenant left = of_side(-1);
+      factor_y = 0.5 * (right.shear_factor_y + left.shear_factor_y);
+      factor_z = 0.5 * (right.shear_factor_z + left.shear_factor_z);
+    } catch (const NoShearFactor& error) {
+      missing = error.what();
+    }
+  }
+  const Twist whole = twist(simplified(points, 0.5 * kChordTolerance));
+  return {{whole.torsion, factor_y, factor_z, whole.shear_centre_height},
+          uneven < 1e-6 ? 0.0 : whole.shear_centre_y,
+          missing};
 }
 
-Section fitted_section(const SectionFit& fit, double height) {
+Section fitted_section(const SectionFit& fit, double height) try {
   return {properties(fit.section), saint_venant(polygon(fit.section), kFitPoisson), height};
+} catch (const std::invalid_argument& error) {
+  throw NoSection(fmt::format("three rectangles fit, but not as a section: {}", error.what()));
 }
 
 Section read_profile_section(const std::filesystem::path& file) {
@@ -97,6 +115,9 @@ Section read_section(const std::filesystem::path& file) {
   const Section section = read_constants(constants);
   check_shape(constants, section);
   pass_over(root, "outline", kSectionKeys);
+  pass_over(root, "asymmetry",
+            {"share_of_area", "product_of_inertia_m4", "principal_angle_rad", "centroid_offset_m",
+             "shear_centre_offset_m"});
   pass_over(root, "target", kSectionKeys);
   pass_over(root, "dimensions",
             {"foot_width_m", "foot_height_m", "web_width_m", "web_height_m", "head_width_m",

@@ -11,15 +11,24 @@ inline constexpr double kFitPoisson = 0.3;  // of steel, in Cowper's shear facto
 
 inline constexpr double kChordTolerance = 1e-5;  // m, of the outline in the Saint-Venant solution
 
-/// Constants of an outline itself: the mean of both halves, each mirrored; NaN where it is too
-/// lopsided for that. @param uneven  its asymmetry()
-SaintVenant outline_shear(const Outline& outline, double uneven);
+/// Constants of an outline itself.
+struct OutlineShear {
+  SaintVenant constants;
+  double shear_centre_y;  // m, from the centroid; 0 of a symmetric one
+  std::string missing;    // why its shear factors are NaN, else empty
+};
 
-/// All properties of the three rectangles; `height` of the profile, m.
+/// Those of a lopsided outline are Twist's, with shear factors that are the mean of both halves,
+/// each mirrored; NaN where it is too lopsided for that, or where Cowper's leave 0 to 1. Throws
+/// std::invalid_argument for one too thin or ragged. @param uneven  its asymmetry()
+OutlineShear outline_shear(const Outline& outline, double uneven);
+
+/// All properties of the three rectangles; `height` of the profile, m. Throws NoSection where their
+/// shear factors cannot be had.
 Section fitted_section(const SectionFit& fit, double height);
 
 /// Reads a profile and fits it: what a scene's `profile` names. Throws InputError on a bad file,
-/// std::runtime_error where no three rectangles fit.
+/// NoSection where no three rectangles fit.
 Section read_profile_section(const std::filesystem::path& file);
 
 /// Constants of a section, from [rail.constants] or a section file's [section]. Throws InputError.

@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "lopsided.h"
 #include "section_file.h"
 
 namespace railstep {
@@ -27,6 +28,21 @@ std::string constants_note(const Scene& scene) {
         section->area.inertia_y, most_inertia(*section));
   }
   return {};
+}
+
+std::string lopsided_note(const Scene& scene) {
+  for (const RailScene* rail : {&scene.rail, scene.right_rail ? &*scene.right_rail : nullptr}) {
+    const auto* const section = rail != nullptr ? std::get_if<SectionFile>(&rail->shape) : nullptr;
+    const auto lopsided = section != nullptr ? read_lopsided(section->path) : std::nullopt;
+    if (!lopsided) continue;
+    const std::string warning = lopsided_warning(*lopsided, read_section(section->path));
+    if (!warning.empty()) return fmt::format("{}: {}", section->path.string(), warning);
+  }
+  return {};
+}
+
+void print_note(const std::string& note) {
+  if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
 }
 
 }  // namespace railstep

@@ -71,7 +71,9 @@ bool is_symmetric(const std::vector<Point>& polygon, double tolerance) {
   return false;
 }
 
-void check(const std::vector<Point>& polygon) {
+}  // namespace
+
+void check_polygon(const std::vector<Point>& polygon) {
   if (polygon.size() < 3) throw std::invalid_argument("a section needs at least three points");
   const double size = extent(polygon);
   if (!std::isfinite(size))
@@ -85,9 +87,9 @@ void check(const std::vector<Point>& polygon) {
   if (signed_area(polygon) <= 1e-9 * size * size)
     throw std::invalid_argument("the section must be counter-clockwise and enclose an area");
   if (crosses_itself(polygon)) throw std::invalid_argument("the section's outline crosses itself");
-  if (!is_symmetric(polygon, 1e-6 * size))
-    throw std::invalid_argument("the section is not symmetric about y = 0");
 }
+
+namespace {
 
 /// The outline with its points near the axis put on it, and points added where it crosses the axis.
 std::vector<Point> with_axis_points(const std::vector<Point>& polygon) {
@@ -107,7 +109,9 @@ std::vector<Point> with_axis_points(const std::vector<Point>& polygon) {
 }  // namespace
 
 HalfPolygon right_half(const std::vector<Point>& polygon) {
-  check(polygon);
+  check_polygon(polygon);
+  if (!is_symmetric(polygon, 1e-6 * extent(polygon)))
+    throw std::invalid_argument("the section is not symmetric about y = 0");
   const std::vector<Point> all = with_axis_points(polygon);
   const std::size_t n = all.size();
   std::size_t first = n;

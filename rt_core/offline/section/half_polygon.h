@@ -17,6 +17,9 @@ using HalfPolygon = std::vector<std::array<double, 2>>;
 ///         meeting its axis exactly twice
 HalfPolygon right_half(const std::vector<std::array<double, 2>>& polygon);
 
+/// Throws as right_half(), but for the symmetry and the axis.
+void check_polygon(const std::vector<std::array<double, 2>>& polygon);
+
 /// True when `point` is inside the closed polygon; either answer on its boundary.
 bool is_inside(const std::vector<std::array<double, 2>>& polygon,
                const std::array<double, 2>& point);

@@ -32,7 +32,7 @@ constexpr double kRounding = 1e-8;  // m
 
 /// Moments about the origin: area, first and second moments.
 struct Moments {
-  double area = 0.0, y = 0.0, z = 0.0, yy = 0.0, zz = 0.0;
+  double area = 0.0, y = 0.0, z = 0.0, yy = 0.0, zz = 0.0, yz = 0.0;
 };
 
 void add_line(const Segment& s, Moments& m) {
@@ -44,6 +44,7 @@ void add_line(const Segment& s, Moments& m) {
   m.z += cross * (z0 + z1) / 6.0;
   m.yy += cross * (y0 * y0 + y0 * y1 + y1 * y1) / 12.0;
   m.zz += cross * (z0 * z0 + z0 * z1 + z1 * z1) / 12.0;
+  m.yz += cross * (2.0 * (y0 * z0 + y1 * z1) + y0 * z1 + y1 * z0) / 24.0;
 }
 
 void add_circular_segment(const Segment& s, Moments& m) {
@@ -59,6 +60,7 @@ void add_circular_segment(const Segment& s, Moments& m) {
   m.z += c[1] * area + e[1] * u;
   m.yy += c[0] * c[0] * area + 2.0 * c[0] * e[0] * u + e[0] * e[0] * uu + e[1] * e[1] * vv;
   m.zz += c[1] * c[1] * area + 2.0 * c[1] * e[1] * u + e[1] * e[1] * uu + e[0] * e[0] * vv;
+  m.yz += c[0] * c[1] * area + (c[0] * e[1] + c[1] * e[0]) * u + e[0] * e[1] * (uu - vv);
 }
 
 Moments moments_of(const std::vector<Segment>& segments) {
@@ -163,6 +165,11 @@ Outline point_outline(std::span<const OutlineRow> points) {
 AreaProperties<double> properties(const Outline& outline) {
   const Moments m = moments_of(outline.segments);
   return {m.area, m.z / m.area, m.zz - m.z * m.z / m.area, m.yy - m.y * m.y / m.area};
+}
+
+double product_of_inertia(const Outline& outline) {
+  const Moments m = moments_of(outline.segments);
+  return m.yz - m.y * m.z / m.area;
 }
 
 std::vector<Point> polygon(const Outline& outline, double chord_tolerance) {

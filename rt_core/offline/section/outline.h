@@ -58,6 +58,9 @@ Outline point_outline(std::span<const OutlineRow> points);
 /// s = sin t, c = cos t, u along the bisector and v across it. Round-off grows as (R/height)^3.
 AreaProperties<double> properties(const Outline& outline);
 
+/// Iyz = int y z dA about the centroid, m4; 0 for a symmetric outline.
+double product_of_inertia(const Outline& outline);
+
 /// The outline as points, counter-clockwise, first not repeated, arcs cut into chords that leave
 /// them by no more than `chord_tolerance` (m).
 std::vector<Point> polygon(const Outline& outline, double chord_tolerance);
@@ -69,6 +72,9 @@ double area_inside(std::span<const Point> polygon, double y0, double y1, double 
 /// coordinate that lies inside a simple polygon, m. axis 0: an upright line y = at; 1: level, z =
 /// at.
 double length_inside(std::span<const Point> polygon, int axis, double at, double from, double to);
+
+/// y of the foot's middle, m: between the ends of a simple polygon at a hundredth of its height.
+double foot_middle(std::span<const Point> polygon);
 
 /// Area between a simple polygon and its mirror image about y = 0, over its own area; by 1000
 /// levels of z, so good to 1e-3 of itself. 0 for a symmetric one.

@@ -41,6 +41,16 @@ std::vector<double> crossings(std::span<const Point> polygon, std::size_t axis, 
   return found;
 }
 
+/// Least and largest z.
+std::array<double, 2> heights(std::span<const Point> polygon) {
+  double low = polygon.front()[1], high = low;
+  for (const Point& p : polygon) {
+    low = std::min(low, p[1]);
+    high = std::max(high, p[1]);
+  }
+  return {low, high};
+}
+
 }  // namespace
 
 double area_inside(std::span<const Point> polygon, double y0, double y1, double z0, double z1) {
@@ -66,13 +76,15 @@ double length_inside(std::span<const Point> polygon, int axis, double at, double
   return length;
 }
 
+double foot_middle(std::span<const Point> polygon) {
+  const auto [low, high] = heights(polygon);
+  const std::vector<double> found = crossings(polygon, 1, low + 0.01 * (high - low));
+  return 0.5 * (found.front() + found.back());
+}
+
 double asymmetry(std::span<const Point> polygon) {
   constexpr int kLevels = 1000;
-  double low = polygon.front()[1], high = low;
-  for (const Point& p : polygon) {
-    low = std::min(low, p[1]);
-    high = std::max(high, p[1]);
-  }
+  const auto [low, high] = heights(polygon);
   double uneven = 0.0, area = 0.0;
   for (int level = 0; level < kLevels; ++level) {
     const double z = low + (level + 0.5) * (high - low) / kLevels;

@@ -66,6 +66,14 @@ std::vector<Point> right_chain(const std::vector<Point>& points) {
 
 }  // namespace
 
+std::vector<Point> simplified(std::span<const Point> polygon, double tolerance) {
+  std::vector<Point> round(polygon.begin(), polygon.end());
+  round.push_back(round.front());
+  std::vector<Point> kept = simplify(round, tolerance);
+  kept.pop_back();
+  return kept;
+}
+
 std::vector<Point> mirrored_side(std::span<const Point> polygon, int side, double tolerance) {
   std::vector<Point> points(polygon.begin(), polygon.end());
   if (side < 0) {

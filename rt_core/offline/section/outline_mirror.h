@@ -5,9 +5,12 @@
 
 namespace railstep {
 
-/// One side of a polygon about y = 0 and its mirror image, counter-clockwise, exactly symmetric,
-/// with the points dropped that lie within `tolerance` (m) of the chord of what is kept (Ramer
+/// A polygon without the points that lie within `tolerance` (m) of the chord of what is kept (Ramer
 /// 1972).
+std::vector<Point> simplified(std::span<const Point> polygon, double tolerance);
+
+/// One side of a polygon about y = 0 and its mirror image, counter-clockwise, exactly symmetric,
+/// simplified().
 /// @param polygon  simple, counter-clockwise
 /// @param side     +1 the side y > 0, -1 the other
 /// Throws std::invalid_argument where the polygon does not meet the axis exactly twice.

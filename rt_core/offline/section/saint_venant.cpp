@@ -1,5 +1,6 @@
 #include "offline/section/saint_venant.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -43,11 +44,13 @@ ScaledHalf scale(const std::vector<std::array<double, 2>>& polygon) {
   return {half, unit, centroid - foot};
 }
 
-/// The discrete problem, in units of sqrt(A); integrals over the half section.
+/// The discrete problem, in units of sqrt(A); integrals over what is meshed, the half section or
+/// the whole of a lopsided one.
 struct Discrete {
   QuadraticElements mesh;
   Eigen::SparseMatrix<double> K;
   double area = 0.0, inertia_y = 0.0, inertia_z = 0.0, fourth = 0.0;  // 1, z^2, y^2, y^2 z^2
+  double product = 0.0;                                               // y z
   VectorXd warping_load, stress_load;                                 // int z N,y - y N,z; int 2 N
   VectorXd first_y, first_z;                                          // int y N; int z N
 };
@@ -63,11 +66,11 @@ VectorXd assemble(const QuadraticElements& mesh, Integrand integrand) {
   return sum;
 }
 
-Discrete discretise(const HalfPolygon& outline, double size) {
+Discrete discretise(const SectionMesh& triangles) {
   using Q = QuadraturePoint;
   using Six = Eigen::Matrix<double, 6, 1>;
   Discrete d;
-  d.mesh = make_quadratic(mesh_half(outline, size));
+  d.mesh = make_quadratic(triangles);
   d.K = laplacian(d.mesh);
   for (std::size_t e = 0; e < d.mesh.elements.size(); ++e)
     for (const Q& q : quadrature(d.mesh, e)) {
@@ -75,6 +78,7 @@ Discrete discretise(const HalfPolygon& outline, double size) {
       d.inertia_y += q.area * q.z * q.z;
       d.inertia_z += q.area * q.y * q.y;
       d.fourth += q.area * q.y * q.y * q.z * q.z;
+      d.product += q.area * q.y * q.z;
     }
   d.warping_load = assemble(
       d.mesh, [](const Q& q) -> Six { return q.z * q.slope.col(0) - q.y * q.slope.col(1); });
@@ -109,32 +113,32 @@ VectorXd solve_even(const Discrete& d, const VectorXd& load) {
   return solve_fixed(d.K, fixed, load);
 }
 
+/// Of the half section: its mirror image has as much again.
 TorsionBounds bounds(const Discrete& d, const VectorXd& warping) {
   const VectorXd stress = solve_fixed(d.K, d.mesh.on_outline, d.stress_load);
   return {2.0 * d.stress_load.dot(stress),
           2.0 * (d.inertia_y + d.inertia_z - d.warping_load.dot(warping))};
 }
 
+bool are_close(const TorsionBounds& J) { return J.upper - J.lower <= kClosestGap * J.lower; }
+
 /// Cowper's factor from the whole section's integrals. Its denominator may vanish when the force is
 /// not along the axis of symmetry; a stiffness cannot be made of what then comes out.
 double shear_factor(double nu, double area, double inertia_p, double inertia_q, double flexure) {
   const double k = 2.0 * (1.0 + nu) * inertia_p /
                    (0.5 * nu * (inertia_q - inertia_p) - area / inertia_p * flexure);
-  if (!(k > 0.0 && k <= 1.0))
-    throw std::invalid_argument(
-        "Cowper's shear factor of this section is not between 0 and 1; with a Poisson's ratio of 0 "
-        "it is the energy's factor and always is");
+  if (!(k > 0.0 && k <= 1.0)) throw NoShearFactor();
   return k;
 }
 
 /// @return nothing when the bounds of J are still too far apart
 std::optional<SaintVenant> solve(const ScaledHalf& half, double size, double nu) {
-  const Discrete d = discretise(half.outline, size);
+  const Discrete d = discretise(mesh_half(half.outline, size));
   Eigen::MatrixXd odd_loads(d.mesh.nodes.cols(), 2);
   odd_loads << d.warping_load, flexure_load(d.mesh, 0, nu);
   const Eigen::MatrixXd odd = solve_odd(d, odd_loads);  // warping, lateral chi
   const TorsionBounds J = bounds(d, odd.col(0));
-  if (J.upper - J.lower > kClosestGap * J.lower) return std::nullopt;
+  if (!are_close(J)) return std::nullopt;
   const VectorXd chi_z = solve_even(d, flexure_load(d.mesh, 1, nu));
   const double unit2 = half.unit * half.unit;
   const double flexure_y = 2.0 * (d.first_y.dot(odd.col(1)) + d.fourth);
@@ -147,23 +151,81 @@ std::optional<SaintVenant> solve(const ScaledHalf& half, double size, double nu)
                                             half.unit * d.first_y.dot(odd.col(0)) / d.inertia_z};
 }
 
+/// A whole section about its centroid, in units of sqrt(A).
+struct ScaledWhole {
+  std::vector<std::array<double, 2>> outline;  // 1
+  double unit;                                 // sqrt(A), m
+  double centroid_y, centroid_height;          // of the coordinates given; above the foot, m
+};
+
+ScaledWhole scale_whole(std::vector<std::array<double, 2>> outline) {
+  check_polygon(outline);
+  const std::array<double, 2> origin = outline[0];
+  double twice = 0.0, moment_y = 0.0, moment_z = 0.0, foot = origin[1];
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const auto& next = outline[(i + 1) % outline.size()];
+    const double ay = outline[i][0] - origin[0], az = outline[i][1] - origin[1];
+    const double by = next[0] - origin[0], bz = next[1] - origin[1];
+    const double part = ay * bz - by * az;
+    twice += part;
+    moment_y += part * (ay + by) / 3.0;
+    moment_z += part * (az + bz) / 3.0;
+    foot = std::min(foot, outline[i][1]);
+  }
+  const double unit = std::sqrt(0.5 * twice);
+  const double y = origin[0] + moment_y / twice, z = origin[1] + moment_z / twice;
+  for (auto& p : outline) p = {(p[0] - y) / unit, (p[1] - z) / unit};
+  return {outline, unit, y, z - foot};
+}
+
+/// @return nothing when the bounds of J are still too far apart
+std::optional<Twist> solve_whole(const ScaledWhole& whole, double size) {
+  const Discrete d = discretise(mesh_whole(whole.outline, size));
+  const VectorXd warping = solve_even(d, d.warping_load);
+  // A side that lies on y = 0 is a free one here.
+  std::vector<bool> border = d.mesh.on_outline;
+  for (std::size_t i = 0; i < border.size(); ++i) border[i] = border[i] || d.mesh.on_axis[i];
+  const VectorXd stress = solve_fixed(d.K, border, d.stress_load);
+  const TorsionBounds J{d.stress_load.dot(stress),
+                        d.inertia_y + d.inertia_z - d.warping_load.dot(warping)};
+  if (!are_close(J)) return std::nullopt;
+  Eigen::Matrix2d rows;
+  rows << d.inertia_z, -d.product, d.product, -d.inertia_y;
+  const Eigen::Vector2d zy =
+      rows.inverse() * Eigen::Vector2d(d.first_y.dot(warping), d.first_z.dot(warping));
+  const double unit2 = whole.unit * whole.unit;
+  return Twist{0.5 * (J.lower + J.upper) * unit2 * unit2, whole.centroid_y + whole.unit * zy[1],
+               whole.centroid_height + whole.unit * zy[0]};
+}
+
+/// Halves the triangles until the bounds of J are close.
+template <typename Solve>
+auto refined(Solve solve) {
+  double size = kCoarsest;
+  for (int i = 0; i <= kRefinements; ++i, size *= 0.5)
+    if (const auto found = solve(size)) return *found;
+  throw std::invalid_argument("the section is too thin or ragged for its Saint-Venant solution");
+}
+
 }  // namespace
 
 SaintVenant saint_venant(const std::vector<std::array<double, 2>>& polygon, double poisson) {
   if (!(poisson > -1.0 && poisson <= 0.5))
     throw std::invalid_argument("Poisson's ratio must be above -1 and at most 0.5");
   const ScaledHalf half = scale(polygon);
-  double size = kCoarsest;
-  for (int i = 0; i <= kRefinements; ++i, size *= 0.5)
-    if (const auto found = solve(half, size, poisson)) return *found;
-  throw std::invalid_argument("the section is too thin or ragged for its Saint-Venant solution");
+  return refined([&](double size) { return solve(half, size, poisson); });
+}
+
+Twist twist(const std::vector<std::array<double, 2>>& polygon) {
+  const ScaledWhole whole = scale_whole(polygon);
+  return refined([&](double size) { return solve_whole(whole, size); });
 }
 
 TorsionBounds torsion_bounds(const std::vector<std::array<double, 2>>& polygon, double size) {
   if (!(size > 0.0 && size <= 1.0))
     throw std::invalid_argument("the triangle size must be above 0 and at most 1");
   const ScaledHalf half = scale(polygon);
-  const Discrete d = discretise(half.outline, size);
+  const Discrete d = discretise(mesh_half(half.outline, size));
   const TorsionBounds J = bounds(d, solve_odd(d, d.warping_load));
   const double unit4 = std::pow(half.unit, 4);
   return {J.lower * unit4, J.upper * unit4};

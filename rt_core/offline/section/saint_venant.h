@@ -1,11 +1,20 @@
 #pragma once
 
 #include <array>
+#include <stdexcept>
 #include <vector>
 
 #include "offline/section/section.h"
 
 namespace railstep {
+
+/// Cowper's factor of a section is not between 0 and 1.
+struct NoShearFactor : std::invalid_argument {
+  NoShearFactor()
+      : std::invalid_argument(
+            "Cowper's shear factor of this section is not between 0 and 1; with a Poisson's ratio "
+            "of 0 it is the energy's factor and always is") {}
+};
 
 /// Lower and upper bound of the torsion constant: Prandtl's stress function can only be too soft,
 /// the warping function only too stiff.
@@ -33,10 +42,26 @@ struct TorsionBounds {
 /// @param polygon  counter-clockwise (y, z) in m, simple, symmetric about y = 0, which it meets
 ///                 twice; first point not repeated; re-entrant corners allowed
 /// @param poisson  nu of the material, -1 < nu <= 0.5
-/// @throws std::invalid_argument with one sentence when polygon or poisson is not as above, or
-///         when Cowper's lateral factor leaves (0, 1], as it can with nu > 0 for sections far from
-///         symmetric about their horizontal axis (with nu = 0 it is the energy's factor)
+/// @throws std::invalid_argument with one sentence when polygon or poisson is not as above;
+///         NoShearFactor when Cowper's lateral factor leaves (0, 1], as it can with nu > 0 for
+///         sections far from symmetric about their horizontal axis (with nu = 0 it is the energy's
+///         factor)
 SaintVenant saint_venant(const std::vector<std::array<double, 2>>& polygon, double poisson);
+
+/// What twists a section that need not be symmetric.
+struct Twist {
+  double torsion;              // J, m4
+  double shear_centre_y;       // of the polygon's own coordinates, m
+  double shear_centre_height;  // above its lowest point, m
+};
+
+/// Torsion constant, as proved as that of saint_venant(), and Trefftz's shear centre of any simple
+/// outline, on the whole section. With the warping w about the centroid, I_yz = int y z dA and
+/// I_y = int z^2 dA, the warping about the centre, w - z_s y + y_s z, has no moment with y nor z:
+///   I_z z_s - I_yz y_s = int w y dA,   I_yz z_s - I_y y_s = int w z dA.
+/// Shear factors it has none: Cowper's are of forces along an axis of symmetry.
+/// @throws std::invalid_argument as saint_venant, but for the symmetry
+Twist twist(const std::vector<std::array<double, 2>>& polygon);
 
 /// The two bounds of J from a mesh whose triangles are at most `size` times sqrt(A) wide, finer at
 /// re-entrant corners; to show convergence and to check saint_venant.

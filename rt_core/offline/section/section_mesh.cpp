@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <stdexcept>
+#include <utility>
 
 #include "offline/section/delaunay.h"
 
@@ -23,20 +24,30 @@ double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0],
 
 Point middle(const Point& a, const Point& b) { return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])}; }
 
-double perimeter(const HalfPolygon& half) {
+double perimeter(const std::vector<Point>& outline) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < half.size(); ++i)
-    sum += distance(half[i], half[(i + 1) % half.size()]);
+  for (std::size_t i = 0; i < outline.size(); ++i)
+    sum += distance(outline[i], outline[(i + 1) % outline.size()]);
   return sum;
 }
 
-/// Corners whose interior angle is over 200 degrees, those on the axis seen in the whole section.
-std::vector<Point> reentrant_corners(const HalfPolygon& half) {
-  const auto sharp = [](const Point& before, const Point& at, const Point& after) {
-    const double along =
-        (at[0] - before[0]) * (after[0] - at[0]) + (at[1] - before[1]) * (after[1] - at[1]);
-    return std::atan2(turn(before, at, after), along) < -kReentrant;
-  };
+/// True where the interior angle is over 200 degrees.
+bool sharp(const Point& before, const Point& at, const Point& after) {
+  const double along =
+      (at[0] - before[0]) * (after[0] - at[0]) + (at[1] - before[1]) * (after[1] - at[1]);
+  return std::atan2(turn(before, at, after), along) < -kReentrant;
+}
+
+std::vector<Point> reentrant_corners(const std::vector<Point>& whole) {
+  const std::size_t n = whole.size();
+  std::vector<Point> found;
+  for (std::size_t i = 0; i < n; ++i)
+    if (sharp(whole[(i + n - 1) % n], whole[i], whole[(i + 1) % n])) found.push_back(whole[i]);
+  return found;
+}
+
+/// Those on the axis are seen in the whole section.
+std::vector<Point> reentrant_corners_of_half(const HalfPolygon& half) {
   const std::size_t n = half.size();
   std::vector<Point> found;
   for (std::size_t i = 1; i + 1 < n; ++i)
@@ -49,14 +60,14 @@ std::vector<Point> reentrant_corners(const HalfPolygon& half) {
 
 class Refiner {
  public:
-  Refiner(const HalfPolygon& half, double size)
-      : half_(half),
-        corners_(reentrant_corners(half)),
+  Refiner(const std::vector<Point>& outline, std::vector<Point> corners, double size)
+      : outline_(outline),
+        corners_(std::move(corners)),
         size_(size),
-        shortest_(kShortest * perimeter(half)),
-        mesh_(half[0], perimeter(half)) {
-    for (const Point& p : half) mesh_.insert(p);
-    const int n = static_cast<int>(half.size());
+        shortest_(kShortest * perimeter(outline)),
+        mesh_(outline[0], perimeter(outline)) {
+    for (const Point& p : outline) mesh_.insert(p);
+    const int n = static_cast<int>(outline.size());
     for (int i = 0; i < n; ++i) segments_.push_back({3 + i, 3 + (i + 1) % n});
     halve_encroached();
     for (std::size_t t = 0; t < mesh_.triangles().size(); ++t) queue_.push_back(t);
@@ -85,7 +96,7 @@ class Refiner {
 
   bool belongs(const Delaunay::Triangle& t) const {
     if (!t.alive || *std::min_element(t.corner.begin(), t.corner.end()) < 3) return false;
-    return is_inside(half_, centroid(t));
+    return is_inside(outline_, centroid(t));
   }
 
   Point centroid(const Delaunay::Triangle& t) const {
@@ -140,7 +151,7 @@ class Refiner {
       halve_encroached();
       queue_.push_back(t);  // looked at again if it is still there
     }
-    if (rejected || !is_inside(half_, centre)) return;
+    if (rejected || !is_inside(outline_, centre)) return;
     mesh_.insert(centre);
     check_count();
   }
@@ -180,8 +191,7 @@ class Refiner {
       throw std::invalid_argument("the section's outline is too fine to be triangulated");
   }
 
-  HalfPolygon half_;
-  std::vector<Point> corners_;
+  std::vector<Point> outline_, corners_;
   double size_, shortest_;
   Delaunay mesh_;
   std::vector<std::array<int, 2>> segments_;  // pieces of the outline and of the axis
@@ -193,7 +203,13 @@ class Refiner {
 }  // namespace
 
 SectionMesh mesh_half(const HalfPolygon& half, double size) {
-  Refiner refiner(half, size);
+  Refiner refiner(half, reentrant_corners_of_half(half), size);
+  refiner.run();
+  return refiner.result();
+}
+
+SectionMesh mesh_whole(const std::vector<std::array<double, 2>>& polygon, double size) {
+  Refiner refiner(polygon, reentrant_corners(polygon), size);
   refiner.run();
   return refiner.result();
 }

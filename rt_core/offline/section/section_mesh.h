@@ -7,9 +7,9 @@
 
 namespace railstep {
 
-/// Conforming triangles of half a section.
+/// Conforming triangles of a section, or of its right half.
 struct SectionMesh {
-  std::vector<std::array<double, 2>> points;  // (y, z), m; on the axis y is exactly 0
+  std::vector<std::array<double, 2>> points;  // (y, z), m; of a half y is exactly 0 on the axis
   std::vector<std::array<int, 3>> triangles;  // corners, counter-clockwise
 };
 
@@ -22,5 +22,8 @@ struct SectionMesh {
 ///              growing with 0.3 times the distance, because the gradients there are singular
 /// @throws std::invalid_argument when the outline is too fine for 200000 points of that size
 SectionMesh mesh_half(const HalfPolygon& half, double size);
+
+/// The same of a whole outline that need not be symmetric: simple, counter-clockwise.
+SectionMesh mesh_whole(const std::vector<std::array<double, 2>>& polygon, double size);
 
 }  // namespace railstep
