@@ -78,6 +78,8 @@ TEST_CASE("the command answers at the frequencies that are asked", "[receptance]
   CHECK(stepped == std::vector<double>{100., 104., 108., 111.});
   const nlohmann::json one = answer(kS1 + " --at mid_bay --from 70 --to-hz 70 --points 5");
   CHECK(one.at("frequency_hz").size() == 1);
+  for (const char* alone : {"--from 70", "--from 70 --points 1", "--from 70 --to-hz 70 --points 1"})
+    CHECK(answer(kS1 + " --at mid_bay " + alone) == one);
 }
 
 TEST_CASE("the command reads there what it reads back, sideways too", "[receptance]") {
@@ -221,7 +223,8 @@ TEST_CASE("what has no receptance is refused in one sentence", "[receptance]") {
   check_refused(kS1 + " --at mid_bay --from nan --to-hz 400", "--from");
   check_refused(kS1 + " --at mid_bay --direction y" + kBand, "track.unknowns = \"full\"");
   check_refused(kS1 + " --at mid_bay --direction x" + kBand, "--direction");
-  check_refused(kS1 + " --at mid_bay --points 1" + kBand, "--points");
+  check_refused(kS1 + " --at mid_bay --points 0" + kBand, "--points");
+  check_refused(kS1 + " --at mid_bay --points 1" + kBand, "accepted is --from alone");
   check_refused(kS1 + " --at mid_bay --points 9 --step-hz 3" + kBand, "--step-hz");
   check_refused(kS1 + " --at mid_bay --step-hz 0.001" + kBand, "accepted are 100000");
   check_refused(kS1 + " --at mid_bay --beside nastran" + kBand, "--beside");

@@ -19,6 +19,7 @@ struct ReceptanceOptions : ReceptanceRequest {
 };
 
 void run(ReceptanceOptions& o) {
+  if (o.to_hz == 0.) o.to_hz = o.from_hz;
   o.condensed = o.model == "condensed";
   if (o.step > 0.) o.step_hz = o.step;
   if (!o.report.empty()) need_gnuplot();
@@ -41,16 +42,17 @@ void add_options(CLI::App& sub, ReceptanceOptions& o) {
   sub.add_option("--to-direction", o.to_direction, "of the displacement (default: the force's)")
       ->check(directions);
   sub.add_option("--from", o.from_hz, "first frequency, Hz")->required()->check(hz);
-  sub.add_option("--to-hz", o.to_hz, "last frequency, Hz")->required()->check(hz);
+  sub.add_option("--to-hz", o.to_hz, "last frequency, Hz (default: the first, alone)")->check(hz);
   CLI::Option* points =
       sub.add_option("--points", o.points, "frequencies, logarithmic (default 200)")
-          ->check(within(2, 100'000));
+          ->check(within(1, 100'000));
   sub.add_option("--step-hz", o.step, "equal steps instead, Hz")->check(hz)->excludes(points);
   sub.add_option("--model", o.model, "full (default) or condensed")
       ->check(CLI::IsMember({"full", "condensed"}));
   sub.add_option("--beside", o.beside,
                  "others beside it, with commas: full, condensed, euler, endless")
       ->delimiter(',')
+      ->type_name("MODEL,MODEL")
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"full", "condensed", "euler", "endless"}));
   sub.add_flag("--decay-rate", o.decay, "dB/m in one-third octaves along the rail (EN 15461)");
@@ -73,6 +75,7 @@ void add_options(CLI::App& sub, ReceptanceOptions& o) {
 Command add_receptance(CLI::App& app) {
   auto o = std::make_shared<ReceptanceOptions>();
   o->direction = "z";
+  o->to_hz = 0.;  // none was given
   o->points = 200;
   CLI::App* sub =
       app.add_subcommand("receptance", "Displacement per force of a track over frequency");

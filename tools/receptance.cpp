@@ -30,6 +30,11 @@ std::vector<double> frequencies(const ReceptanceRequest& r) {
   if (!(r.from_hz <= r.to_hz))
     throw InputError(fmt::format("--from {:g} is above --to-hz {:g}", r.from_hz, r.to_hz));
   if (r.from_hz == r.to_hz) return {r.from_hz};
+  if (r.points == 1)
+    throw InputError(
+        fmt::format("--points 1 is one frequency, and --from {:g} to --to-hz {:g} has "
+                    "two ends; accepted is --from alone",
+                    r.from_hz, r.to_hz));
   const double span = r.to_hz - r.from_hz;
   if (r.step_hz && !(span / *r.step_hz < kMostFrequencies))
     throw InputError(fmt::format("--step-hz {:g} makes {:.3g} frequencies; accepted are {}",
