@@ -28,6 +28,15 @@ Ran pareto(const std::string& words) { return railstep_program("pareto " + words
 
 }  // namespace
 
+TEST_CASE("the help says which options want commas", "[pareto]") {
+  for (const char* command : {"pareto", "tune"}) {
+    const std::string help = railstep_program(std::string(command) + " --help").out;
+    for (const char* option : {"--models MODEL,MODEL", "--meshes INT,INT", "--steps FLOAT,FLOAT",
+                               "--schemes SCHEME,SCHEME"})
+      CHECK_THAT(help, Contains(option));
+  }
+}
+
 TEST_CASE("pareto tells error and cost of every setting", "[pareto]") {
   const auto folder = fresh_folder("pareto");
   const std::string csv = (folder / "t.csv").string(), page = (folder / "t.html").string();

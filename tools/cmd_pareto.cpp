@@ -94,21 +94,26 @@ Command add_pareto(CLI::App& app) {
                   "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);
-  sub->add_option("--models", asked.choices.models, "list, KIND[:AMOUNT][:bare][:UNKNOWNS] each")
+  sub->add_option("--models", asked.choices.models,
+                  "with commas; a model is KIND[:AMOUNT][:bare][:UNKNOWNS]")
       ->delimiter(',')
+      ->type_name("MODEL,MODEL")
       ->allow_extra_args(false);
-  sub->add_option("--meshes", asked.choices.meshes, "list, elements per bay")
+  sub->add_option("--meshes", asked.choices.meshes, "elements per bay, with commas")
       ->delimiter(',')
+      ->type_name("INT,INT")
       ->allow_extra_args(false)
       ->check(within(1, 1000));
   sub->add_option(
          "--schemes", asked.choices.schemes,
-         "list: generalised-alpha:RHO_INF, newmark, hht:ALPHA, backward-euler, tr-bdf2; of "
+         "with commas: generalised-alpha:RHO_INF, newmark, hht:ALPHA, backward-euler, tr-bdf2; of "
          "condensed models held:RHO_INF, discrete-gradient")
       ->delimiter(',')
+      ->type_name("SCHEME,SCHEME")
       ->allow_extra_args(false);
-  sub->add_option("--steps", asked.choices.steps, "list, s; each goes into a frame")
+  sub->add_option("--steps", asked.choices.steps, "s, with commas; each goes into a frame")
       ->delimiter(',')
+      ->type_name("FLOAT,FLOAT")
       ->allow_extra_args(false);
   sub->add_option(
          "--output", asked.judged.outputs,

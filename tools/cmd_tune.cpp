@@ -128,18 +128,22 @@ Command add_tune(CLI::App& app) {
                   "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);
-  sub->add_option("--models", asked.choices.models, "list, as of pareto")
+  sub->add_option("--models", asked.choices.models, "with commas, as of pareto")
       ->delimiter(',')
+      ->type_name("MODEL,MODEL")
       ->allow_extra_args(false);
-  sub->add_option("--meshes", asked.choices.meshes, "list, elements per bay")
+  sub->add_option("--meshes", asked.choices.meshes, "elements per bay, with commas")
       ->delimiter(',')
+      ->type_name("INT,INT")
       ->allow_extra_args(false)
       ->check(within(1, 1000));
-  sub->add_option("--schemes", asked.choices.schemes, "list, as of pareto")
+  sub->add_option("--schemes", asked.choices.schemes, "with commas, as of pareto")
       ->delimiter(',')
+      ->type_name("SCHEME,SCHEME")
       ->allow_extra_args(false);
-  sub->add_option("--steps", asked.choices.steps, "list, s; each goes into a frame")
+  sub->add_option("--steps", asked.choices.steps, "s, with commas; each goes into a frame")
       ->delimiter(',')
+      ->type_name("FLOAT,FLOAT")
       ->allow_extra_args(false);
   sub->add_option("--output", asked.judged.outputs,
                   "what counts as the error, as of pareto; repeatable")
