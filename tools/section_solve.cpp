@@ -130,9 +130,13 @@ bool solve_slope(const FitTargets& targets, std::span<const Point> polygon, doub
                            nullptr, &head);
   problem.SetParameterLowerBound(&head, 0, low);
   problem.SetParameterUpperBound(&head, 0, high);
-  ceres::Solver::Summary summary;
-  ceres::Solve(to_round_off(), &problem, &summary);
-  iterations += static_cast<int>(summary.iterations.size());
+  // Ceres differentiates between neighbours, and says so on stderr where there is none.
+  const double step = 2e-6 * head, below = head - step, above = head + step;
+  if (residual(&below, &value) && residual(&above, &value) && residual(&head, &value)) {
+    ceres::Solver::Summary summary;
+    ceres::Solve(to_round_off(), &problem, &summary);
+    iterations += static_cast<int>(summary.iterations.size());
+  }
   if (!residual(&head, &value)) return false;
   if (std::abs(value) > 1e-10) {
     // The slope jumps over zero: a rectangle's side on a straight side of the outline. Halve on
