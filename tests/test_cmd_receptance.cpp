@@ -224,6 +224,7 @@ TEST_CASE("what has no receptance is refused in one sentence", "[receptance]") {
   check_refused(kS1 + " --at mid_bay --direction y" + kBand, "track.unknowns = \"full\"");
   check_refused(kS1 + " --at mid_bay --direction x" + kBand, "--direction");
   check_refused(kS1 + " --at mid_bay --points 0" + kBand, "--points");
+  check_refused(kS1 + " --at mid_bay --from 70 --report one.html", "--to-hz above --from");
   check_refused(kS1 + " --at mid_bay --points 1" + kBand, "accepted is --from alone");
   check_refused(kS1 + " --at mid_bay --points 9 --step-hz 3" + kBand, "--step-hz");
   check_refused(kS1 + " --at mid_bay --step-hz 0.001" + kBand, "accepted are 100000");
