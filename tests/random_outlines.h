@@ -20,6 +20,7 @@ class RandomOutlines {
 
   static Outline of_points(const std::vector<Point>& points) {
     std::vector<OutlineRow> rows;
+    rows.reserve(points.size());
     for (const Point& p : points) rows.push_back({p, 0.0, static_cast<int>(rows.size()) + 1});
     return point_outline(rows);
   }

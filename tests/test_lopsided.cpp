@@ -40,7 +40,7 @@ std::vector<Point> rectangle(double width, double height) {
 
 /// A list of points as `fit` reads it, mm.
 fs::path written(const fs::path& folder, const std::vector<Point>& points) {
-  const fs::path file = folder / "outline.csv";
+  fs::path file = folder / "outline.csv";
   std::ofstream out(file);
   out.precision(12);
   for (const Point& p : points) out << 1e3 * p[0] << ' ' << 1e3 * p[1] << '\n';
