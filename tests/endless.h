@@ -8,7 +8,8 @@
 
 namespace railstep {
 
-/// A ballasted track with soft pads, vertical; its ends are free unless it is made a ring.
+/// A ballasted track with soft pads, vertical; its ends are free unless it is made a ring or a
+/// window.
 inline Track endless_track(int bays, int elements_per_bay, int rails = 1) {
   Track t;
   t.section = section_f();

@@ -125,7 +125,7 @@ void check_against_reference(const std::vector<double>& behind) {
     CHECK(sleeper < 1e-3);
     CHECK(pad < 1e-3);
   };
-  const Track ring = ring_of(endless_track(32, 4)), window = endless_track(32, 6);
+  const Track ring = ring_of(endless_track(32, 4)), window = window_of(endless_track(32, 6));
   check("ring", ring, ring_options(ring, 3));
   PackOptions fine = window_options(window, .0625e-3);
   fine.steps_per_frame = 16;

@@ -45,7 +45,7 @@ TEST_CASE("a bogie on a ring or a window is heard as on a long track of a fine m
     CHECK(force < 1e-3);
     CHECK(rail < 1e-3);
   };
-  const Track ring = ring_of(endless_track(32, 4)), window = endless_track(32, 6);
+  const Track ring = ring_of(endless_track(32, 4)), window = window_of(endless_track(32, 6));
   check("ring", ring, ring_options(ring, 3, dt));
   check("window", window, window_options(window, dt));
 }
@@ -75,7 +75,7 @@ TEST_CASE("a bogie starts on the move, and 10 000 bays later is where it was", "
 }
 
 TEST_CASE("a vehicle on a track without end goes on from its block and from a saved state") {
-  const Track ring = ring_of(endless_track(24, 2)), window = endless_track(40, 2);
+  const Track ring = ring_of(endless_track(24, 2)), window = window_of(endless_track(40, 2));
   for (const bool modal : {true, false}) {
     const Track& track = modal ? ring : window;
     ModelRun run = moving_run(track, bogie_traffic(0.),

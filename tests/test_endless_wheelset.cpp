@@ -81,7 +81,7 @@ TEST_CASE("a wheelset on a ring or a window is heard as on a long track of a fin
     CHECK(force < 1e-3);
     CHECK(rail < 1e-3);
   };
-  const Track ring = ring_of(endless_track(32, 4, 2)), window = endless_track(32, 6, 2);
+  const Track ring = ring_of(endless_track(32, 4, 2)), window = window_of(endless_track(32, 6, 2));
   check("ring", moving_run(ring, wheelset_traffic(0.), ring_options(ring, 3, kDt)));
   check("window", moving_run(window, wheelset_traffic(0.), window_options(window, kDt)));
 }
@@ -154,7 +154,7 @@ TEST_CASE("nothing is read of the elements that traffic on a ring never comes to
 TEST_CASE("a window passes its track on without a jump") {
   // what lies beyond 7 decay lengths on either side, e^-7 of the peak a length: the window cuts
   // e^-21 off, and the long track's own start has died away to e^-20; a jump of 1e-6 shows
-  const Track track = endless_track(200, 2), window = endless_track(80, 2);
+  const Track track = endless_track(200, 2), window = window_of(endless_track(80, 2));
   ModelRun far(track, {.loads = {moving_load(30.)}}, {.scheme = generalised_alpha(1e-3, .6)});
   ModelRun near(window, {.loads = {moving_load(0.)}}, window_options(window));
   for (ModelRun* run : {&far, &near}) {

@@ -348,7 +348,7 @@ Built::Built(const Scene& scene) try {
   fix_cache_sizes();
   refuse_unstepped(scene);
   track = track_of(scene);
-  if (!scene.condense.kind) track.ring = false;  // a window, which has ends
+  if (track.ring && !scene.condense.kind) track = window_of(std::move(track));
   TracedTraffic traced = traffic_of(scene, track);
   about = railstep::about(scene);
   columns = {"time_s"};

@@ -150,6 +150,10 @@ struct EndlessTrack {
   int behind;  // bays of the track before x = 0
 };
 
+/// A track without end as a window, for full order. Its front end is clamped: the bay that comes in
+/// there is at rest and meets a node at rest, so that it comes in without strain (docs/endless.md).
+Track window_of(Track track);
+
 /// Writes limits of inputs into a model. Throws std::invalid_argument on too many, or a limit that
 /// is no finite number above 0.
 void take_inputs(const std::vector<double>& limits, Model& model);

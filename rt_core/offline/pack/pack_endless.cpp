@@ -82,6 +82,12 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
           std::min(border(last) + 2 + spare, track.bays) * track.elements_per_bay};
 }
 
+Track window_of(Track track) {
+  track.ring = false;
+  track.ends = {RailEnd::free, RailEnd::clamped};
+  return track;
+}
+
 BayShift PackedModel::ring_shift(const RingModes& ring, int padded) {
   const auto n = static_cast<std::size_t>(padded);
   std::vector<std::int32_t> from(n, 0);
