@@ -175,6 +175,50 @@ TEST_CASE("flanges that are of no wheelset, or have no law, are refused", "[arte
   CHECK(status([](Model& m) { m.flange[0].contact.hertz = 1e10; }) == LoadStatus::ok);
 }
 
+TEST_CASE("names that no scene could give are refused though the sum is right", "[artefact]") {
+  const std::unique_ptr<PackedModel> packed = small_model(false, false);
+  const auto status = [&](const std::string& text) {
+    return status_of(to_block(packed->model(), text));
+  };
+  for (const char* good : {"", "time_s", "a.b_m\nC-9", "a\nb\n\nb\na"})
+    CHECK(status(good) == LoadStatus::ok);
+  for (const char* bad : {"a,b", "a b", "a\r\nb", "a\x1b[31m", "a\"b", "a\xc3\xa4", "a\nb\na",
+                          "\na", "a\n\nb\nb", "a\n\nb;c", "a\n\n\nb", "a\n"}) {
+    CAPTURE(bad);
+    CHECK(status(bad) == LoadStatus::bad_content);
+  }
+  CHECK(status(std::string("a\0b", 3)) == LoadStatus::bad_content);
+  std::string many = "first";  // more than one share of those that are compared at once
+  for (int i = 0; i < 5000; ++i) many += "\nsensor_" + std::to_string(i) + ".z_m";
+  CHECK(status(many) == LoadStatus::ok);
+  CHECK(status(many + "\nsensor_1234.z_m") == LoadStatus::bad_content);
+}
+
+TEST_CASE("a run that is not of whole frames is refused though the sum is right", "[artefact]") {
+  const std::unique_ptr<PackedModel> packed = small_model(true, true);
+  for (const std::int64_t steps : {0, 1, 39, 41, -40}) {
+    Model model = packed->model();  // of 2 steps a frame
+    model.steps = steps;
+    CHECK(status_of(to_block(model, kText)) == LoadStatus::bad_content);
+  }
+}
+
+TEST_CASE("a model that states less than its steps take is refused though the sum is right",
+          "[artefact]") {
+  for (const bool modal : {false, true})
+    for (const bool wheels : {false, true}) {
+      const std::unique_ptr<PackedModel> packed = small_model(modal, wheels);
+      Model model = packed->model();
+      CHECK(status_of(to_block(model, kText)) == LoadStatus::ok);
+      model.steps_per_frame = 1 << 22;
+      model.steps = model.steps_per_frame;
+      CHECK(status_of(to_block(model, kText)) == LoadStatus::bad_content);
+      model = packed->model();
+      model.cost.flops = model.steps_per_frame * 22 * model.bodies - 1;
+      CHECK(status_of(to_block(model, kText)) == LoadStatus::bad_content);
+    }
+}
+
 TEST_CASE("a model that does not say what a frame takes is refused", "[artefact]") {
   const std::unique_ptr<PackedModel> packed = small_model(false, true);
   for (std::int64_t Cost::*const of : {&Cost::flops, &Cost::bytes, &Cost::instructions}) {

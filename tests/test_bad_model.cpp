@@ -196,6 +196,34 @@ TEST_CASE("NaN in a matrix of a model is refused, whatever the sums", "[bad_inpu
                     {"not finite or out of its range"});
 }
 
+TEST_CASE("names, frames and costs of a model that no scene could have are refused",
+          "[bad_input][cli]") {
+  const std::string& good = good_model();
+  const BlockHeader header = header_of(good);
+  REQUIRE(header.steps_per_frame == 40);
+  const std::size_t dot = good.find("load_left.") + 9;
+  for (const char c : {',', '\r', '\x1b', '"'})
+    program_refuses(with_its_sums(with(good, dot, c)), {"out of its range"});
+  // Places of a number among the words.
+  const auto places = [&](std::int64_t value) {
+    std::vector<std::size_t> all;
+    for (std::size_t at = header.section[kWords].at;
+         at < header.section[kWords].at + header.section[kWords].bytes; at += 8)
+      if (std::memcmp(good.data() + at, &value, sizeof value) == 0) all.push_back(at);
+    return all;
+  };
+  REQUIRE(places(12'000).size() == 1);  // steps of the scene
+  const std::size_t of_steps = places(12'000).front();
+  for (const std::int64_t steps : {0, 39, 41})
+    program_refuses(with_its_sums(with(good, of_steps, steps)), {"out of its range"});
+  constexpr std::int64_t kMany = 1 << 22;
+  std::string long_frames = with(good, of_steps, kMany);
+  long_frames = with(long_frames, offsetof(BlockHeader, steps_per_frame), kMany);
+  CHECK_FALSE(places(40).empty());
+  for (const std::size_t at : places(40))  // one of them is of the steps a frame
+    program_refuses(with_its_sums(with(long_frames, at, kMany)), {"out of its range"});
+}
+
 TEST_CASE("memory that is misaligned or too small makes no model and no run", "[bad_input]") {
   const std::string& bytes = good_model();
   std::vector<double> block(bytes.size() / 8 + 2), memory(railstep_model_bytes() / 8 + 2);

@@ -218,7 +218,8 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
     throw std::invalid_argument(
         "contact forces that are means over the step are held over it, as with condensed tracks");
   model_.steps_per_frame = options.steps_per_frame;
-  model_.steps = options.steps;
+  // A model always has a run: of one frame where none is told.
+  model_.steps = options.steps > 0 ? options.steps : options.steps_per_frame;
   take_inputs(traffic.input_limits, model_);
   model_.elements = track.elements();
   model_.element_length = track.element_length();

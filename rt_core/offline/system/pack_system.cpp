@@ -118,7 +118,8 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
     : memory_(std::make_unique<Memory>()) {
   model_.scheme = options.scheme;
   model_.steps_per_frame = options.steps_per_frame;
-  model_.steps = options.steps;
+  // A model always has a run: of one frame where none is told.
+  model_.steps = options.steps > 0 ? options.steps : options.steps_per_frame;
   std::optional<Rest> rest;
   if (options.at_rest)
     rest = find_rest(

@@ -9,6 +9,7 @@
 #include "online/model/describe.h"
 #include "online/model/load_system.h"
 #include "online/model/load_track.h"
+#include "online/model/names.h"
 
 namespace railstep {
 
@@ -168,22 +169,57 @@ bool scheme_holds(const Model& m) noexcept {
          (m.condensed == 0 && m.system.unknowns == 0 && m.external_wheels == 0);
 }
 
+/// Flops that a step has in any model of these sizes at its caps, most of them of a track alone
+/// (offline/cost counts them all): what a model states is no less, or it bounds nothing.
+std::int64_t least_step_flops(const Model& m) noexcept {
+  std::int64_t sum = 21 * (std::int64_t{m.unknowns} - m.bodies);
+  for (std::int32_t l = 0; l < m.lines; ++l) {
+    const LineModel& line = m.line[l];
+    const std::int64_t n = line.size, left = line.step.left, panels = line.step.panels;
+    // Of a panel's columns to the left those before the first unknown are no work.
+    const std::int64_t first = left / kLanes < panels ? left / kLanes : panels;
+    const std::int64_t columns = kLanes * (first * (first - 1) / 2) + (panels - first) * left;
+    sum += m.condensed != 0 ? 22 * n : 22 * n + 4 * kLanes * columns + 160 * panels;
+  }
+  std::int64_t elements = 0;
+  for (std::int32_t b = 0; b < m.system.beams; ++b)
+    elements +=
+        (m.system.beam[b].planar != 0 ? 3'000 : 12'000) * std::int64_t{m.system.beam[b].elements};
+  return sum + (std::int64_t{m.system.cap} + 1) * (27 * std::int64_t{m.system.unknowns} + elements);
+}
+
+/// A frame takes at least the work of its steps.
+bool cost_holds(const Model& m) noexcept {
+  return m.cost.flops / m.steps_per_frame >= least_step_flops(m) && m.cost.flops >= 1 &&
+         m.cost.bytes >= 1 && m.cost.instructions >= m.cost.flops;
+}
+
+/// A run is of whole frames.
+bool frames_hold(const Model& m) noexcept {
+  return m.steps_per_frame >= 1 && m.steps >= 1 && m.steps % m.steps_per_frame == 0;
+}
+
 /// What a step takes for granted beyond the counts.
 bool holds(const Model& m) noexcept {
-  if (!is_above_zero(m.scheme.dt) || m.steps_per_frame < 1 || m.steps < 0 || !inputs_hold(m))
-    return false;
+  if (!is_above_zero(m.scheme.dt) || !frames_hold(m) || !inputs_hold(m)) return false;
   if (!scheme_holds(m)) return false;
-  if (m.cost.flops < 1 || m.cost.bytes < 1 || m.cost.instructions < 1) return false;
   if (m.lines < 1 && m.system.unknowns < 1) return false;
   if (m.lines > 0 && !track_holds(m)) return false;
-  return m.system.unknowns == 0 || system_holds(m);
+  return (m.system.unknowns == 0 || system_holds(m)) && cost_holds(m);
 }
 
 bool start_holds(const Model& m) noexcept {
   return m.start != nullptr && (m.system.unknowns == 0 || system_start_holds(m));
 }
 
+bool names_hold(const unsigned char* at, const BlockSection& text) noexcept {
+  Names columns, inputs;
+  return split_names(reinterpret_cast<const char*>(at + text.at),
+                     static_cast<std::size_t>(text.bytes), columns, inputs);
+}
+
 bool read_payload(const unsigned char* at, const BlockHeader& h, Model& model) noexcept {
+  if (!names_hold(at, h.section[kColumns])) return false;
   Reader reader(at, h);
   describe(reader, model);
   if (!reader.good() || !holds(model)) return false;

@@ -1,5 +1,7 @@
 #include "online/model/names.h"
 
+#include <initializer_list>
+
 namespace railstep {
 
 namespace {
@@ -24,6 +26,46 @@ void for_names(const Names& names, Visit visit) noexcept {
   }
 }
 
+bool is_plain(Name name) noexcept {
+  for (std::size_t i = 0; i < name.bytes; ++i) {
+    const char c = name.text[i];
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+          c == '-' || c == '.'))
+      return false;
+  }
+  return name.bytes > 0;
+}
+
+/// FNV-1a, its last step mixed, as the lowest bits alone find a place.
+std::uint64_t hash_of(Name name) noexcept {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (std::size_t i = 0; i < name.bytes; ++i)
+    hash = (hash ^ static_cast<unsigned char>(name.text[i])) * 0x100000001b3ULL;
+  return (hash ^ hash >> 32) | 1u;  // never 0, which is an empty place
+}
+
+/// Whether no two names are equal, by their hashes. Without memory for all of them: share after
+/// share of the names, each in a table that it fills by half.
+bool are_apart(const Names& names) noexcept {
+  constexpr std::uint64_t kPlaces = 1024, kShare = kPlaces / 2;
+  const auto shares = static_cast<std::uint64_t>(names.count) / (kShare / 2) + 1;
+  bool apart = true;
+  for (std::uint64_t share = 0; share < shares && apart; ++share) {
+    std::uint64_t place[kPlaces] = {}, held = 0;
+    for_names(names, [&](std::int32_t, Name name) noexcept {
+      const std::uint64_t hash = hash_of(name);
+      if ((hash >> 32) % shares != share) return false;
+      std::uint64_t at = hash / 2 % kPlaces;
+      while (place[at] != 0 && place[at] != hash) at = (at + 1) % kPlaces;
+      // A share of twice what falls to it is no work of chance.
+      apart = place[at] != hash && ++held <= kShare;
+      place[at] = hash;
+      return !apart;
+    });
+  }
+  return apart;
+}
+
 Names names_in(const char* text, std::size_t bytes) noexcept {
   std::int32_t count = bytes > 0 ? 1 : 0;
   for (std::size_t i = 0; i < bytes; ++i) count += text[i] == '\n' ? 1 : 0;
@@ -38,13 +80,16 @@ bool split_names(const char* text, std::size_t bytes, Names& columns, Names& inp
   const bool both = end + 1 < bytes;
   columns = names_in(text, both ? end : bytes);
   inputs = both ? names_in(text + end + 2, bytes - end - 2) : Names{text, 0, 0};
-  bool named = bytes < (std::size_t{1} << 30);
+  if (bytes >= (std::size_t{1} << 30)) return false;
+  bool named = true;
   const auto look = [&](std::int32_t, Name name) noexcept {
-    named = named && name.bytes > 0;
-    return false;
+    named = named && is_plain(name);
+    return !named;
   };
-  for_names(columns, look);
-  for_names(inputs, look);
+  for (const Names* const names : {&columns, &inputs}) {
+    for_names(*names, look);
+    if (named && names->count <= kMostCompared) named = are_apart(*names);
+  }
   return named;
 }
 

@@ -15,8 +15,12 @@ struct Name {
   std::size_t bytes;
 };
 
+/// Names of which it is looked at whether two are equal; of more it is not.
+inline constexpr std::int32_t kMostCompared = 1 << 18;
+
 /// A block's text into the columns of a trace and, behind an empty line, the inputs. Views.
-/// @returns whether it is such a text
+/// @returns whether it is such a text: letters, digits, '_', '-' and '.' alone, which mean nothing
+/// to a table or a terminal, and no two columns and no two inputs of one name; or nothing at all
 bool split_names(const char* text, std::size_t bytes, Names& columns, Names& inputs) noexcept;
 
 /// One of them; of no bytes where there is none.
