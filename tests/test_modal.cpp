@@ -330,8 +330,7 @@ TEST_CASE("near critical damping the answer is right or it is refused", "[modal]
 TEST_CASE("what has no modes to keep is refused in a sentence", "[modal]") {
   Track free = peers_pair(1);
   free.support.stiffness[2] = 0.;
-  CHECK_THROWS_WITH(basis_of(assemble(free)[0], 8),
-                    Contains("free rigid mode") && Contains("nothing holds the"));
+  CHECK_THROWS_WITH(basis_of(assemble(free)[0], 8), Contains("free rigid mode"));
   Track long_track = peers_pair(1);
   long_track.bays = 1000;  // 2001 nodes of 2 unknowns
   CHECK_THROWS_WITH(basis_of(assemble(long_track)[0], 8),

@@ -8,13 +8,12 @@
 #include <stdexcept>
 #include <vector>
 
-#include "offline/condense/free_mode.h"
-
 namespace railstep {
 
 namespace {
 
 constexpr double kIndependent = 1e-10;  // of the largest eigenvalue of a Gram matrix
+constexpr double kLeastHz = 1e-3;       // below it a mode is rigid
 
 /// Orthonormal over the mass, of shapes of norm 1 or 0 there.
 Eigen::MatrixXd independent(const Line& line, const Eigen::MatrixXd& shapes) {
@@ -58,6 +57,13 @@ Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs) {
   return basis;
 }
 
+void refuse_free_mode(double lowest_hz) {
+  if (!(lowest_hz >= kLeastHz))
+    throw std::invalid_argument(
+        "a condensed track is held in every direction in which it is moved: this one has a free "
+        "rigid mode");
+}
+
 Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes) {
   Eigen::VectorXd scale = norms(line, shapes);
   for (double& s : scale) s = s > 0. ? 1. / s : 0.;
@@ -67,7 +73,7 @@ Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes) {
     throw std::invalid_argument("a condensed line without dampers keeps one mode or more");
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
       kept.transpose() * (line.stiffness * kept), kept.transpose() * (line.mass * kept));
-  refuse_free_mode(line, std::sqrt(std::max(0., solver.eigenvalues()[0])) / (2. * M_PI));
+  refuse_free_mode(std::sqrt(std::max(0., solver.eigenvalues()[0])) / (2. * M_PI));
   return {solver.eigenvalues().cwiseSqrt(), kept * solver.eigenvectors()};
 }
 

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/condense/free_mode.h"
 #include "offline/track/massless.h"
 
 namespace railstep {
@@ -42,7 +41,7 @@ class Held {
         stiffness_(parts.pick_following.transpose() * line.stiffness * parts.pick_following),
         factor_(stiffness_) {
     if (factor_.info() != Eigen::Success || !(factor_.vectorD().array() > 0.).all())
-      refuse_free_mode(line, 0.);
+      refuse_free_mode(0.);
   }
   const Sparse& stiffness() const { return stiffness_; }
   /// Displacements under forces on the unknowns that follow; [unknowns][any].
@@ -94,10 +93,10 @@ Eigen::MatrixXd block(const Sparse& A, const std::vector<int>& of) {
 
 /// Lowest modes of a part that is held around it, by 1/omega^2, which a massless unknown leaves
 /// finite.
-Eigen::MatrixXd lowest(const Line& line, const Eigen::MatrixXd& K, const Eigen::MatrixXd& M,
-                       int modes, double highest_hz) {
+Eigen::MatrixXd lowest(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, int modes,
+                       double highest_hz) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(M, K);
-  if (solver.info() != Eigen::Success) refuse_free_mode(line, 0.);
+  if (solver.info() != Eigen::Success) refuse_free_mode(0.);
   const double least = std::isfinite(highest_hz) ? std::pow(2. * M_PI * highest_hz, -2) : 1e-30;
   const auto in_band = (solver.eigenvalues().array() > least).count();
   const Eigen::Index count = std::min<Eigen::Index>(in_band, modes);
@@ -161,7 +160,7 @@ Eigen::MatrixXd craig_bampton_shapes(const Line& line, const std::vector<int>& i
           "has " +
           std::to_string(part.size()) + " unknowns");
     const Eigen::MatrixXd shapes =
-        lowest(line, block(held.stiffness(), part), block(mass, part), modes, highest_hz);
+        lowest(block(held.stiffness(), part), block(mass, part), modes, highest_hz);
     for (const auto& shape : shapes.colwise()) {
       Eigen::VectorXd& all = found.emplace_back(Eigen::VectorXd::Zero(line.unknowns()));
       for (std::size_t i = 0; i < part.size(); ++i)

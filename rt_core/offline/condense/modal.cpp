@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "offline/condense/damped_shapes.h"
-#include "offline/condense/free_mode.h"
 #include "offline/track/statics.h"
 
 namespace railstep {
@@ -109,7 +108,7 @@ Basis modal_basis(const Line& line, const ModalLimit& limit,
   int count = std::min(limit.most, line.unknowns());
   if (std::isfinite(limit.highest_hz)) count = std::min(count, modes_below(line, limit.highest_hz));
   const Modes lowest = lowest_modes(line, std::max(count, 1));
-  refuse_free_mode(line, lowest.frequency[0]);
+  refuse_free_mode(lowest.frequency[0]);
   // Unknowns without mass have no modes.
   const Eigen::MatrixXd kept =
       lowest.shape.leftCols(std::min<Eigen::Index>(count, lowest.shape.cols()));

@@ -3,7 +3,7 @@
 
 #include "offline/pack/pack.h"
 #include "offline/track/statics.h"
-#include "online/step/line.h"
+#include "online/track/line.h"
 #include "online/step/residual.h"
 
 namespace railstep {

@@ -142,4 +142,17 @@ bool presses_at_rest(const FixedPort& port) {
   return port.of == FixedPort::Of::joint ? port.preload > 0. : port.gap == 0.;
 }
 
+Track all_open(Track track) {
+  change_sides(track, [](auto& spring) {
+    if (!spring.one_sided()) return;
+    spring.stiffness[2] = spring.damping[2] = 0.;
+  });
+  for (RailJoint& joint : track.joints) {
+    joint.end_stiffness = joint.end_damping = 0.;
+    joint.gap = joint.pressed = {};
+  }
+  track.stops.clear();
+  return track;
+}
+
 }  // namespace railstep

@@ -40,4 +40,7 @@ Track linear_about_rest(Track track);
 /// Whether the port is such a spring.
 bool presses_at_rest(const FixedPort& port);
 
+/// The track with everything one-sided away.
+Track all_open(Track track);
+
 }  // namespace railstep
