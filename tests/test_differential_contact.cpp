@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "online/contact/ports.h"
-#include "random_scene.h"
+#include "random_draw.h"
 
 // Doubles are wanted in long double arithmetic here.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"

@@ -221,6 +221,8 @@ Transformed reflected(const Document& scene, int axis) {
   const auto image = [scene, axis, length](const std::string& column) {
     const double sign = sign_of(axis, column);
     const std::string own = column.substr(column.rfind('.') + 1);
+    const bool unlike = scene.contains("rail") && scene["rail"].contains("right");
+    if (unlike && axis == 1 && own == "z_m") return Image{};  // heights count from the left axis
     return Image{image_name(scene, axis, column), sign, own == "x_m" && axis == 0 ? length : 0.};
   };
   return {other, image};

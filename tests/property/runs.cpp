@@ -81,7 +81,7 @@ std::map<std::string, double> least_of(const Document& scene) {
   double mass = 0.;
   for (const Document& b : tables(scene, "body")) mass += number(b, "mass_kg");
   const double force = mass * (9.81 + 4. * gap / (dt * dt));
-  return {{"m", gap}, {"m_per_s", 4. * gap / dt}, {"n", force}, {"n_m", force}, {"rad", gap}};
+  return {{"m", gap}, {"m_per_s", 10. * gap / dt}, {"n", force}, {"n_m", force}, {"rad", gap}};
 }
 
 Quantity quantity_of(const std::vector<std::string>& columns, std::size_t column) {
@@ -164,8 +164,11 @@ Document jiggled(const Document& scene, double part) {
   for_each_entry(other, [&](const std::string& key, Document& value) {
     const bool changes = std::any_of(std::begin(continuous), std::end(continuous),
                                      [&](const char* end) { return key.ends_with(end); });
-    if (changes && value.is_number_float())
-      value = value.get<double>() * (1. + draw.between(-part, part));
+    const bool place = key == "position_m" || key == "point_m" || key == "other_point_m";
+    if (changes || (place && value.is_array()))
+      for_each_number(value, [&](Document& n) {
+        if (n.is_number_float()) n = n.get<double>() * (1. + draw.between(-part, part));
+      });
   });
   return other;
 }

@@ -84,8 +84,8 @@ struct Distance {
 Distance apart(const Trace& here, const Trace& there, const ImageOf& image);
 Distance apart(const Trace& here, const Trace& there);
 
-/// The scene with stiffnesses, dampings, masses, forces and starting places changed by up to `part`
-/// of each: how far that moves it says what rounding may.
+/// The scene with stiffnesses, dampings, masses, forces and places changed by up to `part` of each:
+/// how far that moves it says what rounding may.
 Document jiggled(const Document& scene, double part);
 
 }  // namespace railstep::property

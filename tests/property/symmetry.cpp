@@ -204,7 +204,7 @@ Outcome translation(const Document& scene, std::uint64_t) {
   Document even = scene;
   even.erase("irregularity");
   even.erase("sensor");
-  even["track"]["bays"] = static_cast<int>(number(even["track"], "bays")) + 1;
+  even["track"]["bays"] = static_cast<int>(number(even["track"], "bays")) + 2;
   const Transformed other = moved_on(even, 1);
   return compared(even, trace_of(even), other.scene, other.image, rounding_of(scene));
 }

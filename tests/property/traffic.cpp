@@ -35,7 +35,7 @@ void add_way(Draw& draw, const Document& scene, const Way& way, bool may_vary, D
   table["start_m"] = way.start;
   if (may_vary && way.speed != 0. && draw.chance(.15)) {
     const double end = duration_of(scene);
-    table["speed_table"] = {{0., way.speed}, {.5 * end, .3 * way.speed}, {end, .6 * way.speed}};
+    table["speed_table"] = {{0., way.speed}, {.43 * end, .3 * way.speed}, {end, .6 * way.speed}};
   } else {
     table["speed_m_per_s"] = way.speed;
   }
