@@ -25,6 +25,7 @@ class Maker {
   struct Placed {
     std::string name;
     Vector3d at;
+    bool flies = false;
   };
 
   Vector3d around(const Vector3d& middle, double reach);
@@ -92,7 +93,7 @@ void Maker::add_step() {
 
 void Maker::add_body(int n) {
   const double mass = draw_.of_any_size(.5, 200.), size = mass * draw_.of_any_size(5e-3, .05);
-  const Placed placed{fmt::format("body_{}", n), around(middle_, .4)};
+  Placed placed{fmt::format("body_{}", n), around(middle_, .4)};
   Document b = {{"name", placed.name}, {"mass_kg", mass}};
   b["inertia_kg_m2"] = {size, 1.3 * size, 1.6 * size};
   if (!planar_ && draw_.chance(.3))
@@ -109,7 +110,8 @@ void Maker::add_body(int n) {
                                {"axis", {0., 0., 1.}}});
   } else if (draw_.chance(.85)) {
     hang(ground ? Placed{"ground", around(middle_, .4)} : any_body(), placed, n);
-  } else {  // it flies
+  } else {
+    placed.flies = true;
     scene_["body"].back()["velocity_m_per_s"] = row(around(Vector3d::Zero(), 2.));
     scene_["body"].back()["angular_velocity_rad_per_s"] =
         row(planar_ ? Vector3d(0., draw_.between(-10., 10.), 0.) : around(Vector3d::Zero(), 10.));
@@ -170,10 +172,11 @@ void Maker::add_beam() {
   b["rectangle"] = {{"height_m", draw_.of_any_size(.01, .04)},
                     {"width_m", draw_.of_any_size(.01, .04)}};
   scene_["beam"].push_back(b);
-  if (draw_.chance(.5))
+  const Placed& held = any_body();
+  if (draw_.chance(.5) && !held.flies)  // what flies would be stopped by a hinge at once
     scene_["joint"].push_back({{"name", "hinge"},
                                {"kind", "spherical"},
-                               {"between", {"beam", any_body().name}},
+                               {"between", {"beam", held.name}},
                                {"point_m", row(start + length * along)},
                                {"trace", true}});
   scene_["sensor"].push_back(
