@@ -3,8 +3,8 @@
 
 #include "offline/pack/pack.h"
 #include "offline/track/statics.h"
-#include "online/track/line.h"
 #include "online/step/residual.h"
+#include "online/track/line.h"
 
 namespace railstep {
 
