@@ -27,7 +27,7 @@ std::vector<double> receptance_errors(const Track& track, const PackedModel& pac
 /// kReceptancePoints frequencies at logarithmic steps over a band, Hz, its ends included.
 std::vector<double> receptance_frequencies(const std::array<double, 2>& band);
 
-inline constexpr int kStaticPlaces = 64;  // fewer on a track of fewer intervals
+inline constexpr int kStaticPlaces = 128;  // fewer on a track of fewer intervals
 inline constexpr int kReceptancePoints = 40;
 
 }  // namespace railstep
