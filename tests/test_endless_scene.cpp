@@ -6,6 +6,7 @@
 
 #include "build.h"
 #include "energy.h"
+#include "offline/pack/course.h"
 #include "simulate.h"
 #include "simulation.h"
 
@@ -129,6 +130,26 @@ TEST_CASE("a bogie meets a joint where it lies") {
   CHECK(first > 5.5);  // the ramp begins half a metre before 6 m
   CHECK(first < 6.1);
   CHECK(last < 6. + 2.56 + 1.);  // the wheel behind it has passed it too, and the track swung out
+}
+
+TEST_CASE("a start on the move names speeds that it takes, on either side") {
+  std::string said;
+  try {
+    Built(read_scene(kScene, small({"wheelset[0].speed_m_per_s=31.4159265"})));
+  } catch (const std::exception& error) {
+    said = error.what();
+  }
+  const std::string key = "a speed of ";
+  std::vector<double> speeds;
+  for (std::size_t at = said.find(key); at != std::string::npos; at = said.find(key, at + 1))
+    speeds.push_back(std::stod(said.substr(at + key.size())));
+  CAPTURE(said);
+  REQUIRE(speeds.size() == 2);
+  CHECK((speeds[0] - 31.4159265) * (speeds[1] - 31.4159265) < 0.);
+  for (const double speed : speeds) {
+    CHECK_THAT(speed, Catch::Matchers::WithinRel(31.4159265, 1e-8));
+    CHECK(course_of(speed * 1e-4 / .6).bays > 0);
+  }
 }
 
 TEST_CASE("what a track without end cannot have is refused by its sentence") {

@@ -161,7 +161,8 @@ TEST_CASE("random tracks with one-sided supports keep to what is stated", "[supp
     CAPTURE(seed, scene.text, found.full, found.condensed, found.fine, found.largest);
     // What a basis leaves out is tabled and read by cubics: 2e-5 is the most of 200.
     CHECK(apart(found.full, found.condensed) < 1e-4);
-    // Stated of 128 places, as few as eight an element: between two of them it may be a little more.
+    // Stated of 128 places, as few as eight an element: between two of them it may be a little
+    // more.
     CHECK(apart(found.full, found.fine) < 1.05 * found.stated_full);
     CHECK(apart(found.condensed, found.fine) < 1.05 * found.stated);
     const Run run = run_of(file);

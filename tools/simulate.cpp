@@ -205,13 +205,15 @@ std::string unknown_place(const Simulation& run, std::int32_t unknown) {
 
 std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown) {
   const std::int32_t at = first_bad_unknown;
-  const bool itself = !is_moderate(run.state.u[at]) || !is_moderate(run.state.v[at]);
+  const bool of_track = run.model().condensed == 0 && at < run.model().bodies;
+  const bool itself = of_track || !is_moderate(run.state.u[at]) || !is_moderate(run.state.v[at]);
   return fmt::format(
       "nonfinite_state: at step {}, t = {:.9g} s, {}unknown {} of the state ({}){} is not finite, "
-      "or beyond 1.6e60",
+      "or beyond {}",
       run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
       itself ? "" : "what follows from ", at, unknown_place(run, at),
-      itself ? "" : ", a gap, an orientation or a contact's or joint's force,");
+      itself ? "" : ", a gap, an orientation or a contact's or joint's force,",
+      of_track ? "1024 m or rad" : "1.6e60");
 }
 
 double quantile(std::vector<double> values, double q) {

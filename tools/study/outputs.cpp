@@ -68,10 +68,10 @@ Difference difference(const TraceTable& got, std::size_t column, std::size_t row
   for (std::size_t r = 0; r < rows; ++r) {
     const double want =
         reference.values[(reference_row + r) * reference.columns.size() + in_reference];
-    const double off = got.values[(row + r) * got.columns.size() + column] - want;
-    // A value that is not finite is no small error.
-    all.largest = std::isfinite(off) ? std::max(all.largest, std::abs(off))
-                                     : std::numeric_limits<double>::infinity();
+    const double found = got.values[(row + r) * got.columns.size() + column] - want;
+    // A value that is not finite is not a small error.
+    const double off = std::isfinite(found) ? found : std::numeric_limits<double>::infinity();
+    all.largest = std::max(all.largest, std::abs(off));
     all.rms += off * off;
     all.peak = std::max(all.peak, std::abs(want));
   }

@@ -11,27 +11,30 @@ namespace {
 
 constexpr std::int64_t kMostSteps = std::int64_t{1} << 20;  // of a period
 
-struct Fraction {
-  std::int64_t p, q;
+/// Convergents of the continued fraction of x up to the first that has its value to rounding, or
+/// the last with a denominator of `most` and less.
+struct Convergents {
+  WholeBays before{1, 0}, last{0, 1};
+  bool exact = false;
 };
-
-/// The convergent of x that has its value to rounding; q = 0: none with q <= kMostSteps.
-Fraction fraction_of(double x) {
-  Fraction before{1, 0}, last{0, 1};  // of the continued fraction 0 + 1/(a1 + 1/(a2 + ...))
+Convergents convergents_of(double x, std::int64_t most) {
+  Convergents c;  // of 0 + 1/(a1 + 1/(a2 + ...))
   double rest = x;
   for (int turn = 0; turn < 64; ++turn) {
-    if (std::abs(x - static_cast<double>(last.p) / static_cast<double>(last.q)) <= 0x1p-51 * x)
-      return last;
+    const double value = static_cast<double>(c.last.bays) / static_cast<double>(c.last.steps);
+    c.exact = std::abs(x - value) <= 0x1p-51 * x;
+    if (c.exact) return c;
     rest = 1. / rest;
-    if (!(rest < static_cast<double>(kMostSteps) + 1.)) break;
+    if (!(rest < static_cast<double>(most) + 1.)) break;
     const auto whole = static_cast<std::int64_t>(rest);
-    const Fraction next{whole * last.p + before.p, whole * last.q + before.q};
-    if (next.q > kMostSteps) break;
-    before = last;
-    last = next;
+    const WholeBays next{whole * c.last.bays + c.before.bays,
+                         whole * c.last.steps + c.before.steps};
+    if (next.steps > most) break;
+    c.before = c.last;
+    c.last = next;
     rest -= static_cast<double>(whole);
   }
-  return {0, 0};
+  return c;
 }
 
 }  // namespace
@@ -40,12 +43,21 @@ Course course_of(double bays_per_step) {
   if (!(bays_per_step >= 0.) || !(bays_per_step < 1.))
     throw std::invalid_argument(
         "on a track without end traffic goes forward, less than a bay in a step");
-  const Fraction exact = fraction_of(bays_per_step);
-  if (exact.q == 0)
+  const Convergents found = convergents_of(bays_per_step, kMostSteps);
+  if (!found.exact)
     return {std::int64_t{1} << 62, 0, static_cast<std::int64_t>(std::ldexp(bays_per_step, 62))};
   __extension__ using Wide = unsigned __int128;
-  const Wide parts = (static_cast<Wide>(exact.p) << 62) / static_cast<Wide>(exact.q);
-  return {exact.q, exact.p, static_cast<std::int64_t>(parts)};
+  const Wide parts =
+      (static_cast<Wide>(found.last.bays) << 62) / static_cast<Wide>(found.last.steps);
+  return {found.last.steps, found.last.bays, static_cast<std::int64_t>(parts)};
+}
+
+std::vector<WholeBays> whole_bays_near(double bays_per_step, std::int64_t most) {
+  const Convergents found = convergents_of(bays_per_step, most);
+  std::vector<WholeBays> near;
+  for (const WholeBays& one : {found.last, found.before})
+    if (one.bays > 0 && one.bays < one.steps) near.push_back(one);
+  return near;
 }
 
 }  // namespace railstep

@@ -1,4 +1,7 @@
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "online/model/model.h"
 
 namespace railstep {
@@ -7,5 +10,14 @@ namespace railstep {
 /// own rounding, q at most 2^20, it goes p bays in q steps to the bit; else in 2^-62 of a bay.
 /// Throws std::invalid_argument at 1 bay a step and beyond.
 Course course_of(double bays_per_step);
+
+/// So many bays in so many steps.
+struct WholeBays {
+  std::int64_t bays, steps;
+};
+
+/// Those next to a course on either side, the nearer one first, of up to `most` steps; none where
+/// it is too slow for them.
+std::vector<WholeBays> whole_bays_near(double bays_per_step, std::int64_t most);
 
 }  // namespace railstep

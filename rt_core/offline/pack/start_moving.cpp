@@ -1,10 +1,14 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "offline/math/larger.h"
+#include "offline/pack/course.h"
 #include "offline/pack/start.h"
 #include "offline/pack/start_vehicle.h"
 #include "offline/pack/start_wheelset.h"
@@ -103,6 +107,8 @@ class Passage {
     for (std::int64_t n = 0; n < steps; ++n)
       static_cast<void>(advance_frame(model_, state_, workspace_, outputs_));
   }
+  /// A state that is lost stays as it is, as a settled one does.
+  bool is_lost() const { return has(state_.latched, Status::nonfinite_state); }
   /// Displacements under all forces as the state stands, m.
   std::vector<double> heights() {
     publish_start(model_, state_, outputs_);
@@ -157,7 +163,7 @@ std::pair<double, double> change_of(const Model& model, const std::vector<double
   double change = 0., size = 0.;
   const auto take = [&](std::int32_t i) {
     const auto at = static_cast<std::size_t>(i);
-    change = std::max(change, std::abs(after[at] - before[at]));
+    change = larger(change, std::abs(after[at] - before[at]));
   };
   for (std::int32_t i = 0; i < model.bodies; ++i) {
     take(i);
@@ -177,6 +183,7 @@ void settle(const Model& even, std::vector<double>& memory) {
   for (std::int64_t steps = period; steps <= kMostSteps; steps += period) {
     const std::vector<double> before = passage.memory();
     passage.go(period);
+    if (passage.is_lost()) break;
     const auto [change, size] = change_of(even, before, passage.memory());
     if (!(change <= kSettled * size)) continue;
     memory = passage.memory();
@@ -239,16 +246,28 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
     state.wheel_force[2 * model.wheelsets + i] = at[0].vehicles.force[i];
 }
 
+/// Names speeds that are accepted, to the digits that this takes.
+std::string no_whole_bays(const Model& model) {
+  const Endless& e = model.endless;
+  std::ostringstream text;
+  text << std::setprecision(17) << "no number of steps is a whole number of bays; accepted is ";
+  const double here = std::ldexp(static_cast<double>(e.course.advance), -62);
+  for (const WholeBays& near : whole_bays_near(here, kMostSteps / 16))
+    text << "a speed of "
+         << static_cast<double>(near.bays) / static_cast<double>(near.steps) * e.bay_length /
+                model.scheme.dt
+         << " m/s (" << near.bays << " bays in " << near.steps << " steps), ";
+  text << "another at which one is, or step.start = \"equilibrium\"";
+  return text.str();
+}
+
 }  // namespace
 
 std::vector<double> start_moving(const Track& track, const PackedModel& packed, double gravity) {
   const Model& model = packed.model();
   if (model.endless.bays == 0)
     throw std::invalid_argument("a start on the move wants a track without end");
-  if (model.endless.course.period > kMostSteps)
-    throw std::invalid_argument(
-        "no number of steps is a whole number of bays; accepted is a speed at which one is, or "
-        "step.start = \"equilibrium\"");
+  if (model.endless.course.period > kMostSteps) throw std::invalid_argument(no_whole_bays(model));
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     if (side_force(model.wheelset[b]) != 0.)
       throw std::invalid_argument(

@@ -15,12 +15,30 @@ namespace railstep {
 
 namespace {
 
-/// Its highest bit is set where |x| is kMostNumber and more, or x is no number: but for the sign,
-/// bits rise with the numbers they stand for. In integers, so that several are looked at together.
-std::uint64_t lifted(double x) noexcept {
+/// What a rail's or sleeper's displacement does not come near, m, nor its turn, rad: it is at most
+/// a few times a section's height where the linear track means anything. A run that grows from bay
+/// to bay or step to step ends here, long before its numbers overflow.
+constexpr double kMostSag = 0x1p10;
+
+/// Its highest bit is set where |x| is `most` and more, or x is no number: but for the sign, bits
+/// rise with the numbers they stand for. In integers, so that several are looked at together.
+std::uint64_t lifted(double x, double most) noexcept {
   constexpr std::uint64_t sign = std::uint64_t{1} << 63;
-  return (std::bit_cast<std::uint64_t>(x) & ~sign) +
-         (sign - std::bit_cast<std::uint64_t>(kMostNumber));
+  return (std::bit_cast<std::uint64_t>(x) & ~sign) + (sign - std::bit_cast<std::uint64_t>(most));
+}
+
+/// First unknown of a range whose displacement is `most` and more, or whose velocity is too large;
+/// or -1.
+std::int32_t first_beyond(const State& s, std::int32_t first, std::int32_t last,
+                          double most) noexcept {
+  const auto at = [&](std::int32_t i) noexcept {
+    return lifted(s.u[i], most) | lifted(s.v[i], kMostNumber);
+  };
+  std::uint64_t any = 0;
+  for (std::int32_t i = first; i < last; ++i) any |= at(i);
+  if (any >> 63 == 0) return -1;
+  while (at(first) >> 63 == 0) ++first;
+  return first;
 }
 
 /// Of whose wheel or flange a contact is.
@@ -51,12 +69,12 @@ std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) 
 
 /// First unknown that is too large, or -1.
 std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) noexcept {
-  std::uint64_t any = 0;
-  for (std::int32_t i = 0; i < model.unknowns; ++i) any |= lifted(s.u[i]) | lifted(s.v[i]);
-  if (any >> 63 == 0) return first_lost(model, s, out);
-  std::int32_t first = 0;
-  while ((lifted(s.u[first]) | lifted(s.v[first])) >> 63 == 0) ++first;
-  return first;
+  // Of a condensed track these are modes, and no displacements.
+  const std::int32_t banded = model.condensed != 0 ? 0 : model.bodies;
+  const std::int32_t track = first_beyond(s, 0, banded, kMostSag);
+  if (track >= 0) return track;
+  const std::int32_t other = first_beyond(s, banded, model.unknowns, kMostNumber);
+  return other >= 0 ? other : first_lost(model, s, out);
 }
 
 void collect_flanges(const Model& model, const State& s, const double* gap, Outputs& out) noexcept {
