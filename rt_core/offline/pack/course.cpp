@@ -53,9 +53,12 @@ Course course_of(double bays_per_step) {
 }
 
 std::vector<WholeBays> whole_bays_near(double bays_per_step, std::int64_t most) {
-  const Convergents found = convergents_of(bays_per_step, most);
+  const auto [before, last, exact] = convergents_of(bays_per_step, most);
+  // Up to the convergent after the last, before + k last draws near from the side of `before`.
+  const std::int64_t k = (most - before.steps) / last.steps;
+  const WholeBays other{before.bays + k * last.bays, before.steps + k * last.steps};
   std::vector<WholeBays> near;
-  for (const WholeBays& one : {found.last, found.before})
+  for (const WholeBays& one : {last, other})
     if (one.bays > 0 && one.bays < one.steps) near.push_back(one);
   return near;
 }

@@ -16,8 +16,7 @@ struct WholeBays {
   std::int64_t bays, steps;
 };
 
-/// Those next to a course on either side, the nearer one first, of up to `most` steps; none where
-/// it is too slow for them.
+/// Those next to a course on either side, of up to `most` steps, fewer steps first.
 std::vector<WholeBays> whole_bays_near(double bays_per_step, std::int64_t most);
 
 }  // namespace railstep
