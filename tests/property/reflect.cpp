@@ -158,7 +158,7 @@ std::string image_name(const Document& scene, int axis, const std::string& colum
       for (const char* side : {"left", "right"})
         if (prefix == fmt::format("{}_{}", word(w, "name"), side))
           return replaced(column, side, other_side(side));
-    if (number(scene["track"], "rails") == 1. || !column.starts_with("support_")) return column;
+    if (!column.starts_with("support_") || number(scene.at("track"), "rails") == 1.) return column;
     return column.starts_with("support_right_") ? replaced(column, "support_right_", "support_")
                                                 : replaced(column, "support_", "support_right_");
   }

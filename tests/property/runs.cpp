@@ -116,6 +116,7 @@ std::vector<double> scales_of(const Trace& trace) {
     }
   }
   std::vector<double> scales;
+  scales.reserve(unit.size());
   for (const std::string& own : unit) scales.push_back(of_unit[own]);
   return scales;
 }

@@ -1,8 +1,9 @@
 // Laws of bits: a model file, a snapshot and other frames change nothing.
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 
 #include "online/interface/railstep.h"
@@ -50,7 +51,7 @@ class Held {
 std::string difference(const Trace& trace, std::size_t frame, const std::vector<double>& row) {
   for (std::size_t c = 0; c < row.size(); ++c) {
     const double expected = trace.at(frame, c);
-    if (std::memcmp(&expected, &row[c], sizeof expected) != 0)
+    if (std::bit_cast<std::uint64_t>(expected) != std::bit_cast<std::uint64_t>(row[c]))
       return fmt::format("{} of row {}: {:.17g} for {:.17g}", trace.columns[c], frame, row[c],
                          expected);
   }
