@@ -33,7 +33,8 @@ inline House full_house(int wheels, int hanging, int loads,
     const bool whole = 2 * i + 1 < wheels;  // an odd wheel is a mass by itself
     RunningVehicle v = running(whole ? bogie(bogie_data) : point_mass(900.), 0., 20.);
     v.rail = i % 2;
-    v.start = .9 + 1.3 * (i / 2);
+    const int pair = i / 2;
+    v.start = .9 + 1.3 * pair;
     v.falling = Falling{0., .05 + .01 * i};
     house.traffic.vehicles.push_back(v);
   }

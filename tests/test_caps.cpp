@@ -59,7 +59,8 @@ Signal dip(double depth) {
 Traffic bogies(int count) {
   Traffic traffic;
   for (int i = 0; i < count; ++i) {
-    traffic.vehicles.push_back(running(bogie(kBogie), 3. + 3. * (i / 2), 20.));
+    const int pair = i / 2;
+    traffic.vehicles.push_back(running(bogie(kBogie), 3. + 3. * pair, 20.));
     traffic.vehicles.back().rail = i % 2;
   }
   traffic.head = kHead;
@@ -85,8 +86,9 @@ TEST_CASE("as many loads as there may be are the sum of their forces", "[caps]")
 TEST_CASE("as many irregularities as there may be are their sum", "[caps]") {
   const Track track = two_rails(30);
   Traffic many = bogies(4), few = many;
+  constexpr int kOfARail = kMaxSignals / 2;
   for (int i = 0; i < kMaxSignals; ++i)
-    many.irregularities.push_back({i % 2, 2, dip(2e-3 / (kMaxSignals / 2))});
+    many.irregularities.push_back({i % 2, 2, dip(2e-3 / kOfARail)});
   for (int rail : {0, 1}) few.irregularities.push_back({rail, 2, dip(2e-3)});
   const std::vector<double> want = moved(track, few);
   CHECK(apart(moved(track, many), want) <= 1e-10 * largest(want));
