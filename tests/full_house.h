@@ -100,6 +100,7 @@ class DenseHouse {
     const Dense free = solver_->solve(p);
     const std::vector<Dense> rows = contact_rows(t);
     std::vector<Dense> gives;
+    gives.reserve(rows.size());
     for (const Dense& row : rows) gives.push_back(solver_->solve(row));
     const std::size_t n = rows.size();
     Dense W(n * n), d_free(n);
