@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -97,8 +98,8 @@ TEST_CASE("shared memory that another process cuts short ends the run with a sen
   for (const std::uintmax_t left : {0u, 16u}) {
     const std::string name = shared_name("cut");
     const auto folder = fresh_folder("hil_cut");
-    Started hil("hil " + kPushed + " --rate 100 --duration 6000 --record " +
-                (folder / "recording").string() + " --shm " + name);
+    Started hil(fmt::format("hil {} --rate 100 --duration 6000 --record {} --shm {}", kPushed,
+                            (folder / "recording").string(), name));
     hil.await([&] { return outputs_of(name) > 3; });
     std::filesystem::resize_file(shared_file(name), left);
     if (left > 0) {  // within a page nothing is met: it is written over

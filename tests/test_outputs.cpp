@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -130,8 +132,8 @@ TEST_CASE("runs with one trace at once leave that of one of them, whole", "[cli]
   std::vector<std::string> alone;
   for (const std::string& duration : durations) {
     const std::string trace = files.path(duration);
-    REQUIRE(railstep_program("run " + shipped("moving_load") + " --duration " + duration +
-                             " --trace " + trace)
+    REQUIRE(railstep_program(fmt::format("run {} --duration {} --trace {}", shipped("moving_load"),
+                                         duration, trace))
                 .code == 0);
     alone.push_back(text_of(trace));
   }
