@@ -1,4 +1,7 @@
 #pragma once
+#include <string>
+#include <vector>
+
 #include "scene.h"
 
 namespace railstep {
@@ -6,5 +9,9 @@ namespace railstep {
 /// Bays of a scene's ring or window that lie behind x = 0, so that the traffic stands in its
 /// middle.
 int bays_behind(const Scene& scene);
+
+/// "track.bays=N" of a window in full order that has room for a scene's traffic, where it is a ring
+/// that is shorter; else empty. (A ring wants one decay length, a window one on either side.)
+std::vector<std::string> longer_window(const Scene& scene);
 
 }  // namespace railstep

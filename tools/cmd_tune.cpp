@@ -47,9 +47,8 @@ std::filesystem::path place_of(const TuneOptions& o) {
 
 std::string scene_text(const TuneOptions& o, const TuneResult& result) {
   const Candidate& choice = *result.choice;
-  std::vector<std::string> overrides = o.request.overrides;
-  overrides.push_back(fmt::format("step.frame_s={:.17g}", result.frame));
-  for (const std::string& own : overrides_of(choice.row.setting)) overrides.push_back(own);
+  const std::vector<std::string> overrides = overrides_of(
+      Studied{o.request.scene, o.request.overrides, result.frame, {}}, choice.row.setting);
   std::string text = fmt::format(
       "# {}, tuned to an error of {:g}: {}.\n# {:.3g} us a frame where it was timed; error {:.2e}: "
       "step {:.1e}, condensation {:.1e}, mesh {:.1e}.\n",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "build_endless.h"
 #include "build_unstepped.h"
 
 namespace railstep {
@@ -48,11 +49,17 @@ Studied study_of(const std::filesystem::path& file, const std::vector<std::strin
   return study;
 }
 
+std::vector<std::string> overrides_of(const Studied& study, const Setting& setting) {
+  std::vector<std::string> all = study.overrides;
+  all.push_back(fmt::format("step.frame_s={:.17g}", study.frame));
+  for (std::string& own : overrides_of(setting)) all.push_back(std::move(own));
+  if (is_condensed(setting.model)) return all;
+  for (std::string& own : longer_window(scene_of(study))) all.push_back(std::move(own));
+  return all;
+}
+
 Scene scene_with(const Studied& study, const Setting& setting) {
-  std::vector<std::string> overrides = study.overrides;
-  overrides.push_back(fmt::format("step.frame_s={:.17g}", study.frame));
-  for (std::string& own : overrides_of(setting)) overrides.push_back(std::move(own));
-  return read_scene(study.file, overrides);
+  return read_scene(study.file, overrides_of(study, setting));
 }
 
 TraceTable run_of(const Studied& study, const Setting& setting) {

@@ -25,6 +25,10 @@ struct Studied {
 Studied study_of(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                  const Judged& judged);
 
+/// "key=value" over the scene that make one setting of it: the study's, the setting's, and of a
+/// ring in full order the bays that a window wants. Throws InputError.
+std::vector<std::string> overrides_of(const Studied& study, const Setting& setting);
+
 /// The scene with one setting. Throws InputError.
 Scene scene_with(const Studied& study, const Setting& setting);
 
