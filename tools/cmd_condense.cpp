@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -28,6 +29,7 @@ namespace {
 struct CondenseOptions {
   std::string scene, out, emit;
   std::vector<std::string> overrides;
+  std::optional<double> window;  // s
   bool skip_errors = false;
   bool json = false;
 };
@@ -49,6 +51,22 @@ struct Condensed {
   double clipped;                                 // m/N
   std::array<double, 2> band_hz = CondenseScene{}.band_hz;
   std::int64_t bays = 0;
+  // of the receptance error: its frequency, or one without damping; places; mesh of the reference
+  // where the window begins, and how long the scene is of which it is part
+  nlohmann::ordered_json from_s = nullptr, duration_s = nullptr;
+  nlohmann::ordered_json error_hz = nullptr, undamped_hz = nullptr, places_m = nullptr,
+                         reference_elements = nullptr;
+
+  void take(const ReceptanceError& error, const Track& track) {
+    if (error.largest) {
+      receptance_error = *error.largest;
+      error_hz = error.hz;
+    }
+    if (error.undamped_hz) undamped_hz = *error.undamped_hz;
+    if (!error.largest && !error.undamped_hz) return;  // nothing was asked
+    places_m = receptance_places(track);
+    reference_elements = receptance_refinement(track) * track.elements_per_bay;
+  }
 
   BlockNotes notes() const {
     const auto or_not_known = [](const nlohmann::ordered_json& error) {
@@ -86,8 +104,14 @@ nlohmann::ordered_json to_json(const Condensed& made, const std::vector<std::byt
           {"static_error", made.static_error},
           {"receptance_error", made.receptance_error},
           {"receptance_band_hz", made.band_hz},
+          {"receptance_error_hz", made.error_hz},
+          {"receptance_undamped_hz", made.undamped_hz},
+          {"receptance_places_m", made.places_m},
+          {"receptance_reference_elements_per_bay", made.reference_elements},
           {"transient_error", made.transient_error},
+          {"transient_from_s", made.from_s},
           {"transient_window_s", made.window_s},
+          {"transient_duration_s", made.duration_s},
           {"transient_reference_error", made.reference_error},
           {"transient_error_parts", made.parts},
           {"clipped_m_per_n", made.clipped},
@@ -122,13 +146,15 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
                  scene.condense.band_hz,
                  scene.track.bays};
   if (!o.skip_errors) {
-    made.static_error = static_error(built.track, packed);
-    made.receptance_error = receptance_error(built.track, packed, scene.condense.band_hz);
+    if (!packed.kinds().empty()) made.static_error = static_error(built.track, packed);
+    made.take(receptance_error(built.track, packed, scene.condense.band_hz), built.track);
   }
   if (!o.skip_errors && scene.external_wheels.empty()) {  // what runs elsewhere is not known here
-    const TransientError transient = transient_error(scene, o.overrides);
+    const TransientError transient = transient_error(scene, o.overrides, o.window);
     made.transient_error = transient.largest;
     made.window_s = transient.window_s;
+    made.from_s = transient.from_s;
+    made.duration_s = scene.duration();
     made.reference_error = transient.reference_error;
     made.parts = {{"mesh", transient.parts.mesh},
                   {"condensation", transient.parts.condensation},
@@ -154,8 +180,10 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
     made.band_hz = scene.track->condense.band_hz;
     made.bays = scene.track->track.bays;
     if (!o.skip_errors) {
-      made.static_error = static_error(track, *packed);
-      made.receptance_error = receptance_error(track, *packed, made.band_hz);
+      made.static_error = nullptr;  // bodies hold on to it by themselves: not known
+      if (!packed->kinds().empty()) made.static_error = static_error(track, *packed);
+      made.receptance_error = nullptr;
+      made.take(receptance_error(track, *packed, made.band_hz), track);
     }
   }
   return write(block_of(built, made.notes()), made, o);
@@ -173,6 +201,21 @@ std::string error_text(const nlohmann::ordered_json& error) {
   return error.is_null() ? "not known" : fmt::format("{:.2e}", error.get<double>());
 }
 
+void print_receptance_error(const nlohmann::ordered_json& r) {
+  const auto& hz = r["receptance_error_hz"];
+  const auto& undamped = r["receptance_undamped_hz"];
+  const auto& places = r["receptance_places_m"];
+  fmt::print("receptance error  {}{}, {:g} to {:g} Hz", error_text(r["receptance_error"]),
+             hz.is_null() ? "" : fmt::format(" at {:.5g} Hz", hz.get<double>()),
+             r["receptance_band_hz"][0].get<double>(), r["receptance_band_hz"][1].get<double>());
+  if (!places.is_null())
+    fmt::print(" at {:g} and {:g} m, over the largest receptance there", places[0].get<double>(),
+               places[1].get<double>());
+  if (!undamped.is_null())
+    fmt::print("; the track swings without damping at {:.5g} Hz", undamped.get<double>());
+  fmt::print("\n");
+}
+
 void print_table(const nlohmann::ordered_json& r, const std::string& file) {
   fmt::print("{}: {} of {} unknowns, {} bytes, state {}, workspace {}\n", file,
              r["kept_unknowns"].get<int>(), r["full_unknowns"].get<int>(),
@@ -187,11 +230,13 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
     fmt::print(
         "  one-sided       {} supports: as springs, or where each force alone presses them\n",
         ports);
-  fmt::print("receptance error  {}, {:g} to {:g} Hz\n", error_text(r["receptance_error"]),
-             r["receptance_band_hz"][0].get<double>(), r["receptance_band_hz"][1].get<double>());
+  print_receptance_error(r);
   const auto& window = r["transient_window_s"];
   fmt::print("transient error   {}{}\n", error_text(r["transient_error"]),
-             window.is_null() ? "" : fmt::format(" in {:g} s", window.get<double>()));
+             window.is_null()
+                 ? ""
+                 : fmt::format(" from {:g} to {:g} of {:g} s", r["transient_from_s"].get<double>(),
+                               window.get<double>(), r["transient_duration_s"].get<double>()));
   const auto& parts = r["transient_error_parts"];
   if (parts.is_null()) return;
   fmt::print(
@@ -213,6 +258,10 @@ Command add_condense(CLI::App& app) {
   sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
       ->take_all()
       ->allow_extra_args(false);
+  sub->add_option("--window", o->window,
+                  "seconds of the scene of which the transient error is told, from its start; "
+                  "without it all of them, or what of them takes some seconds")
+      ->check(CLI::Range(1e-9, 1e9));
   sub->add_flag("--skip-errors", o->skip_errors,
                 "write the model alone: its errors take longer to find than it takes to make");
   sub->add_flag("--json", o->json, "one JSON object on stdout");

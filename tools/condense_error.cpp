@@ -6,14 +6,18 @@
 #include <cmath>
 #include <utility>
 
+#include "build_endless.h"
 #include "study/reference.h"
 
 namespace railstep {
 namespace {
 
+/// What rings at first where a scene starts released is not judged: no longer than this, s.
+constexpr double kRinging = .02;
+
 /// Of a level of refinement: steps of elements, as many times as those of vertical unknowns. Some
 /// seconds.
-constexpr double kMostWork = 2e7;
+constexpr double kMostWork = 4e7;
 
 /// Of a level with `finer` times the elements and the steps, for a second.
 double work_of(const Scene& scene, double finer) {
@@ -24,10 +28,9 @@ double work_of(const Scene& scene, double finer) {
   return each * elements * finer * finer / scene.step->dt;
 }
 
-/// Frames of the window: the second level, four times as fine, has to fit.
-std::int64_t frames_of(const Scene& scene, double frame) {
-  const double window =
-      std::min({kTransientWindow, scene.duration(), kMostWork / work_of(scene, 4.)});
+/// Frames of the window: the second level, four times as fine, has to fit where nothing is asked.
+std::int64_t frames_of(const Scene& scene, double frame, std::optional<double> asked) {
+  const double window = std::min(scene.duration(), asked ? *asked : kMostWork / work_of(scene, 4.));
   return std::max<std::int64_t>(1, std::llround(std::floor(window / frame + 1e-9)));
 }
 
@@ -56,16 +59,20 @@ std::optional<Scene> with_hertz(Scene scene) {
 
 }  // namespace
 
-TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides) {
+TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides,
+                               std::optional<double> asked) {
   const StepScene& step = *scene.step;  // there, or no model would be
   const double frame = step.dt * static_cast<double>(step.steps_per_frame);
-  const std::int64_t frames = frames_of(scene, frame);
+  const std::int64_t frames = frames_of(scene, frame, asked);
   const double window = static_cast<double>(frames) * frame;
   Studied study{scene.file, overrides, frame, {}, frames};
-  if (step.start == Start::released) study.judged.from = .2 * window;
+  if (step.start == Start::released) study.judged.from = std::min(.2 * window, kRinging);
   const auto with_small_steps = [&](bool in_full) {
     std::vector<std::string> own = overrides;
-    if (in_full) own.insert(own.end(), {"condense.kind=\"full\"", "step.contact=\"penetration\""});
+    if (in_full) {
+      own.insert(own.end(), {"condense.kind=\"full\"", "step.contact=\"penetration\""});
+      for (std::string& longer : longer_window(scene)) own.push_back(std::move(longer));
+    }
     own.push_back(fmt::format("step.frame_s={:.17g}", frame));
     own.push_back(fmt::format("step.dt_s={:.17g}", .25 * step.dt));
     return read_scene(scene.file, own);
@@ -85,7 +92,8 @@ TransientError transient_error(const Scene& scene, const std::vector<std::string
     return errors_of(a, b, study.judged).judged;
   };
   const std::optional<Scene> hertz = with_hertz(fine);
-  return {window,
+  return {study.judged.from,
+          window,
           off(got, reference.trace),
           reference.error,
           {.step = off(got, model),

@@ -8,8 +8,9 @@
 
 namespace railstep {
 
-/// What a scene's model misses of its first moments, and what of that is known.
+/// What a scene's model misses, and what of that is known.
 struct TransientError {
+  double from_s;    // what comes before is left out
   double window_s;  // from the start
   double largest;   // of loads' deflections and rails' heights under wheels, over each one's peak
   double reference_error;  // the reference's own, estimated
@@ -21,11 +22,11 @@ struct TransientError {
 
 /// Runs the scene and a reference of it: full order, elements and steps halved until its own error
 /// is a tenth of the scene's, two or three times. Where the scene starts released, the first fifth
-/// of the window is left out. The window is shorter than kTransientWindow where a reference of the
-/// whole would take too long.
+/// of the window is left out, 0.02 s at most.
 /// @param overrides  with which the scene was read
-TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides);
-
-inline constexpr double kTransientWindow = .1;  // s, at most
+/// @param asked  s, of the window; none: the whole scene, or what of it a reference can be made of
+/// in some seconds
+TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides,
+                               std::optional<double> asked = std::nullopt);
 
 }  // namespace railstep

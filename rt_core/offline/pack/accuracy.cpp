@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
+#include <memory>
+#include <optional>
 
 #include "offline/beam/linearise.h"
+#include "offline/math/band_search.h"
 #include "offline/math/larger.h"
 #include "offline/pack/port_statics.h"
 #include "offline/track/krylov.h"
@@ -20,60 +24,96 @@ namespace {
 using Value = std::complex<double>;
 constexpr double kPi = 3.14159265358979323846;
 
-/// Vertical receptances of rails' points, m/N: displacement there under a unit force e^(i omega t).
-void add_receptances(const Track& track, const Line& line, const std::vector<RailPoint>& points,
-                     double omega, std::vector<Value>& sums) {
-  std::vector<Eigen::SparseVector<double>> rows;
-  double moved = 0.;
-  for (const RailPoint& at : points) {
-    rows.push_back(point_row(track, line, at));
-    moved += rows.back().norm();
+/// Vertical receptances of rails' points, m/N: displacement there under a unit force e^(i omega t),
+/// of one line, ordered once for all frequencies.
+class LineReceptances {
+ public:
+  LineReceptances(const Track& track, const Line& line, const std::vector<RailPoint>& points)
+      : line_(line), rows_(line.unknowns(), static_cast<Eigen::Index>(points.size())) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      rows_.col(static_cast<Eigen::Index>(i)) = Eigen::VectorXd(point_row(track, line, points[i]));
+    if (moved()) factor_.analyzePattern(dynamic_stiffness(line_, 1.));
   }
-  if (moved == 0.) return;
-  const Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor(
-      dynamic_stiffness(line, Value(0., omega)));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::VectorXcd load = Eigen::VectorXd(rows[i]).cast<Value>();
-    sums[i] += (load.transpose() * factor.solve(load))(0, 0);
+
+  void add(double omega, Eigen::VectorXcd& sums) {
+    if (!moved()) return;
+    factor_.factorize(dynamic_stiffness(line_, Value(0., omega)));
+    if (factor_.info() != Eigen::Success) {
+      sums.setConstant(std::numeric_limits<double>::infinity());
+      return;
+    }
+    const Eigen::MatrixXcd forces = rows_.cast<Value>(), answer = factor_.solve(forces);
+    sums += answer.cwiseProduct(forces).colwise().sum().transpose();
   }
+
+ private:
+  bool moved() const { return !rows_.isZero(0.); }
+
+  const Line& line_;
+  Eigen::MatrixXd rows_;  // [unknowns][points]
+  Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor_;
+};
+
+/// The same of a condensed line: the sum of its modes.
+class ModalReceptances {
+ public:
+  ModalReceptances(const Track& track, const PackedLine& own, const std::vector<RailPoint>& points)
+      : rate_(own.modes.rate()), squares_(rate_.size(), static_cast<Eigen::Index>(points.size())) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      // Ports leave out the section's own strain.
+      const Eigen::VectorXd row(point_row(track, own.line, points[i], false));
+      squares_.col(static_cast<Eigen::Index>(i)) =
+          own.modes.project(own.basis.shapes.project(row)).array().square();
+    }
+  }
+
+  void add(double omega, Eigen::VectorXcd& sums) const {
+    const Value rate(0., omega);
+    const Eigen::VectorXcd along = .5 * (rate - rate_.array()).inverse(),
+                           back = .5 * (rate - rate_.conjugate().array()).inverse();
+    sums += squares_.transpose() * along + squares_.adjoint() * back;
+  }
+
+ private:
+  Eigen::VectorXcd rate_;
+  Eigen::MatrixXcd squares_;  // [modes][points] of the modes there
+};
+
+/// The line with rails that have no inertia along x: a vertical track does not say what would damp
+/// them there, and the strain of the section would make them ring.
+void hold_back_along(const Track& track, Line& line) {
+  std::vector<bool> along(static_cast<std::size_t>(line.unknowns()), false);
+  for (int rail = 0; rail < track.rails; ++rail)
+    for (int node = 0; node < track.nodes(); ++node)
+      for (const int at : {line.unknown(rail, node, 0), line.unknown_ahead(rail, node, 0)})
+        if (at >= 0) along[static_cast<std::size_t>(at)] = true;
+  line.mass.prune([&](Eigen::Index row, Eigen::Index column, double) {
+    return !along[static_cast<std::size_t>(row)] && !along[static_cast<std::size_t>(column)];
+  });
 }
 
-void add_receptances(const Track& track, const PackedLine& own,
-                     const std::vector<RailPoint>& points, double omega, std::vector<Value>& sums) {
-  const Value rate(0., omega);
-  const Eigen::ArrayXcd along = .5 * (rate - own.modes.rate().array()).inverse(),
-                        back = .5 * (rate - own.modes.rate().conjugate().array()).inverse();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    // Ports leave out the section's own strain.
-    const Eigen::VectorXd row(point_row(track, own.line, points[i], false));
-    const Eigen::ArrayXcd modal = own.modes.project(own.basis.shapes.project(row)).array();
-    sums[i] += (modal.square() * along + modal.conjugate().square() * back).sum();
+/// Of a track as it stands.
+class TrackReceptances {
+ public:
+  TrackReceptances(const Track& track, const std::vector<RailPoint>& points)
+      : lines_(assemble(track)), points_(static_cast<Eigen::Index>(points.size())) {
+    if (track.unknowns == Unknowns::in_plane)
+      for (Line& line : lines_) hold_back_along(track, line);
+    for (const Line& line : lines_)
+      each_.push_back(std::make_unique<LineReceptances>(track, line, points));
   }
-}
 
-/// Of the model as it is stepped, lines and residual flexibility, at points of ports of `kinds`.
-std::vector<Value> receptances(const Track& track, const PackedModel& packed,
-                               const std::vector<RailPoint>& points,
-                               const std::vector<std::int32_t>& kinds, double omega) {
-  std::vector<Value> sums;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    sums.emplace_back(
-        residual_under(packed.model(), rail_force(packed.model(), kinds[i], points[i].x, 1.)));
-  if (packed.model().condensed == 0) {
-    const Track at_rest = linear_about_rest(track);
-    const std::vector<Line> lines = assemble(at_rest);
-    for (const PackedLine& own : packed.lines())
-      add_receptances(at_rest, lines[own.index], points, omega, sums);
+  Eigen::VectorXcd at(double omega) {
+    Eigen::VectorXcd sums = Eigen::VectorXcd::Zero(points_);
+    for (const auto& line : each_) line->add(omega, sums);
     return sums;
   }
-  for (const PackedLine& own : packed.lines()) add_receptances(track, own, points, omega, sums);
-  const PressedPorts pressed(track, packed, points);
-  Eigen::Map<Eigen::VectorXcd> all(sums.data(), static_cast<Eigen::Index>(sums.size()));
-  Eigen::VectorXcd less = all;
-  pressed.subtract(omega, less);
-  all = less;
-  return sums;
-}
+
+ private:
+  std::vector<Line> lines_;
+  Eigen::Index points_;
+  std::vector<std::unique_ptr<LineReceptances>> each_;
+};
 
 /// What a model is measured against: a finer mesh about rest, with the section's strain.
 Track refined(const Track& of, int times) {
@@ -107,6 +147,65 @@ double largest_error(const Eigen::VectorXd& got, const Eigen::VectorXd& want) {
   return largest > 0. ? error / largest : 0.;
 }
 
+/// Of the model as it is stepped, lines and residual flexibility.
+class ModelReceptances {
+ public:
+  ModelReceptances(const Track& track, const PackedModel& packed, const Asked& asked)
+      : residual_(static_cast<Eigen::Index>(asked.points.size())) {
+    for (std::size_t i = 0; i < asked.points.size(); ++i)
+      residual_[static_cast<Eigen::Index>(i)] = residual_under(
+          packed.model(), rail_force(packed.model(), asked.kinds[i], asked.points[i].x, 1.));
+    if (packed.model().condensed != 0) {
+      for (const PackedLine& own : packed.lines()) modal_.emplace_back(track, own, asked.points);
+      pressed_.emplace(track, packed, asked.points);
+      return;
+    }
+    const Track at_rest = linear_about_rest(track);
+    lines_ = assemble(at_rest);
+    for (const PackedLine& own : packed.lines())
+      full_.push_back(std::make_unique<LineReceptances>(at_rest, lines_[own.index], asked.points));
+  }
+
+  Eigen::VectorXcd at(double omega) {
+    Eigen::VectorXcd sums = residual_.cast<Value>();
+    for (const ModalReceptances& line : modal_) line.add(omega, sums);
+    for (const auto& line : full_) line->add(omega, sums);
+    if (pressed_) pressed_->subtract(omega, sums);
+    return sums;
+  }
+
+ private:
+  Eigen::VectorXd residual_;
+  std::vector<ModalReceptances> modal_;
+  std::optional<PressedPorts> pressed_;  // of a condensed model
+  std::vector<Line> lines_;              // of one in full order, at rest
+  std::vector<std::unique_ptr<LineReceptances>> full_;
+};
+
+/// A model beside what it is measured against, at the middle of the middle bay and over its seat.
+class Compared {
+ public:
+  Compared(const Track& track, const PackedModel& packed)
+      : asked_(packed, receptance_places(track)),
+        model_(track, packed, asked_),
+        reference_(refined(track, receptance_refinement(track)), asked_.points) {}
+
+  bool empty() const { return asked_.points.empty(); }
+  /// [points][2] what the model errs by, and the reference
+  Eigen::MatrixXcd at(double hz) {
+    const double omega = 2. * kPi * hz;
+    Eigen::MatrixXcd both(static_cast<Eigen::Index>(asked_.points.size()), 2);
+    both.col(1) = reference_.at(omega);
+    both.col(0) = model_.at(omega) - both.col(1);
+    return both;
+  }
+
+ private:
+  Asked asked_;
+  ModelReceptances model_;
+  TrackReceptances reference_;
+};
+
 }  // namespace
 
 double static_error(const Track& track, const PackedModel& packed) {
@@ -119,13 +218,16 @@ double static_error(const Track& track, const PackedModel& packed) {
     const auto interval = static_cast<std::int64_t>(2 * i + 1) * intervals / (2 * count);
     places.push_back((static_cast<double>(interval) + .5) / points * track.element_length());
   }
-  const Asked asked(packed, places);
-  const std::vector<Value> at_rest = receptances(track, packed, asked.points, asked.kinds, 0.);
-  Eigen::VectorXd got(static_cast<Eigen::Index>(at_rest.size())), want(got.size());
-  for (std::size_t i = 0; i < at_rest.size(); ++i) {
-    got[static_cast<Eigen::Index>(i)] = at_rest[i].real();
-    want[static_cast<Eigen::Index>(i)] = exact.flexibility(asked.points[i], asked.points[i]);
+  // Near an end the section is squeezed most.
+  for (int i = 0; i <= points && !track.ring; ++i) {
+    const double away = std::max(0., i - .5) / points * track.element_length();
+    places.insert(places.end(), {away, track.length() - away});
   }
+  const Asked asked(packed, places);
+  const Eigen::VectorXd got = ModelReceptances(track, packed, asked).at(0.).real();
+  Eigen::VectorXd want(got.size());
+  for (std::size_t i = 0; i < asked.points.size(); ++i)
+    want[static_cast<Eigen::Index>(i)] = exact.flexibility(asked.points[i], asked.points[i]);
   const double error = largest_error(got, want);
   if (packed.model().fixed.count == 0) return error;
   const std::vector<FixedPort> ports = fixed_ports(track);
@@ -143,34 +245,42 @@ std::vector<double> receptance_frequencies(const std::array<double, 2>& band) {
   return hz;
 }
 
+std::vector<double> receptance_places(const Track& track) {
+  const int bay = track.bays / 2;
+  return {(bay + .5) * track.bay_length, bay * track.bay_length};
+}
+
+int receptance_refinement(const Track& track) {
+  return std::max(2, (kReceptanceElements + track.elements_per_bay - 1) / track.elements_per_bay);
+}
+
 std::vector<double> receptance_errors(const Track& track, const PackedModel& packed,
                                       const std::vector<double>& hz) {
-  const Track fine = refined(track, 2);
-  const std::vector<Line> lines = assemble(fine);
-  const int bay = track.bays / 2;
-  const Asked asked(packed, {(bay + .5) * track.bay_length, bay * track.bay_length});
+  Compared compared(track, packed);
   double largest = 0.;
   std::vector<double> errors;
   for (const double frequency : hz) {
-    const double omega = 2. * kPi * frequency;
-    std::vector<Value> want(asked.points.size(), 0.);
-    for (const Line& line : lines) add_receptances(fine, line, asked.points, omega, want);
-    const std::vector<Value> got = receptances(track, packed, asked.points, asked.kinds, omega);
-    double error = 0.;
-    for (std::size_t k = 0; k < want.size(); ++k) {
-      largest = std::max(largest, std::abs(want[k]));
-      error = larger(error, std::abs(got[k] - want[k]));
-    }
-    errors.push_back(error);
+    const Eigen::MatrixXcd both = compared.at(frequency);
+    largest = std::max(largest, both.col(1).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+    errors.push_back(both.col(0).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
   }
   for (double& error : errors) error = largest > 0. ? error / largest : 0.;
   return errors;
 }
 
-double receptance_error(const Track& track, const PackedModel& packed,
-                        const std::array<double, 2>& band) {
-  const std::vector<double> errors = receptance_errors(track, packed, receptance_frequencies(band));
-  return *std::max_element(errors.begin(), errors.end());
+ReceptanceError receptance_error(const Track& track, const PackedModel& packed,
+                                 const std::array<double, 2>& band) {
+  Compared compared(track, packed);
+  ReceptanceError error;
+  if (compared.empty()) return error;
+  const BandSearch found = largest_over([&](double hz) { return compared.at(hz); }, band);
+  error.solves = found.solves;
+  error.unresolved = found.unresolved;
+  error.undamped_hz = found.undamped_hz;
+  if (found.undamped_hz) return error;
+  error.largest = found.largest[0].size / found.largest[1].size;
+  error.hz = found.largest[0].hz;
+  return error;
 }
 
 }  // namespace railstep

@@ -1,0 +1,40 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace railstep {
+
+/// Functions of a frequency, [functions][groups]; each wants a solve.
+using Responses = std::function<Eigen::MatrixXcd(double hz)>;
+
+/// The largest magnitude of any function of a group over a band.
+struct Largest {
+  double hz = 0., size = 0.;
+};
+
+/// What a search found of each group. Without damping a response has no largest.
+struct BandSearch {
+  std::vector<Largest> largest;       // [groups]
+  std::optional<double> undamped_hz;  // a peak narrower than kNarrowest; then `largest` is none
+  double unresolved = 0.;  // what the search left open, over the largest; the worst group
+  int solves = 0;
+};
+
+/// Looks for the largest magnitudes from a grid of logarithmic steps on, wherever they may hide.
+///
+/// Through the samples of a group go two rational functions, the one through every second, the
+/// other through those between; each fits the rest by least squares. Both know a peak between two
+/// samples from its flanks. Where they disagree, or where they are larger than all samples, the
+/// next are taken, until they agree to kAgree of the largest and it is met to kMet. At most
+/// kMostSolves.
+BandSearch largest_over(const Responses& responses, const std::array<double, 2>& band);
+
+inline constexpr int kFirstSolves = 40, kMostSolves = 800;
+inline constexpr double kMet = 1e-3, kAgree = 1e-4;
+/// Of a frequency: no peak of a track is so narrow that damps its motion at all.
+inline constexpr double kNarrowest = 1e-8;
+
+}  // namespace railstep
