@@ -13,22 +13,23 @@ using Sparse = Eigen::SparseMatrix<double>;
 using Factor = Eigen::SimplicialLDLT<Sparse>;
 
 constexpr int kMostTurns = 200;
+constexpr double kLittle = 1e-6;  // of an open spring's stiffness
 
 }  // namespace
 
 OneSided::OneSided(const Track& track, const std::vector<Line>& lines, std::vector<FixedPort> ports)
     : ports_(std::move(ports)), joined_(join(track, lines, ports_)) {
-  const Sparse all = stiffness(Closed(ports_.size(), true));
+  const Sparse all = stiffness(Closed(ports_.size(), true), 0.);
   all_closed_.compute(all);
   if (is_held(all_closed_, all)) return;
   refuse_free_modes(track, lines, ports_);  // by its name
   throw std::invalid_argument("the track's stiffness cannot be factored");
 }
 
-OneSided::Sparse OneSided::stiffness(const Closed& closed) const {
+OneSided::Sparse OneSided::stiffness(const Closed& closed, double open_part) const {
   Eigen::VectorXd k(static_cast<Eigen::Index>(ports_.size()));
   for (std::size_t p = 0; p < ports_.size(); ++p)
-    k[static_cast<Eigen::Index>(p)] = closed[p] ? ports_[p].stiffness : 0.;
+    k[static_cast<Eigen::Index>(p)] = (closed[p] ? 1. : open_part) * ports_[p].stiffness;
   return joined_.stiffness + Sparse(joined_.closing * k.asDiagonal() * joined_.closing.transpose());
 }
 
@@ -53,11 +54,15 @@ Eigen::VectorXd OneSided::gradient(const Eigen::VectorXd& u, const Eigen::Vector
   return joined_.stiffness * u + joined_.closing * pressed - load;
 }
 
-/// Where too few press to hold the track, the step that all of them would allow: it goes down too.
+/// Where too few press to hold the track, those that are open hold it a little: the step goes as far
+/// as the next that presses. Where it buckles then, they hold it as if all pressed. Both go down.
 Eigen::VectorXd OneSided::newton_step(const Closed& closed, const Eigen::VectorXd& g) const {
-  const Sparse held = stiffness(closed);
-  const Factor factor(held);
-  return is_held(factor, held) ? factor.solve(-g) : all_closed_.solve(-g);
+  for (const double open_part : {0., kLittle}) {
+    const Sparse held = stiffness(closed, open_part);
+    const Factor factor(held);
+    if (is_held(factor, held)) return factor.solve(-g);
+  }
+  return all_closed_.solve(-g);
 }
 
 /// The t >= 0 of the least E(u + t step): its slope rises in t along straight pieces that end where

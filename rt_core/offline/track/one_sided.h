@@ -26,7 +26,7 @@ class OneSided {
   using Sparse = Eigen::SparseMatrix<double>;
   using Closed = std::vector<bool>;
 
-  Sparse stiffness(const Closed& closed) const;
+  Sparse stiffness(const Closed& closed, double open_part) const;
   Eigen::VectorXd depth(const Eigen::VectorXd& u) const;
   Closed pressing(const Eigen::VectorXd& u) const;
   Eigen::VectorXd gradient(const Eigen::VectorXd& u, const Eigen::VectorXd& load) const;
