@@ -2,21 +2,19 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include "offline/section/outline.h"
+#include "random_draw.h"
 
 namespace railstep {
 
 /// Outlines of many kinds with sizes by chance, the same on every machine.
 class RandomOutlines {
  public:
-  explicit RandomOutlines(std::uint32_t seed) : random_(seed) {}
+  explicit RandomOutlines(std::uint64_t seed) : draw_(seed) {}
 
-  double between(double low, double high) {
-    return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
-  }
+  double between(double low, double high) { return draw_.between(low, high); }
 
   static Outline of_points(const std::vector<Point>& points) {
     std::vector<OutlineRow> rows;
@@ -86,7 +84,7 @@ class RandomOutlines {
   }
 
  private:
-  std::mt19937 random_;
+  Draw draw_;
 };
 
 }  // namespace railstep

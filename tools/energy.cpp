@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "energy_vehicle.h"
+#include "offline/math/larger.h"
 #include "online/model/course.h"
 #include "online/step/closing.h"
 #include "online/step/follow.h"
@@ -312,8 +313,8 @@ void EnergyAccount::note() {
                           std::abs(flow_.guides - (stored_.forward - start_.forward)),
                           std::abs(flow_.carriers),
                           flow_.dissipated};
-  turned_over_ = std::max(turned_over_, *std::max_element(std::begin(sizes), std::end(sizes)));
-  largest_ = std::max(largest_, std::abs(imbalance()));
+  for (const double size : sizes) turned_over_ = larger(turned_over_, size);
+  largest_ = larger(largest_, std::abs(imbalance()));
   if (std::abs(flow_.loss) > std::abs(largest_loss_)) largest_loss_ = flow_.loss;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "heap_count.h"
+#include "offline/math/larger.h"
 #include "online/math/finite.h"
 #include "online/model/system_workspace.h"
 #include "online/step/step.h"
@@ -102,8 +103,7 @@ RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bo
     record.status = record.status | outputs.status;
     record.first_bad_unknown = outputs.first_bad_unknown;
     record.iterations = std::max(record.iterations, outputs.iterations);
-    record.constraint_violation =
-        std::max(record.constraint_violation, outputs.constraint_violation);
+    record.constraint_violation = larger(record.constraint_violation, outputs.constraint_violation);
     record.deepest = std::min(record.deepest, lowest(run.model(), outputs));
     note_redundant(run, outputs, record);
     if (!sink && !keep_rows) return;

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "build_unstepped.h"
+#include "offline/math/larger.h"
 #include "run_energy.h"
 #include "simulate.h"
 
@@ -39,8 +40,8 @@ class Summary {
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       ColumnSummary& column = columns_[c];
       const double value = row[c], above = value - column.mean;
-      column.least = std::min(column.least, value);
-      column.most = std::max(column.most, value);
+      column.least = -larger(-column.least, -value);
+      column.most = larger(column.most, value);
       column.mean += above / static_cast<double>(rows_);
       column.deviation += above * (value - column.mean);
       column.last = value;

@@ -165,7 +165,7 @@ struct PackOptions {
   int residual_points = 16;  // intervals per element
   double gravity = 0.;       // m/s2 on rails and sleepers; 0: their weight is left off
   std::optional<Reduction> reduction = std::nullopt;  // of each line; none: full order
-  std::int64_t steps = 0;                             // of the scene's run
+  std::int64_t steps = 0;                             // of the scene's run; 0: a frame
   std::optional<EndlessTrack> endless = std::nullopt;
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <complex>
 
+#include "offline/math/larger.h"
 #include "offline/pack/pack.h"
 #include "offline/pack/step_compliance.h"
 
@@ -125,7 +126,7 @@ void PackedModel::clip(int points, std::vector<double>& under) {
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[kind * places + i];
       const double lowest = lines[i] > 0. ? -.5 * lines[i] : -1.5 * lines[i];
-      clipped_ = std::max(clipped_, lowest - value);
+      clipped_ = larger(clipped_, lowest - value);
       value = std::max(value, lowest);
     }
   }

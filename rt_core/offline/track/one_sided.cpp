@@ -54,8 +54,9 @@ Eigen::VectorXd OneSided::gradient(const Eigen::VectorXd& u, const Eigen::Vector
   return joined_.stiffness * u + joined_.closing * pressed - load;
 }
 
-/// Where too few press to hold the track, those that are open hold it a little: the step goes as far
-/// as the next that presses. Where it buckles then, they hold it as if all pressed. Both go down.
+/// Where too few press to hold the track, those that are open hold it a little: the step goes as
+/// far as the next that presses. Where it buckles then, they hold it as if all pressed. Both go
+/// down.
 Eigen::VectorXd OneSided::newton_step(const Closed& closed, const Eigen::VectorXd& g) const {
   for (const double open_part : {0., kLittle}) {
     const Sparse held = stiffness(closed, open_part);
