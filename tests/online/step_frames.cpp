@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "model_file.h"
+#include "online/beam/kernels.h"
 #include "online/step/step.h"
 
 using namespace railstep;
@@ -23,6 +24,7 @@ int main(int count, char** text) {
   ModelFile file(text[1]);
   if (file.model == nullptr) return 2;
   if (caps) file.go_to_caps();
+  use_kernels(&kBaseKernels);  // the instructions that a model states are theirs
   Outputs outputs{};
   for (long frame = 0; frame < frames; ++frame)
     (void)advance_frame(*file.model, file.state, file.workspace, outputs);

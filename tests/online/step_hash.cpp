@@ -1,6 +1,6 @@
 // Steps a model file, prints what it comes to, and makes sure that neither the host's
-// floating-point mode nor what stood in the workspace has a part in it. Needs the online library
-// alone, so that it runs wherever that does.
+// floating-point mode, nor what stood in the workspace, nor the kernels that the processor has
+// chosen have a part in it. Needs the online library alone, so that it runs wherever that does.
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "online/beam/kernels.h"
 #include "online/math/float_mode.h"
 #include "online/model/load.h"
 #include "online/model/state.h"
@@ -206,19 +207,22 @@ int step_hash(const char* path, long frames, const Wanted& wanted) {
   if (loaded.status != LoadStatus::ok) return refuse(path, "no model file of this version");
   Run plain(*model, 1), disturbed(*model, kModeCount);
   for (long i = 0; i < frames; ++i) {
+    use_kernels(&kBaseKernels);
     plain.frame();
+    use_kernels(nullptr);
     disturbed.frame();
   }
-  std::printf("%016" PRIx64 " %016" PRIx64 " %d %d %u\n", plain.state(), plain.outputs(),
-              plain.opened(), plain.closings(), static_cast<unsigned>(plain.status()));
+  std::printf("%016" PRIx64 " %016" PRIx64 " %d %d %u %s\n", plain.state(), plain.outputs(),
+              plain.opened(), plain.closings(), static_cast<unsigned>(plain.status()),
+              kernels_in_use().name);
   if (has(plain.status(), Status::nonfinite_state))
     return fail(path, "the state is no longer finite");
   if (!plain.kept_mode() || !disturbed.kept_mode())
     return fail(path, "the host's floating-point mode is not as it was");
   if (plain.state() != disturbed.state())
-    return fail(path, "the state depends on the host's floating-point mode");
+    return fail(path, "the state depends on the host's floating-point mode or on kernels");
   if (plain.outputs() != disturbed.outputs())
-    return fail(path, "the outputs depend on the host's floating-point mode");
+    return fail(path, "the outputs depend on the host's floating-point mode or on kernels");
   if (differs(plain.state(), wanted.state)) return fail(path, "the state is another");
   if (differs(plain.outputs(), wanted.outputs)) return fail(path, "the outputs are others");
   return 0;
@@ -234,7 +238,8 @@ int main(int count, char** text) {
     std::fputs(
         "usage: step_hash MODEL FRAMES [STATE OUTPUTS]\n"
         "prints, after so many frames of a model file: hash of the state, hash of all that was\n"
-        "published, how many contacts had opened and closed at the frames' ends, status bits.\n"
+        "published, how many contacts had opened and closed at the frames' ends, status bits, the\n"
+        "kernels of this processor, with which it comes to the same as with the base.\n"
         "Fails where a hash is not the given one.\n",
         stderr);
     return 2;

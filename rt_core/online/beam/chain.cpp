@@ -3,7 +3,7 @@
 #include "online/beam/chain_ends.h"
 #include "online/beam/chain_mids.h"
 
-namespace railstep {
+namespace RAILSTEP_KERNELS {
 
 namespace {
 
@@ -127,4 +127,4 @@ template void chain_inertia<5>(const Chain&, const double*, double*) noexcept;
 template int chain_factor<9>(const Chain&, double, double, double*, double*) noexcept;
 template int chain_factor<5>(const Chain&, double, double, double*, double*) noexcept;
 
-}  // namespace railstep
+}  // namespace RAILSTEP_KERNELS

@@ -1,7 +1,7 @@
 #pragma once
 #include "online/beam/chain_layout.h"
 
-namespace railstep::chained {
+namespace RAILSTEP_KERNELS::chained {
 
 // The end nodes of a chain whose mid nodes are condensed: block tridiagonal, one node after the
 // other, a node's row as vectors of its own columns, the next node's and padding of 0. Vectors that
@@ -143,4 +143,4 @@ class EndNodes {
   EndRows<W> rows_[2];
 };
 
-}  // namespace railstep::chained
+}  // namespace RAILSTEP_KERNELS::chained

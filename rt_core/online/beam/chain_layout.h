@@ -1,9 +1,8 @@
 #pragma once
 #include "online/beam/chain.h"
 #include "online/beam/straight_kind.h"
-#include "online/beam/wide.h"
 
-namespace railstep::chained {
+namespace RAILSTEP_KERNELS::chained {
 
 using straight::unrolled;
 
@@ -45,4 +44,4 @@ constexpr int field_of(int unknown) noexcept {
 /// 30 / L times the integral of N_i N_j, quadratic shape functions.
 inline constexpr double kMassPairs[3][3] = {{4., 2., -1.}, {2., 16., 2.}, {-1., 2., 4.}};
 
-}  // namespace railstep::chained
+}  // namespace RAILSTEP_KERNELS::chained

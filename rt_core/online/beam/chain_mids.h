@@ -1,7 +1,7 @@
 #pragma once
 #include "online/beam/chain_layout.h"
 
-namespace railstep::chained {
+namespace RAILSTEP_KERNELS::chained {
 
 // The mid nodes of four elements, one in each lane: their pivots, their rows of L, and what is left
 // to the elements' end nodes. D L' takes the place of S, so that all of a group stays in a cache of
@@ -133,4 +133,4 @@ int condense_group(int count, double inverse_k, double* S, double* factor) noexc
   return all;
 }
 
-}  // namespace railstep::chained
+}  // namespace RAILSTEP_KERNELS::chained

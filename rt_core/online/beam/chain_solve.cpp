@@ -1,7 +1,7 @@
 #include "online/beam/chain.h"
 #include "online/beam/chain_sweep.h"
 
-namespace railstep {
+namespace RAILSTEP_KERNELS {
 
 namespace {
 
@@ -236,4 +236,4 @@ template void chain_solve<5>(const Chain&, const double*, double*) noexcept;
 template void chain_solve_one<9>(const Chain&, const double*, double*) noexcept;
 template void chain_solve_one<5>(const Chain&, const double*, double*) noexcept;
 
-}  // namespace railstep
+}  // namespace RAILSTEP_KERNELS

@@ -1,7 +1,7 @@
 #pragma once
 #include "online/beam/chain_layout.h"
 
-namespace railstep::chained {
+namespace RAILSTEP_KERNELS::chained {
 
 // Substitution through one node, over a number type T whose lanes are right-hand sides or elements.
 // entry(k, j) is row k, column j of the node's rows in the factor.
@@ -47,4 +47,4 @@ template <int W, class T, class Entry>
   });
 }
 
-}  // namespace railstep::chained
+}  // namespace RAILSTEP_KERNELS::chained

@@ -1,6 +1,6 @@
 #include "online/beam/straight.h"
 
-#include "online/beam/straight_batch.h"
+#include "online/beam/straight_nodes.h"
 
 namespace railstep {
 
@@ -120,16 +120,6 @@ void straight_tangent(const StraightBeam& beam, const double* q, double* force,
   set_fields<2>(k, even, odd, tangent);  // of b
   set_fields<4>(k, even, odd, tangent);
   set_fields<5>(k, even, odd, tangent);
-}
-
-void straight_forces(const StraightBeam& beam, int n, const double* q, const double* half_change,
-                     double* force) noexcept {
-  batch_forces<Spatial>(beam, n, q, half_change, force);
-}
-
-void straight_tangents(const StraightBeam& beam, int n, const double* q, const double* half_change,
-                       double* force, double* tangent) noexcept {
-  batch_tangents<Spatial>(beam, n, q, half_change, force, tangent);
 }
 
 }  // namespace railstep

@@ -1,9 +1,8 @@
 #pragma once
 #include "online/beam/straight_nodes.h"
 #include "online/beam/straight_point.h"
-#include "online/beam/wide.h"
 
-namespace railstep::straight {
+namespace RAILSTEP_KERNELS::straight {
 
 // Elements of a row side by side in the lanes, spatial or planar.
 
@@ -225,4 +224,4 @@ void batch_tangents(const StraightBeam& beam, int n, const double* q, const doub
     all_tangents<Kind, false>(beam, n, q, half_change, force, tangent);
 }
 
-}  // namespace railstep::straight
+}  // namespace RAILSTEP_KERNELS::straight

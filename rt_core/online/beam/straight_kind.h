@@ -2,8 +2,9 @@
 #include <utility>
 
 #include "online/beam/straight.h"
+#include "online/beam/wide.h"
 
-namespace railstep::straight {
+namespace RAILSTEP_KERNELS::straight {
 
 // What tells the spatial from the planar element: how many components each field of a node has.
 // All else of both is written once.
@@ -84,4 +85,4 @@ constexpr int matrix_first(int matrix) noexcept {
   return first;
 }
 
-}  // namespace railstep::straight
+}  // namespace RAILSTEP_KERNELS::straight

@@ -1,7 +1,7 @@
 #pragma once
 #include "online/beam/straight_point.h"
 
-namespace railstep::straight {
+namespace RAILSTEP_KERNELS::straight {
 
 // From nodes to the two Gauss points xi = -+g and back: V = e + o at +g and e - o at -g, and the
 // same of forces and tangents. Written over a number type T as the point itself.
@@ -158,4 +158,4 @@ template <int kPair, class T, class At>
   return K;
 }
 
-}  // namespace railstep::straight
+}  // namespace RAILSTEP_KERNELS::straight

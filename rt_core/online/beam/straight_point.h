@@ -1,7 +1,7 @@
 #pragma once
 #include "online/beam/straight_kind.h"
 
-namespace railstep::straight {
+namespace RAILSTEP_KERNELS::straight {
 
 // One Gauss point of a straight element, written once over a number type T: its lanes are the two
 // points of one element, or elements. No sum runs across lanes, so every width gives the same bits.
@@ -182,4 +182,4 @@ template <class Kind, class T>
   });
 }
 
-}  // namespace railstep::straight
+}  // namespace RAILSTEP_KERNELS::straight

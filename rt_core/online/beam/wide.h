@@ -1,15 +1,25 @@
 #pragma once
 
-namespace railstep {
+// Rows of elements are compiled for the vectors that every processor has, and on x86-64 once more
+// for vectors of four (avx2.cpp). Each set has a namespace of its own, so that no linker takes a
+// function of one for the other.
+#ifdef RAILSTEP_AVX2_KERNELS
+#define RAILSTEP_KERNELS railstep::avx2
+#else
+#define RAILSTEP_KERNELS railstep
+#endif
+#if defined(__AVX__) || defined(RAILSTEP_AVX2_KERNELS)
+#define RAILSTEP_WIDE 4
+#else
+#define RAILSTEP_WIDE 2
+#endif
+
+namespace RAILSTEP_KERNELS {
 
 // Vectors of the compiler's own, for speed alone: each lane is rounded as a double by itself.
 using Two = double __attribute__((vector_size(16)));
-#ifdef __AVX__
-using Wide = double __attribute__((vector_size(32)));
-#else
-using Wide = Two;
-#endif
-inline constexpr int kWide = static_cast<int>(sizeof(Wide) / sizeof(double));
+inline constexpr int kWide = RAILSTEP_WIDE;
+using Wide = double __attribute__((vector_size(kWide * sizeof(double))));
 
 [[gnu::always_inline]] inline Wide load(const double* from) noexcept {
   Wide x;
@@ -22,7 +32,7 @@ inline constexpr int kWide = static_cast<int>(sizeof(Wide) / sizeof(double));
 
 /// Rows become columns, [kWide][kWide].
 [[gnu::always_inline]] inline void transpose(Wide* x) noexcept {
-#ifdef __AVX__
+#if RAILSTEP_WIDE == 4
   const Wide a = __builtin_shufflevector(x[0], x[1], 0, 4, 2, 6);
   const Wide b = __builtin_shufflevector(x[0], x[1], 1, 5, 3, 7);
   const Wide c = __builtin_shufflevector(x[2], x[3], 0, 4, 2, 6);
@@ -38,4 +48,4 @@ inline constexpr int kWide = static_cast<int>(sizeof(Wide) / sizeof(double));
 #endif
 }
 
-}  // namespace railstep
+}  // namespace RAILSTEP_KERNELS

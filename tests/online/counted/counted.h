@@ -96,6 +96,7 @@ template <>
 struct numeric_limits<counted::Number> : numeric_limits<double> {};
 }  // namespace std
 
+#define RAILSTEP_NO_AVX2  // such a number fills no vector
 #define __builtin_sqrt(x) counted_functions::square_root(x)
 #define __builtin_fabs(x) counted_functions::magnitude(x)
 #define double counted::Number

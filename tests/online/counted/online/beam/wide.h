@@ -2,6 +2,7 @@
 
 // Stands in for the library's own where every `double` counts (counted.h): vectors of the compiler
 // hold plain numbers alone.
+#define RAILSTEP_KERNELS railstep
 namespace railstep {
 
 struct Two {
