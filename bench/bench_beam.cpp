@@ -1,8 +1,7 @@
 // Elastic force and tangent of one nonlinear element, fast and general kernel, each with its
 // largest difference from the general one. Blocks of calls take turns with blocks of a yardstick,
 // a chain of 512 additions: `ratio`, the median of their ratios, is free of a slow minute of the
-// machine; `best_us` is the quickest block. Build with the preset avx2 to see the batch at its
-// best.
+// machine; `best_us` is the quickest block. The batch is of the kernels that the processor has.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "measure.h"
 #include "offline/element/matrices.h"
 #include "offline/element/straight.h"
+#include "online/beam/kernels.h"
 #include "online/beam/straight_nodes.h"
 
 namespace railstep {
@@ -75,8 +75,8 @@ struct Differences {
 /// entry of all elements.
 Differences differences(Row& row) {
   double force_peak = 0., tangent_peak = 0., force_gap = 0., tangent_gap = 0.;
-  straight_tangents(row.straight, kElements, row.q.data(), nullptr, row.force.data(),
-                    row.tangent.data());
+  kernels_in_use().space.tangents(row.straight, kElements, row.q.data(), nullptr, row.force.data(),
+                                  row.tangent.data());
   for (int e = 0; e < kElements; ++e) {
     std::array<double, 27> F{}, f{};
     std::array<double, 729> K{}, k{};
@@ -168,7 +168,7 @@ void tangent(benchmark::State& run, Section* section) {
 void forces_of_16(benchmark::State& run, Section* section) {
   Row row(section());
   measure(run, 16, kElements, [&] {
-    straight_forces(row.straight, kElements, row.q.data(), nullptr, row.force.data());
+    kernels_in_use().space.forces(row.straight, kElements, row.q.data(), nullptr, row.force.data());
     benchmark::ClobberMemory();
   });
   run.counters["error"] = differences(row).force;
@@ -178,8 +178,8 @@ void forces_of_16(benchmark::State& run, Section* section) {
 void tangents_of_16(benchmark::State& run, Section* section) {
   Row row(section());
   measure(run, 8, kElements, [&] {
-    straight_tangents(row.straight, kElements, row.q.data(), nullptr, row.force.data(),
-                      row.tangent.data());
+    kernels_in_use().space.tangents(row.straight, kElements, row.q.data(), nullptr,
+                                    row.force.data(), row.tangent.data());
     benchmark::ClobberMemory();
   });
   run.counters["error"] = differences(row).tangent;

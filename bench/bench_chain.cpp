@@ -1,20 +1,25 @@
 // Forces, tangents, factor and solve of a beam chain in space and in the plane, per call, each with
 // its error beside it: forces and tangents their largest difference from the general element,
-// factor and solve that of the solution from a dense one in long double. Times as in measure.h;
-// build with the preset avx2 to see them at their best.
+// factor and solve that of the solution from a dense one in long double. Times as in measure.h,
+// with the kernels that the processor has.
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <cstring>
 
 #include "measure.h"
 #include "offline/element/straight.h"
-#include "online/beam/chain.h"
+#include "online/beam/kernels.h"
 
 namespace railstep {
 namespace {
 
 constexpr double kLength = .5;       // m
 constexpr double kMassFactor = 8e6;  // over the stiffness: 4 / dt2 for dt 1 ms, over 1/2
+
+template <int W>
+const RowKernels& row() {
+  return W == 9 ? kernels_in_use().space : kernels_in_use().plane;
+}
 
 BeamSection rectangle() {
   const double h = .190, b = .0682315;
@@ -61,17 +66,15 @@ struct Beams {
     return W == 9 ? i : static_cast<std::size_t>(kPlanarOf[i]);
   }
   void forces(const double* half) {
-    (W == 9 ? straight_forces : planar_forces)(chain.beam, chain.elements, q.data(), half,
-                                               force.data());
+    row<W>().forces(chain.beam, chain.elements, q.data(), half, force.data());
   }
   void set_tangents(const double* half) {
-    (W == 9 ? straight_tangents : planar_tangents)(chain.beam, chain.elements, q.data(), half,
-                                                   force.data(), tangents.data());
+    row<W>().tangents(chain.beam, chain.elements, q.data(), half, force.data(), tangents.data());
   }
   /// The factor overwrites its tangents, so it gets a copy each time.
   int set_factor() {
     copy();
-    return chain_factor<W>(chain, kMassFactor, 1., scratch.data(), factor.data());
+    return row<W>().factor(chain, kMassFactor, 1., scratch.data(), factor.data());
   }
   void copy() { std::memcpy(scratch.data(), tangents.data(), tangents.size() * sizeof(double)); }
 
@@ -132,7 +135,7 @@ struct Beams {
     b.head(W).setZero();
     const Eigen::Matrix<Long, Eigen::Dynamic, 1> want = S.ldlt().solve(b);
     std::vector<double> got = x;
-    chain_solve<W>(chain, factor.data(), got.data());
+    row<W>().solve(chain, factor.data(), got.data());
     Long gap = 0.L, peak = 0.L;
     for (Eigen::Index i = 0; i < size; ++i)
       for (Eigen::Index s = 0; s < kChainSides; ++s) {
@@ -195,7 +198,7 @@ void solve(benchmark::State& run) {
   std::vector<double> x(kSides == 1 ? beams.force.size() : beams.x.size());
   measure(run, calls(beams.chain.elements), 1, [&] {
     std::memcpy(x.data(), beams.x.data(), x.size() * sizeof(double));
-    (kSides == 1 ? chain_solve_one<W> : chain_solve<W>)(beams.chain, beams.factor.data(), x.data());
+    (kSides == 1 ? row<W>().solve_one : row<W>().solve)(beams.chain, beams.factor.data(), x.data());
     benchmark::ClobberMemory();
   });
   run.counters["error"] = beams.solution_error();
@@ -205,7 +208,7 @@ template <int W>
 void inertia(benchmark::State& run) {
   Beams<W> beams(static_cast<int>(run.range(0)));
   measure(run, calls(beams.chain.elements), 1, [&] {
-    chain_inertia<W>(beams.chain, beams.q.data(), beams.force.data());
+    row<W>().inertia(beams.chain, beams.q.data(), beams.force.data());
     benchmark::ClobberMemory();
   });
 }

@@ -153,9 +153,10 @@ TEST_CASE("the option --json of a system has the contract's keys, and the same b
           "[run]") {
   const std::string brief = kPendulum + " --duration 0.2";
   const nlohmann::json first = told(brief);
-  for (const char* key : {"steps", "final_time_s", "state_hash", "status",
-                          "max_constraint_violation", "max_iterations", "energy_balance_error",
-                          "numerical_loss", "frame_us", "steps_per_frame", "allocations"})
+  for (const char* key :
+       {"steps", "final_time_s", "state_hash", "status", "max_constraint_violation",
+        "max_iterations", "energy_balance_error", "numerical_loss", "frame_us", "steps_per_frame",
+        "kernels", "allocations"})
     CHECK(first.contains(key));
   CHECK(first.at("steps") == 200);
   CHECK(first.at("final_time_s") == 200 * 1e-3);

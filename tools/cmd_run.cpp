@@ -14,6 +14,7 @@
 #include "drawing.h"
 #include "inputs.h"
 #include "memory.h"
+#include "online/beam/kernels.h"
 #include "progress.h"
 #include "recording.h"
 #include "run_energy.h"
@@ -92,6 +93,7 @@ nlohmann::ordered_json to_json(const Simulation& run, const RunRecord& record,
             {"p99", quantile(record.frame_us, .99)},
             {"max", record.slowest_us}}},
           {"steps_per_frame", model.steps_per_frame},
+          {"kernels", kernels_in_use().name},
           {"allocations", record.allocations}};
 }
 
