@@ -66,7 +66,8 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
   at.turn = turn;
   double along[3];
   to_rail(cant, up, along);
-  const double higher = add_turn(model, seen, turn, xi, y, z, up, at.row[2]);
+  SeatMotions seats;
+  const double higher = add_turn(model, seen, turn, xi, y, z, up, at.row[2], seats);
   at.offset = .5 * turn * turn * (z * along[2] + y * along[1]) - higher;
   for (int d = 0; d < 3; ++d) at.force[d] = own[2 + d];
   at.port = {wheel.kind, element, xi, at.force[2]};

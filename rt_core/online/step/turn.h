@@ -16,15 +16,23 @@ inline void keep_section(double* q) noexcept {
   q[8] -= shorter;
 }
 
+/// What lines move of the nodes over seats, for turns: the other rail of one that moves both alike
+/// takes it from here.
+struct SeatMotions {
+  std::int32_t first = -kTurnSeats;        // seat; so far none
+  double value[kMaxLines][kTurnSeats][2];  // a_z and b_y, before their weights in the rail
+};
+
 /// Adds to the row of the point (y, z) along a normal what the section's turn under it, and those
 /// over the seats around, make of it; without a turn nothing.
 /// @param turn    of the section under the point, rad
 /// @param xi      of the point in row.element
 /// @param normal  [3] unit, in the track's axes
+/// @param seen    of one configuration
 /// @returns by how much the point lies higher along the normal for the turns over the seats, m; the
 ///          one under the point itself is in places of which keep_section() was made
 double add_turn(const Model& model, const Configuration& at, double turn, double xi, double y,
-                double z, const double* normal, RailRow& row) noexcept;
+                double z, const double* normal, RailRow& row, SeatMotions& seen) noexcept;
 
 /// Square of a turn from which on the row's second order itself is off by more than 1 % of it: half
 /// of phi^2, from the series of its sine and cosine.

@@ -153,7 +153,8 @@ void fill_body_row(const Pose& body, const double* arm, WheelContact& at) noexce
 /// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
 /// then the material point of the railhead under the normal.
 WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
-                          const Configuration& now, double ahead, const Window& window) noexcept {
+                          const Configuration& now, double ahead, const Window& window,
+                          SeatMotions& seats) noexcept {
   const Pose body = pose_of(w, now.u + w.first);
   const double *const centre = body.centre, *const axle = body.axle;
   WheelContact at{};
@@ -192,7 +193,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   fill_row(model.cant[side], shape, off.rail_rise, at);
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   at.turn = section_turn(model.cant[side], q);
-  const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
+  const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row, seats);
   double gap = 0.;
   for (int d = 0; d < 3; ++d)
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
@@ -215,7 +216,8 @@ double slope_along(const Model& model, const Window& window, RailPlace place,
 
 /// Finds the contact of flange `side`, as find_flanges() says.
 WheelContact find_flange(const Model& model, const FlangeModel& flange, int side,
-                         const Configuration& now, double ahead, const Window& window) noexcept {
+                         const Configuration& now, double ahead, const Window& window,
+                         SeatMotions& seats) noexcept {
   const WheelsetModel& w = model.wheelset[flange.wheelset];
   const Pose body = pose_of(w, now.u + w.first);
   const double *const centre = body.centre, *const axle = body.axle, *const up = body.up;
@@ -251,7 +253,7 @@ WheelContact find_flange(const Model& model, const FlangeModel& flange, int side
       irregularity(model, SignalModel{}, side, at.normal, (x + now.passed) + ahead, 0.);
   fill_row(model.cant[side], shape, off.rail_rise, at);
   at.turn = section_turn(model.cant[side], q);
-  const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row);
+  const double higher = add_turn(model, now, at.turn, at.xi, at.y, at.z, at.normal, at.row, seats);
   at.penetration = (off.depth + higher) - gap;
   at.irregular = off.depth;
   at.rise = off.rise + slope_along(model, window, found.place, at);
@@ -281,10 +283,11 @@ void find_contacts(const Model& model, const WheelsetModel& wheelset, const Conf
                    WheelContact* sides, double ahead) noexcept {
   const double* p = at.u + wheelset.first;
   Window windows[2];
+  SeatMotions seats;
   gather(model, wheelset.start + p[0], at, windows);
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
-    sides[side] = find_contact(model, wheelset, side, at, ahead, windows[side]);
+    sides[side] = find_contact(model, wheelset, side, at, ahead, windows[side], seats);
   }
 }
 
@@ -292,10 +295,11 @@ void find_flanges(const Model& model, const FlangeModel& flange, const Configura
                   WheelContact* sides, double ahead) noexcept {
   const WheelsetModel& wheelset = model.wheelset[flange.wheelset];
   Window windows[2];
+  SeatMotions seats;
   gather(model, wheelset.start + at.u[wheelset.first], at, windows);
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
-    sides[side] = find_flange(model, flange, side, at, ahead, windows[side]);
+    sides[side] = find_flange(model, flange, side, at, ahead, windows[side], seats);
   }
 }
 
