@@ -11,11 +11,24 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "chrono/core/ChTypes.h"
+#include "chrono/core/ChVector3.h"
+#include "chrono/fea/ChElementBeamANCF_3333.h"
+#include "chrono/fea/ChLinkNodeFrame.h"
+#include "chrono/fea/ChLinkNodeNode.h"
+#include "chrono/fea/ChMaterialBeamANCF.h"
+#include "chrono/fea/ChMesh.h"
+#include "chrono/fea/ChNodeFEAxyzDD.h"
+#include "chrono/physics/ChBody.h"
+#include "chrono/physics/ChLoad.h"
+#include "chrono/physics/ChLoadContainer.h"
+#include "chrono/physics/ChSystemSMC.h"
+#include "chrono/solver/ChDirectSolverLS.h"
+#include "chrono/timestepper/ChTimestepperHHT.h"
 #include "reference_file.h"
 
 namespace {
