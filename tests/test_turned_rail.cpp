@@ -82,7 +82,9 @@ class Linear {
     for (int turn = 0; turn < 60; ++turn) {
       RailRow row = plain;
       const Configuration at{u.data(), {}};
-      if (turned) add_turn(model, at, of(at, plain.element, shape, 5), xi, 0., kTop, along, row);
+      SeatMotions seats;
+      if (turned)
+        add_turn(model, at, of(at, plain.element, shape, 5), xi, 0., kTop, along, row, seats);
       solve(row, force, u);
     }
     const Configuration at{u.data(), {}};
@@ -188,7 +190,8 @@ TEST_CASE("the row of a turned rail is the slope of how it lies", "[turn]") {
     const double turn = .5 * (q[5] - q[7]);
     keep_section(q);
     row = {0, element, {}, 0, {}, {}};
-    double height = add_turn(model, at, turn, xi, y, z, normal, row);
+    SeatMotions seats;
+    double height = add_turn(model, at, turn, xi, y, z, normal, row, seats);
     for (int d = 0; d < 3; ++d) height += own[d] * (y * q[3 + d] + z * q[6 + d]);
     return height;
   };
