@@ -15,9 +15,11 @@
 #pragma GCC target("avx2")
 #endif
 #define RAILSTEP_AVX2_KERNELS
+// NOLINTBEGIN(bugprone-suspicious-include): sources, on purpose
 #include "online/beam/chain.cpp"
 #include "online/beam/chain_solve.cpp"
 #include "online/beam/straight_rows.cpp"
+// NOLINTEND(bugprone-suspicious-include)
 
 namespace railstep {
 
