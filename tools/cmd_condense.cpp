@@ -51,16 +51,18 @@ struct Condensed {
   double clipped;                                 // m/N
   std::array<double, 2> band_hz = CondenseScene{}.band_hz;
   std::int64_t bays = 0;
-  // of the receptance error: its frequency, or one without damping; places; mesh of the reference
   // where the window begins, and how long the scene is of which it is part
   nlohmann::ordered_json from_s = nullptr, duration_s = nullptr;
-  nlohmann::ordered_json error_hz = nullptr, undamped_hz = nullptr, places_m = nullptr,
-                         reference_elements = nullptr;
+  // of the receptance error: its frequency, or one without damping; what the search left open over
+  // the largest; places; mesh of the reference
+  nlohmann::ordered_json error_hz = nullptr, undamped_hz = nullptr, unresolved = nullptr,
+                         places_m = nullptr, reference_elements = nullptr;
 
   void take(const ReceptanceError& error, const Track& track) {
     if (error.largest) {
       receptance_error = *error.largest;
       error_hz = error.hz;
+      unresolved = error.unresolved;
     }
     if (error.undamped_hz) undamped_hz = *error.undamped_hz;
     if (!error.largest && !error.undamped_hz) return;  // nothing was asked
@@ -106,6 +108,7 @@ nlohmann::ordered_json to_json(const Condensed& made, const std::vector<std::byt
           {"receptance_band_hz", made.band_hz},
           {"receptance_error_hz", made.error_hz},
           {"receptance_undamped_hz", made.undamped_hz},
+          {"receptance_unresolved", made.unresolved},
           {"receptance_places_m", made.places_m},
           {"receptance_reference_elements_per_bay", made.reference_elements},
           {"transient_error", made.transient_error},
@@ -211,6 +214,9 @@ void print_receptance_error(const nlohmann::ordered_json& r) {
   if (!places.is_null())
     fmt::print(" at {:g} and {:g} m, over the largest receptance there", places[0].get<double>(),
                places[1].get<double>());
+  const auto& unresolved = r["receptance_unresolved"];
+  if (!unresolved.is_null() && unresolved.get<double>() > 1e-2)
+    fmt::print("; known to {:.0e} of itself, where the search ended", unresolved.get<double>());
   if (!undamped.is_null())
     fmt::print("; the track swings without damping at {:.5g} Hz", undamped.get<double>());
   fmt::print("\n");

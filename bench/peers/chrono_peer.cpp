@@ -48,8 +48,8 @@ constexpr double kTolerance = 1e-2;
 constexpr int kFullAssembly = 0xFFFF;
 
 /// When Newton's matrix is made anew. Kept: where Newton fails with the old one, as later releases
-/// than 9 offer. Never, which they offer too, is no choice for the pendulum: 920 of 1000 steps end
-/// at 20 iterations without having converged. On the moving load both are one.
+/// than 9 offer. Never, which they offer too, does not serve for the pendulum: 920 of 1000 steps
+/// end at 20 iterations without having converged. On the moving load both are one.
 enum class Jacobian { every_step, kept };
 
 /// A spring and damper from a node to the ground in each direction. Its Jacobian is given, so that

@@ -4,41 +4,25 @@
 #include <cmath>
 #include <map>
 
+#include "offline/math/golden_section.h"
 #include "offline/math/rational_fit.h"
 
 namespace railstep {
 
 namespace {
 
-constexpr int kBetween = 24;     // places looked at between two samples
-constexpr int kSections = 50;    // of a gap's part: to 4e-11 of it
-constexpr int kAtOnce = 16;      // samples taken before the fits are made anew
-constexpr double kNoise = 1e-9;  // of the largest response: what its solve may be off by
+constexpr int kBetween = 24;      // places looked at between two samples
+constexpr double kWidth = 4e-11;  // of a gap's part, to which a top is narrowed
+constexpr int kAtOnce = 16;       // samples taken before the fits are made anew
+constexpr double kNoise = 1e-9;   // of the largest response: what its solve may be off by
 
 double size_of(const Eigen::VectorXcd& functions) { return functions.cwiseAbs().maxCoeff(); }
 
-/// The top of a fit between two places, by golden section: a peak may be far narrower than they are
-/// apart.
+/// The top of a fit between two places: a peak may be far narrower than they are apart.
 Largest narrowed(const RationalFit& fit, double low, double high) {
-  const double golden = .5 * (std::sqrt(5.) - 1.);
-  const auto size = [&](double hz) { return size_of(fit.at(hz)); };
-  double a = high - golden * (high - low), b = low + golden * (high - low);
-  double at_a = size(a), at_b = size(b);
-  for (int i = 0; i < kSections; ++i)
-    if (at_a > at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = size(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = size(b);
-    }
-  return at_a > at_b ? Largest{a, at_a} : Largest{b, at_b};
+  const auto [hz, size] = golden_section([&](double at) { return size_of(fit.at(at)); }, low, high,
+                                         kWidth * (high - low));
+  return {hz, size};
 }
 
 /// Where a sample is wanted, and how much.
@@ -77,7 +61,7 @@ class Search {
   int samples() const { return static_cast<int>(known_.size()); }
 
   void sample(double hz) {
-    // One beside it is no help.
+    // A frequency next to one that is known tells nothing new.
     const auto next = known_.lower_bound(hz - kNarrowest * hz);
     if (next != known_.end() && next->first < hz + kNarrowest * hz) return;
     const Eigen::MatrixXcd values = responses_(hz);

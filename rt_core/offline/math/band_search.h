@@ -15,10 +15,11 @@ struct Largest {
   double hz = 0., size = 0.;
 };
 
-/// What a search found of each group. Without damping a response has no largest.
+/// What a search found of each group. A response without damping grows without limit at its
+/// resonance, so that it has no largest magnitude.
 struct BandSearch {
   std::vector<Largest> largest;       // [groups]
-  std::optional<double> undamped_hz;  // a peak narrower than kNarrowest; then `largest` is none
+  std::optional<double> undamped_hz;  // a peak narrower than kNarrowest: `largest` says nothing
   double unresolved = 0.;  // what the search left open, over the largest; the worst group
   int solves = 0;
 };
@@ -34,7 +35,8 @@ BandSearch largest_over(const Responses& responses, const std::array<double, 2>&
 
 inline constexpr int kFirstSolves = 40, kMostSolves = 800;
 inline constexpr double kMet = 1e-3, kAgree = 1e-4;
-/// Of a frequency: no peak of a track is so narrow that damps its motion at all.
+/// Width of a peak over its frequency. A peak that is narrower belongs to a motion that nothing
+/// damps.
 inline constexpr double kNarrowest = 1e-8;
 
 }  // namespace railstep

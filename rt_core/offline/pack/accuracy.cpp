@@ -92,7 +92,7 @@ void hold_back_along(const Track& track, Line& line) {
   });
 }
 
-/// Of a track as it stands.
+/// Receptances of all lines of a track together.
 class TrackReceptances {
  public:
   TrackReceptances(const Track& track, const std::vector<RailPoint>& points)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "offline/math/golden_section.h"
 #include "offline/receptance/beam_waves.h"
 
 namespace railstep {
@@ -22,26 +23,8 @@ Extremum narrowed(Receptance& receptance, double low, double high, bool peak) {
     const double magnitude = std::abs(receptance.at(hz)[0]);
     return peak ? magnitude : -magnitude;
   };
-  const double golden = .5 * (std::sqrt(5.) - 1.);
-  double a = high - golden * (high - low), b = low + golden * (high - low);
-  double at_a = height(a), at_b = height(b);
-  while (high - low > 1e-4 * high) {
-    if (at_a > at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = height(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = height(b);
-    }
-  }
-  const double best = at_a > at_b ? a : b;
-  return {peak, best, std::abs(std::max(at_a, at_b))};
+  const auto [hz, top] = golden_section(height, low, high, 1e-4 * high);
+  return {peak, hz, std::abs(top)};
 }
 
 }  // namespace
