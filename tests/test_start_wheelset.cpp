@@ -79,6 +79,31 @@ TEST_CASE("a wheelset on rails that sink differently starts as the step keeps it
   }
 }
 
+TEST_CASE("a flange that the lean would turn into its rail starts beside it", "[start]") {
+  const double softer = GENERATE(2., 8.), dt = 1e-5;
+  const Track track = unequal_track(softer);
+  Wheelset set = flanged_wheelset(1e7, 1e4);
+  set.flange->clearance = 1e-4;  // less than roll times the wheel's radius
+  set.start = 3.5;
+  set.weight = 40e3;
+  set.mass = 4e3;
+  for (const Named& each : all_schemes(track, dt)) {
+    ModelRun run = in_equilibrium(track, {.wheelsets = {set}, .head = kFlangedHead}, each.options);
+    const double* const force = run.state.wheel_force;
+    const double start[2] = {force[0], force[1]}, aside = run.body()[1], roll = run.body()[3];
+    CAPTURE(each.name, softer, aside, roll);
+    CHECK(roll > 1e-3);
+    CHECK(std::abs(aside) > .2 * (roll * .148 - 1e-4));
+    for (int n = 1; n <= 20; ++n) {
+      run.step();
+      CHECK(force[2] == 0.);
+      CHECK(force[3] == 0.);
+      for (const int wheel : {0, 1}) CHECK_THAT(force[wheel], WithinRel(start[wheel], 1e-3));
+    }
+    CHECK(run.seen == Status::ok);
+  }
+}
+
 TEST_CASE("a wheelset that leans on its flange on unequal rails stays at rest", "[start]") {
   const double softer = GENERATE(1., 2., 8.), dt = 1e-4;
   const Track track = unequal_track(softer);

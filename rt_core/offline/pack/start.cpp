@@ -117,7 +117,9 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
         pose.wheel_force[static_cast<std::size_t>(now.number[static_cast<std::size_t>(i)])] =
             now.force[i];
       }
-      most = std::max(most, way.cwiseAbs().maxCoeff());
+      const double aside = way_off_flanges(model, b, at);
+      p[1] += aside;
+      most = std::max({most, way.cwiseAbs().maxCoeff(), std::abs(aside)});
       pose.wheelsets.push_back({0., p[1], p[2], p[3], 0., 0.});
     }
     if (most <= kNothing || (most < kRounding && !(most < before))) return pose;

@@ -78,6 +78,18 @@ Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
   return stance;
 }
 
+double way_off_flanges(const Model& model, std::int32_t b, const Configuration& at) {
+  const OwnContacts own = contacts_of(model, b);
+  if (own.count == 2 || side_force(model.wheelset[b]) != 0.) return 0.;
+  WheelContact face[2];
+  find_flanges(model, flange_of(model, own.at[2]), at, face);
+  double way = 0.;
+  for (const WheelContact& touched : face)
+    if (touched.on_rail && touched.penetration > 0.)
+      way += touched.penetration / touched.body_row[1];
+  return way;
+}
+
 Eigen::VectorXd way_to_depths(const Model& model, const Stance& stance,
                               const Eigen::VectorXd& missed) {
   Eigen::VectorXd too_deep(stance.count);

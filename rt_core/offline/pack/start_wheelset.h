@@ -29,6 +29,11 @@ struct Stance {
 /// Throws std::invalid_argument where a wheel is off its rail or would have to pull.
 Stance stance_of(const Model& model, std::int32_t b, const Configuration& at);
 
+/// How far along y takes a wheelset that no force pushes aside off a flange that its lean turns
+/// into the rail, m; 0 where none touches. Its treads bear nothing sideways, so neither may a
+/// flange.
+double way_off_flanges(const Model& model, std::int32_t b, const Configuration& at);
+
 /// What of the coordinates that follow takes each contact to the depth that its force wants,
 /// [count].
 /// @param missed  [count] residual displacement of each contact's rail along its normal, m
