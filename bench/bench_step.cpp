@@ -1,4 +1,4 @@
-// One step of the peers' moving-load scene (lines_to_beat.csv), with its error from the same run.
+// One step of the peers' moving-load scene (docs/peers.md), with its error from the same run.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
