@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "online/step/many.h"
 #include "online/step/probe.h"
 #include "online/step/step.h"
 #include "simulation.h"
@@ -76,15 +75,8 @@ TEST_CASE("a frame of every scene fits the stack that the step is said to need",
         read_probes(run->model(), run->state, outputs, probes.data());
       }
     });
-    std::vector<std::byte> shared(static_cast<std::size_t>(many_bytes(run->model())));
-    std::vector<Outputs> published(1);
-    const std::size_t of_many = stack_of([&] {
-      ManyWorkspace many = many_workspace_on(run->model(), shared.data());
-      static_cast<void>(advance_frames(run->model(), &run->state, 1, many, published.data()));
-    });
-    std::printf("%-20s %7zu bytes of stack, %7zu of many states\n", entry.path().stem().c_str(),
-                used - idle, of_many - idle);
-    most = std::max({most, used - idle, of_many - idle});
+    std::printf("%-20s %7zu bytes of stack\n", entry.path().stem().c_str(), used - idle);
+    most = std::max(most, used - idle);
   }
 #if !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
   CHECK(most <= kStepStack);

@@ -31,8 +31,6 @@ struct State {
 inline constexpr Status kLatched =
     Status::nonfinite_input | Status::nonfinite_state | Status::force_saturated;
 
-struct Common;  // step/common.h
-
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
   double* u_star;  // [unknowns]
@@ -47,7 +45,6 @@ struct Workspace {
   double* start;      // [2][unknowns] of schemes of two stages: u and v at the step's start
   double* unit;       // [contacts][unknowns] as solved, of a unit force at each contact
   double* unit_imaginary;
-  Common* common = nullptr;  // with the states stepped beside this one; null: it is alone
 };
 
 /// What an input holds; 0 where there is no state yet.

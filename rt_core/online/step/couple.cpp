@@ -1,6 +1,5 @@
 #include "online/step/couple.h"
 
-#include "online/step/common.h"
 #include "online/step/fixed_port.h"
 #include "online/step/flange.h"
 #include "online/step/load.h"
@@ -18,16 +17,14 @@ namespace {
 /// Contacts where the forces of the step act: on u + dt v of bodies and banded lines at its end; in
 /// the middle of it where forces are held, with condensed lines as they stand (their fastest rates
 /// are far above 1/dt).
-/// @param found  they stand in `c` already
 void locate_contacts(const Model& model, const Stage& stage, const State& s, Workspace& w,
-                     Coupling& c, bool found) noexcept {
+                     Coupling& c) noexcept {
   const double ahead = (model.condensed != 0 ? .5 : 1.) * stage.span;
   // Irregularities are those of where the penetration is taken; of a mean, those of the middle.
   const double later = model.scheme.mean != 0 ? 0. : model.scheme.theta * stage.span - ahead;
 #pragma omp simd
   for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
-  if (found) return;
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b, later * s.v[set.first]);
@@ -155,32 +152,22 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
   }
 }
 
-/// Whether another state found already where the wheels stand at this step; if not this one does.
-bool take_placed(std::int64_t step, Workspace& w) noexcept {
-  if (w.common == nullptr) return false;
-  const bool found = w.common->placed == step;
-  w.common->placed = step;
-  return found;
-}
-
 }  // namespace
 
 CoupleResult couple(const Model& model, const Stage& stage, State& state, Workspace& w) noexcept {
   CoupleResult result{};
-  Coupling alone;
-  Coupling& c = w.common == nullptr ? alone : w.common->coupling;
-  const bool found = take_placed(stage.step, w);
+  Coupling c;
   c.wheels = contact_count(model);
   c.ports = c.wheels + model.fixed.count;
   const double time = time_of(model.scheme, stage);
-  locate_contacts(model, stage, state, w, c, found);
-  respond(model, state, w, c, found);
-  if (!found) find_loaded(model, stage, c);
+  locate_contacts(model, stage, state, w, c);
+  respond(model, state, w, c);
+  find_loaded(model, stage, c);
   free_wheelsets(model, stage, state, w, c);
   free_vehicles(model, time, state, w, c);
   find_vehicle_laws(model, time, state, w, c);
   find_flange_laws(model, state, w, c);
-  if (!found) compliance(model, w, c);
+  compliance(model, w, c);
   track_penetration(model, state, w, c);
   if (model.scheme.mean != 0) find_means(model, state, w, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "online/math/finite.h"
-#include "online/step/common.h"
 #include "online/step/load.h"
 #include "online/step/residual.h"
 #include "online/step/vehicle_contact.h"
@@ -134,19 +133,15 @@ void collect(const SystemResult& met, Outputs& out) noexcept {
   for (int i = 0; i < kMostNamedRows; ++i) out.redundant_row[i] = met.redundant_row[i];
 }
 
-void publish(const Model& model, const State& state, Outputs& outputs, Common* common) noexcept {
-  const bool found = common != nullptr && common->published == state.steps;
+void publish(const Model& model, const State& state, Outputs& outputs) noexcept {
   for (std::int32_t i = 0; i < model.loads; ++i) {
-    PlacedLoad own;
-    PlacedLoad& at = common == nullptr ? own : common->load[i];
-    if (!found) at = place(model, model.load[i], state.steps);
+    const PlacedLoad at = place(model, model.load[i], state.steps);
     outputs.load_x[i] = at.x;
     outputs.load_place[i] = at.place;
     outputs.load_force[i] = at.force;
     outputs.load_deflection[i] = at.on_rail ? deflection(model, at, standing(model, state)) : 0.;
     if (!at.on_rail) outputs.status = outputs.status | Status::off_rail;
   }
-  if (common != nullptr) common->published = state.steps;
   RailForce force[kMaxRailForces];
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < model.loads; ++i)

@@ -26,9 +26,7 @@ void collect(const Model& model, const State& state, const CoupleResult& met,
 void collect(const SystemResult& met, Outputs& outputs) noexcept;
 
 /// Loads and health of a state as it stands, on what a frame has collected.
-/// @param common  with states beside this one, or null
-void publish(const Model& model, const State& state, Outputs& outputs,
-             Common* common = nullptr) noexcept;
+void publish(const Model& model, const State& state, Outputs& outputs) noexcept;
 
 /// All of the outputs of a state from which no step was made.
 void start_outputs(const Model& model, const State& state, Outputs& outputs) noexcept;

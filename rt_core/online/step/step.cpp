@@ -5,7 +5,6 @@
 #include "online/math/float_mode.h"
 #include "online/math/tiny.h"
 #include "online/model/course.h"
-#include "online/step/common.h"
 #include "online/step/couple.h"
 #include "online/step/external.h"
 #include "online/step/follow.h"
@@ -13,7 +12,6 @@
 #include "online/step/input.h"
 #include "online/step/load.h"
 #include "online/step/publish.h"
-#include "online/step/stages.h"
 #include "online/system/system_step.h"
 
 namespace railstep {
@@ -69,18 +67,6 @@ void solve_bands(const Model& model, Workspace& w) noexcept {
     solve_band<1>(model.line[l].step, w.solved + model.line[l].first, 0);
 }
 
-/// forces() as right-hand side, found once for all states that are stepped side by side.
-void press(const Model& model, const Stage& stage, Workspace& w) noexcept {
-  Common* const common = w.common;
-  if (common == nullptr) return forces(model, stage.step, w.solved, w.imaginary, stage.before);
-  if (common->pressed != stage.step)
-    forces(model, stage.step, common->force_re, common->force_im, stage.before);
-  common->pressed = stage.step;
-  const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(model.unknowns);
-  std::memcpy(w.solved, common->force_re, bytes);
-  if (model.condensed != 0) std::memcpy(w.imaginary, common->force_im, bytes);
-}
-
 /// Modes without wheels at the step's end; the forces q1 in `solved` pass into the state.
 void advance_modes(const LineModel& line, State& s, Workspace& w) noexcept {
   const Modal& m = line.modal;
@@ -115,7 +101,7 @@ void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
 /// Right-hand sides of banded lines, and condensed ones without wheels at the step's end.
 void advance_track(const Model& model, const Stage& stage, State& s, Workspace& w) noexcept {
   if (model.condensed != 0 && !is_pressed(model)) return keep_modes(model, s, w);
-  press(model, stage, w);
+  forces(model, stage.step, w.solved, w.imaginary, stage.before);
   if (model.condensed == 0) return add_inertia(model, w);
   for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], s, w);
 }
@@ -166,10 +152,9 @@ void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& o
   finish_stage(model, stage, state, w);
 }
 
-}  // namespace
-
-void begin_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
-                ExternalContact* external) noexcept {
+/// @param external  [external_wheels] overwritten
+void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
+               ExternalContact* external) noexcept {
   follow_traffic(model, state.steps + 1, state, w);
   const Stage stage = last_stage(model.scheme, state.steps + 1);
   if (model.scheme.part > 0.) {
@@ -180,19 +165,17 @@ void begin_step(const Model& model, State& state, Workspace& w, Outputs& outputs
   }
   advance_track(model, stage, state, w);
   if (model.external_wheels > 0) press_external(model, state.steps + 1, state, w, external);
-}
-
-void end_step(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
-  const Stage stage = last_stage(model.scheme, state.steps + 1);
   if (has_ports(model))
     collect(model, state, couple(model, stage, state, w), outputs);
-  else if (model.condensed == 0 && w.common == nullptr)
+  else if (model.condensed == 0)
     solve_bands(model, w);
   if (model.system.unknowns > 0) collect(solve_system(model, state, w), outputs);
   finish_stage(model, stage, state, w);
   if (model.system.unknowns > 0) outputs.status = outputs.status | finish_system(model, state, w);
   ++state.steps;
 }
+
+}  // namespace
 
 void forces(const Model& model, std::int64_t step, double* re, double* im, double before) noexcept {
   const double* constant = model.constant_force;
@@ -211,32 +194,14 @@ void forces(const Model& model, std::int64_t step, double* re, double* im, doubl
   }
 }
 
-void begin_frame(const Model& model, const State& state, Outputs& outputs, Outputs& last) noexcept {
-  copy_published(model, outputs, last);
-  start_frame(model, state, outputs);
-}
-
-void end_frame(const Model& model, State& state, const Workspace& w, const Outputs& last,
-               Outputs& outputs) noexcept {
-  publish(model, state, outputs, w.common);
-  if (has(outputs.status, Status::nonfinite_state)) copy_published(model, last, outputs);
-  state.latched = state.latched | (outputs.status & kLatched);
-}
-
 namespace {
-
-/// @param external  [external_wheels] overwritten
-void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
-               ExternalContact* external) noexcept {
-  begin_step(model, state, w, outputs, external);
-  end_step(model, state, w, outputs);
-}
 
 // Never inlined: no arithmetic of theirs may leave the mode that their callers set.
 [[gnu::noinline]] void make_frame(const Model& model, State& state, Workspace& workspace,
                                   Outputs& outputs) noexcept {
   Outputs last;
-  begin_frame(model, state, outputs, last);
+  copy_published(model, outputs, last);
+  start_frame(model, state, outputs);
   ExternalContact external[kMaxExternalWheels];
   for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
     make_step(model, state, workspace, outputs, external);
@@ -244,7 +209,9 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
     publish_external(model, state, external, outputs);
     publish_external_rates(model, state, external, workspace, outputs);
   }
-  end_frame(model, state, workspace, last, outputs);
+  publish(model, state, outputs);
+  if (has(outputs.status, Status::nonfinite_state)) copy_published(model, last, outputs);
+  state.latched = state.latched | (outputs.status & kLatched);
 }
 
 [[gnu::noinline]] Status respond(const Model& model, const double* inputs, const State& state,

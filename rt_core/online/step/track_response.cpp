@@ -16,7 +16,7 @@ bool presses(const Coupling& c, int wheel, const LineModel& line) noexcept {
 }
 
 /// Solves each banded line for itself and for the wheels that touch it, together where they can be.
-void solve_bands(const Model& model, Workspace& w, const Coupling& c, bool own) noexcept {
+void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (int i = 0; i < c.wheels; ++i) {
     double* rhs = w.unit + i * stride;
@@ -29,11 +29,9 @@ void solve_bands(const Model& model, Workspace& w, const Coupling& c, bool own) 
     double* unit = w.unit + model.line[l].first;
     const bool both = model.line[l].rail_factor[0] != 0. && model.line[l].rail_factor[1] != 0.;
     const int together = both && c.wheels >= 2 ? 2 : 0;
-    if (together == 2 && own)
+    if (together == 2)
       solve_band<3>(model.line[l].step, x, stride);
-    else if (together == 2)
-      solve_band<2>(model.line[l].step, unit, stride);
-    else if (own)
+    else
       solve_band<1>(model.line[l].step, x, stride);
     for (int i = together; i < c.wheels; ++i)
       if (c.contact[i].on_rail && model.line[l].rail_factor[c.contact[i].row.rail] != 0.)
@@ -82,9 +80,11 @@ double line_under(const Model& model, const Workspace& w, const Coupling& c, con
 
 }  // namespace
 
-void respond(const Model& model, const State& s, Workspace& w, Coupling& c, bool found) noexcept {
-  if (!found && model.condensed != 0) respond_modes(model, w, c);
-  if (!found && model.condensed == 0) solve_bands(model, w, c, w.common == nullptr);
+void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
+  if (model.condensed != 0)
+    respond_modes(model, w, c);
+  else
+    solve_bands(model, w, c);
   for (int i = 0; i < c.wheels; ++i)
     c.seen[i] = model.condensed != 0 ? track_under(model, w, c, i, s.u, s.v)
                                      : track_under(model, w, c, i, w.scaled, nullptr);

@@ -12,8 +12,7 @@ inline Configuration located_on(const Model& model, const State& s, const Worksp
 /// Solves banded lines for their own right-hand side (in workspace.solved) and the lines that a
 /// wheel presses for a unit force there (unit[wheel]); of condensed lines the force is held over
 /// the step. Notes where the lines were seen under each wheel.
-/// @param found  the wheels' unit forces are solved for already
-void respond(const Model& model, const State& s, Workspace& w, Coupling& c, bool found) noexcept;
+void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
 
 /// Displacement under wheel `i` of the track moved by unit forces at wheel `j`, at the step's end.
 double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
