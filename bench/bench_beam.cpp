@@ -11,7 +11,7 @@
 
 #include "measure.h"
 #include "offline/element/matrices.h"
-#include "offline/element/straight.h"
+#include "offline/element/straight_beam.h"
 #include "online/beam/kernels.h"
 #include "online/beam/straight_nodes.h"
 

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "measure.h"
-#include "offline/element/straight.h"
+#include "offline/element/straight_beam.h"
 #include "online/beam/kernels.h"
 
 namespace railstep {

@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "online/step/step.h"
-#include "simulation.h"
+#include "run/simulation.h"
 
 namespace railstep {
 namespace {

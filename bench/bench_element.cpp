@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "offline/analysis/statics.h"
 #include "offline/element/matrices.h"
-#include "offline/track/statics.h"
 
 namespace railstep {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "endless_scene.h"
 #include "measure.h"
-#include "offline/pack/start.h"
+#include "offline/start/start.h"
 
 namespace railstep {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "condense_error.h"
+#include "answer/condense_error.h"
 #include "online/step/step.h"
-#include "simulation.h"
+#include "run/simulation.h"
 
 namespace railstep {
 namespace {

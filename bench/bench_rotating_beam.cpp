@@ -1,10 +1,10 @@
 // One beam spun up by its hub in five formulations: time per step and error from the same run, by
-// speed of the hub, mesh or modes, and step. tests/spin_up.h has the scene.
+// speed of the hub, mesh or modes, and step. tests/support/spin_up.h has the scene.
 #include <benchmark/benchmark.h>
 
 #include <map>
 
-#include "../tests/spin_up.h"
+#include "support/spin_up.h"
 
 namespace railstep {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "offline/pack/start.h"
+#include "offline/start/start.h"
 #include "offline/vehicle/kinds.h"
 #include "peers/moving_load.h"
 

@@ -8,10 +8,10 @@
 #include <functional>
 #include <stdexcept>
 
-#include "../tests/pendulum_ancf.h"
-#include "../tests/pendulum_frame.h"
-#include "../tests/pendulum_ida.h"
-#include "../tests/pendulum_rigid.h"
+#include "support/pendulum_ancf.h"
+#include "support/pendulum_frame.h"
+#include "support/pendulum_ida.h"
+#include "support/pendulum_rigid.h"
 
 namespace railstep {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "offline/irregularity/generate.h"
 #include "offline/pack/pack.h"
-#include "offline/pack/scheme.h"
+#include "offline/pack/time_schemes.h"
 #include "offline/vehicle/kinds.h"
 #include "online/step/step.h"
 

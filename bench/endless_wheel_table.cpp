@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "endless_scene.h"
-#include "offline/pack/start.h"
+#include "offline/start/start.h"
 #include "offline/track/functional.h"
-#include "online/step/probe.h"
+#include "online/track/track_sensor.h"
 
 namespace railstep {
 namespace {
@@ -44,23 +44,23 @@ Traffic wheel_over(double x, double hz) {
 }
 
 /// Height of a sleeper, and the force that its pad bears.
-void add_seat(const Track& track, int seat, std::vector<Probe>& probes) {
+void add_seat(const Track& track, int seat, std::vector<TrackSensor>& track_sensors) {
   Functional sleeper;
   sleeper.sleeper.push_back({0, seat, 2, 1.});
-  probes.push_back({.displacement = 1., .track = sleeper});
-  probes.push_back({.displacement = track.support.stiffness[2],
-                    .velocity = track.support.damping[2],
-                    .track = pad_gap(track, 0, seat)});
+  track_sensors.push_back({.displacement = 1., .track = sleeper});
+  track_sensors.push_back({.displacement = track.support.stiffness[2],
+                           .velocity = track.support.damping[2],
+                           .track = pad_gap(track, 0, seat)});
 }
 
 /// Steps of a run, `finer` of them in one of kStep; forces in the middle of such a step, as the
 /// ring holds them, all else at its end.
-/// @param seat  index of the probes to read after n steps of kStep
+/// @param seat  index of the track sensors to read after n steps of kStep
 template <typename Seat>
 Quantities heard(const Track& track, PackedModel& packed, int finer, const Seat& seat) {
   packed.set_start(start_in_equilibrium(track, packed, 0.));
   Run run(packed);
-  std::vector<double> probe(static_cast<std::size_t>(packed.model().probe.count));
+  std::vector<double> track_sensor(static_cast<std::size_t>(packed.model().track_sensor.count));
   Quantities found;
   for (int n = 1; n <= std::lround(kEnd / kStep); ++n) {
     const bool wanted = n * kStep > kSettled;
@@ -69,9 +69,9 @@ Quantities heard(const Track& track, PackedModel& packed, int finer, const Seat&
       if (wanted && part == (finer + 1) / 2) found[0].push_back(out.wheel_force[0]);
     }
     if (!wanted) continue;
-    read_probes(packed.model(), run.state(), run.outputs(), probe.data());
+    read_track_sensors(packed.model(), run.state(), run.outputs(), track_sensor.data());
     found[1].push_back(run.outputs().wheel_rail_z[0]);
-    for (const std::size_t k : {0u, 1u}) found[2 + k].push_back(probe[2 * seat(n) + k]);
+    for (const std::size_t k : {0u, 1u}) found[2 + k].push_back(track_sensor[2 * seat(n) + k]);
   }
   return found;
 }
@@ -79,7 +79,8 @@ Quantities heard(const Track& track, PackedModel& packed, int finer, const Seat&
 Quantities reference(double hz, int finer) {
   const Track track = track_of(200, 8, 1);
   Traffic traffic = wheel_over(54., hz);
-  for (int seat = 0; seat < kSeats; ++seat) add_seat(track, kFirstSeat + seat, traffic.probes);
+  for (int seat = 0; seat < kSeats; ++seat)
+    add_seat(track, kFirstSeat + seat, traffic.track_sensors);
   PackedModel packed(track, traffic,
                      {.scheme = generalised_alpha(kStep / finer, .6), .residual_points = 8});
   return heard(track, packed, finer, [](int n) {
@@ -90,7 +91,7 @@ Quantities reference(double hz, int finer) {
 Quantities on_ring(double hz, int bays, int modes) {
   const Track ring = ring_of(bays, 1, 8);
   Traffic traffic = wheel_over(0., hz);
-  add_seat(ring, bays / 2 + 1, traffic.probes);
+  add_seat(ring, bays / 2 + 1, traffic.track_sensors);
   PackedModel packed(ring, traffic, ring_options(bays, modes, kStep));
   return heard(ring, packed, 1, [](int) { return std::size_t{0}; });
 }

@@ -7,12 +7,12 @@
 #include <limits>
 #include <vector>
 
-#include "offline/system/energy.h"
 #include "offline/system/pack_system.h"
+#include "offline/system/system_energy.h"
 #include "online/step/step.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"
-#include "online/system/sense.h"
+#include "online/system/sensor.h"
 
 namespace railstep {
 
@@ -37,7 +37,7 @@ class Rollout {
   Status step() { return advance_frame(model(), state_, workspace_, outputs_); }
   /// x and z of the first sensor, m.
   Eigen::Vector2d place() const {
-    const PointMotion at = sense(model(), state_, 0);
+    const PointMotion at = sensor_motion(model(), state_, 0);
     return {at.position[0], at.position[2]};
   }
 

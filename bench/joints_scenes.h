@@ -92,7 +92,7 @@ inline JointScene rigid_pendulum() {
 inline Eigen::Vector2d place_at_one_second(const System& system, double dt) {
   SystemOptions options;
   options.scheme = generalised_alpha(dt, .9);
-  options.hold = Hold::direct;
+  options.constraint_method = ConstraintMethod::direct;
   Rollout run(system, options);
   for (int k = 0; k < std::lround(1. / dt); ++k) (void)run.step();
   return run.place();

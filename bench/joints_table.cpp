@@ -24,21 +24,23 @@ constexpr NamedScheme kSchemes[] = {{"euler", -1.},
 
 struct Way {
   const char* name;
-  Hold hold;
+  ConstraintMethod constraint_method;
   double alpha_dt = 0.;  // Baumgarte's alpha = beta times the step; 0: the default
   double alpha = 0.;     // the same in 1/s, where it does not follow the step
 };
-constexpr Way kWays[] = {{"augmented_lagrangian", Hold::augmented_lagrangian},
-                         {"baumgarte", Hold::baumgarte},
-                         {"baumgarte_20_per_s", Hold::baumgarte, 0., 20.},
-                         {"baumgarte_1_per_dt", Hold::baumgarte, 1.},
-                         {"index_1", Hold::baumgarte, 0., 1e-9},
-                         {"gear_gupta_leimkuhler", Hold::gear_gupta_leimkuhler},
-                         {"direct", Hold::direct}};
+constexpr Way kWays[] = {{"augmented_lagrangian", ConstraintMethod::augmented_lagrangian},
+                         {"baumgarte", ConstraintMethod::baumgarte},
+                         {"baumgarte_20_per_s", ConstraintMethod::baumgarte, 0., 20.},
+                         {"baumgarte_1_per_dt", ConstraintMethod::baumgarte, 1.},
+                         {"index_1", ConstraintMethod::baumgarte, 0., 1e-9},
+                         {"gear_gupta_leimkuhler", ConstraintMethod::gear_gupta_leimkuhler},
+                         {"direct", ConstraintMethod::direct}};
 
-bool allowed(Hold hold, const NamedScheme& scheme) {
-  if (hold == Hold::direct && scheme.rho == 1.) return false;  // refused: it is not stable
-  return scheme.rho <= 1. || hold == Hold::augmented_lagrangian || hold == Hold::direct;
+bool allowed(ConstraintMethod hold, const NamedScheme& scheme) {
+  if (hold == ConstraintMethod::direct && scheme.rho == 1.)
+    return false;  // refused: it is not stable
+  return scheme.rho <= 1. || hold == ConstraintMethod::augmented_lagrangian ||
+         hold == ConstraintMethod::direct;
 }
 
 SystemOptions options_of(const Way& way, const NamedScheme& scheme, double dt, int cap) {
@@ -47,7 +49,7 @@ SystemOptions options_of(const Way& way, const NamedScheme& scheme, double dt, i
              : scheme.rho > 1. ? energy_momentum(dt)
                                : generalised_alpha(dt, scheme.rho);
   o.energy_momentum = scheme.rho > 1.;
-  o.hold = way.hold;
+  o.constraint_method = way.constraint_method;
   o.alpha = o.beta = way.alpha > 0. ? way.alpha : way.alpha_dt / dt;
   o.cap = cap;
   o.penalty = 1e9;  // the default, for the table to name
@@ -71,7 +73,7 @@ class Table {
     const char* tangent = o.renew == Renew::every_iteration ? "every_iteration"
                           : o.renew == Renew::every_step    ? "every_step"
                                                             : "kept";
-    const bool damped = way.hold == Hold::baumgarte;
+    const bool damped = way.constraint_method == ConstraintMethod::baumgarte;
     std::printf("%s,%s,%s,%g,%d,%g,%g,%g,%s,%.2e,", scene_.name.c_str(), way.name, scheme.name,
                 o.scheme.dt, o.cap, o.penalty, damped ? alpha : 0., damped ? beta : 0., tangent,
                 o.tolerance);
@@ -91,7 +93,8 @@ void ways(const Table& table) {
     for (const NamedScheme& scheme : kSchemes)
       for (const double dt : kSteps)
         for (const int cap : kCaps)
-          if (allowed(way.hold, scheme)) table.row(way, scheme, options_of(way, scheme, dt, cap));
+          if (allowed(way.constraint_method, scheme))
+            table.row(way, scheme, options_of(way, scheme, dt, cap));
 }
 
 void penalties(const Table& table) {
@@ -122,7 +125,7 @@ void tangents(const Table& table) {
     for (const double dt : {4e-3, 1e-3, 2.5e-4})
       for (const Renew renew : {Renew::every_iteration, Renew::every_step, Renew::kept})
         for (const NamedScheme& scheme : {kSchemes[2], kSchemes[4]}) {
-          if (!allowed(way.hold, scheme)) continue;
+          if (!allowed(way.constraint_method, scheme)) continue;
           SystemOptions o = options_of(way, scheme, dt, 20);
           o.renew = renew;
           table.row(way, scheme, o);

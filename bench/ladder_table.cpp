@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "endless_scene.h"
-#include "offline/pack/start.h"
-#include "online/step/probe.h"
+#include "offline/start/start.h"
+#include "online/track/track_sensor.h"
 
 namespace railstep {
 namespace {
@@ -30,8 +30,8 @@ Traffic passing(double hz) {
   (hz > 0. ? load.amplitude : load.force) = -kForce;
   load.frequency = hz;
   return {.loads = {load},
-          .probes = {{.displacement = -200e6, .velocity = -20e3, .track = gap},
-                     {.displacement = 1., .track = {.sleeper = {{0, kSeat, 2, 1.}}}}}};
+          .track_sensors = {{.displacement = -200e6, .velocity = -20e3, .track = gap},
+                            {.displacement = 1., .track = {.sleeper = {{0, kSeat, 2, 1.}}}}}};
 }
 
 Rows rows_of(const Track& track, double hz, PackOptions options, double step) {
@@ -42,12 +42,12 @@ Rows rows_of(const Track& track, double hz, PackOptions options, double step) {
   Rows rows;
   for (int frame = 1; frame <= kFrames; ++frame) {
     run.frame();
-    double probe[2];
-    read_probes(packed.model(), run.state(), run.outputs(), probe);
+    double track_sensor[2];
+    read_track_sensors(packed.model(), run.state(), run.outputs(), track_sensor);
     if (frame <= kSettled) continue;
     rows[0].push_back(run.outputs().load_deflection[0]);
-    rows[1].push_back(probe[0]);
-    rows[2].push_back(probe[1]);
+    rows[1].push_back(track_sensor[0]);
+    rows[2].push_back(track_sensor[1]);
   }
   return rows;
 }

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "../tests/pendulum_core.h"
 #include "online/step/step.h"
-#include "online/system/sense.h"
+#include "online/system/sensor.h"
+#include "support/pendulum_core.h"
 
 namespace railstep {
 
@@ -58,7 +58,7 @@ inline double error_of_c(Pendulum& run) {
     const double time = n * kPendulumStep;
     const double at = std::round(time / known.step);
     if (std::abs(at * known.step - time) > 1e-9) continue;
-    const PointMotion c = sense(run.packed.model(), run.state, 2);
+    const PointMotion c = sensor_motion(run.packed.model(), run.state, 2);
     const HingeAndEnd want = known.at.at(static_cast<std::size_t>(at));
     worst = std::max(worst, std::hypot(c.position[0] - want[2], c.position[2] - want[3]));
   }

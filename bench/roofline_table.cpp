@@ -45,7 +45,7 @@ double least_time(int blocks, const Call& call) {
 
 /// Multiplications and additions that wait for nothing, flops/s: seven chains of each in vectors.
 double peak_flops() {
-  constexpr int kLanes = 14, kTurns = 4096;
+  constexpr int kLanes = 14, kIterations = 4096;
   double product[kLanes], sum[kLanes];
   std::fill(product, product + kLanes, 1.);
   std::fill(sum, sum + kLanes, 0.);
@@ -53,7 +53,7 @@ double peak_flops() {
     double p[kLanes], s[kLanes];
     std::copy(product, product + kLanes, p);
     std::copy(sum, sum + kLanes, s);
-    for (int turn = 0; turn < kTurns; ++turn) {
+    for (int turn = 0; turn < kIterations; ++turn) {
 #pragma omp simd
       for (int i = 0; i < kLanes; ++i) p[i] *= .999999;
 #pragma omp simd
@@ -64,7 +64,7 @@ double peak_flops() {
     keep(product);
     keep(sum);
   });
-  return 2. * kLanes * kTurns / time;
+  return 2. * kLanes * kIterations / time;
 }
 
 /// Bytes read per second, of an array of this size: joined by what takes less time than to read

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <string>
 
-#include "../tests/contact_step.h"
-#include "../tests/stiff_track.h"
+#include "support/contact_step.h"
+#include "support/stiff_track.h"
 
 using namespace railstep;
 

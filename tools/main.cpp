@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "arguments.h"
-#include "cache_sizes.h"
-#include "command.h"
-#include "one_line.h"
+#include "build/cache_sizes.h"
+#include "commands/arguments.h"
+#include "commands/command.h"
+#include "text/one_line.h"
 
 /// The program: parses, runs the chosen subcommand, and turns errors into one line and exit code 2.
 int main(int argc, char** argv) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "offline/pack/pack.h"
-#include "offline/pack/scheme.h"
+#include "offline/pack/time_schemes.h"
 #include "online/step/step.h"
 
 // The peers' moving-load scene (reference.md, config/scenes/moving_load.toml), and railstep on it.

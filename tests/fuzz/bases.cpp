@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "oracle.h"
-#include "simulation.h"
+#include "run/simulation.h"
 
 namespace railstep::fuzz {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "bases.h"
-#include "heap_count.h"
 #include "online/interface/railstep.h"
 #include "oracle.h"
 #include "patch.h"
+#include "run/heap_count.h"
 
 using namespace railstep;
 using namespace railstep::fuzz;

@@ -1,10 +1,10 @@
 // A record of irregularities (CSV), and a scene whose wheel runs over it.
 #include <cmath>
 
-#include "irregularity_file.h"
 #include "mutate.h"
-#include "online/contact/signal.h"
+#include "online/model/signal.h"
 #include "oracle.h"
+#include "scene/irregularity_file.h"
 #include "scenes.h"
 
 using namespace railstep;

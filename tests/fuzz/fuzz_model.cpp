@@ -5,7 +5,7 @@
 
 #include "bases.h"
 #include "offline/pack/artefact.h"
-#include "online/model/load.h"
+#include "online/model/load_model.h"
 #include "oracle.h"
 #include "patch.h"
 #include "stepping.h"

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <vector>
 
-#include "hil_inputs.h"
-#include "hil_packet.h"
-#include "hil_receiver.h"
+#include "hil/hil_inputs.h"
+#include "hil/hil_packet.h"
+#include "hil/hil_receiver.h"
 #include "online/math/crc32.h"
 #include "oracle.h"
 #include "patch.h"

@@ -8,9 +8,9 @@
 #include "online/model/block.h"
 #include "oracle.h"
 #include "patch.h"
-#include "recording.h"
-#include "scene_system.h"
-#include "simulate.h"
+#include "run/recording.h"
+#include "run/simulate.h"
+#include "scene/scene_system.h"
 
 using namespace railstep;
 using namespace railstep::fuzz;

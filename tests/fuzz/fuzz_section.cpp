@@ -4,7 +4,7 @@
 #include "mutate.h"
 #include "oracle.h"
 #include "scenes.h"
-#include "section_file.h"
+#include "section/section_file.h"
 
 using namespace railstep;
 using namespace railstep::fuzz;

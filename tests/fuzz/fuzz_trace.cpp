@@ -4,8 +4,8 @@
 
 #include "mutate.h"
 #include "oracle.h"
-#include "trace.h"
-#include "trace_compare.h"
+#include "run/trace.h"
+#include "run/trace_compare.h"
 
 using namespace railstep;
 using namespace railstep::fuzz;

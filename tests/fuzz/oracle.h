@@ -7,7 +7,7 @@
 #include <string_view>
 #include <typeinfo>
 
-#include "read.h"
+#include "text/read.h"
 
 /// One input of a fuzzer, as libFuzzer and replay_main.cpp call it.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

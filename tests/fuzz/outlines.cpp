@@ -2,9 +2,10 @@
 
 #include <cmath>
 
-#include "fit_profile.h"
 #include "oracle.h"
-#include "section_file.h"
+#include "report/fit_report.h"
+#include "section/fit_profile.h"
+#include "section/section_file.h"
 
 namespace railstep::fuzz {
 namespace {

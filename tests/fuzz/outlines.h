@@ -1,5 +1,5 @@
 #pragma once
-#include "profile.h"
+#include "section/profile.h"
 
 namespace railstep::fuzz {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "oracle.h"
-#include "simulation.h"
+#include "run/simulation.h"
 #include "stepping.h"
 
 namespace railstep::fuzz {

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scene_system.h"
+#include "scene/scene_system.h"
 
 namespace railstep::fuzz {
 

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <limits>
 
-#include "heap_count.h"
 #include "online/model/block.h"
-#include "online/model/load.h"
+#include "online/model/load_model.h"
 #include "online/model/snapshot.h"
 #include "oracle.h"
+#include "run/heap_count.h"
 
 namespace railstep::fuzz {
 namespace {

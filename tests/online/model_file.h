@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "online/model/load.h"
+#include "online/model/load_model.h"
 #include "online/model/state.h"
 
 namespace railstep {

@@ -13,12 +13,12 @@
 
 #include "online/beam/kernels.h"
 #include "online/math/float_mode.h"
-#include "online/model/load.h"
+#include "online/model/load_model.h"
 #include "online/model/state.h"
-#include "online/step/probe.h"
 #include "online/step/self_check.h"
 #include "online/step/step.h"
-#include "online/system/sense.h"
+#include "online/system/sensor.h"
+#include "online/track/track_sensor.h"
 
 using namespace railstep;
 
@@ -69,7 +69,7 @@ class Run {
       : model_(model),
         memory_(doubles(state_doubles(model), 0.)),
         scratch_(doubles(workspace_doubles(model), 0.)),
-        probes_(doubles(model.probe.count, 0.)),
+        track_sensors_(doubles(model.track_sensor.count, 0.)),
         state_(state_on(model, memory_.data())),
         workspace_(workspace_on(model, scratch_.data())),
         modes_(modes) {
@@ -135,11 +135,11 @@ class Run {
     published_.add(&o.constraint_violation, 1);
     published_.add(&o.iterations, 1);
     published_.add(&o.force_residual, 1);
-    called([&] { read_probes(model_, state_, outputs_, probes_.data()); });
-    published_.add(probes_.data(), model_.probe.count);
+    called([&] { read_track_sensors(model_, state_, outputs_, track_sensors_.data()); });
+    published_.add(track_sensors_.data(), model_.track_sensor.count);
     for (std::int32_t i = 0; i < model_.system.sensors; ++i) {
       PointMotion motion{};
-      called([&] { motion = sense(model_, state_, i); });
+      called([&] { motion = sensor_motion(model_, state_, i); });
       published_.add(&motion, 1);
     }
   }
@@ -157,7 +157,7 @@ class Run {
   }
 
   const Model& model_;
-  std::vector<double> memory_, scratch_, probes_;
+  std::vector<double> memory_, scratch_, track_sensors_;
   State state_;
   Workspace workspace_;
   Outputs outputs_{};

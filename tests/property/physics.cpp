@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "properties.h"
-#include "run_energy.h"
+#include "run/run_energy.h"
 #include "transform.h"
 
 namespace railstep::property {

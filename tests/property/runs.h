@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "document.h"
-#include "scene_system.h"
-#include "simulate.h"
+#include "run/simulate.h"
+#include "scene/scene_system.h"
 
 namespace railstep::property {
 

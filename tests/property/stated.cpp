@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "condense_error.h"
+#include "answer/condense_error.h"
 #include "offline/pack/accuracy.h"
 #include "properties.h"
 

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <limits>
 
-#include "build.h"
+#include "answer/static_solution.h"
+#include "build/build.h"
 #include "hard/hard_run.h"
 #include "hard/spinning_bar.h"
+#include "offline/analysis/damped.h"
+#include "offline/analysis/statics.h"
 #include "offline/beam/equilibrium.h"
 #include "offline/beam/track_structure.h"
-#include "offline/track/damped.h"
 #include "offline/track/fixed_port.h"
-#include "offline/track/statics.h"
-#include "static_solution.h"
 
 namespace railstep {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "simulation.h"
+#include "run/simulation.h"
 
 namespace railstep {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drawing.h"
+#include "report/drawing.h"
 
 namespace railstep {
 namespace {

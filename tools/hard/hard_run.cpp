@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "run_energy.h"
+#include "run/run_energy.h"
 
 namespace railstep {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "energy.h"
 #include "hard/hard_case.h"
-#include "simulate.h"
+#include "offline/energy/energy_account.h"
+#include "run/simulate.h"
 
 namespace railstep {
 

@@ -6,7 +6,8 @@
 #include <functional>
 
 #include "hard/hard_run.h"
-#include "offline/system/energy.h"
+#include "offline/math/constants.h"
+#include "offline/system/system_energy.h"
 
 namespace railstep {
 namespace {
@@ -38,8 +39,6 @@ class Angle {
   double step_;
   std::int64_t steps_ = 0;
 };
-
-constexpr double kGravity = 9.81;  // m/s2
 
 std::string dt_is(double dt) { return fmt::format("step.dt_s={}", dt); }
 

@@ -6,12 +6,12 @@
 #include <cstring>
 #include <limits>
 
-#include "build.h"
+#include "answer/static_solution.h"
+#include "build/build.h"
 #include "hard/hard_run.h"
 #include "online/model/snapshot.h"
-#include "recording.h"
-#include "static_solution.h"
-#include "write.h"
+#include "run/recording.h"
+#include "text/write.h"
 
 namespace railstep {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "build.h"
+#include "answer/scene_receptance.h"
+#include "answer/static_solution.h"
+#include "build/build.h"
 #include "hard/growth.h"
 #include "hard/hard_run.h"
-#include "receptance.h"
-#include "speed_note.h"
-#include "static_solution.h"
+#include "run/speed_note.h"
 
 namespace railstep {
 namespace {

@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "hard/contact_checks.h"
+#include "offline/math/constants.h"
 
 namespace railstep {
 namespace {
-
-constexpr double kGravity = 9.81;
 
 /// Largest difference of a column between steps and ever finer ones, and the order that it shows.
 struct Convergence {

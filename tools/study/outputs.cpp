@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "read.h"
+#include "text/read.h"
 
 namespace railstep {
 namespace {

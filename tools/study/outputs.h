@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "simulate.h"
-#include "trace_compare.h"
+#include "run/simulate.h"
+#include "run/trace_compare.h"
 
 namespace railstep {
 

@@ -8,7 +8,7 @@
 
 #include "offline/pack/accuracy.h"
 #include "study/resume.h"
-#include "sweep_key.h"
+#include "sweep/sweep_key.h"
 
 namespace railstep {
 namespace {

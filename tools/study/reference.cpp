@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "build_endless.h"
-#include "build_unstepped.h"
+#include "build/build_endless.h"
+#include "build/build_unstepped.h"
 
 namespace railstep {
 namespace {

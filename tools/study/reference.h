@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene.h"
+#include "scene/scene.h"
 #include "study/outputs.h"
 #include "study/setting.h"
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "read.h"
-#include "write.h"
+#include "text/read.h"
+#include "text/write.h"
 
 namespace railstep {
 namespace {

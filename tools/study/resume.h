@@ -5,7 +5,7 @@
 #include <string>
 
 #include "study/reference.h"
-#include "study/row.h"
+#include "study/study_row.h"
 
 namespace railstep {
 

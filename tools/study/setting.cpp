@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "read.h"
+#include "text/read.h"
 
 namespace railstep {
 namespace {

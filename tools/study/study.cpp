@@ -7,7 +7,7 @@
 #include <new>
 #include <utility>
 
-#include "model_size.h"
+#include "run/model_size.h"
 
 namespace railstep {
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "study/cost.h"
+#include "study/frame_cost.h"
 #include "study/reference.h"
-#include "study/row.h"
+#include "study/study_row.h"
 
 namespace railstep {
 

@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
+#include "offline/analysis/statics.h"
 #include "offline/beam/equilibrium.h"
 #include "offline/beam/track_structure.h"
-#include "offline/track/statics.h"
 
 namespace railstep {
 

@@ -92,7 +92,7 @@ void TrackStructure::lay_rails() {
       to_rail(track_.lean(rail), at, structure_.rest.data() + place(rail, node, 0));
       structure_.rest[place(rail, node, 4)] = structure_.rest[place(rail, node, 8)] = 1.;
       for (int k = 0; k < 9; ++k)
-        structure_.held[index(place(rail, node, k))] = holds(track_, node, k);
+        structure_.held[index(place(rail, node, k))] = is_held(track_, node, k);
     }
     const int law = track_.right ? rail : 0;
     for (const Structure::Element& element : chain(track_.elements(), rail * track_.nodes(), law))

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "offline/beam/structure.h"
+#include "offline/math/constants.h"
 #include "offline/track/functional.h"
 #include "offline/track/track.h"
 
@@ -31,7 +32,7 @@ class TrackStructure {
   /// makes beside it would tie vertical to lateral motion.
   TrackState state(const Eigen::VectorXd& q) const;
   /// Nodal forces of the rails' and sleepers' own weight. @param gravity m/s2, > 0 down
-  Eigen::VectorXd weight(double gravity = 9.81) const;
+  Eigen::VectorXd weight(double gravity = kGravity) const;
 
  private:
   Track track_;

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/track/massless.h"
+#include "offline/analysis/massless.h"
 
 namespace railstep {
 

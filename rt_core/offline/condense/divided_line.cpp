@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "offline/analysis/free_motion.h"
 #include "offline/condense/line_flexibility.h"
-#include "offline/track/free_motion.h"
 
 namespace railstep {
 

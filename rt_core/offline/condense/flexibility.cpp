@@ -296,10 +296,4 @@ PairTable ResidualFlexibility::between(Port a, Port b, int points, int most) con
   return table_of(strips(a, b, points, reach), elements, points, reach);
 }
 
-double most_negative(const std::vector<double>& table) {
-  double lowest = 0.;
-  for (const double value : table) lowest = std::min(lowest, value);
-  return lowest;
-}
-
 }  // namespace railstep

@@ -48,8 +48,8 @@ class ResidualFlexibility {
   /// G_res(x, x); [tabled elements][points + 1], m/N, at equal steps of x; of a ring
   /// those are one bay's, which all others repeat. On the axis never below 0 but
   /// by rounding. Above it the element's two Gauss points make it softer than the rail to the
-  /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0
-  /// (most_negative() says by how much), and nothing is clipped here.
+  /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0,
+  /// and nothing is clipped here.
   std::vector<double> under(Port port) const;
   /// From the port to another of its rail in the same section.
   std::vector<double> under(Port port, Port seen) const;
@@ -99,8 +99,5 @@ class ResidualFlexibility {
   int points_;
   std::vector<Pair> pairs_;
 };
-
-/// The lowest value of a table below 0, or 0, m/N.
-double most_negative(const std::vector<double>& table);
 
 }  // namespace railstep

@@ -6,7 +6,7 @@
 #include <complex>
 #include <stdexcept>
 
-#include "offline/irregularity/turn.h"
+#include "offline/irregularity/sincos.h"
 
 namespace railstep {
 
@@ -14,7 +14,7 @@ namespace {
 
 /// e^(2 pi i t), the same bits on every machine.
 std::complex<double> phase(double t) {
-  const Turn at = turn(t);
+  const CosineSine at = cosine_sine(t);
   return {at.cosine, at.sine};
 }
 

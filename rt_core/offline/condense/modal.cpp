@@ -10,8 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "offline/analysis/modes.h"
+#include "offline/analysis/statics.h"
 #include "offline/condense/damped_shapes.h"
-#include "offline/track/statics.h"
 
 namespace railstep {
 
@@ -20,7 +21,7 @@ namespace {
 constexpr double kMostIncomplete = 1e-7;  // what is accepted
 constexpr double kMostResidual = 1e-6;    // of a mode's equation, over the sizes of its terms
 constexpr double kOrthogonal = 1e-9;      // beyond it the eigen solver's vectors are worked on
-constexpr int kMostTurns = 6;             // each squares what is missed: 1e-2 becomes 1e-16 in 3
+constexpr int kMostIterations = 6;        // each squares what is missed: 1e-2 becomes 1e-16 in 3
 constexpr double kSquared = 1e-6;         // missed before the last turn
 
 /// What Re sum shape shape' = 0 and Re sum rate shape shape' = I are missed by.
@@ -49,7 +50,7 @@ void orthogonalise(DampedModes& modes) {
     if (pair) V.col(column++) = V.col(k).conjugate();
   }
   double before = HUGE_VAL;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     Eigen::MatrixXcd AV(2 * m, 2 * m);
     AV.topRows(m) = modes.damping * V.topRows(m) + V.bottomRows(m);
     AV.bottomRows(m) = V.topRows(m);

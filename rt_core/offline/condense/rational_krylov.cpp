@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/track/krylov.h"
+#include "offline/analysis/krylov.h"
 
 namespace railstep {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "offline/irregularity/turn.h"
+#include "offline/irregularity/sincos.h"
 
 namespace railstep {
 
@@ -15,7 +15,7 @@ Shapes::Shapes(std::vector<std::vector<int>> cells, std::vector<Wave> waves)
     const std::vector<int>& cell = cells_[static_cast<std::size_t>(bay)];
     for (std::size_t i = 0; i < cell.size(); ++i)
       place_[static_cast<std::size_t>(cell[i])] = {bay, static_cast<int>(i)};
-    const Turn at = turn(static_cast<double>(bay) / bays);
+    const CosineSine at = cosine_sine(static_cast<double>(bay) / bays);
     around_.emplace_back(at.cosine, at.sine);
   }
 }

@@ -7,8 +7,8 @@ namespace railstep {
 
 /// What a frame of a model takes at most: loads all on, every wheel on its rail, every contact,
 /// port and iteration at its cap. Counted from the loops of the online sources, kernel by kernel;
-/// what depends on the model's sizes is exact, what does not is rounded up. Probes are read between
-/// frames and stand beside.
+/// what depends on the model's sizes is exact, what does not is rounded up. TrackSensors are read
+/// between frames and stand beside.
 Cost cost_of(const Model& model);
 
 /// Of one step of a system of bodies and beams, its part of the track's lines included.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "offline/irregularity/turn.h"
+#include "offline/irregularity/sincos.h"
 
 namespace railstep {
 
@@ -66,8 +66,8 @@ Signal corrugation(double from, double to, double wavelength, double amplitude,
     throw std::invalid_argument("corrugation is two wavelengths long or more");
   return around(.5 * (from + to), half, grid, [=](double x) {
     const double to_end = (half - std::fabs(x)) / wavelength;
-    const double fade = to_end < 1. ? .5 * (1. - turn(.5 * to_end).cosine) : 1.;
-    return amplitude * fade * turn((x + half) / wavelength).sine;
+    const double fade = to_end < 1. ? .5 * (1. - cosine_sine(.5 * to_end).cosine) : 1.;
+    return amplitude * fade * cosine_sine((x + half) / wavelength).sine;
   });
 }
 
@@ -82,14 +82,15 @@ Signal fresh_flat(double radius, double length, const DefectGrid& grid) {
 Signal rounded_flat(double radius, double length, double depth, const DefectGrid& grid) {
   want_flat(radius, length);
   return on_wheel(radius, grid, [=](double x) {
-    return std::fabs(x) < .5 * length ? -.5 * depth * (1. + turn(x / length).cosine) : 0.;
+    return std::fabs(x) < .5 * length ? -.5 * depth * (1. + cosine_sine(x / length).cosine) : 0.;
   });
 }
 
 Signal out_of_round(double radius, int order, double amplitude, const DefectGrid& grid) {
   if (order < 1) throw std::invalid_argument("an out-of-round wheel has an order of 1 or more");
-  return on_wheel(radius, grid,
-                  [=](double x) { return amplitude * turn(order * x / (kTwoPi * radius)).cosine; });
+  return on_wheel(radius, grid, [=](double x) {
+    return amplitude * cosine_sine(order * x / (kTwoPi * radius)).cosine;
+  });
 }
 
 }  // namespace railstep

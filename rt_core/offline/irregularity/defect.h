@@ -1,5 +1,5 @@
 #pragma once
-#include "offline/irregularity/signal.h"
+#include "offline/irregularity/spline.h"
 
 namespace railstep {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "offline/irregularity/random.h"
-#include "offline/irregularity/turn.h"
+#include "offline/irregularity/sincos.h"
 
 namespace railstep {
 
@@ -35,7 +35,7 @@ Waves waves_of(const GenerateOptions& o) {
 /// What a mean over the patch leaves of a wave.
 double patch_factor(double wave_number, double patch) {
   const double half = .5 * wave_number * patch;
-  return half > 0. ? turn(half / kTwoPi).sine / half : 1.;
+  return half > 0. ? cosine_sine(half / kTwoPi).sine / half : 1.;
 }
 
 }  // namespace
@@ -43,19 +43,20 @@ double patch_factor(double wave_number, double patch) {
 Signal generate(const Spectrum& spectrum, const GenerateOptions& options, std::uint64_t stream) {
   const Waves waves = waves_of(options);
   const std::int64_t n = waves.samples;
-  std::vector<Turn> circle;  // of k / n
+  std::vector<CosineSine> circle;  // of k / n
   for (std::int64_t k = 0; k < n; ++k)
-    circle.push_back(turn(static_cast<double>(k) / static_cast<double>(n)));
+    circle.push_back(cosine_sine(static_cast<double>(k) / static_cast<double>(n)));
   std::vector<double> value(static_cast<std::size_t>(n), 0.);
   const double step = kTwoPi / options.length;
   for (std::int64_t wave = waves.first; wave <= waves.last; ++wave) {
     const double number = static_cast<double>(wave) * step;
     const double amplitude =
         std::sqrt(2. * spectrum.at(number) * step) * patch_factor(number, options.patch);
-    const Turn phase = turn(uniform(options.seed, stream, static_cast<std::uint64_t>(wave)));
+    const CosineSine phase =
+        cosine_sine(uniform(options.seed, stream, static_cast<std::uint64_t>(wave)));
     const double c = amplitude * phase.cosine, s = amplitude * phase.sine;
     for (std::int64_t k = 0, at = 0; k < n; ++k, at = (at + wave) % n) {
-      const Turn& t = circle[static_cast<std::size_t>(at)];
+      const CosineSine& t = circle[static_cast<std::size_t>(at)];
       value[static_cast<std::size_t>(k)] += c * t.cosine - s * t.sine;
     }
   }

@@ -1,8 +1,8 @@
 #pragma once
 #include <array>
 
-#include "offline/irregularity/signal.h"
 #include "offline/irregularity/spectrum.h"
+#include "offline/irregularity/spline.h"
 
 namespace railstep {
 

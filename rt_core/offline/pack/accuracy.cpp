@@ -8,14 +8,14 @@
 #include <memory>
 #include <optional>
 
+#include "offline/analysis/krylov.h"
+#include "offline/analysis/statics.h"
 #include "offline/beam/linearise.h"
 #include "offline/math/band_search.h"
 #include "offline/math/larger.h"
 #include "offline/pack/port_statics.h"
-#include "offline/track/krylov.h"
 #include "offline/track/squeeze.h"
-#include "offline/track/statics.h"
-#include "online/step/residual.h"
+#include "online/track/residual.h"
 
 namespace railstep {
 
@@ -128,9 +128,9 @@ struct Asked {
   std::vector<std::int32_t> kinds;
 
   Asked(const PackedModel& packed, const std::vector<double>& places) {
-    for (std::size_t kind = 0; kind < packed.kinds().size(); ++kind)
+    for (std::size_t kind = 0; kind < packed.load_points().size(); ++kind)
       for (const double x : places) {
-        const Port& port = packed.kinds()[kind];
+        const Port& port = packed.load_points()[kind];
         points.push_back({port.rail, x, port.y, port.z, 2});
         kinds.push_back(static_cast<std::int32_t>(kind));
       }

@@ -7,7 +7,7 @@
 
 #include "online/math/sha256.h"
 #include "online/model/describe.h"
-#include "online/model/load.h"
+#include "online/model/load_model.h"
 #include "online/step/self_check.h"
 #include "online/step/trace_row.h"
 

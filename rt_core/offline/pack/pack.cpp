@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "offline/analysis/free_motion.h"
 #include "offline/contact/hertz.h"
 #include "offline/cost/cost.h"
-#include "offline/pack/start.h"
-#include "offline/track/free_motion.h"
+#include "offline/pack/released.h"
 
 namespace railstep {
 
@@ -71,21 +71,22 @@ bool is_moved(const Track& track, const Line& line, const Traffic& traffic, doub
 
 }  // namespace
 
-std::int32_t PackedModel::kind_of(const Port& port) {
-  for (std::size_t i = 0; i < kinds_.size(); ++i)
-    if (kinds_[i].rail == port.rail && kinds_[i].z == port.z && kinds_[i].y == port.y)
+std::int32_t PackedModel::load_point_of(const Port& port) {
+  for (std::size_t i = 0; i < load_points_.size(); ++i)
+    if (load_points_[i].rail == port.rail && load_points_[i].z == port.z &&
+        load_points_[i].y == port.y)
       return static_cast<std::int32_t>(i);
-  if (kinds_.size() == static_cast<std::size_t>(kMaxPortKinds))
+  if (load_points_.size() == static_cast<std::size_t>(kMaxLoadPoints))
     throw std::invalid_argument("vertical forces act at more than " +
-                                std::to_string(kMaxPortKinds) + " heights, counted for each rail");
-  kinds_.push_back(port);
-  return static_cast<std::int32_t>(kinds_.size()) - 1;
+                                std::to_string(kMaxLoadPoints) + " heights, counted for each rail");
+  load_points_.push_back(port);
+  return static_cast<std::int32_t>(load_points_.size()) - 1;
 }
 
 /// Of a wheel on a rail at rest.
-std::int32_t PackedModel::kind_of_wheel(int rail) {
+std::int32_t PackedModel::load_point_of_wheel(int rail) {
   const CrownTop top = crown_top(model_.cant[rail], model_.head_z[rail], model_.crown_radius[rail]);
-  return kind_of({rail, top.z, top.y});
+  return load_point_of({rail, top.z, top.y});
 }
 
 void PackedModel::add_load(const Track& track, const MovingLoad& load) {
@@ -105,7 +106,7 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.phase = load.phase;
   packed.table_points = static_cast<std::int32_t>(load.table.size() / 2);
   packed.table = keep(load.table);
-  packed.kind = kind_of({load.rail, load.z});
+  packed.load_point = load_point_of({load.rail, load.z});
 }
 
 void PackedModel::add_irregularity(const Track& track, const RailIrregularity& irregularity) {
@@ -149,7 +150,7 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
     packed.hertz[rail] =
         hertz_contact(wheelset.radius, head.crown_radius, material.young, material.poisson, 1e3)
             .constant;
-    packed.kind[rail] = kind_of_wheel(rail);
+    packed.load_point[rail] = load_point_of_wheel(rail);
   }
   packed.guide = wheelset.guide;
   packed.cap = wheelset.cap;
@@ -243,7 +244,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   met_ = {0, track.elements()};
   if (options.endless) add_endless(track, traffic, options);
   add_lines(track, traffic, options);
-  model_.bodies = model_.unknowns;
+  model_.line_unknowns = model_.unknowns;
   for (const MovingLoad& load : traffic.loads) add_load(track, load);
   for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
@@ -251,9 +252,10 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   add_fixed_ports(track);
   for (const ExternalWheel& wheel : traffic.external_wheels) add_external(track, wheel);
   if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);
-  add_probes(track, traffic.probes);
-  if (options.residual_flexibility) add_residual(track, traffic.probes, options.residual_points);
-  add_turn(track);
+  add_track_sensors(track, traffic.track_sensors);
+  if (options.residual_flexibility)
+    add_residual(track, traffic.track_sensors, options.residual_points);
+  add_p_delta(track);
   std::vector<double> start = start_released(*this);
   put_falling(model_, traffic.vehicles, start);
   set_start(std::move(start));
@@ -305,7 +307,8 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
   constexpr double kFar = 1e9;  // m
   const std::int32_t input = model_.inputs;
   take_inputs({kFar, kFar, wheel.limit, wheel.limit, wheel.limit}, model_);
-  model_.external_wheel[model_.external_wheels++] = {wheel.rail, input, kind_of_wheel(wheel.rail)};
+  model_.external_wheel[model_.external_wheels++] = {wheel.rail, input,
+                                                     load_point_of_wheel(wheel.rail)};
 }
 
 void take_inputs(const std::vector<double>& limits, Model& model) {

@@ -6,7 +6,8 @@
 #include "offline/condense/flexibility.h"
 #include "offline/condense/floquet.h"
 #include "offline/condense/reduction.h"
-#include "offline/irregularity/signal.h"
+#include "offline/irregularity/spline.h"
+#include "offline/math/constants.h"
 #include "offline/track/fixed_port.h"
 #include "offline/vehicle/vehicle.h"
 #include "online/model/state.h"
@@ -52,7 +53,7 @@ struct OuterForce {
 struct Wheelset {
   double mass = 0., inertia_roll = 0., inertia_spin = 0., inertia_yaw = 0.;  // kg, kg m2
   double weight = 0.;               // N, down; own and carried
-  double radius = .46;              // m
+  double radius = kWheelRadius;     // m
   double tread_half_width = .065;   // m
   double start = 0., speed = 0.;    // m, m/s
   std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
@@ -77,7 +78,7 @@ struct RunningVehicle {
   int rail = 0;
   double start = 0., speed = 0.;    // of its origin, m, m/s
   std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
-  double gravity = 9.81;            // m/s2
+  double gravity = kGravity;        // m/s2
   WheelContactKind contact = WheelContactKind::hertz;
   double stiffness = 0., damping = 0.;  // of a linear contact, N/m, N s/m
   std::vector<Signal> tread = {};       // of each wheel, over the distance rolled; or empty
@@ -105,14 +106,14 @@ struct Railhead {
 
 /// A scalar that frames publish: rest + displacement * D(u) + velocity * D(v), with D a sum over
 /// the track or one coordinate of a wheelset.
-struct Probe {
+struct TrackSensor {
   double rest = 0.;
   double displacement = 0., velocity = 0.;  // factors
   Functional track = {};
-  int wheelset = -1, coordinate = 0;  // of a probe on a wheelset; 0 x, 1 y, 2 z
-  int vehicle = -1;                   // of a probe on a vehicle, whose coordinate it is
+  int wheelset = -1, coordinate = 0;  // of a track sensor on a wheelset; 0 x, 1 y, 2 z
+  int vehicle = -1;                   // of a track sensor on a vehicle, whose coordinate it is
   double lever = 0.;                  // of a vehicle's next coordinate, beside it
-  double acceleration = 0.;           // factor, of a probe on a vehicle
+  double acceleration = 0.;           // factor, of a track sensor on a vehicle
   struct Press {
     int port;       // among fixed_ports() of the track
     double factor;  // of its force
@@ -134,7 +135,7 @@ struct Traffic {
   std::vector<Wheelset> wheelsets = {};
   std::vector<RunningVehicle> vehicles = {};
   Railhead head = {};  // of both rails
-  std::vector<Probe> probes = {};
+  std::vector<TrackSensor> track_sensors = {};
   std::vector<RailIrregularity> irregularities = {};
   std::vector<double> input_limits = {};              // of each input, N or N m, above 0
   std::vector<ExternalWheel> external_wheels = {};    // their inputs stand behind all others
@@ -192,7 +193,7 @@ class PackedModel {
   const Model& model() const { return model_; }
   const std::vector<PackedLine>& lines() const { return lines_; }
   /// Where vertical forces act, by kind of port.
-  const std::vector<Port>& kinds() const { return kinds_; }
+  const std::vector<Port>& load_points() const { return load_points_; }
   /// @param state  state_doubles() values, from start.h
   void set_start(std::vector<double> state);
   /// The most by which G_res was raised under a wheel so that W stays positive, m/N.
@@ -231,17 +232,18 @@ class PackedModel {
                    const std::array<Railhead, 2>& heads);
   TravelModel keep_travel(double speed, const std::vector<double>& speeds);
   void add_weight(const Track& track, double gravity);
-  void add_probes(const Track& track, const std::vector<Probe>& probes);
-  void add_residual(const Track& track, const std::vector<Probe>& probes, int points);
-  void add_probe_tables(const ResidualFlexibility& residual, const std::vector<Probe>& probes);
-  void add_turn(const Track& track);
+  void add_track_sensors(const Track& track, const std::vector<TrackSensor>& track_sensors);
+  void add_residual(const Track& track, const std::vector<TrackSensor>& track_sensors, int points);
+  void add_track_sensor_tables(const ResidualFlexibility& residual,
+                               const std::vector<TrackSensor>& track_sensors);
+  void add_p_delta(const Track& track);
   void clip(int points, std::vector<double>& under);
-  std::int32_t kind_of(const Port& port);
-  std::int32_t kind_of_wheel(int rail);
+  std::int32_t load_point_of(const Port& port);
+  std::int32_t load_point_of_wheel(int rail);
 
   Model model_{};
   std::vector<PackedLine> lines_;
-  std::vector<Port> kinds_;
+  std::vector<Port> load_points_;
   double clipped_ = 0.;
   Elements met_{};  // by what runs, on a ring those it comes to, else all
   std::vector<std::unique_ptr<std::vector<double>>> reals_;

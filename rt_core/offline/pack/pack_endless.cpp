@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/pack/course.h"
+#include "offline/analysis/decay_length.h"
+#include "offline/analysis/statics.h"
 #include "offline/pack/pack.h"
-#include "offline/track/decay_length.h"
-#include "offline/track/statics.h"
+#include "offline/pack/pack_progress.h"
 
 namespace railstep {
 
@@ -64,7 +64,7 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   const auto [first, last] = span_of(traffic);
   Endless& e = model_.endless;
   e = {track.bays, track.elements_per_bay, bay, options.endless->behind * bay,
-       course_of(speed_of(traffic) * options.scheme.dt / bay)};
+       bay_progress(speed_of(traffic) * options.scheme.dt / bay)};
   // What runs goes on by up to a bay before the track is passed on. The ends of a window are to
   // stay at rest; on a ring the traffic is not to meet itself.
   const double decay = decay_length(track), behind = e.origin + first,
@@ -77,7 +77,7 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   // behind that to which it goes on, and the seats around a wheelset.
   const auto border = [&](double x) { return static_cast<int>(std::floor((e.origin + x) / bay)); };
   const bool turns = track.unknowns != Unknowns::vertical && !traffic.wheelsets.empty();
-  const int spare = 1 + (turns ? kTurnSeats / 2 : 0);
+  const int spare = 1 + (turns ? kPDeltaSeats / 2 : 0);
   met_ = {std::max(border(first) - spare, 0) * track.elements_per_bay,
           std::min(border(last) + 2 + spare, track.bays) * track.elements_per_bay};
 }

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "offline/pack/pack.h"
-#include "online/step/closing.h"
+#include "online/track/closing.h"
 
 namespace railstep {
 
@@ -33,7 +33,7 @@ void PackedModel::add_fixed_ports(const Track& track) {
   // theta row response; the lower half stands for both, as rounding makes them differ.
   const auto n = static_cast<std::size_t>(fixed.count);
   std::vector<double> compliance(n * n);
-  const std::ptrdiff_t part = model_.bodies, stride = (1 + model_.condensed) * part;
+  const std::ptrdiff_t part = model_.line_unknowns, stride = (1 + model_.condensed) * part;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
       const double* response = fixed.response + static_cast<std::ptrdiff_t>(j) * stride;
@@ -47,7 +47,7 @@ void PackedModel::add_fixed_ports(const Track& track) {
 /// Of banded lines: sparse rows, and S^-1 row by the step's own factors.
 void PackedModel::add_port_rows() {
   FixedPortModel& fixed = model_.fixed;
-  const auto n = static_cast<std::size_t>(model_.bodies);
+  const auto n = static_cast<std::size_t>(model_.line_unknowns);
   std::vector<std::int32_t> start = {0}, index;
   std::vector<double> value, response(static_cast<std::size_t>(fixed.count) * n, 0.);
   for (std::int32_t j = 0; j < fixed.count; ++j) {
@@ -75,7 +75,7 @@ void PackedModel::add_port_rows() {
 /// them.
 void PackedModel::add_port_shapes() {
   FixedPortModel& fixed = model_.fixed;
-  const auto n = static_cast<std::size_t>(model_.bodies);
+  const auto n = static_cast<std::size_t>(model_.line_unknowns);
   std::vector<double> shape(static_cast<std::size_t>(fixed.count) * 2 * n, 0.), response = shape;
   for (std::int32_t j = 0; j < fixed.count; ++j) {
     const std::size_t at = static_cast<std::size_t>(j) * 2 * n;

@@ -18,15 +18,15 @@ std::vector<std::vector<double>> ports_of(const Model& model, std::size_t kinds)
   const auto add = [&](std::int32_t kind, double place) {
     places[static_cast<std::size_t>(kind)].push_back(place);
   };
-  for (std::int32_t i = 0; i < model.loads; ++i) add(model.load[i].kind, model.load[i].start);
+  for (std::int32_t i = 0; i < model.loads; ++i) add(model.load[i].load_point, model.load[i].start);
   for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
-    add(wheel_kind(model, i), model.wheelset[i / 2].start);
+    add(wheel_load_point(model, i), model.wheelset[i / 2].start);
   for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
     const VehicleWheel& wheel = model.vehicle_wheel[i];
-    add(wheel.kind, model.vehicle[wheel.vehicle].start + wheel.place);
+    add(wheel.load_point, model.vehicle[wheel.vehicle].start + wheel.place);
   }
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
-    add(model.external_wheel[i].kind, 0.);  // where these are is not known before they run
+    add(model.external_wheel[i].load_point, 0.);  // where these are is not known before they run
   return places;
 }
 
@@ -50,7 +50,8 @@ void append(std::vector<double>& to, const std::vector<double>& values) {
 
 }  // namespace
 
-void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probes) {
+void PackedModel::add_track_sensors(const Track& track,
+                                    const std::vector<TrackSensor>& track_sensors) {
   std::vector<std::int32_t> start = {0}, index;
   std::vector<double> value, rest;
   const auto entry = [&](std::int32_t at, double coefficient) {
@@ -58,15 +59,15 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
     index.push_back(at);
     value.push_back(coefficient);
   };
-  for (const Probe& probe : probes) {
+  for (const TrackSensor& track_sensor : track_sensors) {
     for (std::size_t l = 0; l < lines_.size(); ++l) {
       const PackedLine& own = lines_[l];
       const std::int32_t first = model_.line[l].first, velocity = model_.unknowns + first;
-      const Eigen::SparseVector<double> row = functional_row(track, own.line, probe.track);
+      const Eigen::SparseVector<double> row = functional_row(track, own.line, track_sensor.track);
       if (model_.condensed == 0) {
         for (Eigen::SparseVector<double>::InnerIterator it(row); it; ++it) {
-          entry(first + static_cast<int>(it.index()), probe.displacement * it.value());
-          entry(velocity + static_cast<int>(it.index()), probe.velocity * it.value());
+          entry(first + static_cast<int>(it.index()), track_sensor.displacement * it.value());
+          entry(velocity + static_cast<int>(it.index()), track_sensor.velocity * it.value());
         }
         continue;
       }
@@ -76,42 +77,43 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
       const Eigen::VectorXcd shape = own.modes.project(modal);
       for (Eigen::Index k = 0; k < shape.size(); ++k) {
         const std::complex<double> c =
-            (probe.displacement + probe.velocity * own.modes.rate()[k]) * shape[k];
+            (track_sensor.displacement + track_sensor.velocity * own.modes.rate()[k]) * shape[k];
         entry(first + static_cast<int>(k), c.real());
         entry(velocity + static_cast<int>(k), -c.imag());
       }
     }
-    if (probe.wheelset >= 0) {
-      const std::int32_t at = model_.wheelset[probe.wheelset].first + probe.coordinate;
-      entry(at, probe.displacement);
-      entry(model_.unknowns + at, probe.velocity);
+    if (track_sensor.wheelset >= 0) {
+      const std::int32_t at =
+          model_.wheelset[track_sensor.wheelset].first + track_sensor.coordinate;
+      entry(at, track_sensor.displacement);
+      entry(model_.unknowns + at, track_sensor.velocity);
     }
-    for (const Probe::Press& press : probe.ports)
+    for (const TrackSensor::Press& press : track_sensor.ports)
       entry(2 * model_.unknowns + press.port, press.factor);
-    if (probe.vehicle >= 0) {
-      const std::int32_t at = model_.vehicle[probe.vehicle].first + probe.coordinate;
+    if (track_sensor.vehicle >= 0) {
+      const std::int32_t at = model_.vehicle[track_sensor.vehicle].first + track_sensor.coordinate;
       const std::int32_t g = 2 * model_.unknowns + model_.fixed.count;
       for (const int next : {0, 1}) {
-        const double part = next == 0 ? 1. : probe.lever;
-        entry(at + next, part * probe.displacement);
-        entry(model_.unknowns + at + next, part * probe.velocity);
-        entry(g + at + next, part * probe.acceleration);
+        const double part = next == 0 ? 1. : track_sensor.lever;
+        entry(at + next, part * track_sensor.displacement);
+        entry(model_.unknowns + at + next, part * track_sensor.velocity);
+        entry(g + at + next, part * track_sensor.acceleration);
       }
     }
     start.push_back(static_cast<std::int32_t>(index.size()));
-    rest.push_back(probe.rest);
+    rest.push_back(track_sensor.rest);
   }
-  model_.probe.count = static_cast<std::int32_t>(probes.size());
-  model_.probe.table = keep(std::vector<std::int32_t>(probes.size(), -1));
-  model_.probe.entries = start.back();
-  model_.probe.start = keep(std::move(start));
-  model_.probe.index = keep(std::move(index));
-  model_.probe.value = keep(std::move(value));
-  model_.probe.rest = keep(std::move(rest));
+  model_.track_sensor.count = static_cast<std::int32_t>(track_sensors.size());
+  model_.track_sensor.table = keep(std::vector<std::int32_t>(track_sensors.size(), -1));
+  model_.track_sensor.entries = start.back();
+  model_.track_sensor.start = keep(std::move(start));
+  model_.track_sensor.index = keep(std::move(index));
+  model_.track_sensor.value = keep(std::move(value));
+  model_.track_sensor.rest = keep(std::move(rest));
   std::vector<std::int32_t> along;
-  along.reserve(probes.size());
-  for (const Probe& probe : probes) along.push_back(probe.along ? 1 : 0);
-  model_.probe.along = keep(std::move(along));
+  along.reserve(track_sensors.size());
+  for (const TrackSensor& track_sensor : track_sensors) along.push_back(track_sensor.along ? 1 : 0);
+  model_.track_sensor.along = keep(std::move(along));
 }
 
 /// A contact needs a rail that gives way under it: where wheels stand, G_res takes no more than
@@ -119,10 +121,10 @@ void PackedModel::add_probes(const Track& track, const std::vector<Probe>& probe
 void PackedModel::clip(int points, std::vector<double>& under) {
   if (wheel_count(model_) == 0) return;
   const StepCompliance compliance(model_, lines_);
-  const std::size_t places = under.size() / kinds_.size();
+  const std::size_t places = under.size() / load_points_.size();
   for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
-    const auto kind = static_cast<std::size_t>(wheel_kind(model_, wheel));
-    const std::vector<double> lines = compliance.table(kinds_[kind], points);
+    const auto kind = static_cast<std::size_t>(wheel_load_point(model_, wheel));
+    const std::vector<double> lines = compliance.table(load_points_[kind], points);
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[kind * places + i];
       const double lowest = lines[i] > 0. ? -.5 * lines[i] : -1.5 * lines[i];
@@ -134,24 +136,25 @@ void PackedModel::clip(int points, std::vector<double>& under) {
 
 namespace {
 
-/// What a probe has of unit forces of ports beside the model's unknowns.
+/// What a track sensor has of unit forces of ports beside the model's unknowns.
 ResidualFlexibility::Near seen_at_once(const ResidualFlexibility& residual,
-                                       const std::vector<Port>& ports, const Probe& probe,
-                                       Elements met) {
-  ResidualFlexibility::Near seen = residual.near(ports, probe.track, met);
-  for (double& value : seen.value) value *= probe.displacement;
-  if (probe.velocity == 0.) return seen;
+                                       const std::vector<Port>& ports,
+                                       const TrackSensor& track_sensor, Elements met) {
+  ResidualFlexibility::Near seen = residual.near(ports, track_sensor.track, met);
+  for (double& value : seen.value) value *= track_sensor.displacement;
+  if (track_sensor.velocity == 0.) return seen;
   auto value = seen.value.begin();
   for (const Port& port : ports)
-    for (const double speed : residual.at_once(port, probe.track, seen.at))
-      *value++ += probe.velocity * speed;
+    for (const double speed : residual.at_once(port, track_sensor.track, seen.at))
+      *value++ += track_sensor.velocity * speed;
   return seen;
 }
 
 }  // namespace
 
-void PackedModel::add_residual(const Track& track, const std::vector<Probe>& probes, int points) {
-  if (kinds_.empty()) return;
+void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor>& track_sensors,
+                               int points) {
+  if (load_points_.empty()) return;
   // What is one-sided without a gap mostly presses: tables are those of the track in which it is a
   // spring. About it the model misses what is near a port alone, whatever then presses; about a
   // track that is open there it would miss what the whole of its rail bends between other seats.
@@ -167,36 +170,36 @@ void PackedModel::add_residual(const Track& track, const std::vector<Probe>& pro
   const ResidualFlexibility residual(reference, lines, bases, points);
   model_.residual.elements = tabled_elements(reference);
   std::vector<double> under, axis;
-  for (const Port& port : kinds_) {
+  for (const Port& port : load_points_) {
     append(under, residual.under(port));
     append(axis, residual.under(port, {port.rail, 0.}));
   }
   clip(points, under);
-  model_.residual.kinds = static_cast<std::int32_t>(kinds_.size());
+  model_.residual.load_points = static_cast<std::int32_t>(load_points_.size());
   model_.residual.points = points;
   model_.residual.under = keep(std::move(under));
   model_.residual.axis = keep(std::move(axis));
-  const std::vector<std::vector<double>> ports = ports_of(model_, kinds_.size());
-  for (std::size_t a = 0; a < kinds_.size(); ++a)
-    for (std::size_t b = 0; b < kinds_.size(); ++b) {
+  const std::vector<std::vector<double>> ports = ports_of(model_, load_points_.size());
+  for (std::size_t a = 0; a < load_points_.size(); ++a)
+    for (std::size_t b = 0; b < load_points_.size(); ++b) {
       if (a == b && ports[a].size() < 2) continue;
-      PairTable pair =
-          residual.between(kinds_[a], kinds_[b], kPairPoints, farthest(model_, ports[a], ports[b]));
+      PairTable pair = residual.between(load_points_[a], load_points_[b], kPairPoints,
+                                        farthest(model_, ports[a], ports[b]));
       if (all_zero(pair.value)) continue;
       model_.residual.pair[a][b] = {pair.points, pair.reach, keep(std::move(pair.value))};
     }
-  add_probe_tables(residual, probes);
+  add_track_sensor_tables(residual, track_sensors);
 }
 
-void PackedModel::add_probe_tables(const ResidualFlexibility& residual,
-                                   const std::vector<Probe>& probes) {
+void PackedModel::add_track_sensor_tables(const ResidualFlexibility& residual,
+                                          const std::vector<TrackSensor>& track_sensors) {
   std::vector<std::int32_t> table, first, ends = {0};
   std::vector<double> values;
-  for (const Probe& probe : probes) {
+  for (const TrackSensor& track_sensor : track_sensors) {
     table.push_back(-1);
-    const bool of_track = probe.wheelset < 0 && probe.vehicle < 0;
-    if (!of_track || (probe.displacement == 0. && probe.velocity == 0.)) continue;
-    const ResidualFlexibility::Near seen = seen_at_once(residual, kinds_, probe, met_);
+    const bool of_track = track_sensor.wheelset < 0 && track_sensor.vehicle < 0;
+    if (!of_track || (track_sensor.displacement == 0. && track_sensor.velocity == 0.)) continue;
+    const ResidualFlexibility::Near seen = seen_at_once(residual, load_points_, track_sensor, met_);
     if (all_zero(seen.value)) continue;
     table.back() = static_cast<std::int32_t>(first.size());
     first.push_back(seen.at.first);
@@ -204,12 +207,12 @@ void PackedModel::add_probe_tables(const ResidualFlexibility& residual,
     append(values, seen.value);
   }
   if (first.empty()) return;
-  model_.probe.table = keep(std::move(table));
-  model_.probe.tables = static_cast<std::int32_t>(first.size());
-  model_.probe.first = keep(std::move(first));
-  model_.probe.elements = ends.back();
-  model_.probe.ends = keep(std::move(ends));
-  model_.probe.residual = keep(std::move(values));
+  model_.track_sensor.table = keep(std::move(table));
+  model_.track_sensor.tables = static_cast<std::int32_t>(first.size());
+  model_.track_sensor.first = keep(std::move(first));
+  model_.track_sensor.elements = ends.back();
+  model_.track_sensor.ends = keep(std::move(ends));
+  model_.track_sensor.residual = keep(std::move(values));
 }
 
 }  // namespace railstep

@@ -6,8 +6,8 @@
 #include "offline/contact/hertz.h"
 #include "offline/pack/pack.h"
 #include "offline/pack/travel_rows.h"
-#include "online/step/table.h"
-#include "online/step/travel.h"
+#include "online/math/table.h"
+#include "online/track/travel.h"
 
 namespace railstep {
 
@@ -125,7 +125,7 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
     own.rail = vehicle.rail;
     own.place = wheel.place;
     own.contact = contact_of(vehicle, wheel.radius, heads[rail], track.bar(vehicle.rail).material);
-    own.kind = kind_of_wheel(vehicle.rail);
+    own.load_point = load_point_of_wheel(vehicle.rail);
     if (!vehicle.tread.empty()) own.tread = keep(vehicle.tread[i]);
   }
   ++model_.vehicles;

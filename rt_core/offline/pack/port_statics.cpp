@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "offline/track/statics.h"
+#include "offline/analysis/statics.h"
 #include "online/contact/ports.h"
 
 namespace railstep {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "offline/analysis/free_motion.h"
 #include "offline/receptance/full_order.h"
 #include "offline/receptance/residual_statics.h"
-#include "offline/track/free_motion.h"
 
 namespace railstep {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "offline/analysis/krylov.h"
 #include "offline/receptance/residual_statics.h"
-#include "offline/track/krylov.h"
 
 namespace railstep {
 

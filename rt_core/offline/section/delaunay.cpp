@@ -20,7 +20,7 @@ double in_circle(const Delaunay::Point& a, const Delaunay::Point& b, const Delau
 
 }  // namespace
 
-double turn(const Delaunay::Point& a, const Delaunay::Point& b, const Delaunay::Point& c) {
+double orientation(const Delaunay::Point& a, const Delaunay::Point& b, const Delaunay::Point& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
@@ -42,7 +42,7 @@ int Delaunay::locate(const Point& p) const {
     for (std::size_t i = 0; i < 3 && onward < 0; ++i) {
       const Point& a = points_[static_cast<std::size_t>(triangle.corner[next(i)])];
       const Point& b = points_[static_cast<std::size_t>(triangle.corner[next(next(i))])];
-      if (turn(a, b, p) < 0.0) onward = triangle.neighbour[i];
+      if (orientation(a, b, p) < 0.0) onward = triangle.neighbour[i];
     }
     if (onward < 0) return static_cast<int>(t);
     t = static_cast<std::size_t>(onward);
@@ -60,10 +60,11 @@ int Delaunay::nearest(const Point& p) const {
     const auto corner = [&](std::size_t i) {
       return points_[static_cast<std::size_t>(triangles_[t].corner[i])];
     };
-    const double area = turn(corner(0), corner(1), corner(2));
-    const double least = std::min({turn(corner(0), corner(1), p), turn(corner(1), corner(2), p),
-                                   turn(corner(2), corner(0), p)}) /
-                         area;
+    const double area = orientation(corner(0), corner(1), corner(2));
+    const double least =
+        std::min({orientation(corner(0), corner(1), p), orientation(corner(1), corner(2), p),
+                  orientation(corner(2), corner(0), p)}) /
+        area;
     if (best >= 0 && !(least > inmost)) continue;
     best = static_cast<int>(t);
     inmost = least;
@@ -103,7 +104,7 @@ std::vector<Delaunay::Edge> Delaunay::carve(int start, const Point& p) {
       if (beyond < 0 || !triangles_[static_cast<std::size_t>(beyond)].alive) continue;
       const Point& a = points_[static_cast<std::size_t>(t.corner[next(i)])];
       const Point& b = points_[static_cast<std::size_t>(t.corner[next(next(i))])];
-      if (turn(a, b, p) <= 0.0) grow(beyond);
+      if (orientation(a, b, p) <= 0.0) grow(beyond);
     }
   }
   for (const int c : cavity) {

@@ -42,6 +42,6 @@ class Delaunay {
 };
 
 /// Twice the signed area of a, b, c: positive when they turn left.
-double turn(const Delaunay::Point& a, const Delaunay::Point& b, const Delaunay::Point& c);
+double orientation(const Delaunay::Point& a, const Delaunay::Point& b, const Delaunay::Point& c);
 
 }  // namespace railstep

@@ -30,7 +30,7 @@ struct Chord {
 };
 
 /// Twice the signed area of abc.
-double turn(const Point& a, const Point& b, const Point& c) {
+double orientation(const Point& a, const Point& b, const Point& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
@@ -43,8 +43,8 @@ bool overlap(double a0, double a1, double b0, double b1) {
 bool meet(const Chord& p, const Chord& q) {
   if (!overlap(p.a[0], p.b[0], q.a[0], q.b[0]) || !overlap(p.a[1], p.b[1], q.a[1], q.b[1]))
     return false;
-  const double d1 = turn(p.a, p.b, q.a), d2 = turn(p.a, p.b, q.b);
-  const double d3 = turn(q.a, q.b, p.a), d4 = turn(q.a, q.b, p.b);
+  const double d1 = orientation(p.a, p.b, q.a), d2 = orientation(p.a, p.b, q.b);
+  const double d3 = orientation(q.a, q.b, p.a), d4 = orientation(q.a, q.b, p.b);
   const auto apart = [](double u, double v) {
     return (u > 0.0 && v > 0.0) || (u < 0.0 && v < 0.0);
   };

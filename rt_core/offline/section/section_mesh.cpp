@@ -35,7 +35,7 @@ double perimeter(const std::vector<Point>& outline) {
 bool sharp(const Point& before, const Point& at, const Point& after) {
   const double along =
       (at[0] - before[0]) * (after[0] - at[0]) + (at[1] - before[1]) * (after[1] - at[1]);
-  return std::atan2(turn(before, at, after), along) < -kReentrant;
+  return std::atan2(orientation(before, at, after), along) < -kReentrant;
 }
 
 std::vector<Point> reentrant_corners(const std::vector<Point>& whole) {
@@ -117,7 +117,7 @@ class Refiner {
     const Point &a = at(t.corner[0]), &b = at(t.corner[1]), &c = at(t.corner[2]);
     const double ab = distance(a, b), bc = distance(b, c), ca = distance(c, a);
     const double shortest = std::min({ab, bc, ca});
-    const double radius = ab * bc * ca / (2.0 * turn(a, b, c));
+    const double radius = ab * bc * ca / (2.0 * orientation(a, b, c));
     const bool flat = radius > kFlattest * shortest && shortest > shortest_;
     // An equilateral triangle's edge is sqrt(3) circumradii.
     return (flat || 1.7320508 * radius > wanted_size(centroid(t))) && belongs(t);

@@ -5,7 +5,7 @@
 
 #include "offline/element/shape.h"
 #include "offline/system/motion.h"
-#include "offline/system/parts.h"
+#include "offline/system/pack_parts.h"
 #include "online/system/row.h"
 
 namespace railstep {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "offline/system/system.h"
+#include "offline/system/multibody.h"
 #include "online/model/system.h"
 
 namespace railstep {

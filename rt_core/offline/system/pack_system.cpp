@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "offline/cost/cost.h"
-#include "offline/system/parts.h"
+#include "offline/system/pack_parts.h"
+#include "offline/system/pack_track_ports.h"
 #include "offline/system/start_system.h"
-#include "offline/system/track_ports.h"
 
 namespace railstep {
 
@@ -42,7 +42,8 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
   if (with_scheme && means != o.energy_momentum)
     throw std::invalid_argument(
         "the scheme energy_momentum() and the option of that name go together");
-  const bool by_mean = o.hold == Hold::augmented_lagrangian || o.hold == Hold::direct;
+  const bool by_mean = o.constraint_method == ConstraintMethod::augmented_lagrangian ||
+                       o.constraint_method == ConstraintMethod::direct;
   if (o.energy_momentum && !by_mean)
     throw std::invalid_argument(
         "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
@@ -53,7 +54,8 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
 /// velocities.
 void check_damping(const System& system, const SystemOptions& o, const Scheme& c) {
   const bool index_3 =
-      o.hold == Hold::direct || (o.hold == Hold::augmented_lagrangian && o.projections == 0);
+      o.constraint_method == ConstraintMethod::direct ||
+      (o.constraint_method == ConstraintMethod::augmented_lagrangian && o.projections == 0);
   if (!index_3 || o.energy_momentum || system.joints.empty()) return;
   // generalised_alpha: a0 / ag = alpha_f / (1 - alpha_f) = rho_inf
   if (c.a0 >= (1. - 1e-9) * c.ag || radius_at_infinity(c) >= 1. - 1e-7)
@@ -69,7 +71,7 @@ SystemOptions still_options(SystemOptions options, double dt) {
   options.scheme = backward_euler(dt);
   options.energy_momentum = options.at_rest = false;
   options.steps_per_frame = 1;
-  options.hold = Hold::direct;
+  options.constraint_method = ConstraintMethod::direct;
   options.renew = Renew::every_iteration;
   options.cap = 40;
   options.tolerance = 1e-12;
@@ -138,7 +140,7 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
         "a track beside a system of bodies carries no wheelsets and no vehicles");
   if (track_options.reduction)
     throw std::invalid_argument("a track beside a system of bodies is taken in full order");
-  if (options.hold == Hold::gear_gupta_leimkuhler)
+  if (options.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
     throw std::invalid_argument(
         "a track beside a system of bodies is not held by Gear, Gupta and Leimkuhler's way");
   if (options.energy_momentum)
@@ -194,7 +196,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.traced_springs = count(memory_->traced_spring);
   s.first = first;
   s.unknowns = own;
-  s.hold = options.hold;
+  s.constraint_method = options.constraint_method;
   s.renew = options.renew;
   s.mean = options.energy_momentum ? 1 : 0;
   s.cap = options.cap;

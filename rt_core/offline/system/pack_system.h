@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "offline/pack/pack.h"
-#include "offline/pack/scheme.h"
+#include "offline/pack/time_schemes.h"
+#include "offline/system/multibody.h"
 #include "offline/system/rest.h"
-#include "offline/system/system.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -20,7 +20,7 @@ struct SystemOptions {
   Scheme scheme = {};
   bool energy_momentum = false;  // with the scheme energy_momentum()
   int steps_per_frame = 1;
-  Hold hold = Hold::augmented_lagrangian;
+  ConstraintMethod constraint_method = ConstraintMethod::augmented_lagrangian;
   Renew renew = Renew::every_step;
   int cap = 20;         // Newton iterations a step
   int projections = 4;  // iterations of a projection of velocities or accelerations

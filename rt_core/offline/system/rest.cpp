@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/system/energy.h"
 #include "offline/system/pack_system.h"
+#include "offline/system/system_energy.h"
 #include "online/step/step.h"
 
 namespace railstep {

@@ -103,7 +103,7 @@ struct Standing {
     SystemModel& s = model.system;
     model.scheme.kv = model.scheme.kg = 0.;  // so that the velocities are v, accelerations 0
     s.mean = 0;
-    s.hold = Hold::direct;
+    s.constraint_method = ConstraintMethod::direct;
     memory.assign(static_cast<std::size_t>(system_workspace_doubles(s) + system_tangent_doubles(s)),
                   0.);
     zero.assign(static_cast<std::size_t>(s.unknowns), 0.);

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "offline/system/parts.h"
+#include "offline/system/pack_parts.h"
 #include "offline/system/rest.h"
 #include "online/model/state.h"
 

@@ -49,7 +49,7 @@ void number(const Track& track, Assembly& part) {
   for (int node = 0; node < nodes - (track.ring ? 1 : 0); ++node) {
     for (const int rail : part.rails) {
       for (const int k : carried(track.unknowns))
-        if (!holds(track, node, k))
+        if (!is_held(track, node, k))
           part.line.unknown_of[static_cast<std::size_t>(rail)][static_cast<std::size_t>(node)]
                               [static_cast<std::size_t>(k)] = part.count++;
     }
@@ -313,7 +313,7 @@ bool is_symmetric(const Track& track) {
                      [](const auto& changed) { return changed.second.symmetric(); });
 }
 
-bool holds(const Track& track, int node, int k) {
+bool is_held(const Track& track, int node, int k) {
   const bool position = k < 3, roll = k == 5 || k == 7;  // a_z, b_y
   const RailEnd end = node == 0                   ? track.ends[0]
                       : node == track.nodes() - 1 ? track.ends[1]

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "offline/element/matrices.h"
+#include "offline/math/constants.h"
 #include "offline/track/joint.h"
 #include "offline/track/seat.h"
 #include "online/model/cant.h"
@@ -131,7 +132,7 @@ bool has_sleepers(const Track& track);
 bool is_symmetric(const Track& track);
 
 /// Whether the ends of a rail hold unknown k = 0..8 of its node.
-bool holds(const Track& track, int node, int k);
+bool is_held(const Track& track, int node, int k);
 
 /// An element and the natural coordinate in it.
 struct ElementPlace {
@@ -230,6 +231,6 @@ Vector27 line_load(const Track& track, int rail);
 /// Nodal forces of the rails' and sleepers' own weight on one line. @param gravity m/s2, > 0 down.
 /// Of a track with a state, which is that under its weight: K_r q_s, the constant part of Eq. 24,
 /// f_s of which the weight balances; the linear answer to it is the state.
-Eigen::VectorXd weight(const Track& track, const Line& line, double gravity = 9.81);
+Eigen::VectorXd weight(const Track& track, const Line& line, double gravity = kGravity);
 
 }  // namespace railstep

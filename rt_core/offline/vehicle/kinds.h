@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "offline/math/constants.h"
 #include "offline/vehicle/vehicle.h"
 
 namespace railstep {
@@ -20,7 +21,7 @@ struct BogieData {
   int axles;                                  // 2 or 3, at equal distances
   double primary_stiffness, primary_damping;  // of each axle box, N/m, N s/m
   double carried = 0.;                        // on the frame's middle, weight without inertia, kg
-  double radius = .46;                        // of the wheels, m
+  double radius = kWheelRadius;               // of the wheels, m
 };
 struct CarData {
   BogieData bogie;  // each of two
@@ -30,11 +31,11 @@ struct CarData {
 };
 
 /// A mass on one wheel: "body".
-NamedVehicle point_mass(double mass, double radius = .46);
+NamedVehicle point_mass(double mass, double radius = kWheelRadius);
 
 /// A mass on a spring and a damper on an unsprung one: "body", "wheel_1".
 NamedVehicle sprung_mass(double mass, double unsprung, double stiffness, double damping,
-                         double radius = .46);
+                         double radius = kWheelRadius);
 
 /// A frame on axles: "frame", then "wheel_1", the foremost, and so on. Its origin is its middle.
 NamedVehicle bogie(const BogieData& data);

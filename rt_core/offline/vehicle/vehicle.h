@@ -2,6 +2,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "offline/math/constants.h"
+
 namespace railstep {
 
 /// How wheels hold on to the rail: by Hertz; by a spring and a damper that pull too; or so that
@@ -50,7 +52,7 @@ struct VehicleMatrices {
 
 /// Throws std::invalid_argument on no bodies or wheels, masses not above 0, names of bodies that
 /// are none, and on stiffness, damping or pitch inertia below 0.
-VehicleMatrices vehicle_matrices(const Vehicle& vehicle, double gravity = 9.81);
+VehicleMatrices vehicle_matrices(const Vehicle& vehicle, double gravity = kGravity);
 
 /// Where the vehicle stands on a level, rigid rail: q and the rail's forces on its wheels, N.
 /// Throws std::invalid_argument where springs and wheels leave a motion free.

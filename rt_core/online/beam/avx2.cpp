@@ -3,7 +3,7 @@
 //
 // What other sources share is included before the instruction set is changed: a linker may take its
 // functions from here for the whole program, which must run on every processor
-// (tests/check-kernels).
+// (tests/checks/check-kernels).
 #include <utility>
 
 #include "online/beam/kernels.h"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "online/contact/caps.h"
+#include "online/model/caps.h"
 
 namespace railstep {
 

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "online/model/load.h"
+#include "online/model/load_model.h"
 #include "online/model/names.h"
 #include "online/model/snapshot.h"
 #include "online/step/self_check.h"

@@ -6,27 +6,6 @@
 
 namespace railstep {
 
-/// y = A x for R right-hand sides; A in panels of 8 rows, column after column: [panels][n][8].
-///
-/// Each row adds its columns in order, starting from 0. x and y must not overlap.
-/// @param x  [R] vectors of n entries, x_stride apart
-/// @param y  [R] vectors of 8 panels entries, y_stride apart; overwritten
-template <int R>
-inline void panel_multiply(const double* __restrict A, const double* __restrict x,
-                           std::ptrdiff_t x_stride, double* __restrict y, std::ptrdiff_t y_stride,
-                           int panels, int n) noexcept {
-  for (int p = 0; p < panels; ++p, y += kLanes) {
-    double sum[R][kLanes] = {};
-    for (int k = 0; k < n; ++k, A += kLanes)
-      for (int r = 0; r < R; ++r) {
-#pragma omp simd
-        for (int l = 0; l < kLanes; ++l) sum[r][l] += A[l] * x[k + r * x_stride];
-      }
-    for (int r = 0; r < R; ++r)
-      for (int l = 0; l < kLanes; ++l) y[l + r * y_stride] = sum[r][l];
-  }
-}
-
 /// sum of x_i y_i: lane i mod 8 adds its products in order, then lane_sum().
 inline double dot(const double* x, const double* y, int n) noexcept {
   double sum[kLanes] = {};

@@ -69,7 +69,7 @@ void describe(Archive& a, Endless& e) {
   a.count(e.bay_elements, kMostElements);
   a.real(e.bay_length);
   a.real(e.origin);
-  for (std::int64_t* i : {&e.course.period, &e.course.bays, &e.course.advance}) a.integer(*i);
+  for (std::int64_t* i : {&e.progress.period, &e.progress.bays, &e.progress.advance}) a.integer(*i);
 }
 
 /// Line `at`; one with a twin has its matrices or modes.
@@ -125,7 +125,7 @@ void describe(Archive& a, LoadModel& l) {
   describe(a, l.travel);
   a.count(l.table_points, kMostRows);
   a.reals(l.table, std::int64_t{2} * l.table_points);
-  a.count(l.kind, kMaxPortKinds - 1);
+  a.count(l.load_point, kMaxLoadPoints - 1);
 }
 
 template <typename Archive>
@@ -162,7 +162,7 @@ void describe(Archive& a, WheelsetModel& w) {
   a.count(w.cap, kMostGuideTurns);
   a.count(w.forces, kMaxBodyForces);
   for (std::int32_t i = 0; i < w.forces; ++i) describe(a, w.force[i], 2);
-  for (std::int32_t& kind : w.kind) a.count(kind, kMaxPortKinds - 1);
+  for (std::int32_t& point : w.load_point) a.count(point, kMaxLoadPoints - 1);
   for (SignalModel& tread : w.tread) describe(a, tread);
 }
 
@@ -188,7 +188,7 @@ void describe(Archive& a, VehicleWheel& w) {
   a.count(w.rail, 1);
   a.real(w.place);
   describe(a, w.contact);
-  a.count(w.kind, kMaxPortKinds - 1);
+  a.count(w.load_point, kMaxLoadPoints - 1);
   describe(a, w.tread);
 }
 
@@ -211,14 +211,14 @@ void describe(Archive& a, VehicleModel& v) {
 
 template <typename Archive>
 void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
-  a.count(r.kinds, kMaxPortKinds);
+  a.count(r.load_points, kMaxLoadPoints);
   a.count(r.points, kMostRows);
   a.count(r.elements, elements);
-  const std::int64_t table = std::int64_t{r.kinds} * r.elements * (r.points + 1);
+  const std::int64_t table = std::int64_t{r.load_points} * r.elements * (r.points + 1);
   a.reals(r.under, table);
   a.reals(r.axis, table);
-  for (std::int32_t i = 0; i < r.kinds; ++i)
-    for (std::int32_t j = 0; j < r.kinds; ++j) {
+  for (std::int32_t i = 0; i < r.load_points; ++i)
+    for (std::int32_t j = 0; j < r.load_points; ++j) {
       PairModel& pair = r.pair[i][j];
       a.count(pair.points, kMostPairPoints);
       a.count(pair.reach, elements);
@@ -228,15 +228,15 @@ void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
 }
 
 template <typename Archive>
-void describe(Archive& a, SeatTurnModel& t, std::int32_t elements) {
+void describe(Archive& a, PDeltaModel& t, std::int32_t elements) {
   a.count(t.elements_per_bay, kMostElements);
   a.count(t.points, kMostPairPoints);
   for (const double*& lever : t.lever)
-    a.reals(lever, std::int64_t{elements} * kTurnSeats * (t.points + 1));
+    a.reals(lever, std::int64_t{elements} * kPDeltaSeats * (t.points + 1));
 }
 
 template <typename Archive>
-void describe(Archive& a, ProbeModel& p, const Model& m) {
+void describe(Archive& a, TrackSensorModel& p, const Model& m) {
   a.count(p.count, kMostRows);
   a.integers(p.start, p.count + 1);
   a.count(p.entries, kMostEntries);
@@ -250,7 +250,7 @@ void describe(Archive& a, ProbeModel& p, const Model& m) {
   a.count(p.elements, kMostEntries);
   a.integers(p.first, p.tables);
   a.integers(p.ends, p.tables + 1);
-  const std::int64_t of_element = std::int64_t{m.residual.kinds} * (m.residual.points + 1);
+  const std::int64_t of_element = std::int64_t{m.residual.load_points} * (m.residual.points + 1);
   a.reals(p.residual, p.elements * of_element);
 }
 
@@ -262,14 +262,14 @@ void describe(Archive& a, FixedPortModel& p, const Model& m) {
   a.reals(p.damping, p.count);
   a.reals(p.gap, p.count);
   if (m.condensed != 0) {
-    a.reals(p.shape, std::int64_t{2} * p.count * m.bodies);
+    a.reals(p.shape, std::int64_t{2} * p.count * m.line_unknowns);
   } else {
     a.count(p.entries, kMostEntries);
     a.integers(p.start, p.count + 1);
     a.integers(p.index, p.entries);
     a.reals(p.value, p.entries);
   }
-  a.reals(p.response, std::int64_t{1 + m.condensed} * p.count * m.bodies);
+  a.reals(p.response, std::int64_t{1 + m.condensed} * p.count * m.line_unknowns);
   a.reals(p.compliance, std::int64_t{p.count} * p.count);
 }
 
@@ -303,11 +303,11 @@ void describe_track(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.external_wheels; ++i) {
     a.count(m.external_wheel[i].rail, 1);
     a.count(m.external_wheel[i].input, kMaxInputs);
-    a.count(m.external_wheel[i].kind, kMaxPortKinds - 1);
+    a.count(m.external_wheel[i].load_point, kMaxLoadPoints - 1);
   }
   describe(a, m.residual, m.elements);
-  describe(a, m.turn, m.elements);
-  describe(a, m.probe, m);
+  describe(a, m.p_delta, m.elements);
+  describe(a, m.track_sensor, m);
   describe(a, m.fixed, m);
 }
 
@@ -324,7 +324,7 @@ void describe(Archive& a, Model& m) {
   a.count(m.elements, kMostElements);
   a.count(m.unknowns, kMostUnknowns);
   a.count(m.condensed, 1);
-  a.count(m.bodies, m.unknowns);
+  a.count(m.line_unknowns, m.unknowns);
   a.count(m.steps_per_frame, kMostRows);
   a.count(m.inputs, kMaxInputs);
   for (std::int32_t i = 0; i < m.inputs; ++i) a.real(m.input_limit[i]);
@@ -332,7 +332,7 @@ void describe(Archive& a, Model& m) {
   for (std::int64_t* most : {&m.cost.flops, &m.cost.bytes, &m.cost.instructions}) a.integer(*most);
   a.count(m.system.unknowns, m.unknowns);
   if (m.lines > 0) describe_track(a, m);
-  if (m.system.unknowns > 0) describe(a, m.system, m.bodies);
+  if (m.system.unknowns > 0) describe(a, m.system, m.line_unknowns);
 }
 
 /// The start, behind a model that holds: its length follows from what the model is made of.

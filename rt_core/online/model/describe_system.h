@@ -39,10 +39,11 @@ void describe_counts(Archive& a, SystemModel& s) {
 
 template <typename Archive>
 void describe_solve(Archive& a, SystemModel& s) {
-  std::int32_t hold = static_cast<std::int32_t>(s.hold), renew = static_cast<std::int32_t>(s.renew);
-  a.count(hold, static_cast<std::int32_t>(Hold::direct));
+  std::int32_t hold = static_cast<std::int32_t>(s.constraint_method),
+               renew = static_cast<std::int32_t>(s.renew);
+  a.count(hold, static_cast<std::int32_t>(ConstraintMethod::direct));
   a.count(renew, static_cast<std::int32_t>(Renew::kept));
-  s.hold = static_cast<Hold>(hold);
+  s.constraint_method = static_cast<ConstraintMethod>(hold);
   s.renew = static_cast<Renew>(renew);
   a.count(s.mean, 1);
   a.count(s.cap, kMostIterations);

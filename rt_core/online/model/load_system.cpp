@@ -25,7 +25,9 @@ bool are_indices(const std::int32_t* values, std::int64_t n, std::int64_t count)
 
 bool solve_holds(const Scheme& c, const SystemModel& s) noexcept {
   if (s.cap < 1 || s.keep_steps < 1) return false;
-  if (s.mean != 0 && s.hold != Hold::augmented_lagrangian && s.hold != Hold::direct) return false;
+  if (s.mean != 0 && s.constraint_method != ConstraintMethod::augmented_lagrangian &&
+      s.constraint_method != ConstraintMethod::direct)
+    return false;
   return is_above_zero(c.kg) && is_not_negative(c.kv) && is_not_negative(s.alpha) &&
          is_not_negative(s.beta) && is_above_zero(s.tolerance) &&
          is_above_zero(s.joint_tolerance) && s.rank_tolerance >= 0. && s.rank_tolerance < 1.;
@@ -42,14 +44,14 @@ bool ports_give(const SystemModel& s) noexcept {
 /// What of a track is not stepped beside a system; without a track nothing of one is there.
 bool stands_alone_or_beside(const Model& m) noexcept {
   const SystemModel& s = m.system;
-  if (s.first != m.bodies || s.unknowns != m.unknowns - m.bodies) return false;
+  if (s.first != m.line_unknowns || s.unknowns != m.unknowns - m.line_unknowns) return false;
   if (m.condensed != 0 || m.wheelsets != 0 || m.vehicles != 0 || m.vehicle_wheels != 0 ||
       m.fixed.count != 0 || m.endless.bays != 0)
     return false;
   if (m.lines > 0)
-    return s.mean == 0 && s.hold != Hold::gear_gupta_leimkuhler &&
+    return s.mean == 0 && s.constraint_method != ConstraintMethod::gear_gupta_leimkuhler &&
            (s.ports == 0 || (s.port_compliance && s.port_shapes && ports_give(s)));
-  return s.ports == 0 && m.bodies == 0 && m.elements == 0 && m.loads == 0 && m.signals == 0;
+  return s.ports == 0 && m.line_unknowns == 0 && m.elements == 0 && m.loads == 0 && m.signals == 0;
 }
 
 /// Its unknowns are each of one direction or turn.

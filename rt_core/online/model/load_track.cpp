@@ -1,7 +1,7 @@
 #include "online/model/load_track.h"
 
 #include "online/math/finite.h"
-#include "online/model/course.h"
+#include "online/model/progress.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -48,12 +48,13 @@ bool contact_holds(const ContactModel& c) noexcept {
 bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
   if (e.bays == 0) return true;
   return e.bay_elements > 0 && std::int64_t{e.bays} * e.bay_elements == elements &&
-         e.bay_length > 0. && e.origin >= 0. && e.course.period > 0 && e.course.bays >= 0 &&
-         e.course.bays <= e.course.period && e.course.advance >= 0 && e.course.advance < kBay;
+         e.bay_length > 0. && e.origin >= 0. && e.progress.period > 0 && e.progress.bays >= 0 &&
+         e.progress.bays <= e.progress.period && e.progress.advance >= 0 &&
+         e.progress.advance < kBay;
 }
 
 bool line_holds(const Model& m, const LineModel& line) noexcept {
-  if (line.size % kLanes != 0 || line.first + line.size > m.bodies) return false;
+  if (line.size % kLanes != 0 || line.first + line.size > m.line_unknowns) return false;
   if (m.endless.bays > 0 && line.size > 0 &&
       !(within(line.shift.from, line.size, 0, line.size - 1) && line.shift.own &&
         line.shift.other && line.shift.fill))
@@ -99,7 +100,7 @@ bool load_holds(const LoadModel& l) noexcept {
 }
 
 /// External wheels stand on a track alone with loads, a step a frame; each has its own inputs.
-bool external_wheels_hold(const Model& m) noexcept {
+bool external_wheels_are_valid(const Model& m) noexcept {
   if (m.external_wheels == 0) return true;
   if (m.wheelsets > 0 || m.vehicles > 0 || m.fixed.count > 0 || m.steps_per_frame != 1)
     return false;
@@ -109,7 +110,7 @@ bool external_wheels_hold(const Model& m) noexcept {
 }
 
 bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
-  if (w.first < m.bodies || w.first + 8 > m.unknowns || w.cap < 1) return false;
+  if (w.first < m.line_unknowns || w.first + 8 > m.unknowns || w.cap < 1) return false;
   if (!are_above_zero(w.mass, 6) || !are_above_zero(w.hertz, 2) || !(w.radius > 0.)) return false;
   for (std::int32_t i = 0; i < w.forces; ++i)
     if (!force_holds(m, w.force[i])) return false;
@@ -129,7 +130,7 @@ bool flanges_hold(const Model& m) noexcept {
 }
 
 bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
-  if (v.first < m.bodies || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
+  if (v.first < m.line_unknowns || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
     return false;
   for (std::int32_t i = 0; i < v.forces; ++i)
     if (v.force[i].direction >= v.size || !force_holds(m, v.force[i])) return false;
@@ -151,32 +152,34 @@ bool wheel_holds(const Model& m, std::int32_t i) noexcept {
 /// Its values may be a little below 0, where elements give way more than a rail does. What they add
 /// to is above 0 where pack_residual.cpp made them; where it is not, the solve of the ports says so
 /// and gives no force.
-bool residual_holds(const Model& m) noexcept {
+bool residual_is_valid(const Model& m) noexcept {
   const ResidualModel& r = m.residual;
-  const bool tables = r.under != nullptr || r.axis != nullptr || m.probe.residual != nullptr;
+  const bool tables = r.under != nullptr || r.axis != nullptr || m.track_sensor.residual != nullptr;
   if (tables && (r.points < 3 || r.elements < 1)) return false;
   for (std::int32_t i = 0; i < m.loads && tables; ++i)
-    if (m.load[i].kind >= r.kinds) return false;
+    if (m.load[i].load_point >= r.load_points) return false;
   for (std::int32_t i = 0; i < m.wheelsets && tables; ++i)
-    if (m.wheelset[i].kind[0] >= r.kinds || m.wheelset[i].kind[1] >= r.kinds) return false;
+    if (m.wheelset[i].load_point[0] >= r.load_points ||
+        m.wheelset[i].load_point[1] >= r.load_points)
+      return false;
   for (std::int32_t i = 0; i < m.vehicle_wheels && tables; ++i)
-    if (m.vehicle_wheel[i].kind >= r.kinds) return false;
+    if (m.vehicle_wheel[i].load_point >= r.load_points) return false;
   for (std::int32_t i = 0; i < m.external_wheels && tables; ++i)
-    if (m.external_wheel[i].kind >= r.kinds) return false;
-  for (std::int32_t i = 0; i < r.kinds; ++i)
-    for (std::int32_t j = 0; j < r.kinds; ++j)
+    if (m.external_wheel[i].load_point >= r.load_points) return false;
+  for (std::int32_t i = 0; i < r.load_points; ++i)
+    for (std::int32_t j = 0; j < r.load_points; ++j)
       if (r.pair[i][j].value != nullptr && r.pair[i][j].points < 3) return false;
   return true;
 }
 
-bool turn_holds(const SeatTurnModel& t) noexcept {
+bool p_delta_is_valid(const PDeltaModel& t) noexcept {
   return (t.lever[0] == nullptr && t.lever[1] == nullptr) ||
          (t.elements_per_bay > 0 && t.points >= 3);
 }
 
 /// Every table lies within the track and behind the one before it.
 bool tables_hold(const Model& m) noexcept {
-  const ProbeModel& p = m.probe;
+  const TrackSensorModel& p = m.track_sensor;
   if (p.tables == 0) return true;
   if (!p.first || !p.ends || p.ends[0] != 0 || p.ends[p.tables] != p.elements) return false;
   for (std::int32_t i = 0; i < p.tables; ++i) {
@@ -186,8 +189,8 @@ bool tables_hold(const Model& m) noexcept {
   return true;
 }
 
-bool probes_hold(const Model& m) noexcept {
-  const ProbeModel& p = m.probe;
+bool track_sensors_are_valid(const Model& m) noexcept {
+  const TrackSensorModel& p = m.track_sensor;
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
   for (std::int32_t i = 0; i < p.count; ++i)
     if (p.start[i] > p.start[i + 1]) return false;
@@ -208,14 +211,14 @@ bool fixed_ports_hold(const Model& m) noexcept {
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
   for (std::int32_t i = 0; i < p.count; ++i)
     if (p.start[i] > p.start[i + 1]) return false;
-  return within(p.index, p.entries, 0, m.bodies - 1) && (p.entries == 0 || p.value);
+  return within(p.index, p.entries, 0, m.line_unknowns - 1) && (p.entries == 0 || p.value);
 }
 
 }  // namespace
 
 bool track_holds(const Model& m) noexcept {
   if (m.elements < 1 || !endless_holds(m.endless, m.elements)) return false;
-  if (!(m.element_length > 0.) || m.bodies % kLanes != 0) return false;
+  if (!(m.element_length > 0.) || m.line_unknowns % kLanes != 0) return false;
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_holds(m, m.line[i])) return false;
   for (std::int32_t i = 0; i < m.loads; ++i)
@@ -231,8 +234,8 @@ bool track_holds(const Model& m) noexcept {
     if (!wheel_holds(m, i)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
-  return external_wheels_hold(m) && residual_holds(m) && turn_holds(m.turn) && probes_hold(m) &&
-         fixed_ports_hold(m);
+  return external_wheels_are_valid(m) && residual_is_valid(m) && p_delta_is_valid(m.p_delta) &&
+         track_sensors_are_valid(m) && fixed_ports_hold(m);
 }
 
 bool inputs_hold(const Model& m) noexcept {

@@ -1,13 +1,13 @@
 #pragma once
 #include <cstdint>
 
-#include "online/contact/caps.h"
-#include "online/contact/signal.h"
 #include "online/math/band.h"
+#include "online/math/complex_modes.h"
 #include "online/math/diagonals.h"
-#include "online/math/modes.h"
 #include "online/model/cant.h"
+#include "online/model/caps.h"
 #include "online/model/scheme.h"
+#include "online/model/signal.h"
 #include "online/model/system.h"
 
 namespace railstep {
@@ -20,15 +20,15 @@ inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
 inline constexpr int kMaxBodyForces = 4;        // on one wheelset or vehicle
 inline constexpr int kMaxInputs = 96;           // forces and places given each frame
 inline constexpr int kMaxExternalWheels = 16;
-inline constexpr int kMaxSignals = 32;   // irregularities and defects of the rails
-inline constexpr int kTurnSeats = 6;     // around a wheel, half of them on each side of its bay
-inline constexpr int kMaxPortKinds = 4;  // rails and heights at which vertical forces act
-inline constexpr int kNoPortKind = -1;   // of what has no part in the residual flexibility
+inline constexpr int kMaxSignals = 32;    // irregularities and defects of the rails
+inline constexpr int kPDeltaSeats = 6;    // around a wheel, half of them on each side of its bay
+inline constexpr int kMaxLoadPoints = 4;  // rails and heights at which vertical forces act
+inline constexpr int kNoLoadPoint = -1;   // of what has no part in the residual flexibility
 
 // What a model may not exceed; a block that claims more is refused.
 inline constexpr std::int64_t kMostElements = 100'000;
 inline constexpr std::int64_t kMostUnknowns = 1 << 26;
-inline constexpr std::int64_t kMostRows = 1 << 22;  // of tables, probes and shapes
+inline constexpr std::int64_t kMostRows = 1 << 22;  // of tables, track sensors and shapes
 inline constexpr std::int64_t kMostEntries = 1 << 28;
 inline constexpr std::int64_t kMostPairPoints = 64;
 inline constexpr std::int64_t kMostSamples = 1 << 26;  // of an irregularity
@@ -36,7 +36,7 @@ inline constexpr std::int64_t kMostGuideTurns = 1000;
 
 /// How far the traffic of a track without end has gone at a step, exactly. Fractions count bays by
 /// 2^-62: n steps are n / period times `bays` whole ones, and n % period steps of `advance`.
-struct Course {
+struct BayProgress {
   std::int64_t period;   // steps after which it has gone whole bays, or more steps than are made
   std::int64_t bays;     // gone in a period
   std::int64_t advance;  // of a step, below a bay
@@ -49,7 +49,7 @@ struct Endless {
   std::int32_t bay_elements;  // elements of a bay
   double bay_length;          // m
   double origin;              // of the elements' x, over which x = 0 stands at the start, m
-  Course course;
+  BayProgress progress;
 };
 
 /// What a line is one bay further on, of every unknown i: x[i] becomes
@@ -112,7 +112,7 @@ struct LoadModel {
   const double* table;        // [table_points][2]  s, factor; linear between, constant outside
   double amplitude;           // N along z
   double frequency, phase;    // Hz, turns
-  std::int32_t kind;          // of port, for the residual flexibility
+  std::int32_t load_point;    // rail and height at which its vertical force acts
 };
 
 /// A force on a wheelset's centre or along a vehicle's coordinate, over time or given each frame.
@@ -149,9 +149,9 @@ struct WheelsetModel {
   double alpha, beta;  // of Baumgarte, 1/s
   std::int32_t forces;
   BodyForce force[kMaxBodyForces];
-  std::int32_t kind[2];  // of port on left and right rail, for the residual flexibility
-  SignalModel tread[2];  // of the left and right wheel: radius more than `radius`, over the
-                         // distance rolled
+  std::int32_t load_point[2];  // on left and right rail: height at which its vertical force acts
+  SignalModel tread[2];        // of the left and right wheel: radius more than `radius`, over the
+                               // distance rolled
 };
 
 /// How a vehicle's wheel holds on to what is under it, d the penetration:
@@ -180,8 +180,8 @@ struct VehicleWheel {
   std::int32_t vehicle, rail;  // rail: 0 left, 1 right
   double place;                // from the vehicle's origin, m
   ContactModel contact;
-  std::int32_t kind;  // of port, for the residual flexibility
-  SignalModel tread;  // radius more than its own, over the distance rolled
+  std::int32_t load_point;  // rail and height at which its vertical force acts
+  SignalModel tread;        // radius more than its own, over the distance rolled
 };
 
 /// Rigid bodies on springs and dampers that bounce and pitch over one rail,
@@ -216,26 +216,26 @@ struct PairModel {
 /// What the model's unknowns miss of the static deflection under vertical forces, tabled over
 /// elements at equal steps of xi. Null pointers: not modelled.
 struct ResidualModel {
-  std::int32_t kinds;     // of ports
-  std::int32_t points;    // intervals per element
+  std::int32_t load_points;  // rails and heights at which vertical forces act
+  std::int32_t points;       // intervals per element
   std::int32_t elements;  // of the tables, which repeat after them: the model's, of a ring a bay's
-  const double* under;    // [kinds][elements][points + 1] m/N, of the force's own point
+  const double* under;    // [load_points][elements][points + 1] m/N, of the force's own point
   const double* axis;     // the same of the rail's axis under it
-  PairModel pair[kMaxPortKinds][kMaxPortKinds];  // [force][displacement]
+  PairModel pair[kMaxLoadPoints][kMaxLoadPoints];  // [force][displacement]
 };
 
 /// Levers of a vertical force on a railhead over the seats around it, bays to the left and right of
 /// it alike: the part of the force that a seat bears times the height of its pad over the axis (a
 /// foot: below 0). Where the rail turns over its seats the force goes down. Null pointers: not
 /// modelled.
-struct SeatTurnModel {
+struct PDeltaModel {
   std::int32_t elements_per_bay;
   std::int32_t points;     // intervals per element
-  const double* lever[2];  // of left and right rail, [elements][kTurnSeats][points + 1] m
+  const double* lever[2];  // of left and right rail, [elements][kPDeltaSeats][points + 1] m
 };
 
 /// Scalars of the track that a frame publishes: rest + row * [u, v] + residual * port forces.
-struct ProbeModel {
+struct TrackSensorModel {
   std::int32_t count;
   const std::int32_t* start;  // [count + 1] of each row among index and value
   std::int32_t entries;
@@ -248,7 +248,7 @@ struct ProbeModel {
   std::int32_t tables, elements;
   const std::int32_t* first;  // [tables] the model's element that it begins with
   const std::int32_t* ends;   // [tables + 1] of their elements in a row, 0 before the first
-  const double* residual;     // [tables][kinds][its elements][points + 1] per N, or null
+  const double* residual;     // [tables][load_points][its elements][points + 1] per N, or null
 };
 
 /// One-sided springs and dampers that stand still: supports that do not pull, gaps, stops. Of each
@@ -264,10 +264,10 @@ struct FixedPortModel {
   const std::int32_t* index;  // [entries]
   const double* value;        // [entries]
   /// Of condensed lines: row' shape, real and imaginary parts; null otherwise.
-  const double* shape;  // [count][2][bodies] kg^-1/2
+  const double* shape;  // [count][2][line_unknowns] kg^-1/2
   /// What a unit force along the row makes of the lines at the step's end, S^-1 row; of condensed
   /// lines held_force shape, real and imaginary parts.
-  const double* response;    // [count][1 + condensed][bodies]
+  const double* response;    // [count][1 + condensed][line_unknowns]
   const double* compliance;  // [count][count] theta row response, m/N
 };
 
@@ -276,7 +276,7 @@ struct FixedPortModel {
 /// force on the rail along x, y and z, N. They are those of the step, which is a frame.
 struct ExternalWheelModel {
   std::int32_t rail, input;
-  std::int32_t kind;  // of port, for the residual flexibility
+  std::int32_t load_point;  // rail and height at which its vertical force acts
 };
 
 /// What a step must come to wherever it runs, of a model from a block: see self_check.h.
@@ -304,7 +304,7 @@ struct Model {
   std::int32_t flanges;         // wheelsets that have them
   std::int32_t unknowns;   // of all lines, padded, 8 per wheelset, of vehicles, and the system's
   std::int32_t condensed;  // 1: all lines are condensed, else all are banded
-  std::int32_t bodies;     // first unknown behind the lines
+  std::int32_t line_unknowns;  // of all lines together: bodies and systems follow
   std::int32_t steps_per_frame;
   std::int32_t inputs;             // forces given each frame
   double input_limit[kMaxInputs];  // N or N m, above 0: what they saturate at, on both sides
@@ -318,8 +318,8 @@ struct Model {
   double head_half_width[2];     // m
   const double* constant_force;  // [1 + condensed][unknowns] N, or null: the track's weight
   ResidualModel residual;
-  SeatTurnModel turn;
-  ProbeModel probe;
+  PDeltaModel p_delta;
+  TrackSensorModel track_sensor;
   FixedPortModel fixed;
   const double* start;  // [start_doubles] state at step 0
   std::int64_t steps;   // of the scene's run
@@ -371,10 +371,10 @@ inline std::int32_t wheel_rail(const Model& model, std::int32_t contact) noexcep
   return is_of_wheelset(model, contact) ? contact % 2 : vehicle_wheel(model, contact).rail;
 }
 /// Of port, for the residual flexibility.
-inline std::int32_t wheel_kind(const Model& model, std::int32_t contact) noexcept {
-  if (is_flange(model, contact)) return kNoPortKind;
-  return is_of_wheelset(model, contact) ? model.wheelset[contact / 2].kind[contact % 2]
-                                        : vehicle_wheel(model, contact).kind;
+inline std::int32_t wheel_load_point(const Model& model, std::int32_t contact) noexcept {
+  if (is_flange(model, contact)) return kNoLoadPoint;
+  return is_of_wheelset(model, contact) ? model.wheelset[contact / 2].load_point[contact % 2]
+                                        : vehicle_wheel(model, contact).load_point;
 }
 
 /// What a wheelset stands on: contacts `at[0]` to `at[count - 1]`.

@@ -112,7 +112,12 @@ struct PointForceModel {
   double direction[3];
 };
 
-enum class Hold : std::int32_t { augmented_lagrangian, baumgarte, gear_gupta_leimkuhler, direct };
+enum class ConstraintMethod : std::int32_t {
+  augmented_lagrangian,
+  baumgarte,
+  gear_gupta_leimkuhler,
+  direct
+};
 
 /// When Newton's matrix is made anew; always where it stops to bring the residual down.
 enum class Renew : std::int32_t { every_iteration, every_step, kept };
@@ -129,7 +134,7 @@ struct SystemModel {
   std::int32_t first, unknowns;  // in the state, padded to whole panels; parts count from `first`
   std::int32_t held, pieces;     // unknowns of all beams that are 0, pieces of all motions
   std::int32_t traced_joints, traced_springs;  // whose forces a trace shows
-  Hold hold;
+  ConstraintMethod constraint_method;
   Renew renew;
   std::int32_t mean;         // 1: forces at the mean of both ends of a step (energy-momentum)
   std::int32_t cap;          // Newton iterations a step

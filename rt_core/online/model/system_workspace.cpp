@@ -56,7 +56,7 @@ SystemWorkspace workspace_from(const SystemModel& s, Cursor& cursor, double* kep
   w.centre = cursor.take(3LL * s.bodies);
   for (MarkerPose** part : {&w.pose, &w.start_pose, &w.force_pose}) *part = cursor.poses(s.markers);
   w.gradient = cursor.take(std::int64_t{kMostNodeUnknowns} * s.ends);
-  if (s.hold == Hold::baumgarte) {
+  if (s.constraint_method == ConstraintMethod::baumgarte) {
     w.ahead = cursor.take(n);
     w.ahead_matrix = cursor.take(9LL * s.bodies);
     w.ahead_pose = cursor.poses(s.markers);

@@ -76,7 +76,7 @@ inline std::int32_t system_rows(const SystemModel& s) noexcept {
 }
 /// Whether what a step asks of a row changes with x otherwise than by the gradient that pulls.
 inline bool has_slopes(const SystemModel& s) noexcept {
-  return s.mean != 0 || s.hold == Hold::baumgarte;
+  return s.mean != 0 || s.constraint_method == ConstraintMethod::baumgarte;
 }
 inline std::int32_t beam_width(const BeamChainModel& beam) noexcept {
   return beam.planar != 0 ? kPlanarUnknowns : 9;

@@ -3,12 +3,12 @@
 #include <bit>
 #include <cstdint>
 
+#include "online/contact/vehicle_contact.h"
+#include "online/contact/wheel.h"
 #include "online/math/finite.h"
-#include "online/step/load.h"
-#include "online/step/residual.h"
-#include "online/step/vehicle_contact.h"
-#include "online/step/wheel.h"
 #include "online/system/marker.h"
+#include "online/track/moving_load.h"
+#include "online/track/residual.h"
 
 namespace railstep {
 
@@ -69,7 +69,7 @@ std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) 
 /// First unknown that is too large, or -1.
 std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) noexcept {
   // Of a condensed track these are modes, and no displacements.
-  const std::int32_t banded = model.condensed != 0 ? 0 : model.bodies;
+  const std::int32_t banded = model.condensed != 0 ? 0 : model.line_unknowns;
   const std::int32_t track = first_beyond(s, 0, banded, kMostSag);
   if (track >= 0) return track;
   const std::int32_t other = first_beyond(s, banded, model.unknowns, kMostNumber);

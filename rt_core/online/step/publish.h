@@ -1,7 +1,7 @@
 #pragma once
-#include "online/model/course.h"
-#include "online/step/couple.h"
-#include "online/step/external.h"
+#include "online/contact/couple.h"
+#include "online/contact/external.h"
+#include "online/model/progress.h"
 #include "online/system/system_step.h"
 
 namespace railstep {

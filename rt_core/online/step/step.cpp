@@ -2,17 +2,17 @@
 
 #include <cstring>
 
+#include "online/contact/couple.h"
+#include "online/contact/external.h"
 #include "online/math/float_mode.h"
 #include "online/math/tiny.h"
-#include "online/model/course.h"
-#include "online/step/couple.h"
-#include "online/step/external.h"
-#include "online/step/follow.h"
-#include "online/step/hold.h"
+#include "online/model/progress.h"
+#include "online/step/copy_outputs.h"
 #include "online/step/input.h"
-#include "online/step/load.h"
 #include "online/step/publish.h"
 #include "online/system/system_step.h"
+#include "online/track/moving_load.h"
+#include "online/track/shift_window.h"
 
 namespace railstep {
 
@@ -22,7 +22,7 @@ namespace {
 void predict(const Model& model, const State& s, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
-  for (std::int32_t i = model.condensed * model.bodies; i < model.unknowns; ++i) {
+  for (std::int32_t i = model.condensed * model.line_unknowns; i < model.unknowns; ++i) {
     w.u_star[i] = ((s.u[i] + c.uv * s.v[i]) + c.ua * s.a[i]) + c.ug * s.g[i];
     w.v_star[i] = (s.v[i] + c.va * s.a[i]) + c.vg * s.g[i];
   }
@@ -43,13 +43,14 @@ void predict_last(const Model& model, const State& s, Workspace& w) noexcept {
 void add_inertia(const Model& model, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.bodies; ++i) w.scaled[i] = c.kg * w.u_star[i];
+  for (std::int32_t i = 0; i < model.line_unknowns; ++i) w.scaled[i] = c.kg * w.u_star[i];
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const std::int32_t at = model.line[l].first;
     diagonals_multiply_add(model.line[l].mass, w.scaled + at, w.solved + at);
   }
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.bodies; ++i) w.scaled[i] = c.kv * w.u_star[i] - w.v_star[i];
+  for (std::int32_t i = 0; i < model.line_unknowns; ++i)
+    w.scaled[i] = c.kv * w.u_star[i] - w.v_star[i];
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const std::int32_t at = model.line[l].first;
     diagonals_multiply_add(model.line[l].damping, w.scaled + at, w.solved + at);
@@ -95,7 +96,7 @@ void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
     modes_multiply(line.modal.keep, {s.u + line.first, s.v + line.first}, w.solved + line.first,
                    w.imaginary + line.first, line.size);
   }
-  for (std::int32_t i = model.bodies; i < model.unknowns; ++i) w.solved[i] = 0.;
+  for (std::int32_t i = model.line_unknowns; i < model.unknowns; ++i) w.solved[i] = 0.;
 }
 
 /// Right-hand sides of banded lines, and condensed ones without wheels at the step's end.
@@ -108,7 +109,7 @@ void advance_track(const Model& model, const Stage& stage, State& s, Workspace& 
 
 void correct(const Model& model, State& s, const Workspace& w) noexcept {
   const Scheme c = model.scheme;
-  const std::int32_t first = model.condensed * model.bodies;
+  const std::int32_t first = model.condensed * model.line_unknowns;
 #pragma omp simd
   for (std::int32_t i = 0; i < first; ++i) {
     s.u[i] = without_tiny(w.solved[i]);
@@ -155,7 +156,7 @@ void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& o
 /// @param external  [external_wheels] overwritten
 void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
                ExternalContact* external) noexcept {
-  follow_traffic(model, state.steps + 1, state, w);
+  shift_window(model, state.steps + 1, state, w);
   const Stage stage = last_stage(model.scheme, state.steps + 1);
   if (model.scheme.part > 0.) {
     make_first_stage(model, state, w, outputs);
@@ -182,7 +183,7 @@ void forces(const Model& model, std::int64_t step, double* re, double* im, doubl
 #pragma omp simd
   for (std::int32_t i = 0; i < model.unknowns; ++i) re[i] = constant == nullptr ? 0. : constant[i];
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.condensed * model.bodies; ++i)
+  for (std::int32_t i = 0; i < model.condensed * model.line_unknowns; ++i)
     im[i] = constant == nullptr ? 0. : constant[model.unknowns + i];
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const PlacedLoad at = place(model, model.load[i], step, before);

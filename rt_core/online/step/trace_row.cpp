@@ -1,7 +1,7 @@
 #include "online/step/trace_row.h"
 
-#include "online/step/probe.h"
-#include "online/system/sense.h"
+#include "online/system/sensor.h"
+#include "online/track/track_sensor.h"
 
 namespace railstep {
 
@@ -31,7 +31,7 @@ double* append_wheels(const Model& model, const Outputs& out, double* to) noexce
 double* append_system(const Model& model, const State& state, double* to) noexcept {
   const SystemModel& s = model.system;
   for (std::int32_t i = 0; i < s.sensors; ++i) {
-    const PointMotion p = sense(model, state, i);
+    const PointMotion p = sensor_motion(model, state, i);
     const double* rest = s.sensor_rest + std::ptrdiff_t{3} * i;
     to = append(p.position, 3, to);
     for (int d = 0; d < 3; ++d) *to++ = p.position[d] - rest[d];
@@ -51,7 +51,7 @@ double* append_system(const Model& model, const State& state, double* to) noexce
 
 std::int32_t trace_columns(const Model& model) noexcept {
   return 1 + 2 * model.loads + 6 * wheel_count(model) + 8 * model.flanges +
-         6 * model.external_wheels + model.probe.count + 7 * model.system.sensors +
+         6 * model.external_wheels + model.track_sensor.count + 7 * model.system.sensors +
          6 * model.system.traced_joints + model.system.traced_springs;
 }
 
@@ -64,8 +64,8 @@ void trace_row(const Model& model, const State& state, const Outputs& outputs,
     *row++ = outputs.load_deflection[i];
   }
   row = append_wheels(model, outputs, row);
-  read_probes(model, state, outputs, row);
-  append_system(model, state, row + model.probe.count);
+  read_track_sensors(model, state, outputs, row);
+  append_system(model, state, row + model.track_sensor.count);
 }
 
 }  // namespace railstep

@@ -70,12 +70,12 @@ MarkerPose on_ground(const MarkerModel& marker) noexcept {
 MarkerPose on_body(const RigidBodyModel& body, const MarkerModel& marker, const double* x,
                    const double* R) noexcept {
   MarkerPose pose;
-  turn(R, marker.position, pose.point);
+  rotate(R, marker.position, pose.point);
   for (int c = 0; c < 3; ++c) {
     pose.point[c] += body.rest[c];
     if (body.column[c] >= 0) pose.point[c] += x[body.first + body.column[c]];
   }
-  for (int k = 0; k < 3; ++k) turn(R, marker.frame + 3 * k, pose.axis[k]);
+  for (int k = 0; k < 3; ++k) rotate(R, marker.frame + 3 * k, pose.axis[k]);
   return pose;
 }
 
@@ -112,9 +112,9 @@ MarkerJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, con
       own[0][c] = at.v[body.first + k];
       own[1][c] = at.g[body.first + k];
     }
-  turn(R, own[0], w);
-  turn(R, own[1], dw);
-  turn(R, marker.position, lever);
+  rotate(R, own[0], w);
+  rotate(R, own[1], dw);
+  rotate(R, marker.position, lever);
   MarkerJet jet;
   turning(lever, w, dw, jet.point);
   for (int c = 0; c < 3; ++c) {

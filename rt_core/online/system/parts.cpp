@@ -59,9 +59,9 @@ void place_centre(const SystemModel& s, std::int32_t b, const SystemStart& start
 void turn_inertia(const RigidBodyModel& body, const double* v, const double* g,
                   double* out) noexcept {
   double momentum[3], gyroscopic[3];
-  turn(body.inertia, v, momentum);
+  rotate(body.inertia, v, momentum);
   cross(v, momentum, gyroscopic);
-  turn(body.inertia, g, out);
+  rotate(body.inertia, g, out);
   for (int c = 0; c < 3; ++c) out[c] += gyroscopic[c];
 }
 
@@ -71,11 +71,11 @@ void mean_turn_inertia(const RigidBodyModel& body, double per_step, const double
                        const double* v0, const double* v1, double* out) noexcept {
   constexpr double upright[4] = {1., 0., 0., 0.};
   double q[4], R[9], old[3], fresh[3];
-  turned_by_mean(upright, change, q);
+  rotated_by_mean(upright, change, q);
   rotation_matrix(q, R);
-  turn(body.inertia, v1, fresh);
-  turn(R, fresh, fresh);
-  turn(body.inertia, v0, old);
+  rotate(body.inertia, v1, fresh);
+  rotate(R, fresh, fresh);
+  rotate(body.inertia, v0, old);
   for (int c = 0; c < 3; ++c) out[c] = per_step * (fresh[c] - old[c]);
 }
 
@@ -118,7 +118,7 @@ void solve_body(const RigidBodyModel& body, double per_kg, const double* force,
     if (body.column[c] >= 0) out[body.column[c]] = per_kg / body.mass * force[body.column[c]];
     if (body.column[3 + c] >= 0) moment[c] = per_kg * force[body.column[3 + c]];
   }
-  turn(body.inverse_inertia, moment, turned);
+  rotate(body.inverse_inertia, moment, turned);
   for (int c = 0; c < 3; ++c)
     if (body.column[3 + c] >= 0) out[body.column[3 + c]] = turned[c];
 }
@@ -233,9 +233,9 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
     own_turn(s.body[b], w.x, change);
     const double* q0 = start.quaternion + 4 * b;
     if (s.mean != 0)
-      turned_by_mean(q0, change, w.quaternion + 4 * b);
+      rotated_by_mean(q0, change, w.quaternion + 4 * b);
     else
-      turned(q0, change, w.quaternion + 4 * b);
+      rotated(q0, change, w.quaternion + 4 * b);
     rotation_matrix(w.quaternion + 4 * b, w.matrix + 9 * b);
     place_centre(s, b, start, w);
   }
@@ -261,7 +261,7 @@ double place_ahead(const Model& model, SystemWorkspace& w) noexcept {
     double change[3], q[4];
     own_turn(s.body[b], w.v, change);
     for (double& c : change) c *= time;
-    turned(w.quaternion + 4 * b, change, q);
+    rotated(w.quaternion + 4 * b, change, q);
     rotation_matrix(q, w.ahead_matrix + 9 * b);
   }
   for (std::int32_t m = 0; m < s.markers - s.sensors; ++m)

@@ -41,14 +41,14 @@ CosSin cos_sin(double angle) noexcept {
   return {at.cos, at.sinc * x};
 }
 
-void turned(const double* q0, const double* turn, double* q1) noexcept {
+void rotated(const double* q0, const double* turn, double* q1) noexcept {
   const CosSinc half = cos_sinc(.25 * dot(turn, turn));
   const double v[3] = {.5 * half.sinc * turn[0], .5 * half.sinc * turn[1],
                        .5 * half.sinc * turn[2]};
   product(q0, half.cos, v, q1);
 }
 
-void turned_by_mean(const double* q0, const double* turn, double* q1) noexcept {
+void rotated_by_mean(const double* q0, const double* turn, double* q1) noexcept {
   const double v[3] = {.5 * turn[0], .5 * turn[1], .5 * turn[2]};
   product(q0, 1., v, q1);
 }

@@ -17,7 +17,7 @@ inline double dot(const double* a, const double* b) noexcept {
 }
 
 /// y = R x.
-inline void turn(const double* R, const double* x, double* y) noexcept {
+inline void rotate(const double* R, const double* x, double* y) noexcept {
   const double a = dot(R, x), b = dot(R + 3, x);
   y[2] = dot(R + 6, x);
   y[0] = a;
@@ -46,11 +46,11 @@ struct CosSin {
 CosSin cos_sin(double angle) noexcept;
 
 /// q1 = q0 exp(turn), the turn a rotation vector in body axes of at most 2 pi; of unit length.
-void turned(const double* q0, const double* turn, double* q1) noexcept;
+void rotated(const double* q0, const double* turn, double* q1) noexcept;
 
 /// q1 = q0 cay(turn): the rotation by 2 atan(|turn| / 2), which the mean of both ends' directions
 /// makes exact: R1 - R0 = [R0 turn]x (R0 + R1) / 2.
-void turned_by_mean(const double* q0, const double* turn, double* q1) noexcept;
+void rotated_by_mean(const double* q0, const double* turn, double* q1) noexcept;
 
 void rotation_matrix(const double* q, double* R) noexcept;
 

@@ -28,12 +28,14 @@ Pivoted pivoted(const SystemModel& s, const SystemTangent& t) noexcept {
 double joint_wanted(const Model& model, const RowModel& row, const SystemWorkspace& w, double value,
                     Jet s) noexcept {
   const SystemModel& system = model.system;
-  if (system.hold == Hold::augmented_lagrangian || system.hold == Hold::direct) return value;
+  if (system.constraint_method == ConstraintMethod::augmented_lagrangian ||
+      system.constraint_method == ConstraintMethod::direct)
+    return value;
   const Motions at{w.x, w.v, w.g, w.matrix};
   const Jet phi = row_jet(row, marker_jet(system, system.marker[row.a], at),
                           marker_jet(system, system.marker[row.b], at), s);
   const double kv = model.scheme.kv, kg = model.scheme.kg;
-  if (system.hold == Hold::gear_gupta_leimkuhler) return phi.v / kv;
+  if (system.constraint_method == ConstraintMethod::gear_gupta_leimkuhler) return phi.v / kv;
   const double damp = 2. * system.alpha, stiff = system.beta * system.beta;
   return ((phi.a + damp * phi.v) + stiff * phi.x) / ((kg + damp * kv) + stiff);
 }
@@ -206,7 +208,8 @@ double set_rows(const Model& model, double time, bool renew, SystemWorkspace& w)
   const SystemModel& s = model.system;
   double largest = 0.;
   const bool slopes = has_slopes(s) && (renew || s.renew == Renew::kept);
-  const double ahead = slopes && s.hold == Hold::baumgarte ? place_ahead(model, w) : 0.;
+  const double ahead =
+      slopes && s.constraint_method == ConstraintMethod::baumgarte ? place_ahead(model, w) : 0.;
   for (std::int32_t r = 0; r < system_rows(s); ++r) {
     const RowModel& row = s.row[r];
     const Jet motion = motion_of(s, row, time);
@@ -252,7 +255,7 @@ void add_row_changes(const SystemModel& system, const double* gradient, const do
 
 void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
-  const bool yields = s.hold == Hold::augmented_lagrangian;
+  const bool yields = s.constraint_method == ConstraintMethod::augmented_lagrangian;
   factor_yielding(model, yields && s.mean == 0, w);
   // Where a step goes through a singular position G S^-1 G_m' has pivots below zero, that a
   // compliance near them brings to zero: it is for rows that depend on each other alone.

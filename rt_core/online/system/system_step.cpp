@@ -273,7 +273,8 @@ Size look(const Model& model, const State& state, const SystemStart& start, bool
 bool is_done(const SystemModel& s, const SystemWorkspace& w, const Size& left, const Search& search,
              const SystemResult& result) noexcept {
   if (!(left.wanted <= s.joint_tolerance)) return false;
-  if (s.hold == Hold::gear_gupta_leimkuhler && !(result.violation <= s.joint_tolerance))
+  if (s.constraint_method == ConstraintMethod::gear_gupta_leimkuhler &&
+      !(result.violation <= s.joint_tolerance))
     return false;
   return result.force_residual <= s.tolerance || is_settled(s, w, search.step, search.before);
 }
@@ -318,7 +319,7 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     newton_step(model, w);
     search.before = search.step;
     search.step = step_size(s, w);
-    if (s.hold == Hold::gear_gupta_leimkuhler) shift_step(model, w);
+    if (s.constraint_method == ConstraintMethod::gear_gupta_leimkuhler) shift_step(model, w);
   }
   leave(model, w, state, workspace);
   name_redundant(s, w.tangent, result);
@@ -329,12 +330,14 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
   const SystemModel& s = model.system;
   SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
   double* const u = state.u + s.first;
-  if (s.hold == Hold::gear_gupta_leimkuhler)
+  if (s.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
     for (std::int32_t i = 0; i < s.unknowns; ++i) u[i] += w.shift[i];
   for (std::int32_t b = 0; b < s.bodies; ++b)
     for (int c = 3; c < 6; ++c)
       if (const std::int32_t k = s.body[b].column[c]; k >= 0) u[s.body[b].first + k] = 0.;
-  if (s.hold != Hold::augmented_lagrangian || s.mean != 0 || s.joint_rows == 0) return Status::ok;
+  if (s.constraint_method != ConstraintMethod::augmented_lagrangian || s.mean != 0 ||
+      s.joint_rows == 0)
+    return Status::ok;
   if (s.renew == Renew::kept) {  // an old direction of the joints would take what they allow
     solve_ends(model, false, w);
     factor_rows(model, w);

@@ -31,9 +31,9 @@ void subtract_line_motion(const Model& model, const double* gradient, const doub
     const std::int32_t port = s.marker[end.side == 0 ? row.a : row.b].part;
     for (int k = 0; k < 9; ++k) {
       const double f = force[end.row] * gradient[std::ptrdiff_t{kMostNodeUnknowns} * e + k];
-      const double* shape = s.port_shapes + std::ptrdiff_t{model.bodies} * (9 * port + k);
+      const double* shape = s.port_shapes + std::ptrdiff_t{model.line_unknowns} * (9 * port + k);
 #pragma omp simd
-      for (std::int32_t i = 0; i < model.bodies; ++i) rates[i] -= f * shape[i];
+      for (std::int32_t i = 0; i < model.line_unknowns; ++i) rates[i] -= f * shape[i];
     }
   }
 }

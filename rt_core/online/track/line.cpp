@@ -9,7 +9,7 @@ Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
   return {re, re + modal.count};
 }
 
-constexpr int kMostCarried = 3 * 9 + 2 * kTurnSeats;  // unknowns of a row
+constexpr int kMostCarried = 3 * 9 + 2 * kPDeltaSeats;  // unknowns of a row
 
 /// Calls visit(unknown, weight) for what a line carries of a row.
 template <typename Visit>

@@ -10,9 +10,9 @@ namespace railstep {
 struct RailRow {
   std::int32_t rail, element;
   double coefficient[3][9];
-  std::int32_t seats;  // that matter, 0 to kTurnSeats; see step/turn.h
-  std::int32_t seat[kTurnSeats];
-  double lever[kTurnSeats];  // m
+  std::int32_t seats;  // that matter, 0 to kPDeltaSeats; see step/turn.h
+  std::int32_t seat[kPDeltaSeats];
+  double lever[kPDeltaSeats];  // m
 };
 
 /// Place in a rail's table of unknown k of a node, counted from 0 along the rail; of one that two

@@ -1,0 +1,128 @@
+#include "offline/analysis/buckling.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "offline/analysis/rigid.h"
+#include "offline/track/fixed_port.h"
+
+namespace railstep {
+
+namespace {
+
+using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+
+/// A pivot of 0 sharp, of one that nothing holds, is lifted by its rounding.
+void factorise(const Eigen::SparseMatrix<double>& stiffness, Factor& factor) {
+  factor.compute(stiffness);
+  if (factor.info() == Eigen::Success) return;
+  Eigen::SparseMatrix<double> lifted = stiffness;
+  for (int i = 0; i < lifted.rows(); ++i) {
+    double& entry = lifted.coeffRef(i, i);
+    entry += 1e-12 * std::abs(entry) + 1e-300;
+  }
+  factor.compute(lifted);
+}
+
+/// Whether a stiffness has a direction of negative energy. A pivot within 1e-12 of its diagonal is
+/// that of a free rigid mode (as Statics counts them), which is for others to refuse.
+bool is_unstable(const Eigen::SparseMatrix<double>& stiffness) {
+  Factor factor;
+  factorise(stiffness, factor);
+  const Eigen::VectorXd size =
+      factor.permutationP() * Eigen::VectorXd(stiffness.diagonal().cwiseAbs());
+  return (factor.vectorD().array() < -1e-12 * size.array()).any();
+}
+
+/// With both rails' forces `factor` times what they are.
+Track pressed(Track track, double factor) {
+  track.axial_force *= factor;
+  if (track.right) track.right->axial_force *= factor;
+  return track;
+}
+
+bool buckles(const Track& track, double factor) {
+  for (const Line& line : assemble(pressed(track, factor)))
+    if (is_unstable(line.stiffness)) return true;
+  return false;
+}
+
+/// The factor on both rails' forces at which the track buckles, by bisection up to `unstable`.
+double critical_factor(const Track& track, double unstable) {
+  double stable = 0.;
+  while (unstable - stable > 1e-12 * unstable) {
+    const double middle = .5 * (stable + unstable);
+    if (middle <= stable || middle >= unstable) break;
+    (buckles(track, middle) ? unstable : stable) = middle;
+  }
+  return unstable;
+}
+
+/// Where the shape in which a track buckles is largest, m and rail; at the factor at which it does,
+/// where inverse iteration finds that shape at once.
+std::string place_of_buckling(const Track& given, double factor) {
+  const Track track = pressed(given, factor);
+  double most = -1., x = 0.;
+  int at = 0;
+  for (const Line& line : assemble(track)) {
+    if (!is_unstable(line.stiffness)) continue;
+    Factor inverse;
+    factorise(line.stiffness, inverse);
+    Eigen::VectorXd shape = start_block(line.unknowns(), 1);
+    for (int turn = 0; turn < 3; ++turn) shape = inverse.solve(shape).eval().normalized();
+    for (int rail = 0; rail < track.rails; ++rail)
+      for (int node = 0; node < track.nodes(); ++node)
+        for (const int k : {1, 2}) {
+          const int unknown = line.unknown(rail, node, k);
+          if (unknown < 0 || line.rail_factor[static_cast<std::size_t>(rail)] == 0.) continue;
+          if (std::abs(shape[unknown]) <= most * (1. + 1e-9)) continue;
+          most = std::abs(shape[unknown]);
+          x = .5 * node * track.element_length();
+          at = rail;
+        }
+  }
+  std::ostringstream words;
+  words.precision(4);
+  words << ", most at x = " << x << " m";
+  if (track.rails == 2 && !is_symmetric(track))
+    words << " of the " << (at == 0 ? "left" : "right") << " rail";
+  return most < 0. ? "" : words.str();
+}
+
+}  // namespace
+
+double critical_compression(const Track& track) {
+  Track unit = track;
+  unit.axial_force = -1.;
+  if (unit.right) unit.right->axial_force = -1.;
+  const double crushing = track.material.young * track.section.area;
+  if (!buckles(unit, crushing)) return std::numeric_limits<double>::infinity();
+  return critical_factor(unit, crushing);
+}
+
+void refuse_buckled(const Track& given) {
+  const Track track = linear_about_rest(given);
+  const double left = track.axial_force, right = track.bar(1).axial_force;
+  // The bisection's own width, so that the critical force itself is refused.
+  if (!(std::min(left, right) < 0.) || !buckles(track, 1. + 1e-11)) return;
+  std::ostringstream sentence;
+  sentence.precision(7);
+  const double most = critical_factor(track, 1. + 1e-11);
+  if (left == right)
+    sentence << "the rails carry a compression of " << -left << " N, and the track buckles at "
+             << -left * most << " N";
+  else
+    sentence << "the rails carry compressions of " << -left << " N (left) and " << -right
+             << " N (right), and the track buckles at " << most << " times these";
+  sentence << place_of_buckling(track, most)
+           << "; accepted are rail.axial_force_n and heat that press less";
+  throw std::invalid_argument(sentence.str());
+}
+
+}  // namespace railstep

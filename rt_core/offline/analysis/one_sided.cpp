@@ -1,0 +1,150 @@
+#include "offline/analysis/one_sided.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace railstep {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+using Factor = Eigen::SimplicialLDLT<Sparse>;
+
+constexpr int kMostIterations = 200;
+constexpr double kLittle = 1e-6;  // of an open spring's stiffness
+
+}  // namespace
+
+OneSided::OneSided(const Track& track, const std::vector<Line>& lines, std::vector<FixedPort> ports)
+    : ports_(std::move(ports)), joined_(join(track, lines, ports_)) {
+  const Sparse all = stiffness(Closed(ports_.size(), true), 0.);
+  all_closed_.compute(all);
+  if (is_held(all_closed_, all)) return;
+  refuse_free_modes(track, lines, ports_);  // by its name
+  throw std::invalid_argument("the track's stiffness cannot be factored");
+}
+
+OneSided::Sparse OneSided::stiffness(const Closed& closed, double open_part) const {
+  Eigen::VectorXd k(static_cast<Eigen::Index>(ports_.size()));
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    k[static_cast<Eigen::Index>(p)] = (closed[p] ? 1. : open_part) * ports_[p].stiffness;
+  return joined_.stiffness + Sparse(joined_.closing * k.asDiagonal() * joined_.closing.transpose());
+}
+
+Eigen::VectorXd OneSided::depth(const Eigen::VectorXd& u) const {
+  Eigen::VectorXd d = joined_.closing.transpose() * u;
+  for (std::size_t p = 0; p < ports_.size(); ++p) d[static_cast<Eigen::Index>(p)] -= ports_[p].gap;
+  return d;
+}
+
+OneSided::Closed OneSided::pressing(const Eigen::VectorXd& u) const {
+  const Eigen::VectorXd d = depth(u);
+  Closed closed;
+  for (const double own : d) closed.push_back(own >= 0.);
+  return closed;
+}
+
+/// K u + what the springs press - f.
+Eigen::VectorXd OneSided::gradient(const Eigen::VectorXd& u, const Eigen::VectorXd& load) const {
+  Eigen::VectorXd pressed = depth(u).cwiseMax(0.);
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    pressed[static_cast<Eigen::Index>(p)] *= ports_[p].stiffness;
+  return joined_.stiffness * u + joined_.closing * pressed - load;
+}
+
+/// Where too few press to hold the track, those that are open hold it a little: the step goes as
+/// far as the next that presses. Where it buckles then, they hold it as if all pressed. Both go
+/// down.
+Eigen::VectorXd OneSided::newton_step(const Closed& closed, const Eigen::VectorXd& g) const {
+  for (const double open_part : {0., kLittle}) {
+    const Sparse held = stiffness(closed, open_part);
+    const Factor factor(held);
+    if (is_held(factor, held)) return factor.solve(-g);
+  }
+  return all_closed_.solve(-g);
+}
+
+/// The t >= 0 of the least E(u + t step): its slope rises in t along straight pieces that end where
+/// a spring closes or opens.
+double OneSided::minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& step,
+                               const Eigen::VectorXd& load) const {
+  const Eigen::VectorXd d = depth(u), s = joined_.closing.transpose() * step;
+  const Eigen::VectorXd Ks = joined_.stiffness * step;
+  const double start = step.dot(joined_.stiffness * u - load), rise = step.dot(Ks);
+  const auto slope = [&](double t) {
+    double sum = start + t * rise;
+    for (std::size_t p = 0; p < ports_.size(); ++p) {
+      const auto i = static_cast<Eigen::Index>(p);
+      sum += ports_[p].stiffness * std::max(0., d[i] + t * s[i]) * s[i];
+    }
+    return sum;
+  };
+  std::vector<double> ends;
+  for (Eigen::Index i = 0; i < d.size(); ++i)
+    if (s[i] != 0. && -d[i] / s[i] > 0.) ends.push_back(-d[i] / s[i]);
+  std::sort(ends.begin(), ends.end());
+  double from = 0.;
+  for (const double to : ends) {
+    const double low = slope(from), high = slope(to);
+    if (high >= 0.) return high > low ? from - low * (to - from) / (high - low) : from;
+    from = to;
+  }
+  const double low = slope(from), more = slope(from + 1.) - low;
+  if (low >= 0.) return from;
+  double all = rise;
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    all += ports_[p].stiffness * std::pow(s[static_cast<Eigen::Index>(p)], 2);
+  if (!(more > 1e-12 * all))
+    throw std::invalid_argument(
+        "no equilibrium: the loads lift the track off the one-sided supports that would hold it");
+  return from - low / more;
+}
+
+std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>& load) const {
+  Eigen::VectorXd f(joined_.first.back());
+  for (std::size_t l = 0; l < load.size(); ++l)
+    f.segment(joined_.first[l], load[l].size()) = load[l];
+  // All closed is where a track rests that carries what it is made for.
+  Eigen::VectorXd gaps(static_cast<Eigen::Index>(ports_.size()));
+  double largest_gap = 0.;  // m; what rests pressed does not move at all
+  for (std::size_t p = 0; p < ports_.size(); ++p) {
+    gaps[static_cast<Eigen::Index>(p)] = ports_[p].stiffness * ports_[p].gap;
+    largest_gap = std::max(largest_gap, std::abs(ports_[p].gap));
+  }
+  Eigen::VectorXd u = all_closed_.solve(f + joined_.closing * gaps);
+  Closed closed = pressing(u);
+  bool done = false;
+  for (int turn = 0; turn < kMostIterations && !done; ++turn) {
+    const Eigen::VectorXd step = newton_step(closed, gradient(u, f));
+    const double part = minimum_along(u, step, f);
+    u += part * step;
+    const Closed now = pressing(u);
+    // A whole step that changes no spring's state solved the linear system of that state; one that
+    // flickers about 0 moves nothing any more.
+    const double nothing = std::max(1e-9 * u.norm(), 1e-12 * largest_gap);
+    done = (now == closed && std::abs(part - 1.) < 1e-6) || step.norm() <= nothing;
+    closed = now;
+  }
+  if (!done)
+    throw std::invalid_argument(
+        "no equilibrium was found: the one-sided supports open and close without end");
+  std::vector<Eigen::VectorXd> result;
+  for (std::size_t l = 0; l < load.size(); ++l)
+    result.emplace_back(u.segment(joined_.first[l], load[l].size()));
+  return result;
+}
+
+std::vector<double> OneSided::forces(const std::vector<Eigen::VectorXd>& displacement) const {
+  Eigen::VectorXd u(joined_.first.back());
+  for (std::size_t l = 0; l < displacement.size(); ++l)
+    u.segment(joined_.first[l], displacement[l].size()) = displacement[l];
+  const Eigen::VectorXd d = depth(u);
+  std::vector<double> result;
+  for (std::size_t p = 0; p < ports_.size(); ++p)
+    result.push_back(ports_[p].stiffness * std::max(0., d[static_cast<Eigen::Index>(p)]));
+  return result;
+}
+
+}  // namespace railstep

@@ -1,0 +1,118 @@
+#include "offline/cost/line_cost.h"
+#include "online/contact/locate.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr std::int64_t kSeenNodes = 6;  // of the two elements that a wheel looks at, at a joint
+
+/// Irregularities of the rails and of the tread.
+Cost irregular_cost(const Model& model) {
+  return (1 + std::int64_t{model.signals}) * (kSignal + work(4, 2));
+}
+
+/// Both contacts of a wheelset, or both of its flanges, looked for on the rails as they lie.
+Cost located_pair(const Model& model) {
+  constexpr Cost rest = branching(240, 120);  // the nodes' places in the track's axes
+  constexpr Cost contact =
+      branching(700, 300);  // poses, the point on the crown, rows, the turn's part
+  constexpr Cost search = kLocateSteps * branching(205, 60) + branching(200, 60);
+  Cost sum = 2 * (rest + contact + search + irregular_cost(model) + kPDeltaSeats * kLookUp);
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineModel& line = model.line[l];
+    const LineCost cost = line_cost(model, line);
+    // Of a table for both rails each unknown is read once.
+    const std::int64_t tables = line.unknown_of[0] == line.unknown_of[1] ? 1 : 2;
+    sum = sum + kSeenNodes * 9 * (work(4, 6) + tables * cost.value) +
+          2 * kPDeltaSeats * cost.node_turn;
+  }
+  return sum;
+}
+
+/// Wheels of vehicles: their laws, rows and offsets, and the vehicles' dense products.
+Cost vehicles_cost(const Model& model, std::int64_t contacts) {
+  Cost sum{};
+  for (std::int32_t v = 0; v < model.vehicles; ++v) {
+    const std::int64_t n = model.vehicle[v].size, wheels = model.vehicle[v].wheels;
+    const Cost law = work(150 + 6 * n, 100 + 4 * n) + contacts * kPairLookUp;
+    const Cost own = work(200 + 8 * n, 80 + 6 * n) + 2 * irregular_cost(model);
+    sum = sum + work(6 * n * n + 20 * n, 3 * n * n + 14 * n) + wheels * (law + own);
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      sum = sum + 3 * wheels * line_cost(model, model.line[l]).wheel_row;
+  }
+  return sum;
+}
+
+/// How far wheelsets and vehicles are, looked up a few times a step, and what pushes their bodies.
+Cost tables_cost(const Model& model) {
+  Cost sum{};
+  const auto forces = [&sum](const BodyForce* force, std::int32_t count) {
+    for (std::int32_t i = 0; i < count; ++i)
+      sum = sum + 2 * (branching(2, 4) + table_cost(force[i].points));
+  };
+  for (std::int32_t w = 0; w < model.wheelsets; ++w) {
+    sum = sum + 10 * table_cost(model.wheelset[w].travel.rows);
+    forces(model.wheelset[w].force, model.wheelset[w].forces);
+  }
+  for (std::int32_t v = 0; v < model.vehicles; ++v) {
+    const VehicleModel& own = model.vehicle[v];
+    sum = sum + (6 + 8 * own.wheels) * table_cost(own.travel.rows);
+    forces(own.force, own.forces);
+  }
+  return sum;
+}
+
+/// The track under all contacts: responses, W, penetrations, and the forces' way back.
+Cost responses_cost(const Model& model, const LineModel& line) {
+  const std::int64_t wheels = pressing(model, line);
+  const LineCost cost = line_cost(model, line);
+  Cost sum = wheels * (cost.unit + cost.add) + wheels * (wheels + 1) / 2 * cost.read +
+             2 * wheels * cost.read;  // seen as located, and moved since
+  sum = sum + wheels * std::int64_t{model.fixed.count} * cost.read;
+  // Dampers of flanges: the rail's motion at three instants.
+  return sum + 6 * std::int64_t{model.flanges} * cost.wheel_row;
+}
+
+Cost fixed_cost(const Model& model) {
+  const std::int64_t count = model.fixed.count, n = model.line_unknowns;
+  if (model.condensed != 0)
+    return count * (2 * work(4 * n + 8, 4 * n) + work(4 * n, 6 * n) + work(20, 10));
+  return count * (work(2 * n, 3 * n) + work(20, 10)) +
+         3 * work(2 * model.fixed.entries, 3 * model.fixed.entries);
+}
+
+/// The guides' turns, each with a solve of all ports.
+Cost coupled_cost(const Model& model, std::int64_t contacts) {
+  std::int64_t turns = 1, lift = 20 * std::int64_t{model.wheelsets} * 4;
+  for (std::int32_t i = 0; i < model.wheelsets; ++i)
+    if (model.wheelset[i].guide == Guide::augmented_lagrangian && model.wheelset[i].cap > turns)
+      turns = model.wheelset[i].cap;
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    lift += 2 * std::int64_t{model.vehicle[v].size} * model.vehicle[v].wheels;
+  const std::int64_t ports = contacts + model.fixed.count;
+  return turns * (ports_cost(ports, model.scheme.mean != 0) + work(lift + 3 * ports, lift) +
+                  model.wheelsets * work(150, 100));
+}
+
+}  // namespace
+
+Cost contact_cost(const Model& model) {
+  const std::int64_t contacts = contact_count(model), sets = model.wheelsets;
+  if (contacts + model.fixed.count == 0) return {};
+  const std::int64_t moving = model.unknowns - model.condensed * model.line_unknowns;
+  Cost sum = work(2 * moving, 3 * moving) + (sets + model.flanges) * located_pair(model) +
+             sets * work(400, 200);
+  for (std::int32_t l = 0; l < model.lines; ++l) sum = sum + responses_cost(model, model.line[l]);
+  const std::int64_t pairs = contacts * (contacts + 1) / 2;
+  sum = sum + pairs * (work(40, 20) + kPairLookUp);
+  sum = sum + loads_cost(model) + model.loads * contacts * kPairLookUp + contacts * work(200, 100);
+  if (model.scheme.mean != 0)  // where each contact was, and the residual displacement there
+    sum = sum + contacts * (work(50, 30) + contacts * kPairLookUp);
+  for (std::int32_t l = 0; l < model.lines && model.scheme.mean != 0; ++l)
+    sum = sum + contacts * line_cost(model, model.line[l]).read;
+  return sum + tables_cost(model) + vehicles_cost(model, contacts) + fixed_cost(model) +
+         coupled_cost(model, contacts);
+}
+
+}  // namespace railstep

@@ -1,0 +1,77 @@
+#include "offline/cost/line_cost.h"
+
+#include <algorithm>
+
+namespace railstep {
+
+namespace {
+
+/// Unknowns of a rail's element that a line carries, at most.
+std::int64_t carried(const Model& model, const LineModel& line) {
+  std::int64_t most = 0;
+  for (int rail = 0; rail < 2; ++rail)
+    for (std::int32_t e = 0; e < model.elements; ++e)
+      most = std::max<std::int64_t>(
+          most, std::count_if(line.unknown_of[rail] + 27 * e, line.unknown_of[rail] + 27 * (e + 1),
+                              [](std::int32_t unknown) { return unknown >= 0; }));
+  return most;
+}
+
+bool turns(const Model& model) {
+  return model.p_delta.lever[0] != nullptr || model.p_delta.lever[1] != nullptr;
+}
+
+}  // namespace
+
+Cost solve_cost(const Band& band) {
+  const std::int64_t panels = band.panels, left = band.left;
+  std::int64_t columns = 0;  // left of all panels, those before the first unknown left out
+  for (std::int64_t p = 0; p < panels; ++p) columns += std::min<std::int64_t>(kLanes * p, left);
+  // Forth and back a product and two sums over the even and the odd columns, then a block.
+  const std::int64_t flops = 2 * (2 * kLanes * columns + 2 * kLanes * panels) + 128 * panels;
+  return work(flops, 2 * kLanes * columns + 64 * panels + 6 * kLanes * panels);
+}
+
+LineCost line_cost(const Model& model, const LineModel& line) {
+  const std::int64_t n = line.size, points = carried(model, line);
+  const bool modal = model.condensed != 0;
+  const std::int64_t seats = turns(model) ? 2 * kPDeltaSeats : 0;
+  LineCost c{};
+  c.value = modal ? work(4 * n + 7, 4 * n) : work(0, 1);
+  c.row = points * (work(3, 2) + (modal ? work(4 * n + 7, 6 * n) : Cost{}));
+  c.wheel_row = c.row + seats * (work(4, 3) + (modal ? work(4 * n + 7, 6 * n) : Cost{}));
+  c.shape = work((points + seats) * (2 + 4 * n), (points + seats) * (2 + 2 * n) + 2 * n);
+  c.unit = modal ? c.shape + work(6 * n, 6 * n) : c.wheel_row + work(0, n) + solve_cost(line.step);
+  c.read = modal ? work(4 * n + 8, 4 * n) : c.wheel_row;
+  c.add = modal ? work(4 * n, 6 * n) : work(2 * n, 3 * n);
+  c.node_turn = 2 * (work(3, 2) + c.value);
+  return c;
+}
+
+Cost advance_cost(const Model& model, const LineModel& line) {
+  const std::int64_t n = line.size;
+  // The traffic passes a bay border in one step at most: u, v, a, g of the line one bay on.
+  const Cost shift = model.endless.bays > 0 ? 4 * work(4 * n, 7 * n) : Cost{};
+  // Three complex products and two sums.
+  if (model.condensed != 0) return shift + work(22 * n, 18 * n);
+  const std::int64_t diagonals = line.mass.count + line.damping.count;
+  const Cost predicted = work(10 * n, 6 * n), corrected = work(9 * n, 9 * n);
+  const Cost inertia = work(3 * n + 2 * n * diagonals, n * (2 * diagonals + 9));
+  return shift + predicted + inertia + solve_cost(line.step) + corrected;
+}
+
+Cost loads_cost(const Model& model) {
+  Cost sum = model.loads * kPlace;
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    sum = sum + table_cost(model.load[i].table_points) + table_cost(model.load[i].travel.rows);
+  return sum;
+}
+
+std::int64_t pressing(const Model& model, const LineModel& line) {
+  std::int64_t count = 0;
+  for (std::int32_t i = 0; i < contact_count(model); ++i)
+    if (line.rail_factor[wheel_rail(model, i)] != 0.) ++count;
+  return count;
+}
+
+}  // namespace railstep

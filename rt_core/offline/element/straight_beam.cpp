@@ -1,0 +1,37 @@
+#include "offline/element/straight_beam.h"
+
+#include <stdexcept>
+
+namespace railstep {
+
+StraightBeam straight_beam(const BeamLaw& law, double length) {
+  if (!(length > 0.)) throw std::invalid_argument("a straight element has a length above 0");
+  const int apart = law.rule.coupling_points;
+  if (law.rule.axial_points != 2 || (apart != 0 && apart != 2))
+    throw std::invalid_argument("the straight element has two points for all strains, no others");
+  const BeamPoint point = straight_point(law, length / 2.);
+
+  StraightBeam beam{};
+  beam.per_length = 1. / length;
+  for (int k = 0; k < kProducts; ++k) {
+    const int p = straight_preload(k);
+    if (p >= 0) beam.preload[p] = point.preload[k];
+    bool fits = p >= 0 || point.preload[k] == 0.;
+    for (int l = 0; l < kProducts; ++l) {
+      const int c = straight_constant(k, l);
+      if (c >= 0) beam.stiffness[c] = point.stiffness[k][l];
+      fits = fits && (c >= 0 || point.stiffness[k][l] == 0.);
+    }
+    if (!fits)
+      throw std::invalid_argument("the straight element needs a section symmetric about y = 0");
+  }
+  return beam;
+}
+
+std::array<double, 4> chain_mass(const BeamSection& section, const BeamLaw& law) {
+  const double z = law.moments.centroid_z(), density = law.material.density;
+  return {density * section.area, density * section.inertia_z,
+          density * (section.inertia_y + z * z * section.area), density * z * section.area};
+}
+
+}  // namespace railstep

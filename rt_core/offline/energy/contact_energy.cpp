@@ -1,0 +1,164 @@
+#include "offline/energy/contact_energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "online/contact/ports.h"
+#include "online/contact/vehicle_contact.h"
+#include "online/model/progress.h"
+
+namespace railstep {
+namespace {
+
+/// Where the forces act: of loads, and of wheels still without force.
+int ports_of(const Model& model, StandingContacts& c, RailForce* port) {
+  for (int i = 0; i < c.loads; ++i)
+    port[i] = {model.load[i].load_point, c.load[i].row.element, c.load[i].xi, c.load[i].force};
+  for (int i = 0; i < c.wheels; ++i)
+    port[c.loads + i] = {wheel_load_point(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+  return c.loads + c.wheels;
+}
+
+/// Turns after which a negative residual no longer matters: each leaves |G| dP/dd of it, 1e-2.
+constexpr int kIterations = 10;
+
+bool stands(const WheelContact& at) { return at.on_rail || at.on_ground; }
+
+/// A linear contact pulls too, and its damper's part is not in its penetration: its force is known.
+bool is_linear(const Model& model, int wheel) {
+  return !is_of_wheelset(model, wheel) && vehicle_wheel(model, wheel).contact.hertz == 0.;
+}
+/// Whether the residual flexibility has a part in how deep a contact is.
+bool is_pressed(const Model& model, int wheel) {
+  return !is_flange(model, wheel) && !is_linear(model, wheel);
+}
+double hertz_of(const Model& model, int wheel) {
+  if (!is_pressed(model, wheel)) return 1.;  // of a port that is never met
+  return is_of_wheelset(model, wheel) ? model.wheelset[wheel / 2].hertz[wheel % 2]
+                                      : vehicle_wheel(model, wheel).contact.hertz;
+}
+
+/// Energy in a linear contact; one without a damper has it by its force, which says it better than
+/// the small penetration of a stiff one.
+double linear_energy(const ContactModel& contact, double force, double depth) {
+  return contact.damping == 0. ? .5 * force * force / contact.stiffness
+                               : .5 * contact.stiffness * depth * depth;
+}
+
+/// Forces of the wheels by d + W f = d_free, W = G between wheels. Where G is below 0, which it may
+/// be by itself, it acts through the force of the turn before.
+void press(const Model& model, StandingContacts& c, RailForce* port, int ports) {
+  double W[kMaxWheels * kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
+  PortLaw law[kMaxWheels];
+  double force[kMaxWheels], d[kMaxWheels];
+  for (int i = 0; i < c.wheels; ++i) {
+    const bool on_rail = c.contact[i].on_rail && is_pressed(model, i);
+    law[i] = {hertz_of(model, i), 0., 0.};
+    force[i] = 0.;
+    free[i] =
+        on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;
+    if (c.contact[i].on_ground && is_pressed(model, i)) free[i] = c.approach[i];
+    for (int j = 0; j < c.wheels; ++j) {
+      const RailForce &at = port[c.loads + i], &other = port[c.loads + j];
+      const bool coupled = on_rail && c.contact[j].on_rail && is_pressed(model, j);
+      W[i * c.wheels + j] = !coupled ? 0.
+                            : i == j ? residual_under(model, at)
+                                     : residual_between(model, other, at);
+    }
+    double& own = W[i * c.wheels + i];
+    negative[i] = std::min(own, 0.);
+    own = std::max(own, 0.);
+  }
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    double shifted[kMaxWheels];
+    for (int i = 0; i < c.wheels; ++i) shifted[i] = free[i] - negative[i] * force[i];
+    static_cast<void>(solve_ports(c.wheels, W, law, shifted, force, d));  // as good as it gets
+  }
+  for (int i = 0; i < c.wheels; ++i) {
+    if (!is_pressed(model, i)) continue;
+    port[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
+    const double depth = std::max(d[i], 0.);
+    c.hertz += .4 * law[i].hertz * depth * depth * std::sqrt(depth);
+  }
+}
+
+double flange_energy(const ContactModel& contact, double depth) {
+  const double d = std::max(depth, 0.);
+  return contact.hertz > 0. ? .4 * contact.hertz * d * d * std::sqrt(d)
+                            : .5 * contact.stiffness * d * d;
+}
+
+/// Penetrations of all contacts, and the energy of those that are not pressed, under known forces.
+void press_others(const Model& model, const State& state, StandingContacts& c) {
+  for (int i = 0; i < c.wheels; ++i) {
+    c.depth[i] = c.approach[i] + c.moved[c.loads + i];
+    if (is_linear(model, i))
+      c.hertz += linear_energy(vehicle_wheel(model, i).contact, state.wheel_force[i], c.depth[i]);
+    if (is_flange(model, i)) c.hertz += flange_energy(flange_of(model, i).contact, c.depth[i]);
+  }
+}
+
+}  // namespace
+
+StandingContacts standing_contacts(const Model& model, const State& state) {
+  StandingContacts c{};
+  c.loads = model.loads;
+  c.wheels = contact_count(model);
+  const Configuration at{state.u, {state.u, state.v}, passed(model, state.steps)};
+  for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    find_contacts(model, model.wheelset[b], at, c.contact + 2 * b);
+  for (std::int32_t f = 0; f < model.flanges; ++f)
+    find_flanges(model, model.flange[f], at, c.contact + wheel_count(model) + 2 * f);
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., at, c.contact);
+  for (int i = 0; i < c.wheels; ++i)
+    c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
+  RailForce port[kMaxRailForces];
+  const int ports = ports_of(model, c, port);
+  for (int i = 0; i < c.wheels; ++i)
+    if (is_linear(model, i) && c.contact[i].on_rail)
+      port[c.loads + i].force = -state.wheel_force[i];
+  if (c.wheels > 0) press(model, c, port, ports);
+  for (int i = 0; i < ports; ++i) {
+    c.force[i] = port[i].force;
+    const bool on_rail = i < c.loads ? c.load[i].on_rail : c.contact[i - c.loads].on_rail;
+    c.moved[i] = on_rail ? residual_displacement(model, port, ports, i) : 0.;
+    c.residual += .5 * c.force[i] * c.moved[i];
+  }
+  press_others(model, state, c);
+  return c;
+}
+
+double contact_dissipation(const Model& model, const StandingContacts& before,
+                           const StandingContacts& after, const double* mean_force) {
+  const bool held = model.condensed != 0;
+  const double late = held ? model.scheme.theta : .5;
+  double sum = 0.;
+  for (int i = 2 * model.wheelsets; i < after.wheels; ++i) {
+    const bool presses = is_flange(model, i);
+    const ContactModel& contact =
+        presses ? flange_of(model, i).contact : vehicle_wheel(model, i).contact;
+    if (contact.damping == 0.) continue;
+    const double d0 = before.depth[i], d1 = after.depth[i];
+    const auto spring = [&](double d) {
+      return contact.stiffness * (presses ? std::max(d, 0.) : d);
+    };
+    const double kept =
+        held ? spring(late * d1 + (1. - late) * d0) : late * (spring(d0) + spring(d1));
+    sum += (mean_force[i] - kept) * (d1 - d0);
+  }
+  return sum;
+}
+
+double residual_work(const StandingContacts& before, const StandingContacts& after) {
+  double sum = 0.;
+  for (int i = 0; i < before.loads + before.wheels; ++i) {
+    if (i < before.loads)
+      sum += .5 * (before.force[i] + after.force[i]) * (after.moved[i] - before.moved[i]);
+    sum -= .5 * (before.force[i] * after.moved[i] - after.force[i] * before.moved[i]);
+  }
+  return sum;
+}
+
+}  // namespace railstep

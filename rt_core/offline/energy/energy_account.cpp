@@ -1,0 +1,357 @@
+#include "offline/energy/energy_account.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "offline/energy/vehicle_energy.h"
+#include "offline/math/larger.h"
+#include "online/contact/body_force.h"
+#include "online/contact/vehicle_contact.h"
+#include "online/model/progress.h"
+#include "online/step/step.h"
+#include "online/track/closing.h"
+#include "online/track/shift_window.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+namespace {
+
+/// Force of a wheelset's tables and inputs in one direction at a state, N.
+double outer_force(const Model& model, const WheelsetModel& w, int direction, const State& at) {
+  const double time = static_cast<double>(at.steps) * model.scheme.dt;
+  double sum = 0.;
+  for (std::int32_t i = 0; i < w.forces; ++i)
+    if (w.force[i].direction == direction) sum += force_at(w.force[i], time, at.input);
+  return sum;
+}
+
+bool is_held(const WheelsetModel& w, int k) {
+  return w.guide == Guide::augmented_lagrangian && (k == 0 || k == 5);
+}
+
+}  // namespace
+
+EnergyAccount::EnergyAccount(const PackedModel& packed, const Model& model, const State& start)
+    : model_(model) {
+  for (std::size_t l = 0; l < packed.lines().size(); ++l)
+    lines_.emplace_back(packed.lines()[l], model, model.line[l]);
+  last_ = stand(start);
+  stored_ = start_ = stored(last_);
+  note();
+}
+
+EnergyAccount::Standing EnergyAccount::stand(const State& state) const {
+  Standing at;
+  const auto doubles = static_cast<std::size_t>(state_doubles(model_));
+  at.memory.assign(state.u, state.u + doubles);  // the fields stand in one row from u on
+  at.state = state_on(model_, at.memory.data());
+  at.state.steps = state.steps;
+  for (const LineEnergy& line : lines_) at.lines.push_back(line.motion(at.state));
+  at.contacts = standing_contacts(model_, at.state);
+  for (std::int32_t j = 0; j < model_.fixed.count; ++j) {
+    at.depth.push_back(closing(model_, j, at.state.u, at.state.v) - model_.fixed.gap[j]);
+    at.speed.push_back(closing_speed(model_, j, at.state));
+  }
+  return at;
+}
+
+StoredEnergy EnergyAccount::stored(const Standing& at) const {
+  StoredEnergy sum;
+  for (const LineMotion& line : at.lines) {
+    sum.kinetic += line.kinetic;
+    sum.strain += line.strain;
+  }
+  const double time = static_cast<double>(at.state.steps) * model_.scheme.dt;
+  for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
+    const WheelsetModel& w = model_.wheelset[b];
+    const double* v = at.state.v + w.first;
+    for (int k = 0; k < 6; ++k) sum.kinetic += .5 * w.mass[k] * v[k] * v[k];
+    const double speed = travelled(w.travel, time).speed;
+    sum.forward += .5 * w.mass[0] * speed * (2. * v[0] - speed);
+  }
+  for (std::int32_t b = 0; b < model_.vehicles; ++b) {
+    const VehicleEnergy own = vehicle_energy(model_.vehicle[b], at.state);
+    sum.kinetic += own.kinetic;
+    sum.strain += own.strain;
+  }
+  sum.hertz = at.contacts.hertz;
+  sum.residual = at.contacts.residual;
+  for (std::size_t j = 0; j < at.depth.size(); ++j)
+    sum.ports += .5 * model_.fixed.stiffness[j] * std::pow(std::max(0., at.depth[j]), 2);
+  return sum;
+}
+
+void EnergyAccount::follow(const State& state) {
+  Standing now = stand(state);
+  pass_on(now.state.steps);
+  now.external = external_in_step(model_, last_.state, now.state);
+  stored_ = stored(now);
+  add_lines(now);
+  add_loads(now);
+  if (wheel_count(model_) > 0) add_contacts(now);
+  for (std::int32_t b = 0; b < model_.wheelsets; ++b) add_wheelset(now, b);
+  for (std::int32_t j = 0; j < model_.fixed.count; ++j) add_port(now, j);
+  for (std::int32_t b = 0; b < model_.vehicles; ++b) add_vehicle(now, b);
+  if (first_ && model_.condensed == 0) add_start(now);
+  last_ = std::move(now);  // its views stay: a vector's memory moves with it
+  first_ = false;
+  note();
+}
+
+/// On a track without end, puts what stood at the step's start where it stands after a border.
+void EnergyAccount::pass_on(std::int64_t step) {
+  const Endless& e = model_.endless;
+  if (e.bays == 0 || bays_passed(e.progress, step).bays == bays_passed(e.progress, step - 1).bays)
+    return;
+  std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(model_)));
+  Workspace workspace = workspace_on(model_, scratch.data());
+  shift_window(model_, step, last_.state, workspace);
+  for (std::size_t l = 0; l < lines_.size(); ++l) last_.lines[l] = lines_[l].motion(last_.state);
+  for (int i = 0; i < last_.contacts.loads; ++i)
+    last_.contacts.load[i].row.element -= e.bay_elements;
+  for (ExternalContact& at : last_.external)
+    for (RailRow& row : at.row) row.element -= e.bay_elements;
+  for (int i = 0; i < last_.contacts.wheels; ++i) {
+    RailRow& row = last_.contacts.contact[i].row;
+    row.element -= e.bay_elements;
+    for (std::int32_t s = 0; s < row.seats; ++s) row.seat[s] -= 2 * e.bay_elements;
+  }
+}
+
+void EnergyAccount::add_lines(const Standing& now) {
+  for (std::size_t l = 0; l < lines_.size(); ++l) {
+    const LineMotion &before = last_.lines[l], &after = now.lines[l];
+    flow_.dissipated += .5 * model_.scheme.dt * (before.power + after.power);
+    flow_.weight += lines_[l].constant_work(before, after);
+    flow_.loss += lines_[l].loss(before, after, model_.scheme.dt);
+  }
+}
+
+void EnergyAccount::add_loads(const Standing& now) {
+  const auto n = static_cast<std::size_t>(model_.unknowns);
+  std::vector<double> u(n), v(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    u[i] = now.state.u[i] - last_.state.u[i];
+    v[i] = now.state.v[i] - last_.state.v[i];
+  }
+  const Configuration moved{u.data(), {u.data(), v.data()}};
+  for (std::int32_t i = 0; i < model_.loads; ++i)
+    for (const Standing* at : {static_cast<const Standing*>(&last_), &now}) {
+      const PlacedLoad& load = at->contacts.load[i];
+      if (load.on_rail) flow_.loads += .5 * load.force * deflection(model_, load, moved);
+    }
+  flow_.outside += external_work(model_, last_.external, now.external, moved);
+  flow_.carriers += residual_work(last_.contacts, now.contacts);
+}
+
+void EnergyAccount::add_contacts(const Standing& now) {
+  const StandingContacts &before = last_.contacts, &after = now.contacts;
+  double sum = residual_work(before, after) - (after.hertz - before.hertz) -
+               (after.residual - before.residual);
+  double mean[kMaxWheels];
+  for (int i = 0; i < after.wheels; ++i) {
+    mean[i] = wheel_force(now, i);
+    const bool lost =
+        is_of_wheelset(model_, i) && !(before.contact[i].on_rail && after.contact[i].on_rail);
+    if (!lost) sum += mean[i] * (after.approach[i] - before.approach[i]);
+  }
+  const double damped = contact_dissipation(model_, before, after, mean);
+  flow_.dissipated += damped;
+  flow_.loss += sum - damped;
+}
+
+void EnergyAccount::add_port(const Standing& now, std::int32_t j) {
+  const auto i = static_cast<std::size_t>(j);
+  const double k = model_.fixed.stiffness[j], theta = model_.scheme.theta;
+  const double d0 = last_.depth[i], d1 = now.depth[i];
+  const double f0 = last_.state.port_force[j], f1 = now.state.port_force[j];
+  const auto spring = [&](double d) { return k * std::max(0., d); };
+  const bool held = model_.condensed != 0;
+  const double work = (held ? f1 : .5 * (f0 + f1)) * (d1 - d0);
+  const double dissipated =
+      held ? work - spring(theta * d1 + (1. - theta) * d0) * (d1 - d0)
+           : .5 * model_.scheme.dt *
+                 ((f0 - spring(d0)) * last_.speed[i] + (f1 - spring(d1)) * now.speed[i]);
+  const double kept = .5 * (spring(d1) * std::max(0., d1) - spring(d0) * std::max(0., d0));
+  flow_.dissipated += dissipated;
+  flow_.loss += work - kept - dissipated;
+}
+
+/// Force of the scheme on a wheel over the step, N.
+double EnergyAccount::wheel_force(const Standing& now, int wheel) const {
+  const double f1 = now.state.wheel_force[wheel];
+  return model_.condensed != 0 ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
+}
+
+/// Work of a wheelset's wheels by what its way along x alone changes of their approach: the mean of
+/// going before and of going after all else moved, J.
+double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
+  const WheelsetModel& w = model_.wheelset[b];
+  double sum = 0.;
+  for (const bool later : {false, true}) {
+    const Standing &at = later ? now : last_, &other = later ? last_ : now;
+    std::vector<double> u(at.state.u, at.state.u + model_.unknowns);
+    u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
+    const Configuration seen{u.data(), {at.state.u, at.state.v}, passed(model_, now.state.steps)};
+    const OwnContacts own = contacts_of(model_, b);
+    WheelContact moved[4];
+    find_contacts(model_, w, seen, moved);
+    if (own.count > 2) find_flanges(model_, flange_of(model_, own.at[2]), seen, moved + 2);
+    for (int n = 0; n < own.count; ++n) {
+      const int i = own.at[n];
+      if (!moved[n].on_rail || !at.contacts.contact[i].on_rail) continue;
+      const double change = moved[n].penetration - at.contacts.approach[i];
+      sum += .5 * wheel_force(now, i) * (later ? -change : change);
+    }
+  }
+  return sum;
+}
+
+double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const {
+  const VehicleModel& v = model_.vehicle[b];
+  double sum = 0.;
+  for (const bool later : {false, true}) {
+    const Standing& at = later ? now : last_;
+    const std::int64_t step = now.state.steps;
+    WheelContact moved[kMaxWheels];
+    find_vehicle_contacts(model_, v, step, later ? model_.scheme.dt : 0.,
+                          {at.state.u, {at.state.u, at.state.v}, passed(model_, step)}, moved);
+    for (int k = 0; k < v.wheels; ++k) {
+      const int i = 2 * model_.wheelsets + v.first_wheel + k;
+      const double change = moved[i].penetration - at.contacts.approach[i];
+      sum += .5 * wheel_force(now, i) * (later ? -change : change);
+    }
+  }
+  return sum;
+}
+
+void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
+  const VehiclePassed passed = vehicle_passed(model_, model_.vehicle[b], last_.state, now.state);
+  flow_.weight += passed.weight;
+  flow_.forces += passed.forces;
+  flow_.dissipated += passed.dissipated;
+  flow_.loss += passed.loss;
+  flow_.guides += vehicle_passage(now, b);
+}
+
+double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
+  const WheelsetModel& w = model_.wheelset[b];
+  const int x = w.first;
+  const double f0 = outer_force(model_, w, 0, last_.state);
+  const double f1 = outer_force(model_, w, 0, now.state);
+  const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
+  const bool held = model_.condensed != 0;
+  const double sum = passage_work(now, b) - (held ? f1 : .5 * (f0 + f1)) * du;
+  if (is_held(w, 0)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
+  const double g = held ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
+  return sum + w.mass[0] * g * du;
+}
+
+double EnergyAccount::body_loss(const Standing& now, const WheelsetModel& w, int k) const {
+  const int i = w.first + k;
+  const double dt = model_.scheme.dt, du = now.state.u[i] - last_.state.u[i];
+  if (model_.condensed != 0) {
+    if (k > 2) return 0.;
+    const double f0 = outer_force(model_, w, k, last_.state);
+    return .5 * (f0 - outer_force(model_, w, k, now.state)) * du;
+  }
+  if (is_held(w, k)) return 0.;
+  const double v = .5 * (last_.state.v[i] + now.state.v[i]);
+  const double g = .5 * (last_.state.g[i] + now.state.g[i]);
+  return w.mass[k] * ((du - dt * v) * g - v * (now.state.v[i] - last_.state.v[i] - dt * g));
+}
+
+void EnergyAccount::add_wheelset(const Standing& now, std::int32_t b) {
+  const WheelsetModel& w = model_.wheelset[b];
+  const auto moved = [&](int k) { return now.state.u[w.first + k] - last_.state.u[w.first + k]; };
+  flow_.weight -= w.weight * moved(2);
+  for (int k = 0; k < 3; ++k)
+    flow_.forces += .5 * moved(k) *
+                    (outer_force(model_, w, k, last_.state) + outer_force(model_, w, k, now.state));
+  for (int k = 0; k < 6; ++k) flow_.loss += body_loss(now, w, k);
+  flow_.guides += guide_work(now, b);
+}
+
+/// What the state at the start leaves out of balance, on the first step's way.
+void EnergyAccount::add_start(const Standing& now) {
+  const State& s = last_.state;
+  std::vector<double> f(static_cast<std::size_t>(model_.unknowns));
+  forces(model_, s.steps, f.data(), nullptr);
+  for (int i = 0; i < contact_count(model_); ++i)
+    for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
+      spread(model_.line[l], last_.contacts.contact[i].row, -s.wheel_force[i], f.data());
+  const FixedPortModel& fixed = model_.fixed;
+  for (std::int32_t j = 0; j < fixed.count; ++j)
+    for (std::int32_t k = fixed.start[j]; k < fixed.start[j + 1]; ++k)
+      f[static_cast<std::size_t>(fixed.index[k])] -= s.port_force[j] * fixed.value[k];
+  for (std::size_t l = 0; l < lines_.size(); ++l)
+    flow_.loss +=
+        .5 * lines_[l].unbalanced(last_.lines[l], f.data()).dot(now.lines[l].u - last_.lines[l].u);
+  for (std::int32_t b = 0; b < model_.vehicles; ++b)
+    flow_.loss += .5 * vehicle_unbalanced(model_, model_.vehicle[b], s, now.state);
+  for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
+    const WheelsetModel& w = model_.wheelset[b];
+    const OwnContacts own = contacts_of(model_, b);
+    for (int k = 1; k < 5; ++k) {  // x and yaw are guided
+      const int at = w.first + k;
+      double force = -w.mass[k] * s.g[at] - (k == 2 ? w.weight : 0.);
+      if (k < 3) force += outer_force(model_, w, k, s);
+      for (int n = 0; n < own.count; ++n)
+        force += last_.contacts.contact[own.at[n]].body_row[k] * s.wheel_force[own.at[n]];
+      flow_.loss += .5 * force * (now.state.u[at] - s.u[at]);
+    }
+  }
+}
+
+void EnergyAccount::note() {
+  const double sizes[] = {std::abs(stored_.total() - stored_.forward),
+                          std::abs(flow_.loads),
+                          std::abs(flow_.weight),
+                          std::abs(flow_.forces),
+                          std::abs(flow_.outside),
+                          std::abs(flow_.guides - (stored_.forward - start_.forward)),
+                          std::abs(flow_.carriers),
+                          flow_.dissipated};
+  for (const double size : sizes) turned_over_ = larger(turned_over_, size);
+  largest_ = larger(largest_, std::abs(imbalance()));
+  if (std::abs(flow_.loss) > std::abs(largest_loss_)) largest_loss_ = flow_.loss;
+}
+
+double EnergyAccount::imbalance() const {
+  return stored_.total() - start_.total() - flow_.work() + flow_.dissipated;
+}
+
+double EnergyAccount::balance_error() const {
+  return turned_over_ > 0. ? largest_ / turned_over_ : 0.;
+}
+
+double EnergyAccount::numerical_loss() const {
+  return turned_over_ > 0. ? largest_loss_ / turned_over_ : 0.;
+}
+
+EnergyBalance balance_of(const PackedModel& packed, const Model& model, std::int64_t frames,
+                         const std::function<void(std::int64_t)>& after,
+                         const FrameInputs& inputs) {
+  Model single = model;
+  single.steps_per_frame = 1;
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(single)));
+  std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(single)));
+  State state = state_on(single, memory.data());
+  Workspace workspace = workspace_on(single, scratch.data());
+  Outputs outputs{};
+  reset(single, state);
+  EnergyAccount account(packed, single, state);
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {  // the run told of the status
+      static_cast<void>(
+          make_frame(single, n == 0 ? inputs : FrameInputs{}, frame, state, workspace, outputs));
+      account.follow(state);
+    }
+    if (after) after(frame + 1);
+  }
+  return {account.balance_error(), account.numerical_loss(), state_hash(single, state)};
+}
+
+}  // namespace railstep

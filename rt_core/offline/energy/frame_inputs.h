@@ -1,0 +1,20 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+
+#include "online/step/step.h"
+
+namespace railstep {
+
+/// What a frame is given, by its index from 0: [model.inputs] values. Empty: inputs stay as they
+/// are, 0 from the start on.
+using FrameInputs = std::function<const double*(std::int64_t frame)>;
+
+/// A frame with what it is given.
+inline Status make_frame(const Model& model, const FrameInputs& inputs, std::int64_t frame,
+                         State& state, Workspace& workspace, Outputs& outputs) {
+  return inputs ? advance_frame(model, inputs(frame), state, workspace, outputs)
+                : advance_frame(model, state, workspace, outputs);
+}
+
+}  // namespace railstep

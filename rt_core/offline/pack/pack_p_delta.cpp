@@ -1,0 +1,106 @@
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+
+#include "offline/analysis/free_motion.h"
+#include "offline/pack/pack.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr int kTurnPoints = 4;  // intervals per element of the levers' table
+
+/// What a seat bears of a unit force on its rail: by reciprocity the shape that a unit force along
+/// its pad makes, for all places of the force at once. Lines that are free are left out.
+class SeatShares {
+ public:
+  SeatShares(const Track& track, const std::vector<Line>& lines)
+      : track_(track), lines_(lines), factor_(lines.size()), held_(lines.size()) {
+    for (std::size_t l = 0; l < lines_.size(); ++l) {
+      factor_[l].compute(lines_[l].stiffness);
+      held_[l] = is_held(factor_[l], lines_[l].stiffness);
+    }
+  }
+  /// Height of the rail's axis over x, m/N, as a unit force opens the pad.
+  class Shape {
+   public:
+    Shape(const SeatShares& shares, int rail, int seat) : shares_(shares), rail_(rail) {
+      const Functional gap = pad_gap(shares.track_, rail, seat);
+      for (std::size_t l = 0; l < shares.lines_.size(); ++l) {
+        const Line& line = shares.lines_[l];
+        const Eigen::VectorXd row(functional_row(shares.track_, line, gap));
+        moved_.emplace_back(shares.held_[l] ? Eigen::VectorXd(shares.factor_[l].solve(row))
+                                            : Eigen::VectorXd::Zero(row.size()));
+      }
+    }
+    double operator()(double x) const {
+      double sum = 0.;
+      for (std::size_t l = 0; l < moved_.size(); ++l)
+        sum += point_row(shares_.track_, shares_.lines_[l], {rail_, x, 0., 0., 2}).dot(moved_[l]);
+      return sum;
+    }
+
+   private:
+    const SeatShares& shares_;
+    int rail_;
+    std::vector<Eigen::VectorXd> moved_;
+  };
+
+ private:
+  const Track& track_;
+  const std::vector<Line>& lines_;
+  std::vector<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
+  std::vector<bool> held_;
+};
+
+bool pads_are_off_the_axis(const Track& track) {
+  for (int seat = 0; seat <= track.bays; ++seat)
+    for (const Support& pad : track.seat(seat).pad)
+      if (pad.height_z != 0. && pad.stiffness[2] != 0.) return true;
+  return false;
+}
+
+/// PDeltaModel::lever of one rail, 0 on elements that are not met.
+std::vector<double> levers(const Track& track, const SeatShares& shares, int rail, Elements met) {
+  const int per_bay = track.elements_per_bay;
+  std::vector<double> lever(
+      static_cast<std::size_t>(track.elements()) * kPDeltaSeats * (kTurnPoints + 1), 0.);
+  const int around = kPDeltaSeats / 2, last = std::min(met.last / per_bay + around, track.bays);
+  for (int seat = std::max(met.first / per_bay - around, 0); seat <= last; ++seat) {
+    const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
+    if (pad.one_sided()) continue;  // over a gap
+    const SeatShares::Shape shape(shares, rail, seat);
+    for (int s = 0; s < kPDeltaSeats; ++s) {
+      const int bay = seat - s + (kPDeltaSeats / 2 - 1);
+      for (int e = std::max(bay * per_bay, met.first); e < std::min((bay + 1) * per_bay, met.last);
+           ++e)
+        for (int p = 0; p <= kTurnPoints; ++p) {
+          const double x = (e + static_cast<double>(p) / kTurnPoints) * track.element_length();
+          const int at = (e * kPDeltaSeats + s) * (kTurnPoints + 1) + p;
+          lever[static_cast<std::size_t>(at)] = pad.stiffness[2] * pad.height_z * shape(x);
+        }
+    }
+  }
+  return lever;
+}
+
+}  // namespace
+
+void PackedModel::add_p_delta(const Track& track) {
+  if (track.unknowns == Unknowns::vertical) return;
+  if (model_.wheelsets == 0 && model_.external_wheels == 0) return;  // nothing pushes aside
+  if (!pads_are_off_the_axis(track)) return;
+  PDeltaModel& turn = model_.p_delta;
+  turn.elements_per_bay = track.elements_per_bay;
+  turn.points = kTurnPoints;
+  // What does not pull and has no gap mostly presses, as a spring.
+  const Track reference = linear_about_rest(track);
+  const std::vector<Line> all = assemble(reference);
+  std::vector<Line> lines;
+  for (const PackedLine& own : lines_) lines.push_back(all[own.index]);
+  const SeatShares shares(reference, lines);
+  turn.lever[0] = keep(levers(reference, shares, 0, met_));
+  turn.lever[1] = is_symmetric(track) ? turn.lever[0] : keep(levers(reference, shares, 1, met_));
+}
+
+}  // namespace railstep

@@ -1,0 +1,34 @@
+#include "offline/pack/released.h"
+
+#include "online/step/step.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+std::vector<double> start_released(const PackedModel& packed) {
+  const Model& model = packed.model();
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)), 0.);
+  State state = state_on(model, memory.data());
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    state.v[model.wheelset[b].first] = travelled(model.wheelset[b].travel, 0.).speed;
+  if (model.condensed != 0) forces(model, 0, state.a, state.g);
+  return memory;
+}
+
+void put_falling(const Model& model, const std::vector<RunningVehicle>& vehicles,
+                 std::vector<double>& memory) {
+  State state = state_on(model, memory.data());
+  for (std::size_t b = 0; b < vehicles.size(); ++b) {
+    if (!vehicles[b].falling) continue;
+    const VehicleModel& own = model.vehicle[b];
+    const std::vector<int> first = first_coordinates(vehicles[b].vehicle);
+    for (std::size_t body = 0; body + 1 < first.size(); ++body) {
+      const std::int32_t z = own.first + first[body];
+      state.u[z] = vehicles[b].falling->height;
+      state.v[z] = -vehicles[b].falling->speed;
+      state.a[z] = state.g[z] = -vehicles[b].gravity;
+    }
+  }
+}
+
+}  // namespace railstep

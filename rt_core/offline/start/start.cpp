@@ -1,0 +1,278 @@
+#include "offline/start/start.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "offline/analysis/statics.h"
+#include "offline/start/start_vehicle.h"
+#include "offline/start/start_wheelset.h"
+#include "offline/start/static_lines.h"
+#include "online/contact/body_force.h"
+#include "online/contact/wheel.h"
+#include "online/model/progress.h"
+#include "online/step/step.h"
+#include "online/track/closing.h"
+#include "online/track/moving_load.h"
+#include "online/track/residual.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+namespace {
+
+/// Displacements of the model's lines, of six coordinates of each wheelset, and of the vehicles.
+struct Pose {
+  std::vector<Eigen::VectorXd> lines;
+  std::vector<std::array<double, 6>> wheelsets;
+  SettledVehicles vehicles;
+  std::vector<double> wheel_force;  // [contacts] of wheelsets, N
+};
+
+/// Puts static displacements and velocities of a line into a state.
+void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
+         const Eigen::VectorXd& v, State& state) {
+  if (line.modal.count == 0) {
+    std::copy(u.begin(), u.end(), state.u + line.first);
+    std::copy(v.begin(), v.end(), state.v + line.first);
+    return;
+  }
+  const Eigen::VectorXcd z = own.modes.from(own.basis.omega.cwiseAbs2().cwiseProduct(u), v);
+  for (Eigen::Index k = 0; k < z.size(); ++k) {
+    state.u[line.first + k] = z[k].real();
+    state.v[line.first + k] = z[k].imag();
+  }
+}
+
+/// The loads with everything that moves shifted by `time`.
+Acting loads_at(const Statics& statics, const PackedModel& packed, double time) {
+  const Model& model = packed.model();
+  Acting acting;
+  for (std::int32_t i = 0; i < model.loads; ++i) {
+    const LoadModel& load = model.load[i];
+    const PlacedLoad at = place(model, load, 0);
+    const double x = at.place + travelled(load.travel, 0.).speed * time;
+    if (!at.on_rail || x < 0. || x > statics.track().length()) continue;
+    acting.forces.push_back({point_of(packed, load.load_point, x), at.force});
+    acting.ports.push_back(rail_force(model, load.load_point, x, at.force));
+  }
+  return acting;
+}
+
+/// Wheelsets where they touch rails at rest; one that a force pushes aside touches with its flange.
+void put_wheelsets(const Model& model, double time, State& state) {
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& w = model.wheelset[b];
+    double* const p = state.u + w.first;
+    p[0] = travelled(w.travel, 0.).speed * time;
+    const double aside = side_force(w);
+    if (aside == 0.) continue;
+    const FlangeModel& flange = model.flange[0];
+    const int side = aside > 0. ? 0 : 1;
+    p[1] = model.rail_y[side] + flange.gauge[side][0] - flange.point[side][0];
+  }
+}
+
+/// What all stands on, turn by turn: the forces that balance the wheelsets where they are, the
+/// rails and vehicles under these, and each wheelset's way to the depths that its forces want.
+/// Contacts are those that the step finds, so that it keeps the start. The forces hang on the rails
+/// by their small turns alone, so each turn leaves 1e-3 of the last or less, down to rounding.
+/// Everything that moves is shifted by `time`.
+Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
+  constexpr int kMostIterations = 30;
+  constexpr double kNothing = 1e-15, kRounding = 1e-12;  // m, rad
+  const Model& model = packed.model();
+  const Acting loads = loads_at(statics, packed, time);
+  std::vector<double> memory = start_released(packed);
+  State state = state_on(model, memory.data());
+  const Configuration at{state.u, {state.u, state.v}, passed(model, 0)};
+  put_wheelsets(model, time, state);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) (void)wheel_load(model.wheelset[b]);
+  Pose pose;
+  double before = HUGE_VAL;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    Acting acting = loads;
+    std::vector<std::size_t> port;
+    for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+      port.push_back(acting.ports.size());
+      add_forces(model, stance_of(model, b, at), acting);
+    }
+    if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
+    pose.lines = static_lines(packed, statics, acting, gravity);
+    for (std::size_t l = 0; l < pose.lines.size(); ++l)
+      put(packed.lines()[l], model.line[l], pose.lines[l],
+          Eigen::VectorXd::Zero(pose.lines[l].size()), state);
+    pose.wheelsets.clear();
+    pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
+    double most = 0.;
+    for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+      const Stance now = stance_of(model, b, at);
+      const Eigen::VectorXd way = way_to_depths(
+          model, now, missed_under(model, now, acting, port[static_cast<std::size_t>(b)]));
+      double* const p = state.u + model.wheelset[b].first;
+      for (int i = 0; i < now.count; ++i) {
+        p[now.first_coordinate() + i] += way[i];
+        pose.wheel_force[static_cast<std::size_t>(now.number[static_cast<std::size_t>(i)])] =
+            now.force[i];
+      }
+      const double aside = way_off_flanges(model, b, at);
+      p[1] += aside;
+      most = std::max({most, way.cwiseAbs().maxCoeff(), std::abs(aside)});
+      pose.wheelsets.push_back({0., p[1], p[2], p[3], 0., 0.});
+    }
+    if (most <= kNothing || (most < kRounding && !(most < before))) return pose;
+    before = most;
+  }
+  throw std::invalid_argument("no equilibrium was found of a wheelset on its rails");
+}
+
+/// What all stands on `time` later, for its rates alone: each wheel presses right over its place
+/// with its static force. A contact's own place does not pass the kink that a mesh has at the
+/// border of two elements under a force before the wheel is well over it.
+Pose passing(const Statics& statics, const PackedModel& packed, double gravity, double time) {
+  const Model& model = packed.model();
+  if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
+    return equilibrium(statics, packed, gravity, time);
+  Acting acting = loads_at(statics, packed, time);
+  const std::size_t loads = acting.forces.size();
+  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
+    const WheelsetModel& w = model.wheelset[i / 2];
+    const double x = w.start + travelled(w.travel, 0.).speed * time;
+    acting.forces.push_back({point_of(packed, w.load_point[i % 2], x), -wheel_load(w)});
+    acting.ports.push_back(rail_force(model, w.load_point[i % 2], x, -wheel_load(w)));
+  }
+  Pose pose;
+  if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
+  pose.lines = static_lines(packed, statics, acting, gravity);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& w = model.wheelset[b];
+    const double up[3] = {0., 0., 1.}, rolled = travelled(w.travel, 0.).speed * time;
+    std::array<double, 2> height;
+    for (const std::size_t rail : {0u, 1u}) {
+      const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
+      height[rail] =
+          height_of(statics.track(), packed, pose.lines, acting.forces[port].at) +
+          residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
+                                static_cast<int>(port)) +
+          irregularity(model, w.tread[rail], static_cast<int>(rail), up,
+                       w.start + rolled + passed(model, 0), rolled)
+              .depth;
+    }
+    pose.wheelsets.push_back(standing_wheelset(model, w, height));
+  }
+  return pose;
+}
+
+/// Forces of the fixed ports where the lines stand and move.
+void put_port_forces(const Model& model, State& state) {
+  for (std::int32_t j = 0; j < model.fixed.count; ++j) {
+    const double depth = closing(model, j, state.u, state.v) - model.fixed.gap[j];
+    const double force =
+        model.fixed.stiffness[j] * depth + model.fixed.damping[j] * closing_speed(model, j, state);
+    state.port_force[j] = depth > 0. ? std::max(force, 0.) : 0.;
+  }
+}
+
+/// Times around 0, s, between which the static shape's velocity is taken: at an end of the rail
+/// only on the side where all that stands on it still does.
+struct Window {
+  double from, to;
+};
+Window window(const Model& model, double length) {
+  constexpr double dt = 1e-6;  // s; the shape's change over it is far above rounding, and linear
+  Window w{-dt, dt};
+  const auto narrow = [&](double x, double speed) {
+    const auto is_on = [&](double t) { return x + speed * t >= 0. && x + speed * t <= length; };
+    if (is_on(0.) && !is_on(w.from)) w.from = 0.;
+    if (is_on(0.) && !is_on(w.to)) w.to = 0.;
+  };
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    narrow(place(model, model.load[i], 0).place, travelled(model.load[i].travel, 0.).speed);
+  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
+    const VehicleModel& own = model.vehicle[model.vehicle_wheel[i].vehicle];
+    narrow(own.start + model.vehicle_wheel[i].place, travelled(own.travel, 0.).speed);
+  }
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    narrow(model.wheelset[b].start, travelled(model.wheelset[b].travel, 0.).speed);
+  return w;
+}
+
+}  // namespace
+
+double wheel_load(const WheelsetModel& w) {
+  double vertical = w.weight;
+  for (std::int32_t i = 0; i < w.forces; ++i) {
+    const double force = force_at(w.force[i], 0., nullptr);
+    if (w.force[i].direction == 2) vertical -= force;
+  }
+  if (!(vertical > 0.))
+    throw std::invalid_argument("no equilibrium in contact: nothing presses a wheelset down");
+  return vertical / 2.;
+}
+
+namespace {
+
+/// Where a level wheel meets a rail at rest, beside the track's middle, m.
+double contact_y(const Model& model, int rail) {
+  const Cant& cant = model.cant[rail];
+  const CrownTop top = crown_top(cant, model.head_z[rail], model.crown_radius[rail]);
+  return model.rail_y[rail] + (cant.cosine * top.y - cant.sine * top.z);
+}
+
+}  // namespace
+
+std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& w,
+                                        const std::array<double, 2>& height) {
+  const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
+                          std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
+  const double roll =
+      ((height[0] - height[1]) - (into[0] - into[1])) / (contact_y(model, 0) - contact_y(model, 1));
+  // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
+  const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
+  const double lifted = .5 * roll * roll * (w.radius + crown);
+  const double z = .5 * (height[0] + height[1]) - .5 * (into[0] + into[1]) + lifted;
+  return {0., 0., z, roll, 0., 0.};
+}
+
+std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
+                                         double gravity) {
+  const Model& model = packed.model();
+  check_sides(model);
+  std::vector<double> memory = start_released(packed);
+  State state = state_on(model, memory.data());
+  const Statics statics(track);
+  const Pose at = equilibrium(statics, packed, gravity, 0.);
+  const Window w = window(model, track.length());
+  const Pose later = passing(statics, packed, gravity, w.to);
+  const Pose before = passing(statics, packed, gravity, w.from);
+  const double span = w.to > w.from ? w.to - w.from : 1.;  // s; without one there is no difference
+  for (std::size_t l = 0; l < packed.lines().size(); ++l) {
+    put(packed.lines()[l], model.line[l], at.lines[l], (later.lines[l] - before.lines[l]) / span,
+        state);
+  }
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const std::size_t set = static_cast<std::size_t>(b);
+    for (std::size_t k = 0; k < 6; ++k) {
+      state.u[model.wheelset[b].first + static_cast<int>(k)] = at.wheelsets[set][k];
+      state.v[model.wheelset[b].first + static_cast<int>(k)] +=
+          (later.wheelsets[set][k] - before.wheelsets[set][k]) / span;
+    }
+  }
+  std::copy(at.wheel_force.begin(), at.wheel_force.end(), state.wheel_force);
+  for (std::int32_t b = 0; b < model.vehicles; ++b) {
+    const std::size_t own = static_cast<std::size_t>(b);
+    const Eigen::VectorXd& u = at.vehicles.displacement[own];
+    const Eigen::VectorXd v =
+        (later.vehicles.displacement[own] - before.vehicles.displacement[own]) / span;
+    std::copy(u.begin(), u.end(), state.u + model.vehicle[b].first);
+    std::copy(v.begin(), v.end(), state.v + model.vehicle[b].first);
+  }
+  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
+    state.wheel_force[2 * model.wheelsets + i] = at.vehicles.force[i];
+  put_port_forces(model, state);
+  return memory;
+}
+
+}  // namespace railstep

@@ -1,0 +1,258 @@
+#include "offline/start/start_vehicle.h"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "offline/start/static_lines.h"
+#include "online/contact/body_force.h"
+#include "online/contact/wheel.h"
+#include "online/model/progress.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+namespace {
+
+using Rows =
+    Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+/// The vehicles' matrices side by side.
+struct Together {
+  Eigen::MatrixXd stiffness, row;  // [all][all], [wheels][all]
+  Eigen::VectorXd weight;          // [all] N, less what forces at the start lift
+  double borne;                    // N, by all wheels together
+  double stiff;                    // N/m: forces over it keep the pivots alike
+};
+
+/// What the wheels bear: the weight along the way on which all heights rise alike, which stretches
+/// no spring.
+double borne(const Together& all) {
+  const Eigen::Index n = all.weight.size(), wheels = all.row.rows();
+  Eigen::MatrixXd A(n + wheels, n);
+  A << all.stiffness / all.stiff, all.row;
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n + wheels);
+  b.tail(wheels).setOnes();
+  return all.weight.dot(A.colPivHouseholderQr().solve(b));
+}
+
+Together together(const Model& model) {
+  Eigen::Index n = 0;
+  for (std::int32_t b = 0; b < model.vehicles; ++b) n += model.vehicle[b].size;
+  Together all{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(model.vehicle_wheels, n),
+               Eigen::VectorXd::Zero(n), 0., 0.};
+  Eigen::VectorXd lift = Eigen::VectorXd::Zero(n);
+  n = 0;
+  for (std::int32_t b = 0; b < model.vehicles; ++b) {
+    const VehicleModel& v = model.vehicle[b];
+    all.stiffness.block(n, n, v.size, v.size) = Rows(v.stiffness, v.size, v.size);
+    all.row.block(v.first_wheel, n, v.wheels, v.size) = Rows(v.row, v.wheels, v.size);
+    all.weight.segment(n, v.size) = Eigen::Map<const Eigen::VectorXd>(v.weight, v.size);
+    add_forces(v, 0., nullptr, lift.data() + n);
+    n += v.size;
+  }
+  all.stiff = std::max(all.stiffness.diagonal().maxCoeff(), 1e6);
+  all.borne = all.weight.sum();
+  if (lift.isZero(0.)) return all;
+  all.weight -= lift;
+  all.borne = borne(all);
+  return all;
+}
+
+/// Penetration under a force, and its rise over it.
+struct Depth {
+  double value, slope;  // m, m/N
+};
+Depth depth_of(const ContactModel& contact, double force) {
+  if (contact.hertz == 0.) return {force / contact.stiffness, 1. / contact.stiffness};
+  const double value = std::pow(force / contact.hertz, 2. / 3.);
+  return {value, 2. / 3. * value / force};
+}
+
+constexpr int kIterations = 50;  // Newton's steps; a handful is enough where there is an answer
+
+}  // namespace
+
+SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexibility,
+                                const Eigen::VectorXd& free) {
+  const Together all = together(model);
+  const Eigen::Index n = all.weight.size(), wheels = free.size();
+  const double stiff = all.stiff;
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd force =
+      Eigen::VectorXd::Constant(wheels, all.borne / static_cast<double>(wheels));
+  for (Eigen::Index i = 0; i < wheels; ++i)
+    if (model.vehicle_wheel[i].contact.hertz > 0. && !(force[i] > 0.))
+      throw std::invalid_argument("no equilibrium in contact: nothing presses a vehicle down");
+  bool settled = false, lifted_off = false;
+  for (int iteration = 0; iteration < kIterations && !settled && !lifted_off; ++iteration) {
+    Eigen::MatrixXd A(n + wheels, n + wheels);
+    Eigen::VectorXd b(n + wheels);
+    A.topLeftCorner(n, n) = all.stiffness / stiff;
+    A.topRightCorner(n, wheels) = -all.row.transpose();
+    A.bottomLeftCorner(wheels, n) = all.row;
+    A.bottomRightCorner(wheels, wheels) = stiff * flexibility;
+    b.head(n) = (all.row.transpose() * force - all.weight - all.stiffness * u) / stiff;
+    b.tail(wheels) = free - all.row * u - flexibility * force;
+    for (Eigen::Index i = 0; i < wheels; ++i) {
+      const Depth depth = depth_of(model.vehicle_wheel[i].contact, force[i]);
+      A(n + i, n + i) += stiff * depth.slope;
+      b[n + i] -= depth.value;
+    }
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
+    if (!lu.isInvertible())
+      throw std::invalid_argument(
+          "no equilibrium: a vehicle's springs and wheels leave it a free motion");
+    const Eigen::VectorXd change = lu.solve(b);
+    u += change.head(n);
+    settled = iteration > 0;
+    for (Eigen::Index i = 0; i < wheels; ++i) {
+      const double next = force[i] + stiff * change[n + i];
+      // A wheel that presses less than nothing gets a tenth of what it had, and another turn.
+      const bool lifted = model.vehicle_wheel[i].contact.hertz > 0. && !(next > 0.);
+      const double taken = lifted ? .1 * force[i] : next;
+      // Newton's error is the square of its last step: 1e-10 leaves rounding.
+      if (lifted || std::abs(taken - force[i]) > 1e-10 * force.cwiseAbs().maxCoeff())
+        settled = false;
+      force[i] = taken;
+      if (taken < 1e-9 * std::abs(all.borne) && lifted) lifted_off = true;
+    }
+  }
+  if (!settled)
+    throw std::invalid_argument("no equilibrium with all of a vehicle's wheels on the rail");
+  SettledVehicles found{force, {}};
+  for (Eigen::Index b = 0, at = 0; b < model.vehicles; at += model.vehicle[b].size, ++b)
+    found.displacement.emplace_back(u.segment(at, model.vehicle[b].size));
+  return found;
+}
+
+namespace {
+
+/// Where the vehicles' wheels stand, and what their rails are under them besides the lines.
+struct Wheels {
+  std::vector<RailPoint> point;
+  std::vector<RailForce> port;
+  std::vector<bool> on_rail;
+  Eigen::VectorXd uneven;    // irregularities, and what other forces' residual moves, m
+  Eigen::MatrixXd residual;  // flexibility between the wheels, m/N
+  std::size_t count() const { return point.size(); }
+};
+
+Wheels wheels_of(const PackedModel& packed, const Track& track, double time, const Acting& acting) {
+  const Model& model = packed.model();
+  const auto count = static_cast<std::size_t>(model.vehicle_wheels);
+  const Eigen::Index n = model.vehicle_wheels;
+  Wheels w{std::vector<RailPoint>(count), std::vector<RailForce>(count), std::vector<bool>(count),
+           Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const VehicleWheel& wheel = model.vehicle_wheel[i];
+    const VehicleModel& own = model.vehicle[wheel.vehicle];
+    const double up[3] = {0., 0., 1.}, rolled = travelled(own.travel, 0.).speed * time;
+    const double x = own.start + wheel.place + rolled;
+    double& uneven = w.uneven[static_cast<Eigen::Index>(i)];
+    w.on_rail[i] = x >= 0. && x <= track.length();
+    uneven = signal_at(wheel.tread, rolled).value;
+    if (!w.on_rail[i]) continue;
+    w.point[i] = point_of(packed, wheel.load_point, x);
+    w.port[i] = rail_force(model, wheel.load_point, x, 0.);
+    uneven = irregularity(model, wheel.tread, wheel.rail, up, x + passed(model, 0), rolled).depth;
+    for (const RailForce& f : acting.ports)
+      uneven += f.force * residual_between(model, f, w.port[i]);
+  }
+  for (std::size_t j = 0; j < count; ++j)
+    for (std::size_t i = 0; i < count; ++i)
+      if (w.on_rail[i] && w.on_rail[j])
+        w.residual(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            i == j ? residual_under(model, w.port[i])
+                   : residual_between(model, w.port[j], w.port[i]);
+  return w;
+}
+
+/// The lines under the wheels as functions of the wheels' forces.
+struct Under {
+  const Statics& statics;
+  const PackedModel& packed;
+  double gravity;
+  const Acting& others;
+  const Wheels& wheels;
+
+  /// @param force  [wheels] on the wheels, up, N
+  Eigen::VectorXd heights(const Eigen::VectorXd& force) const {
+    Acting all = others;
+    for (std::size_t i = 0; i < wheels.count(); ++i)
+      if (wheels.on_rail[i])
+        all.forces.push_back({wheels.point[i], -force[static_cast<Eigen::Index>(i)]});
+    return of(static_lines(packed, statics, all, gravity));
+  }
+  /// -d(heights)/d(force), m/N.
+  Eigen::MatrixXd slopes(const Eigen::VectorXd& force, const Eigen::VectorXd& at) const {
+    const bool linear = packed.model().fixed.count == 0;
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(force.size(), force.size());
+    const double more = std::max(kPart * force.cwiseAbs().maxCoeff(), 1.);  // N
+    for (std::size_t j = 0; j < wheels.count(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      if (!wheels.on_rail[j]) continue;
+      if (linear)
+        G.col(column) = of(static_lines(packed, statics, {{{wheels.point[j], 1.}}, {}, {}}, 0.));
+      else
+        G.col(column) =
+            (at - heights(force + more * Eigen::VectorXd::Unit(force.size(), column))) / more;
+    }
+    return G;
+  }
+
+ private:
+  /// Of the largest force: heights' rounding is below 1e-8 of it, so slopes are good to 1e-5.
+  static constexpr double kPart = 1e-3;
+
+  Eigen::VectorXd of(const std::vector<Eigen::VectorXd>& lines) const {
+    Eigen::VectorXd height = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wheels.count()));
+    for (std::size_t i = 0; i < wheels.count(); ++i)
+      if (wheels.on_rail[i])
+        height[static_cast<Eigen::Index>(i)] =
+            height_of(statics.track(), packed, lines, wheels.point[i]);
+    return height;
+  }
+};
+
+}  // namespace
+
+SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packed, double gravity,
+                                double time, Acting& acting) {
+  const Model& model = packed.model();
+  const Wheels wheels = wheels_of(packed, statics.track(), time, acting);
+  const Under under{statics, packed, gravity, acting, wheels};
+  const Eigen::Index n = model.vehicle_wheels;
+  const bool linear = model.fixed.count == 0;
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
+  if (!linear)  // what they press on a level, rigid rail
+    force = settle_vehicles(model, Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)).force;
+  SettledVehicles settled;
+  bool done = false;
+  for (int iteration = 0; iteration < kIterations && !done; ++iteration) {
+    const Eigen::VectorXd height = under.heights(force);
+    const Eigen::MatrixXd slopes = under.slopes(force, height);
+    settled =
+        settle_vehicles(model, slopes + wheels.residual, wheels.uneven + height + slopes * force);
+    // What is left is the slopes' error of the last change.
+    done = linear || (settled.force - force).cwiseAbs().maxCoeff() <=
+                         1e-8 * settled.force.cwiseAbs().maxCoeff();
+    force = settled.force;
+  }
+  if (!done)
+    throw std::invalid_argument(
+        "no equilibrium was found of vehicles on supports that press alone; accepted is "
+        "step.start = \"released\"");
+  for (std::size_t i = 0; i < wheels.count(); ++i) {
+    if (!wheels.on_rail[i]) continue;
+    RailForce port = wheels.port[i];
+    port.force = -force[static_cast<Eigen::Index>(i)];
+    acting.forces.push_back({wheels.point[i], port.force});
+    acting.ports.push_back(port);
+  }
+  return settled;
+}
+
+}  // namespace railstep

@@ -1,0 +1,123 @@
+#include "offline/start/start_wheelset.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+#include "online/contact/body_force.h"
+
+namespace railstep {
+
+namespace {
+
+/// Sum of the forces along an axis at t = 0, N.
+double force_along(const WheelsetModel& w, int direction) {
+  double sum = 0.;
+  for (std::int32_t i = 0; i < w.forces; ++i)
+    if (w.force[i].direction == direction) sum += force_at(w.force[i], 0., nullptr);
+  return sum;
+}
+
+/// Rows of the coordinates that follow, one column for each contact.
+Eigen::MatrixXd rows_of(const Stance& stance) {
+  Eigen::MatrixXd rows(stance.count, stance.count);
+  for (int i = 0; i < stance.count; ++i)
+    rows.col(i) = Eigen::Map<const Eigen::VectorXd>(
+        stance.contact[static_cast<std::size_t>(i)].body_row + stance.first_coordinate(),
+        stance.count);
+  return rows;
+}
+
+ContactModel law_of(const Model& model, std::int32_t contact) {
+  if (is_flange(model, contact)) return flange_of(model, contact).contact;
+  return {model.wheelset[contact / 2].hertz[contact % 2], 0., 0.};
+}
+
+double depth_of(const ContactModel& law, double force) {
+  return law.hertz > 0. ? std::pow(force / law.hertz, 2. / 3.) : force / law.stiffness;
+}
+
+}  // namespace
+
+double side_force(const WheelsetModel& wheelset) { return force_along(wheelset, 1); }
+
+void check_sides(const Model& model) {
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    if (side_force(model.wheelset[b]) == 0.) continue;
+    if (contacts_of(model, b).count == 2)
+      throw std::invalid_argument(
+          "no equilibrium: a lateral force acts on a wheelset at the start and nothing holds it");
+    if (model.wheelsets + model.vehicles > 1)
+      throw std::invalid_argument(
+          "no equilibrium is sought of a wheelset that leans on its flange beside other wheelsets "
+          "and vehicles; accepted is step.start = \"released\"");
+  }
+}
+
+Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
+  const WheelsetModel& w = model.wheelset[b];
+  const double aside = side_force(w);
+  Stance stance{2, {2 * b, 2 * b + 1, -1}, {}, {}};
+  find_contacts(model, w, at, stance.contact.data());
+  if (aside != 0.) {
+    const std::size_t side = aside > 0. ? 0 : 1;
+    WheelContact face[2];
+    find_flanges(model, model.flange[0], at, face);
+    stance.count = 3;
+    stance.number[2] = wheel_count(model) + static_cast<std::int32_t>(side);
+    stance.contact[2] = face[side];
+  }
+  const Eigen::Vector3d applied(aside, force_along(w, 2) - w.weight, 0.);
+  stance.force = rows_of(stance).partialPivLu().solve(-applied.tail(stance.count));
+  for (int i = 0; i < stance.count; ++i) {
+    if (stance.contact[static_cast<std::size_t>(i)].on_rail && stance.force[i] > 0.) continue;
+    throw std::invalid_argument(
+        aside != 0. ? "no equilibrium in contact: the lateral force lifts a wheel over its flange"
+                    : "no equilibrium in contact: a wheelset does not stand on both railheads");
+  }
+  return stance;
+}
+
+double way_off_flanges(const Model& model, std::int32_t b, const Configuration& at) {
+  const OwnContacts own = contacts_of(model, b);
+  if (own.count == 2 || side_force(model.wheelset[b]) != 0.) return 0.;
+  WheelContact face[2];
+  find_flanges(model, flange_of(model, own.at[2]), at, face);
+  double way = 0.;
+  for (const WheelContact& touched : face)
+    if (touched.on_rail && touched.penetration > 0.)
+      way += touched.penetration / touched.body_row[1];
+  return way;
+}
+
+Eigen::VectorXd way_to_depths(const Model& model, const Stance& stance,
+                              const Eigen::VectorXd& missed) {
+  Eigen::VectorXd too_deep(stance.count);
+  for (int i = 0; i < stance.count; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    too_deep[i] = stance.contact[c].penetration + missed[i] -
+                  depth_of(law_of(model, stance.number[c]), stance.force[i]);
+  }
+  return rows_of(stance).transpose().partialPivLu().solve(too_deep);
+}
+
+void add_forces(const Model& model, const Stance& stance, Acting& acting) {
+  for (int i = 0; i < stance.count; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    acting.contacts.push_back({stance.contact[c].row, -stance.force[i]});
+    acting.ports.push_back(rail_force(model, wheel_load_point(model, stance.number[c]),
+                                      stance.contact[c].x, -stance.force[i]));
+  }
+}
+
+Eigen::VectorXd missed_under(const Model& model, const Stance& stance, const Acting& acting,
+                             std::size_t first) {
+  Eigen::VectorXd missed(stance.count);
+  for (int i = 0; i < stance.count; ++i)
+    missed[i] =
+        residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
+                              static_cast<int>(first) + i);
+  return missed;
+}
+
+}  // namespace railstep

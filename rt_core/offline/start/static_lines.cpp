@@ -1,0 +1,118 @@
+#include "offline/start/static_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "online/contact/ports.h"
+
+namespace railstep {
+
+namespace {
+
+/// A point's row as ports see it: those of condensed lines leave out the section's own strain.
+Eigen::SparseVector<double> row_of(const Track& track, const PackedModel& packed, const Line& line,
+                                   const RailPoint& at) {
+  return point_row(track, line, at, packed.model().condensed == 0);
+}
+
+/// A contact's row, as the step spreads it.
+Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRow& row) {
+  const bool strains = packed.model().condensed == 0;
+  const double factor = line.rail_factor[static_cast<std::size_t>(row.rail)];
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(line.unknowns());
+  const auto add = [&](int unknown, int k, double value) {
+    if (unknown >= 0) result[unknown] += factor * sign_of(line, row.rail, k) * value;
+  };
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k)
+      if (strains || (k != 4 && k != 8))
+        add(line.element_unknown(row.rail, row.element, i, k), k, row.coefficient[i][k]);
+  for (int s = 0; s < row.seats; ++s)
+    for (const int k : {5, 7})
+      add(line.unknown(row.rail, row.seat[s], k), k, (k == 5 ? .5 : -.5) * row.lever[s]);
+  return result;
+}
+
+/// Displacements of each line of a condensed model under its fixed ports' forces too.
+void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines) {
+  const FixedPortModel& fixed = packed.model().fixed;
+  const Eigen::Index n = fixed.count;
+  // Rows over the lines' coordinates, and what they move: K = omega^2.
+  std::vector<Eigen::MatrixXd> rows, moved;
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd free = -Eigen::Map<const Eigen::VectorXd>(fixed.gap, n);
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    Eigen::MatrixXd& row = rows.emplace_back(own.basis.omega.size(), n);
+    for (Eigen::Index j = 0; j < n; ++j)
+      row.col(j) = own.basis.shapes.project(Eigen::VectorXd(own.closing.col(j)));
+    moved.push_back(own.basis.omega.cwiseAbs2().cwiseInverse().asDiagonal() * rows.back());
+    W += rows.back().transpose() * own.basis.give(rows.back());
+    free += rows.back().transpose() * own.basis.shown(lines[l]);
+  }
+  std::array<PortLaw, kMaxFixedPorts> law;
+  std::array<double, kMaxFixedPorts> force{}, depth{};
+  for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
+    law[j] = {0., std::max(fixed.stiffness[j], 1e-9), 0.};  // a damper alone carries nothing
+  constexpr int kMostSolves = 20;  // of 8 iterations each, where a step's solve takes one
+  PortStatus met = PortStatus::cap_reached;
+  for (int iteration = 0; iteration < kMostSolves && met != PortStatus::converged; ++iteration)
+    met = solve_ports(static_cast<int>(n), W.data(), law.data(), free.data(), force.data(),
+                      depth.data())
+              .status;
+  if (met != PortStatus::converged)
+    throw std::invalid_argument(
+        "no equilibrium was found: the one-sided supports open and close without end");
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    lines[l] -= moved[l] * Eigen::Map<const Eigen::VectorXd>(force.data(), n);
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
+                                          const Acting& acting, double gravity) {
+  std::vector<Eigen::VectorXd> lines;
+  if (packed.model().condensed == 0) {
+    std::vector<Eigen::VectorXd> load = statics.loads(acting.forces, gravity);
+    for (const PackedLine& own : packed.lines())
+      for (const ContactForce& f : acting.contacts)
+        load[own.index] += f.force * row_of(packed, own.line, f.row);
+    const std::vector<Eigen::VectorXd> all = statics.under(std::move(load));
+    for (const PackedLine& own : packed.lines()) lines.push_back(all[own.index]);
+    return lines;
+  }
+  for (const PackedLine& own : packed.lines()) {
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
+    if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
+    if (packed.model().fixed.count > 0) load += preload(statics.track(), own.line);
+    for (const PointForce& f : acting.forces)
+      load += f.force * row_of(statics.track(), packed, own.line, f.at);
+    for (const ContactForce& f : acting.contacts) load += f.force * row_of(packed, own.line, f.row);
+    lines.push_back(
+        own.basis.shapes.project(load).cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
+  }
+  if (packed.model().fixed.count > 0) press_ports(packed, lines);
+  return lines;
+}
+
+double height_of(const Track& track, const PackedModel& packed,
+                 const std::vector<Eigen::VectorXd>& lines, const RailPoint& at) {
+  double sum = 0.;
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    const Eigen::SparseVector<double> row = row_of(track, packed, own.line, at);
+    sum += packed.model().condensed == 0
+               ? row.dot(lines[l])
+               : own.basis.shapes.project(Eigen::VectorXd(row)).dot(own.basis.shown(lines[l]));
+  }
+  return sum;
+}
+
+RailPoint point_of(const PackedModel& packed, std::int32_t load_point, double x) {
+  const Port& port = packed.load_points()[static_cast<std::size_t>(load_point)];
+  return {port.rail, x, port.y, port.z, 2};
+}
+
+}  // namespace railstep

@@ -1,0 +1,239 @@
+#include "offline/system/pack_parts.h"
+
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "offline/element/straight_beam.h"
+#include "online/math/lanes.h"
+#include "online/model/beam_chain.h"
+
+namespace railstep {
+
+void SystemParts::pad() {
+  const std::int32_t panels = (unknowns + kLanes - 1) / kLanes;
+  const std::size_t n = std::size_t{kLanes} * static_cast<std::size_t>(panels);
+  constant_force.resize(n, 0.);
+  per_length.resize(n, 0.);
+  beam_rest.resize(n, 0.);
+}
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+std::string at(const char* what, std::size_t index) {
+  return std::string(what) + " " + std::to_string(index) + ": ";
+}
+
+bool is_lateral(const Vector3d& v) { return v.x() == 0. && v.z() == 0.; }
+
+/// Whether a rotation keeps the lateral axis.
+bool keeps_plane(const Matrix3d& R) { return (R.col(1) - Vector3d::UnitY()).norm() < 1e-12; }
+
+void set(double (&to)[9], const Matrix3d& from) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) to[3 * i + j] = from(i, j);
+}
+
+void check_body(const RigidBody& body, const std::string& name) {
+  if (!(body.mass > 0.) || !std::isfinite(body.mass))
+    throw std::invalid_argument(name + "its mass is above zero");
+  if (!body.inertia.allFinite() ||
+      (body.inertia - body.inertia.transpose()).norm() > 1e-12 * body.inertia.norm())
+    throw std::invalid_argument(name + "its inertia is finite and symmetric");
+  const Vector3d own = Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia).eigenvalues();
+  if (!(own[0] > 0.))
+    throw std::invalid_argument(name + "its inertia is positive about every axis");
+  if (own[2] > (own[0] + own[1]) * (1. + 1e-9))
+    throw std::invalid_argument(
+        name + "no body has an inertia about one axis above the sum of the others");
+  if (!(std::abs(body.orientation.norm() - 1.) < 1e-9))
+    throw std::invalid_argument(name + "its orientation is a quaternion of length 1");
+}
+
+void add_body(const RigidBody& body, std::size_t index, bool planar, SystemParts& parts) {
+  const std::string name = at("body", index);
+  check_body(body, name);
+  if (planar && !(body.velocity.y() == 0. && is_lateral(body.angular_velocity) &&
+                  keeps_plane(body.orientation.toRotationMatrix())))
+    throw std::invalid_argument(name + "a planar system moves in x and z and turns about y");
+  if (planar && body.inertia.row(1).cwiseAbs().dot(Vector3d(1., 0., 1.)) > 0.)
+    throw std::invalid_argument(name + "in a planar system y is a principal axis");
+  RigidBodyModel& packed = parts.bodies.emplace_back();
+  packed.first = parts.unknowns;
+  packed.unknowns = planar ? 3 : 6;
+  constexpr std::int32_t kSpatial[6] = {0, 1, 2, 3, 4, 5}, kPlanar[6] = {0, -1, 1, -1, 2, -1};
+  for (int k = 0; k < 6; ++k) packed.column[k] = planar ? kPlanar[k] : kSpatial[k];
+  packed.mass = body.mass;
+  set(packed.inertia, body.inertia);
+  set(packed.inverse_inertia, body.inertia.inverse());
+  for (int k = 0; k < 3; ++k) packed.rest[k] = body.position[k];
+  packed.radius = std::sqrt(body.inertia.diagonal().maxCoeff() / body.mass);
+  parts.unknowns += packed.unknowns;
+}
+
+void check_beam(const FlexibleBeam& beam, const std::string& name, bool planar) {
+  if (beam.elements < 1 || beam.elements > kMostElementsOfBeam)
+    throw std::invalid_argument(name + "a beam has 1 to " + std::to_string(kMostElementsOfBeam) +
+                                " elements");
+  if (!(beam.length > 0.) || !std::isfinite(beam.length))
+    throw std::invalid_argument(name + "its length is above zero");
+  if (!(beam.half_height > 0.)) throw std::invalid_argument(name + "its height is above zero");
+  if (!(beam.material.density > 0.))
+    throw std::invalid_argument(name + "its density is above zero");
+  if (!((beam.axes.transpose() * beam.axes - Matrix3d::Identity()).norm() < 1e-12) ||
+      beam.axes.determinant() < 0.)
+    throw std::invalid_argument(name + "its axes are square, of length 1 and right-handed");
+  if (planar &&
+      !(keeps_plane(beam.axes) && beam.velocity.y() == 0. && is_lateral(beam.angular_velocity)))
+    throw std::invalid_argument(name + "a planar system moves in x and z and turns about y");
+}
+
+/// Positions and slopes of a node, [9].
+Eigen::Matrix<double, 9, 1> node_at_rest(const FlexibleBeam& beam, int node) {
+  Eigen::Matrix<double, 9, 1> q;
+  q << beam.start + beam.axes.col(0) * (beam.length * node / (2. * beam.elements)),
+      beam.axes.col(1), beam.axes.col(2);
+  return q;
+}
+
+/// What a node's unknowns are worth of its nine.
+std::vector<double> carried(bool planar, const Eigen::Matrix<double, 9, 1>& q) {
+  std::vector<double> out(planar ? kPlanarUnknowns : 9);
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = q[planar ? kPlanarOf[k] : static_cast<int>(k)];
+  return out;
+}
+
+template <class Node>
+std::vector<double> over_nodes(const FlexibleBeam& beam, bool planar, const Node& node) {
+  std::vector<double> all;
+  for (int n = 0; n <= 2 * beam.elements; ++n) {
+    const std::vector<double> own = carried(planar, node(n));
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
+/// 1 for unknowns that are free, 0 for held ones.
+Eigen::Matrix<double, 9, 1> free_of(const FlexibleBeam& beam, int node) {
+  Eigen::Matrix<double, 9, 1> is_free = Eigen::Matrix<double, 9, 1>::Ones();
+  if (node != 0 && node != 2 * beam.elements) return is_free;
+  const BeamEnd end = beam.ends[node == 0 ? 0 : 1];
+  if (end != BeamEnd::free) is_free.head<3>().setZero();
+  if (end == BeamEnd::clamped) is_free.setZero();
+  return is_free;
+}
+
+/// Held unknowns of a beam, which join those of the others.
+void add_held(const FlexibleBeam& beam, BeamChainModel& packed, SystemParts& parts) {
+  const std::vector<double> is_free =
+      over_nodes(beam, packed.planar != 0, [&](int n) { return free_of(beam, n); });
+  packed.first_held = static_cast<std::int32_t>(parts.held.size());
+  for (std::size_t i = 0; i < is_free.size(); ++i)
+    if (is_free[i] == 0.) parts.held.push_back(static_cast<std::int32_t>(i));
+  packed.held = static_cast<std::int32_t>(parts.held.size()) - packed.first_held;
+}
+
+void add_beam(const FlexibleBeam& beam, std::size_t index, bool planar, SystemParts& parts) {
+  const std::string name = at("beam", index);
+  check_beam(beam, name, planar);
+  const BeamLaw law = beam_law(beam.section, beam.material, beam.rule, beam.axis_z);
+  BeamChainModel& packed = parts.beams.emplace_back();
+  packed.first = parts.unknowns;
+  packed.planar = planar ? 1 : 0;
+  packed.elements = beam.elements;
+  packed.unknowns = (planar ? kPlanarUnknowns : 9) * (2 * beam.elements + 1);
+  packed.slope_scale = beam.half_height;
+  packed.element = straight_beam(law, beam.length / beam.elements);
+  const auto mass = chain_mass(beam.section, law);
+  std::copy(mass.begin(), mass.end(), packed.mass);
+  add_held(beam, packed, parts);
+  const std::vector<double> rest =
+      over_nodes(beam, planar, [&](int n) { return node_at_rest(beam, n); });
+  parts.beam_rest.resize(static_cast<std::size_t>(packed.first), 0.);
+  parts.beam_rest.insert(parts.beam_rest.end(), rest.begin(), rest.end());
+  parts.unknowns += packed.unknowns;
+}
+
+/// Weight of every unknown; forces comparable to each other.
+void add_weight(const System& system, SystemParts& parts) {
+  const Vector3d& g = system.gravity;
+  for (const RigidBodyModel& body : parts.bodies)
+    for (int c = 0; c < 6; ++c)
+      if (body.column[c] >= 0) {
+        const std::int32_t unknown = body.first + body.column[c];
+        const auto k = static_cast<std::size_t>(unknown);
+        parts.constant_force[k] = c < 3 ? body.mass * g[c] : 0.;
+        parts.per_length[k] = c < 3 ? 1. : 1. / body.radius;
+      }
+  for (std::size_t b = 0; b < parts.beams.size(); ++b) {
+    const BeamChainModel& beam = parts.beams[b];
+    Eigen::Matrix<double, 9, 1> fall, weighing;
+    fall << g, Vector3d::Zero(), Vector3d::Zero();
+    weighing << Vector3d::Ones(), Vector3d::Constant(1. / beam.slope_scale),
+        Vector3d::Constant(1. / beam.slope_scale);
+    const FlexibleBeam& from = system.beams[b];
+    const auto first = static_cast<std::size_t>(beam.first);
+    const std::vector<double> a = over_nodes(from, system.planar, [&](int) { return fall; });
+    const std::vector<double> per = over_nodes(from, system.planar, [&](int n) {
+      return Eigen::Matrix<double, 9, 1>(weighing.cwiseProduct(free_of(from, n)));
+    });
+    beam_inertia(beam, a.data(), parts.constant_force.data() + first);
+    std::copy(per.begin(), per.end(),
+              parts.per_length.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+}
+
+}  // namespace
+
+void add_parts(const System& system, SystemParts& parts) {
+  if (system.bodies.size() + system.beams.size() > static_cast<std::size_t>(kMaxSystemParts))
+    throw std::invalid_argument("a system has at most " + std::to_string(kMaxSystemParts) +
+                                " bodies and beams");
+  if (system.planar && system.gravity.y() != 0.)
+    throw std::invalid_argument("gravity of a planar system has no lateral part");
+  for (std::size_t i = 0; i < system.bodies.size(); ++i)
+    add_body(system.bodies[i], i, system.planar, parts);
+  for (std::size_t i = 0; i < system.beams.size(); ++i)
+    add_beam(system.beams[i], i, system.planar, parts);
+  if (parts.unknowns == 0) throw std::invalid_argument("a system has a body or a beam");
+  parts.pad();
+  add_weight(system, parts);
+}
+
+std::vector<double> start_velocities(const System& system, const SystemParts& parts) {
+  std::vector<double> v(parts.constant_force.size(), 0.);
+  for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
+    const RigidBody& body = system.bodies[b];
+    Eigen::Matrix<double, 6, 1> own;
+    own << body.velocity, body.orientation.conjugate() * body.angular_velocity;
+    for (int c = 0; c < 6; ++c)
+      if (parts.bodies[b].column[c] >= 0) {
+        const std::int32_t k = parts.bodies[b].first + parts.bodies[b].column[c];
+        v[static_cast<std::size_t>(k)] = own[c];
+      }
+  }
+  for (std::size_t b = 0; b < parts.beams.size(); ++b) {
+    const FlexibleBeam& beam = system.beams[b];
+    const std::vector<double> own = over_nodes(beam, system.planar, [&](int n) {
+      Eigen::Matrix<double, 9, 1> lever = node_at_rest(beam, n);
+      lever.head<3>() -= beam.start;
+      const Vector3d& w = beam.angular_velocity;
+      Eigen::Matrix<double, 9, 1> rate;
+      for (int field = 0; field < 9; field += 3)
+        rate.segment<3>(field) = w.cross(Vector3d(lever.segment<3>(field)));
+      rate.head<3>() += beam.velocity;
+      return Eigen::Matrix<double, 9, 1>(rate.cwiseProduct(free_of(beam, n)));
+    });
+    std::copy(own.begin(), own.end(), v.begin() + parts.beams[b].first);
+  }
+  return v;
+}
+
+}  // namespace railstep

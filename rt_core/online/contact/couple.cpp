@@ -1,0 +1,185 @@
+#include "online/contact/couple.h"
+
+#include "online/contact/fixed_port_force.h"
+#include "online/contact/flange.h"
+#include "online/contact/mean_contact.h"
+#include "online/contact/track_response.h"
+#include "online/contact/vehicle_contact.h"
+#include "online/contact/vehicle_response.h"
+#include "online/contact/wheelset.h"
+#include "online/track/moving_load.h"
+#include "online/track/p_delta.h"
+
+namespace railstep {
+
+namespace {
+
+/// Contacts where the forces of the step act: on u + dt v of bodies and banded lines at its end; in
+/// the middle of it where forces are held, with condensed lines as they stand (their fastest rates
+/// are far above 1/dt).
+void locate_contacts(const Model& model, const Stage& stage, const State& s, Workspace& w,
+                     Coupling& c) noexcept {
+  const double ahead = (model.condensed != 0 ? .5 : 1.) * stage.span;
+  // Irregularities are those of where the penetration is taken; of a mean, those of the middle.
+  const double later = model.scheme.mean != 0 ? 0. : model.scheme.theta * stage.span - ahead;
+#pragma omp simd
+  for (std::int32_t i = model.condensed * model.line_unknowns; i < model.unknowns; ++i)
+    w.scaled[i] = s.u[i] + ahead * s.v[i];
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& set = model.wheelset[b];
+    find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b, later * s.v[set.first]);
+    for (int side = 0; side < 2; ++side) {
+      const int i = 2 * b + side;
+      c.law[i] = {set.hertz[side], 0., 0.};
+      c.place[i] = {set.load_point[side], c.contact[i].row.element, c.contact[i].xi, 0.};
+    }
+  }
+  locate_flanges(model, s, w, later, c);
+  for (std::int32_t v = 0; v < model.vehicles; ++v)
+    place_vehicle_wheels(model, model.vehicle[v], stage.step, stage.before + (stage.span - ahead),
+                         c.contact, later);
+  for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i)
+    c.place[i] = {wheel_load_point(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+}
+
+/// Whether there is anything under a wheel.
+bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground; }
+
+/// What the loads add to the rail under each wheel through the residual flexibility.
+void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c) noexcept {
+  for (int i = 0; i < c.wheels; ++i) c.by_loads[i] = 0.;
+  for (std::int32_t l = 0; l < model.loads; ++l) {
+    const PlacedLoad load = place(model, model.load[l], stage.step, stage.before);
+    if (!load.on_rail) continue;
+    const RailForce at{model.load[l].load_point, load.row.element, load.xi, load.force};
+    for (int i = 0; i < c.wheels; ++i)
+      c.by_loads[i] += load.force * residual_between(model, at, c.place[i]);
+  }
+}
+
+/// What a unit force at wheel j adds to the approach of wheel i through what bears them both.
+double body_compliance(const Model& model, const Coupling& c, int i, int j) noexcept {
+  if (is_of_wheelset(model, i) != is_of_wheelset(model, j)) return 0.;
+  return is_of_wheelset(model, i) ? wheelset_compliance(model, c, i, j)
+                                  : vehicle_compliance(model, i, j);
+}
+
+/// W between all wheels: through the lines, the bodies and the residual flexibility.
+void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
+  for (int i = 0; i < c.wheels; ++i)
+    for (int j = 0; j <= i; ++j) {
+      double sum = 0.;
+      if (c.contact[i].on_rail && c.contact[j].on_rail)
+        sum = model.scheme.theta *
+                  (track_compliance(model, w, c, i, j) + body_compliance(model, c, i, j)) +
+              (i == j ? residual_under(model, c.place[i])
+                      : residual_between(model, c.place[j], c.place[i]));
+      else if (stands(c.contact[i]) && stands(c.contact[j]))
+        sum = model.scheme.theta * body_compliance(model, c, i, j);
+      c.W[i * c.ports + j] = c.W[j * c.ports + i] = sum;
+    }
+}
+
+/// Penetration that the track alone would leave: the located one, moved from where it was located.
+void track_penetration(const Model& model, const State& s, const Workspace& w,
+                       Coupling& c) noexcept {
+  for (int i = 0; i < c.wheels; ++i) {
+    // Off the rail: far away.
+    c.track_free[i] = c.contact[i].inactive ? c.contact[i].penetration : -1.;
+    if (c.contact[i].on_rail)
+      c.track_free[i] = model.scheme.theta * track_motion(model, w, c, i) + c.by_loads[i];
+    else if (c.contact[i].on_ground)
+      c.track_free[i] = 0.;
+    if (stands(c.contact[i]))
+      c.track_free[i] += is_of_wheelset(model, i) ? wheelset_offset(model, s, w, c, i)
+                                                  : vehicle_offset(model, s, c, i);
+  }
+}
+
+/// Ports for given multipliers.
+PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
+  double d_free[kPorts];
+  for (int i = 0; i < c.ports; ++i) {
+    d_free[i] = c.track_free[i];
+    if (i >= c.wheels || !stands(c.contact[i])) continue;
+    d_free[i] -= model.scheme.theta *
+                 (is_of_wheelset(model, i) ? free_lift(model, s, c, i) : vehicle_lift(model, c, i));
+  }
+  return solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
+}
+
+/// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
+void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& w, Coupling& c,
+                   CoupleResult& result) noexcept {
+  const std::int32_t cap = guide_iterations(model);
+  bool settled = false;
+  PortStatus met = PortStatus::converged;
+  for (std::int32_t iteration = 0; iteration < cap && !settled; ++iteration) {
+    const PortResult ports = solve(model, s, c);
+    met = ports.status;
+    if (ports.iterations > result.iterations) result.iterations = ports.iterations;
+    result.violation = 0.;
+    settled = move_wheelsets(model, stage, s, w, c, result.violation);
+    if (iteration + 1 > result.iterations) result.iterations = iteration + 1;
+  }
+  if (!settled || met == PortStatus::cap_reached)
+    result.status = result.status | Status::cap_reached;
+  if (met == PortStatus::indefinite || met == PortStatus::bad_input)
+    result.status = result.status | Status::contact_ill_posed;
+}
+
+bool impact_is_unresolved_at(const Model& model, const Coupling& c, const State& s,
+                             int i) noexcept {
+  if (is_flange(model, i)) return flange_impact_is_unresolved(model, c, s, i);
+  return is_of_wheelset(model, i) ? tread_impact_is_unresolved(model, c, s, i)
+                                  : vehicle_impact_is_unresolved(model, c, s, i);
+}
+
+void publish_wheels(const Model& model, const Coupling& c, State& state,
+                    CoupleResult& result) noexcept {
+  for (int i = 0; i < c.wheels; ++i) {
+    const WheelContact& at = c.contact[i];
+    if (state.wheel_force[i] <= 0. && c.force[i] > 0. &&
+        impact_is_unresolved_at(model, c, state, i))
+      result.status = result.status | Status::contact_unresolved;
+    state.wheel_force[i] = c.force[i];
+    result.gap[i] = -c.penetration[i];
+    result.x[i] = at.x;
+    result.on_rail[i] = at.on_rail;
+    if (!stands(at) && !at.inactive) result.status = result.status | Status::off_rail;
+    if (at.roll * at.roll > kLargeRollSquared) result.status = result.status | Status::large_turn;
+    if (at.cap_reached) result.status = result.status | Status::cap_reached;
+    if (c.force[i] <= 0. && !c.law[i].pulls && !is_flange(model, i))
+      result.status = result.status | Status::contact_lost;
+  }
+}
+
+}  // namespace
+
+CoupleResult couple(const Model& model, const Stage& stage, State& state, Workspace& w) noexcept {
+  CoupleResult result{};
+  Coupling c;
+  c.wheels = contact_count(model);
+  c.ports = c.wheels + model.fixed.count;
+  const double time = time_of(model.scheme, stage);
+  locate_contacts(model, stage, state, w, c);
+  respond(model, state, w, c);
+  find_residual_by_loads(model, stage, c);
+  free_wheelsets(model, stage, state, w, c);
+  free_vehicles(model, time, state, w, c);
+  find_vehicle_laws(model, time, state, w, c);
+  find_flange_laws(model, state, w, c);
+  compliance(model, w, c);
+  track_penetration(model, state, w, c);
+  if (model.scheme.mean != 0) find_means(model, state, w, c);
+  if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
+  for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
+  solve_coupled(model, stage, state, w, c, result);
+  move_track(model, w, c);
+  move_vehicles(model, w, c);
+  if (model.fixed.count > 0) press_fixed_ports(model, c, state, w);
+  publish_wheels(model, c, state, result);
+  return result;
+}
+
+}  // namespace railstep

@@ -1,0 +1,32 @@
+#pragma once
+#include "online/contact/ports.h"
+#include "online/contact/wheel.h"
+#include "online/track/residual.h"
+
+namespace railstep {
+
+/// A wheelset's six coordinates in a step, before wheel forces and multipliers.
+struct FreeWheelset {
+  double compliance[6];  // m/N or rad/(N m)
+  double free[6];
+};
+
+/// A step's coupled problem: where the track and what stands on it would be without contact, and
+/// how both give way under contact forces. Written where it is read: nothing of it is zeroed.
+struct Coupling {
+  int wheels,
+      ports;  // wheels: contacts, those of flanges behind; ports: these, then the fixed ones
+  WheelContact contact[kMaxWheels];
+  RailForce place[kMaxWheels];  // of the contacts
+  double by_loads[kMaxWheels];  // residual displacement there by the loads, m
+  double located[kMaxWheels];   // displacement of the lines there as contacts were located, m
+  FreeWheelset wheelset[kMaxWheelsets];
+  double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
+  double W[kPorts * kPorts];                          // [ports][ports] m/N
+  PortLaw law[kPorts];
+  double track_free[kPorts];   // penetration from the track and the frozen geometry, m
+  double force[kPorts];        // N
+  double penetration[kPorts];  // m
+};
+
+}  // namespace railstep

@@ -1,0 +1,49 @@
+#pragma once
+#include "online/track/line.h"
+#include "online/track/residual.h"
+
+namespace railstep {
+
+/// Where a wheel of a vehicle outside the model meets its rail in a step: the place is an input,
+/// the rows are frozen on the configuration that the state's velocities lead to.
+struct ExternalContact {
+  bool on_rail;
+  RailRow row[3];   // displacement of that point of the railhead along x, y, z of the track
+  double offset;    // of its height, of second order in the rail's turn, m: see turn.h
+  double roll;      // of the section under it, rad
+  double place;     // along the model's elements, m
+  double force[3];  // N on the rail, 0 off it
+  RailForce port;   // of the vertical force, for the residual flexibility
+};
+
+/// Places all external wheels by the inputs of a step. @param contact  [external_wheels]
+/// overwritten
+void place_external(const Model& model, std::int64_t step, const double* input,
+                    const Configuration& seen, ExternalContact* contact) noexcept;
+
+/// The same on the state at the step's start, whose inputs are those of the step.
+/// @param scaled  [unknowns] scratch
+void place_in_step(const Model& model, std::int64_t step, const State& state, double* scaled,
+                   ExternalContact* contact) noexcept;
+
+/// Places them so, and presses the lines with their
+/// forces: on the right-hand side of banded lines, held over the step on condensed ones, as those
+/// of wheels in the model are.
+void press_external(const Model& model, std::int64_t step, const State& state, Workspace& workspace,
+                    ExternalContact* contact) noexcept;
+
+/// Displacements by the lines, and places and forces, of a state.
+void publish_external(const Model& model, const State& state, const ExternalContact* contact,
+                      Outputs& outputs) noexcept;
+
+/// Velocities of the rail under the wheels. @param workspace  scratch
+void publish_external_rates(const Model& model, const State& state, const ExternalContact* contact,
+                            Workspace& workspace, Outputs& outputs) noexcept;
+
+/// Displacement of one contact's point per newton at another, of all: with 3 n + d for direction d
+/// of wheel n, symmetric, m/N, residual flexibility included.
+/// @param compliance  [3 external_wheels][3 external_wheels] overwritten; 0 off the rail
+void external_compliance(const Model& model, const ExternalContact* contact, Workspace& workspace,
+                         double* compliance) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,90 @@
+#include "online/contact/flange.h"
+
+#include "online/contact/impact.h"
+#include "online/contact/track_response.h"
+#include "online/contact/vehicle_contact.h"
+
+namespace railstep {
+
+namespace {
+
+/// Gap that forces do not close within a step beside the velocity that is there, m: in 1 ms it
+/// would take 1000 m/s^2.
+constexpr double kInactiveGap = 1e-3;
+
+/// How far a wheelset goes from its rail at a contact, for changes of its coordinates.
+double lift(const WheelContact& at, const double* p, const double* from) noexcept {
+  double sum = 0.;
+  for (int k = 0; k < 6; ++k) sum += at.body_row[k] * (p[k] - (from == nullptr ? 0. : from[k]));
+  return sum;
+}
+
+/// Rate of the penetration d over the step: per_metre d + before.
+struct Rate {
+  double per_metre, before;  // 1/s, m/s
+};
+
+Rate rate_of(const Model& model, const State& s, const Workspace& w, const WheelContact& at,
+             const WheelsetModel& set) noexcept {
+  const std::int32_t first = set.first;
+  const double passing = at.rise * s.v[first], *located = w.scaled + first;
+  if (model.condensed != 0) {
+    const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
+    const double d0 = at.penetration + lift(at, located, s.u + first);
+    return {per_metre, passing - per_metre * d0};
+  }
+  const double moved = rail_height(model, at.row, {w.u_star, {}}) -
+                       rail_height(model, at.row, located_on(model, s, w));
+  const double d_star = at.penetration + moved - lift(at, w.u_star + first, located);
+  const double rate =
+      rail_height(model, at.row, {w.v_star, {}}) - lift(at, w.v_star + first, nullptr);
+  return {model.scheme.kv, passing + rate - model.scheme.kv * d_star};
+}
+
+}  // namespace
+
+void locate_flanges(const Model& model, const State& s, const Workspace& w, double later,
+                    Coupling& c) noexcept {
+  const Configuration seen = located_on(model, s, w);
+  for (std::int32_t f = 0; f < model.flanges; ++f) {
+    const FlangeModel& flange = model.flange[f];
+    const int first = wheel_count(model) + 2 * f;
+    find_flanges(model, flange, seen, c.contact + first,
+                 later * s.v[model.wheelset[flange.wheelset].first]);
+    for (int i = first; i < first + 2; ++i) {
+      WheelContact& at = c.contact[i];
+      at.inactive = at.on_rail && at.penetration < -kInactiveGap;
+      if (at.inactive) at.on_rail = false;
+      c.place[i] = {kNoLoadPoint, at.row.element, at.xi, 0.};
+    }
+  }
+}
+
+void find_flange_laws(const Model& model, const State& s, const Workspace& w,
+                      Coupling& c) noexcept {
+  for (int i = wheel_count(model); i < c.wheels; ++i) {
+    const FlangeModel& flange = flange_of(model, i);
+    c.law[i] = {flange.contact.hertz, flange.contact.stiffness, 0.};
+    if (flange.contact.damping == 0. || !c.contact[i].on_rail) continue;
+    const Rate rate = rate_of(model, s, w, c.contact[i], model.wheelset[flange.wheelset]);
+    c.law[i].slope += flange.contact.damping * rate.per_metre;
+    c.law[i].jump = flange.contact.damping * rate.before;
+  }
+}
+
+bool flange_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
+                                 int contact) noexcept {
+  const FlangeModel& flange = flange_of(model, contact);
+  const WheelsetModel& set = model.wheelset[flange.wheelset];
+  const WheelContact& at = c.contact[contact];
+  double inverse_mass = 0.;
+  for (int k = 1; k < 5; ++k)  // x and yaw are guided
+    inverse_mass += at.body_row[k] * at.body_row[k] / set.mass[k];
+  const double speed = at.rise * s.v[set.first] - lift(at, s.v + set.first, nullptr);
+  if (flange.contact.hertz > 0.)
+    return impact_is_unresolved(flange.contact.hertz, inverse_mass, speed, model.scheme.dt);
+  return spring_impact_is_unresolved(flange.contact.stiffness, inverse_mass, speed,
+                                     model.scheme.dt);
+}
+
+}  // namespace railstep

@@ -1,0 +1,24 @@
+#pragma once
+#include "online/contact/coupling.h"
+
+namespace railstep {
+
+// Flanges in a step's coupled problem: contacts behind those of all wheels. What a force at one
+// does to the track and the wheelset is found as that of a tread is; it neither makes nor feels
+// residual displacements.
+
+/// Contacts of all flanges where the forces of the step act, as of the treads.
+/// @param later  s, by how much the irregularities under them are those of a later time
+void locate_flanges(const Model& model, const State& s, const Workspace& w, double later,
+                    Coupling& c) noexcept;
+
+/// Laws of the flanges over the step. A damper takes the rate of the penetration d at its end,
+/// kv (d - d*) + d*' with d* and d*' those of u* and v*; of held forces (d - d0) / (theta dt); and
+/// what the way along a rail adds to the rate.
+void find_flange_laws(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
+
+/// As tread_impact_is_unresolved() of treads, for the mass that the flange has alone.
+bool flange_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
+                                 int contact) noexcept;
+
+}  // namespace railstep

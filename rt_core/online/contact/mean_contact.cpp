@@ -1,0 +1,33 @@
+#include "online/contact/mean_contact.h"
+
+#include "online/contact/track_response.h"
+#include "online/contact/vehicle_response.h"
+#include "online/contact/wheelset.h"
+
+namespace railstep {
+
+double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+  double sum = c.by_loads[i];
+  for (int j = 0; j < c.wheels; ++j)
+    if (c.contact[j].on_rail)
+      sum -= s.wheel_force[j] * (i != j ? residual_between(model, c.place[j], c.place[i])
+                                        : residual_under(model, c.place[i]));
+  return sum;
+}
+
+void find_means(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept {
+  for (int i = 0; i < c.wheels; ++i) {
+    const WheelContact& at = c.contact[i];
+    if (!(c.law[i].hertz > 0.) || !(at.on_rail || at.on_ground)) continue;
+    // track_free has the track and the loads at the step's end, and what bears the wheel at
+    // neither.
+    double from = c.track_free[i] - (is_of_wheelset(model, i) ? wheelset_lift_before(model, s, c, i)
+                                                              : vehicle_lift_before(model, s, i));
+    if (at.on_rail)
+      from += (residual_before(model, s, c, i) - c.by_loads[i]) - track_motion(model, w, c, i);
+    c.law[i].mean = true;
+    c.law[i].from = from;
+  }
+}
+
+}  // namespace railstep

@@ -1,0 +1,156 @@
+#include "online/contact/vehicle_response.h"
+
+#include "online/contact/body_force.h"
+#include "online/contact/impact.h"
+#include "online/contact/mean_contact.h"
+#include "online/contact/track_response.h"
+#include "online/contact/vehicle_contact.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+namespace {
+
+const VehicleModel& vehicle_of(const Model& model, int wheel) noexcept {
+  return model.vehicle[vehicle_wheel(model, wheel).vehicle];
+}
+
+/// Of a wheel, among its vehicle's.
+int among_own(const Model& model, int wheel) noexcept {
+  return wheel - 2 * model.wheelsets - vehicle_of(model, wheel).first_wheel;
+}
+
+const double* row_of(const Model& model, int wheel) noexcept {
+  const VehicleModel& v = vehicle_of(model, wheel);
+  return v.row + among_own(model, wheel) * v.size;
+}
+
+double dot(const double* a, const double* b, int n) noexcept {
+  double sum = 0.;
+  for (int k = 0; k < n; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// y += A x, A [n][n].
+void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
+  for (int i = 0; i < n; ++i) y[i] += dot(A + i * n, x, n);
+}
+
+/// At what part of the step the equation of motion holds.
+double held_at(const Model& model) noexcept { return model.condensed != 0 ? .5 : 1.; }
+
+/// A damper's law over the step: its force is damping (per_metre d + before).
+struct Rate {
+  double per_metre, before;  // 1/s, m/s
+};
+
+Rate rate_of(const Model& model, double time, const State& s, const Workspace& w, const Coupling& c,
+             int i) noexcept {
+  const WheelContact& at = c.contact[i];
+  const VehicleModel& v = vehicle_of(model, i);
+  const double* row = row_of(model, i);
+  const Configuration seen = located_on(model, s, w);
+  double along = at.rise, missed = 0.;
+  if (at.on_rail) {
+    along += slope_under(model, at, seen);
+    missed = residual_before(model, s, c, i);
+  }
+  const double when = time - (1. - held_at(model)) * model.scheme.dt;
+  const double passing = travelled(v.travel, when).speed * along;
+  if (model.condensed != 0) {
+    const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
+    const double d0 = c.located[i] + at.irregularity + missed - dot(row, s.u + v.first, v.size);
+    return {per_metre, passing - per_metre * d0};
+  }
+  double d_star = at.irregularity + missed - dot(row, w.u_star + v.first, v.size);
+  double rate = -dot(row, w.v_star + v.first, v.size);
+  if (at.on_rail) {
+    d_star += rail_height(model, at.row, {w.u_star, {}});
+    rate += rail_height(model, at.row, {w.v_star, {}});
+  }
+  return {model.scheme.kv, passing + rate - model.scheme.kv * d_star};
+}
+
+}  // namespace
+
+void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
+                   Coupling& c) noexcept {
+  const double kg = model.scheme.kg, kv = model.scheme.kv, held = held_at(model);
+  for (std::int32_t b = 0; b < model.vehicles; ++b) {
+    const VehicleModel& v = model.vehicle[b];
+    const double *u_star = w.u_star + v.first, *v_star = w.v_star + v.first;
+    double force[kMaxVehicleUnknowns], moved[kMaxVehicleUnknowns], rate[kMaxVehicleUnknowns];
+    for (int k = 0; k < v.size; ++k) {
+      force[k] = v.mass[k] * (kg * u_star[k]) - v.weight[k];
+      rate[k] = held * (kv * u_star[k] - v_star[k]) - (1. - held) * s.v[v.first + k];
+      moved[k] = -(1. - held) * s.u[v.first + k];
+      c.vehicle[b][k] = 0.;
+    }
+    add_forces(v, time, s.input, force);
+    multiply_add(v.damping, rate, force, v.size);
+    multiply_add(v.stiffness, moved, force, v.size);
+    multiply_add(v.inverse, force, c.vehicle[b], v.size);
+  }
+}
+
+void find_vehicle_laws(const Model& model, double time, const State& s, const Workspace& w,
+                       Coupling& c) noexcept {
+  for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i) {
+    const ContactModel& contact = vehicle_wheel(model, i).contact;
+    c.law[i] = {contact.hertz, contact.stiffness, 0., contact.hertz == 0.};
+    if (contact.damping == 0.) continue;
+    const Rate rate = rate_of(model, time, s, w, c, i);
+    c.law[i].slope += contact.damping * rate.per_metre;
+    c.law[i].jump = contact.damping * rate.before;
+  }
+}
+
+double vehicle_compliance(const Model& model, int i, int j) noexcept {
+  if (vehicle_wheel(model, i).vehicle != vehicle_wheel(model, j).vehicle) return 0.;
+  const VehicleModel& v = vehicle_of(model, i);
+  return v.compliance[among_own(model, i) * v.wheels + among_own(model, j)];
+}
+
+double vehicle_offset(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+  const VehicleModel& v = vehicle_of(model, i);
+  return (c.located[i] + c.contact[i].irregularity) -
+         (1. - model.scheme.theta) * dot(row_of(model, i), s.u + v.first, v.size);
+}
+
+double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept {
+  return dot(row_of(model, i), c.vehicle[vehicle_wheel(model, i).vehicle],
+             vehicle_of(model, i).size);
+}
+
+double vehicle_lift_before(const Model& model, const State& s, int i) noexcept {
+  const VehicleModel& v = vehicle_of(model, i);
+  return dot(row_of(model, i), s.u + v.first, v.size);
+}
+
+void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept {
+  for (std::int32_t b = 0; b < model.vehicles; ++b) {
+    const VehicleModel& v = model.vehicle[b];
+    double* u = w.solved + v.first;
+    for (int k = 0; k < v.size; ++k) u[k] = c.vehicle[b][k];
+    for (int i = 0; i < v.wheels; ++i) {
+      const double force = c.force[2 * model.wheelsets + v.first_wheel + i];
+      for (int k = 0; k < v.size; ++k) u[k] += v.give[i * v.size + k] * force;
+    }
+  }
+}
+
+bool vehicle_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
+                                  int wheel) noexcept {
+  const VehicleModel& v = vehicle_of(model, wheel);
+  const double* row = row_of(model, wheel);
+  const double hertz = vehicle_wheel(model, wheel).contact.hertz;
+  const double time = static_cast<double>(s.steps) * model.scheme.dt;
+  double speed = c.contact[wheel].rise * travelled(v.travel, time).speed, inverse_mass = 0.;
+  for (int k = 0; k < v.size; ++k) {
+    speed -= row[k] * s.v[v.first + k];
+    inverse_mass += row[k] * row[k] / v.mass[k];
+  }
+  return hertz > 0. && impact_is_unresolved(hertz, inverse_mass, speed, model.scheme.dt);
+}
+
+}  // namespace railstep

@@ -1,0 +1,39 @@
+#pragma once
+#include "online/contact/coupling.h"
+
+namespace railstep {
+
+// Vehicles in a step's coupled problem. Their wheels stand behind those of the wheelsets.
+
+/// Where each vehicle goes without contact:
+///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 - weight
+///                             + its forces at the step's end.
+void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
+                   Coupling& c) noexcept;
+
+/// Laws of the vehicles' wheels over the step. A damper takes the rate of the penetration at its
+/// end, kv (d - d*) + v* with what the wheel's way adds; of held forces (d - d0) / (theta dt).
+void find_vehicle_laws(const Model& model, double time, const State& s, const Workspace& w,
+                       Coupling& c) noexcept;
+
+/// What a unit force at wheel j adds to the approach of wheel i through a vehicle that bears both.
+double vehicle_compliance(const Model& model, int i, int j) noexcept;
+
+/// Penetration that the rail as it was seen, irregularities and the vehicle's place at the step's
+/// start leave of wheel i: what the coordinates at the step's end take off is left out.
+double vehicle_offset(const Model& model, const State& s, const Coupling& c, int i) noexcept;
+
+/// Height of wheel i at the step's end without contact forces.
+double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept;
+
+/// Height of wheel i at the step's start.
+double vehicle_lift_before(const Model& model, const State& s, int i) noexcept;
+
+/// Moves the vehicles under the contact forces.
+void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept;
+
+/// As tread_impact_is_unresolved of wheelsets, for the mass that the wheel has alone.
+bool vehicle_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
+                                  int wheel) noexcept;
+
+}  // namespace railstep

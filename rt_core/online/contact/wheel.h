@@ -1,0 +1,55 @@
+#pragma once
+#include "online/contact/locate.h"
+#include "online/model/state.h"
+#include "online/track/line.h"
+
+namespace railstep {
+
+/// Where one wheel meets its rail, frozen for a step; found on the configuration that the state's
+/// velocities lead to.
+struct WheelContact {
+  bool on_rail;
+  bool on_ground;  // of a vehicle: it rolls on level ground before or behind the rail
+  bool inactive;   // of a flange: too far from its rail to take part in the step
+  bool cap_reached;
+  double xi;
+  double x;             // of the contact along the undeformed rail, m
+  double normal[3];     // unit, from the rail to the axle
+  double y, z;          // of the contact in the section, m from the axis
+  RailRow row;          // displacement of that material point along the normal
+  double roll;          // of the rail's section there about x, rad
+  double penetration;   // of that configuration, m; negative is a gap
+  double body_row[6];   // d(gap)/d(coordinates) of the wheelset
+  double irregularity;  // what irregularities add to the penetration, m
+  double rise;          // of that, per metre that the wheel goes on
+};
+
+/// What irregularities add to the penetration along a normal, m, and its rise over x. To first
+/// order: the normal is that of the true shapes.
+/// @param tread   of the wheel
+/// @param x       of the contact along the track, m
+/// @param rolled  distance that the wheel has gone, m
+struct Irregularity {
+  double depth, rise;
+  double rail_rise;  // the part of the rise that is the rail's, which goes along with its steel
+};
+Irregularity irregularity(const Model& model, const SignalModel& tread, int rail,
+                          const double* normal, double x, double rolled) noexcept;
+
+/// Finds the contacts of a wheelset's left and right wheel.
+/// @param at     displacements of track and bodies at which to look
+/// @param sides  [2] left, right
+/// @param ahead  m, by how much the irregularities under them are those of a place further on
+void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
+                   WheelContact* sides, double ahead = 0.) noexcept;
+
+/// Finds the contacts of a wheelset's left and right flange, each in the rail's section through its
+/// face: X the gauge face's point there, c the wheelset's centre, n the face's normal, R its turn,
+///   gap = n.(c + R point - X),  d(gap) = n.(dc - dX) + ((X - c) x n).(turn of the wheelset),
+/// so that a force f n on the wheelset at X is the opposite of that on the rail. A flange whose tip
+/// is over X on the rail's side has run off: on_rail is false. `rise` has the rail's own slope too.
+/// Arguments as those of find_contacts().
+void find_flanges(const Model& model, const FlangeModel& flange, const Configuration& at,
+                  WheelContact* sides, double ahead = 0.) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,189 @@
+#include "online/contact/wheelset.h"
+
+#include <cmath>
+
+#include "online/contact/body_force.h"
+#include "online/contact/couple.h"
+#include "online/contact/impact.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr int kGuided[2] = {0, 5};  // x and yaw
+
+/// The augmented Lagrangian's penalty over the coordinate's inertia term kg m: each iteration
+/// leaves 1/(1 + this) of the violation.
+constexpr double kPenalty = 1e3;
+
+/// Of a guided coordinate at a stage's end; x counts from the start, or from the last bay border.
+Travelled target(const Model& model, const WheelsetModel& w, int guided, const Stage& at) noexcept {
+  if (guided != 0) return {0., 0., 0.};
+  return way_at(model, w.travel, at.step, at.before);
+}
+
+/// Forces other than contact and guide: weight, tables, inputs and the gyroscopic terms of an
+/// axisymmetric body, at the velocities v* (roll r, spin s, yaw y; cos(roll) = 1):
+///   Ix r'' = Iy s' y' - Ix y'^2 r,   Iz y'' = -Iy s' r' + 2 Ix y' r' r
+void applied_force(const WheelsetModel& w, double time, const double* input, const double* p,
+                   const double* v, double* force) noexcept {
+  for (int k = 0; k < 6; ++k) force[k] = 0.;
+  force[2] = -w.weight;
+  for (std::int32_t i = 0; i < w.forces; ++i)
+    force[w.force[i].direction] += force_at(w.force[i], time, input);
+  const double spin = travelled(w.travel, time).speed / w.radius + v[4];
+  force[3] = w.mass[4] * spin * v[5] - w.mass[3] * v[5] * v[5] * p[3];
+  force[5] = -w.mass[4] * spin * v[3] + 2. * w.mass[3] * v[5] * v[3] * p[3];
+}
+
+bool is_guided_by_force(const WheelsetModel& set, int k) noexcept {
+  return set.guide == Guide::augmented_lagrangian && (k == kGuided[0] || k == kGuided[1]);
+}
+
+/// Coordinates of a wheelset under its wheel forces and multipliers.
+void move_body(const Model& model, int b, const Coupling& c, const double* multiplier,
+               double* p) noexcept {
+  const WheelsetModel& set = model.wheelset[b];
+  const OwnContacts own = contacts_of(model, b);
+  for (int k = 0; k < 6; ++k) {
+    double force = 0.;
+    for (int n = 0; n < own.count; ++n)
+      force += c.contact[own.at[n]].body_row[k] * c.force[own.at[n]];
+    if (is_guided_by_force(set, k)) force -= multiplier[k == kGuided[1] ? 1 : 0];
+    p[k] = c.wheelset[b].free[k] + c.wheelset[b].compliance[k] * force;
+  }
+}
+
+}  // namespace
+
+void free_wheelsets(const Model& model, const Stage& stage, const State& s, const Workspace& w,
+                    Coupling& c) noexcept {
+  const double kg = model.scheme.kg, kv = model.scheme.kv;
+  const double time = time_of(model.scheme, stage);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& set = model.wheelset[b];
+    const double* p = w.u_star + set.first;
+    const double* v = w.v_star + set.first;
+    double force[6];
+    applied_force(set, time, s.input, p, v, force);
+    for (int k = 0; k < 6; ++k) {
+      c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k]);
+      c.wheelset[b].free[k] = p[k] + c.wheelset[b].compliance[k] * force[k];
+    }
+    for (const int k : kGuided) {
+      const Travelled goal = target(model, set, k, stage);
+      if (set.guide == Guide::augmented_lagrangian) {
+        // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
+        const double penalty = kPenalty * kg * set.mass[k];
+        c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k] + penalty);
+        c.wheelset[b].free[k] = c.wheelset[b].compliance[k] *
+                                (kg * set.mass[k] * p[k] + force[k] + penalty * goal.distance);
+      } else {
+        const double beta2 = set.beta * set.beta;
+        const double g = (goal.acceleration - 2. * set.alpha * (v[k] - goal.speed) -
+                          beta2 * (p[k] - goal.distance)) /
+                         (1. + 2. * set.alpha * kv / kg + beta2 / kg);
+        c.wheelset[b].compliance[k] = 0.;
+        c.wheelset[b].free[k] = p[k] + g / kg;
+      }
+    }
+  }
+}
+
+double wheelset_compliance(const Model& model, const Coupling& c, int i, int j) noexcept {
+  double sum = 0.;
+  const std::int32_t b = wheelset_of(model, i);
+  if (b != wheelset_of(model, j)) return sum;
+  for (int k = 0; k < 6; ++k)
+    sum += c.contact[i].body_row[k] * c.wheelset[b].compliance[k] * c.contact[j].body_row[k];
+  return sum;
+}
+
+double wheelset_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
+                       int i) noexcept {
+  const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
+  double sum = c.contact[i].penetration;
+  for (int k = 0; k < 6; ++k)
+    sum += c.contact[i].body_row[k] *
+           (w.scaled[first + k] - (1. - model.scheme.theta) * s.u[first + k]);
+  return sum;
+}
+
+double free_lift(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+  const std::int32_t b = wheelset_of(model, i);
+  const FreeWheelset& own = c.wheelset[b];
+  double sum = 0.;
+  for (int k = 0; k < 6; ++k) {
+    double p = own.free[k];
+    if (is_guided_by_force(model.wheelset[b], k))
+      p -= own.compliance[k] * s.multiplier[2 * b + (k == kGuided[1] ? 1 : 0)];
+    sum += c.contact[i].body_row[k] * p;
+  }
+  return sum;
+}
+
+double wheelset_lift_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+  const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
+  double sum = 0.;
+  for (int k = 0; k < 6; ++k) sum += c.contact[i].body_row[k] * s.u[first + k];
+  return sum;
+}
+
+std::int32_t guide_iterations(const Model& model) noexcept {
+  std::int32_t cap = 1;
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    if (model.wheelset[b].guide == Guide::augmented_lagrangian && model.wheelset[b].cap > cap)
+      cap = model.wheelset[b].cap;
+  return cap;
+}
+
+bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace& w,
+                    const Coupling& c, double& violation) noexcept {
+  bool settled = true;
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& set = model.wheelset[b];
+    double* p = w.solved + set.first;
+    move_body(model, b, c, s.multiplier + 2 * b, p);
+    for (int i = 0; i < 2; ++i) {
+      const int k = kGuided[i];
+      const double miss = p[k] - target(model, set, k, stage).distance;
+      if (std::fabs(miss) > violation) violation = std::fabs(miss);
+      if (set.guide != Guide::augmented_lagrangian) continue;
+      s.multiplier[2 * b + i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
+      if (!(std::fabs(miss) <= set.tolerance)) settled = false;
+    }
+  }
+  return settled;
+}
+
+bool tread_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
+                                int wheel) noexcept {
+  const WheelsetModel& set = model.wheelset[wheel / 2];
+  const double *row = c.contact[wheel].body_row, *other = c.contact[wheel ^ 1].body_row;
+  double speed = 0., alone = 0., together = 0.;
+  for (int k = 0; k < 6; ++k) {
+    speed -= row[k] * s.v[set.first + k];
+    if (k == kGuided[0] || k == kGuided[1]) continue;
+    alone += row[k] * row[k] / set.mass[k];
+    together += row[k] * (row[k] + other[k]) / set.mass[k];
+  }
+  speed += c.contact[wheel].rise * s.v[set.first];
+  const double inverse_mass = alone > together ? alone : together;
+  return impact_is_unresolved(set.hertz[wheel % 2], inverse_mass, speed, model.scheme.dt);
+}
+
+void project_guides(const Model& model, const Stage& stage, State& state) noexcept {
+  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
+    const WheelsetModel& set = model.wheelset[b];
+    if (set.guide != Guide::augmented_lagrangian) continue;
+    for (const int k : kGuided) {
+      const Travelled goal = target(model, set, k, stage);
+      state.v[set.first + k] = goal.speed;
+      state.a[set.first + k] = goal.acceleration;
+      state.g[set.first + k] = goal.acceleration;
+    }
+  }
+}
+
+}  // namespace railstep

@@ -1,0 +1,28 @@
+#pragma once
+#include "online/model/state.h"
+
+namespace railstep {
+
+/// A point's motion, ground axes.
+struct PointMotion {
+  double position[3];      // m
+  double velocity[3];      // m/s
+  double acceleration[3];  // m/s2
+};
+
+/// Of a system's sensor, as the state stands.
+PointMotion sensor_motion(const Model& model, const State& state, std::int32_t sensor) noexcept;
+
+/// Rotation of a body, [9], body axes to ground.
+void body_rotation(const State& state, std::int32_t body, double* matrix) noexcept;
+
+/// In the energy-momentum scheme forces and accelerations are those of the last step's middle.
+/// What the joint rows and springs of one joint do to part B as a state stands: the resulting force
+/// and the moment about the joint's point on B, ground axes, N and N m.
+struct JointForce {
+  double force[3];
+  double moment[3];
+};
+JointForce joint_force(const Model& model, const State& state, std::int32_t joint) noexcept;
+
+}  // namespace railstep

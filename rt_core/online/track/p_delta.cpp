@@ -1,0 +1,66 @@
+#include "online/track/p_delta.h"
+
+#include "online/math/table.h"
+
+namespace railstep {
+
+namespace {
+
+/// Turn of a node's section, rad; where the rail is cut, of the end behind.
+/// @param s      seat among those seen
+/// @param known  the other rail's have been seen
+double node_turn(const Model& model, std::int32_t rail, std::int32_t node, const Configuration& at,
+                 std::int32_t s, bool known, SeatMotions& seen) noexcept {
+  const std::int32_t element = node > 0 ? (node - 1) / 2 : 0, i = node - 2 * element;
+  double roll = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineModel& line = model.line[l];
+    if (line.rail_factor[rail] == 0.) continue;
+    const bool alike = line.unknown_of[0] == line.unknown_of[1] && line.rail_factor[1 - rail] != 0.;
+    double* const value = seen.value[l][s];
+    if (!known || !alike) {
+      value[0] = nodal_value(line, rail, element, i, 5, at);
+      value[1] = nodal_value(line, rail, element, i, 7, at);
+    }
+    roll += .5 * weight_of(line, rail, 5) * value[0];
+    roll -= .5 * weight_of(line, rail, 7) * value[1];
+  }
+  return roll;
+}
+
+}  // namespace
+
+double add_p_delta(const Model& model, const Configuration& at, double roll, double xi, double y,
+                   double z, const double* normal, RailRow& row, SeatMotions& seen) noexcept {
+  double shape[3];
+  shape_functions(xi, shape);
+  double along[3];
+  to_rail(model.cant[row.rail], normal, along);
+  const double down = roll * (z * along[2] + y * along[1]);
+  for (int i = 0; i < 3; ++i) {
+    row.coefficient[i][5] -= .5 * down * shape[i];
+    row.coefficient[i][7] += .5 * down * shape[i];
+  }
+  const PDeltaModel& seats = model.p_delta;
+  const double* lever = seats.lever[row.rail];
+  if (lever == nullptr) return 0.;
+  const std::int32_t bays = model.elements / seats.elements_per_bay;
+  const std::int32_t first = row.element / seats.elements_per_bay - (kPDeltaSeats / 2 - 1);
+  const bool known = seen.first == first;
+  seen.first = first;
+  lever += static_cast<std::ptrdiff_t>(row.element) * kPDeltaSeats * (seats.points + 1);
+  double higher = 0.;
+  for (std::int32_t s = 0; s < kPDeltaSeats; ++s) {
+    if (first + s < 0 || first + s > bays) continue;
+    const std::int32_t node = 2 * seats.elements_per_bay * (first + s);
+    const double over = node_turn(model, row.rail, node, at, s, known, seen);
+    const double arm =
+        normal[2] * over * interpolate(lever + s * (seats.points + 1), seats.points, xi);
+    row.seat[row.seats] = node;
+    row.lever[row.seats++] = arm;
+    higher += .5 * over * arm;
+  }
+  return higher;
+}
+
+}  // namespace railstep

@@ -1,0 +1,128 @@
+// A start in equilibrium under wheelsets is the state that the step keeps, contacts and all.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/flanged.h"
+
+using namespace railstep;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+/// The paper's rails, the right one on seats of another stiffness.
+Track unequal_track(double softer) {
+  Track t;
+  t.section = section_f();
+  t.bays = 4;
+  t.bay_length = 1.6;
+  t.rail_spacing = 1.;
+  t.support.stiffness = {3e6, 14e6, 6e6};
+  t.support.damping = {3e4, 3e4, 3e4};
+  t.support.roll_stiffness = 1e6;
+  t.support.roll_damping = 1e3;
+  t.right = t.bar(0);
+  for (int seat = 0; seat <= t.bays; ++seat) {
+    Seat own = t.seat(seat);
+    own.pad[1].stiffness[2] /= softer;
+    t.changed_seats[seat] = own;
+  }
+  return t;
+}
+
+struct Named {
+  std::string name;
+  PackOptions options;
+};
+
+std::vector<Named> all_schemes(const Track& track, double dt) {
+  return {{"generalised-alpha 0.6", full_order(dt)},
+          {"generalised-alpha 0", full_order(dt, 0.)},
+          {"generalised-alpha 1", full_order(dt, 1.)},
+          {"Newmark", {.scheme = newmark(dt)}},
+          {"HHT", {.scheme = hilber_hughes_taylor(dt, -.1)}},
+          {"backward Euler", {.scheme = backward_euler(dt)}},
+          {"TR-BDF2", {.scheme = tr_bdf2(dt)}},
+          {"held", condensed(track, 3., dt)},
+          {"held 1", condensed(track, 3., dt, 1.)},
+          {"held mean",
+           {.scheme = held_mean_force(dt), .reduction = condensed(track, 3., dt).reduction}}};
+}
+
+}  // namespace
+
+TEST_CASE("a wheelset on rails that sink differently starts as the step keeps it", "[start]") {
+  const double softer = GENERATE(2., 8.), dt = 1e-5;
+  const Track track = unequal_track(softer);
+  Wheelset set = paper_wheelset(3.5);
+  set.weight = 40e3;
+  set.mass = 4e3;
+  for (const Named& each : all_schemes(track, dt)) {
+    ModelRun run = in_equilibrium(track, {.wheelsets = {set}, .head = kHead}, each.options);
+    const double start[2] = {run.state.wheel_force[0], run.state.wheel_force[1]};
+    const double roll = run.body()[3];
+    CHECK(roll > 1e-3);
+    const double depth = std::pow(start[0] / run.model().wheelset[0].hertz[0], 2. / 3.);
+    for (int n = 1; n <= 20; ++n) {
+      run.step();
+      // Nothing holds it aside: it slides down its own slope, g roll t^2/2, and by roll of that off
+      // its rails, of whose depth a force goes with the power 1.5.
+      const double t = n * dt, off = 1.5 * .5 * 9.81 * std::pow(roll * t, 2) / depth;
+      for (const int wheel : {0, 1}) {
+        CAPTURE(each.name, n, wheel, off);
+        CHECK_THAT(run.outputs.wheel_force[wheel], WithinRel(start[wheel], 1e-9 + off));
+      }
+    }
+    CHECK(run.seen == Status::ok);
+  }
+}
+
+TEST_CASE("a flange that the lean would turn into its rail starts beside it", "[start]") {
+  const double softer = GENERATE(2., 8.), dt = 1e-5;
+  const Track track = unequal_track(softer);
+  Wheelset set = flanged_wheelset(1e7, 1e4);
+  set.flange->clearance = 1e-4;  // less than roll times the wheel's radius
+  set.start = 3.5;
+  set.weight = 40e3;
+  set.mass = 4e3;
+  for (const Named& each : all_schemes(track, dt)) {
+    ModelRun run = in_equilibrium(track, {.wheelsets = {set}, .head = kFlangedHead}, each.options);
+    const double* const force = run.state.wheel_force;
+    const double start[2] = {force[0], force[1]}, aside = run.body()[1], roll = run.body()[3];
+    CAPTURE(each.name, softer, aside, roll);
+    CHECK(roll > 1e-3);
+    CHECK(std::abs(aside) > .2 * (roll * .148 - 1e-4));
+    for (int n = 1; n <= 20; ++n) {
+      run.step();
+      CHECK(force[2] == 0.);
+      CHECK(force[3] == 0.);
+      for (const int wheel : {0, 1}) CHECK_THAT(force[wheel], WithinRel(start[wheel], 1e-3));
+    }
+    CHECK(run.seen == Status::ok);
+  }
+}
+
+TEST_CASE("a wheelset that leans on its flange on unequal rails stays at rest", "[start]") {
+  const double softer = GENERATE(1., 2., 8.), dt = 1e-4;
+  const Track track = unequal_track(softer);
+  Wheelset set = flanged_wheelset(1e7, 1e4);
+  set.start = 3.5;
+  set.weight = 40e3;
+  set.mass = 4e3;
+  set.forces = {{.direction = 1, .table = {0., 2e3}}};
+  for (const Named& each : all_schemes(track, dt)) {
+    ModelRun run = in_equilibrium(track, {.wheelsets = {set}, .head = kFlangedHead}, each.options);
+    const std::vector<double> start(run.state.wheel_force, run.state.wheel_force + 4);
+    CHECK(start[2] > 1e3);
+    for (int n = 1; n <= 100; ++n) {
+      run.step();
+      for (std::size_t contact = 0; contact < 4; ++contact) {
+        CAPTURE(each.name, n, contact);
+        CHECK(std::abs(run.state.wheel_force[contact] - start[contact]) < 1e-9 * 20e3);
+      }
+    }
+    CHECK(run.seen == Status::ok);
+  }
+}

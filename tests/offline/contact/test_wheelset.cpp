@@ -1,0 +1,178 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "offline/analysis/statics.h"
+#include "offline/pack/time_schemes.h"
+#include "support/model_run.h"
+#include "support/rigid_track.h"
+
+using namespace railstep;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+Wheelset paper_wheelset() {
+  Wheelset w;
+  w.mass = 100.;
+  w.inertia_roll = w.inertia_yaw = 8.3;
+  w.inertia_spin = 1.1;
+  w.weight = 981.;
+  w.radius = .148;
+  w.start = 3.2;
+  return w;
+}
+
+const Railhead kHead{.1007375, .3, .038};
+
+ModelRun wheelset_run(const Track& track, const Wheelset& wheelset, const PackOptions& options) {
+  return {track, {.wheelsets = {wheelset}, .head = kHead}, options};
+}
+
+PackOptions options(double dt) { return {.scheme = generalised_alpha(dt, .6)}; }
+
+}  // namespace
+
+TEST_CASE("the paper's wheelset settles where statics say", "[wheelset]") {
+  ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
+  run.until(1.);
+  CHECK(run.seen == Status::ok);
+  // Frictionless wheels carry half the weight each, whatever the rails do.
+  for (int i = 0; i < 2; ++i) CHECK_THAT(run.outputs.wheel_force[i], WithinRel(490.5, 1e-9));
+  // Both rails under their wheel, on the head; the axis below it. Statics knows no contact.
+  const Statics statics(paper_track());
+  std::vector<PointForce> forces;
+  for (const int rail : {0, 1}) forces.push_back({{rail, 3.2, 0., kHead.top_z, 2}, -490.5});
+  const auto u = statics.solve(forces);
+  const double axis = statics.at(u, {0, 3.2, 0., 0., 2});
+  const double head = statics.at(u, {0, 3.2, 0., kHead.top_z, 2});
+  // Two routes to one equilibrium; what is left of the fall after 1 s is below 1e-8 of it.
+  const std::ptrdiff_t place = 2 * (run.model().residual.points + 1);
+  const double missed = 490.5 * run.model().residual.axis[place];
+  CHECK_THAT(run.outputs.wheel_rail_z[0], WithinRel(axis - missed, 1e-6));
+  CHECK_THAT(run.outputs.wheel_rail_z[1], WithinRel(axis - missed, 1e-6));
+  // reference.md: Hertz approach 3.615e-6 m under 490.5 N; printed to 4 digits
+  CHECK_THAT(-run.outputs.wheel_gap[0], WithinAbs(3.615e-6, 1e-9));
+  const double residual = 490.5 * run.model().residual.under[place];
+  CHECK_THAT(run.body()[2], WithinAbs(head - residual + run.outputs.wheel_gap[0], 1e-10));
+}
+
+TEST_CASE("released from touching, the wheelset sinks as the reference says", "[wheelset]") {
+  // reference.md: lowest wheel position -7.67e-5 m at 25.5 ms: 3 digits. There the load acts on the
+  // axis; the head is lower by its squeeze (0.02e-5), the Hertz approach is in both.
+  ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
+  double lowest = 0., when = 0.;
+  while (run.time() < .1) {
+    run.step();
+    if (run.body()[2] < lowest) {
+      lowest = run.body()[2];
+      when = run.time();
+    }
+  }
+  CHECK_THAT(lowest, WithinRel(-7.67e-5, .01));
+  CHECK_THAT(when, WithinAbs(25.5e-3, .5e-3));
+}
+
+TEST_CASE("a lateral force meets nothing on cylinders without friction", "[wheelset]") {
+  // reference.md: y = 0.05 t^2 for 10 N on 100 kg
+  Wheelset w = paper_wheelset();
+  w.forces = {{1, {-1., 10., 1., 10.}}};
+  ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
+  run.until(.2);
+  CHECK_THAT(run.body()[1], WithinRel(.05 * .2 * .2, 2e-3));
+}
+
+TEST_CASE("a wheel dropped on a rigid rail bounces as energy says", "[wheelset]") {
+  // hard-cases.md R1: one wheel of 600 kg at 0.1 m/s without weight: 82.13323 kN after
+  // 2.687653/2 ms, rebound -v. A wheelset of 1200 kg carries two of them; contact of .46 m on .3 m.
+  Wheelset w;
+  w.mass = 1200.;
+  w.inertia_roll = w.inertia_yaw = 700.;
+  w.inertia_spin = 100.;
+  w.start = 3.2;
+  const auto drop = [&](double dt) {
+    PackOptions o = options(dt);
+    o.residual_flexibility = false;
+    ModelRun run = wheelset_run(rigid_track(), w, o);
+    run.state.v[run.model().wheelset[0].first + 2] = -.1;
+    double peak = 0.;
+    while (run.time() < 4e-3) {
+      run.step();
+      peak = std::max(peak, run.outputs.wheel_force[1]);
+    }
+    CHECK(has(run.seen, Status::contact_lost));
+    return std::pair{peak, run.state.v[run.model().wheelset[0].first + 2]};
+  };
+  // H4: 1 % at 50 us, 1e-3 at 10 us
+  const auto [coarse, rebound_coarse] = drop(5e-5);
+  CHECK_THAT(coarse, WithinRel(82.13323e3, 1e-2));
+  const auto [fine, rebound] = drop(1e-5);
+  CHECK_THAT(fine, WithinRel(82.13323e3, 1e-3));
+  CHECK_THAT(rebound, WithinRel(.1, 2e-3));
+}
+
+TEST_CASE("the guide holds by either method, with the same motion", "[wheelset]") {
+  const auto run_to = [](Guide guide) {
+    Wheelset w = paper_wheelset();
+    w.start = 2.;
+    w.speed = 10.;
+    w.guide = guide;
+    w.alpha = w.beta = 200.;
+    ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
+    run.state.v[run.model().wheelset[0].first] = 10.;
+    run.until(.2);
+    CHECK(run.outputs.constraint_violation < 1e-9);
+    CHECK_THAT(run.body()[0], WithinAbs(2., 1e-9));
+    return std::array{run.body()[2], run.outputs.wheel_force[0]};
+  };
+  const auto a = run_to(Guide::augmented_lagrangian), b = run_to(Guide::baumgarte);
+  CHECK_THAT(a[0], WithinRel(b[0], 1e-6));
+  CHECK_THAT(a[1], WithinRel(b[1], 1e-6));
+}
+
+TEST_CASE("a blow that the step cannot follow is said", "[wheelset]") {
+  // hard-cases.md R1: 600 kg a wheel at 0.1 m/s is in contact for 2.69 ms: 26.9 steps of 0.1 ms
+  const auto met = [](double dt, double above) {
+    Wheelset w = paper_wheelset();
+    w.mass = 1200.;
+    w.weight = 0.;
+    w.inertia_roll = w.inertia_yaw = 1e9;
+    w.radius = .46;
+    ModelRun run = wheelset_run(rigid_track(), w, options(dt));
+    run.state.u[run.model().wheelset[0].first + 2] = above;
+    run.state.v[run.model().wheelset[0].first + 2] = -.1;
+    run.until(5e-3);
+    return has(run.seen, Status::contact_unresolved);
+  };
+  CHECK_FALSE(met(1e-4, 1e-5));
+  CHECK_FALSE(met(2.5e-4, 1e-5));  // 10.8 steps
+  CHECK(met(3e-4, 1e-5));          // 9 steps
+  CHECK(met(1e-3, 1e-5));
+}
+
+TEST_CASE("a guide whose cap is too low says so", "[wheelset]") {
+  Wheelset w = paper_wheelset();
+  w.cap = 1;
+  w.speed = 10.;
+  w.start = 2.;
+  ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
+  run.state.v[run.model().wheelset[0].first] = 0.;  // at rest: the guide has work to do
+  run.step();
+  CHECK(has(run.seen, Status::cap_reached));
+  CHECK(std::isfinite(run.body()[0]));
+}
+
+TEST_CASE("a wheelset that runs off the rails falls, and is reported", "[wheelset]") {
+  Wheelset w = paper_wheelset();
+  w.start = 6.3;
+  w.speed = 10.;
+  ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
+  run.state.v[run.model().wheelset[0].first] = 10.;
+  run.until(.05);
+  CHECK(has(run.seen, Status::off_rail));
+  CHECK(run.outputs.wheel_force[0] == 0.);
+  CHECK(run.body()[2] < -1e-3);
+}

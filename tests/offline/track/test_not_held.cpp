@@ -1,0 +1,170 @@
+// What nothing holds, and what buckles, is refused whatever the start and whoever steps it, with
+// the motion, the place and the key.
+#include <catch2/catch.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "offline/analysis/buckling.h"
+#include "offline/analysis/statics.h"
+#include "offline/analysis/timoshenko_statics.h"
+#include "offline/receptance/condensed.h"
+#include "offline/track/functional.h"
+#include "run/simulation.h"
+#include "scene/scene_system.h"
+#include "support/bad_input.h"
+#include "support/condensed.h"
+#include "support/one_sided_tracks.h"
+#include "support/reference_tracks.h"
+#include "text/read.h"
+
+using namespace railstep;
+using Catch::Contains;
+
+namespace {
+
+/// What a scene is refused with; "accepted" where it is not.
+std::string refusal(const std::string& scene, const std::vector<std::string>& overrides) {
+  try {
+    simulation_of(read_any_scene(shipped(scene), overrides));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string free_mode(const std::string& scene, const std::string& motion) {
+  return scene + ".toml: the track has a free rigid mode: nothing holds " + motion;
+}
+
+const std::string kReleased = "step.start=\"released\"";
+
+}  // namespace
+
+TEST_CASE("rails that traffic would push away are refused whatever the start", "[not_held]") {
+  const std::string along_y = "the rails along y; accepted is support.stiffness_y_n_per_m above 0";
+  CHECK_THAT(refusal("wheelset_flange",
+                     {"support.stiffness_y_n_per_m=0", "support.damping_y_n_s_per_m=0"}),
+             Contains(free_mode("wheelset_flange", along_y)));
+  CHECK_THAT(refusal("wheelset_on_track", {"support.stiffness_roll_n_m_per_rad=0"}),
+             Contains(free_mode("wheelset_on_track",
+                                "the rails in roll; accepted is "
+                                "support.stiffness_roll_n_m_per_rad above 0")));
+  for (const std::string start : {"step.start=\"equilibrium\"", "step.start=\"released\""}) {
+    CAPTURE(start);
+    CHECK_THAT(refusal("exciter_on_track", {start, "support.stiffness_y_n_per_m=0"}),
+               Contains(free_mode("exciter_on_track", along_y)));
+    CHECK_THAT(refusal("exciter_on_track", {start, "support.stiffness_z_n_per_m=0"}),
+               Contains(free_mode("exciter_on_track",
+                                  "the rails along z; accepted is support.stiffness_z")));
+    CHECK_THAT(refusal("moving_load", {start, "support.stiffness_z_n_per_m=0",
+                                       "condense={kind=\"modal\", residual_flexibility=false}"}),
+               Contains(free_mode("moving_load", "the rails along z; accepted is support.st")));
+    CHECK_THAT(refusal("ballasted_track", {start, "ballast.stiffness_z_n_per_m=0"}),
+               Contains(free_mode("ballasted_track",
+                                  "the rails along z; accepted is ballast.stiffness_z")));
+  }
+}
+
+TEST_CASE("a scene that cannot be condensed is bad input of its file", "[not_held][cli]") {
+  const BadInput bad("loose");
+  const std::string scene = shipped("exciter_on_track"), out = bad.old("--out", "o.model");
+  bad.refused("condense " + scene + " --set support.stiffness_y_n_per_m=0" + out,
+              {"exciter_on_track.toml: the track has a free rigid mode", "along y"});
+}
+
+TEST_CASE("a free motion is named by its rail, its place and all the keys it wants", "[not_held]") {
+  Track t = paper_track();
+  t.support.stiffness[0] = t.support.stiffness[1] = 0.;
+  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rails along"));
+  t = s1_rail(8);
+  t.support.stiffness[2] = 0.;
+  t.sleeper->ballast_stiffness[2] = 0.;
+  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the sleepers along z; accepted is "
+                                         "support.stiffness_z_n_per_m above 0"));
+  t.support.stiffness[2] = 1e8;
+  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rail along z; accepted is "
+                                         "ballast.stiffness_z_n_per_m above 0"));
+  // A rail is cut, and pads hold one piece along x.
+  t = paper_track();
+  t.bays = 6;
+  RailJoint joint;
+  joint.x = 3. * t.bay_length;
+  t.joints = {joint};
+  const Seat held = t.seat(1);
+  t.support.stiffness[0] = 0.;
+  t.changed_seats[1] = held;
+  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rails (x = ") && Contains("along x"));
+  // One seat under a vertical beam: no stiffness of a pad keeps it from tipping but one along x.
+  t = r6_track();
+  t.support.stiffness[0] = 1e6;
+  for (int seat = 0; seat <= t.bays; ++seat)
+    if (seat != 20) t.changed_seats[seat] = {};
+  CHECK_THROWS_WITH(Statics(t), Contains("free rigid mode") && Contains("[[support_change]]"));
+}
+
+TEST_CASE("what is held by one-sided supports alone is told so where they are open", "[not_held]") {
+  Track t = r6_track();
+  t.bays = 8;
+  t.support.unilateral = true;
+  CHECK_NOTHROW(Statics(t));
+  const Traffic load{.loads = {{.start = 1., .stop = 2., .force = -1e4}}};
+  CHECK_NOTHROW(PackedModel(t, load, full_order(1e-3)));
+  CHECK_THROWS_WITH(PackedModel(t, load, condensed(t, 2, 1e-3)),
+                    Contains("one-sided supports alone hold the rail, and a condensed track has "
+                             "them open"));
+}
+
+TEST_CASE("a beam of Timoshenko's and a receptance of few modes name the motion too",
+          "[not_held]") {
+  Track t = r6_track();
+  t.support.stiffness[2] = 0.;
+  const std::string along_z = "nothing holds the rail along z; accepted is support.stiffness_z";
+  CHECK_THROWS_WITH(TimoshenkoStatics(t, {1.}), Contains(along_z));
+  const Functional middle{{{{0, 12., 0., 0., 2}, 1.}}, {}};
+  CHECK_THROWS_WITH(CondensedReceptance(t, {middle, {middle}}, {}, false), Contains(along_z));
+}
+
+TEST_CASE("a rail on the softest of springs is not free", "[not_held]") {
+  // 0.5 N/m under a rail of 1e12 N/m, as of rounding (config/hard/h10_light_rail.toml).
+  Track t = r6_track();
+  t.bays = 1;
+  t.bay_length = .05;
+  t.elements_per_bay = 1;
+  t.section.area = .2;
+  t.section.inertia_y = .1;
+  t.support.stiffness[2] = .5;
+  const Traffic load{.loads = {{.start = .02, .stop = 1., .force = -1.}}};
+  PackOptions options = full_order(1e-6);
+  options.residual_flexibility = false;
+  CHECK_NOTHROW(PackedModel(t, load, options));
+  t.support.stiffness[2] = 0.;
+  CHECK_THROWS_WITH(PackedModel(t, load, options), Contains("free rigid mode"));
+}
+
+TEST_CASE("what has no track that moves, or is held by its ends, needs no pads", "[not_held]") {
+  CHECK(refusal("moving_load", {"support.stiffness_z_n_per_m=0", "track.ends=\"clamped\""}) ==
+        "accepted");
+  CHECK(refusal("double_pendulum", {kReleased}) == "accepted");
+  // Nothing moves the rails sideways there.
+  CHECK(refusal("moving_load", {"track.unknowns=\"full\"", "support.stiffness_y_n_per_m=0"}) ==
+        "accepted");
+}
+
+TEST_CASE("a track that buckles says where", "[not_held]") {
+  Track t = r6_track();
+  t.bays = 30;
+  for (int seat = 12; seat <= 17; ++seat) t.changed_seats[seat] = {};
+  t.axial_force = -5e7;
+  try {
+    refuse_buckled(t);
+    FAIL("it does not buckle");
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what();
+    CAPTURE(said);
+    const std::size_t at = said.find(" N, most at x = ");
+    REQUIRE(at != std::string::npos);
+    // Seats 11 and 18 are the last that hold: the middle of the gap is 14.5 bays on.
+    CHECK(std::abs(std::stod(said.substr(at + 16)) - 14.5 * t.bay_length) < .5 * t.bay_length);
+  }
+}

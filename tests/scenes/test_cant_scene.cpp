@@ -1,0 +1,84 @@
+// The key rail.cant, and runs on rails that lean.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "build/build.h"
+#include "offline/analysis/statics.h"
+#include "support/program.h"
+#include "support/scene_run.h"
+#include "support/static_program.h"
+
+using namespace railstep;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string kBallasted = kScenes + "ballasted_track.toml";
+
+Scene with(const std::string& cant, const std::string& unknowns = "full") {
+  return read_scene(kBallasted, {"rail.cant=" + cant, "track.unknowns=\"" + unknowns + "\""});
+}
+
+nlohmann::json run_of(const std::string& words) {
+  const Ran ran = railstep_program("run " + kBallasted + " --json " + words);
+  INFO(words << "\n" << ran.err);
+  REQUIRE(ran.code == 0);
+  return nlohmann::json::parse(ran.out);
+}
+
+const std::string kLeaning = "--set 'rail.cant=\"1:20\"' --duration 0.05 ";
+
+}  // namespace
+
+TEST_CASE("the cant of the rails is a slope", "[cant]") {
+  CHECK(with("\"1:20\"").rail.cant == .05);
+  CHECK(with("\"1:40\"").rail.cant == .025);
+  CHECK(with("0.05").rail.cant == .05);
+  CHECK(with("0").rail.cant == 0.);
+  CHECK(read_scene(kBallasted).rail.cant == 0.);
+  const Track t = track_of(with("\"1:20\""));
+  CHECK(t.lean(0).sine > 0.);
+  CHECK(t.lean(1).sine == -t.lean(0).sine);
+  for (const char* bad : {"\"1:0\"", "\"1:2\"", "\"2:40\"", "\"1:20x\"", "\"1:-20\""})
+    CHECK_THROWS_WITH(with(bad), Contains("accepted is \"1:n\""));
+  CHECK_THROWS_WITH(with("0.3"), Contains("[rail] cant"));
+}
+
+TEST_CASE("what does not know leaning rails says so", "[cant]") {
+  CHECK_THROWS_WITH(with("\"1:20\"", "vertical"), Contains("rigid-section"));
+  CHECK_THROWS_WITH(read_scene(kBallasted, {"rail.cant=0.05", "track.gauge_m=1.435"}),
+                    Contains("rail_spacing_m"));
+  const std::string lean = " --set 'rail.cant=\"1:20\"' --set 'track.unknowns=\"full\"' ";
+  const Ran beam = railstep_program("static " + shipped("cantilever_rectangle") +
+                                    "--set rail.cant=0.05 --set 'track.model=\"timoshenko\"'");
+  CHECK(beam.code == 2);
+  CHECK_THAT(beam.err, Contains("upright"));
+  const Ran exact =
+      railstep_program("receptance " + shipped("receptance_s1") + lean +
+                       "--at mid_bay --from 100 --to-hz 200 --points 2 --beside endless");
+  CHECK(exact.code == 2);
+  CHECK_THAT(exact.err, Contains("upright"));
+  const Ran flanged = railstep_program("run " + shipped("wheelset_flange") + lean);
+  CHECK(flanged.code == 2);
+  CHECK_THAT(flanged.err, Contains("upright"));
+  const Ran machine = railstep_program("run " + shipped("exciter_on_track") + lean);
+  CHECK(machine.code == 2);
+  CHECK_THAT(machine.err, Contains("upright"));
+}
+
+TEST_CASE("a wheelset that runs on leaning rails keeps the balance of energy", "[cant]") {
+  for (const char* unknowns : {"full", "rigid-section"}) {
+    const std::string words =
+        std::string("--set 'track.unknowns=\"") + unknowns + "\"' --model full ";
+    const auto upright = run_of(words + "--duration 0.05"), leaning = run_of(words + kLeaning);
+    CAPTURE(unknowns, upright.at("energy_balance_error").get<double>());
+    CHECK(leaning.at("status").empty());
+    // What an upright rail misses, of the same order.
+    CHECK(leaning.at("energy_balance_error").get<double>() <
+          3. * upright.at("energy_balance_error").get<double>());
+  }
+  const auto coarse = run_of("--model condensed --step 1e-4 " + kLeaning);
+  const auto fine = run_of("--model condensed --step 2.5e-5 " + kLeaning);
+  CHECK(fine.at("energy_balance_error").get<double>() <
+        .3 * coarse.at("energy_balance_error").get<double>());
+}

@@ -1,0 +1,258 @@
+// Forces on vehicles' bodies, by tables and given frame by frame.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "offline/energy/energy_account.h"
+#include "run/inputs.h"
+#include "run/simulate.h"
+#include "support/program.h"
+#include "support/vehicles.h"
+
+using namespace railstep;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+const std::string kTrack = std::string(RAILSTEP_SOURCE) + "/config/scenes/moving_load.toml";
+constexpr double kPress = 2e4;  // N
+enum { kRise = 0, kTurn = 1 };  // of a bogie's frame
+
+/// A constant force along a coordinate.
+std::vector<OuterForce> constant(int coordinate, double force) {
+  return {{coordinate, {0., force}, -1}};
+}
+
+ModelRun standing_bogie(bool modal, double carried, const std::vector<OuterForce>& forces,
+                        double dt = 1e-4, const std::vector<double>& limits = {}) {
+  BogieData data = kBogie;
+  data.carried = carried;
+  RunningVehicle v = running(bogie(data), 15.13, 0.);
+  v.forces = forces;
+  const Track track = one_rail(50);
+  return from_rest(track, {.vehicles = {v}, .input_limits = limits}, options_of(modal, track, dt));
+}
+
+/// Words for a bogie on one rail with a force on its frame.
+std::vector<std::string> bogie_scene(const std::string& kind, const std::string& force,
+                                     const std::string& rail = "left") {
+  return {"load=[]",
+          "condense.kind=\"" + kind + "\"",
+          "step.dt_s=1e-4",
+          "step.frame_s=1e-3",
+          "step.duration_s=0.1",
+          "vehicle=[{name=\"v\", rail=\"" + rail +
+              "\", type=\"bogie\", frame_mass_kg=1307.5, frame_inertia_kg_m2=738, "
+              "wheel_mass_kg=906.5, wheelbase_m=1.8, primary_stiffness_n_per_m=1.22e6, "
+              "primary_damping_n_s_per_m=4e3, carried_mass_kg=8000, start_m=2, speed_m_per_s=20, "
+              "force=[{" +
+              force + "}]}]"};
+}
+
+/// Pushed by 30 kN, or kN m, from frame 20 on.
+const double* from_frame_20(std::int64_t frame) {
+  static const double none = 0., pushed = 3e4;
+  return frame < 20 ? &none : &pushed;
+}
+
+std::vector<double> rows_of_run(const std::vector<std::string>& words, bool given) {
+  Simulation run(read_scene(kTrack, words));
+  return simulate(run, 60, nullptr, true, {}, given ? FrameInputs(from_frame_20) : FrameInputs{})
+      .rows;
+}
+
+}  // namespace
+
+TEST_CASE("a constant force on a frame is as much more weight", "[vehicle][inputs]") {
+  for (const bool modal : {false, true}) {
+    ModelRun pressed = standing_bogie(modal, 8000., constant(kRise, -kPress));
+    ModelRun heavier = standing_bogie(modal, 8000. + kPress / 9.81, {});
+    CAPTURE(modal);
+    for (int n = 0; n < 200; ++n) {
+      pressed.step();
+      heavier.step();
+    }
+    CHECK(pressed.seen == Status::ok);
+    const VehicleModel& v = pressed.model().vehicle[0];
+    // Both equilibria to 1e-10 of a force, and rounding over 200 steps.
+    for (int i = 0; i < 2; ++i)
+      CHECK_THAT(pressed.outputs.wheel_force[i], WithinRel(heavier.outputs.wheel_force[i], 1e-8));
+    for (int k = 0; k < v.size; ++k)
+      CHECK_THAT(pressed.state.u[v.first + k], WithinAbs(heavier.state.u[v.first + k], 1e-10));
+  }
+}
+
+TEST_CASE("a moment on a frame leans on the wheel ahead by the wheelbase", "[vehicle][inputs]") {
+  const double moment = 6e3;
+  for (const bool modal : {false, true}) {
+    const ModelRun level = standing_bogie(modal, 8000., {});
+    const ModelRun leant = standing_bogie(modal, 8000., constant(kTurn, moment));
+    for (const int i : {0, 1})  // two wheels: what they bear is a matter of statics
+      CHECK_THAT(leant.state.wheel_force[i] - level.state.wheel_force[i],
+                 WithinRel((i == 0 ? 1. : -1.) * moment / kBogie.wheelbase, 1e-8));
+  }
+}
+
+TEST_CASE("without weight a force alone presses a vehicle down, or finds no equilibrium",
+          "[vehicle][inputs]") {
+  const Track track = one_rail(20);
+  RunningVehicle v = running(bogie(kBogie), 5.3, 0.);
+  v.gravity = 0.;
+  const PackOptions options = options_of(false, track, 1e-4);
+  CHECK_THROWS_WITH(from_rest(track, {.vehicles = {v}}, options), Contains("nothing presses"));
+  v.forces = constant(kTurn, 6e3);
+  CHECK_THROWS_WITH(from_rest(track, {.vehicles = {v}}, options), Contains("nothing presses"));
+  v.forces = constant(kRise, -kPress);
+  const ModelRun run = from_rest(track, {.vehicles = {v}}, options);
+  for (const int i : {0, 1}) CHECK_THAT(run.state.wheel_force[i], WithinRel(.5 * kPress, 1e-8));
+  // A moment is no weight, however many N m it has.
+  v.forces = {{kRise, {0., -1e4}, -1}, {kTurn, {0., 1.2e4}, -1}};
+  const ModelRun leant = from_rest(track, {.vehicles = {v}}, options);
+  for (const int i : {0, 1})
+    CHECK_THAT(leant.state.wheel_force[i],
+               WithinRel(5e3 + (i == 0 ? 1. : -1.) * 1.2e4 / kBogie.wheelbase, 1e-8));
+}
+
+TEST_CASE("under an input that stays a bogie comes to where as much weight has it",
+          "[vehicle][inputs]") {
+  for (const bool modal : {false, true}) {
+    ModelRun run = standing_bogie(modal, 8000., {{kRise, {}, 0}}, 1e-3, {1e6});
+    const ModelRun heavier = standing_bogie(modal, 8000. + kPress / 9.81, {}, 1e-3);
+    run.state.input[0] = -kPress;
+    // The frame's bounce loses its size by 3 each second: 1e-10 is left.
+    for (int n = 0; n < 8000; ++n) run.step();
+    CAPTURE(modal);
+    for (int i = 0; i < 2; ++i)
+      CHECK_THAT(run.outputs.wheel_force[i], WithinRel(heavier.state.wheel_force[i], 1e-7));
+    const VehicleModel& v = run.model().vehicle[0];
+    for (int k = 0; k < v.size; ++k)
+      CHECK_THAT(run.state.u[v.first + k], WithinAbs(heavier.state.u[v.first + k], 1e-9));
+  }
+}
+
+TEST_CASE("an input on a vehicle pushes as a table of the same force does, to the bit",
+          "[vehicle][inputs]") {
+  for (const char* kind : {"full", "modal"})
+    for (const std::string on :
+         {"body=\"frame\", direction=\"z\"", "body=\"wheel_2\", direction=\"z\"",
+          "body=\"frame\", direction=\"pitch\""}) {
+      std::string input = on + ", input=\"push\", limit_n";
+      input += on.find("pitch") == std::string::npos ? "=1e5" : "_m=1e5";
+      const auto by_input = rows_of_run(bogie_scene(kind, input), true);
+      CAPTURE(kind, on);
+      CHECK(by_input == rows_of_run(bogie_scene(kind, on + ", table=[[0.020001, 3e4]]"), false));
+      CHECK(by_input != rows_of_run(bogie_scene(kind, on + ", table=[[0, 0]]"), false));
+    }
+}
+
+TEST_CASE("one input pushes both halves of a vehicle on two rails", "[vehicle][inputs]") {
+  Simulation run(read_scene(
+      kTrack,
+      bogie_scene("full", "body=\"frame\", direction=\"z\", input=\"push\", limit_n=1e5", "both")));
+  CHECK(run.inputs() == std::vector<std::string>{"push.force_n"});
+  simulate(run, 60, nullptr, false, {}, from_frame_20);
+  const VehicleModel *left = &run.model().vehicle[0], *right = left + 1;
+  for (int k = 0; k < left->size; ++k)
+    CHECK_THAT(run.state.u[left->first + k], WithinAbs(run.state.u[right->first + k], 1e-12));
+}
+
+TEST_CASE("a block keeps the forces on its vehicles", "[vehicle][inputs]") {
+  for (const char* force : {"table=[[0.020001, 3e4]]", "input=\"push\", limit_n=1e5"}) {
+    Simulation run(read_scene(
+        kTrack, bogie_scene("modal", std::string("body=\"frame\", direction=\"z\", ") + force)));
+    Simulation loaded(run.block(), "block");
+    const bool given = !run.inputs().empty();
+    for (Simulation* each : {&run, &loaded})
+      simulate(*each, 60, nullptr, false, {}, given ? FrameInputs(from_frame_20) : FrameInputs{});
+    CHECK(state_hash(run.model(), run.state) == state_hash(loaded.model(), loaded.state));
+  }
+}
+
+TEST_CASE("forces on vehicles work along their bodies' way, and energies balance",
+          "[vehicle][inputs][energy]") {
+  for (const bool modal : {false, true})
+    for (const int coordinate : {static_cast<int>(kRise), static_cast<int>(kTurn)}) {
+      ModelRun run = standing_bogie(modal, 8000., {{coordinate, {}, 0}}, 1e-4, {1e6});
+      EnergyAccount account(*run.packed, run.model(), run.state);
+      double* const moved = run.state.u + run.model().vehicle[0].first + coordinate;
+      double work = 0.;
+      for (int n = 1; n <= 2000; ++n) {
+        const double f0 = run.state.input[0], u0 = *moved;
+        run.state.input[0] = 1e4 * std::sin(40. * n * 1e-4);
+        run.step();
+        account.follow(run.state);
+        work += .5 * (f0 + run.state.input[0]) * (*moved - u0);
+      }
+      CAPTURE(modal, coordinate);
+      CHECK(std::abs(work) > 10.);  // it swings near its own frequency
+      CHECK_THAT(account.flow().forces, WithinRel(work, 1e-12));
+      // Forces held over a step lose omega dt / 2 of their work, 40 * 1e-4 / 2; condensed lines
+      // leave the quadrature of their dampers, of the second order in dt.
+      CHECK(account.balance_error() < (modal ? 2e-3 : 1e-4));
+      CHECK(std::abs(account.imbalance() + account.flow().loss) <
+            (modal ? 1e-4 : 1e-7) * account.turned_over());
+    }
+}
+
+TEST_CASE("bad forces on vehicles get one sentence", "[vehicle][inputs][cli]") {
+  const auto told = [](const std::string& force) {
+    try {
+      static_cast<void>(read_scene(kTrack, bogie_scene("full", force)));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("it is read");
+  };
+  const std::string frame = "body=\"frame\", ", up = frame + "direction=\"z\", ";
+  CHECK_THAT(told("direction=\"z\", table=[[0, 1]]"), Contains("body"));
+  CHECK_THAT(told("body=\"car\", direction=\"z\", table=[[0, 1]]"),
+             Contains("[vehicle[0].force[0]]") &&
+                 Contains("body = \"car\" is no body of this vehicle") &&
+                 Contains("accepted are frame, wheel_1, wheel_2"));
+  CHECK_THAT(told("body=\"wheel_1\", direction=\"pitch\", table=[[0, 1]]"),
+             Contains("wheel_1 does not pitch; accepted is \"z\""));
+  CHECK_THAT(told(frame + "direction=\"x\", table=[[0, 1]]"),
+             Contains("direction") && Contains("pitch"));
+  CHECK_THAT(told(up + "tabel=[[0, 1]]"), Contains("table"));
+  CHECK_THAT(told(up + "table=[[0, 1e9]]"), Contains("out of range"));
+  CHECK_THAT(told(up + "input=\"push\""), Contains("limit_n"));
+  CHECK_THAT(told(frame + "direction=\"pitch\", input=\"push\", limit_n=1"), Contains("limit_n_m"));
+  CHECK_THAT(told(up + "input=\"push\", limit_n=1, table=[[0, 1]]"),
+             Contains("table is given beside input"));
+  CHECK_THAT(told(up + "input=\"push\", limit_n=1}, {" + up + "input=\"push\", limit_n=1"),
+             Contains("taken by another force"));
+  const Track track = one_rail(20);
+  RunningVehicle v = running(bogie(kBogie), 5.3, 0.);
+  const auto refused = [&](std::vector<OuterForce> forces) {
+    v.forces = std::move(forces);
+    return [&track, &v] {
+      static_cast<void>(PackedModel(track, {.vehicles = {v}}, options_of(false, track, 1e-4)));
+    };
+  };
+  CHECK_THROWS_WITH(refused(std::vector<OuterForce>(5, {0, {0., 1.}, -1}))(),
+                    Contains("more than 4 forces on a vehicle"));
+  CHECK_THROWS_WITH(refused({{4, {0., 1.}, -1}})(), Contains("a coordinate that its vehicle"));
+  CHECK_THROWS_WITH(refused({{0, {}, 0}})(), Contains("has a table, or an input of its own"));
+}
+
+TEST_CASE("static takes a vehicle's forces at the start for weight", "[vehicle][inputs][cli]") {
+  const auto sensor = [](double carried, double force) {
+    std::string words = "static " + kTrack;
+    for (const std::string& word : bogie_scene(
+             "full", "body=\"frame\", direction=\"z\", table=[[0, " + std::to_string(force) + "]]"))
+      words += " --set '" + word + "'";
+    words += " --set vehicle[0].carried_mass_kg=" + std::to_string(carried);
+    words += " --set 'sensor=[{name=\"at\", on=\"rail\", rail=\"left\", position_m=2}]' --json";
+    const Ran ran = railstep_program(words);
+    CAPTURE(words, ran.err);
+    REQUIRE(ran.code == 0);
+    const std::size_t at = ran.out.find("displacement_m");
+    return ran.out.substr(at, 80);
+  };
+  CHECK(sensor(8000., -9810.) != sensor(8000., 0.));
+  CHECK(sensor(8000., -9810.) == sensor(9000., 0.));
+}

@@ -1,0 +1,75 @@
+#pragma once
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+
+namespace railstep {
+
+/// A folder with files that stood there before the program ran: inputs, and outputs of an earlier
+/// run.
+class BadInput {
+ public:
+  explicit BadInput(const std::string& name) : folder_(fresh_folder("bad_" + name)) {}
+  BadInput(const BadInput&) = delete;
+  BadInput& operator=(const BadInput&) = delete;
+  ~BadInput() { std::filesystem::remove_all(folder_); }
+
+  /// Writes a file, byte for byte, and returns its whole name.
+  std::string file(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return (folder_ / name).string();
+  }
+  /// An option and an output of an earlier run in the way of what it would write.
+  std::string old(const std::string& option, const std::string& name) const {
+    return " " + option + " " + file(name, "of an earlier run\n");
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// What stands in the folder, and in which bytes.
+  std::map<std::string, std::string> content() const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      all[entry.path().filename().string()] =
+          entry.is_regular_file() ? text_of(entry.path()) : "no file";
+    return all;
+  }
+
+  /// The program ends with this code, one sentence on stderr with all these words and nothing on
+  /// stdout, and leaves every file in the folder as it was and none beside them.
+  void refused(const std::string& words, const std::vector<std::string>& said, int code = 2) const {
+    const auto before = content();
+    const Ran ran = railstep_program(words);
+    CAPTURE(words.substr(0, 500), ran.err, ran.out);
+    CHECK(ran.code == code);
+    CHECK(ran.out.empty());
+    CHECK(ran.err.substr(0, 7) == "error: ");
+    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
+    CHECK(ran.err.size() < 800);
+    for (const std::string& each : said) CHECK_THAT(ran.err, Catch::Contains(each));
+    CHECK(content() == before);
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// A text with one piece of it replaced, which must be there.
+inline std::string replaced(std::string text, const std::string& old, const std::string& fresh) {
+  const std::size_t at = text.find(old);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, old.size(), fresh);
+}
+
+inline std::string shipped(const std::string& scene) {
+  return fmt::format("{}/config/scenes/{}.toml", RAILSTEP_SOURCE, scene);
+}
+
+}  // namespace railstep

@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/program.h"
+
+namespace railstep {
+
+/// A shipped scene's file.
+inline std::string shipped(const std::string& name) {
+  return RAILSTEP_SOURCE "/config/scenes/" + name + ".toml ";
+}
+
+/// A scene of a test's own, in a folder of its own.
+struct OwnScene {
+  std::filesystem::path folder = fresh_folder("static");
+  std::filesystem::path file = folder / "scene.toml";
+  explicit OwnScene(const std::string& text) { std::ofstream(file) << text; }
+  ~OwnScene() { std::filesystem::remove_all(folder); }
+  OwnScene(const OwnScene&) = delete;
+  OwnScene& operator=(const OwnScene&) = delete;
+  std::string words() const { return file.string() + " "; }
+};
+
+/// What `railstep static` finds.
+inline nlohmann::json solved(const std::string& words) {
+  const Ran ran = railstep_program("static " + words + " --json");
+  INFO(words << "\n" << ran.err);
+  REQUIRE(ran.code == 0);
+  return nlohmann::json::parse(ran.out);
+}
+
+/// Displacement of a named point of it, m.
+inline std::array<double, 3> point(const nlohmann::json& result, const std::string& name = "tip") {
+  for (const auto& p : result["points"])
+    if (p["name"] == name) return p["displacement_m"];
+  FAIL("no point " << name);
+  return {};
+}
+
+}  // namespace railstep

@@ -1,0 +1,235 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/bad_input.h"
+
+using namespace railstep;
+using Catch::Contains;
+
+namespace {
+
+const std::string kMovingLoad = shipped("moving_load"), kWheelset = shipped("wheelset_on_track"),
+                  kProfile = std::string(RAILSTEP_SOURCE) + "/config/profiles/60e1.toml";
+
+/// The program behind other words of a shell.
+Ran behind(const std::string& before, const std::string& words) {
+  const BadInput files("behind");
+  const std::string command = before + " '" RAILSTEP_PROGRAM "' >'" + files.path("out") + "' 2>'" +
+                              files.path("err") + "' " + words;
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(files.path("out")),
+          text_of(files.path("err"))};
+}
+
+}  // namespace
+
+TEST_CASE("a step that is no number, negative or beyond doubles is refused", "[bad_input][cli]") {
+  const BadInput bad("step");
+  const std::string run = "run " + kMovingLoad + bad.old("--trace", "t.csv");
+  for (const char* step : {"abc", "1e-3x", "1,5", "' 1'", "1e400", "-1e400", "nan", "inf"})
+    bad.refused(run + " --step " + step, {"--step", "accepted is a finite number"});
+  for (const char* step : {"-1", "0", "1e-300", "0.2"})
+    bad.refused(run + " --step " + step, {"step.dt_s=", "accepted is at least 1e-07, at most 0.1"});
+  bad.refused(run + " --step", {"--step"});
+  bad.refused(run + " --step 1e-3 --step 1e-3", {"--step"});
+}
+
+TEST_CASE("every option that takes a number refuses what is none", "[bad_input][cli]") {
+  const BadInput bad("numbers");
+  const std::string hil = "hil " + kWheelset + bad.old("--report", "h.html") + " ";
+  const std::string paced = hil + "--rate 100 --duration 0.1 ";
+  const std::vector<std::string> ranged = {"run " + kMovingLoad + " --hash-every ",
+                                           hil + "--duration 1 --rate ",
+                                           hil + "--rate 100 --duration ",
+                                           paced + "--grace ",
+                                           paced + "--cpu ",
+                                           paced + "--priority ",
+                                           paced + "--stall-frame ",
+                                           "modes " + kMovingLoad + " --count "};
+  const std::vector<std::string> others = {
+      "run " + kMovingLoad + " --duration ", "fit --target area_m2=1 --head-width-m ",
+      "compare a.csv b.csv --tolerance ",
+      "condense " + kMovingLoad + bad.old("--out", "x.model") + " --set track.bays="};
+  const auto refuses = [&bad](const std::string& command, const std::string& value) {
+    const std::string option = command.substr(command.rfind("--"));
+    bad.refused(command + value, {option.substr(0, option.find_first_of(" ="))});
+  };
+  for (const std::string value : {"abc", "nan", "1e400"}) {
+    for (const std::string& command : ranged) refuses(command, value);
+    for (const std::string& command : others) refuses(command, value);
+  }
+  for (const std::string value : {"-7", "99999999999999999999"})
+    for (const std::string& command : ranged) refuses(command, value);
+}
+
+TEST_CASE("an empty word is refused", "[bad_input][cli]") {
+  const BadInput bad("empty");
+  const std::string run = "run " + kMovingLoad + " --duration 0.01";
+  bad.refused(run + " --step ''", {"after '--step' is empty"});
+  bad.refused(run + " --set ''", {"after '--set' is empty"});
+  bad.refused(run + " --trace ''", {"after '--trace' is empty"});
+  bad.refused(run + " --step=", {"--step= has nothing behind it"});
+  bad.refused("run ''", {"after 'run' is empty"});
+  bad.refused(run + " --set track.bays=", {"--set track.bays=", "not a TOML value"});
+  bad.refused(run + " --set =", {"--set =", "accepted is key.path=value"});
+}
+
+TEST_CASE("unknown words are refused with what is near", "[bad_input][cli]") {
+  const BadInput bad("words");
+  const std::string out = bad.old("--out", "section.toml");
+  bad.refused("run " + kMovingLoad + " --stepp 1e-3",
+              {"unknown option '--stepp'", "'--step'", "railstep run --help"});
+  bad.refused("runn " + kMovingLoad, {"'runn' is no command", "'run'"});
+  bad.refused("", {"subcommand is required", "railstep --help"});
+  bad.refused("run", {"SCENE is required"});
+  bad.refused("run " + kMovingLoad + " " + kMovingLoad, {"is one word too many"});
+  bad.refused("run " + kMovingLoad + " --model fulll", {"--model", "fulll", "full,condensed"});
+  bad.refused("fit " + kProfile + " --unit inch" + out, {"--unit", "inch", "mm"});
+}
+
+TEST_CASE("a file that is read, or written already, is not written over", "[bad_input][cli]") {
+  const BadInput bad("same");
+  const std::string scene = bad.file("scene.toml", text_of(kMovingLoad));
+  const std::string run = "run " + scene + " --duration 0.01 ";
+  bad.refused(run + "--trace " + scene, {"SCENE and --trace both name", "scene.toml"});
+  bad.refused(run + "--trace " + bad.path("../") +
+                  std::filesystem::path(bad.path("")).parent_path().filename().string() +
+                  "/scene.toml",
+              {"SCENE and --trace both name"});
+  bad.refused(run + "--trace " + bad.path("x") + " --record " + bad.path("x"),
+              {"both name", "--trace", "--record"});
+  bad.refused("condense " + scene + " --skip-errors --out " + scene, {"SCENE and --out both name"});
+  const std::string profile = bad.file("p.toml", text_of(kProfile));
+  bad.refused("fit " + profile + " --out " + profile, {"PROFILE and --out both name"});
+  CHECK(railstep_program(run + "--trace /dev/null --record /dev/null").code == 0);
+}
+
+TEST_CASE("a full disk ends with 1 and the file is named", "[bad_input][cli]") {
+  const BadInput bad("full");
+  const std::string run = "run " + kMovingLoad + " --duration 0.05 ";
+  for (const std::string option : {"--trace", "--record"})
+    bad.refused(run + option + " /dev/full",
+                {"/dev/full: cannot be written: No space left on device"}, 1);
+  bad.refused("condense " + kMovingLoad + " --skip-errors --out /dev/full", {"/dev/full"}, 1);
+  bad.refused("fit " + kProfile + " --out /dev/full", {"/dev/full"}, 1);
+  bad.refused("fit " + kProfile + " --report /dev/full", {"/dev/full"}, 1);
+  const Ran told = behind("", run + "--json >/dev/full");
+  CHECK(told.code == 1);
+  CHECK_THAT(told.err, Contains("standard output: No space left on device"));
+}
+
+TEST_CASE("a disk that fills while tracing leaves the old trace whole", "[bad_input][cli]") {
+  const BadInput bad("fills");
+  const std::string trace = bad.old("--trace", "t.csv"), record = bad.old("--record", "r.bin"),
+                    model = bad.old("--out", "x.model");
+  const auto before = bad.content();
+  const auto fails = [&](const std::string& words, const std::string& file) {
+    // 8 blocks of 512 bytes: some 40 of 301 rows
+    const Ran ran = behind("ulimit -f 8;", words);
+    CAPTURE(words, ran.err);
+    CHECK(ran.code == 1);
+    CHECK_THAT(ran.err, Contains(file + ": cannot be written: File too large"));
+    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
+    CHECK(bad.content() == before);
+  };
+  fails("run " + kMovingLoad + trace, "t.csv");
+  fails("run " + kMovingLoad + " --duration 0.05" + record, "r.bin");
+  fails("condense " + kMovingLoad + " --skip-errors" + model, "x.model");
+}
+
+TEST_CASE("a place that is a folder, or in none, is refused before the run", "[bad_input][cli]") {
+  const BadInput bad("places");
+  std::filesystem::create_directory(bad.path("folder"));
+  // A year of simulated time: found at its end, the fault would not be told here.
+  const std::string run = "run " + kMovingLoad + " --set step.duration_s=3e7 ";
+  const std::vector<std::string> writers = {
+      run + "--trace",
+      run + "--record",
+      run + "--report",
+      "condense " + kMovingLoad + " --out",
+      "condense " + kMovingLoad + " --out x.model --emit-c",
+      "fit " + kProfile + " --out",
+      "fit " + kProfile + " --report",
+      "static " + kMovingLoad + " --shape",
+      "hil " + kWheelset + " --rate 1 --duration 1e6 --record",
+      "pareto " + kMovingLoad + " --csv",
+      "hard --report"};
+  for (const std::string& writer : writers) {
+    const std::string option = writer.substr(writer.rfind("--"));
+    bad.refused(writer + " " + bad.path("folder"), {option, "folder: cannot be written"});
+    bad.refused(writer + " " + bad.path("none/x"),
+                {option, "none/x: cannot be written: there is no folder"});
+  }
+}
+
+TEST_CASE("an option that has no effect without another is refused", "[bad_input][cli]") {
+  const BadInput bad("needs");
+  const std::string hil = "hil " + kWheelset + " --rate 100 --duration 0.1 ";
+  bad.refused("run " + kMovingLoad + " --hash-every 3", {"--hash-every requires --record"});
+  bad.refused(hil + "--stall-us 100", {"--stall-us requires --stall-frame"});
+  bad.refused(hil + "--stall-frame 3", {"--stall-frame requires --stall-us"});
+  bad.refused(hil + "--ramp 0.2", {"--ramp requires --silence"});
+  bad.refused(hil + "--grace 0.2", {"--grace 0.2", "up to --duration, 0.1"});
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which take all addresses
+TEST_CASE("what does not fit into memory is refused in a sentence", "[bad_input][cli]") {
+  const BadInput bad("memory");
+  const auto refused = [&bad](const std::string& words, const std::string& said) {
+    const auto before = bad.content();
+    const Ran ran = behind("ulimit -v 200000;", words);
+    CAPTURE(words, ran.err);
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+    CHECK_THAT(ran.err, Contains(said) && !Contains("bad_alloc"));
+    CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
+    CHECK(bad.content() == before);
+  };
+  const std::string input =
+      " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]' ";
+  const std::string record = bad.old("--record", "r.bin");
+  refused("hil " + kWheelset + input + "--rate 1e6 --duration 900" + record,
+          "--record keeps 900000000 numbers, which take 14400000000 bytes");
+  refused("run " + kWheelset + input + "--set step.duration_s=9e5" + record, "--record keeps");
+  refused("static " + kMovingLoad + " --set track.bays=1000 --set track.elements_per_bay=50" +
+              bad.old("--shape", "s.csv"),
+          "there is not enough memory");
+}
+#endif
+
+TEST_CASE("what is quoted stays in one line", "[bad_input][cli]") {
+  const BadInput bad("lines");
+  const std::string hil = "hil " + kWheelset + " --rate 100 --duration 0.1 ";
+  bad.refused(hil + "--udp \"$(printf 'a\\nb')\"", {"--udp a?b: accepted is HOST:PORT"});
+  bad.refused(hil + "--shm \"$(printf 'a\\nb')\"", {"--shm a?b: accepted are up to 200"});
+}
+
+TEST_CASE("a processor that is not there is refused", "[bad_input][cli]") {
+  const BadInput bad("cpu");
+  const std::string hil =
+      "hil " + kWheelset + " --rate 100 --duration 0.1" + bad.old("--report", "h.html");
+  bad.refused(hil + " --cpu 9999", {"--cpu 9999", "may run on CPUs"});
+  bad.refused(hil + " --cpu -1", {"--cpu", "-1"});
+  bad.refused(hil + " --cpu 99999999999", {"--cpu", "99999999999"});
+}
+
+TEST_CASE("without the right to a priority a run warns and goes on", "[bad_input][cli]") {
+  // root has the right by a capability, which is taken from it
+  std::string before = "ulimit -r 0;";
+  if (geteuid() == 0) before += " setpriv --inh-caps=-sys_nice --bounding-set=-sys_nice";
+  const Ran ran =
+      behind(before, "hil " + kWheelset + " --rate 100 --duration 0.1 --priority 90 --json");
+  CAPTURE(ran.err);
+  CHECK(ran.code == 0);
+  CHECK_THAT(ran.err,
+             Contains("warning: sched_fifo was refused") && Contains("the run goes on without"));
+  const auto told = nlohmann::json::parse(ran.out);
+  CHECK_THAT(told["realtime"]["sched_fifo"].get<std::string>(), Contains("refused: "));
+  CHECK(told["frames"].get<int>() + told["skipped"].get<int>() == 10);
+}

@@ -1,0 +1,232 @@
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "section/profile.h"
+#include "section/section_file.h"
+#include "section/section_fit.h"
+#include "support/profiles.h"
+#include "text/read.h"
+
+using namespace railstep;
+using Catch::Contains;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// An empty folder, gone with the object.
+struct Folder {
+  fs::path path;
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "railstep_fit_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no folder for the test");
+    path = name;
+  }
+  ~Folder() { fs::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string file(const std::string& name, const std::string& content) const {
+    std::ofstream(path / name, std::ios::binary) << content;
+    return (path / name).string();
+  }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+  }
+};
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+struct Ran {
+  int code;
+  std::string out, error;
+};
+
+/// Runs `railstep fit` with these arguments.
+Ran fit(const std::string& arguments) {
+  const Folder folder;
+  const std::string out = (folder.path / "out").string(), error = (folder.path / "error").string();
+  const int status = std::system(
+      (std::string(RAILSTEP_PROGRAM) + " fit " + arguments + " >" + out + " 2>" + error).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(error)};
+}
+
+/// The outline of a profile as a list of points, in units of `metre`.
+std::string points_of(const char* name, double metre, const char* separator, const char* newline,
+                      bool backwards) {
+  std::vector<Point> points = polygon(read_profile(profile_file(name)).outline, 1e-7);
+  if (backwards) std::reverse(points.begin(), points.end());
+  std::ostringstream text;
+  text.precision(12);
+  for (const Point& p : points)
+    text << metre * p[0] + 5 << separator << metre * p[1] << newline;  // off the axis
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("fit prints one JSON object with the contract's keys", "[cli]") {
+  for (const char* name : kProfiles) {
+    INFO(name);
+    const Ran ran = fit(profile_file(name).string() + " --json");
+    REQUIRE(ran.code == 0);
+    CHECK(ran.error.empty());
+    const json all = json::parse(ran.out);
+    for (const char* part : {"outline", "section"}) {
+      CHECK(all[part].size() == 9);
+      for (const char* key :
+           {"area_m2", "height_m", "centroid_height_m", "inertia_y_m4", "inertia_z_m4",
+            "torsion_m4", "shear_factor_y", "shear_factor_z", "shear_centre_height_m"})
+        CHECK(all[part][key].get<double>() > 0.0);
+    }
+    const json& d = all["dimensions"];
+    // The printed numbers are the whole double: heights add up to the section's.
+    CHECK_THAT(d["foot_height_m"].get<double>() + d["web_height_m"].get<double>() +
+                   d["head_height_m"].get<double>(),
+               WithinAbs(all["outline"]["height_m"].get<double>(), 1e-15));
+    for (const char* key : {"foot_width_m", "web_width_m", "head_width_m"})
+      CHECK(d[key].get<double>() > 0.0);
+    for (const char* key : {"area", "inertia_y", "inertia_z", "centroid_height"})
+      CHECK(std::abs(all["relative_errors"][key].get<double>()) < 1e-9);  // the contract's bound
+    CHECK(all["symmetric_difference_m2"].get<double>() > 0.0);
+    CHECK(all["symmetric_difference_m2"] < 0.2 * all["outline"]["area_m2"].get<double>());
+    CHECK(all["solver"].contains("iterations"));
+    // Published J where there is one (2.212e6 mm4 for 60E1, by another program: 0.5 %).
+    const Published published = read_profile(profile_file(name)).published;
+    if (!std::isnan(published.torsion))
+      CHECK_THAT(all["outline"]["torsion_m4"].get<double>(), WithinRel(published.torsion, 5e-3));
+  }
+}
+
+TEST_CASE("the outline's torsion constant is that of finite differences", "[cli]") {
+  // Prandtl finite differences on a 0.5 mm grid, stated to 1 %, cm4.
+  const std::pair<const char*, double> known[] = {
+      {"60e1", 221.0}, {"54e1", 189.0}, {"136re", 273}, {"115re", 186}};
+  for (const auto& [name, torsion] : known) {
+    const json all = json::parse(fit(profile_file(name).string() + " --json").out);
+    CHECK_THAT(all["outline"]["torsion_m4"].get<double>(), WithinRel(1e-8 * torsion, 0.01));
+  }
+}
+
+TEST_CASE("a list of points fits as its profile, whatever its writing", "[cli]") {
+  const Folder folder;
+  const json want = json::parse(fit(profile_file("60e1").string() + " --json").out);
+  const std::string plain = points_of("60e1", 1e3, ",", "\n", false);
+  const std::string variants[] = {
+      folder.file("a.csv", plain) + " --unit mm",
+      folder.file("b.csv", points_of("60e1", 1.0, " ", "\n", false)) + " --unit m",
+      folder.file("c.csv", "\xEF\xBB\xBFy,z\r\n" + points_of("60e1", 1e3, "\t", "\r\n", true)) +
+          " --unit mm",
+      // Closed: the first line again at the end.
+      folder.file("d.csv", plain + plain.substr(0, plain.find('\n') + 1)) + " --unit mm"};
+  for (const std::string& arguments : variants) {
+    const Ran ran = fit(arguments + " --json");
+    INFO(arguments << ran.error);
+    REQUIRE(ran.code == 0);
+    const json got = json::parse(ran.out);
+    // Chords 1e-7 m off 0.3 m of arcs leave out up to 2e-8 m2 of 7.7e-3: 3e-6.
+    CHECK_THAT(got["outline"]["area_m2"].get<double>(),
+               WithinRel(want["outline"]["area_m2"].get<double>(), 3e-6));
+    // The fit moves by the error times its sensitivity, 0.44 m at most, four properties: 5e-6 m.
+    for (const auto& [key, value] : want["dimensions"].items())
+      CHECK_THAT(got["dimensions"][key].get<double>(), WithinAbs(value.get<double>(), 5e-6));
+    CHECK_THAT(got["outline"]["torsion_m4"].get<double>(),
+               WithinRel(want["outline"]["torsion_m4"].get<double>(), 4e-4));  // its own bounds
+  }
+}
+
+TEST_CASE("targets alone give the section of the reference table", "[cli]") {
+  const Ran ran =
+      fit("--target area_m2=8700e-6,inertia_y_m4=39e-6,inertia_z_m4=6e-6,centroid_height_m=0.085,"
+          "height_m=0.1857375 --head-width-m 0.07461 --json");
+  REQUIRE(ran.code == 0);
+  const json all = json::parse(ran.out);
+  CHECK_THAT(all["dimensions"]["foot_width_m"].get<double>(), WithinAbs(137.8995e-3, 5.01e-8));
+  CHECK_THAT(all["section"]["torsion_m4"].get<double>(), WithinRel(2.019e-6, 3e-3));
+  CHECK_THAT(all["section"]["shear_factor_z"].get<double>(), WithinAbs(.463, 1e-3));
+  CHECK(all["symmetric_difference_m2"].is_null());
+  CHECK(all["outline"]["torsion_m4"].is_null());
+  CHECK(all["outline"]["area_m2"] == 8700e-6);
+}
+
+TEST_CASE("the written section reads back bit for bit, and the page stands alone", "[cli]") {
+  const Folder folder;
+  const std::string out = (folder.path / "section.toml").string();
+  const std::string page = (folder.path / "page.html").string();
+  const Ran ran =
+      fit(profile_file("136re").string() + " --json --out " + out + " --report " + page);
+  REQUIRE(ran.code == 0);
+  const json all = json::parse(ran.out);
+  const Table root = read_toml(out);
+  for (const char* part : {"section", "outline", "dimensions", "relative_errors"}) {
+    const Table table = root.table(part);
+    for (const auto& [key, value] : all[part].items())
+      CHECK(table.number(key, any_number()) == value.get<double>());
+  }
+  const Outline outline = read_profile(profile_file("136re")).outline;
+  const Section section = read_section(out),
+                again = fitted_section(fit_section(outline), outline.height);
+  CHECK(section.area.inertia_y == all["section"]["inertia_y_m4"].get<double>());
+  CHECK(section.shear.torsion == again.shear.torsion);
+  CHECK(section.shear.shear_centre_height == again.shear.shear_centre_height);
+  CHECK(section.height == all["section"]["height_m"].get<double>());
+  const std::string html = content(page);
+  CHECK_THAT(html, Contains("<svg") && Contains("class=\"outline\"") &&
+                       Contains("class=\"rectangles\"") && Contains("136RE, 10 in crown"));
+  CHECK_THAT(html, !Contains("http") && !Contains("src="));
+  CHECK(folder.entries() == 2);  // nothing left beside them
+  const Ran table = fit(profile_file("136re").string());
+  CHECK_THAT(table.out, Contains("outline") && Contains("head height, mm"));
+}
+
+TEST_CASE("a usage error ends with 2 and names the option", "[cli][bad_input]") {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "--target"},
+      {"no_such_file.toml", "no_such_file.toml"},
+      {"no_such_file.csv --unit inch", "unit"},
+      {"--target area_m2=1", "--head-width-m"},
+      {"--target area=1 --head-width-m 0.07", "did you mean 'area_m2'"},
+      {"--target area_m2=-1 --head-width-m 0.07", "area_m2 = '-1'"},
+      {"--target area_m2=8e-3 --head-width-m 0.07", "'inertia_y_m4' is missing"},
+      {"--target area_m2=8e-3,area_m2=8e-3 --head-width-m 0.07", "given twice"},
+      {"--target area_m2=8e-3 --head-width-m nan_", "--head-width-m"}};
+  for (const auto& [arguments, words] : cases) {
+    const Ran ran = fit(arguments);
+    INFO(arguments << ": " << ran.error);
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+    CHECK_THAT(ran.error, Contains(words));
+  }
+}
+
+TEST_CASE("a plain rectangle is three rectangles of one width", "[cli]") {
+  const Folder folder;
+  const std::string file = folder.file("bar.csv", "0 0\n30 0\n30 20\n0 20\n");
+  const Ran ran = fit(file + " --unit mm --json");
+  REQUIRE(ran.code == 0);
+  CHECK(ran.error.empty());
+  const json all = json::parse(ran.out);
+  for (const char* key : {"foot_width_m", "web_width_m", "head_width_m"})
+    CHECK_THAT(all["dimensions"][key].get<double>(), WithinAbs(0.03, 1e-9));  // the fit's own 1e-9
+  CHECK_THAT(all["symmetric_difference_m2"].get<double>(), WithinAbs(0.0, 1e-10));
+}
+
+TEST_CASE("a place that cannot be written is refused and named", "[cli]") {
+  const Ran ran = fit(profile_file("60e1").string() + " --out /no/such/folder/section.toml");
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.error, Contains("/no/such/folder/section.toml"));
+}

@@ -1,0 +1,385 @@
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "build/build.h"
+#include "offline/analysis/statics.h"
+#include "online/step/step.h"
+#include "run/simulate.h"
+#include "run/trace.h"
+
+using namespace railstep;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
+const std::string kMovingLoad = kScenes + "moving_load.toml";
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// A folder of one test case's own, empty.
+std::filesystem::path fresh_folder(const std::string& name) {
+  auto folder = std::filesystem::temp_directory_path() /
+                ("railstep_run_" + std::to_string(getpid()) + "_" + name);
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+std::size_t entries(const std::filesystem::path& folder) {
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
+  return count;
+}
+
+struct Ran {
+  int code;
+  std::string out, err;
+};
+
+/// The real program with these words, through the shell.
+Ran railstep_program(const std::string& words, const std::string& environment = "") {
+  const auto folder = fresh_folder("words");
+  const std::string command = environment + " '" RAILSTEP_PROGRAM "' " + words + " >'" +
+                              (folder / "out").string() + "' 2>'" + (folder / "err").string() + "'";
+  const int status = std::system(command.c_str());
+  return {WEXITSTATUS(status), text_of(folder / "out"), text_of(folder / "err")};
+}
+
+std::vector<std::vector<double>> rows_of(const std::string& csv) {
+  std::vector<std::vector<double>> rows;
+  std::istringstream lines(csv);
+  std::string line, cell;
+  std::getline(lines, line);  // the header
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    while (std::getline(cells, cell, ','))
+      rows.back().push_back(std::strtod(cell.c_str(), nullptr));  // takes subnormals, stod does not
+  }
+  return rows;
+}
+
+/// Memory of the largest child so far, KiB.
+long memory_of_children() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return usage.ru_maxrss;
+}
+
+}  // namespace
+
+TEST_CASE("the moving-load scene's trace meets the converged row", "[run]") {
+  const auto trace = fresh_folder("trace") / "moving_load.csv";
+  const Ran ran = railstep_program("run " + kMovingLoad + " --trace " + trace.string());
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  CHECK(ran.err.empty());
+  CHECK(entries(trace.parent_path()) == 1);  // nothing stays beside it
+  const std::string csv = text_of(trace);
+  CHECK(csv.substr(0, csv.find('\n')) ==
+        "time_s,load_left.x_m,load_left.deflection_z_m,load_right.x_m,load_right.deflection_z_m");
+  const auto rows = rows_of(csv);
+  REQUIRE(rows.size() == 301);
+  CHECK(rows[0] == std::vector<double>{0., .3, rows[0][2], .3, rows[0][4]});
+  // reference.md, "Moving load", converged; 1e-3 is the project's bound, the row is good to 2e-8 m
+  const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
+  for (std::size_t i = 0; i < 5; ++i) {
+    const auto& row = rows[50 * (i + 1)];
+    CHECK(row[0] == static_cast<double>(50 * (i + 1)) * 1e-3);  // t = n dt, never a running sum
+    CHECK(row[1] == .3 + 30. * row[0]);
+    CHECK_THAT(row[2], WithinRel(converged[i], 1e-3));
+    CHECK(row[4] == row[2]);  // two equal lines in the same order of sums
+  }
+}
+
+TEST_CASE("the option --json has the contract's keys, and the same bits twice", "[run]") {
+  const Ran first = railstep_program("run " + kMovingLoad + " --json");
+  REQUIRE(first.code == 0);
+  const auto json = nlohmann::json::parse(first.out);
+  CHECK(json.at("steps") == 12000);
+  CHECK(json.at("final_time_s") == 12000 * 25e-6);
+  CHECK(json.at("status") == nlohmann::json::array());
+  CHECK(json.at("steps_per_frame") == 40);
+  const auto& us = json.at("frame_us");
+  CHECK(us.at("median") > 0.);
+  CHECK(us.at("median") <= us.at("p99"));
+  CHECK(us.at("p99") <= us.at("max"));
+  // nothing but what the scheme takes of the ringing of loads that appear suddenly
+  CHECK(json.at("energy_balance_error") > 0.);
+  CHECK(json.at("energy_balance_error") < 1e-3);
+  CHECK_THAT(json.at("numerical_loss").get<double>(),
+             WithinRel(json.at("energy_balance_error").get<double>(), 1e-6));
+  CHECK(json.at("allocations") == 0);
+  const std::string hash = json.at("state_hash");
+  CHECK(hash.size() == 16);
+  CHECK(hash.find_first_not_of("0123456789abcdef") == std::string::npos);
+  const Ran second = railstep_program("run --json " + kMovingLoad);
+  CHECK(nlohmann::json::parse(second.out).at("state_hash") == hash);
+  const Ran other =
+      railstep_program("run --json " + kMovingLoad + " --set 'load[0].force_z_n=-49e3'");
+  CHECK(nlohmann::json::parse(other.out).at("state_hash") != hash);
+}
+
+TEST_CASE("a model file has no matrices, so its energies are null", "[run]") {
+  const auto file = fresh_folder("energies") / "m.bin";
+  REQUIRE(railstep_program("condense " + kMovingLoad + " --out " + file.string()).code == 0);
+  const Ran ran = railstep_program("run " + file.string() + " --json");
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  const auto json = nlohmann::json::parse(ran.out);
+  CHECK(json.at("energy_balance_error").is_null());
+  CHECK(json.at("numerical_loss").is_null());
+  CHECK(json.at("allocations") == 0);
+  const Ran table = railstep_program("run " + file.string());
+  CHECK_THAT(table.out, Contains("energy balance") && Contains("not known"));
+}
+
+TEST_CASE("the options --set, --step and --duration change the scene as if written in it",
+          "[run]") {
+  const auto folder = fresh_folder("set");
+  const std::string trace = " --trace " + (folder / "t.csv").string();
+  const std::string short_run = "run " + kMovingLoad + " --duration 0.05" + trace;
+  REQUIRE(railstep_program(short_run).code == 0);
+  const auto plain = rows_of(text_of(folder / "t.csv"));
+  REQUIRE(plain.size() == 51);
+  REQUIRE(
+      railstep_program(short_run + " --set 'load[0].force_z_n=-100e3' --set rail.young_pa=210e9")
+          .code == 0);
+  const auto twice = rows_of(text_of(folder / "t.csv"));
+  // linear: a factor 2 is exact in every product and sum
+  CHECK(twice.back()[2] == 2. * plain.back()[2]);
+  CHECK(twice.back()[4] == plain.back()[4]);
+  REQUIRE(railstep_program(short_run + " --step 0.5e-3 --set step.frame_s=1e-3").code == 0);
+  const auto fine = rows_of(text_of(folder / "t.csv"));
+  REQUIRE(fine.size() == 51);
+  // the step's own error at 1 ms is 1e-3 of the peak at most (reference.md, integrators); not 0
+  CHECK_THAT(fine.back()[2], WithinRel(plain.back()[2], 1e-3));
+  CHECK(fine.back()[2] != plain.back()[2]);
+}
+
+TEST_CASE("a trace or report that cannot be written is one sentence", "[run]") {
+  const auto folder = fresh_folder("unwritable");
+  const Ran none =
+      railstep_program("run " + kMovingLoad + " --trace " + (folder / "no_folder/t.csv").string());
+  CHECK(none.code == 2);
+  CHECK_THAT(none.err, Contains("no_folder/t.csv: cannot be written"));
+  const Ran full = railstep_program("run " + kMovingLoad + " --trace /dev/full");
+  CHECK(full.code == 1);
+  CHECK_THAT(full.err, Contains("/dev/full: cannot be written"));
+  // a folder without gnuplot as the whole path; the program itself is named by its full path
+  const Ran drawn =
+      railstep_program("run " + kMovingLoad + " --report " + (folder / "r.html").string(),
+                       "PATH=" + folder.string());
+  CHECK(drawn.code == 1);
+  CHECK_THAT(drawn.err, Contains("gnuplot, which is not installed"));
+  CHECK(entries(folder) == 0);
+}
+
+TEST_CASE("the report is one page with its plots", "[run]") {
+  const auto page = fresh_folder("report") / "r.html";
+  const Ran ran = railstep_program("run " + kMovingLoad + " --report " + page.string());
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  const std::string html = text_of(page);
+  CHECK_THAT(html, Contains("load_left") && Contains("load_right"));
+  CHECK_THAT(html, Contains("wall time of a frame, us") && Contains("</html>"));
+  std::size_t drawings = 0;
+  for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1))
+    ++drawings;
+  CHECK(drawings == 4);                           // deflections, both rails' shapes, frame times
+  CHECK(html.find("src=") == std::string::npos);  // nothing is fetched from elsewhere
+}
+
+TEST_CASE("a load that leaves the rail is said in words and is no failure", "[run]") {
+  const Ran ran = railstep_program("run " + kMovingLoad +
+                                   " --json --duration 0.4 --set 'load[0].may_leave_rail=true'"
+                                   " --set 'load[1].may_leave_rail=true'");
+  CHECK(ran.code == 0);
+  CHECK(nlohmann::json::parse(ran.out).at("status") == nlohmann::json::array({"off_rail"}));
+  CHECK_THAT(ran.err, Contains("lengthen the track"));
+}
+
+TEST_CASE("a rail that sinks farther than tracks do raises the question of units", "[run]") {
+  const std::string short_run =
+      "run " + kMovingLoad + " --json --duration 0.01 --set 'step.start=\"equilibrium\"'";
+  const std::string sank = "a rail sank by";
+  CHECK_THAT(railstep_program(short_run).err, !Contains(sank));
+  const Ran kilonewtons = railstep_program(short_run + " --set support.stiffness_z_n_per_m=30e3");
+  CHECK(kilonewtons.code == 0);
+  CHECK_THAT(kilonewtons.err, Contains("note: " + sank) && Contains("stiffnesses given in N/m"));
+  const auto warnings = nlohmann::json::parse(kilonewtons.out).at("warnings");
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0].get<std::string>(), Contains(sank));
+}
+
+TEST_CASE("constants of no shape raise the question of units", "[run]") {
+  const std::string hammer = "run " + kScenes + "impact_hammer.toml --json --duration 1e-3";
+  const std::string asked = "is it given in m4?";
+  CHECK_THAT(railstep_program(hammer).err, !Contains(asked));
+  const Ran hundredfold = railstep_program(hammer + " --set rail.constants.inertia_y_m4=3.0383e-3");
+  CHECK(hundredfold.code == 0);
+  CHECK_THAT(hundredfold.err, Contains("note: inertia_y_m4 = 0.0030383") && Contains(asked));
+  CHECK(nlohmann::json::parse(hundredfold.out).at("warnings").size() == 1);
+}
+
+TEST_CASE("from equilibrium a load that stands still moves nothing", "[run]") {
+  const Scene scene = read_scene(
+      kMovingLoad, {"step.start=\"equilibrium\"", "load[0].speed_m_per_s=0",
+                    "load[1].speed_m_per_s=0", "load[0].start_m=4.8", "load[1].start_m=4.5",
+                    "track.unknowns=\"full\"", "support.stiffness_roll_n_m_per_rad=1e6"});
+  Simulation run(scene);
+  const RunRecord record = simulate(run, 50, nullptr, true);
+  // reference.md, "Static, 50 kN": 567.05 um over a seat, 574.34 um at mid-bay, printed to 0.01 um
+  CHECK_THAT(record.rows[2], WithinAbs(-567.05e-6, 1e-8));
+  CHECK_THAT(record.rows[4], WithinAbs(-574.34e-6, 1e-8));
+  for (std::size_t r = 1; r <= 50; ++r)
+    for (const std::size_t c : {2u, 4u})  // the condition of K, 1e8, times round-off
+      CHECK_THAT(record.rows[5 * r + c], WithinRel(record.rows[c], 1e-7));
+}
+
+TEST_CASE("a table's force is zero before its first row", "[run]") {
+  const Scene scene = read_scene(kMovingLoad, {"load[0].table=[[0.01, 1.0], [0.02, 0.5]]"});
+  Simulation run(scene);
+  const RunRecord record = simulate(run, 30, nullptr, true);
+  CHECK(record.rows[5 * 9 + 2] == 0.);  // at 9 ms
+  CHECK(record.rows[5 * 10 + 2] < 0.);  // the row itself counts
+  CHECK(record.rows[5 * 9 + 4] < 0.);   // the other load has no table
+}
+
+TEST_CASE("a state that stops being finite ends the run, names its place and keeps the trace",
+          "[run]") {
+  const auto file = fresh_folder("nonfinite") / "t.csv";
+  const Scene scene = read_scene(kMovingLoad);
+  Simulation run(scene);
+  Trace trace(file, run.columns());
+  const RowSink to_trace = [&](std::span<const double> row) { trace.row(row); };
+  const RunRecord record = simulate(run, 100, to_trace, false, [&](std::int64_t done) {
+    if (done == 10)
+      run.state.u[run.model().line[1].first + 7] = std::numeric_limits<double>::infinity();
+  });
+  trace.finish();
+  CHECK(run.state.steps == 11 * 40);  // to the end of the frame
+  CHECK(status_names(record.status) == std::vector<std::string>{"nonfinite_state"});
+  REQUIRE(record.first_bad_unknown >= run.model().line[1].first);
+  CHECK_THAT(unknown_place(run, record.first_bad_unknown), Contains("of rail node"));
+  CHECK(rows_of(text_of(file)).size() == 12);
+}
+
+TEST_CASE("sections of every kind agree where they are the same", "[run]") {
+  // Section F as three rectangles: reference.md prints its constants to 4 or 5 digits
+  const Section f = section_of(read_scene(kScenes + "wheelset_on_track.toml"));
+  CHECK_THAT(f.area.area, WithinRel(8700e-6, 1e-8));  // dimensions printed to 10 digits
+  CHECK_THAT(f.area.inertia_y, WithinRel(39.0e-6, 1e-8));
+  CHECK_THAT(f.area.inertia_z, WithinRel(6.0e-6, 1e-8));
+  // The reference's ungraded 2.5 mm elements err by some 4e-4 at the re-entrant corners.
+  CHECK_THAT(f.shear.torsion, WithinRel(1.9514e-6, 1e-3));
+  CHECK_THAT(f.shear.shear_centre_height, WithinAbs(45.9e-3, 1e-4));
+  CHECK(f.shear.shear_factor_z == .472);  // the scene's own
+  CHECK_THAT(f.shear.shear_factor_y, WithinRel(.4796, 1e-3));
+  // a rectangle, and three equal ones stacked, without their own shear factors
+  const Section one = section_of(read_scene(kScenes + "moving_load.toml",
+                                            {"rail.rectangle={height_m=0.2319, width_m=0.0375}"}));
+  // Cowper (1966): 10 (1 + nu) / (12 + 11 nu) for a rectangle, when it is deep and narrow
+  CHECK_THAT(one.shear.shear_factor_z, WithinRel(13. / 15.3, 1e-3));
+}
+
+TEST_CASE("a scene takes its rail from a profile and from what fit wrote of it alike", "[run]") {
+  const auto folder = fresh_folder("profile");
+  const std::string profile = std::string(RAILSTEP_SOURCE) + "/config/profiles/60e1.toml";
+  REQUIRE(railstep_program("fit " + profile + " --out " + (folder / "s.toml").string()).code == 0);
+  const std::string plain = text_of(kMovingLoad), name = "[rail.rectangle]";
+  const std::size_t start = plain.find(name), end = plain.find("[support]");
+  REQUIRE(start < end);
+  std::vector<std::string> hashes;
+  for (const std::string& way :
+       {"profile = '" + profile + "'", std::string("section = 's.toml'")}) {
+    std::ofstream(folder / "scene.toml") << plain.substr(0, start) << "[rail]\n"
+                                         << way << "\n"
+                                         << plain.substr(end);
+    const Scene scene = read_scene(folder / "scene.toml");
+    // EN 13674-1: 76.70 cm2, 3038.3 cm4; the fit meets the outline's own, which differs by rounding
+    CHECK_THAT(section_of(scene).area.area, WithinRel(76.70e-4, 2e-3));
+    CHECK_THAT(section_of(scene).area.inertia_y, WithinRel(3038.3e-8, 2e-3));
+    const Ran ran = railstep_program("run --json " + (folder / "scene.toml").string());
+    CAPTURE(ran.err);
+    REQUIRE(ran.code == 0);
+    hashes.push_back(nlohmann::json::parse(ran.out).at("state_hash"));
+  }
+  CHECK(hashes[0] == hashes[1]);  // 17 digits keep every bit
+}
+
+TEST_CASE("every shipped scene runs, and twice to the same bits", "[run]") {
+  for (const char* name : {"moving_load", "wheelset_on_track", "ballasted_track"}) {
+    const std::string words = "run " + kScenes + name + ".toml --duration 0.05 --json";
+    const Ran first = railstep_program(words), second = railstep_program(words);
+    CAPTURE(name, first.err);
+    REQUIRE(first.code == 0);
+    const auto result = nlohmann::json::parse(first.out);
+    CHECK(result["state_hash"] == nlohmann::json::parse(second.out)["state_hash"]);
+    CHECK(result["status"] == nlohmann::json::array());
+  }
+}
+
+TEST_CASE("the wheelset of the paper stands still, then drifts sideways", "[run]") {
+  const auto folder = fresh_folder("wheelset");
+  const auto file = folder / "t.csv";
+  REQUIRE(
+      railstep_program("run " + kScenes + "wheelset_on_track.toml --trace " + file.string()).code ==
+      0);
+  const auto rows = rows_of(text_of(file));
+  const Scene scene = read_scene(kScenes + "wheelset_on_track.toml");
+  const Simulation run(scene);
+  const auto& names = run.columns();
+  const auto at = [&](std::size_t row, const std::string& column) {
+    const auto place = std::find(names.begin(), names.end(), column);
+    REQUIRE(place != names.end());
+    return rows[row][static_cast<std::size_t>(place - names.begin())];
+  };
+  // 8 elements per bay; reference.md rounds them (8.72 131.46 210.14); settled to 1e-6 of the fall
+  const double reactions[5] = {8.7223, 131.4586, 210.1382, 131.4586, 8.7223};
+  for (std::size_t i = 0; i < 5; ++i)
+    CHECK_THAT(at(1000, "support_" + std::to_string(i) + ".force_z_n"),
+               WithinAbs(reactions[i], 5e-4));
+  CHECK_THAT(at(1000, "wheel_left.force_z_n"), WithinRel(490.5, 1e-6));
+  CHECK_THAT(at(999, "wheelset.dy_m"), WithinAbs(0., 1e-12));   // the push begins in the row of 1 s
+  CHECK_THAT(at(2000, "wheelset.dy_m"), WithinRel(.05, 2e-3));  // y = 0.05 t^2
+}
+
+TEST_CASE("a run's memory does not grow with its frames", "[run][cli]") {
+  const std::filesystem::path folder = fresh_folder("long");
+  const std::string model = (folder / "ring.model").string();
+  // of a model file no energies are told, so that frames are all there is
+  REQUIRE(railstep_program("condense " + std::string(RAILSTEP_SOURCE) +
+                           "/config/hard/h34_ten_million_steps.toml --set step.frame_s=1e-3 "
+                           "--skip-errors --out " +
+                           model)
+              .code == 0);
+  const auto run = [&](int seconds) {
+    const Ran ran = railstep_program("run " + model + " --duration " + std::to_string(seconds));
+    REQUIRE(ran.code == 0);
+    return memory_of_children();
+  };
+  const long once = run(1500), twice = run(3000);  // 1.5 and 3 million frames, 12 MB of times more
+  CHECK(twice <= once + 512);
+}

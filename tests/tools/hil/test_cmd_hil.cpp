@@ -1,0 +1,254 @@
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/program.h"
+#include "support/started.h"
+
+using namespace railstep;
+using Catch::Contains;
+
+namespace {
+
+const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
+const std::string kWheelset = kFolder + "wheelset_on_track.toml";
+/// The wheelset with an input that pushes it sideways.
+const std::string kPushed =
+    kWheelset +
+    " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]' --json";
+
+nlohmann::json told(const Ran& ran) {
+  CAPTURE(ran.out, ran.err);
+  return nlohmann::json::parse(ran.out);
+}
+
+/// A program in a folder of its own, so that two can run side by side.
+Ran ran_in(const std::filesystem::path& folder, const std::string& program,
+           const std::string& words) {
+  std::filesystem::create_directories(folder);
+  const int status = std::system(("'" + program + "' " + words + " >'" + (folder / "out").string() +
+                                  "' 2>'" + (folder / "err").string() + "'")
+                                     .c_str());
+  return {WEXITSTATUS(status), text_of(folder / "out"), text_of(folder / "err")};
+}
+
+/// A port on the loopback that was free a moment ago, and the socket that holds it until it goes.
+struct FreePort {
+  FreePort() : file(socket(AF_INET, SOCK_DGRAM, 0)) {
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof at;
+    REQUIRE(bind(file, reinterpret_cast<sockaddr*>(&at), size) == 0);
+    getsockname(file, reinterpret_cast<sockaddr*>(&at), &size);
+  }
+  FreePort(const FreePort&) = delete;
+  FreePort& operator=(const FreePort&) = delete;
+  ~FreePort() { close(file); }
+  std::string address() const { return "127.0.0.1:" + std::to_string(ntohs(at.sin_port)); }
+  int file;
+  sockaddr_in at{};
+};
+
+std::string free_address() { return FreePort().address(); }
+
+/// What the client printed of one output.
+double printed(const std::string& text, const std::string& name) {
+  const std::size_t at = text.find("  " + name + " ");
+  REQUIRE(at != std::string::npos);
+  return std::stod(text.substr(at + 2 + name.size()));
+}
+
+}  // namespace
+
+TEST_CASE("a paced run tells its times, settings and state", "[hil][cli]") {
+  const Ran ran = railstep_program("hil " + kWheelset + " --rate 500 --duration 0.4 --json");
+  REQUIRE(ran.code == 0);
+  const auto result = told(ran);
+  for (const char* key : {"frame_us", "wakeup_us"})
+    for (const char* part : {"median", "p99", "p99_9", "p99_99", "max"})
+      CHECK(result[key][part].is_number());
+  CHECK(result["rate_hz"] == 500.);
+  CHECK(result["empty_loop_us"].is_number());
+  CHECK(result["overruns"].is_number_integer());
+  CHECK(result["status"].is_array());
+  CHECK(result["policy"] == "skip");
+  CHECK(result["frames"].get<int>() + result["skipped"].get<int>() == 200);
+  CHECK(result["real_time_factor"] == Approx(500. * result["frame_length_s"].get<double>()));
+  CHECK(result["allocations"] == 0);
+  for (const char* setting : {"memory_locked", "stack_touched", "timer_slack_1ns", "sched_fifo"})
+    CHECK_THAT(result["realtime"][setting].get<std::string>(),
+               Contains("done") || Contains("refused: "));  // either, as the system lets it
+  CHECK_FALSE(result["realtime"].contains("cpu_pinned"));
+}
+
+TEST_CASE("bodies and joints are paced too, without the heap", "[hil][cli]") {
+  const auto result = told(
+      railstep_program("hil " + kFolder + "slider_crank.toml --rate 500 --duration 0.2 --json"));
+  CHECK(result["allocations"] == 0);
+  CHECK(result["frames"].get<int>() >= 1);
+}
+
+TEST_CASE("paced frames are the frames of a run, to the bit", "[hil][cli]") {
+  const auto folder = fresh_folder("hil_model");
+  const std::string model = (folder / "track.model").string();
+  REQUIRE(railstep_program("condense " + kWheelset + " --out " + model).code == 0);
+  const auto paced = told(railstep_program(
+      "hil " + model + " --rate 1000 --duration 0.1 --grace 0 --policy catch-up --json"));
+  const auto frame = paced["frame_length_s"].get<double>();
+  const auto run =
+      told(railstep_program("run " + model + " --json --duration " + std::to_string(100. * frame)));
+  CHECK(paced["frames"] == 100);
+  CHECK(paced["state_hash"] == run["state_hash"]);
+}
+
+TEST_CASE("a frame that stalls meets each policy", "[hil][cli]") {
+  const auto stalled = [](const std::string& policy, int code) {
+    const Ran ran = railstep_program("hil " + kWheelset +
+                                     " --rate 100 --duration 0.4 --grace 0 --stall-frame 10 "
+                                     "--stall-us 50000 --json --policy " +
+                                     policy);
+    CAPTURE(ran.err);
+    CHECK(ran.code == code);
+    return told(ran);
+  };
+  const auto stop = stalled("stop", 1);
+  CHECK(stop["overruns"] == 1);
+  CHECK(stop["frames"].get<int>() <= 11);  // a busy machine may stop it before
+  const auto skip = stalled("skip", 0);
+  CHECK(skip["overruns"].get<int>() >= 1);
+  CHECK(skip["skipped"].get<int>() >= 4);
+  CHECK(skip["frames"].get<int>() + skip["skipped"].get<int>() == 40);
+  const auto catch_up = stalled("catch-up", 0);
+  CHECK(catch_up["overruns"].get<int>() >= 5);
+  CHECK(catch_up["frames"] == 40);
+  CHECK(catch_up["skipped"] == 0);
+  const auto free_run = stalled("free-run", 0);
+  CHECK(free_run["overruns"].get<int>() >= 1);
+  CHECK(free_run["frames"] == 40);
+  CHECK(free_run["wakeup_us"]["max"].is_null());
+  CHECK_FALSE(free_run["realtime"].contains("sched_fifo"));
+}
+
+TEST_CASE("an overrun in the grace is counted apart", "[hil][cli]") {
+  const auto result = told(railstep_program("hil " + kWheelset +
+                                            " --rate 100 --duration 0.3 --grace 0.3 --policy stop "
+                                            "--stall-frame 2 --stall-us 30000 --json"));
+  CHECK(result["overruns"] == 0);
+  CHECK(result["grace_overruns"].get<int>() >= 1);
+  CHECK(result["frame_us"]["max"].is_null());  // nothing is left to be told
+}
+
+TEST_CASE("the program and the client over UDP", "[hil][cli]") {
+  const auto folder = fresh_folder("hil_udp");
+  const std::string address = free_address(), names = (folder / "names").string();
+  Started hil("hil " + kPushed +
+              " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --names " + names +
+              " --udp " + address);
+  hil.await(std::filesystem::path(names));
+  const Ran client =
+      ran_in(folder / "client", RAILSTEP_HIL_CLIENT,
+             "--seconds 60 --input push.force_n=30 --udp " + address + " --names " + names);
+  const Ran ran = hil.end();
+  CAPTURE(ran.err, client.out, client.err);
+  REQUIRE(ran.code == 0);
+  CHECK(client.code == 0);
+  const auto result = told(ran);
+  CHECK(result["packets"]["good"].get<int>() >= 1);
+  CHECK(result["packets"]["foreign"] == 0);
+  CHECK(result["packets"]["sent"].get<int>() >= 1);
+  CHECK(result["allocations"] == 0);
+  CHECK_THAT(client.out, Contains("frame 99, ") && Contains("flags 1"));
+  CHECK(printed(client.out, "wheelset.y_m") > 0.);  // it was pushed
+  CHECK(printed(client.out, "time_s") == Approx(result["final_time_s"].get<double>()));
+}
+
+TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
+  const auto folder = fresh_folder("hil_shm");
+  const std::string name = "railstep_cli_" + std::to_string(getpid());
+  const std::string recording = (folder / "recording").string();
+  Started hil("hil " + kPushed +
+              " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --record " +
+              recording + " --shm " + name);
+  const Ran client =
+      ran_in(folder / "client", RAILSTEP_HIL_CLIENT, "--seconds 60 --input 0=30 --shm " + name);
+  const Ran ran = hil.end();
+  CAPTURE(ran.err, client.out, client.err);
+  REQUIRE(ran.code == 0);
+  CHECK(client.code == 0);
+  CHECK(told(ran)["shared_memory"]["fresh"].get<int>() >= 1);
+  CHECK(told(ran)["allocations"] == 0);
+  CHECK_THAT(client.out, Contains("frame 99, ") && Contains("flags 1"));
+  CHECK(printed(client.out, "wheelset.y_m") > 0.);
+  const Ran again = railstep_program("replay " + recording + " --json");
+  CHECK(again.code == 0);  // whenever the inputs came, they come again then
+  CHECK(told(again)["frames"] == 100);
+}
+
+TEST_CASE("a silence ends in a safe stop, and in exit code 1", "[hil][cli]") {
+  const auto folder = fresh_folder("hil_silence");
+  const std::string name = "railstep_silence_" + std::to_string(getpid());
+  Started hil("hil " + kPushed +
+              " --rate 200 --duration 0.5 --grace 0 --policy catch-up --wait 60 --silence 0.1 "
+              "--ramp 0.05 --shm " +
+              name);
+  const Ran client = ran_in(folder / "client", RAILSTEP_HIL_CLIENT,
+                            "--seconds 60 --frames 3 --input 0=30 --shm " + name);
+  const Ran ran = hil.end();
+  CAPTURE(ran.err, client.err);
+  CHECK(ran.code == 1);
+  CHECK_THAT(ran.err, Contains("a safe stop from frame"));
+  CHECK(told(ran)["safe_stop_frame"].get<int>() >= 20);
+}
+
+TEST_CASE("without inputs in time nothing is run", "[hil][cli]") {
+  const Ran ran = railstep_program("hil " + kPushed +
+                                   " --rate 100 --duration 1 --wait 0.05 --udp " + free_address());
+  CHECK(ran.code == 1);
+  CHECK_THAT(ran.err, Contains("no inputs came within"));
+}
+
+TEST_CASE("hil --report writes histograms", "[hil][cli]") {
+  const auto folder = fresh_folder("hil_report");
+  const std::string file = (folder / "hil.html").string();
+  const Ran ran =
+      railstep_program("hil " + kWheelset + " --rate 500 --duration 0.3 --report " + file);
+  REQUIRE(ran.code == 0);
+  CHECK_THAT(ran.out, Contains("task execution time") && Contains("overrun count") &&
+                          Contains("wake-up latency"));
+  const std::string page = text_of(file);
+  CHECK_THAT(page,
+             Contains("<svg") && Contains("bins of 1 us") && Contains("realtime, sched_fifo"));
+  CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("bad words to hil get one sentence and exit code 2", "[hil][cli]") {
+  const auto refused = [](const std::string& words, const std::string& scene = kWheelset) {
+    const Ran ran = railstep_program("hil " + scene + " " + words);
+    CAPTURE(words, ran.out, ran.err);
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+    return ran.err;
+  };
+  const std::string good = "--rate 100 --duration 0.1 ";
+  CHECK_THAT(refused(good + "--cpu 9999"), Contains("--cpu 9999"));
+  CHECK_THAT(refused(good + "--cpu -1"), Contains("--cpu"));
+  CHECK_THAT(refused("--duration 0.1"), Contains("--rate is required"));
+  CHECK_THAT(refused("--rate 100"), Contains("--duration is required"));
+  CHECK_THAT(refused("--rate 0 --duration 1"), Contains("--rate"));
+  CHECK_THAT(refused("--rate nan --duration 1"), Contains("--rate: 'nan' is no finite number"));
+  CHECK_THAT(refused("--rate 100 --duration 0.001"), Contains("--duration 0.001"));
+  CHECK_THAT(refused(good + "--policy later"), Contains("--policy"));
+  CHECK_THAT(refused(good + "--priority 100"), Contains("--priority"));
+  CHECK_THAT(refused(good + "--udp nowhere"), Contains("accepted is HOST:PORT"));
+  CHECK_THAT(refused(good + "--shm a/b"), Contains("--shm a/b"));
+  CHECK_THAT(refused(good + "--silence 1"), Contains("want --udp or --shm"));
+  CHECK_THAT(refused(good, kFolder + "no_such_scene.toml"), Contains("no_such_scene.toml"));
+  const FreePort busy;
+  CHECK_THAT(refused(good + "--udp " + busy.address()), Contains("cannot listen there"));
+}

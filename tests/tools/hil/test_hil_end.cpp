@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/started.h"
+
+using namespace railstep;
+using Catch::Contains;
+
+namespace {
+
+const std::string kWheelset =
+    std::string(RAILSTEP_SOURCE) + "/config/scenes/wheelset_on_track.toml";
+const std::string kPushed =
+    kWheelset +
+    " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]' --json";
+
+std::string shared_name(const std::string& of) {
+  return "railstep_" + of + "_" + std::to_string(getpid());
+}
+
+std::filesystem::path shared_file(const std::string& name) { return "/dev/shm/" + name; }
+
+std::uint64_t word_of(const std::string& bytes, std::size_t word) {
+  std::uint64_t value = 0;
+  if (bytes.size() >= 8 * (word + 1)) std::memcpy(&value, bytes.data() + 8 * word, sizeof value);
+  return value;
+}
+
+/// How often outputs were written into shared memory.
+std::uint64_t outputs_of(const std::string& name) {
+  const std::string bytes = text_of(shared_file(name));
+  if (word_of(bytes, 1) != 1) return 0;
+  return word_of(bytes, word_of(bytes, 5) / 8 + 1);
+}
+
+}  // namespace
+
+TEST_CASE("a signal ends a run between two frames, and it is told", "[hil][cli]") {
+  const auto folder = fresh_folder("hil_signal");
+  Started hil("hil " + kWheelset + " --rate 100 --duration 6000 --json --names " +
+              (folder / "names").string());
+  hil.await(folder / "names");
+  hil.signal(SIGINT);
+  const Ran ran = hil.end();
+  CAPTURE(ran.out, ran.err);
+  CHECK(ran.code == 1);
+  CHECK_THAT(ran.err, Contains("ended by a signal"));
+  CHECK(nlohmann::json::parse(ran.out)["interrupted"] == true);
+}
+
+TEST_CASE("a signal is heard within a period, however long it is", "[hil][cli]") {
+  // Of 1000 s, so that no patience of the test takes the end of one for it.
+  const std::string name = shared_name("slow");
+  Started hil("hil " + kPushed + " --rate 0.001 --duration 1e5 --shm " + name);
+  hil.await(shared_file(name));
+  hil.signal(SIGTERM);
+  const Ran ran = hil.end();
+  CHECK(ran.code == 1);
+  CHECK_THAT(ran.err, Contains("ended by a signal"));
+  CHECK_FALSE(std::filesystem::exists(shared_file(name)));
+}
+
+TEST_CASE("a signal ends the wait for the first inputs, and it is told", "[hil][cli]") {
+  const std::string name = shared_name("waits");
+  Started hil("hil " + kPushed + " --rate 100 --duration 1 --wait 1e4 --shm " + name);
+  hil.await(shared_file(name));
+  hil.signal(SIGINT);
+  const Ran ran = hil.end();
+  CHECK(ran.code == 1);
+  CHECK_THAT(ran.err, Contains("ended by a signal"));
+}
+
+TEST_CASE("a second signal in a frame that does not end leaves no shared memory", "[hil][cli]") {
+  const std::string name = shared_name("stalls");
+  Started hil(
+      "hil " + kPushed +
+      " --rate 1000 --duration 1e5 --policy free-run --stall-frame 1 --stall-us 1e8 --shm " + name);
+  hil.await([&] { return outputs_of(name) > 0; });  // frame 0 is over, and 1 takes 100 s
+  hil.signal(SIGINT);
+  usleep(100'000);  // two at once may be taken for one
+  hil.signal(SIGINT);
+  const Ran ran = hil.end();
+  CHECK((ran.code == -SIGINT || ran.code == 1));
+  CHECK_FALSE(std::filesystem::exists(shared_file(name)));
+}
+
+TEST_CASE("shared memory that another process cuts short ends the run with a sentence",
+          "[hil][cli]") {
+  for (const std::uintmax_t left : {0u, 16u}) {
+    const std::string name = shared_name("cut");
+    const auto folder = fresh_folder("hil_cut");
+    Started hil(fmt::format("hil {} --rate 100 --duration 6000 --record {} --shm {}", kPushed,
+                            (folder / "recording").string(), name));
+    hil.await([&] { return outputs_of(name) > 3; });
+    std::filesystem::resize_file(shared_file(name), left);
+    if (left > 0) {  // within a page nothing is met: it is written over
+      const std::string none(left, '\0');
+      std::ofstream(shared_file(name), std::ios::binary) << none;
+    }
+    const Ran ran = hil.end();
+    CAPTURE(ran.out, ran.err, left);
+    CHECK(ran.code == 1);
+    CHECK_THAT(ran.err, Contains("cut the shared memory short"));
+    CHECK(nlohmann::json::parse(ran.out)["frames"].get<int>() >= 3);
+    CHECK_FALSE(std::filesystem::exists(shared_file(name)));
+    CHECK(railstep_program("replay " + (folder / "recording").string()).code == 0);
+  }
+}
+
+TEST_CASE("shared memory that is cut short before the first inputs ends the wait", "[hil][cli]") {
+  const std::string name = shared_name("cut_wait");
+  Started hil("hil " + kPushed + " --rate 100 --duration 1 --wait 1e4 --shm " + name);
+  hil.await([&] { return word_of(text_of(shared_file(name)), 1) == 1; });
+  std::filesystem::resize_file(shared_file(name), 0);
+  const Ran ran = hil.end();
+  CHECK(ran.code == 1);
+  CHECK_THAT(ran.err, Contains("cut the shared memory short"));
+  CHECK_FALSE(std::filesystem::exists(shared_file(name)));
+}

@@ -1,0 +1,88 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "run/simulation.h"
+#include "support/program.h"
+#include "support/traced.h"
+
+using namespace railstep;
+
+namespace {
+
+const std::string kTrack = std::string(RAILSTEP_SOURCE) + "/config/scenes/open_track.toml";
+/// The vehicle of tools/examples/own_vehicle.c, in the model.
+const std::string kInside =
+    " --set 'external_wheel=[]' --set 'vehicle=[{name=\"v\", type=\"sprung_mass\", mass_kg=5000, "
+    "unsprung_mass_kg=900, stiffness_n_per_m=1e6, damping_n_s_per_m=2e4, start_m=0.3, "
+    "speed_m_per_s=30}]'";
+
+/// Words for `run`: steps of that length, each a frame.
+std::string stepped(const std::string& dt) { return " --step " + dt + " --set step.frame_s=" + dt; }
+
+/// The constant of that vehicle's Hertz contact, N/m^1.5.
+double hertz_of_inside() {
+  const auto run = simulation_of(read_any_scene(
+      kTrack, {"external_wheel=[]",
+               "vehicle=[{name=\"v\", type=\"sprung_mass\", mass_kg=5000, unsprung_mass_kg=900, "
+               "stiffness_n_per_m=1e6, damping_n_s_per_m=2e4, start_m=0.3, speed_m_per_s=30}]"}));
+  return run->model().vehicle_wheel[0].contact.hertz;
+}
+
+/// What the program in C says of its ride over the track.
+Rows ride(const std::string& dt, const std::string& seconds, const char* way = "") {
+  const auto folder = fresh_folder("own_vehicle");
+  const std::string model = (folder / "track.model").string();
+  const Ran made = railstep_program("condense " + kTrack + " --set step.dt_s=" + dt +
+                                    " --set step.frame_s=" + dt +
+                                    " --set step.duration_s=" + seconds + " --out " + model);
+  CAPTURE(made.err);
+  REQUIRE(made.code == 0);
+  char hertz[40];
+  std::snprintf(hertz, sizeof hertz, "%.17g", hertz_of_inside());
+  const std::string file = (folder / "ride.csv").string();
+  const std::string command = std::string(OWN_VEHICLE) + " " + model + " " + seconds + " " + hertz +
+                              " " + way + " > " + file;
+  static_cast<void>(std::system(command.c_str()));
+  return rows_of(text_of(file));
+}
+
+/// Largest difference of the wheel's force from that of the vehicle in the model, over its peak.
+double difference(const Rows& own, const Rows& inside) {
+  const std::size_t force = inside.column("v.wheel_1.force_z_n");
+  double most = 0., peak = 0.;
+  REQUIRE(own.row.size() + 1 == inside.row.size());  // a trace has a row for the start
+  for (std::size_t n = 0; n < own.row.size(); ++n) {
+    const double want = inside.row[n + 1][force];
+    peak = std::max(peak, std::abs(want));
+    most = std::max(most, std::abs(own.row[n][1] - want));
+  }
+  return most / peak;
+}
+
+}  // namespace
+
+TEST_CASE("a vehicle outside, coupled by the step's compliance, is the vehicle in the model",
+          "[own_vehicle]") {
+  for (const char* dt : {"1e-4", "1e-3"}) {
+    const Rows inside = traced(fmt::format("{}{} --duration 0.5{}", kTrack, stepped(dt), kInside));
+    const Rows own = ride(dt, "0.5");
+    CAPTURE(dt);
+    // 2^-52 times the track's stiffness against its own inertia terms (1e6 a step) over thousands
+    // of steps; the wheel's Newton stops at 1e-16 of the penetration on both sides.
+    CHECK(difference(own, inside) < 1e-9);
+  }
+}
+
+TEST_CASE("coupled by the force of the frame before it is not", "[own_vehicle]") {
+  const Rows inside = traced(kTrack + stepped("1e-3") + " --duration 0.1" + kInside);
+  const Rows own = ride("1e-3", "0.1", "explicit");
+  const bool lost = own.row.size() + 1 < inside.row.size();  // it ended beyond 1e12 N
+  if (!lost) CHECK(difference(own, inside) > .5);
+  const Rows fine = traced(kTrack + stepped("1e-5") + " --duration 0.1" + kInside);
+  CHECK(difference(ride("1e-5", "0.1", "explicit"), fine) < .1);
+}

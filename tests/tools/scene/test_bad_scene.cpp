@@ -1,0 +1,306 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "support/bad_input.h"
+
+using namespace railstep;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+const std::string kMovingLoad = shipped("moving_load"), kPendulum = shipped("double_pendulum"),
+                  kWheelset = shipped("wheelset_on_track");
+
+std::string set(const std::string& override) { return " --set '" + override + "'"; }
+
+/// Refuses a run of a scene with keys replaced, where a trace and a recording stand.
+void run_refuses(const std::string& scene, const Words& overrides, const Words& said) {
+  const BadInput bad("scene");
+  std::string words = "run " + scene;
+  for (const std::string& each : overrides) words += set(each);
+  bad.refused(words + bad.old("--trace", "t.csv") + bad.old("--record", "r.bin"), said);
+}
+
+/// Refuses a scene of this text; its line and column are in the words.
+void text_refused(const std::string& text, const Words& said) {
+  const BadInput bad("text");
+  bad.refused("run " + bad.file("bad.toml", text) + bad.old("--trace", "t.csv"), said);
+}
+
+std::string moving_load() { return text_of(kMovingLoad); }
+
+/// A piece of the shipped scene replaced.
+void text_refused(const std::string& old, const std::string& fresh, const Words& said) {
+  text_refused(replaced(moving_load(), old, fresh), said);
+}
+
+}  // namespace
+
+TEST_CASE("an unknown key is refused with the nearest", "[bad_input][cli]") {
+  run_refuses(
+      kMovingLoad, {"support.stifness_z_n_per_m=1"},
+      {"[support] unknown key 'stifness_z_n_per_m'", "did you mean 'stiffness_z_n_per_m'?"});
+  run_refuses(kMovingLoad, {"suport.at=\"axis\""}, {"unknown key 'suport'", "'support'"});
+  run_refuses(kMovingLoad, {"load[1].sped_m_per_s=1"},
+              {"[load[1]] unknown key 'sped_m_per_s'", "'speed_m_per_s'"});
+  run_refuses(kPendulum, {"beam[0].youngs_pa=1e6"},
+              {"[beam[0]] unknown key 'youngs_pa'", "'young_pa'"});
+  run_refuses(kPendulum, {"joint[0].betwen=[]"}, {"unknown key 'betwen'", "'between'"});
+  text_refused("bay_m = 0.6", "bay = 0.6", {"bad.toml:9:1", "[track]", "'bay_m'", "'bay'"});
+}
+
+TEST_CASE("a key given twice is refused where it stands again", "[bad_input][cli]") {
+  text_refused("bays = 16", "bays = 16\nbays = 3", {"bad.toml:9:", "bays"});
+  text_refused(moving_load() + "[support]\nat = \"foot\"\n", {"bad.toml:46:", "support"});
+  text_refused("schema = 1\n", "schema = 1\nrail.rectangle = {}\n", {"bad.toml:13:", "rectangle"});
+}
+
+TEST_CASE("a number given as text is refused", "[bad_input][cli]") {
+  text_refused("bays = 16", "bays = \"16\"",
+               {"bad.toml:8:8", "[track] bays = \"16\" is a string", "an integer is accepted"});
+  text_refused("dt_s = 25.0e-6", "dt_s = '25e-6'",
+               {"[step] dt_s = \"25e-6\" is a string", "a number is accepted"});
+  run_refuses(kMovingLoad, {"rail.young_pa=true"}, {"young_pa = true is a boolean", "a number"});
+  run_refuses(kMovingLoad, {"rail.young_pa=[210e9]"}, {"young_pa", "is an array", "a number"});
+  run_refuses(kMovingLoad, {"rail.young_pa=2020-01-01"}, {"is a date or time", "a number"});
+  run_refuses(kMovingLoad, {"track.bays=1.5"}, {"bays = 1.5 is a number", "an integer"});
+  run_refuses(kMovingLoad, {"load[0].may_leave_rail=1"}, {"may_leave_rail", "an integer"});
+}
+
+TEST_CASE("masses, stiffnesses and lengths that are none are refused", "[bad_input][cli]") {
+  const struct {
+    std::string scene, override, said;
+  } cases[] = {
+      {kMovingLoad, "rail.young_pa=0",
+       "young_pa = 0 is out of range; accepted is at least 1000000000"},
+      {kMovingLoad, "rail.density_kg_per_m3=-7850", "density_kg_per_m3 = -7850 is out of range"},
+      {kMovingLoad, "rail.rectangle.width_m=0", "width_m = 0 is out of range"},
+      {kMovingLoad, "track.bay_m=-0.6", "bay_m = -0.6 is out of range; accepted is at least 0.05"},
+      {kMovingLoad, "track.bays=0", "bays = 0 is out of range; accepted is 1 to"},
+      {kMovingLoad, "support.stiffness_z_n_per_m=-1", "stiffness_z_n_per_m = -1 is out of range"},
+      {kMovingLoad, "support.damping_z_n_s_per_m=-1", "damping_z_n_s_per_m = -1 is out of range"},
+      {kWheelset, "wheelset[0].mass_kg=0", "mass_kg = 0 is out of range; accepted is above 0"},
+      {kWheelset, "wheelset[0].mass_kg=-100", "mass_kg = -100 is out of range"},
+      {shipped("ballasted_track"), "sleeper.mass_kg=-1",
+       "mass_kg = -1 is out of range; accepted "
+       "is at least 0"},
+      {shipped("slider_crank"), "body[0].mass_kg=0",
+       "mass_kg = 0 is out of range; accepted is "
+       "above 0"},
+      {kPendulum, "beam[0].length_m=0", "length_m = 0 is out of range"},
+      {kPendulum, "beam[0].density_kg_per_m3=0", "density_kg_per_m3 = 0 is out of range"},
+      {kPendulum, "beam[0].rectangle={height_m=0.02, width_m=-0.03}", "width_m = -0.03"},
+  };
+  for (const auto& c : cases) run_refuses(c.scene, {c.override}, {c.override.substr(0, 8), c.said});
+  const BadInput good("massless");  // but a sleeper may weigh nothing
+  CHECK(railstep_program("run " + shipped("ballasted_track") + " --model full --duration 1e-3" +
+                         set("sleeper.mass_kg=0"))
+            .code == 0);
+}
+
+TEST_CASE("millimetres given as metres are refused in a scene", "[bad_input][cli]") {
+  for (const char* override : {"track.bay_m=600", "track.rail_spacing_m=1500",
+                               "rail.rectangle.height_m=231.9", "support.half_spread_m=70"})
+    run_refuses(kMovingLoad, {override}, {"out of range", "was it given in millimetres?"});
+  run_refuses(kWheelset, {"wheelset[0].radius_m=460"}, {"radius_m = 460", "millimetres"});
+}
+
+TEST_CASE("a rail's modulus given in N/mm2 is refused with the unit named", "[bad_input][cli]") {
+  run_refuses(kMovingLoad, {"rail.young_pa=210e3"},
+              {"young_pa = 210000 is out of range", "(Pa; was it given in N/mm2?)"});
+}
+
+TEST_CASE("a stiffness out of range is not asked whether it was in millimetres",
+          "[bad_input][cli]") {
+  const Ran ran = railstep_program("run " + kMovingLoad + set("support.stiffness_z_n_per_m=3e13"));
+  CHECK(ran.code == 2);
+  CHECK_THAT(ran.err, Catch::Contains("stiffness_z_n_per_m = 30000000000000 is out of range"));
+  CHECK_THAT(ran.err, !Catch::Contains("millimetres"));
+}
+
+TEST_CASE("a section file with constants that no shape has is refused", "[bad_input][cli]") {
+  const BadInput bad("section");
+  const auto refused = [&](const char* area, const char* inertia, const Words& said) {
+    const std::string file = bad.file(
+        "section.toml",
+        std::string("schema = 1\n[section]\n") + area + "\n" + inertia +
+            "\ninertia_z_m4 = 5.12e-6\ntorsion_m4 = 2e-6\nshear_factor_y = 0.5\n"
+            "shear_factor_z = 0.4\ncentroid_height_m = 0.08\nshear_centre_height_m = 0.04\n"
+            "height_m = 0.172\n");
+    bad.refused("run " + kWheelset + set("rail={section=\"" + file + "\"}"), said);
+  };
+  refused("area_m2 = 7670.0", "inertia_y_m4 = 3.038e-5",
+          {"section.toml:3:", "area_m2 = 7670", "at most 1"});
+  refused("area_m2 = 7.67e-3", "inertia_y_m4 = 3038e-6",  // cm4 times 1e-6 instead of 1e-8
+          {"section.toml:4:", "inertia_y_m4 = 0.003038", "accepted is at most", "5.645e-05"});
+}
+
+TEST_CASE("a record of places that the track has not is refused with both", "[bad_input][cli]") {
+  const BadInput bad("record");
+  std::string rows = "distance_m,vertical_mm\n";
+  for (int i = 0; i < 40; ++i) rows += std::to_string(12345 + i) + ",0.5\n";
+  const std::string file = bad.file("chainage.csv", rows);
+  bad.refused("run " + shipped("corrugation") + set("defect=[]") +
+                  set("irregularity={file=\"" + file + "\"}"),
+              {"chainage.csv", "m, and the track from 0 to 24 m", "accepted"});
+}
+
+TEST_CASE("a step of 0, of NaN and over the duration is refused", "[bad_input][cli]") {
+  for (const char* step : {"0", "-1e-3", "nan", "inf", "1", "1e-300"})
+    run_refuses(kMovingLoad, {"step.dt_s=" + std::string(step)},
+                {"[step] dt_s = ", "accepted is at least 1e-07, at most 0.1"});
+  run_refuses(kMovingLoad, {"step.dt_s=0.05", "step.frame_s=0.05", "step.duration_s=0.01"},
+              {"dt_s = 0.05", "longer than duration_s = 0.01"});
+  run_refuses(kMovingLoad, {"step.frame_s=7e-5"}, {"frame_s = 7e-05", "whole number of steps"});
+  for (const char* duration : {"0", "-1", "nan", "1e300"})
+    run_refuses(kMovingLoad, {"step.duration_s=" + std::string(duration)},
+                {"[step] duration_s = ", "accepted is above 0"});
+}
+
+TEST_CASE("a spectral radius outside 0 to 1 is refused", "[bad_input][cli]") {
+  for (const char* rho : {"-0.1", "1.1", "nan"})
+    for (const std::string& scene : {kMovingLoad, kPendulum})
+      run_refuses(scene, {"step.rho_inf=" + std::string(rho)},
+                  {"[step] rho_inf = " + std::string(rho), "accepted is at least 0, at most 1"});
+}
+
+TEST_CASE("Poisson's ratio of -1 and under, of 0.5 and over is refused", "[bad_input][cli]") {
+  for (const char* nu : {"-2", "-1", "0.5", "0.6", "nan"}) {
+    run_refuses(kMovingLoad, {"rail.poisson=" + std::string(nu)},
+                {"[rail] poisson = " + std::string(nu), "accepted is above -1, below 0.5"});
+    run_refuses(kPendulum, {"beam[0].poisson=" + std::string(nu)}, {"poisson", "above -1, below"});
+  }
+}
+
+TEST_CASE("a sensor or body that is not there is refused with those that are", "[bad_input][cli]") {
+  run_refuses(kMovingLoad, {"sensor=[{name=\"s\", on=\"wheel\"}]"},
+              {"[sensor[0]] on = \"wheel\"", "\"rail\", \"sleeper\", \"wheelset\", \"vehicle\""});
+  run_refuses(kWheelset, {"sensor[0].wheelset=\"front\""},
+              {"[sensor[0]] wheelset = \"front\"", "\"wheelset\""});
+  run_refuses(kPendulum, {"sensor[0].on=\"middle\""},
+              {"[sensor[0]] on has \"middle\"", "\"upper\", \"lower\""});
+  run_refuses(kPendulum, {"joint[0].between=[\"ground\", \"middle\"]"},
+              {"[joint[0]] between has \"middle\"", "\"ground\", \"upper\", \"lower\""});
+  const BadInput bad("receptance");
+  bad.refused("receptance " + shipped("receptance_s1") + " --at middle --from 30 --to-hz 100" +
+                  bad.old("--csv", "c.csv"),
+              {"middle", "mid_bay"});
+}
+
+TEST_CASE("a name given twice is refused with who has it", "[bad_input][cli]") {
+  run_refuses(kMovingLoad, {"load[1].name=\"load_left\""},
+              {"[load[1]] name = \"load_left\" is taken by [load[0]]", "used once"});
+  run_refuses(kMovingLoad,
+              {"sensor=[{name=\"load_left\", on=\"rail\", position_m=1, rail=\"left\"}]"},
+              {"[sensor[0]] name = \"load_left\" is taken by [load[0]]"});
+  run_refuses(kPendulum, {"beam[1].name=\"upper\""}, {"[beam[1]] name = \"upper\" is taken by"});
+  run_refuses(kPendulum, {"sensor[1].name=\"A\""}, {"[sensor[1]] name = \"A\" is taken by"});
+  run_refuses(kPendulum, {"joint[0].name=\"lower\""}, {"name = \"lower\" is taken by [beam[1]]"});
+  run_refuses(kMovingLoad, {"load[0].name=\"\""}, {"name is an empty string"});
+  run_refuses(kMovingLoad, {"load[0].name=\"a,b\""}, {"name = \"a,b\" is no name", "accepted are"});
+}
+
+TEST_CASE("a load that leaves its rail is refused unless it may", "[bad_input][cli]") {
+  run_refuses(kMovingLoad, {"step.duration_s=0.4"},
+              {"moving_load.toml:31:", "x = 12.3 m, off the rail", "0 to 9.6", "may_leave_rail"});
+  run_refuses(kMovingLoad, {"load[1].start_m=-0.1"}, {"[load[1]] start_m = -0.1", "at most 9.6"});
+  const Ran ran =
+      railstep_program("run " + kMovingLoad + " --duration 0.4" +
+                       set("load[0].may_leave_rail=true") + set("load[1].may_leave_rail=true"));
+  CHECK(ran.code == 0);
+}
+
+TEST_CASE("a free rigid mode is refused by its name", "[bad_input][cli]") {
+  const Words named = {"moving_load.toml", "free rigid mode", "nothing holds the rails along z",
+                       "support.stiffness_z_n_per_m above 0"};
+  const std::string loose = kMovingLoad + set("support.stiffness_z_n_per_m=0");
+  const BadInput bad("free");
+  const std::string out = bad.old("--out", "x.model"), shape = bad.old("--shape", "s.csv");
+  run_refuses(kMovingLoad, {"support.stiffness_z_n_per_m=0"}, named);
+  run_refuses(kMovingLoad, {"support.stiffness_z_n_per_m=0", "condense={kind=\"modal\"}"}, named);
+  bad.refused("static " + loose + shape, named);
+  bad.refused("condense " + loose + out, named);
+  run_refuses(kWheelset, {"support.stiffness_x_n_per_m=0"},
+              {"wheelset_on_track.toml", "free rigid mode", "nothing holds the rails along x",
+               "support.stiffness_x_n_per_m above 0"});
+}
+
+TEST_CASE("compression at which the rails buckle is refused with both forces", "[bad_input][cli]") {
+  const Words both = {"moving_load.toml", "compression of 1e+08 N",
+                      "buckles at 2.934146e+07 N, most at x = ", "axial_force_n"};
+  const std::string pressed = kMovingLoad + set("rail.axial_force_n=-1e8");
+  const BadInput bad("buckled");
+  run_refuses(kMovingLoad, {"rail.axial_force_n=-1e8"}, both);
+  bad.refused("static " + pressed + bad.old("--shape", "s.csv"), both);
+  bad.refused("modes " + pressed, both);
+  bad.refused("condense " + pressed + bad.old("--out", "x.model"), both);
+}
+
+TEST_CASE("a track of too many elements is refused with its bytes", "[bad_input][cli]") {
+  const BadInput bad("huge");
+  const Words bytes = {"[track] bays = 1000000000 makes 2000000000 elements", "3.07e+12 bytes",
+                       "at most 100000 elements"};
+  const std::string huge = kMovingLoad + set("track.bays=1000000000");
+  for (const std::string command : {"static ", "modes "}) bad.refused(command + huge, bytes);
+  bad.refused("condense " + huge + bad.old("--out", "x.model"), bytes);
+  run_refuses(kMovingLoad, {"track.bays=1000000000"}, bytes);
+  run_refuses(kMovingLoad, {"track.bays=100000", "track.elements_per_bay=1000"},
+              {"200000000 elements", "bytes", "at most 100000"});
+  run_refuses(kPendulum, {"beam[0].elements=1000000000"}, {"[beam[0]] elements = 1000000000"});
+}
+
+TEST_CASE("integers over 2^63, NUL and what is not UTF-8 are refused", "[bad_input][cli]") {
+  text_refused("bays = 16", "bays = 9223372036854775808", {"bad.toml:8:", "9223372036854775808"});
+  run_refuses(kMovingLoad, {"track.bays=9223372036854775808"}, {"9223372036854775808"});
+  run_refuses(kMovingLoad, {"track.bays=9223372036854775807"},
+              {"bays = 9223372036854775807 is out of range"});
+  text_refused("schema = 1", std::string("schema\0= 1", 10), {"bad.toml:3:7", "NUL", "UTF-8"});
+  text_refused("[step]", "# \xff\xfe\n[step]", {"bad.toml:41:", "utf-8"});
+  text_refused("[step]", "# \xc3(\n[step]", {"bad.toml:41:", "utf-8"});
+  run_refuses(kMovingLoad, {"load[0].name=\"\xff\""}, {"is not a TOML value"});
+}
+
+TEST_CASE("a hundred thousand arrays in each other are refused", "[bad_input][cli]") {
+  const std::string deepest = "nested deeper than 32; at most 32 levels are accepted";
+  const std::string text = moving_load();
+  const auto many = [](const std::string& piece) {
+    std::string all;
+    for (int i = 0; i < 100'000; ++i) all += piece;
+    return all;
+  };
+  text_refused("deep = " + many("[") + many("]") + "\n" + text, {"bad.toml:1:40", deepest});
+  text_refused("deep = " + many("{a=") + "\n" + text, {"bad.toml:1:", deepest});
+  text_refused("[" + many("a.") + "a]\n", {"bad.toml:1:", deepest});
+  text_refused("wide = [" + many("[],") + "]\n" + text, {"bad.toml:1:", "unknown key 'wide'"});
+  // one word of a command line holds 128 KiB
+  run_refuses(kMovingLoad, {"track.bays=" + many("[")},
+              {"--set track.bays=[[", "not a TOML value"});
+  run_refuses(kMovingLoad, {many("a").substr(0, 60'000) + "=1"}, {"--set aaa", "unknown key"});
+}
+
+TEST_CASE("a scene is a file that can be read", "[bad_input][cli]") {
+  const BadInput bad("no_scene");
+  const std::string trace = bad.old("--trace", "t.csv");
+  std::filesystem::create_directory(bad.path("folder"));
+  bad.refused("run " + bad.path("folder") + trace, {"folder: is a folder"});
+  bad.refused("run " + bad.path("none.toml") + trace, {"none.toml: cannot be opened"});
+  bad.refused("run " + bad.file("empty.toml", "") + trace, {"empty.toml: is empty"});
+  bad.refused("run /dev/zero" + trace, {"/dev/zero: is longer than 1048576 bytes"});
+  bad.refused("run /proc/self/mem" + trace, {"/proc/self/mem: cannot be read"});
+  if (geteuid() != 0) {  // to whom nothing is closed
+    std::filesystem::permissions(bad.file("closed.toml", "schema = 1\n"),
+                                 std::filesystem::perms::none);
+    const Ran ran = railstep_program("run " + bad.path("closed.toml"));
+    CHECK(ran.code == 2);
+    CHECK_THAT(ran.err, Catch::Contains("closed.toml: cannot be opened"));
+  }
+}
+
+TEST_CASE("a scene comes through a pipe as from a file", "[bad_input][cli]") {
+  const std::string run = "'" RAILSTEP_PROGRAM "' run /dev/stdin --duration 0.01 >/dev/null";
+  CHECK(std::system(("cat '" + kMovingLoad + "' | " + run).c_str()) == 0);
+  const BadInput bad("pipe");
+  bad.refused("run /dev/stdin" + bad.old("--trace", "t.csv") + " </dev/null", {"stdin: is empty"});
+}

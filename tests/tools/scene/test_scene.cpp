@@ -1,0 +1,322 @@
+#include <unistd.h>  // getpid: test cases run side by side, each in its own folder
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "scene/scene.h"
+#include "text/read.h"
+
+using namespace railstep;
+using Catch::Contains;
+using Overrides = std::vector<std::string>;
+
+namespace {
+
+std::filesystem::path shipped(const std::string& name) {
+  return std::filesystem::path(RAILSTEP_SOURCE) / "config/scenes" / (name + ".toml");
+}
+
+/// What a shipped scene with one option says; "accepted" where it is read.
+std::string with(const std::string& name, const Overrides& overrides) {
+  try {
+    read_scene(shipped(name), overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// What a shipped scene says after `from` was replaced by `to` in its text.
+std::string edited(const std::string& name, const std::string& from, const std::string& to) {
+  std::string text = read_text(shipped(name));
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  text.replace(at, from.size(), to);
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("railstep_test_scene_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "bay.toml", std::ios::binary) << text;
+  try {
+    read_scene(folder / "bay.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("moving_load is the reference's scene", "[scene]") {
+  const Scene s = read_scene(shipped("moving_load"));
+  CHECK(s.track.unknowns == Unknowns::vertical);
+  CHECK(s.track.bays * s.track.elements_per_bay == 16);
+  CHECK(s.track.length() == 16 * 0.6);
+  CHECK(std::get<RectangleSize>(s.rail.shape).height == 0.2319);
+  CHECK(s.rail.shear_factor_z == 0.8497);
+  CHECK(s.rail.young == 210e9);
+  CHECK(s.support->z.stiffness == 3e7);
+  CHECK(s.support->z.damping == 3e4);
+  CHECK(s.support->at == Height::axis);
+  REQUIRE(s.loads.size() == 2);
+  CHECK(s.loads[1].name == "load_right");
+  CHECK(s.loads[1].rail == Side::right);
+  CHECK(s.loads[1].force_z == -50e3);
+  CHECK(s.step->steps == 12000);
+  CHECK(s.step->steps_per_frame == 40);
+  CHECK(s.step->rho_inf == 0.6);
+  CHECK(s.step->start == Start::released);
+}
+
+TEST_CASE("wheelset_on_track is the paper's scene", "[scene]") {
+  const Scene s = read_scene(shipped("wheelset_on_track"));
+  const auto& r = std::get<RectangleSizes>(s.rail.shape);
+  // The three heights are those of 136RE, 185.7375 mm, to the 10 digits written.
+  CHECK_THAT(r.foot_height + r.web_height + r.head_height, Catch::WithinAbs(0.1857375, 1e-10));
+  CHECK(s.support->y.damping == 29e6);
+  CHECK(s.support->roll.stiffness == 1e6);
+  REQUIRE(s.wheelsets.size() == 1);
+  const WheelsetScene& w = s.wheelsets[0];
+  CHECK(w.wheels[0] == "wheel_left");
+  CHECK(w.wheels[1] == "wheel_right");
+  CHECK(w.start == s.track.length() / 2);
+  REQUIRE(w.forces.size() == 1);
+  CHECK(w.forces[0].direction == 1);
+  CHECK(w.forces[0].force.at(0.999) == 0.0);
+  CHECK(w.forces[0].force.at(1.0) == 10.0);
+  CHECK(s.step->steps == 40'000);
+  CHECK(s.step->steps_per_frame == 20);
+  CHECK(std::get<WheelsetSensor>(s.sensors[0].on).wheelset == 0);
+  CHECK(s.trace_supports);
+}
+
+TEST_CASE("ballasted_track has sleepers, ballast and its sensors", "[scene]") {
+  const Scene s = read_scene(shipped("ballasted_track"));
+  CHECK(std::get<ProfileFile>(s.rail.shape).path ==
+        (shipped("x").parent_path().parent_path() / "profiles/60e1.toml").lexically_normal());
+  CHECK(s.sleeper->mass == 300);
+  CHECK(s.sleeper->ballast_z.stiffness == 50e6);
+  CHECK_FALSE(s.sleeper->ballast_y);
+  CHECK(s.wheelsets[0].carried_mass == 8800);
+  CHECK(s.step->start == Start::equilibrium);
+  REQUIRE(s.sensors.size() == 2);
+  CHECK(std::get<SleeperSensor>(s.sensors[0].on).sleeper == 20);
+  CHECK(std::get<RailSensor>(s.sensors[1].on).at == Height::foot);
+}
+
+TEST_CASE("a time table is 0 before, linear between and held after", "[scene]") {
+  const TimeTable t{{1.0, 2.0, 4.0}, {10.0, 20.0, 0.0}};
+  CHECK(t.at(0.5) == 0.0);
+  CHECK(t.at(1.5) == 15.0);
+  CHECK(t.at(3.0) == 10.0);
+  CHECK(t.at(9.0) == 0.0);
+  CHECK((TimeTable{{0.0}, {2.0}}).at(5.0) == 2.0);
+}
+
+TEST_CASE("rows 11 to 13: misspelt, doubled and mistyped keys", "[scene]") {
+  CHECK_THAT(edited("moving_load", "stiffness_z_n_per_m = 3.0e7", "stifness_z_n_per_m = 3.0e7"),
+             Contains("bay.toml:24:1:") && Contains("[support]") &&
+                 Contains("stifness_z_n_per_m") && Contains("'stiffness_z_n_per_m'"));
+  CHECK_THAT(edited("moving_load", "stiffness_y_n_per_m", "stifness_y_n_per_m"),
+             Contains("bay.toml:22:1: [support] unknown key 'stifness_y_n_per_m'; did you mean "
+                      "'stiffness_y_n_per_m'?"));
+  CHECK_THAT(edited("moving_load", "bays = 16", "bays = 16\nbays = 17"),
+             Contains("bay.toml:9:") && Contains("bays"));
+  CHECK_THAT(edited("moving_load", "bay_m = 0.6", "bay_m = \"0.6\""),
+             Contains("bay.toml:9:9: [track] bay_m = \"0.6\" is a string; a number is accepted"));
+}
+
+TEST_CASE("row 14: what must be positive", "[scene]") {
+  CHECK_THAT(with("ballasted_track", {"wheelset[0].mass_kg=-1200"}),
+             Contains("--set wheelset[0].mass_kg=-1200: [wheelset[0]] mass_kg = -1200") &&
+                 Contains("accepted is above 0"));
+  CHECK_THAT(with("ballasted_track", {"sleeper.mass_kg=-1"}), Contains("accepted is at least 0"));
+  CHECK(with("ballasted_track", {"sleeper.mass_kg=0"}) == "accepted");
+  CHECK_THAT(with("moving_load", {"rail.young_pa=0"}), Contains("young_pa = 0"));
+  CHECK_THAT(with("moving_load", {"rail.rectangle.width_m=0"}), Contains("width_m = 0"));
+  CHECK_THAT(with("moving_load", {"track.bay_m=0"}), Contains("bay_m = 0"));
+  CHECK_THAT(with("moving_load", {"support.stiffness_z_n_per_m=-1"}), Contains("at least 0"));
+}
+
+TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio", "[scene]") {
+  CHECK_THAT(with("moving_load", {"step.dt_s=0"}), Contains("dt_s = 0 is out of range"));
+  CHECK_THAT(with("moving_load", {"step.dt_s=nan"}), Contains("dt_s = nan is not finite"));
+  CHECK_THAT(with("moving_load", {"step.dt_s=0.05", "step.duration_s=0.01"}),
+             Contains("dt_s = 0.05 is longer than duration_s = 0.01"));
+  CHECK_THAT(with("moving_load", {"step.dt_s=0.0007", "step.frame_s=0.0007"}),
+             Contains("0.0007") && Contains("0.3"));
+  CHECK_THAT(with("moving_load", {"step.frame_s=0.00101"}),
+             Contains("frame_s = 0.00101 is not a whole number of steps of dt_s = 2.5e-05"));
+  CHECK_THAT(with("moving_load", {"step.rho_inf=1.1"}),
+             Contains("rho_inf = 1.1") && Contains("at least 0, at most 1"));
+  CHECK(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_gamma=0.6"}) == "accepted");
+  CHECK_THAT(with("moving_load", {"step.newmark_gamma=0.5"}),
+             Contains("newmark_gamma is not used here; accepted with scheme = \"newmark\""));
+  CHECK_THAT(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_gamma=0.25"}),
+             Contains("newmark_gamma = 0.25") && Contains("at least 0.5, at most 1"));
+  CHECK_THAT(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_beta=0.125"}),
+             Contains("newmark_beta = 0.125") && Contains("at least 0.25, at most 1"));
+  CHECK_THAT(with("moving_load", {"step.scheme=\"hht\"", "step.hht_alpha=-0.34"}),
+             Contains("hht_alpha = -0.34"));
+  CHECK(with("moving_load", {"step.scheme=\"hht\"", "step.hht_alpha=-0.3333333333333333"}) ==
+        "accepted");
+  CHECK(with("moving_load", {"step.scheme=\"tr-bdf2\""}) == "accepted");
+  CHECK_THAT(with("moving_load", {"step.scheme=\"tr-bdf2\"",
+                                  "external_wheel=[{name=\"w\", rail=\"left\", limit_n=1e6}]"}),
+             Contains("scheme = \"tr-bdf2\" has two stages") && Contains("external_wheel"));
+  CHECK_THAT(with("moving_load", {"rail.poisson=0.5"}), Contains("above -1, below 0.5"));
+  CHECK_THAT(with("moving_load", {"rail.poisson=-1"}), Contains("above -1, below 0.5"));
+  CHECK(with("moving_load", {"rail.poisson=0.499"}) == "accepted");
+}
+
+TEST_CASE("rows 18 and 19: names", "[scene]") {
+  CHECK_THAT(with("wheelset_on_track", {"sensor[0].wheelset=\"bogie\""}),
+             Contains("wheelset = \"bogie\" is unknown; accepted are \"wheelset\""));
+  CHECK_THAT(with("moving_load", {"sensor=[{name=\"s\", on=\"wheelset\", wheelset=\"w\"}]"}),
+             Contains("the scene has no wheelset"));
+  CHECK_THAT(with("moving_load", {"sensor=[{name=\"s\", on=\"sleeper\", sleeper=1}]"}),
+             Contains("has no [sleeper]"));
+  CHECK_THAT(with("ballasted_track", {"sensor[0].sleeper=41"}), Contains("accepted is 0 to 40"));
+  CHECK_THAT(with("ballasted_track", {"sensor[0].on=\"bogie\""}),
+             Contains("accepted are \"rail\", \"sleeper\", \"wheelset\""));
+  CHECK_THAT(with("moving_load", {"load[1].name=\"load_left\""}),
+             Contains("name = \"load_left\" is taken by [load[0]]"));
+  CHECK_THAT(with("ballasted_track", {"sensor[1].name=\"wheel_left\""}),
+             Contains("is taken by [wheelset[0]]"));
+  CHECK_THAT(with("moving_load", {"load[0].name=\"a,b\""}), Contains("is no name"));
+  CHECK_THAT(with("moving_load", {"load[0].name=\"support_1\""}), Contains("support_"));
+}
+
+TEST_CASE("row 20: a path must stay on the rail unless it may leave", "[scene]") {
+  CHECK_THAT(with("moving_load", {"step.duration_s=0.4"}),
+             Contains("[load[0]] speed_m_per_s = 30") && Contains("x = 12.3 m, off the rail") &&
+                 Contains("0 to 9.6"));
+  CHECK(with("moving_load", {"step.duration_s=0.4", "load[0].stop_m=9.3", "load[1].stop_m=9.3"}) ==
+        "accepted");
+  CHECK(with("moving_load", {"step.duration_s=0.31"}) == "accepted");  // ends exactly at 9.6 m
+  CHECK(with("moving_load", {"step.duration_s=0.4", "load[0].may_leave_rail=true",
+                             "load[1].may_leave_rail=true"}) == "accepted");
+  CHECK_THAT(with("moving_load", {"load[0].start_m=-0.1"}), Contains("at least 0, at most 9.6"));
+  CHECK_THAT(with("moving_load", {"load[0].stop_m=0.2"}), Contains("not ahead of start_m = 0.3"));
+  CHECK_THAT(with("ballasted_track", {"step.duration_s=1"}), Contains("x = 34.5 m, off the rail"));
+}
+
+TEST_CASE("a wheelset starts from equilibrium on the rail alone", "[scene]") {
+  const Overrides beyond = {"wheelset[0].start_m=24.5", "wheelset[0].may_leave_rail=true"};
+  Overrides released = beyond;
+  released.emplace_back("step.start=\"released\"");
+  CHECK_THAT(with("ballasted_track", beyond),
+             Contains("start_m = 24.5 is off the rail") && Contains("0 to 24, or step.start"));
+  CHECK(with("ballasted_track", released) == "accepted");
+}
+
+TEST_CASE("row 23: a billion elements are refused with their bytes", "[scene]") {
+  // 2 rails * 1e9 bays * 1 element; 4 unknowns each, 4 bands of 12 doubles: 2e9 * 4 * 12 * 32
+  // bytes.
+  CHECK_THAT(with("moving_load", {"track.bays=1000000000"}),
+             Contains("makes 2000000000 elements, about 3.07e+12 bytes") && Contains("100000"));
+  CHECK(with("moving_load", {"track.bays=50000"}) == "accepted");
+  CHECK_THAT(with("moving_load", {"track.bays=50001"}), Contains("100002 elements"));
+}
+
+TEST_CASE("rows 24 and 25 through a scene", "[scene]") {
+  CHECK_THAT(with("moving_load", {"track.bays=9223372036854775808"}), Contains("not a TOML value"));
+  CHECK_THAT(edited("moving_load", "bays = 16", "bays = 9223372036854775808"),
+             Contains("bay.toml:8:"));
+  CHECK_THAT(edited("moving_load", "bays = 16", "bays = " + std::string(100'000, '[')),
+             Contains("bay.toml:8:") && Contains("nested deeper than 32"));
+}
+
+TEST_CASE("millimetres typed as metres are noticed", "[scene]") {
+  CHECK_THAT(with("moving_load", {"track.bay_m=600"}), Contains("millimetres"));
+  CHECK_THAT(with("moving_load", {"rail.rectangle.height_m=231.9"}), Contains("millimetres"));
+  CHECK_THAT(with("wheelset_on_track", {"wheelset[0].radius_m=148"}), Contains("millimetres"));
+}
+
+TEST_CASE("the section is given in exactly one way", "[scene]") {
+  CHECK_THAT(with("moving_load", {"rail.profile=\"a.toml\""}),
+             Contains("rectangle is given beside profile; exactly one"));
+  CHECK_THAT(edited("moving_load",
+                    "[rail.rectangle]\nheight_m = 0.2319\nwidth_m = 0.0375\n"
+                    "shear_factor_y = 0.8497\nshear_factor_z = 0.8497",
+                    "[rail]"),
+             Contains("[rail] no section is given; exactly one"));
+  CHECK_THAT(with("moving_load", {"rail.shear_factor_z=0.4"}), Contains("one of them is accepted"));
+  CHECK_THAT(with("wheelset_on_track", {"rail.rectangles.web_height_m=0.98"}),
+             Contains("high together"));
+}
+
+TEST_CASE("tables that need each other are asked for", "[scene]") {
+  CHECK_THAT(with("moving_load", {"sleeper.mass_kg=300"}), Contains("no [ballast]"));
+  CHECK_THAT(with("moving_load", {"ballast.stiffness_z_n_per_m=5e7"}), Contains("no [sleeper]"));
+  CHECK_THAT(with("ballasted_track", {"track.rails=1"}), Contains("a wheelset needs two rails"));
+  CHECK_THAT(with("moving_load", {"track.rails=1"}), Contains("rail = \"right\""));
+  CHECK(with("moving_load", {"condense.kind=\"modal\""}) == "accepted");
+  CHECK_THAT(with("moving_load", {"condense.modes_per_bay=-1"}), Contains("modes_per_bay"));
+  for (const char* kind : {"guyan", "irs", "craig-bampton", "krylov", "complex-modes"}) {
+    CHECK(with("moving_load", {std::string("condense.kind=\"") + kind + "\""}) == "accepted");
+    CHECK_THAT(with("endless_track", {std::string("condense.kind=\"") + kind + "\""}),
+               Contains("Floquet modes") && Contains("\"full\" and \"modal\""));
+  }
+  CHECK_THAT(with("moving_load", {"condense.kind=\"guyen\""}), Contains("\"guyan\""));
+  CHECK_THAT(with("moving_load", {"condense.nodes_per_bay=3"}), Contains("divisor"));
+  CHECK_THAT(with("moving_load", {"condense.band_hz=[500, 20]"}), Contains("does not rise"));
+  CHECK_THAT(with("moving_load", {"condense.expansion_hz=[0]"}), Contains("expansion_hz"));
+  CHECK_THAT(with("moving_load", {"condense.modes_per_bay=2", "condense.highest_hz=900"}),
+             Contains("one of them is accepted"));
+  CHECK_THAT(with("wheelset_on_track", {"wheelset[0].guide={method=\"baumgarte\"}"}),
+             Contains("'alpha_per_s' is missing"));
+  CHECK_THAT(with("wheelset_on_track", {"wheelset[0].guide.alpha_per_s=1"}),
+             Contains("Baumgarte's"));
+  CHECK_THAT(with("wheelset_on_track", {"wheelset[0].force[0].table=[[1, 1], [1, 2]]"}),
+             Contains("does not rise"));
+  CHECK_THAT(with("moving_load", {"schema=2"}), Contains("schema = 2 is newer"));
+}
+
+namespace {
+
+/// The keys that `source` names in quotes right after an opening bracket or a bracketed table's
+/// name: every getter's first argument.
+std::vector<std::string> quoted_keys(const std::string& source) {
+  std::vector<std::string> keys;
+  for (const std::string opener :
+       {"number(\"", "integer(\"", "boolean(\"", "string(\"", "strings(\"", "choice(\"", "path(\"",
+        "table(\"", "table_if(\"", "tables(\"", "has(\"", "(t, \"", "(force, \"", "(rail, \"",
+        "(bar, \"", "(*t, \""})
+    for (auto at = source.find(opener); at != std::string::npos; at = source.find(opener, at + 1)) {
+      const auto from = at + opener.size();
+      keys.push_back(source.substr(from, source.find('"', from) - from));
+    }
+  return keys;
+}
+
+}  // namespace
+
+TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]") {
+  const std::filesystem::path source(RAILSTEP_SOURCE);
+  const std::string documented = read_text(source / "config/README.md");
+  std::size_t count = 0;
+  for (const char* name : {"scene.cpp", "scene_rail.cpp", "scene_bodies.cpp", "scene_system.cpp",
+                           "scene_parts.cpp", "scene_joints.cpp", "scene_beside.cpp"})
+    for (const std::string& key : quoted_keys(read_text(source / "tools" / name))) {
+      if (key.size() == 1) continue;  // an axis, whose full keys are checked below
+      INFO(key);
+      // As a key of its own, after its table's name, or as a table's own heading.
+      bool found = false;
+      for (const char* before : {"`", ".", "["})
+        for (const char* after : {"`", "]"})
+          found = found || documented.find(before + key + after) != std::string::npos;
+      CHECK(found);
+      ++count;
+    }
+  CHECK(count > 120);  // the openers above still see the reader's getters
+  for (const std::string axis : {"x", "y", "z"}) {
+    CHECK_THAT(documented, Contains("`stiffness_" + axis + "_n_per_m`"));
+    CHECK_THAT(documented, Contains("`damping_" + axis + "_n_s_per_m`"));
+  }
+  for (const std::string unit : {"m", "rad", "n", "n_m"}) {
+    CHECK_THAT(documented, Contains("`polynomial_" + unit + "`"));
+    CHECK_THAT(documented, Contains("`table_" + unit + "`"));
+  }
+}

@@ -1,0 +1,144 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+#include "build/build_system.h"
+#include "scene/scene_system.h"
+#include "text/read.h"
+
+using namespace railstep;
+using Catch::Contains;
+using Overrides = std::vector<std::string>;
+
+namespace {
+
+std::filesystem::path exciter() {
+  return std::filesystem::path(RAILSTEP_SOURCE) / "config/scenes/exciter_on_track.toml";
+}
+
+SystemScene scene_with(const Overrides& overrides = {}) {
+  return std::get<SystemScene>(read_any_scene(exciter(), overrides));
+}
+
+/// What the exciter's scene with this option says; "accepted" where it is read and built.
+std::string with(const Overrides& overrides) {
+  try {
+    static_cast<void>(BuiltSystem(scene_with(overrides)));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("exciter_on_track has a track, bodies, and springs between them", "[scene]") {
+  const SystemScene s = scene_with();
+  REQUIRE(s.track);
+  CHECK(s.track->track.rails == 2);
+  CHECK(s.track->sleeper->mass == 300.);
+  CHECK(!s.track->condense.kind);
+  CHECK_FALSE(s.track->condense.residual_flexibility);
+  CHECK(s.step.start == Start::equilibrium);
+  CHECK(s.step.rho_inf == .6);
+  CHECK(s.track->step->steps == 2000);
+  REQUIRE(s.system.bodies.size() == 3);
+  REQUIRE(s.system.springs.size() == 4);
+  CHECK(s.system.springs[0].a.kind == Part::Kind::rail);
+  CHECK(s.system.springs[0].a.index == 0);
+  CHECK(s.system.springs[3].a.index == 1);
+  CHECK(s.system.springs[3].point_a == Eigen::Vector3d(12.3, -.75, .091));
+  // sensors on rails and sleepers are the track's, the others the system's
+  CHECK(s.names.sensors == std::vector<std::string>{"frame_centre"});
+  REQUIRE(s.track->sensors.size() == 2);
+  CHECK(std::get<RailSensor>(s.track->sensors[0].on).position == 12.);
+  CHECK(s.traced.joints == std::vector<int>{1});
+  CHECK(s.traced.springs == std::vector<int>{0, 1});
+}
+
+TEST_CASE("the columns of a scene with both", "[scene]") {
+  const BuiltSystem built(
+      scene_with({"output.supports=true",
+                  "load=[{name=\"axle\", rail=\"left\", start_m=6, force_z_n=-1e4}]"}));
+  const auto at = [&](const std::string& name) {
+    const auto found = std::find(built.columns.begin(), built.columns.end(), name);
+    CAPTURE(name);
+    REQUIRE(found != built.columns.end());
+    return found - built.columns.begin();
+  };
+  CHECK(at("axle.x_m") == 1);
+  CHECK(at("rail_centre.x_m") == 3);
+  CHECK(at("sleeper_centre.x_m") == 10);
+  CHECK(at("support_0.force_z_n") == 17);
+  CHECK(at("support_right_40.force_z_n") == 17 + 81);
+  CHECK(at("frame_centre.x_m") == 99);
+  CHECK(at("axle_left.force_x_n") == 106);
+  CHECK(at("axle_left.moment_z_n_m") == 111);
+  CHECK(at("foot_left_rear.force_n") == 112);
+  CHECK(built.columns.size() == 114);
+}
+
+TEST_CASE("what is not stepped beside bodies is refused by its key", "[scene]") {
+  const auto refused = [](const std::string& option, const std::string& said) {
+    CAPTURE(option);
+    CHECK_THAT(with({option}), Contains(said));
+  };
+  refused("wheelset=[{name=\"w\"}]", "[[wheelset]] is not stepped beside bodies and beams");
+  refused("irregularity={spectrum=\"ore_low\"}", "irregularity is felt by wheels");
+  refused("defect=[{kind=\"dipped_joint\"}]", "defect is felt by wheels");
+  refused("static.tolerance=1e-9", "[static] is of `railstep static`");
+  refused("condense.kind=\"modal\"", "kind = \"modal\" is not stepped beside bodies and beams");
+  refused("condense={kind=\"full\", modes_per_bay=2}", "modes_per_bay is of a condensed track");
+  refused("condense={kind=\"full\", highest_hz=200}", "highest_hz is of a condensed track");
+  refused("condense.residual_flexibility=true", "accepted beside bodies and beams is false");
+  CHECK(with({"condense={kind=\"full\", residual_flexibility=false}"}) == "accepted");
+  refused("step.scheme=\"energy-momentum\"",
+          "scheme = \"energy-momentum\" is of bodies and beams "
+          "without a track; accepted are \"generalised-alpha\"");
+  refused("step.scheme=\"tr-bdf2\"", "bodies and beams are not stepped; accepted are");
+  refused("step.scheme=\"rk4\"", "accepted are \"generalised-alpha\", \"backward-euler\"");
+  refused("step.frame_s=0.003", "whole frames");
+  refused("joints.hold=\"gear-gupta-leimkuhler\"",
+          "[joints] hold = \"gear-gupta-leimkuhler\" does not hold joints on a track; accepted are "
+          "\"augmented-lagrangian\"");
+  refused("track.model=\"nonlinear\"", "[track] model = \"nonlinear\" is not stepped");
+  refused("track.reference_line=\"foot\"", "[track] reference_line = \"foot\" is not stepped");
+  refused("system.planar=true", "[system] planar = true is the plane y = 0, in which two rails");
+  refused("body=[]", "neither a [[body]] nor a [[beam]]");
+}
+
+TEST_CASE("rails are named, and points lie on them", "[scene]") {
+  CHECK_THAT(with({"spring[0].between=[\"rail lift\", \"frame\"]"}),
+             Contains("between has \"rail lift\", which is a rail that the track has not; accepted "
+                      "are \"ground\", \"frame\", \"disc_left\", \"disc_right\", \"rail left\", "
+                      "\"rail right\""));
+  CHECK_THAT(with({"spring[0].point_m=[25, 0.75, 0]"}),
+             Contains("[spring[0]] point_m is at 25 m along the left rail; accepted is 0 to 24 m"));
+  CHECK_THAT(with({"spring[0].point_m=[11.7, -0.75, 0.091]"}),
+             Contains("point_m is 1.50276 m beside the left rail"));
+  CHECK_THAT(with({"force[0].on=\"rail left\""}),
+             Contains("\"rail left\", which is a rail, on which a force is a [[load]]"));
+  CHECK_THAT(with({"sensor[0].on=\"rail right\""}),
+             Contains("which is a rail, on which a sensor has on = \"rail\" and rail; accepted are "
+                      "\"frame\", \"disc_left\", \"disc_right\", \"rail\", \"sleeper\""));
+  CHECK_THAT(with({"sensor[0].on=\"fram\""}), Contains("which is unknown"));
+  CHECK_THAT(with({"body[1].name=\"sleeper\""}),
+             Contains("[body[1]] name = \"sleeper\" is what a sensor of a track is on"));
+  CHECK_THAT(with({"load=[{name=\"frame\", rail=\"left\", start_m=6, force_z_n=-1e4}]"}),
+             Contains("[body[0]] name = \"frame\" is taken by [load[0]]"));
+  CHECK_THAT(with({"spring[1].name=\"frame\""}), Contains("is taken by [body[0]]"));
+  // the same spring with no name: nothing to name its column by
+  CHECK_THAT(with({"spring=[{between=[\"rail left\", \"frame\"], point_m=[11.7, 0.75, 0.091], "
+                   "other_point_m=[11.7, 0.75, 0.341], stiffness_n_per_m=1e6, trace=true}]"}),
+             Contains("[spring[0]] trace = true wants a name"));
+}
+
+TEST_CASE("a body that nothing holds finds no equilibrium", "[scene]") {
+  // the disc that no joint holds
+  CHECK_THAT(with({"joint[2].between=[\"frame\", \"disc_left\"]", "joint[2].point_m=[12, 0.3, 0.6]",
+                   "joint[4].between=[\"frame\", \"disc_left\"]", "joint[4].point_m=[12, 0.3, 0.6]",
+                   "joint[4].polynomial_rad=[0, 188.49555921538759]"}),
+             Contains("exciter_on_track.toml: no static equilibrium is found at the start: body 2 "
+                      "does not come to rest"));
+  CHECK(with({"joint=[]", "step.start=\"released\""}) == "accepted");
+}

@@ -1,0 +1,32 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "study/study_row.h"
+
+namespace railstep {
+
+/// What a scene's model misses, and what of that is known.
+struct TransientError {
+  double from_s;    // what comes before is left out
+  double window_s;  // from the start
+  double largest;   // of loads' deflections and rails' heights under wheels, over each one's peak
+  double reference_error;  // the reference's own, estimated
+  ErrorParts parts;
+  /// What the law of contact takes away: what wheels with a linear contact, or bonded to the rail,
+  /// do otherwise than by Hertz's law. In no other number here; none where all follow it.
+  std::optional<double> contact_law;
+};
+
+/// Runs the scene and a reference of it: full order, elements and steps halved until its own error
+/// is a tenth of the scene's, two or three times. Where the scene starts released, the first fifth
+/// of the window is left out, 0.02 s at most.
+/// @param overrides  with which the scene was read
+/// @param asked  s, of the window; none: the whole scene, or what of it a reference can be made of
+/// in some seconds
+TransientError transient_error(const Scene& scene, const std::vector<std::string>& overrides,
+                               std::optional<double> asked = std::nullopt);
+
+}  // namespace railstep

@@ -1,0 +1,383 @@
+#include "build/build.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "build/about.h"
+#include "build/build_endless.h"
+#include "build/build_irregularity.h"
+#include "build/build_joints.h"
+#include "build/build_sensors.h"
+#include "build/build_unstepped.h"
+#include "build/cache_sizes.h"
+#include "build/step_scheme.h"
+#include "offline/analysis/buckling.h"
+#include "offline/beam/linearise.h"
+#include "offline/pack/artefact.h"
+#include "offline/pack/travel_rows.h"
+#include "offline/start/start.h"
+#include "offline/start/start_impact.h"
+
+namespace railstep {
+namespace {
+
+/// A scene's table is 0 before its first row; the model's keeps its first value. A row one bit
+/// earlier makes them the same function.
+std::vector<double> packed_table(const TimeTable& table) {
+  std::vector<double> rows = {
+      std::nextafter(table.time.front(), -std::numeric_limits<double>::infinity()), 0.};
+  for (std::size_t i = 0; i < table.time.size(); ++i) {
+    rows.push_back(table.time[i]);
+    rows.push_back(table.value[i]);
+  }
+  return rows;
+}
+
+std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& sections) {
+  std::vector<MovingLoad> loads;
+  for (const LoadScene& l : scene.loads) {
+    const std::vector<double> speeds = l.speeds ? l.speeds->rows() : std::vector<double>{};
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    const double never = travel_table(l.speed, speeds).speed < 0. ? -kFar : kFar;
+    loads.push_back({.rail = l.rail == Side::right ? 1 : 0,
+                     .start = l.start,
+                     .speed = l.speed,
+                     .stop = l.stop.value_or(never),
+                     .force = l.force_z,
+                     .z = height_z(l.at, section_of(sections, l.rail)),
+                     .table = l.factor ? packed_table(*l.factor) : std::vector<double>{},
+                     .speeds = speeds,
+                     .amplitude = l.amplitude,
+                     .frequency = l.frequency,
+                     .phase = l.phase});
+  }
+  return loads;
+}
+
+std::vector<OuterForce> outer_forces(const std::vector<BodyForceScene>& of) {
+  std::vector<OuterForce> forces;
+  forces.reserve(of.size());
+  for (const BodyForceScene& force : of)
+    forces.push_back({force.direction,
+                      force.input >= 0 ? std::vector<double>{} : packed_table(force.force),
+                      force.input});
+  return forces;
+}
+
+Wheelset wheelset_of(const WheelsetScene& w) {
+  Wheelset set;
+  set.mass = w.mass;
+  set.inertia_roll = w.inertia_roll;
+  set.inertia_spin = w.inertia_spin;
+  set.inertia_yaw = w.inertia_yaw;
+  set.weight = w.gravity ? (w.mass + w.carried_mass) * kGravity : 0.;
+  set.radius = w.radius;
+  set.tread_half_width = w.tread_half_width;
+  set.start = w.start;
+  set.speed = w.speed;
+  if (w.speeds) set.speeds = w.speeds->rows();
+  set.guide =
+      w.guide.method == GuideMethod::baumgarte ? Guide::baumgarte : Guide::augmented_lagrangian;
+  set.cap = w.guide.cap;
+  set.tolerance = w.guide.tolerance;
+  set.alpha = w.guide.alpha;
+  set.beta = w.guide.beta;
+  set.forces = outer_forces(w.forces);
+  set.tread = treads_of(w);
+  set.flange = w.flange;
+  return set;
+}
+
+std::vector<Wheelset> wheelsets_of(const Scene& scene) {
+  std::vector<Wheelset> sets;
+  for (const WheelsetScene& w : scene.wheelsets) sets.push_back(wheelset_of(w));
+  return sets;
+}
+
+std::vector<double> limits_of(const std::vector<InputScene>& inputs) {
+  std::vector<double> limits;
+  limits.reserve(inputs.size());
+  for (const InputScene& input : inputs) limits.push_back(input.limit);
+  return limits;
+}
+
+std::vector<ExternalWheel> external_wheels_of(const Scene& scene) {
+  std::vector<ExternalWheel> wheels;
+  wheels.reserve(scene.external_wheels.size());
+  for (const ExternalWheelScene& w : scene.external_wheels)
+    wheels.push_back({w.rail == Side::right ? 1 : 0, w.limit});
+  return wheels;
+}
+
+std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
+  std::vector<RunningVehicle> vehicles;
+  for (const VehicleScene& v : scene.vehicles)
+    vehicles.push_back({.vehicle = v.kind.vehicle,
+                        .rail = v.rail == Side::right ? 1 : 0,
+                        .start = v.start,
+                        .speed = v.speed,
+                        .speeds = v.speeds ? v.speeds->rows() : std::vector<double>{},
+                        .gravity = v.gravity ? kGravity : 0.,
+                        .contact = v.contact,
+                        .stiffness = v.stiffness,
+                        .damping = v.damping,
+                        .tread = treads_of(v),
+                        .forces = outer_forces(v.forces),
+                        .falling = v.falling});
+  return vehicles;
+}
+
+}  // namespace
+
+Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail) {
+  const bool right = rail == Side::right && scene.right_rail;
+  Railhead head;
+  head.top_z = height_z(Height::head, section_of(sections, rail));
+  const RailScene& own = right ? *scene.right_rail : scene.rail;
+  head.crown_radius = own.crown_radius;
+  if (has_flanges(scene)) head.gauge_half_width = .5 * head_width(own).value();
+  return head;
+}
+
+double rail_z(const Scene& scene, const RailSections& sections, const Track& track, Side rail) {
+  const auto top = [&](Side side) {
+    const Railhead head = railhead_of(scene, sections, side);
+    return crown_top(track.lean(side == Side::right ? 1 : 0), head.top_z, head.crown_radius).height;
+  };
+  return top(Side::left) - top(rail);
+}
+
+namespace {
+
+Support support_of(const SupportScene& s, const Section& section, double axis_z) {
+  return {.stiffness = {s.x.stiffness, s.y.stiffness, s.z.stiffness},
+          .damping = {s.x.damping, s.y.damping, s.z.damping},
+          .roll_stiffness = s.roll.stiffness,
+          .roll_damping = s.roll.damping,
+          .height_z = height_z(s.at, section, axis_z),
+          .half_spread = s.half_spread,
+          .length = s.length,
+          .unilateral = s.unilateral,
+          .gap = s.gap};
+}
+
+Sleeper sleeper_of(const SleeperScene& s) {
+  const Spring held{};  // without stiffness the track holds that direction
+  const Spring x = s.ballast_x.value_or(held), y = s.ballast_y.value_or(held);
+  return {.mass = s.mass,
+          .roll_inertia = s.roll_inertia,
+          .ballast_stiffness = {x.stiffness, y.stiffness, s.ballast_z.stiffness},
+          .ballast_damping = {x.damping, y.damping, s.ballast_z.damping},
+          .pitch_inertia = s.pitch_inertia,
+          .ballast_length = s.ballast_length,
+          .ballast_unilateral = s.ballast_unilateral,
+          .ballast_gap = s.ballast_gap};
+}
+
+Stop stop_of(const StopScene& s, const Section& section, double axis_z) {
+  return {.rail = s.rail == Side::right ? 1 : 0,
+          .x = s.position,
+          .z = height_z(s.at, section, axis_z),
+          .direction = s.direction,
+          .side = s.side,
+          .gap = s.gap,
+          .stiffness = s.spring.stiffness,
+          .damping = s.spring.damping};
+}
+
+/// Force in a rail at rest: its own, and what heat makes between ends that hold it, N. Gaps of
+/// joints pass none until they are closed.
+double axial_force_of(const RailScene& rail, double area, int side, const HeatedJoints& heated) {
+  for (const RailJoint& joint : heated.joints)
+    if (joint.rails[static_cast<std::size_t>(side)])
+      return -heated.compression[static_cast<std::size_t>(side)];
+  return rail.axial_force - rail.young * area * (rail.expansion * rail.temperature_rise);
+}
+
+/// The right rail where it differs; its pads reach down to its own foot.
+void add_right_rail(const Scene& scene, const RailSection& found, const HeatedJoints& heated,
+                    bool keep_moments, Track& track) {
+  const RailScene& right = *scene.right_rail;
+  RailBar bar{beam_section(found), {right.young, right.poisson, right.density}, 0.};
+  if (!keep_moments) bar.section.moments.reset();
+  bar.axial_force = axial_force_of(right, bar.section.area, 1, heated);
+  if (scene.track.reference_line != ReferenceLine::centroid)
+    throw std::invalid_argument(
+        "rails that differ have their nodes on their centroids; accepted is track.reference_line = "
+        "\"centroid\"");
+  track.right = bar;
+  if (!scene.support) return;
+  const double height = height_z(scene.support->at, found.section, track.axis_z);
+  for (int border = 0; border <= track.bays && height != track.support.height_z; ++border) {
+    Seat seat = track.seat(border);
+    seat.pad[1].height_z = height;
+    track.changed_seats[border] = seat;
+  }
+}
+
+}  // namespace
+
+PackOptions pack_options_of(const Scene& scene) {
+  const StepScene& step = *scene.step;
+  if (step.steps_per_frame > std::numeric_limits<int>::max())
+    throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
+                                 scene.file.string(), step.steps_per_frame,
+                                 std::numeric_limits<int>::max()));
+  PackOptions options{.scheme = scene.condense.kind ? held_scheme_of(step) : scheme_of(step),
+                      .steps_per_frame = static_cast<int>(step.steps_per_frame),
+                      .residual_flexibility = scene.condense.residual_flexibility,
+                      .gravity = scene.track.gravity ? kGravity : 0.,
+                      .steps = step.steps};
+  if (scene.condense.kind) options.reduction = reduction_of(scene);
+  if (scene.track.endless) options.endless = EndlessTrack{bays_behind(scene)};
+  return options;
+}
+
+Reduction reduction_of(const Scene& scene) {
+  const CondenseScene& c = scene.condense;
+  const double per_bay = c.modes_per_bay.value_or(c.highest_hz ? 1000. : 1.);
+  const double modes = per_bay * static_cast<double>(scene.track.bays);
+  return {.kind = c.kind.value_or(ReductionKind::modal),
+          .limit = {static_cast<int>(std::min(modes, static_cast<double>(kMostModalUnknowns))),
+                    c.highest_hz.value_or(std::numeric_limits<double>::infinity())},
+          .nodes_per_bay = c.nodes_per_bay,
+          .expansion_hz = c.expansion_hz};
+}
+
+Track track_of(const Scene& scene) { return track_of(scene, rail_section_of(scene)); }
+
+Track track_of(const Scene& scene, const RailSection& rail) try {
+  const Section& section = rail.section;
+  Track track;
+  track.section = beam_section(rail);
+  track.material = {scene.rail.young, scene.rail.poisson, scene.rail.density};
+  // Without third and fourth moments, which it does not need, a linear element keeps its bits.
+  const bool keep_moments = scene.track.model == RailModel::nonlinear ||
+                            scene.track.linearised_under_weight || scene.rail.section_points > 0;
+  if (!keep_moments) track.section.moments.reset();
+  track.rule = scene.rail.rule;
+  track.axis_z = axis_z_of(scene.track.reference_line, section);
+  track.unknowns = scene.track.unknowns;
+  track.rails = scene.track.rails;
+  track.bays = static_cast<int>(scene.track.bays);  // read_scene keeps it under kMostElements
+  track.bay_length = scene.track.bay;
+  track.elements_per_bay = scene.track.elements_per_bay;
+  track.rail_spacing = scene.track.rail_spacing;
+  track.cant = scene.rail.cant;
+  track.ends = scene.track.ends;
+  track.end_zone_bays = scene.track.end_zone_bays;
+  track.ring = scene.track.endless;
+  if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
+  if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
+  const RailSection right = scene.right_rail ? rail_section_of(scene, Side::right) : rail;
+  const HeatedJoints heated = heated_joints(scene, {section.area.area, right.section.area.area},
+                                            {section.height, right.section.height});
+  track.axial_force = axial_force_of(scene.rail, track.section.area, 0, heated);
+  track.joints = heated.joints;
+  if (scene.right_rail) add_right_rail(scene, right, heated, keep_moments, track);
+  change_seats(scene.seat_changes, track);
+  for (const StopScene& stop : scene.stops) {
+    const bool own = stop.rail == Side::right && scene.right_rail;
+    track.stops.push_back(
+        stop_of(stop, own ? rail_section_of(scene, Side::right).section : section, track.axis_z));
+  }
+  refuse_buckled(track);
+  if (!scene.track.linearised_under_weight) return track;
+  return linearised_under_weight(track, scene.track.gravity ? kGravity : 0.);
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+}
+
+namespace {
+
+/// The trace's columns in the order in which a frame's outputs are written.
+std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) {
+  std::vector<std::string> columns;
+  for (const LoadScene& load : scene.loads) {
+    columns.push_back(load.name + ".x_m");
+    columns.push_back(load.name + ".deflection_z_m");
+  }
+  const auto add_wheel = [&](const std::string& wheel) {
+    for (const char* quantity :
+         {"force_z_n", "force_z_mean_n", "force_z_peak_n", "impulse_z_n_s", "gap_m", "rail_z_m"})
+      columns.push_back(wheel + "." + quantity);
+  };
+  for (const WheelsetScene& wheelset : scene.wheelsets)
+    for (const std::string& wheel : wheelset.wheels) add_wheel(wheel);
+  for (const VehicleScene& vehicle : scene.vehicles)
+    for (std::size_t i = 0; i < vehicle.kind.vehicle.wheels.size(); ++i)
+      add_wheel(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
+  for (const WheelsetScene& wheelset : scene.wheelsets)
+    for (const std::string& wheel : wheelset.wheels)
+      for (const char* quantity :
+           {"flange_force_n", "flange_force_peak_n", "flange_impulse_n_s", "flange_gap_m"})
+        if (wheelset.flange) columns.push_back(wheel + "." + quantity);
+  for (const ExternalWheelScene& wheel : scene.external_wheels)
+    for (const char* quantity : {"dx_m", "dy_m", "dz_m", "vx_m_per_s", "vy_m_per_s", "vz_m_per_s"})
+      columns.push_back(wheel.name + "." + quantity);
+  columns.insert(columns.end(), sensors.columns.begin(), sensors.columns.end());
+  return columns;
+}
+
+}  // namespace
+
+TracedTraffic traffic_of(const Scene& scene, const Track& track) {
+  const RailSections sections = sections_of(scene);
+  const Railhead head = railhead_of(scene, sections, Side::left);
+  Sensors sensors = sensors_of(scene, track, sections, head);
+  std::vector<std::string> columns = columns_of(scene, sensors);
+  return {{.loads = loads_of(scene, sections),
+           .wheelsets = wheelsets_of(scene),
+           .vehicles = vehicles_of(scene),
+           .head = head,
+           .track_sensors = std::move(sensors.track_sensors),
+           .irregularities = irregularities_of(scene),
+           .input_limits = limits_of(scene.inputs),
+           .external_wheels = external_wheels_of(scene),
+           .right_head = railhead_of(scene, sections, Side::right)},
+          std::move(columns)};
+}
+
+Built::Built(const Scene& scene) try {
+  fix_cache_sizes();
+  refuse_unstepped(scene);
+  track = track_of(scene);
+  if (track.ring && !scene.condense.kind) track = window_of(std::move(track));
+  TracedTraffic traced = traffic_of(scene, track);
+  about = railstep::about(scene);
+  columns = {"time_s"};
+  columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
+  for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
+  for (const ExternalWheelScene& wheel : scene.external_wheels)
+    for (const char* quantity : {"x_m", "y_m", "force_x_n", "force_y_n", "force_z_n"})
+      inputs.push_back(wheel.name + "." + quantity);
+  packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
+  const double gravity = scene.track.gravity ? kGravity : 0.;
+  if (scene.step->start == Start::equilibrium)
+    packed->set_start(start_in_equilibrium(track, *packed, gravity));
+  if (scene.step->start == Start::released)
+    packed->set_start(start_under_impact(track, *packed, gravity));
+  if (scene.step->start == Start::moving) packed->set_start(start_moving(track, *packed, gravity));
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+}
+
+std::string block_text(const std::vector<std::string>& columns,
+                       const std::vector<std::string>& inputs) {
+  std::string text = fmt::format("{}", fmt::join(columns, "\n"));
+  if (!inputs.empty()) text += fmt::format("\n\n{}", fmt::join(inputs, "\n"));
+  return text;
+}
+
+std::vector<std::byte> block_of(const Built& built, BlockNotes notes) {
+  notes.about = built.about;
+  return to_block(built.packed->model(), block_text(built.columns, built.inputs), notes);
+}
+
+}  // namespace railstep

@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace railstep {
+
+/// Bays of a scene's ring or window that lie behind x = 0, so that the traffic stands in its
+/// middle.
+int bays_behind(const Scene& scene);
+
+/// "track.bays=N" of a window in full order that has room for a scene's traffic, where it is a ring
+/// that is shorter; else empty. (A ring wants one decay length, a window one on either side.)
+std::vector<std::string> longer_window(const Scene& scene);
+
+}  // namespace railstep

@@ -1,0 +1,91 @@
+#include "build/build_system.h"
+
+#include <fmt/core.h>
+
+#include <stdexcept>
+
+#include "build/about.h"
+#include "build/build.h"
+#include "build/build_sensors.h"
+#include "build/cache_sizes.h"
+#include "build/step_scheme.h"
+#include "offline/pack/artefact.h"
+
+namespace railstep {
+namespace {
+
+void add_section(const BeamBar& made_of, const std::string& place, FlexibleBeam& beam) {
+  const BarScene& bar = made_of.bar;
+  const RailSection found = bar_section(bar, true, place);
+  beam.section = beam_section(found);
+  beam.material = {bar.young, bar.poisson, bar.density};
+  beam.rule = bar.rule;
+  beam.axis_z = axis_z_of(made_of.line, found.section);
+  beam.half_height = .5 * found.section.height;
+}
+
+SystemOptions options_of(const SystemScene& scene) {
+  SystemOptions options = scene.options;
+  options.scheme = scheme_of(scene.step);
+  options.energy_momentum = scene.step.scheme == TimeScheme::energy_momentum;
+  options.steps_per_frame = static_cast<int>(scene.step.steps_per_frame);
+  options.steps = scene.step.steps;
+  options.at_rest = scene.step.start == Start::equilibrium;
+  options.traced = scene.traced;
+  return options;
+}
+
+}  // namespace
+
+System system_of(const SystemScene& scene) {
+  System system = scene.system;
+  for (std::size_t i = 0; i < system.beams.size(); ++i)
+    add_section(scene.bars[i], fmt::format("{}: [beam[{}]]", scene.file.string(), i),
+                system.beams[i]);
+  for (const InputScene& input : scene.inputs) system.input_limits.push_back(input.limit);
+  return system;
+}
+
+namespace {
+
+std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& system,
+                                        std::vector<std::string>& columns) {
+  if (!scene.track) return std::make_unique<PackedSystem>(system, options_of(scene));
+  const Track track = track_of(*scene.track);
+  if (!fixed_ports(track).empty())
+    throw std::invalid_argument(
+        "supports that do not pull, or have a gap, are not stepped beside bodies and beams; "
+        "accepted are a scene without gap_m and unilateral, or a track alone");
+  const TracedTraffic traced = traffic_of(*scene.track, track);
+  columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
+  return std::make_unique<PackedSystem>(system, options_of(scene), track, traced.traffic,
+                                        pack_options_of(*scene.track));
+}
+
+}  // namespace
+
+BuiltSystem::BuiltSystem(const SystemScene& scene) try
+    : names(scene.names), system((fix_cache_sizes(), system_of(scene))) {
+  about = railstep::about(scene);
+  columns = {"time_s"};
+  for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
+  packed = packed_of(scene, system, columns);
+  for (const std::string& sensor : names.sensors)
+    for (const char* quantity : kSensorQuantities)
+      columns.push_back(fmt::format("{}.{}", sensor, quantity));
+  for (const int joint : scene.traced.joints)
+    for (const char* quantity : kJointQuantities)
+      columns.push_back(
+          fmt::format("{}.{}", names.joints[static_cast<std::size_t>(joint)], quantity));
+  for (const int spring : scene.traced.springs)
+    columns.push_back(fmt::format("{}.force_n", names.springs[static_cast<std::size_t>(spring)]));
+} catch (const std::invalid_argument& error) {
+  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+}
+
+std::vector<std::byte> block_of(const BuiltSystem& built, BlockNotes notes) {
+  notes.about = built.about;
+  return to_block(built.packed->model(), block_text(built.columns, built.inputs), notes);
+}
+
+}  // namespace railstep

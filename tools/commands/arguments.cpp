@@ -1,0 +1,170 @@
+#include "commands/arguments.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+#include "text/files.h"
+#include "text/read.h"
+
+namespace railstep {
+namespace {
+
+std::string refused_number(std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const bool whole = !text.empty() && text.front() != ' ' && *end == '\0';
+  if (whole && value == 0.) text = "0";  // of -0.0 too
+  if (whole && std::isfinite(value)) return {};
+  return fmt::format("'{}' is no {}number; accepted is a finite number", text.substr(0, 60),
+                     whole ? "finite " : "");
+}
+
+std::string refused_integer(std::string& text) {
+  std::int64_t value = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, fault] = std::from_chars(text.data(), last, value);
+  if (fault == std::errc{} && end == last) return {};
+  return fmt::format("'{}' is no number; accepted is a whole number", text.substr(0, 60));
+}
+
+/// Options of a command whose values are files that it writes.
+bool is_written(const std::string& name) {
+  constexpr std::string_view kWritten[] = {"--trace", "--report", "--record", "--vtk",
+                                           "--out",   "--emit-c", "--shape",  "--csv",
+                                           "--names", "--resume"};
+  return std::find(std::begin(kWritten), std::end(kWritten), name) != std::end(kWritten);
+}
+
+/// Whether the option names a folder that the command makes.
+bool makes_folders(const CLI::App& command, const CLI::Option& option) {
+  return option.get_name() == "--vtk" ||
+         (command.get_name() == "sweep" && option.get_name() == "--out");
+}
+
+bool is_read(const std::string& name) {
+  constexpr std::string_view kRead[] = {"SCENE", "PROFILE", "RECORDING", "--inputs", "--reference"};
+  return std::find(std::begin(kRead), std::end(kRead), name) != std::end(kRead);
+}
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  // A device or a pipe takes what both write, and a folder is refused where it is written.
+  if (std::filesystem::exists(a, ignored) && !std::filesystem::is_regular_file(a, ignored))
+    return false;
+  return std::filesystem::weakly_canonical(a, ignored) ==
+             std::filesystem::weakly_canonical(b, ignored) ||
+         std::filesystem::equivalent(a, b, ignored);
+}
+
+/// The first word that no one took; an option before others.
+std::string unread_word(const CLI::App& app) {
+  const std::vector<std::string> unread = app.remaining(true);
+  for (const std::string& word : unread)
+    if (word.starts_with("-")) return word;
+  return unread.empty() ? "" : unread.front();
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) names.push_back(option->get_name());
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  const std::function<bool(const CLI::App*)> all = [](const CLI::App*) { return true; };
+  for (const CLI::App* command : app.get_subcommands(all)) names.push_back(command->get_name());
+  return names;
+}
+
+}  // namespace
+
+void refuse_empty_words(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const bool no_value = word.starts_with("--") && word.find('=') == word.size() - 1;
+    if (word.empty())
+      throw InputError(fmt::format("the word after '{}' is empty; accepted is a value or a name",
+                                   std::string_view(argv[i - 1]).substr(0, 60)));
+    if (no_value)
+      throw InputError(
+          fmt::format("{} has nothing behind it; accepted is a value or a name", word));
+  }
+}
+
+void want_finite_numbers(CLI::App& app) {
+  const std::function<bool(CLI::App*)> all = [](CLI::App*) { return true; };
+  for (CLI::App* command : app.get_subcommands(all))
+    for (CLI::Option* option : command->get_options()) {
+      const std::string type = option->get_type_name();
+      if (type.starts_with("FLOAT")) option->transform(CLI::Validator(refused_number, ""));
+      if (type.starts_with("INT")) option->transform(CLI::Validator(refused_integer, ""));
+    }
+}
+
+std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::string word = unread_word(app), shown = word.substr(0, 60);
+  const std::string name = chosen.empty() ? "" : chosen.front()->get_name() + " ";
+  std::string said = error.what();
+  if (chosen.empty() && !word.empty())
+    said = fmt::format("'{}' is no command; did you mean '{}'?", shown,
+                       nearest(word, command_names(app)));
+  else if (!chosen.empty() && word.starts_with("-"))
+    said = fmt::format("unknown option '{}'; did you mean '{}'?", shown,
+                       nearest(word, option_names(*chosen.front())));
+  else if (!chosen.empty() && !word.empty())
+    said = fmt::format("'{}' is one word too many", shown);
+  std::replace(said.begin(), said.end(), '\n', ' ');
+  return fmt::format("{}{} see `railstep {}--help`", said, said.ends_with('?') ? "" : ";", name);
+}
+
+void refuse_impossible_places(const CLI::App& command) {
+  std::error_code ignored;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!is_written(option->get_name()) || option->empty()) continue;
+    const std::filesystem::path file = option->results().front(), folder = file.parent_path();
+    if (makes_folders(command, *option)) continue;
+    if (std::filesystem::is_directory(file, ignored))
+      throw InputError(fmt::format("{} {}: cannot be written: it is a folder; accepted is a file",
+                                   option->get_name(), file.string()));
+    // To rename over /dev/stdout would take it from the whole machine, where the user may.
+    if (folder == "/dev" && std::filesystem::is_regular_file(file, ignored))
+      throw InputError(fmt::format(
+          "{} {}: cannot be written: it stands for an open file; accepted is that file's own name",
+          option->get_name(), file.string()));
+    if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+      throw InputError(
+          fmt::format("{} {}: cannot be written: there is no folder {}; accepted is a "
+                      "file in a folder that is there",
+                      option->get_name(), file.string(), folder.string()));
+  }
+}
+
+void refuse_same_files(const CLI::App& command) {
+  const std::vector<const CLI::Option*> options = command.get_options();
+  for (auto to = options.begin(); to != options.end(); ++to) {
+    if (!is_written((*to)->get_name()) || (*to)->empty()) continue;
+    const std::string file = (*to)->results().front();
+    if (!makes_folders(command, **to)) announce_output((*to)->get_name(), file);
+    for (auto other = options.begin(); other != options.end(); ++other) {
+      const std::string name = (*other)->get_name();
+      const bool taken = is_read(name) || (other < to && is_written(name));
+      if (taken && !(*other)->empty() && same_file(file, (*other)->results().front()))
+        throw InputError(fmt::format("{} and {} both name {}; accepted is a file of its own", name,
+                                     (*to)->get_name(), file));
+    }
+  }
+}
+
+}  // namespace railstep

@@ -1,0 +1,143 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands/command.h"
+#include "report/drawing.h"
+#include "report/pareto_report.h"
+#include "study/advice.h"
+#include "text/progress_bar.h"
+#include "text/write.h"
+
+namespace railstep {
+namespace {
+
+struct ParetoOptions {
+  ParetoRequest request;
+  std::string report, csv;
+  bool json = false;
+};
+
+nlohmann::ordered_json to_json(const ParetoResult& result) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const SettingRow& row : result.rows) rows.push_back(to_json(row));
+  return {{"reference",
+           {{"how", result.reference.how},
+            {"error", result.reference.error},
+            {"judged", judged_text(result)},
+            {"from_s", result.judged.from}}},
+          {"frame_s", result.frame},
+          {"advice", advice(result)},
+          {"rows", std::move(rows)}};
+}
+
+void print_front(const ParetoResult& result) {
+  const double floor = floor_of(result.reference);
+  fmt::print("reference  {}; own error {:.1e}\njudged     {}, from {:g} s on\n\n",
+             result.reference.how, result.reference.error, judged_text(result), result.judged.from);
+  fmt::print("{:>9} {:>14} {:>9} {:>9} {:>9} {:>10}  front\n", "frame, us", "error", "step",
+             "condens.", "mesh", "flops");
+  for (const SettingRow& row : result.rows)
+    if (row.on_front)
+      fmt::print("{:>9.3g} {:>14} {:>9.1e} {:>9.1e} {:>9.1e} {:>10}  {}\n", row.cost.us,
+                 error_text(row.errors.judged, floor), row.parts.step, row.parts.condensation,
+                 row.parts.mesh, row.cost.flops, words_of(row.setting));
+  std::size_t failed = 0;
+  for (const SettingRow& row : result.rows) failed += row.failure.empty() ? 0 : 1;
+  fmt::print("\n{} settings, {} made no result\n", result.rows.size(), failed);
+  for (const std::string& sentence : advice(result)) fmt::print("{}\n", sentence);
+}
+
+Exit run(const ParetoOptions& o) {
+  if (!o.report.empty()) need_gnuplot();
+  ParetoResult result;
+  {
+    std::unique_ptr<Progress> bar;
+    result = pareto(o.request, [&](std::int64_t done, std::int64_t all) {
+      if (!bar) bar = std::make_unique<Progress>(all);
+      (*bar)(done);
+    });
+  }
+  if (!o.csv.empty()) write_file(o.csv, pareto_csv(result));
+  if (!o.report.empty())
+    write_file(o.report, pareto_report(fmt::format("Speed against error: {}",
+                                                   o.request.scene.filename().string()),
+                                       result));
+  if (o.json)
+    fmt::print("{}\n", to_json(result).dump(2));
+  else
+    print_front(result);
+  for (const SettingRow& row : result.rows)
+    if (row.failure.empty()) return Exit::done;
+  fmt::print(stderr, "error: no setting made a result; the first: {}\n",
+             result.rows.front().failure);
+  return Exit::not_reached;
+}
+
+}  // namespace
+
+Command add_pareto(CLI::App& app) {
+  auto o = std::make_shared<ParetoOptions>();
+  ParetoRequest& asked = o->request;
+  CLI::App* sub = app.add_subcommand(
+      "pareto", "Speed against error of a scene over models, meshes, schemes and steps");
+  sub->add_option("SCENE", asked.scene, "scene file (TOML)")->required();
+  sub->add_option("--report", o->report, "HTML page to write");
+  sub->add_option("--csv", o->csv, "table to write");
+  sub->add_option("--resume", asked.resume,
+                  "file that keeps what is done; what it has is not run again");
+  sub->add_option("--set", asked.overrides,
+                  "key.path=value, as if written in the scene; repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
+  sub->add_option("--models", asked.choices.models,
+                  "with commas; a model is KIND[:AMOUNT][:bare][:UNKNOWNS]")
+      ->delimiter(',')
+      ->type_name("MODEL,MODEL")
+      ->allow_extra_args(false);
+  sub->add_option("--meshes", asked.choices.meshes, "elements per bay, with commas")
+      ->delimiter(',')
+      ->type_name("INT,INT")
+      ->allow_extra_args(false)
+      ->check(within(1, 1000));
+  sub->add_option(
+         "--schemes", asked.choices.schemes,
+         "with commas: generalised-alpha:RHO_INF, newmark, hht:ALPHA, backward-euler, tr-bdf2; of "
+         "condensed models held:RHO_INF, discrete-gradient")
+      ->delimiter(',')
+      ->type_name("SCHEME,SCHEME")
+      ->allow_extra_args(false);
+  sub->add_option("--steps", asked.choices.steps, "s, with commas; each goes into a frame")
+      ->delimiter(',')
+      ->type_name("FLOAT,FLOAT")
+      ->allow_extra_args(false);
+  sub->add_option(
+         "--output", asked.judged.outputs,
+         "what counts as the error: deflection, contact_force, support_force, sensor, stress, or a "
+         "column; repeatable; by default the first that there is")
+      ->take_all()
+      ->allow_extra_args(false);
+  sub->add_option("--from", asked.judged.from, "leave out what comes before, s")
+      ->check(within(0., 1e7));
+  sub->add_option("--reference-error", asked.reference_error,
+                  "refine the reference until its own error is below")
+      ->check(within(1e-15, 1.));
+  sub->add_option("--reference-levels", asked.reference_levels, "levels of refinement at most")
+      ->check(within(2, 10));
+  CLI::Option* trace = sub->add_option("--reference", asked.reference,
+                                       "trace (CSV) to measure against, of the scene's frames");
+  sub->add_option("--own-error", asked.reference_own_error, "of that trace, as its maker states it")
+      ->needs(trace)
+      ->check(within(0., 1.));
+  sub->add_flag("--json", o->json, "one JSON object on stdout");
+  sub->footer(
+      "Example: railstep pareto config/scenes/moving_load.toml --report pareto.html --csv "
+      "pareto.csv --resume pareto.jsonl");
+  return {sub, [o] { return run(*o); }};
+}
+
+}  // namespace railstep

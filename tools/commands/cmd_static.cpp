@@ -1,0 +1,97 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "answer/static_solution.h"
+#include "commands/command.h"
+#include "run/unit_note.h"
+#include "text/write.h"
+
+namespace railstep {
+namespace {
+
+struct StaticOptions {
+  std::string scene, model, shape;
+  std::vector<std::string> overrides;
+  bool json = false;
+};
+
+nlohmann::ordered_json to_json(const StaticSolution& solution) {
+  nlohmann::ordered_json points = nlohmann::ordered_json::array();
+  for (const StaticPoint& point : solution.points)
+    points.push_back({{"name", point.name}, {"displacement_m", point.displacement}});
+  return {{"points", points},
+          {"iterations", solution.iterations},
+          {"residual", solution.residual},
+          {"load_steps", solution.load_steps},
+          {"stable", solution.stable},
+          {"converged", solution.converged}};
+}
+
+void print_table(const StaticSolution& solution) {
+  fmt::print("{:<20} {:>17} {:>17} {:>17}\n", "point", "dx_m", "dy_m", "dz_m");
+  for (const StaticPoint& p : solution.points)
+    fmt::print("{:<20} {:>17.9e} {:>17.9e} {:>17.9e}\n", p.name, p.displacement[0],
+               p.displacement[1], p.displacement[2]);
+  fmt::print("iterations {}, load steps {}, residual {:.2e} of the load\n", solution.iterations,
+             solution.load_steps, solution.residual);
+  if (!solution.stable) fmt::print("unstable: the rails buckle out of this shape\n");
+}
+
+void print_history(const std::string& scene, const StaticSolution& solution) {
+  fmt::print(stderr,
+             "{}: no equilibrium was found within static.most_iterations and "
+             "static.most_load_halvings\n{:>12} {:>9} {:>12}\n",
+             scene, "load factor", "iteration", "residual");
+  for (const NewtonStep& step : solution.history)
+    fmt::print(stderr, "{:>12.6g} {:>9} {:>12.3e}\n", step.load_factor, step.iteration,
+               step.residual);
+}
+
+/// Points of the rails' neutral axis, at rest and displaced.
+std::string to_csv(const StaticSolution& solution) {
+  std::string text = "rail,x_m,y_m,z_m,dx_m,dy_m,dz_m\n";
+  for (const StaticPoint& p : solution.axis)
+    text +=
+        fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", p.name, p.rest[0],
+                    p.rest[1], p.rest[2], p.displacement[0], p.displacement[1], p.displacement[2]);
+  return text;
+}
+
+Exit run_static(const StaticOptions& o) {
+  std::vector<std::string> overrides = o.overrides;
+  if (!o.model.empty()) overrides.push_back(fmt::format("track.model=\"{}\"", o.model));
+  const Scene scene = read_scene(o.scene, overrides);
+  print_note(lopsided_note(scene));
+  const StaticSolution solution = solve_static(scene);
+  if (!solution.converged) print_history(o.scene, solution);
+  if (o.json)
+    fmt::print("{}\n", to_json(solution).dump(2));
+  else if (solution.converged)
+    print_table(solution);
+  if (!solution.converged) return Exit::not_reached;
+  if (!o.shape.empty()) write_file(o.shape, to_csv(solution));
+  return Exit::done;
+}
+
+}  // namespace
+
+Command add_static(CLI::App& app) {
+  auto o = std::make_shared<StaticOptions>();
+  CLI::App* sub = app.add_subcommand("static", "Static equilibrium of a scene at t = 0");
+  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
+  sub->add_option("--model", o->model, "how the rail bends, in place of the scene's track.model")
+      ->check(CLI::IsMember({"nonlinear", "linearised", "timoshenko"}));
+  sub->add_option("--shape", o->shape, "write the displaced neutral axis (CSV)");
+  sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
+  sub->add_flag("--json", o->json, "one JSON object on stdout");
+  sub->footer("Example: railstep static config/scenes/cantilever_rail.toml");
+  return {sub, [o] { return run_static(*o); }};
+}
+
+}  // namespace railstep

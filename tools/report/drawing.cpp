@@ -1,0 +1,63 @@
+#include "report/drawing.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+namespace railstep {
+namespace {
+
+/// A file of its own in the temporary folder, gone at the end of the scope.
+class ScriptFile {
+ public:
+  explicit ScriptFile(const std::string& text)
+      : name_((std::filesystem::temp_directory_path() / "railstep-XXXXXX").string()) {
+    const int descriptor = mkstemp(name_.data());
+    if (descriptor < 0) throw std::runtime_error("no temporary file can be made for gnuplot");
+    close(descriptor);
+    std::FILE* out = std::fopen(name_.c_str(), "wb");
+    if (out) std::fwrite(text.data(), 1, text.size(), out);
+    if (!out || std::fclose(out) != 0)
+      throw std::runtime_error("the temporary file for gnuplot cannot be written");
+  }
+  ScriptFile(const ScriptFile&) = delete;
+  ScriptFile& operator=(const ScriptFile&) = delete;
+  ~ScriptFile() { std::remove(name_.c_str()); }
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
+}  // namespace
+
+void need_gnuplot() {
+  if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
+    throw std::runtime_error("--report draws with gnuplot, which is not installed");
+}
+
+std::string drawn(const std::string& script) {
+  const ScriptFile file(script);
+  std::FILE* in = popen(fmt::format("gnuplot '{}'", file.name()).c_str(), "r");
+  if (!in) throw std::runtime_error("gnuplot cannot be started");
+  std::string svg;
+  char buffer[4096];
+  for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, in)) > 0;)
+    svg.append(buffer, got);
+  const std::size_t start = svg.find("<svg");
+  if (pclose(in) != 0 || start == std::string::npos)
+    throw std::runtime_error("gnuplot failed to draw the report");
+  return svg.substr(start);
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+
+}  // namespace railstep

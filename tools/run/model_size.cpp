@@ -1,0 +1,16 @@
+#include "run/model_size.h"
+
+#include "offline/track/assembly.h"
+
+namespace railstep {
+
+std::pair<int, int> unknowns_of(const Track& track, const PackedModel& packed) {
+  int full = 0, kept = 0;
+  for (const Line& line : assemble(track)) full += line.unknowns();
+  for (const PackedLine& own : packed.lines())
+    kept += packed.model().condensed != 0 ? kept_coordinates(own.basis, own.modes)
+                                          : own.line.unknowns();
+  return {full, kept};
+}
+
+}  // namespace railstep

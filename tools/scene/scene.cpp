@@ -1,0 +1,352 @@
+#include "scene/scene.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+/// One word for both ends, or a pair [x = 0, x = length].
+RailEnds read_ends(const Table& t) {
+  constexpr RailEnd kEnds[] = {RailEnd::free, RailEnd::pinned, RailEnd::clamped,
+                               RailEnd::non_reflecting};
+  const auto ends = t.choices("ends", {"free", "pinned", "clamped", "non-reflecting"}, 2, 0);
+  return {kEnds[ends[0]], kEnds[ends[1]]};
+}
+
+/// Bays of the zone before a non-reflecting end; the zones of both ends lie on the track.
+int read_end_zone(const Table& t, const TrackScene& track) {
+  const std::int64_t zones =
+      std::count(track.ends.begin(), track.ends.end(), RailEnd::non_reflecting);
+  if (zones == 0) {
+    if (t.has("end_zone_bays"))
+      t.refuse("end_zone_bays",
+               "end_zone_bays, but no end is \"non-reflecting\"; accepted beside one that is");
+    return kEndZoneBays;
+  }
+  const auto bays = static_cast<int>(t.integer("end_zone_bays", 1, 10'000, kEndZoneBays));
+  if (zones * bays > track.bays)
+    t.refuse("end_zone_bays",
+             fmt::format("{} zone{} of {} bays before non-reflecting ends, but bays = {}; accepted "
+                         "is end_zone_bays = {} or less, or more bays",
+                         zones, zones > 1 ? "s" : "", bays, track.bays, track.bays / zones));
+  return bays;
+}
+
+/// A track without end is taken at rest, and has no ends.
+void check_endless(const Table& t, const TrackScene& track) {
+  if (track.ends != RailEnds{})
+    t.refuse("ends", "a track without end has no ends to hold; accepted is \"free\"");
+  if (track.model != RailModel::linearised)
+    t.refuse("model", "accepted with length = \"endless\" is model = \"linearised\"");
+  if (track.linearised_under_weight)
+    t.refuse("linearised_at", "accepted with length = \"endless\" is linearised_at = \"rest\"");
+}
+
+TrackScene read_track(const Table& t) {
+  TrackScene track{};
+  constexpr Unknowns kUnknowns[] = {Unknowns::full, Unknowns::rigid_section, Unknowns::vertical};
+  track.unknowns = kUnknowns[t.choice("unknowns", {"full", "rigid-section", "vertical"})];
+  track.rails = static_cast<int>(t.integer("rails", 1, 2, 2));
+  track.bays = t.integer("bays", 1, std::int64_t{1} << 53);
+  track.bay = t.number("bay_m", between(0.05, 5.0));
+  track.elements_per_bay = static_cast<int>(t.integer("elements_per_bay", 1, 1000, 2));
+  track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
+  track.ends = read_ends(t);
+  track.end_zone_bays = read_end_zone(t, track);
+  if (t.has("length")) track.endless = t.choice("length", {"endless"}) == 0;
+  track.gravity = t.boolean("gravity", false);
+  constexpr RailModel kModels[] = {RailModel::linearised, RailModel::nonlinear,
+                                   RailModel::timoshenko};
+  track.model = kModels[t.choice("model", {"linearised", "nonlinear", "timoshenko"}, 0)];
+  if (track.model == RailModel::nonlinear && track.unknowns != Unknowns::full)
+    t.refuse("model",
+             "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
+             "unknowns = \"full\"");
+  track.linearised_under_weight = t.choice("linearised_at", {"rest", "weight"}, 0) == 1;
+  if (track.linearised_under_weight && track.unknowns != Unknowns::full)
+    t.refuse("linearised_at",
+             "linearised_at = \"weight\" couples sag and stretch; accepted with "
+             "unknowns = \"full\"");
+  track.reference_line = read_reference_line(t);
+  if (track.reference_line != ReferenceLine::centroid && track.unknowns != Unknowns::full)
+    t.refuse("reference_line",
+             "off the centroid nodes move along x as the rail bends; accepted is reference_line = "
+             "\"centroid\", or unknowns = \"full\"");
+  if (track.endless) check_endless(t, track);
+  return track;
+}
+
+/// Refuses a size that no machine steps, before anything of that size exists. The bytes are those
+/// of four banded matrices of doubles (M, C, K and the factored step matrix).
+void check_size(const Table& t, const TrackScene& track) {
+  const double elements = static_cast<double>(track.rails) * static_cast<double>(track.bays) *
+                          static_cast<double>(track.elements_per_bay);
+  if (elements <= static_cast<double>(kMostElements)) return;
+  constexpr double kPerNode[] = {9.0, 6.0, 2.0};  // full, rigid section, vertical
+  const double per_node = kPerNode[static_cast<int>(track.unknowns)];
+  const double unknowns = elements * 2.0 * per_node;  // two nodes an element
+  const double bandwidth = 6.0 * per_node;
+  t.refuse("bays",
+           fmt::format("bays = {} makes {:.0f} elements, about {:.3g} bytes; accepted are "
+                       "at most {} elements",
+                       track.bays, elements, 4.0 * 8.0 * unknowns * bandwidth, kMostElements));
+}
+
+Spring read_spring(const Table& t, const std::string& axis, bool required = false) {
+  const std::string stiffness = "stiffness_" + axis + "_n_per_m";
+  const std::string damping = "damping_" + axis + "_n_s_per_m";
+  const Range k = between(0.0, 1e13), c = between(0.0, 1e11);
+  if (required) return {t.number(stiffness, k), t.number(damping, c, 0.0)};
+  return {t.number(stiffness, k, 0.0), t.number(damping, c, 0.0)};
+}
+
+/// Heat makes force only in a rail that cannot grow.
+void check_held(const Table& rail, const Scene& scene) {
+  const auto& ends = scene.track.ends;
+  if (scene.rail.temperature_rise != 0.0 && (ends[0] == RailEnd::free || ends[1] == RailEnd::free))
+    rail.refuse("temperature_rise_k",
+                fmt::format("temperature_rise_k = {:.15g}, but a free end lets the rail grow; "
+                            "accepted is 0, or track.ends that are pinned, clamped or "
+                            "non-reflecting",
+                            scene.rail.temperature_rise));
+}
+
+/// gauge_m in the place of rail_spacing_m.
+void read_gauge(const Table& track, Scene& scene) {
+  if (!track.has("gauge_m")) return;
+  const double gauge = track.number("gauge_m", between(0.3, 3.0));
+  if (track.has("rail_spacing_m"))
+    track.refuse("gauge_m", "gauge_m beside rail_spacing_m; one of them is accepted");
+  if (scene.track.rails == 1)
+    track.refuse("gauge_m", "gauge_m, but the track has one rail; accepted with rails = 2");
+  if (scene.rail.cant != 0.0)
+    track.refuse(
+        "gauge_m",
+        "gauge_m is measured between the heads of upright rails; accepted beside rail.cant "
+        "is rail_spacing_m, between the rails' axes");
+  scene.track.rail_spacing = spacing_of_gauge(track, scene, gauge);
+}
+
+/// A vertical force moves a rail that leans sideways too.
+void check_cant(const Table& rail, const Scene& scene) {
+  if (scene.rail.cant != 0.0 && scene.track.unknowns == Unknowns::vertical)
+    rail.refuse("cant",
+                "cant makes a vertical force move the rail sideways too; accepted with "
+                "track.unknowns = \"rigid-section\" or \"full\"");
+}
+
+std::optional<SupportScene> read_support(const Table& root, const Scene& scene) {
+  const std::optional<Table> given = root.table_if("support");
+  if (!given) return std::nullopt;
+  const Table& t = *given;
+  SupportScene s;
+  s.x = read_spring(t, "x");
+  s.y = read_spring(t, "y");
+  s.z = read_spring(t, "z", true);
+  s.roll = {t.number("stiffness_roll_n_m_per_rad", between(0.0, 1e13), 0.0),
+            t.number("damping_roll_n_m_s_per_rad", between(0.0, 1e11), 0.0)};
+  s.at = t.choice("at", {"foot", "axis"}, 0) == 0 ? Height::foot : Height::axis;
+  s.half_spread = t.number("half_spread_m", between(0.0, 0.5), 0.0);
+  s.length = t.number("length_m", between(0.0, scene.track.bay), 0.0);
+  s.unilateral = t.boolean("unilateral", false);
+  s.gap = t.number("gap_m", between(0.0, 0.1), 0.0);
+  return s;
+}
+
+std::optional<SleeperScene> read_sleeper(const Table& root, const Scene& scene) {
+  const std::optional<Table> t = root.table_if("sleeper");
+  const std::optional<Table> ballast = root.table_if("ballast");
+  if (!t && !ballast) return std::nullopt;
+  if (!ballast) t->refuse("", "there is a sleeper but no [ballast] under it; both or none");
+  if (!t) ballast->refuse("", "there is ballast but no [sleeper] on it; both or none");
+  if (!scene.support) t->refuse("", "there is a sleeper but no [support] on it");
+  SleeperScene s;
+  s.mass = t->number("mass_kg", between(0.0, 1e5));  // 0: pad and ballast in series
+  s.roll_inertia = scene.track.rails == 2 ? t->number("roll_inertia_kg_m2", between(0.0, 1e6))
+                                          : t->number("roll_inertia_kg_m2", between(0.0, 1e6), 0.0);
+  s.ballast_z = read_spring(*ballast, "z", true);
+  s.pitch_inertia = t->number("pitch_inertia_kg_m2", between(0.0, 1e6), 0.0);
+  s.ballast_length = ballast->number("length_m", between(0.0, 5.0), 0.0);
+  s.ballast_unilateral = ballast->boolean("unilateral", false);
+  s.ballast_gap = ballast->number("gap_m", between(0.0, 0.1), 0.0);
+  if (s.ballast_length > 0.0 && scene.support->length == 0.0)
+    ballast->refuse("length_m",
+                    "length_m makes the sleeper pitch, but pads that are points do not feel it; "
+                    "accepted with a support.length_m above 0");
+  for (auto [axis, spring] : {std::pair("x", &s.ballast_x), std::pair("y", &s.ballast_y)})
+    if (ballast->has(fmt::format("stiffness_{}_n_per_m", axis)) ||
+        ballast->has(fmt::format("damping_{}_n_s_per_m", axis))) {
+      *spring = read_spring(*ballast, axis, true);
+      if ((*spring)->stiffness == 0.0)
+        ballast->refuse(fmt::format("stiffness_{}_n_per_m", axis),
+                        "0 would leave the sleeper free; accepted is above 0, or neither stiffness "
+                        "nor damping: then it is held");
+    }
+  return s;
+}
+
+/// The whole number of `dt` in `time`; 1e-9 forgives the rounding of decimal numbers, no more.
+std::int64_t whole_steps(const Table& t, std::string_view key, double time, double dt) {
+  const double steps = std::round(time / dt);
+  if (steps < 1.0 || std::fabs(time / dt - steps) > 1e-9 * steps)
+    t.refuse(key, fmt::format("{} = {:.15g} is not a whole number of steps of dt_s = {:.15g}; "
+                              "accepted is a multiple of dt_s",
+                              key, time, dt));
+  return static_cast<std::int64_t>(steps);
+}
+
+NewtonOptions read_statics(const Table& root) {
+  NewtonOptions s;
+  const std::optional<Table> t = root.table_if("static");
+  if (!t) return s;
+  s.tolerance = t->number("tolerance", between(1e-14, 1e-2), s.tolerance);
+  s.most_iterations = static_cast<int>(t->integer("most_iterations", 1, 1000, s.most_iterations));
+  s.most_halvings = static_cast<int>(t->integer("most_load_halvings", 0, 30, s.most_halvings));
+  return s;
+}
+
+}  // namespace
+
+double TimeTable::at(double t) const {
+  if (time.empty() || t < time.front()) return 0.0;
+  const auto next = std::upper_bound(time.begin(), time.end(), t);
+  if (next == time.end()) return value.back();
+  const auto i = static_cast<std::size_t>(next - time.begin());
+  const double part = (t - time[i - 1]) / (time[i] - time[i - 1]);
+  return value[i - 1] + part * (value[i] - value[i - 1]);
+}
+
+std::vector<double> TimeTable::rows() const {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    all.push_back(time[i]);
+    all.push_back(value[i]);
+  }
+  return all;
+}
+
+ReferenceLine read_reference_line(const Table& t) {
+  constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,
+                                      ReferenceLine::foot, ReferenceLine::head};
+  return kLines[t.choice("reference_line", {"centroid", "mid-height", "foot", "head"}, 0)];
+}
+
+StepScene read_times(const Table& t) {
+  StepScene s{};
+  s.dt = t.number("dt_s", between(1e-7, 0.1));
+  const double duration = t.number("duration_s", above_upto(0.0, 1e7));
+  if (s.dt > duration)
+    t.refuse("dt_s", fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; accepted is "
+                                 "at most the duration",
+                                 s.dt, duration));
+  const double frame = t.number("frame_s", above_upto(0.0, duration), s.dt);
+  s.steps_per_frame = whole_steps(t, "frame_s", frame, s.dt);
+  s.steps = whole_steps(t, "duration_s", duration, s.dt);
+  return s;
+}
+
+StepScene read_track_step(const Table& t) {
+  StepScene s = read_times(t);
+  read_scheme(t, 0.6, false, s);
+  constexpr Start kStarts[] = {Start::equilibrium, Start::released, Start::moving};
+  s.start = kStarts[t.choice("start", {"equilibrium", "released", "moving"}, 0)];
+  return s;
+}
+
+void check_frames(const Table& t, const StepScene& s) {
+  if (s.steps % s.steps_per_frame != 0)
+    t.refuse("duration_s",
+             "the run is written in whole frames; accepted is a duration_s that is a "
+             "multiple of frame_s");
+  if (s.steps_per_frame > std::numeric_limits<int>::max())
+    t.refuse("frame_s", fmt::format("a frame of {} steps is too long; accepted are {}",
+                                    s.steps_per_frame, std::numeric_limits<int>::max()));
+}
+
+Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Table root = read_toml(file, overrides);
+  const std::int64_t schema = root.integer("schema", 1, std::numeric_limits<std::int64_t>::max());
+  if (schema > 1)
+    root.refuse("schema",
+                fmt::format("schema = {} is newer than this program; accepted is 1", schema));
+  return root;
+}
+
+void read_rails(const Table& root, Scene& scene) {
+  scene.file = root.file();
+  scene.sum = root.sum();
+  scene.track = read_track(root.table("track"));
+  check_size(root.table("track"), scene.track);
+  const Table rail = root.table("rail");
+  scene.rail = read_rail(rail);
+  if (const std::optional<Table> right = rail.table_if("right")) {
+    if (scene.track.rails == 1)
+      right->refuse("", "the track has one rail, the left one; accepted with track.rails = 2");
+    scene.right_rail = read_right_rail(*right, scene.rail);
+  }
+  read_gauge(root.table("track"), scene);
+  check_cant(rail, scene);
+  check_held(rail, scene);
+  read_joints(root, rail, scene);
+  scene.support = read_support(root, scene);
+  scene.sleeper = read_sleeper(root, scene);
+  scene.seat_changes = read_seat_changes(root, scene);
+  if (!scene.track.endless) return;
+  if (scene.support && scene.support->length > 0.)
+    root.table("support").refuse(
+        "length_m", "the pads of a track without end are points; accepted is length_m = 0");
+  if (!scene.seat_changes.empty())
+    root.table("track").refuse(
+        "length",
+        "the seats of a track without end are alike; accepted without [[support_change]]");
+}
+
+Scene read_track_scene(const Table& root) {
+  Scene scene;
+  read_rails(root, scene);
+  if (const std::optional<Table> step = root.table_if("step")) {
+    scene.step = read_track_step(*step);
+    if (scene.step->start == Start::moving && !scene.track.endless)
+      step->refuse("start",
+                   "start = \"moving\" wants a track that goes on as it is; accepted with "
+                   "track.length = \"endless\"");
+  }
+  scene.condense = read_condense(root, scene.track);
+  if (scene.step) read_contact(root, scene);
+  scene.statics = read_statics(root);
+  scene.stops = read_stops(root, scene);
+  scene.loads = read_loads(root, scene);
+  scene.wheelsets = read_wheelsets(root, scene, scene.inputs);
+  scene.vehicles = read_vehicles(root, scene, scene.inputs);
+  scene.external_wheels = read_external_wheels(root, scene);
+  check_external_wheels(root, scene);
+  scene.irregularity = read_irregularity(root, scene);
+  scene.defects = read_defects(root, scene);
+  scene.sensors = read_sensors(root, scene);
+  const std::optional<Table> output = root.table_if("output");
+  scene.trace_supports = output && output->boolean("supports", false);
+  if (scene.trace_supports && scene.track.endless)
+    output->refuse("supports",
+                   "the supports of a track without end pass under its traffic; accepted are "
+                   "sensors, which follow it bay by bay");
+  root.finish();
+  check_names(root, scene);
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const Table root = open_scene(file, overrides);
+  if (const char* key = key_of_system(root))
+    root.refuse(key, fmt::format("the key {} makes this a scene of bodies and beams, which run and "
+                                 "condense take; accepted here is the scene of a track",
+                                 key));
+  return read_track_scene(root);
+}
+
+}  // namespace railstep

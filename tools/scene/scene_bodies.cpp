@@ -1,0 +1,297 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "online/track/travel.h"
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+const Range kSpeed = between(-2000.0, 2000.0);
+const Range kForce = between(-1e8, 1e8);
+
+}  // namespace
+
+Side read_side(const Table& t, const Scene& scene) {
+  // One rail is the left one, so that a scene can leave the key out.
+  const std::size_t side = scene.track.rails == 1 ? t.choice("rail", {"left", "right"}, 0)
+                                                  : t.choice("rail", {"left", "right"});
+  if (side == 1 && scene.track.rails == 1)
+    t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
+  return side == 0 ? Side::left : Side::right;
+}
+
+TimeTable read_time_table(const Table& t, std::string_view key, const Range& accepted) {
+  const std::vector<double> rows = t.rows(key, 2);
+  TimeTable table;
+  for (std::size_t i = 0; i < rows.size(); i += 2) {
+    if (rows[i] < 0.0 || (i > 0 && rows[i] <= rows[i - 2]))
+      t.refuse(key,
+               fmt::format("{}: the time {:.15g} s of row {} does not rise; accepted are times "
+                           "from 0 on, each above the one before",
+                           key, rows[i], i / 2));
+    if (!accepted.holds(rows[i + 1]))
+      t.refuse(key, fmt::format("{}: {:.15g} in row {} is out of range; accepted is {}", key,
+                                rows[i + 1], i / 2, accepted.text()));
+    table.time.push_back(rows[i]);
+    table.value.push_back(rows[i + 1]);
+  }
+  return table;
+}
+
+SpeedScene read_speed(const Table& t, std::optional<double> otherwise) {
+  if (!t.has("speed_table"))
+    return {otherwise ? t.number("speed_m_per_s", kSpeed, *otherwise)
+                      : t.number("speed_m_per_s", kSpeed),
+            std::nullopt};
+  if (t.has("speed_m_per_s"))
+    t.refuse("speed_table", "speed_table is given beside speed_m_per_s; one of them is accepted");
+  TimeTable table = read_time_table(t, "speed_table", kSpeed);
+  const auto [least, most] = std::minmax_element(table.value.begin(), table.value.end());
+  if (*least < 0.0 && *most > 0.0)
+    t.refuse("speed_table",
+             fmt::format("speed_table goes from {:.15g} to {:.15g} m/s and turns around; accepted "
+                         "are speeds of one sign",
+                         *least, *most));
+  const double first = table.value.front();
+  return {first, std::move(table)};
+}
+
+TravelTable travel_of(const SpeedScene& speed) {
+  return travel_table(speed.speed, speed.table ? speed.table->rows() : std::vector<double>{});
+}
+
+void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
+                const std::optional<double>& stop) {
+  if (scene.track.endless) return;
+  const double length = scene.track.length();
+  const double way = travelled(travel_of(speed).model(), scene.duration()).distance;
+  double end = start + way;
+  if (stop) end = way >= 0.0 ? std::min(end, *stop) : std::max(end, *stop);
+  // A path may end exactly on the border; 1e-9 of the length forgives its rounding.
+  if (end >= -1e-9 * length && end <= length * (1.0 + 1e-9)) return;
+  if (speed.table)
+    t.refuse(
+        "speed_table",
+        fmt::format("speed_table leads from x = {:.15g} to {:.6g} m, off the rail; accepted is "
+                    "0 to {:.6g} (or may_leave_rail = true)",
+                    start, end, length));
+  t.refuse("speed_m_per_s",
+           fmt::format("speed_m_per_s = {:.15g} from start_m = {:.15g} leads to x = {:.6g} m, off "
+                       "the rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
+                       speed.speed, start, end, length));
+}
+
+namespace {
+
+/// amplitude_n, frequency_hz and phase_deg of a force that swings.
+void read_swing(const Table& t, const Scene& scene, LoadScene& load) {
+  if (!t.has("amplitude_n")) {
+    for (const char* key : {"frequency_hz", "phase_deg"})
+      if (t.has(key))
+        t.refuse(key, fmt::format("{} is of a force that swings; accepted with amplitude_n", key));
+    return;
+  }
+  load.amplitude = t.number("amplitude_n", kForce);
+  load.frequency = t.number("frequency_hz", between(0.0, 1e6));
+  load.phase = t.number("phase_deg", between(-360.0, 360.0), 0.0) / 360.0;
+  if (scene.step && load.frequency * scene.step->dt > .125 * (1.0 + 1e-12))
+    t.refuse("frequency_hz",
+             fmt::format("frequency_hz = {:.15g} has {:.3g} steps of dt_s = {:.6g} a period; "
+                         "accepted are 8 or more: a shorter step.dt_s",
+                         load.frequency, 1.0 / (load.frequency * scene.step->dt), scene.step->dt));
+}
+
+LoadScene read_load(const Table& t, const Scene& scene) {
+  const double length = scene.track.length();
+  LoadScene load;
+  load.name = checked_name(t, "name", t.string("name"));
+  load.rail = read_side(t, scene);
+  load.may_leave_rail = t.boolean("may_leave_rail", false);
+  load.start = t.number("start_m", load.may_leave_rail ? between(-1e6, 1e6) : between(0.0, length));
+  const SpeedScene speed = read_speed(t, 0.0);
+  load.speed = speed.speed;
+  load.speeds = speed.table;
+  load.force_z = t.number("force_z_n", kForce);
+  load.at = t.choice("at", {"axis", "head"}, 0) == 0 ? Height::axis : Height::head;
+  if (t.has("table")) load.factor = read_time_table(t, "table", between(-1e6, 1e6));
+  read_swing(t, scene, load);
+  if (t.has("stop_m")) {
+    load.stop = t.number("stop_m", between(0.0, scene.track.endless ? 1e12 : length));
+    if ((*load.stop - load.start) * travel_of(speed).speed <= 0.0)
+      t.refuse("stop_m", fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
+                                     "is a place the load moves to",
+                                     *load.stop, load.start));
+  }
+  if (!load.may_leave_rail) check_path(t, scene, load.start, speed, load.stop);
+  return load;
+}
+
+GuideScene read_guide(const Table& wheelset) {
+  GuideScene g{GuideMethod::augmented_lagrangian, 20, 1e-10, 0.0, 0.0};
+  const std::optional<Table> t = wheelset.table_if("guide");
+  if (!t) return g;
+  const bool baumgarte = t->choice("method", {"augmented_lagrangian", "baumgarte"}, 0) == 1;
+  g.method = baumgarte ? GuideMethod::baumgarte : GuideMethod::augmented_lagrangian;
+  g.cap = static_cast<int>(t->integer("cap", 1, 1000, g.cap));
+  g.tolerance = t->number("tolerance", between(1e-15, 1e-2), g.tolerance);
+  if (!baumgarte && (t->has("alpha_per_s") || t->has("beta_per_s")))
+    t->refuse(t->has("alpha_per_s") ? "alpha_per_s" : "beta_per_s",
+              "alpha_per_s and beta_per_s are Baumgarte's; accepted with method = \"baumgarte\"");
+  if (baumgarte) {
+    g.alpha = t->number("alpha_per_s", above_upto(0.0, 1e6));
+    g.beta = t->number("beta_per_s", above_upto(0.0, 1e6));
+  }
+  return g;
+}
+
+/// Equilibrium is that of rails and wheels: one that nothing bears has none.
+void check_start(const Table& t, const Scene& scene, const WheelsetScene& w) {
+  const double length = scene.track.length();
+  const bool on_rail = w.start >= 0.0 && w.start <= length;
+  if (on_rail || scene.track.endless || !scene.step || scene.step->start == Start::released) return;
+  t.refuse("start_m", fmt::format("start_m = {:.15g} is off the rail, where the wheelset has no "
+                                  "equilibrium; accepted is 0 to {:.6g}, or step.start = "
+                                  "\"released\"",
+                                  w.start, length));
+}
+
+WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<InputScene>& inputs) {
+  if (scene.track.rails != 2) t.refuse("", "a wheelset needs two rails; accepted with rails = 2");
+  const Range inertia = above_upto(0.0, 1e6);
+  WheelsetScene w;
+  w.name = checked_name(t, "name", t.string("name"));
+  w.wheels = {w.name + "_left", w.name + "_right"};
+  if (t.has("wheels")) {
+    const std::vector<std::string> names = t.strings("wheels", 2, 2);
+    w.wheels = {checked_name(t, "wheels", names[0]), checked_name(t, "wheels", names[1])};
+  }
+  w.mass = t.number("mass_kg", above_upto(0.0, 1e6));
+  w.inertia_roll = t.number("inertia_roll_kg_m2", inertia);
+  w.inertia_spin = t.number("inertia_spin_kg_m2", inertia);
+  w.inertia_yaw = t.number("inertia_yaw_kg_m2", inertia);
+  w.radius = t.number("radius_m", between(0.02, 3.0));
+  w.tread_half_width = t.number("tread_half_width_m", between(0.005, 0.3), 0.065);
+  w.may_leave_rail = t.boolean("may_leave_rail", false);
+  w.start = t.number("start_m",
+                     w.may_leave_rail ? between(-1e6, 1e6) : between(0.0, scene.track.length()));
+  const SpeedScene speed = read_speed(t, std::nullopt);
+  w.speed = speed.speed;
+  w.speeds = speed.table;
+  w.carried_mass = t.number("carried_mass_kg", between(0.0, 1e6), 0.0);
+  w.gravity = t.boolean("gravity", true);
+  w.guide = read_guide(t);
+  for (const Table& force : t.tables("force"))
+    w.forces.push_back(read_body_force(
+        force, static_cast<int>(force.choice("direction", {"x", "y", "z"})), false, inputs));
+  w.treads = read_treads(t, scene, w);
+  if (const std::optional<Table> flange = t.table_if("flange"))
+    w.flange = read_flange(*flange, scene);
+  if (!w.may_leave_rail) check_path(t, scene, w.start, speed, std::nullopt);
+  check_start(t, scene, w);
+  return w;
+}
+
+}  // namespace
+
+std::string checked_name(const Table& t, std::string_view key, const std::string& name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
+    t.refuse(key, fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
+                              "and -",
+                              key, name.substr(0, 64)));
+  if (name.starts_with("support_"))
+    t.refuse(key, fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
+                              "does not start with support_",
+                              key, name));
+  return name;
+}
+
+std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {
+  std::vector<LoadScene> loads;
+  for (const Table& t : root.tables("load")) loads.push_back(read_load(t, scene));
+  return loads;
+}
+
+double fastest(const WheelsetScene& wheelset) {
+  return travel_of({wheelset.speed, wheelset.speeds}).speed;
+}
+
+std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
+                                          std::vector<InputScene>& inputs) {
+  std::vector<WheelsetScene> wheelsets;
+  for (const Table& t : root.tables("wheelset"))
+    wheelsets.push_back(read_wheelset(t, scene, inputs));
+  return wheelsets;
+}
+
+std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene) {
+  std::vector<ExternalWheelScene> wheels;
+  for (const Table& t : root.tables("external_wheel"))
+    wheels.push_back({checked_name(t, "name", t.string("name")), read_side(t, scene),
+                      t.number("limit_n", above_upto(0.0, 1e12))});
+  return wheels;
+}
+
+BodyForceScene read_body_force(const Table& t, int direction, bool moment,
+                               std::vector<InputScene>& inputs) {
+  if (!t.has("input")) return {direction, read_time_table(t, "table", kForce)};
+  if (t.has("table")) t.refuse("table", "table is given beside input; one of them is accepted");
+  return {direction, {}, read_input(t, moment, inputs)};
+}
+
+int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
+  const std::string name =
+      checked_name(t, "input", t.string("input")) + (moment ? ".moment_n_m" : ".force_n");
+  for (const InputScene& other : inputs)
+    if (other.name == name)
+      t.refuse("input",
+               fmt::format("{} is taken by another force; accepted is a name used once", name));
+  if (inputs.size() == static_cast<std::size_t>(kMaxInputs))
+    t.refuse("input", fmt::format("more than {} inputs", kMaxInputs));
+  inputs.push_back({name, t.number(moment ? "limit_n_m" : "limit_n", above_upto(0.0, 1e12))});
+  return static_cast<int>(inputs.size()) - 1;
+}
+
+void check_names(const Table& root, const Scene& scene) {
+  // A sensor may bear its wheelset's name: only wheels, not wheelsets, have columns of their own.
+  std::map<std::string, std::string> traced, wheelsets;  // name -> where it was given first
+  const auto claim = [](auto& taken, const Table& t, std::string_view key,
+                        const std::string& name) {
+    const auto [first, is_new] = taken.emplace(name, t.name());
+    if (!is_new)
+      t.refuse(key, fmt::format("{} = \"{}\" is taken by [{}]; accepted is a name used once", key,
+                                name, first->second));
+  };
+  const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
+             sensors = root.tables("sensor"), stops = root.tables("stop");
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    claim(traced, loads[i], "name", scene.loads[i].name);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    claim(wheelsets, bodies[i], "name", scene.wheelsets[i].name);
+    for (const std::string& wheel : scene.wheelsets[i].wheels)
+      claim(traced, bodies[i], "wheels", wheel);
+  }
+  const auto external = root.tables("external_wheel");
+  for (std::size_t i = 0; i < external.size(); ++i)
+    claim(traced, external[i], "name", scene.external_wheels[i].name);
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    claim(traced, stops[i], "name", scene.stops[i].name);
+  // One table that stands on both rails makes two vehicles, whose names begin with its own.
+  std::size_t vehicle = 0;
+  for (const Table& t : root.tables("vehicle")) {
+    const std::string name = t.string("name");
+    while (vehicle < scene.vehicles.size() && scene.vehicles[vehicle].table == name)
+      claim(traced, t, "name", scene.vehicles[vehicle++].name);
+  }
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    claim(traced, sensors[i], "name", scene.sensors[i].name);
+}
+
+}  // namespace railstep

@@ -1,0 +1,82 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+constexpr int kExpansionPoints = 4;  // over the band, unless a scene names its own
+
+/// Logarithmic steps over the band, both ends among them.
+std::vector<double> expansion_points(const std::array<double, 2>& band) {
+  std::vector<double> hz;
+  hz.reserve(kExpansionPoints);
+  for (int i = 0; i < kExpansionPoints; ++i)
+    hz.push_back(band[0] * std::pow(band[1] / band[0], i / (kExpansionPoints - 1.)));
+  return hz;
+}
+
+std::array<double, 2> read_band(const Table& t, const std::array<double, 2>& otherwise) {
+  if (!t.has("band_hz")) return otherwise;
+  const std::vector<double> band = t.numbers("band_hz", above_upto(0.0, 1e5), 2, 2);
+  if (!(band[0] < band[1])) t.refuse("band_hz", "band_hz does not rise; accepted is [low, high]");
+  return {band[0], band[1]};
+}
+
+}  // namespace
+
+CondenseScene read_condense(const Table& root, const TrackScene& track) {
+  CondenseScene c;
+  const std::optional<Table> t = root.table_if("condense");
+  if (!t) return c;
+  const std::size_t kind = t->choice(
+      "kind", {"full", "modal", "guyan", "irs", "craig-bampton", "krylov", "complex-modes"}, 0);
+  if (kind > 0) c.kind = static_cast<ReductionKind>(kind - 1);
+  if (track.endless && kind > 1)
+    t->refuse("kind",
+              "a track without end is condensed in Floquet modes; accepted with track.length = "
+              "\"endless\" are \"full\" and \"modal\"");
+  if (t->has("modes_per_bay")) c.modes_per_bay = t->number("modes_per_bay", between(0.0, 1000.0));
+  if (t->has("highest_hz")) c.highest_hz = t->number("highest_hz", above_upto(0.0, 1e6));
+  if (c.modes_per_bay && c.highest_hz)
+    t->refuse("highest_hz", "highest_hz is given beside modes_per_bay; one of them is accepted");
+  c.nodes_per_bay = static_cast<int>(t->integer("nodes_per_bay", 1, 2000, 1));
+  if (2 * track.elements_per_bay % c.nodes_per_bay != 0)
+    t->refuse("nodes_per_bay",
+              "a bay's nodes are kept at equal steps; accepted is a divisor of 2 "
+              "track.elements_per_bay");
+  c.band_hz = read_band(*t, c.band_hz);
+  c.expansion_hz = t->has("expansion_hz") ? t->numbers("expansion_hz", above_upto(0.0, 1e5), 1, 64)
+                                          : expansion_points(c.band_hz);
+  c.residual_flexibility = t->boolean("residual_flexibility", true);
+  return c;
+}
+
+/// A track beside bodies is in full order, and its step sees no flexibility but its own.
+CondenseScene read_full_order(const Table& root) {
+  CondenseScene full;
+  full.residual_flexibility = false;
+  const std::optional<Table> t = root.table_if("condense");
+  if (!t) return full;
+  if (const std::string kind = t->string("kind", "full"); kind != "full")
+    t->refuse("kind",
+              fmt::format("kind = \"{}\" is not stepped beside bodies and beams; accepted is "
+                          "\"full\"",
+                          kind));
+  for (const char* key : {"modes_per_bay", "highest_hz", "nodes_per_bay", "expansion_hz"})
+    if (t->has(key))
+      t->refuse(key, fmt::format("{} is of a condensed track, which is not stepped beside bodies "
+                                 "and beams; accepted is kind = \"full\" without it",
+                                 key));
+  full.band_hz = read_band(*t, full.band_hz);
+  if (t->boolean("residual_flexibility", false))
+    t->refuse("residual_flexibility",
+              "residual_flexibility = true would leave out what joints and springs pull at the "
+              "rails; accepted beside bodies and beams is false");
+  return full;
+}
+
+}  // namespace railstep

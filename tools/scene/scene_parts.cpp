@@ -1,0 +1,224 @@
+#include <fmt/core.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "scene/scene_read.h"
+#include "scene/scene_system_read.h"
+#include "scene/scene_vector.h"
+
+namespace railstep {
+namespace {
+
+/// The tensor of [Ixx, Iyy, Izz] or of these with [Ixy, Ixz, Iyz] behind, as mass can have it.
+Eigen::Matrix3d read_inertia(const Table& t, bool planar) {
+  const char* const key = "inertia_kg_m2";
+  const std::vector<double> i = t.numbers(key, between(-1e12, 1e12), 3, 6);
+  if (i.size() != 3 && i.size() != 6)
+    t.refuse(key, fmt::format("{} has {} entries; accepted are 3, Ixx Iyy Izz, or 6, with Ixy Ixz "
+                              "Iyz behind",
+                              key, i.size()));
+  Eigen::Matrix3d inertia = Eigen::Vector3d(i[0], i[1], i[2]).asDiagonal();
+  if (i.size() == 6) {
+    inertia(0, 1) = inertia(1, 0) = i[3];
+    inertia(0, 2) = inertia(2, 0) = i[4];
+    inertia(1, 2) = inertia(2, 1) = i[5];
+    if (planar && (i[3] != 0. || i[5] != 0.))
+      t.refuse(key,
+               "Ixy and Iyz turn a body out of the plane of x and z; accepted is 0 for both, "
+               "or system.planar = false");
+  }
+  const Eigen::Vector3d p =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(p[0] > 0.))
+    t.refuse(key, fmt::format("the least principal inertia is {:.6g}; accepted is above 0", p[0]));
+  // A flat body has equality, which decimals miss by their rounding.
+  if (p[2] > (p[0] + p[1]) * (1. + 1e-9))
+    t.refuse(key, fmt::format("principal inertias {:.6g}, {:.6g} and {:.6g} are those of no mass; "
+                              "accepted are three of which none is above the sum of the others",
+                              p[0], p[1], p[2]));
+  return inertia;
+}
+
+RigidBody read_body(const Table& t, bool planar) {
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  RigidBody b;
+  b.mass = t.number("mass_kg", above_upto(0.0, 1e9));
+  b.inertia = read_inertia(t, planar);
+  b.position = read_in_plane(t, "position_m", kPlace, planar);
+  const Eigen::Vector3d turn =
+      read_turn(t, "rotation_deg", between(-360.0, 360.0), planar, zero) * (M_PI / 180.);
+  if (turn.norm() > 0.) b.orientation = Eigen::AngleAxisd(turn.norm(), turn.normalized());
+  b.velocity = read_in_plane(t, "velocity_m_per_s", kVelocity, planar, zero);
+  b.angular_velocity = read_turn(t, "angular_velocity_rad_per_s", kTurning, planar, zero);
+  return b;
+}
+
+/// Columns along the beam, lateral and up.
+Eigen::Matrix3d read_axes(const Table& t, bool planar) {
+  const Eigen::Vector3d along =
+      t.has("direction") ? read_direction(t, "direction", planar) : Eigen::Vector3d::UnitX();
+  if (!t.has("up") && along.y() != 0.)
+    t.refuse("direction",
+             "the beam leaves the plane of x and z, and key 'up' is missing; it has a "
+             "default in that plane alone");
+  const Eigen::Vector3d up = t.has("up") ? read_direction(t, "up", planar)
+                                         : Eigen::Vector3d(along.cross(Eigen::Vector3d::UnitY()));
+  check_square(t, "up", up, "the beam's direction", along);
+  const Eigen::Vector3d lateral = up.cross(along).normalized();
+  if (planar && lateral.y() < 0.)
+    t.refuse("up",
+             "up puts the section's left on the ground's right; in the plane the opposite "
+             "direction is accepted");
+  Eigen::Matrix3d axes;
+  axes << along, lateral, along.cross(lateral);
+  return axes;
+}
+
+std::array<BeamEnd, 2> read_beam_ends(const Table& t) {
+  constexpr BeamEnd kEnds[] = {BeamEnd::free, BeamEnd::pinned, BeamEnd::clamped};
+  const auto ends = t.choices("ends", {"free", "pinned", "clamped"}, 2, 0);
+  return {kEnds[ends[0]], kEnds[ends[1]]};
+}
+
+FlexibleBeam read_beam(const Table& t, bool planar) {
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  FlexibleBeam b;
+  b.start = read_in_plane(t, "start_m", kPlace, planar);
+  b.axes = read_axes(t, planar);
+  b.length = t.number("length_m", between(1e-3, 1e4));
+  b.elements = static_cast<int>(t.integer("elements", 1, 1000));
+  b.ends = read_beam_ends(t);
+  b.velocity = read_in_plane(t, "velocity_m_per_s", kVelocity, planar, zero);
+  b.angular_velocity = read_turn(t, "angular_velocity_rad_per_s", kTurning, planar, zero);
+  return b;
+}
+
+/// The largest distance of two points of a section, m; of a shape that stands in a file the largest
+/// that is accepted there.
+double extent(const SectionSource& shape) {
+  if (const auto* r = std::get_if<RectangleSize>(&shape)) return std::hypot(r->height, r->width);
+  if (const auto* r = std::get_if<RectangleSizes>(&shape))
+    return std::hypot(r->foot_height + r->web_height + r->head_height,
+                      std::fmax(r->foot_width, std::fmax(r->web_width, r->head_width)));
+  return 1.;
+}
+
+}  // namespace
+
+std::string NameBook::claim(const Table& t) {
+  std::string name = checked_name(t, "name", t.string("name"));
+  if (name == "ground")
+    t.refuse("name", "name = \"ground\" is that of what does not move; accepted is another");
+  const auto [first, is_new] = owner_.emplace(name, t.name());
+  if (!is_new)
+    t.refuse("name", fmt::format("name = \"{}\" is taken by [{}]; accepted is a name used once",
+                                 name, first->second));
+  return name;
+}
+
+namespace {
+
+/// A body's or a beam's. Beside a track a sensor's `on` tells it from rails and sleepers.
+std::string claim_part(const Table& t, const SystemScene& scene, NameBook& names) {
+  std::string name = names.claim(t);
+  for (const char* kept : {"rail", "sleeper", "wheelset"})
+    if (scene.track && name == kept)
+      t.refuse("name", fmt::format("name = \"{}\" is what a sensor of a track is on; accepted is "
+                                   "another",
+                                   name));
+  return name;
+}
+
+}  // namespace
+
+void read_bodies(const Table& root, SystemScene& scene, NameBook& names) {
+  for (const Table& t : root.tables("body")) {
+    scene.names.bodies.push_back(claim_part(t, scene, names));
+    scene.system.bodies.push_back(read_body(t, scene.system.planar));
+  }
+}
+
+void read_beams(const Table& root, SystemScene& scene, NameBook& names) {
+  for (const Table& t : root.tables("beam")) {
+    scene.names.beams.push_back(claim_part(t, scene, names));
+    scene.system.beams.push_back(read_beam(t, scene.system.planar));
+    scene.bars.push_back({read_bar(t), read_reference_line(t)});
+    if (std::holds_alternative<Section>(scene.bars.back().bar.shape))
+      t.refuse("constants",
+               "a beam that turns wants its section's shape, of which moments of third "
+               "and fourth degree are taken; accepted are profile, section, "
+               "rectangles and rectangle");
+  }
+}
+
+Part read_part(const Table& t, std::string_view key, const std::string& name,
+               const SystemScene& scene, Naming naming) {
+  const bool held = naming == Naming::held;
+  if (held && name == "ground") return ground();
+  std::string known = held ? "\"ground\"" : "";
+  const auto list = [&](const std::vector<std::string>& names) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] == name) return static_cast<int>(i);
+      known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", names[i]);
+    }
+    return -1;
+  };
+  if (const int i = list(scene.names.bodies); i >= 0) return body(i);
+  if (const int i = list(scene.names.beams); i >= 0) return beam(i);
+  const int rails = scene.track ? scene.track->track.rails : 0;
+  if (held && rails > 0)
+    if (const int i = list(rails == 2 ? std::vector<std::string>{"rail left", "rail right"}
+                                      : std::vector<std::string>{"rail left"});
+        i >= 0)
+      return rail(i);
+  if (naming == Naming::sensed && rails > 0) known += ", \"rail\", \"sleeper\"";
+  const char* what = "unknown";
+  if (name.starts_with("rail "))
+    what = rails == 0                 ? "the rail of a track, and the scene has none"
+           : held                     ? "a rail that the track has not"
+           : naming == Naming::driven ? "a rail, on which a force is a [[load]]"
+                                      : "a rail, on which a sensor has on = \"rail\" and rail";
+  t.refuse(key, fmt::format("{} has \"{}\", which is {}; accepted are {}", key, name.substr(0, 64),
+                            what, known));
+}
+
+namespace {
+
+/// Where a point lies in a bar: along it, and beside its line.
+void check_reach(const Table& t, std::string_view key, const std::string& bar,
+                 const Eigen::Vector3d& local, double length, const SectionSource& shape) {
+  // 1e-9 of the length forgives the rounding of decimals.
+  if (local.x() < -1e-9 * length || local.x() > length * (1. + 1e-9))
+    t.refuse(key, fmt::format("{} is at {:.6g} m along {}; accepted is 0 to {:.6g} m", key,
+                              local.x(), bar, length));
+  const double across = std::hypot(local.y(), local.z());
+  const double most = extent(shape);
+  if (across > most)
+    t.refuse(key, fmt::format("{} is {:.6g} m beside {}; accepted is at most {:.6g} m, what its "
+                              "section measures",
+                              key, across, bar, most));
+}
+
+}  // namespace
+
+Eigen::Vector3d read_point(const Table& t, std::string_view key, const Part& part,
+                           const SystemScene& scene) {
+  Eigen::Vector3d point = read_in_plane(t, key, kPlace, scene.system.planar);
+  const auto index = static_cast<std::size_t>(part.index);
+  if (part.kind == Part::Kind::beam) {
+    const FlexibleBeam& b = scene.system.beams[index];
+    check_reach(t, key, fmt::format("beam \"{}\"", scene.names.beams[index]),
+                b.axes.transpose() * (point - b.start), b.length, scene.bars[index].bar.shape);
+  } else if (part.kind == Part::Kind::rail) {
+    const TrackScene& track = scene.track->track;
+    const double side = track.rails == 1 ? 0. : (index == 0 ? .5 : -.5) * track.rail_spacing;
+    check_reach(t, key, index == 0 ? "the left rail" : "the right rail",
+                point - Eigen::Vector3d(0., side, 0.), track.length(), scene.track->rail.shape);
+    point.x() = std::clamp(point.x(), 0., track.length());
+  }
+  return point;
+}
+
+}  // namespace railstep

@@ -1,0 +1,99 @@
+#pragma once
+// The parts of read_scene, one table each. Only scene*.cpp include this.
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "offline/pack/travel_rows.h"
+#include "scene/scene.h"
+#include "text/read.h"
+
+namespace railstep {
+
+/// Parses, and checks the schema. Throws InputError.
+Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+Scene read_track_scene(const Table& root);
+/// [track], [rail], [support], [sleeper] and [ballast].
+void read_rails(const Table& root, Scene& scene);
+/// The first key of bodies, beams and joints in a scene; null in one without.
+const char* key_of_system(const Table& root);
+
+/// Section, material and rule of [rail] or of a beam.
+BarScene read_bar(const Table& bar);
+RailScene read_rail(const Table& rail);
+/// [rail.right]: what it does not say is as in [rail].
+RailScene read_right_rail(const Table& right, const RailScene& left);
+/// [[support_change]], in the file's order.
+std::vector<SeatChange> read_seat_changes(const Table& root, const Scene& scene);
+std::vector<StopScene> read_stops(const Table& root, const Scene& scene);
+/// [[rail_joint]] of a scene whose rails are read. Refuses force that a gap does not carry.
+void read_joints(const Table& root, const Table& rail, Scene& scene);
+/// Distance of the rails' centres whose heads' inner faces are `gauge` apart, 14 mm below the
+/// running surface, m. Throws InputError where a rail's section has no head.
+double spacing_of_gauge(const Table& track, const Scene& scene, double gauge);
+/// [condense].
+CondenseScene read_condense(const Table& root, const TrackScene& track);
+/// The same beside bodies and beams, where a track is in full order.
+CondenseScene read_full_order(const Table& root);
+/// dt, frame and duration of [step]; the scheme and the start are its reader's.
+StepScene read_times(const Table& step);
+/// [step] of a scene with a track.
+StepScene read_track_step(const Table& step);
+/// The scheme of [step] and its numbers.
+/// @param rho_inf    where the scene does not say it
+/// @param of_bodies  whether they are those of bodies and beams
+void read_scheme(const Table& step, double rho_inf, bool of_bodies, StepScene& read);
+/// How contact forces of [step] follow the penetration; of a scene whose [condense] is read.
+void read_contact(const Table& root, Scene& scene);
+/// Refuses what external wheels cannot stand beside: what is not linear, frames of several steps,
+/// a scheme of two stages.
+void check_external_wheels(const Table& root, const Scene& scene);
+/// Refuses a run that is no whole number of frames.
+void check_frames(const Table& step, const StepScene& read);
+/// How a track's nodes lie in its section: reference_line, the centroid by default.
+ReferenceLine read_reference_line(const Table& t);
+/// A name that can stand in the trace's header. Throws InputError where it cannot.
+std::string checked_name(const Table& t, std::string_view key, const std::string& name);
+std::vector<LoadScene> read_loads(const Table& root, const Scene& scene);
+/// @param inputs  gets those that forces on them name
+std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
+                                          std::vector<InputScene>& inputs);
+std::optional<IrregularityScene> read_irregularity(const Table& root, const Scene& scene);
+std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
+/// [[wheelset.tread]] of a wheelset whose radius and speed are read.
+std::vector<TreadScene> read_treads(const Table& t, const Scene& scene, const WheelsetScene& own);
+/// [wheelset.flange].
+Flange read_flange(const Table& t, const Scene& scene);
+/// @param inputs  gets those that forces on them name
+std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
+                                        std::vector<InputScene>& inputs);
+/// [[vehicle.tread]] of a vehicle whose kind and speed are read.
+std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,
+                                          const VehicleScene& own);
+Side read_side(const Table& t, const Scene& scene);
+/// [[t_s, value], ...] with rising times from 0 on.
+TimeTable read_time_table(const Table& t, std::string_view key, const Range& accepted);
+/// speed_m_per_s, or speed_table in its place: speeds that do not turn around.
+struct SpeedScene {
+  double speed;  // m/s; with a table its first
+  std::optional<TimeTable> table;
+};
+SpeedScene read_speed(const Table& t, std::optional<double> otherwise);
+TravelTable travel_of(const SpeedScene& speed);
+/// Refuses a path that runs off the rail before the end of the run, or before `stop`.
+void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
+                const std::optional<double>& stop);
+std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene);
+/// `input` and `limit_n`, or of a moment `limit_n_m`. @returns its index
+int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
+/// A force by `table`, [[t_s, N or N m], ...], or given frame by frame.
+BodyForceScene read_body_force(const Table& t, int direction, bool moment,
+                               std::vector<InputScene>& inputs);
+std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
+/// On a rail, a sleeper, a wheelset or a vehicle.
+SensorScene read_sensor(const Table& t, const Scene& scene);
+/// Every name of the trace is there once. Throws InputError at the second.
+void check_names(const Table& root, const Scene& scene);
+
+}  // namespace railstep

@@ -1,0 +1,89 @@
+#include <fmt/core.h>
+
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+/// A key of one scheme alone, so that it is not believed to act where it does not.
+double number_of(const Table& t, const char* key, bool in_use, const char* scheme,
+                 const Range& accepted, double otherwise) {
+  if (t.has(key) && !in_use)
+    t.refuse(key, fmt::format("{} is not used here; accepted with scheme = \"{}\"", key, scheme));
+  return t.number(key, accepted, otherwise);
+}
+
+}  // namespace
+
+void read_scheme(const Table& t, double rho_inf, bool of_bodies, StepScene& s) {
+  constexpr TimeScheme kSchemes[] = {TimeScheme::generalised_alpha, TimeScheme::backward_euler,
+                                     TimeScheme::newmark, TimeScheme::hht, TimeScheme::tr_bdf2};
+  constexpr TimeScheme kOfBodies[] = {TimeScheme::generalised_alpha, TimeScheme::backward_euler,
+                                      TimeScheme::newmark, TimeScheme::hht,
+                                      TimeScheme::energy_momentum};
+  s.scheme =
+      of_bodies
+          ? kOfBodies[t.choice(
+                "scheme",
+                {"generalised-alpha", "backward-euler", "newmark", "hht", "energy-momentum"}, 0)]
+          : kSchemes[t.choice(
+                "scheme", {"generalised-alpha", "backward-euler", "newmark", "hht", "tr-bdf2"}, 0)];
+  s.rho_inf = t.number("rho_inf", between(0.0, 1.0), rho_inf);
+  const bool newmark = s.scheme == TimeScheme::newmark, hht = s.scheme == TimeScheme::hht;
+  s.newmark_gamma = number_of(t, "newmark_gamma", newmark, "newmark", between(0.5, 1.0), 0.5);
+  const double damped = 0.25 * (s.newmark_gamma + 0.5) * (s.newmark_gamma + 0.5);
+  s.newmark_beta =
+      number_of(t, "newmark_beta", newmark, "newmark", between(0.5 * s.newmark_gamma, 1.0), damped);
+  s.hht_alpha = number_of(t, "hht_alpha", hht, "hht", between(-1.0 / 3.0, 0.0), -0.1);
+}
+
+void read_contact(const Table& root, Scene& scene) {
+  const Table t = root.table("step");
+  scene.step->mean_contact = t.choice("contact", {"penetration", "discrete-gradient"}, 0) == 1;
+  if (!scene.step->mean_contact) return;
+  if (!scene.condense.kind || *scene.condense.kind == ReductionKind::complex_modes)
+    t.refuse(
+        "contact",
+        "contact = \"discrete-gradient\" keeps energy where forces are held over a step; accepted "
+        "with condense.kind = \"modal\", \"guyan\", \"irs\", \"craig-bampton\", \"krylov\"");
+}
+
+namespace {
+
+/// What a scene has whose forces follow from its own motion, and which an external wheel's, held
+/// over a step, would not meet; null: nothing.
+const char* contact_beside(const Scene& scene) {
+  if (!scene.wheelsets.empty()) return "[[wheelset]]";
+  if (!scene.vehicles.empty()) return "[[vehicle]]";
+  if (!scene.stops.empty()) return "[[stop]]";
+  if (scene.support && (scene.support->unilateral || scene.support->gap > 0.))
+    return "[support] of pads that do not pull";
+  if (scene.sleeper && (scene.sleeper->ballast_unilateral || scene.sleeper->ballast_gap > 0.))
+    return "[ballast] that does not pull";
+  return nullptr;
+}
+
+}  // namespace
+
+void check_external_wheels(const Table& root, const Scene& scene) {
+  if (scene.external_wheels.empty()) return;
+  if (const char* const other = contact_beside(scene))
+    root.tables("external_wheel")
+        .front()
+        .refuse("", fmt::format("an external wheel runs on a track that is linear, and the scene "
+                                "has a {}; accepted is one of the two",
+                                other));
+  if (!scene.step) return;
+  const Table step = root.table("step");
+  if (scene.step->scheme == TimeScheme::tr_bdf2 && !scene.condense.kind)
+    step.refuse("scheme",
+                "scheme = \"tr-bdf2\" has two stages, and an [[external_wheel]] presses at the "
+                "ends of steps; accepted are \"generalised-alpha\", \"backward-euler\", "
+                "\"newmark\", \"hht\"");
+  if (scene.step->steps_per_frame != 1)
+    step.refuse("frame_s", fmt::format("an [[external_wheel]] wants a frame of one step, and this "
+                                       "one has {}; accepted is frame_s = dt_s",
+                                       scene.step->steps_per_frame));
+}
+
+}  // namespace railstep

@@ -1,0 +1,217 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+using Of = double& (*)(Seat&, std::size_t);
+
+enum class Kind { stiffness, damping, other };
+
+/// A key of a seat's table: where its number is, and what is accepted there.
+struct Property {
+  const char* table;
+  const char* key;
+  Kind kind;
+  Range accepted;
+  Of of;
+};
+
+const Range kStiffness = between(0.0, 1e13), kDamping = between(0.0, 1e11);
+
+const Property kProperties[] = {
+    {"support", "stiffness_x_n_per_m", Kind::stiffness, kStiffness,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].stiffness[0]; }},
+    {"support", "stiffness_y_n_per_m", Kind::stiffness, kStiffness,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].stiffness[1]; }},
+    {"support", "stiffness_z_n_per_m", Kind::stiffness, kStiffness,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].stiffness[2]; }},
+    {"support", "stiffness_roll_n_m_per_rad", Kind::stiffness, kStiffness,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].roll_stiffness; }},
+    {"support", "damping_x_n_s_per_m", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].damping[0]; }},
+    {"support", "damping_y_n_s_per_m", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].damping[1]; }},
+    {"support", "damping_z_n_s_per_m", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].damping[2]; }},
+    {"support", "damping_roll_n_m_s_per_rad", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].roll_damping; }},
+    {"support", "half_spread_m", Kind::other, between(0.0, 0.5),
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].half_spread; }},
+    {"support", "length_m", Kind::other, between(0.0, 5.0),
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].length; }},
+    {"support", "gap_m", Kind::other, between(0.0, 0.1),
+     [](Seat& s, std::size_t i) -> double& { return s.pad[i].gap; }},
+    {"sleeper", "mass_kg", Kind::other, between(0.0, 1e5),
+     [](Seat& s, std::size_t) -> double& { return s.sleeper->mass; }},
+    {"sleeper", "roll_inertia_kg_m2", Kind::other, between(0.0, 1e6),
+     [](Seat& s, std::size_t) -> double& { return s.sleeper->roll_inertia; }},
+    {"sleeper", "pitch_inertia_kg_m2", Kind::other, between(0.0, 1e6),
+     [](Seat& s, std::size_t) -> double& { return s.sleeper->pitch_inertia; }},
+    {"ballast", "stiffness_x_n_per_m", Kind::stiffness, kStiffness,
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].stiffness[0]; }},
+    {"ballast", "stiffness_y_n_per_m", Kind::stiffness, kStiffness,
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].stiffness[1]; }},
+    {"ballast", "stiffness_z_n_per_m", Kind::stiffness, kStiffness,
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].stiffness[2]; }},
+    {"ballast", "damping_x_n_s_per_m", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].damping[0]; }},
+    {"ballast", "damping_y_n_s_per_m", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].damping[1]; }},
+    {"ballast", "damping_z_n_s_per_m", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].damping[2]; }},
+    {"ballast", "length_m", Kind::other, between(0.0, 5.0),
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].length; }},
+    {"ballast", "gap_m", Kind::other, between(0.0, 0.1),
+     [](Seat& s, std::size_t i) -> double& { return s.ballast[i].gap; }},
+};
+
+/// `from` to `to`, or a list; without either all of them.
+std::vector<int> read_seats(const Table& t, const Scene& scene) {
+  const std::int64_t last = scene.track.bays;
+  std::vector<int> seats;
+  if (t.has("seats")) {
+    for (const char* other : {"from", "to"})
+      if (t.has(other))
+        t.refuse(other, fmt::format("{} is given beside seats; one of them is accepted", other));
+    for (const double seat : t.numbers("seats", between(0.0, static_cast<double>(last)))) {
+      const int number = static_cast<int>(seat);
+      if (number != seat)
+        t.refuse("seats", fmt::format("seats: {:.15g} is no number of a seat; accepted are whole "
+                                      "numbers from 0 to {}",
+                                      seat, last));
+      if (!seats.empty() && number <= seats.back())
+        t.refuse("seats", fmt::format("seats: {} does not rise; accepted are numbers each above "
+                                      "the one before",
+                                      number));
+      seats.push_back(number);
+    }
+    return seats;
+  }
+  const std::int64_t from = t.integer("from", 0, last, 0), to = t.integer("to", from, last, last);
+  for (std::int64_t seat = from; seat <= to; ++seat) seats.push_back(static_cast<int>(seat));
+  return seats;
+}
+
+std::array<bool, 2> read_sides(const Table& t, const Scene& scene) {
+  const std::size_t side = t.choice("rail", {"both", "left", "right"}, 0);
+  if (scene.track.rails == 1 && side == 2)
+    t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
+  return {side != 2, side != 1};
+}
+
+/// Of several seats, [first, last] is a transition along them.
+void add_value(const Table& t, const char* key, const Range& accepted, const std::vector<Of>& of,
+               bool scales, SeatChange& change) {
+  if (!t.has(key)) return;
+  const std::array<double, 2> ends = t.number_or_pair(key, accepted);
+  if (ends[0] != ends[1] && change.seats.size() < 2)
+    t.refuse(key, fmt::format("{} has two values, but the change has one seat; accepted is one "
+                              "value, or two of a range",
+                              key));
+  for (const Of each : of) change.values.push_back({each, ends[0], ends[1], scales});
+}
+
+std::vector<Of> all_of(std::string_view table, Kind kind) {
+  std::vector<Of> found;
+  for (const Property& property : kProperties)
+    if (property.table == table && property.kind == kind) found.push_back(property.of);
+  return found;
+}
+
+void add_scatter(const Table& t, const char* key, const std::vector<Of>& of, std::uint64_t stream,
+                 SeatChange& change) {
+  const double width = t.number(key, {.least = 0.0, .most = 1.0, .most_itself = false}, 0.0);
+  if (width > 0.0) change.scatter.push_back({of, width, stream});
+}
+
+/// Ballast along x or y changes only where there is some: without, the sleeper is held there.
+void check_held(const Table& t, const Property& property, const Scene& scene) {
+  if (std::string_view(property.table) != "ballast" || !t.has(property.key)) return;
+  const std::string_view key = property.key;
+  const bool x = key.find("_x_") != std::string_view::npos;
+  const bool y = key.find("_y_") != std::string_view::npos;
+  if ((x && !scene.sleeper->ballast_x) || (y && !scene.sleeper->ballast_y))
+    t.refuse(key, fmt::format("{}, but [ballast] holds the sleeper along {}; accepted where "
+                              "ballast.stiffness_{}_n_per_m is given",
+                              key, x ? "x" : "y", x ? "x" : "y"));
+  if (key == "length_m" && scene.sleeper->ballast_length == 0.0)
+    t.refuse(key,
+             "length_m, but the sleeper does not pitch; accepted where ballast.length_m and "
+             "support.length_m are given");
+}
+
+void read_part(const Table& change_table, const char* name, const Scene& scene,
+               std::uint64_t stream, SeatChange& change) {
+  const std::optional<Table> given = change_table.table_if(name);
+  if (!given) return;
+  const Table& t = *given;
+  const bool of_sleeper = std::string_view(name) != "support";
+  if (of_sleeper && !scene.sleeper)
+    t.refuse("", fmt::format("the scene has no [{}] to change; accepted is support", name));
+  if (std::string_view(name) == "sleeper" && change.sides[0] != change.sides[1])
+    t.refuse("", "a sleeper is one under both rails; accepted with rail = \"both\"");
+  for (const Property& property : kProperties) {
+    if (std::string_view(property.table) != name) continue;
+    check_held(t, property, scene);
+    add_value(t, property.key, property.accepted, {property.of}, false, change);
+  }
+  if (std::string_view(name) == "sleeper") return;
+  if (t.has("unilateral"))
+    (of_sleeper ? change.ballast_unilateral : change.pad_unilateral) = t.boolean("unilateral");
+  const Range factor = between(0.0, 1e6);
+  const std::vector<Of> stiffness = all_of(name, Kind::stiffness),
+                        damping = all_of(name, Kind::damping);
+  add_value(t, "stiffness_factor", factor, stiffness, true, change);
+  add_value(t, "damping_factor", factor, damping, true, change);
+  add_scatter(t, "stiffness_scatter", stiffness, stream, change);
+  add_scatter(t, "damping_scatter", damping, stream + 1, change);
+}
+
+Missing read_missing(const Table& t, const Scene& scene, const SeatChange& change) {
+  if (!t.has("missing")) return Missing::nothing;
+  constexpr Missing kParts[] = {Missing::pad, Missing::ballast, Missing::sleeper};
+  const Missing missing = kParts[t.choice("missing", {"pad", "ballast", "sleeper"})];
+  if (missing != Missing::pad && !scene.sleeper)
+    t.refuse("missing", "the scene has no [sleeper]; accepted is \"pad\"");
+  if (missing == Missing::sleeper && change.sides[0] != change.sides[1])
+    t.refuse("missing",
+             "missing = \"sleeper\" takes it from both rails; accepted with rail = \"both\"");
+  return missing;
+}
+
+SeatChange read_change(const Table& t, const Scene& scene) {
+  if (!scene.support) t.refuse("", "the scene has no [support] to change; accepted beside one");
+  SeatChange change;
+  change.seats = read_seats(t, scene);
+  change.sides = read_sides(t, scene);
+  read_part(t, "support", scene, 0, change);
+  read_part(t, "sleeper", scene, 0, change);
+  read_part(t, "ballast", scene, 2, change);
+  change.missing = read_missing(t, scene, change);
+  if (!change.scatter.empty())
+    change.seed =
+        static_cast<std::uint64_t>(t.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+  else if (t.has("seed"))
+    t.refuse("seed",
+             "a seed without scatter; accepted beside stiffness_scatter or damping_scatter");
+  if (!t.has("missing") && !t.has("support") && !t.has("sleeper") && !t.has("ballast"))
+    t.refuse("",
+             "nothing is changed; accepted are missing, and numbers in support, sleeper, ballast");
+  return change;
+}
+
+}  // namespace
+
+std::vector<SeatChange> read_seat_changes(const Table& root, const Scene& scene) {
+  std::vector<SeatChange> changes;
+  for (const Table& t : root.tables("support_change")) changes.push_back(read_change(t, scene));
+  return changes;
+}
+
+}  // namespace railstep

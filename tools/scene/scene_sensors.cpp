@@ -1,0 +1,101 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+/// Which of the names the key gives; refused if none.
+std::size_t index_of(const Table& t, std::string_view key, const std::string& name,
+                     const std::vector<std::string>& names) {
+  std::string known;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return i;
+    known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", names[i]);
+  }
+  t.refuse(key, fmt::format("{} = \"{}\" is unknown; {}", key, name,
+                            known.empty() ? fmt::format("the scene has no {}", key)
+                                          : "accepted are " + known));
+}
+
+WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const WheelsetScene& w : scene.wheelsets) names.push_back(w.name);
+  return {index_of(t, "wheelset", t.string("wheelset"), names)};
+}
+
+/// A point of a vehicle's body.
+VehicleSensor read_vehicle_sensor(const Table& t, const Scene& scene) {
+  std::vector<std::string> vehicles;
+  for (const VehicleScene& v : scene.vehicles) vehicles.push_back(v.name);
+  const std::size_t vehicle = index_of(t, "vehicle", t.string("vehicle"), vehicles);
+  const NamedVehicle& kind = scene.vehicles[vehicle].kind;
+  const std::size_t body = t.has("body") ? index_of(t, "body", t.string("body"), kind.bodies) : 0;
+  VehicleSensor sensor{vehicle, body, t.number("x_m", between(-100.0, 100.0), 0.0)};
+  if (sensor.ahead != 0.0 && kind.vehicle.bodies[body].pitch_inertia == 0.0)
+    t.refuse("x_m", fmt::format("x_m = {:.15g}, but {} does not pitch; accepted is x_m = 0",
+                                sensor.ahead, kind.bodies[body]));
+  return sensor;
+}
+
+RailSensor read_rail_sensor(const Table& t, const Scene& scene) {
+  RailSensor rail{read_side(t, scene), 0.0, Height::axis};
+  rail.position = t.number("position_m", between(0.0, (1.0 + 1e-12) * scene.track.length()));
+  const Height heights[] = {Height::axis, Height::head, Height::foot};
+  rail.at = heights[t.choice("at", {"axis", "head", "foot"}, 0)];
+  if (!t.has("gauge_length_m")) return rail;
+  rail.gauge_length = t.number("gauge_length_m", between(1e-3, 1.0));
+  const double half = 0.5 * *rail.gauge_length;
+  if (!scene.track.endless && (rail.position < half || rail.position > scene.track.length() - half))
+    t.refuse("gauge_length_m",
+             fmt::format("gauge_length_m = {:.15g} at position_m = {:.15g} is not on the rail; "
+                         "accepted is up to twice the distance to its end",
+                         *rail.gauge_length, rail.position));
+  return rail;
+}
+
+SleeperSensor read_sleeper_sensor(const Table& t, const Scene& scene) {
+  if (!scene.sleeper)
+    t.refuse("on",
+             "on = \"sleeper\", but the scene has no [sleeper]; accepted are \"rail\", "
+             "\"wheelset\", \"vehicle\"");
+  SleeperSensor sleeper{t.integer("sleeper", 0, scene.track.bays), std::nullopt};
+  for (const SeatChange& change : scene.seat_changes)
+    if (change.missing == Missing::sleeper &&
+        std::find(change.seats.begin(), change.seats.end(), sleeper.sleeper) != change.seats.end())
+      t.refuse("sleeper", fmt::format("sleeper = {} is missing; accepted is one that is there",
+                                      sleeper.sleeper));
+  if (t.has("rail")) sleeper.rail = read_side(t, scene);
+  return sleeper;
+}
+
+}  // namespace
+
+SensorScene read_sensor(const Table& t, const Scene& scene) {
+  SensorScene sensor;
+  sensor.name = checked_name(t, "name", t.string("name"));
+  switch (t.choice("on", {"rail", "sleeper", "wheelset", "vehicle"})) {
+    case 0:
+      sensor.on = read_rail_sensor(t, scene);
+      break;
+    case 1:
+      sensor.on = read_sleeper_sensor(t, scene);
+      break;
+    case 2:
+      sensor.on = read_wheelset_sensor(t, scene);
+      break;
+    default:
+      sensor.on = read_vehicle_sensor(t, scene);
+  }
+  return sensor;
+}
+
+std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene) {
+  std::vector<SensorScene> sensors;
+  for (const Table& t : root.tables("sensor")) sensors.push_back(read_sensor(t, scene));
+  return sensors;
+}
+
+}  // namespace railstep

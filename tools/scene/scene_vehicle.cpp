@@ -1,0 +1,210 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "offline/math/constants.h"
+#include "offline/pack/travel_rows.h"
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+const Range kMass = above_upto(0.0, 1e7);        // kg
+const Range kInertia = above_upto(0.0, 1e9);     // kg m2
+const Range kStiffness = above_upto(0.0, 1e13);  // N/m
+const Range kDamping = between(0.0, 1e11);       // N s/m
+const Range kRadius = between(0.02, 3.0);        // m
+
+BogieData read_bogie(const Table& t) {
+  BogieData b{};
+  b.frame_mass = t.number("frame_mass_kg", kMass);
+  b.frame_inertia = t.number("frame_inertia_kg_m2", kInertia);
+  b.wheel_mass = t.number("wheel_mass_kg", kMass);
+  b.wheelbase = t.number("wheelbase_m", above_upto(0.0, 100.0));
+  b.axles = static_cast<int>(t.integer("axles", 2, 3, 2));
+  b.primary_stiffness = t.number("primary_stiffness_n_per_m", kStiffness);
+  b.primary_damping = t.number("primary_damping_n_s_per_m", kDamping, 0.0);
+  b.radius = t.number("radius_m", kRadius, kWheelRadius);
+  return b;
+}
+
+NamedVehicle read_sprung(const Table& t) {
+  const double mass = t.number("mass_kg", kMass);
+  const double unsprung = t.number("unsprung_mass_kg", kMass);
+  const double stiffness = t.number("stiffness_n_per_m", kStiffness);
+  const double damping = t.number("damping_n_s_per_m", kDamping, 0.0);
+  return sprung_mass(mass, unsprung, stiffness, damping,
+                     t.number("radius_m", kRadius, kWheelRadius));
+}
+
+NamedVehicle read_car(const Table& t) {
+  CarData c{};
+  c.bogie = read_bogie(t);
+  c.body_mass = t.number("body_mass_kg", kMass);
+  c.body_inertia = t.number("body_inertia_kg_m2", kInertia);
+  c.bogie_distance = t.number("bogie_distance_m", above_upto(c.bogie.wheelbase, 1000.0));
+  c.secondary_stiffness = t.number("secondary_stiffness_n_per_m", kStiffness);
+  c.secondary_damping = t.number("secondary_damping_n_s_per_m", kDamping, 0.0);
+  return car(c);
+}
+
+/// Its bodies and springs, by type. A sprung mass without an unsprung one is a mass whose contact
+/// is its spring.
+void read_kind(const Table& t, VehicleScene& v) {
+  switch (t.choice("type", {"mass", "sprung_mass", "bogie", "vehicle"})) {
+    case 0:
+      v.kind = point_mass(t.number("mass_kg", kMass), t.number("radius_m", kRadius, kWheelRadius));
+      v.contact = WheelContactKind::bonded;
+      return;
+    case 1:
+      if (t.has("unsprung_mass_kg")) {
+        v.kind = read_sprung(t);
+        return;
+      }
+      v.kind = point_mass(t.number("mass_kg", kMass));
+      v.contact = WheelContactKind::linear;
+      v.stiffness = t.number("stiffness_n_per_m", kStiffness);
+      v.damping = t.number("damping_n_s_per_m", kDamping, 0.0);
+      return;
+    case 2: {
+      BogieData b = read_bogie(t);
+      b.carried = t.number("carried_mass_kg", between(0.0, 1e7), 0.0);
+      v.kind = bogie(b);
+      return;
+    }
+    default:
+      v.kind = read_car(t);
+  }
+}
+
+/// What is known of the vehicle itself, here or in a file of its own.
+void read_what(const Table& t, VehicleScene& v) {
+  if (!t.has("file")) return read_kind(t, v);
+  if (t.has("type"))
+    t.refuse("type", "type is given beside file, which has its own; one of them is accepted");
+  const Table root = read_toml(t.path("file"));
+  if (root.integer("schema", 1, 1) == 1) read_kind(root.table("vehicle"), v);
+  for (const char* text : {"name", "source"})
+    if (root.has(text)) static_cast<void>(root.string(text));
+  root.finish();
+}
+
+/// How its wheels hold on to the rail, unless its type says so.
+void read_contact(const Table& t, VehicleScene& v) {
+  if (v.contact == WheelContactKind::linear) {
+    if (t.has("contact"))
+      t.refuse("contact",
+               "a sprung mass without unsprung_mass_kg stands on its spring; accepted is no "
+               "contact, or an unsprung mass");
+    return;
+  }
+  const std::size_t otherwise = v.contact == WheelContactKind::bonded ? 2 : 0;
+  constexpr WheelContactKind kContacts[] = {WheelContactKind::hertz, WheelContactKind::linear,
+                                            WheelContactKind::bonded};
+  v.contact = kContacts[t.choice("contact", {"hertz", "linear", "bonded"}, otherwise)];
+  const char* const keys[] = {"contact_stiffness_n_per_m", "contact_damping_n_s_per_m"};
+  if (v.contact == WheelContactKind::linear) {
+    v.stiffness = t.number(keys[0], kStiffness);
+    v.damping = t.number(keys[1], kDamping, 0.0);
+    return;
+  }
+  for (const char* key : keys)
+    if (t.has(key))
+      t.refuse(key,
+               fmt::format("{} is of a linear contact; accepted with contact = \"linear\"", key));
+}
+
+/// Refuses a vehicle of which a wheel leaves the rail before the end of the run.
+void check_wheels(const Table& t, const Scene& scene, const VehicleScene& v,
+                  const SpeedScene& speed) {
+  for (const Vehicle::Wheel& wheel : v.kind.vehicle.wheels) {
+    const double start = v.start + wheel.place;
+    if (start < 0.0 || start > scene.track.length())
+      t.refuse("start_m", fmt::format("start_m = {:.15g} puts a wheel at x = {:.6g} m, off the "
+                                      "rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
+                                      v.start, start, scene.track.length()));
+    check_path(t, scene, start, speed, std::nullopt);
+  }
+}
+
+/// [[vehicle.force]] along the height or the pitch of a body.
+BodyForceScene read_force(const Table& t, const NamedVehicle& kind,
+                          std::vector<InputScene>& inputs) {
+  const std::string name = t.string("body");
+  const auto found = std::find(kind.bodies.begin(), kind.bodies.end(), name);
+  if (found == kind.bodies.end())
+    t.refuse("body", fmt::format("body = \"{}\" is no body of this vehicle; accepted are {}", name,
+                                 fmt::join(kind.bodies, ", ")));
+  const auto body = static_cast<std::size_t>(found - kind.bodies.begin());
+  const int pitch = static_cast<int>(t.choice("direction", {"z", "pitch"}));
+  if (pitch == 1 && kind.vehicle.bodies[body].pitch_inertia == 0.)
+    t.refuse("direction",
+             fmt::format("direction = \"pitch\", but {} does not pitch; accepted is \"z\"", name));
+  return read_body_force(t, first_coordinates(kind.vehicle)[body] + pitch, pitch == 1, inputs);
+}
+
+/// How it comes down on the track, where it does.
+std::optional<Falling> read_falling(const Table& t, const Scene& scene, const VehicleScene& v) {
+  const char* const keys[] = {"drop_height_m", "drop_speed_m_per_s"};
+  for (const char* key : keys) {
+    if (t.has(key) && v.contact != WheelContactKind::hertz)
+      t.refuse(key, fmt::format("{} is of a wheel that can leave the rail; accepted with contact = "
+                                "\"hertz\"",
+                                key));
+    if (t.has(key) && scene.step && scene.step->start != Start::released)
+      t.refuse(key,
+               fmt::format("{} is of a vehicle that does not stand on the track; accepted with "
+                           "step.start = \"released\"",
+                           key));
+  }
+  if (!t.has(keys[0]) && !t.has(keys[1])) return std::nullopt;
+  return Falling{t.number(keys[0], between(0.0, 10.0), 0.0),
+                 t.number(keys[1], between(0.0, 100.0), 0.0)};
+}
+
+/// One vehicle for each rail that the table names.
+void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>& vehicles,
+                  std::vector<InputScene>& inputs) {
+  VehicleScene v{};
+  v.table = v.name = checked_name(t, "name", t.string("name"));
+  const bool both = t.has("rail") && t.string("rail") == "both";
+  if (both && scene.track.rails == 1)
+    t.refuse("rail", "rail = \"both\", but the track has one rail; accepted is \"left\"");
+  v.rail = both ? Side::left : read_side(t, scene);
+  read_what(t, v);
+  read_contact(t, v);
+  v.may_leave_rail = t.boolean("may_leave_rail", false);
+  v.start = t.number("start_m", between(-1e6, 1e6));
+  const SpeedScene speed = read_speed(t, std::nullopt);
+  v.speed = speed.speed;
+  v.speeds = speed.table;
+  v.gravity = t.boolean("gravity", true);
+  v.falling = read_falling(t, scene, v);
+  v.treads = read_wheel_treads(t, scene, v);
+  for (const Table& force : t.tables("force"))
+    v.forces.push_back(read_force(force, v.kind, inputs));
+  if (!v.may_leave_rail) check_wheels(t, scene, v, speed);
+  if (!both) return vehicles.push_back(std::move(v));
+  for (const Side side : {Side::left, Side::right}) {
+    vehicles.push_back(v);
+    vehicles.back().rail = side;
+    vehicles.back().name += side == Side::left ? "_left" : "_right";
+  }
+}
+
+}  // namespace
+
+double fastest(const VehicleScene& vehicle) {
+  return travel_of({vehicle.speed, vehicle.speeds}).speed;
+}
+
+std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
+                                        std::vector<InputScene>& inputs) {
+  std::vector<VehicleScene> vehicles;
+  for (const Table& t : root.tables("vehicle")) read_vehicle(t, scene, vehicles, inputs);
+  return vehicles;
+}
+
+}  // namespace railstep
