@@ -53,7 +53,7 @@ double peak_flops() {
     double p[kLanes], s[kLanes];
     std::copy(product, product + kLanes, p);
     std::copy(sum, sum + kLanes, s);
-    for (int turn = 0; turn < kIterations; ++turn) {
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
 #pragma omp simd
       for (int i = 0; i < kLanes; ++i) p[i] *= .999999;
 #pragma omp simd

@@ -75,7 +75,8 @@ std::string place_of_buckling(const Track& given, double factor) {
     Factor inverse;
     factorise(line.stiffness, inverse);
     Eigen::VectorXd shape = start_block(line.unknowns(), 1);
-    for (int turn = 0; turn < 3; ++turn) shape = inverse.solve(shape).eval().normalized();
+    for (int iteration = 0; iteration < 3; ++iteration)
+      shape = inverse.solve(shape).eval().normalized();
     for (int rail = 0; rail < track.rails; ++rail)
       for (int node = 0; node < track.nodes(); ++node)
         for (const int k : {1, 2}) {

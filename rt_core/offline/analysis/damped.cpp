@@ -59,7 +59,7 @@ double rounding(const Line& line, const Eigen::VectorXcd& shape) {
 
 void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
   rate = improved(line, rate, shape);
-  for (int turn = 0; turn < 3 && residual(line, rate, shape) > kGood; ++turn) {
+  for (int iteration = 0; iteration < 3 && residual(line, rate, shape) > kGood; ++iteration) {
     shape = inverse_step(line, rate, shape);
     rate = improved(line, rate, shape);
   }

@@ -116,7 +116,7 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
   Eigen::VectorXd u = all_closed_.solve(f + joined_.closing * gaps);
   Closed closed = pressing(u);
   bool done = false;
-  for (int turn = 0; turn < kMostIterations && !done; ++turn) {
+  for (int iteration = 0; iteration < kMostIterations && !done; ++iteration) {
     const Eigen::VectorXd step = newton_step(closed, gradient(u, f));
     const double part = minimum_along(u, step, f);
     u += part * step;

@@ -60,7 +60,7 @@ Eigen::MatrixXd rigid_modes(const Eigen::SparseMatrix<double>& stiffness,
   if (factor.info() != Eigen::Success)
     throw std::invalid_argument("a line's stiffness cannot be factored");
   Eigen::MatrixXd block = start_block(n, std::min(kBlock, n));
-  for (int turn = 0; turn < kIterations; ++turn)
+  for (int iteration = 0; iteration < kIterations; ++iteration)
     block = ritz(stiffness, mass, factor.solve(mass * block));
   Eigen::Index rigid = 0;
   while (rigid < block.cols() && is_rigid(stiffness, block.col(rigid).cast<std::complex<double>>()))

@@ -7,7 +7,7 @@ namespace railstep {
 
 /// What a frame of a model takes at most: loads all on, every wheel on its rail, every contact,
 /// port and iteration at its cap. Counted from the loops of the online sources, kernel by kernel;
-/// what depends on the model's sizes is exact, what does not is rounded up. TrackSensors are read
+/// what depends on the model's sizes is exact, what does not is rounded up. Track sensors are read
 /// between frames and stand beside.
 Cost cost_of(const Model& model);
 

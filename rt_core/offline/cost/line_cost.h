@@ -31,7 +31,7 @@ Cost loads_cost(const Model& model);
 /// Contacts that press a line.
 std::int64_t pressing(const Model& model, const LineModel& line);
 
-// Tables (step/table.h, contact/signal.h), as the tests count them.
+// Tables (math/table.h, model/signal.h), as the tests count them.
 inline constexpr Cost kLookUp = branching(32, 5);  // a cubic
 inline constexpr Cost kPairLookUp =
     branching(161 + 2, 20);                         // 4 x 4 points, times a force and added

@@ -6,8 +6,8 @@
 
 namespace railstep {
 
-/// What a frame is given, by its index from 0: [model.inputs] values. Empty: inputs stay as they
-/// are, 0 from the start on.
+/// The inputs of a frame, by its index from 0: [model.inputs] values. An empty function leaves the
+/// inputs as they are: 0 from the start on.
 using FrameInputs = std::function<const double*(std::int64_t frame)>;
 
 /// A frame with what it is given.

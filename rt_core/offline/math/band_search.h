@@ -15,7 +15,7 @@ struct Largest {
   double hz = 0., size = 0.;
 };
 
-/// What a search found of each group. A response without damping grows without limit at its
+/// The result of a search, of one group. A response without damping grows without limit at its
 /// resonance, so that it has no largest magnitude.
 struct BandSearch {
   std::vector<Largest> largest;       // [groups]

@@ -6,8 +6,8 @@ namespace railstep {
 
 /// The place of a function's maximum between two places, and its value there, by golden section;
 /// the function rises to one top between them.
-/// @param width  where the places are no farther apart than this, or than rounding tells apart, the
-///               search ends
+/// @param width  the search ends where the places are no farther apart than this, or than rounding
+///               can tell
 template <class Function>
 std::pair<double, double> golden_section(const Function& of, double low, double high,
                                          double width) {

@@ -90,17 +90,18 @@ void PackedModel::add_p_delta(const Track& track) {
   if (track.unknowns == Unknowns::vertical) return;
   if (model_.wheelsets == 0 && model_.external_wheels == 0) return;  // nothing pushes aside
   if (!pads_are_off_the_axis(track)) return;
-  PDeltaModel& turn = model_.p_delta;
-  turn.elements_per_bay = track.elements_per_bay;
-  turn.points = kTurnPoints;
+  PDeltaModel& p_delta = model_.p_delta;
+  p_delta.elements_per_bay = track.elements_per_bay;
+  p_delta.points = kTurnPoints;
   // What does not pull and has no gap mostly presses, as a spring.
   const Track reference = linear_about_rest(track);
   const std::vector<Line> all = assemble(reference);
   std::vector<Line> lines;
   for (const PackedLine& own : lines_) lines.push_back(all[own.index]);
   const SeatShares shares(reference, lines);
-  turn.lever[0] = keep(levers(reference, shares, 0, met_));
-  turn.lever[1] = is_symmetric(track) ? turn.lever[0] : keep(levers(reference, shares, 1, met_));
+  p_delta.lever[0] = keep(levers(reference, shares, 0, met_));
+  p_delta.lever[1] =
+      is_symmetric(track) ? p_delta.lever[0] : keep(levers(reference, shares, 1, met_));
 }
 
 }  // namespace railstep

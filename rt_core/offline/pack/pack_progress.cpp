@@ -20,7 +20,7 @@ struct Convergents {
 Convergents convergents_of(double x, std::int64_t most) {
   Convergents c;  // of 0 + 1/(a1 + 1/(a2 + ...))
   double rest = x;
-  for (int turn = 0; turn < 64; ++turn) {
+  for (int iteration = 0; iteration < 64; ++iteration) {
     const double value = static_cast<double>(c.last.bays) / static_cast<double>(c.last.steps);
     c.exact = std::abs(x - value) <= 0x1p-51 * x;
     if (c.exact) return c;

@@ -136,7 +136,7 @@ void PackedModel::clip(int points, std::vector<double>& under) {
 
 namespace {
 
-/// What a track sensor has of unit forces of ports beside the model's unknowns.
+/// A track sensor's answer to unit forces of ports, as far as the model's unknowns leave it out.
 ResidualFlexibility::Near seen_at_once(const ResidualFlexibility& residual,
                                        const std::vector<Port>& ports,
                                        const TrackSensor& track_sensor, Elements met) {

@@ -186,7 +186,7 @@ Eigen::VectorXd pressed_under(const std::vector<FixedPort>& ports, const PortSta
     const Eigen::VectorXd closing = opened.points.col(i), free = -kForce * closing;
     std::array<double, kMaxFixedPorts> force{}, depth{};
     PortStatus met = PortStatus::cap_reached;
-    for (int turn = 0; turn < kMostSolves && met != PortStatus::converged; ++turn)
+    for (int iteration = 0; iteration < kMostSolves && met != PortStatus::converged; ++iteration)
       met = solve_ports(n, opened.ports.data(), law.data(), free.data(), force.data(), depth.data())
                 .status;
     if (met != PortStatus::converged)

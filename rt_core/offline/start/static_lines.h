@@ -31,7 +31,7 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
 double height_of(const Track& track, const PackedModel& packed,
                  const std::vector<Eigen::VectorXd>& lines, const RailPoint& at);
 
-/// Where the force of a port of that load_point acts at a place along the rail.
+/// Where the force at a load point acts at a place along the rail.
 RailPoint point_of(const PackedModel& packed, std::int32_t load_point, double x);
 
 }  // namespace railstep

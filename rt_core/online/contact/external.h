@@ -9,7 +9,7 @@ namespace railstep {
 struct ExternalContact {
   bool on_rail;
   RailRow row[3];   // displacement of that point of the railhead along x, y, z of the track
-  double offset;    // of its height, of second order in the rail's turn, m: see turn.h
+  double offset;    // of its height, of second order in the rail's roll, m: track/p_delta.h
   double roll;      // of the section under it, rad
   double place;     // along the model's elements, m
   double force[3];  // N on the rail, 0 off it

@@ -39,12 +39,12 @@ Frame frame(const RailShape& rail, RailPlace at) noexcept {
 
 /// What a search asks of a place: `pull` > 0 if the answer lies ahead, `stiffness` its falling
 /// slope by xi, or a positive substitute (`exact` false) where the slope would lead away.
-struct TrackSensor {
+struct Sample {
   double pull, stiffness;
   bool exact;
 };
 
-TrackSensor track_sensor(double pull, double slope, double substitute) noexcept {
+Sample sample(double pull, double slope, double substitute) noexcept {
   // Below a tenth of the straight rail's slope the point is near the centre of curvature.
   const bool exact = slope > 0.1 * substitute;
   return {pull, exact ? slope : substitute, exact};
@@ -83,7 +83,7 @@ Found search(int elements, RailPlace at, int cap, Ask ask) noexcept {
   cap = cap < 1 ? 1 : cap > kLocateSteps ? kLocateSteps : cap;
   bool hopped = false;  // from the other side of this border, which pointed here
   for (int steps = 1; steps <= cap; ++steps) {
-    const TrackSensor got = ask(at);
+    const Sample got = ask(at);
     const double step = got.pull / got.stiffness;
     if (!std::isfinite(step)) return {LocateStatus::cap_reached, steps, at};
     const bool ahead = step > 0.0;
@@ -139,7 +139,7 @@ PointOnRail locate_point(const RailShape& rail, const double* point, RailPlace s
         const Frame f = frame(rail, at);
         const Vector n = cross(f.a, f.b), n1 = cross(f.a1, f.b) + cross(f.a, f.b1);
         const double straight = dot(f.r1, n);
-        return track_sensor(dot(X - f.r, n), straight - dot(X - f.r, n1), straight);
+        return sample(dot(X - f.r, n), straight - dot(X - f.r, n1), straight);
       });
   const Frame f = frame(rail, found.place);
   const Vector n = cross(f.a, f.b), d = X - f.r;
@@ -161,7 +161,7 @@ WheelOnRail locate_wheel(const RailShape& rail, const double* p, const double* e
         const Vector c1 = f.r1 + z_crown * f.b1, c2 = f.r2 + z_crown * f.b2;
         const Vector across1 = across(c1);
         const double straight = dot(across1, across1);
-        return track_sensor(-dot(w, c1), straight + dot(w, c2), straight);
+        return sample(-dot(w, c1), straight + dot(w, c2), straight);
       });
   const Frame f = frame(rail, found.place);
   const Vector c = f.r + z_crown * f.b - axle, w = across(c);

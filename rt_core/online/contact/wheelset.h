@@ -35,7 +35,7 @@ std::int32_t guide_iterations(const Model& model) noexcept;
 bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace& w,
                     const Coupling& c, double& violation) noexcept;
 
-/// Whether a wheel that closes now on its rail will have left it within 10 steps (strike.h), with
+/// Whether a wheel that closes now on its rail will have left it within 10 steps (impact.h), with
 /// the rail taken as rigid (one that gives way holds the wheel for longer)
 /// and the smaller of the masses that the wheel has alone and together with the set's other one.
 bool tread_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,

@@ -100,7 +100,7 @@ class Reader {
 std::uint64_t padded(std::uint64_t bytes) noexcept { return (bytes + 7) / 8 * 8; }
 
 /// Whether one section behind the other fills the block, each no longer than what is left.
-bool sections_hold(const BlockHeader& h) noexcept {
+bool sections_are_valid(const BlockHeader& h) noexcept {
   if (h.about.at != sizeof(BlockHeader) || h.about.bytes > h.header_bytes - sizeof(BlockHeader) ||
       sizeof(BlockHeader) + padded(h.about.bytes) != h.header_bytes)
     return false;
@@ -135,7 +135,7 @@ LoadStatus check_header(const unsigned char* at, std::size_t bytes, BlockHeader&
   if (h.header_bytes < sizeof h || h.header_bytes > bytes || h.header_bytes % 8 != 0 ||
       h.crc != header_crc(at, h.header_bytes))
     return LoadStatus::wrong_header;
-  if (h.real_bytes != sizeof(double) || !sections_hold(h)) return LoadStatus::bad_content;
+  if (h.real_bytes != sizeof(double) || !sections_are_valid(h)) return LoadStatus::bad_content;
   unsigned char sum[32];
   sha256(at + h.header_bytes, bytes - h.header_bytes, sum);
   if (!same_bytes(sum, h.sum, 32)) return LoadStatus::wrong_sum;
@@ -153,7 +153,7 @@ bool states(const BlockHeader& h, const Model& m) noexcept {
 }
 
 /// A check compares a row of the trace, or there is none.
-bool check_holds(const BlockHeader& h) noexcept {
+bool check_is_valid(const BlockHeader& h) noexcept {
   const std::uint64_t doubles = h.section[kCheck].bytes / 8;
   if (h.check_frames == 0) return doubles == 0;
   return h.check_frames > 0 && h.check_frames <= kMostCheckFrames && doubles > 0 &&
@@ -162,7 +162,7 @@ bool check_holds(const BlockHeader& h) noexcept {
 
 /// A step of two stages is of a track alone in full order, whose forces the model has at any time;
 /// contact forces that are means are held over the step.
-bool scheme_holds(const Model& m) noexcept {
+bool scheme_is_valid(const Model& m) noexcept {
   if (m.scheme.mean != 0 && (m.condensed == 0 || m.scheme.theta != 1.)) return false;
   if (!(m.scheme.part >= 0.) || !(m.scheme.part < 1.)) return false;
   return m.scheme.part == 0. ||
@@ -189,43 +189,43 @@ std::int64_t least_step_flops(const Model& m) noexcept {
 }
 
 /// A frame takes at least the work of its steps.
-bool cost_holds(const Model& m) noexcept {
+bool cost_is_valid(const Model& m) noexcept {
   return m.cost.flops / m.steps_per_frame >= least_step_flops(m) && m.cost.flops >= 1 &&
          m.cost.bytes >= 1 && m.cost.instructions >= m.cost.flops;
 }
 
 /// A run is of whole frames.
-bool frames_hold(const Model& m) noexcept {
+bool frames_are_valid(const Model& m) noexcept {
   return m.steps_per_frame >= 1 && m.steps >= 1 && m.steps % m.steps_per_frame == 0;
 }
 
 /// What a step takes for granted beyond the counts.
 bool is_valid(const Model& m) noexcept {
-  if (!is_above_zero(m.scheme.dt) || !frames_hold(m) || !inputs_hold(m)) return false;
-  if (!scheme_holds(m)) return false;
+  if (!is_above_zero(m.scheme.dt) || !frames_are_valid(m) || !inputs_are_valid(m)) return false;
+  if (!scheme_is_valid(m)) return false;
   if (m.lines < 1 && m.system.unknowns < 1) return false;
-  if (m.lines > 0 && !track_holds(m)) return false;
-  return (m.system.unknowns == 0 || system_holds(m)) && cost_holds(m);
+  if (m.lines > 0 && !track_is_valid(m)) return false;
+  return (m.system.unknowns == 0 || system_is_valid(m)) && cost_is_valid(m);
 }
 
-bool start_holds(const Model& m) noexcept {
-  return m.start != nullptr && (m.system.unknowns == 0 || system_start_holds(m));
+bool start_is_valid(const Model& m) noexcept {
+  return m.start != nullptr && (m.system.unknowns == 0 || system_start_is_valid(m));
 }
 
-bool names_hold(const unsigned char* at, const BlockSection& text) noexcept {
+bool names_are_valid(const unsigned char* at, const BlockSection& text) noexcept {
   Names columns, inputs;
   return split_names(reinterpret_cast<const char*>(at + text.at),
                      static_cast<std::size_t>(text.bytes), columns, inputs);
 }
 
 bool read_payload(const unsigned char* at, const BlockHeader& h, Model& model) noexcept {
-  if (!names_hold(at, h.section[kColumns])) return false;
+  if (!names_are_valid(at, h.section[kColumns])) return false;
   Reader reader(at, h);
   describe(reader, model);
   if (!reader.good() || !is_valid(model)) return false;
   describe_start(reader, model);
-  return reader.good() && reader.at_end() && start_holds(model) && states(h, model) &&
-         check_holds(h);
+  return reader.good() && reader.at_end() && start_is_valid(model) && states(h, model) &&
+         check_is_valid(h);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ bool are_indices(const std::int32_t* values, std::int64_t n, std::int64_t count)
   return true;
 }
 
-bool solve_holds(const Scheme& c, const SystemModel& s) noexcept {
+bool solve_is_valid(const Scheme& c, const SystemModel& s) noexcept {
   if (s.cap < 1 || s.keep_steps < 1) return false;
   if (s.mean != 0 && s.constraint_method != ConstraintMethod::augmented_lagrangian &&
       s.constraint_method != ConstraintMethod::direct)
@@ -55,7 +55,7 @@ bool stands_alone_or_beside(const Model& m) noexcept {
 }
 
 /// Its unknowns are each of one direction or turn.
-bool columns_hold(const RigidBodyModel& b) noexcept {
+bool columns_are_valid(const RigidBodyModel& b) noexcept {
   if (b.unknowns != 3 && b.unknowns != 6) return false;
   std::uint32_t seen = 0;
   for (const std::int32_t column : b.column) {
@@ -66,14 +66,14 @@ bool columns_hold(const RigidBodyModel& b) noexcept {
   return seen == (1u << b.unknowns) - 1u;
 }
 
-bool body_holds(const RigidBodyModel& b) noexcept {
-  if (!columns_hold(b) || !is_above_zero(b.mass) || !is_above_zero(b.radius)) return false;
+bool body_is_valid(const RigidBodyModel& b) noexcept {
+  if (!columns_are_valid(b) || !is_above_zero(b.mass) || !is_above_zero(b.radius)) return false;
   for (const int diagonal : {0, 4, 8})
     if (!(b.inertia[diagonal] > 0.) || !(b.inverse_inertia[diagonal] > 0.)) return false;
   return are_moderate(b.inertia) && are_moderate(b.inverse_inertia) && are_moderate(b.rest);
 }
 
-bool beam_holds(const SystemModel& s, const BeamChainModel& b) noexcept {
+bool beam_is_valid(const SystemModel& s, const BeamChainModel& b) noexcept {
   if (b.planar < 0 || b.planar > 1 || b.elements < 1 || b.elements > kMostElementsOfBeam)
     return false;
   if (b.unknowns != beam_width(b) * chain_nodes(b.elements)) return false;
@@ -86,30 +86,30 @@ bool beam_holds(const SystemModel& s, const BeamChainModel& b) noexcept {
          are_indices(s.held_unknown + b.first_held, b.held, b.unknowns);
 }
 
-bool port_holds(const Model& m, const RailPortModel& p) noexcept {
+bool port_is_valid(const Model& m, const RailPortModel& p) noexcept {
   return (p.rail == 0 || p.rail == 1) && is_index(p.element, m.elements) && are_moderate(p.value) &&
          are_moderate(p.rest);
 }
 
 /// Parts stand one behind the other: bodies, beams, ports, less than a panel of padding.
-bool parts_hold(const Model& m) noexcept {
+bool parts_are_valid(const Model& m) noexcept {
   const SystemModel& s = m.system;
   if (s.bodies + s.beams < 1 || s.unknowns % kLanes != 0) return false;
   std::int64_t at = 0;
   for (std::int32_t i = 0; i < s.bodies; ++i) {
-    if (s.body[i].first != at || !body_holds(s.body[i])) return false;
+    if (s.body[i].first != at || !body_is_valid(s.body[i])) return false;
     at += s.body[i].unknowns;
   }
   for (std::int32_t i = 0; i < s.beams; ++i) {
-    if (s.beam[i].first != at || !beam_holds(s, s.beam[i])) return false;
+    if (s.beam[i].first != at || !beam_is_valid(s, s.beam[i])) return false;
     at += s.beam[i].unknowns;
   }
   for (std::int32_t i = 0; i < s.ports; ++i, at += 9)
-    if (s.port[i].first != at || !port_holds(m, s.port[i])) return false;
+    if (s.port[i].first != at || !port_is_valid(m, s.port[i])) return false;
   return at <= s.unknowns && s.unknowns - at < kLanes;
 }
 
-bool marker_holds(const SystemModel& s, const MarkerModel& m) noexcept {
+bool marker_is_valid(const SystemModel& s, const MarkerModel& m) noexcept {
   if (!are_moderate(m.position) || !are_moderate(m.frame) || !are_moderate(m.value)) return false;
   switch (m.kind) {
     case PartKind::ground:
@@ -140,7 +140,7 @@ std::int32_t part_of(const SystemModel& s, const MarkerModel& m) noexcept {
   return -1;
 }
 
-bool motions_hold(const SystemModel& s) noexcept {
+bool motions_are_valid(const SystemModel& s) noexcept {
   for (std::int32_t i = 0; i < s.motions; ++i) {
     const MotionModel& own = s.motion[i];
     if (own.first < 0 || own.pieces < 1 || std::int64_t{own.first} + own.pieces > s.pieces)
@@ -150,7 +150,7 @@ bool motions_hold(const SystemModel& s) noexcept {
 }
 
 /// Its law alone; what it names is looked at beside.
-bool law_holds(const SystemModel& s, std::int32_t r) noexcept {
+bool law_is_valid(const SystemModel& s, std::int32_t r) noexcept {
   const RowModel& row = s.row[r];
   for (const double x : {row.offset, row.compliance, row.stiffness, row.damping})
     if (!is_moderate(x)) return false;
@@ -165,10 +165,11 @@ bool law_holds(const SystemModel& s, std::int32_t r) noexcept {
 /// What a step places: all markers but those of sensors, which are the last.
 std::int32_t placed(const SystemModel& s) noexcept { return s.markers - s.sensors; }
 
-bool row_holds(const SystemModel& s, std::int32_t r) noexcept {
+bool row_is_valid(const SystemModel& s, std::int32_t r) noexcept {
   const RowModel& row = s.row[r];
   const std::int32_t rows = system_rows(s);
-  if (!law_holds(s, r) || !is_index(row.a, placed(s)) || !is_index(row.b, placed(s))) return false;
+  if (!law_is_valid(s, r) || !is_index(row.a, placed(s)) || !is_index(row.b, placed(s)))
+    return false;
   if (!is_index(row.i, 3) || !is_index(row.j, 3) || !is_index(row.l, 3)) return false;
   if (row.motion < -1 || row.motion >= s.motions || !is_index(row.joint, rows)) return false;
   for (std::int32_t side = 0; side < 2; ++side) {
@@ -181,7 +182,7 @@ bool row_holds(const SystemModel& s, std::int32_t r) noexcept {
 }
 
 /// Every end is that of its row, on the part under which it stands. Rows hold.
-bool ends_hold(const SystemModel& s) noexcept {
+bool ends_are_valid(const SystemModel& s) noexcept {
   const std::int32_t parts = s.bodies + s.beams + 1;
   if (s.part_end[0] != 0 || s.part_end[parts] != s.ends) return false;
   for (std::int32_t p = 0; p < parts; ++p)
@@ -198,7 +199,7 @@ bool ends_hold(const SystemModel& s) noexcept {
 }
 
 /// @param inputs  of the model
-bool force_holds(const SystemModel& s, const PointForceModel& f, std::int32_t inputs) noexcept {
+bool force_is_valid(const SystemModel& s, const PointForceModel& f, std::int32_t inputs) noexcept {
   const bool given = f.motion == -1 && is_index(f.input, inputs);
   const bool timed = is_index(f.motion, s.motions) && f.input == -1;
   if (!is_index(f.marker, placed(s)) || !(given || timed) || !are_moderate(f.direction))
@@ -216,21 +217,22 @@ bool is_read(const SystemModel& s) noexcept {
 
 }  // namespace
 
-bool system_holds(const Model& m) noexcept {
+bool system_is_valid(const Model& m) noexcept {
   const SystemModel& s = m.system;
-  if (!solve_holds(m.scheme, s) || !stands_alone_or_beside(m) || !parts_hold(m)) return false;
+  if (!solve_is_valid(m.scheme, s) || !stands_alone_or_beside(m) || !parts_are_valid(m))
+    return false;
   if (!s.constant_force || !s.per_length || !s.beam_rest || s.sensors > s.markers) return false;
   for (std::int32_t i = 0; i < s.markers; ++i)
-    if (!marker_holds(s, s.marker[i])) return false;
-  if (!motions_hold(s)) return false;
+    if (!marker_is_valid(s, s.marker[i])) return false;
+  if (!motions_are_valid(s)) return false;
   for (std::int32_t r = 0; r < system_rows(s); ++r)
-    if (!row_holds(s, r)) return false;
+    if (!row_is_valid(s, r)) return false;
   for (std::int32_t i = 0; i < s.forces; ++i)
-    if (!force_holds(s, s.force[i], m.inputs)) return false;
-  return ends_hold(s) && is_read(s);
+    if (!force_is_valid(s, s.force[i], m.inputs)) return false;
+  return ends_are_valid(s) && is_read(s);
 }
 
-bool system_start_holds(const Model& m) noexcept {
+bool system_start_is_valid(const Model& m) noexcept {
   const double* q = m.start + (start_doubles(m) - system_start_doubles(m.system));
   for (std::int32_t b = 0; b < m.system.bodies; ++b, q += 4) {
     const double off = ((q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3])) - 1.;

@@ -41,11 +41,11 @@ bool diagonal_is_not_negative(const double* matrix, std::int64_t n) noexcept {
 }
 
 /// A force that grows with the penetration.
-bool contact_holds(const ContactModel& c) noexcept {
+bool contact_is_valid(const ContactModel& c) noexcept {
   return c.hertz > 0. || (c.stiffness > 0. && c.damping >= 0.);
 }
 
-bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
+bool endless_is_valid(const Endless& e, std::int32_t elements) noexcept {
   if (e.bays == 0) return true;
   return e.bay_elements > 0 && std::int64_t{e.bays} * e.bay_elements == elements &&
          e.bay_length > 0. && e.origin >= 0. && e.progress.period > 0 && e.progress.bays >= 0 &&
@@ -53,7 +53,7 @@ bool endless_holds(const Endless& e, std::int32_t elements) noexcept {
          e.progress.advance < kBay;
 }
 
-bool line_holds(const Model& m, const LineModel& line) noexcept {
+bool line_is_valid(const Model& m, const LineModel& line) noexcept {
   if (line.size % kLanes != 0 || line.first + line.size > m.line_unknowns) return false;
   if (m.endless.bays > 0 && line.size > 0 &&
       !(within(line.shift.from, line.size, 0, line.size - 1) && line.shift.own &&
@@ -68,12 +68,12 @@ bool line_holds(const Model& m, const LineModel& line) noexcept {
             line.modal.old_force.re && line.modal.old_force.im && line.modal.new_force.re &&
             line.modal.new_force.im && line.modal.held_force.re && line.modal.held_force.im &&
             (line.modal.rows == 0 || line.modal.shape));
-  const auto diagonals_hold = [&](const Diagonals& d) noexcept {
+  const auto diagonals_are_valid = [&](const Diagonals& d) noexcept {
     return within(d.offset, d.count, -line.size, line.size) && (d.count == 0 || d.value);
   };
   return line.step.left % kLanes == 0 && line.step.inverse &&
          (line.step.left == 0 || (line.step.forward && line.step.backward)) &&
-         diagonals_hold(line.mass) && diagonals_hold(line.damping);
+         diagonals_are_valid(line.mass) && diagonals_are_valid(line.damping);
 }
 
 /// Whether it is a turn, to its rounding.
@@ -82,21 +82,22 @@ bool turns(const Cant& cant) noexcept {
   return off > -1e-14 && off < 1e-14 && cant.cosine > 0.;
 }
 
-bool signal_holds(const SignalModel& s) noexcept {
+bool signal_is_valid(const SignalModel& s) noexcept {
   return s.intervals == 0 || (s.step > 0. && s.coefficient != nullptr);
 }
 
-bool travel_holds(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
+bool travel_is_valid(const TravelModel& t) noexcept { return t.rows == 0 || t.table != nullptr; }
 
-bool force_holds(const Model& m, const BodyForce& f) noexcept {
+bool force_is_valid(const Model& m, const BodyForce& f) noexcept {
   return f.input >= 0 ? f.input < m.inputs : f.points > 0 && f.table != nullptr;
 }
 
-/// A load is not taken off before it has begun, on the side that it comes from (step/load.cpp).
-bool load_holds(const LoadModel& l) noexcept {
+/// A load is not taken off before it has begun, on the side that it comes from
+/// (track/moving_load.cpp).
+bool load_is_valid(const LoadModel& l) noexcept {
   if (l.table_points > 0 && l.table == nullptr) return false;
   const bool ahead = l.travel.speed >= 0. ? l.stop > -kMostNumber : l.stop < kMostNumber;
-  return ahead && travel_holds(l.travel);
+  return ahead && travel_is_valid(l.travel);
 }
 
 /// External wheels stand on a track alone with loads, a step a frame; each has its own inputs.
@@ -109,44 +110,44 @@ bool external_wheels_are_valid(const Model& m) noexcept {
   return true;
 }
 
-bool wheelset_holds(const Model& m, const WheelsetModel& w) noexcept {
+bool wheelset_is_valid(const Model& m, const WheelsetModel& w) noexcept {
   if (w.first < m.line_unknowns || w.first + 8 > m.unknowns || w.cap < 1) return false;
   if (!are_above_zero(w.mass, 6) || !are_above_zero(w.hertz, 2) || !(w.radius > 0.)) return false;
   for (std::int32_t i = 0; i < w.forces; ++i)
-    if (!force_holds(m, w.force[i])) return false;
-  return travel_holds(w.travel) && signal_holds(w.tread[0]) && signal_holds(w.tread[1]);
+    if (!force_is_valid(m, w.force[i])) return false;
+  return travel_is_valid(w.travel) && signal_is_valid(w.tread[0]) && signal_is_valid(w.tread[1]);
 }
 
 /// Flanges come by rising wheelset, one pair each, and count as wheels among the ports.
-bool flanges_hold(const Model& m) noexcept {
+bool flanges_are_valid(const Model& m) noexcept {
   if (contact_count(m) > kMaxWheels) return false;
   for (std::int32_t i = 0; i < m.flanges; ++i) {
     const FlangeModel& f = m.flange[i];
     if (f.wheelset >= m.wheelsets || (i > 0 && f.wheelset <= m.flange[i - 1].wheelset))
       return false;
-    if (!contact_holds(f.contact)) return false;
+    if (!contact_is_valid(f.contact)) return false;
   }
   return true;
 }
 
-bool vehicle_holds(const Model& m, const VehicleModel& v) noexcept {
+bool vehicle_is_valid(const Model& m, const VehicleModel& v) noexcept {
   if (v.first < m.line_unknowns || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
     return false;
   for (std::int32_t i = 0; i < v.forces; ++i)
-    if (v.force[i].direction >= v.size || !force_holds(m, v.force[i])) return false;
-  return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_holds(v.travel) && v.mass &&
+    if (v.force[i].direction >= v.size || !force_is_valid(m, v.force[i])) return false;
+  return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_is_valid(v.travel) && v.mass &&
          v.damping && v.stiffness && v.weight && v.inverse && v.row && v.give && v.compliance &&
          are_above_zero(v.mass, v.size) && diagonal_is_above_zero(v.inverse, v.size) &&
          diagonal_is_above_zero(v.compliance, v.wheels);
 }
 
 /// A wheel is one of its vehicle's, whose matrices have a row for it.
-bool wheel_holds(const Model& m, std::int32_t i) noexcept {
+bool wheel_is_valid(const Model& m, std::int32_t i) noexcept {
   const VehicleWheel& wheel = m.vehicle_wheel[i];
   if (wheel.vehicle >= m.vehicles) return false;
   const VehicleModel& own = m.vehicle[wheel.vehicle];
-  return i >= own.first_wheel && i < own.first_wheel + own.wheels && signal_holds(wheel.tread) &&
-         contact_holds(wheel.contact);
+  return i >= own.first_wheel && i < own.first_wheel + own.wheels && signal_is_valid(wheel.tread) &&
+         contact_is_valid(wheel.contact);
 }
 
 /// Its values may be a little below 0, where elements give way more than a rail does. What they add
@@ -178,7 +179,7 @@ bool p_delta_is_valid(const PDeltaModel& t) noexcept {
 }
 
 /// Every table lies within the track and behind the one before it.
-bool tables_hold(const Model& m) noexcept {
+bool tables_are_valid(const Model& m) noexcept {
   const TrackSensorModel& p = m.track_sensor;
   if (p.tables == 0) return true;
   if (!p.first || !p.ends || p.ends[0] != 0 || p.ends[p.tables] != p.elements) return false;
@@ -196,10 +197,11 @@ bool track_sensors_are_valid(const Model& m) noexcept {
     if (p.start[i] > p.start[i + 1]) return false;
   const std::int64_t values = std::int64_t{3} * m.unknowns + m.fixed.count;
   return within(p.index, p.entries, 0, values - 1) && within(p.table, p.count, -1, p.tables - 1) &&
-         (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value) && tables_hold(m);
+         (p.count == 0 || (p.rest && p.along)) && (p.entries == 0 || p.value) &&
+         tables_are_valid(m);
 }
 
-bool fixed_ports_hold(const Model& m) noexcept {
+bool fixed_ports_are_valid(const Model& m) noexcept {
   const FixedPortModel& p = m.fixed;
   if (p.count == 0) return true;
   if (!p.stiffness || !p.damping || !p.gap || !p.response || !p.compliance) return false;
@@ -216,29 +218,29 @@ bool fixed_ports_hold(const Model& m) noexcept {
 
 }  // namespace
 
-bool track_holds(const Model& m) noexcept {
-  if (m.elements < 1 || !endless_holds(m.endless, m.elements)) return false;
+bool track_is_valid(const Model& m) noexcept {
+  if (m.elements < 1 || !endless_is_valid(m.endless, m.elements)) return false;
   if (!(m.element_length > 0.) || m.line_unknowns % kLanes != 0) return false;
   for (std::int32_t i = 0; i < m.lines; ++i)
-    if (!line_holds(m, m.line[i])) return false;
+    if (!line_is_valid(m, m.line[i])) return false;
   for (std::int32_t i = 0; i < m.loads; ++i)
-    if (!load_holds(m.load[i])) return false;
+    if (!load_is_valid(m.load[i])) return false;
   for (const Cant& cant : m.cant)
     if (!turns(cant)) return false;
   for (std::int32_t i = 0; i < m.wheelsets; ++i)
-    if (!wheelset_holds(m, m.wheelset[i])) return false;
-  if (!flanges_hold(m)) return false;
+    if (!wheelset_is_valid(m, m.wheelset[i])) return false;
+  if (!flanges_are_valid(m)) return false;
   for (std::int32_t i = 0; i < m.vehicles; ++i)
-    if (!vehicle_holds(m, m.vehicle[i])) return false;
+    if (!vehicle_is_valid(m, m.vehicle[i])) return false;
   for (std::int32_t i = 0; i < m.vehicle_wheels; ++i)
-    if (!wheel_holds(m, i)) return false;
+    if (!wheel_is_valid(m, i)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
-    if (m.signal[i].direction < 1 || !signal_holds(m.signal[i].signal)) return false;
+    if (m.signal[i].direction < 1 || !signal_is_valid(m.signal[i].signal)) return false;
   return external_wheels_are_valid(m) && residual_is_valid(m) && p_delta_is_valid(m.p_delta) &&
-         track_sensors_are_valid(m) && fixed_ports_hold(m);
+         track_sensors_are_valid(m) && fixed_ports_are_valid(m);
 }
 
-bool inputs_hold(const Model& m) noexcept {
+bool inputs_are_valid(const Model& m) noexcept {
   for (std::int32_t i = 0; i < m.inputs; ++i)
     if (!is_above_zero(m.input_limit[i])) return false;
   return true;

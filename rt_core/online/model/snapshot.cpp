@@ -30,7 +30,7 @@ bool names_each(const unsigned char* order, std::int32_t rows) noexcept {
 
 /// Whether the matrix that a state keeps, if it keeps one, can be solved with.
 /// @param numbers  the state's, in bytes
-bool kept_holds(const Model& model, const State& state, const unsigned char* numbers) noexcept {
+bool kept_is_valid(const Model& model, const State& state, const unsigned char* numbers) noexcept {
   const SystemModel& system = model.system;
   if (system.unknowns == 0 || system.renew != Renew::kept) return true;
   const SystemTangent kept = system_tangent_on(system, state.kept);
@@ -76,7 +76,7 @@ SnapshotStatus restore_snapshot(const Model& model, const void* bytes, std::size
   const std::uint64_t latched = get_word(at + kLatchedAt);
   if (steps < 0 || steps > kMostSteps || (latched & ~static_cast<std::uint64_t>(kLatched)) != 0)
     return SnapshotStatus::bad_content;
-  if (!kept_holds(model, state, at + kSnapshotHead)) return SnapshotStatus::bad_content;
+  if (!kept_is_valid(model, state, at + kSnapshotHead)) return SnapshotStatus::bad_content;
   state.steps = steps;
   state.latched = static_cast<Status>(latched);
   for (std::size_t i = 0; i < doubles; ++i) state.u[i] = get_double(at + kSnapshotHead + 8 * i);

@@ -10,7 +10,7 @@ namespace railstep {
 struct RailRow {
   std::int32_t rail, element;
   double coefficient[3][9];
-  std::int32_t seats;  // that matter, 0 to kPDeltaSeats; see step/turn.h
+  std::int32_t seats;  // that matter, 0 to kPDeltaSeats; see track/p_delta.h
   std::int32_t seat[kPDeltaSeats];
   double lever[kPDeltaSeats];  // m
 };

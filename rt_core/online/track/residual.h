@@ -6,7 +6,7 @@ namespace railstep {
 /// Where a vertical force acts on a rail, for the residual flexibility.
 struct RailForce {
   std::int32_t load_point,
-      element;  // load_point: kNoLoadPoint makes and feels no residual displacement
+      element;  // kNoLoadPoint makes and feels no residual displacement
   double xi;
   double force;  // N, up positive
 };
