@@ -23,6 +23,7 @@
 #include "offline/pack/travel_rows.h"
 #include "offline/start/start.h"
 #include "offline/start/start_impact.h"
+#include "online/model/external_input.h"
 
 namespace railstep {
 namespace {
@@ -355,8 +356,7 @@ Built::Built(const Scene& scene) try {
   columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
   for (const ExternalWheelScene& wheel : scene.external_wheels)
-    for (const char* quantity : {"x_m", "y_m", "force_x_n", "force_y_n", "force_z_n"})
-      inputs.push_back(wheel.name + "." + quantity);
+    for (const char* quantity : kExternalInputNames) inputs.push_back(wheel.name + "." + quantity);
   packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
   const double gravity = scene.track.gravity ? kGravity : 0.;
   if (scene.step->start == Start::equilibrium)

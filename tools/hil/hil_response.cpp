@@ -15,7 +15,7 @@ constexpr const char kAxes[] = {'x', 'y', 'z'};
 std::vector<std::string> wheels_of(const Simulation& run) {
   std::vector<std::string> names;
   for (std::int32_t n = 0; n < run.model().external_wheels; ++n) {
-    const auto at = static_cast<std::size_t>(run.model().external_wheel[n].input);
+    const auto at = static_cast<std::size_t>(run.model().external_wheel[n].input + kExternalX);
     const std::string& place = run.inputs()[at];  // NAME.x_m
     names.push_back(place.substr(0, place.rfind('.')));
   }
@@ -26,7 +26,7 @@ std::vector<std::string> wheels_of(const Simulation& run) {
 
 Response::Response(const Simulation& run)
     : wheels_(static_cast<std::size_t>(run.model().external_wheels)),
-      places_(2 * wheels_, 0.),
+      places_(kExternalPlaces * wheels_, 0.),
       inputs_(static_cast<std::size_t>(run.model().inputs)),
       compliance_(9 * wheels_ * wheels_) {}
 
@@ -53,7 +53,7 @@ Status Response::answer(Simulation& run, const double* given, double* values) no
   const Model& model = run.model();
   std::copy_n(given, inputs_.size(), inputs_.begin());
   for (std::size_t n = 0; n < wheels_; ++n)
-    std::copy_n(places_.begin() + static_cast<std::ptrdiff_t>(2 * n), 2,
+    std::copy_n(places_.begin() + static_cast<std::ptrdiff_t>(kExternalPlaces * n), kExternalPlaces,
                 inputs_.begin() + model.external_wheel[n].input);
   double* const free = std::copy(places_.begin(), places_.end(), values);
   const Status met =

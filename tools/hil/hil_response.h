@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "online/model/external_input.h"
 #include "run/simulation.h"
 
 namespace railstep {
@@ -23,7 +24,7 @@ class Response {
   /// Puts the names of its values behind those of the model's.
   static void add_names(const Simulation& run, std::vector<std::string>& inputs,
                         std::vector<std::string>& outputs);
-  std::size_t count() const noexcept { return 5 * wheels_ + triangle(); }
+  std::size_t count() const noexcept { return (kExternalPlaces + 3) * wheels_ + triangle(); }
 
   /// @param places  [2 wheels] x and y of each
   void ask(const double* places) noexcept;

@@ -8,6 +8,7 @@
 #include "hil/hil_inputs.h"
 #include "hil/hil_packet.h"
 #include "hil/hil_response.h"
+#include "online/model/external_input.h"
 #include "online/step/step.h"
 #include "online/step/trace_row.h"
 #include "run/heap_count.h"
@@ -20,7 +21,7 @@ namespace {
 std::vector<std::size_t> places_of(const Model& model) {
   std::vector<std::size_t> at;
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
-    for (int d = 0; d < 2; ++d)
+    for (int d = 0; d < kExternalPlaces; ++d)
       at.push_back(static_cast<std::size_t>(model.external_wheel[n].input + d));
   return at;
 }

@@ -10,6 +10,7 @@
 #include "offline/contact/hertz.h"
 #include "offline/cost/cost.h"
 #include "offline/pack/released.h"
+#include "online/model/external_input.h"
 
 namespace railstep {
 
@@ -306,7 +307,9 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
         "TR-BDF2 is not");
   constexpr double kFar = 1e9;  // m
   const std::int32_t input = model_.inputs;
-  take_inputs({kFar, kFar, wheel.limit, wheel.limit, wheel.limit}, model_);
+  std::vector<double> limits(kExternalInputs, wheel.limit);
+  limits[kExternalX] = limits[kExternalY] = kFar;
+  take_inputs(limits, model_);
   model_.external_wheel[model_.external_wheels++] = {wheel.rail, input,
                                                      load_point_of_wheel(wheel.rail)};
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "online/model/external_input.h"
 #include "online/model/progress.h"
 #include "online/track/p_delta.h"
 
@@ -42,10 +43,10 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
                  const double* input, const Configuration& seen, ExternalContact& at) noexcept {
   at = ExternalContact{};
   const double* own = input + wheel.input;
-  at.place = own[0] - passed(model, step);
+  at.place = own[kExternalX] - passed(model, step);
   const double scaled = at.place / model.element_length;
   const double radius = model.crown_radius[wheel.rail], half = model.head_half_width[wheel.rail];
-  at.on_rail = scaled >= 0. && scaled <= model.elements && std::fabs(own[1]) <= half;
+  at.on_rail = scaled >= 0. && scaled <= model.elements && std::fabs(own[kExternalY]) <= half;
   at.port = {kNoLoadPoint, 0, 0., 0.};
   if (!at.on_rail) return;
   std::int32_t element = static_cast<std::int32_t>(scaled);
@@ -53,7 +54,7 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
   const double xi = 2. * (scaled - element) - 1.;
   const Cant& cant = model.cant[wheel.rail];
   const CrownTop top = crown_top(cant, model.head_z[wheel.rail], radius);
-  const double y = top.y + own[1];  // on the crown's circle
+  const double y = top.y + own[kExternalY];  // on the crown's circle
   const double z = (model.head_z[wheel.rail] - radius) + std::sqrt(radius * radius - y * y);
   double shape[3];
   shape_functions(xi, shape);
@@ -69,7 +70,7 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
   SeatMotions seats;
   const double higher = add_p_delta(model, seen, roll, xi, y, z, up, at.row[2], seats);
   at.offset = .5 * roll * roll * (z * along[2] + y * along[1]) - higher;
-  for (int d = 0; d < 3; ++d) at.force[d] = own[2 + d];
+  for (int d = 0; d < 3; ++d) at.force[d] = own[kExternalForce + d];
   at.port = {wheel.load_point, element, xi, at.force[2]};
 }
 

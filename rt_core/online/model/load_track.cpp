@@ -1,6 +1,7 @@
 #include "online/model/load_track.h"
 
 #include "online/math/finite.h"
+#include "online/model/external_input.h"
 #include "online/model/progress.h"
 #include "online/model/state.h"
 
@@ -106,7 +107,7 @@ bool external_wheels_are_valid(const Model& m) noexcept {
   if (m.wheelsets > 0 || m.vehicles > 0 || m.fixed.count > 0 || m.steps_per_frame != 1)
     return false;
   for (std::int32_t i = 0; i < m.external_wheels; ++i)
-    if (m.external_wheel[i].input + 5 > m.inputs) return false;
+    if (m.external_wheel[i].input + kExternalInputs > m.inputs) return false;
   return true;
 }
 

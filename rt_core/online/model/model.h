@@ -271,9 +271,8 @@ struct FixedPortModel {
   const double* compliance;  // [count][count] theta row response, m/N
 };
 
-/// A wheel of a vehicle outside the model, as it presses a rail: five inputs from `input` on, its
-/// place x along the track and y across the railhead from the middle of its tread, m, then the
-/// force on the rail along x, y and z, N. They are those of the step, which is a frame.
+/// A wheel of a vehicle outside the model, as it presses a rail. Its place and force are inputs
+/// from `input` on (external_input.h); they are those of the step, which is a frame.
 struct ExternalWheelModel {
   std::int32_t rail, input;
   std::int32_t load_point;  // rail and height at which its vertical force acts

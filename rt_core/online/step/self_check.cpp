@@ -1,6 +1,7 @@
 #include "online/step/self_check.h"
 
 #include "online/math/bytes.h"
+#include "online/model/external_input.h"
 #include "online/step/step.h"
 #include "online/step/trace_row.h"
 
@@ -10,8 +11,8 @@ void check_inputs(const Model& model, double* input) noexcept {
   for (std::int32_t i = 0; i < model.inputs; ++i) input[i] = .25 * model.input_limit[i];
   for (std::int32_t i = 0; i < model.external_wheels; ++i) {
     double* const place = input + model.external_wheel[i].input;
-    place[0] = .5 * model.elements * model.element_length;
-    place[1] = 0.;
+    place[kExternalX] = .5 * model.elements * model.element_length;
+    place[kExternalY] = 0.;
   }
 }
 

@@ -6,6 +6,7 @@
 #include "online/contact/external.h"
 #include "online/math/float_mode.h"
 #include "online/math/tiny.h"
+#include "online/model/external_input.h"
 #include "online/model/progress.h"
 #include "online/step/copy_outputs.h"
 #include "online/step/input.h"
@@ -222,7 +223,8 @@ namespace {
   tried.steps = state.steps;
   const Status met = take_inputs(model, inputs, tried);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
-    for (int d = 0; d < 3; ++d) tried.input[model.external_wheel[n].input + 2 + d] = 0.;
+    for (int d = 0; d < 3; ++d)
+      tried.input[model.external_wheel[n].input + kExternalForce + d] = 0.;
   Outputs outputs;
   ExternalContact external[kMaxExternalWheels];
   start_frame(model, tried, outputs);
