@@ -52,7 +52,7 @@ inline Eigen::MatrixXd contact_step(const PadCase& pad, const PackOptions& optio
   unit.segment(n, n).setConstant(1. / dt);
   unit.segment(2 * n, 2 * n).setConstant(1. / (dt * dt));
   unit.tail(contact_count(model)).setConstant(kStandingContact);
-  for (Eigen::Index i = 0; model.condensed != 0 && i < model.line_unknowns; ++i)
+  for (Eigen::Index i = 0; model.form == Form::condensed && i < model.line_unknowns; ++i)
     for (const Eigen::Index of : {Eigen::Index{0}, n, 2 * n, 3 * n}) unit[of + i] = 1.;
   Eigen::MatrixXd step(all, all);
   for (Eigen::Index i = 0; i < all; ++i) {
@@ -63,7 +63,7 @@ inline Eigen::MatrixXd contact_step(const PadCase& pad, const PackOptions& optio
     step.col(i) = Eigen::Map<const Eigen::VectorXd>(run.state.u, all).cwiseQuotient(unit);
   }
   // Of condensed lines a and g hold the loads' last forces, of which there are none: they stay.
-  const Eigen::Index lines = model.condensed * model.line_unknowns;
+  const Eigen::Index lines = modal_unknowns(model);
   for (const Eigen::Index of : {2 * n, 3 * n}) {
     step.middleRows(of, lines).setZero();
     step.middleCols(of, lines).setZero();

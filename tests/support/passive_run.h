@@ -65,7 +65,7 @@ class PassiveRun {
 
   /// Where the last step, or one later, has the wheels: forces held over a step act in its middle.
   StandingWheels wheels(const State& at, std::int64_t step) const {
-    const double before = model_.condensed != 0 ? .5 * dt_ : 0.;
+    const double before = model_.form == Form::condensed ? .5 * dt_ : 0.;
     WheelContact contact[kMaxWheels];
     for (std::int32_t v = 0; v < model_.vehicles; ++v)
       find_vehicle_contacts(model_, model_.vehicle[v], step, before, {at.u, {at.u, at.v}}, contact);
@@ -175,7 +175,7 @@ class PassiveRun {
   double bound(const StepEnergies& e) {
     reference_ =
         std::max({reference_, e.before - of_weight(old_), e.after - of_weight(run_.state)});
-    if (model_.condensed != 0) return 1e-9 * reference_;
+    if (model_.form == Form::condensed) return 1e-9 * reference_;
     double size = 0.;
     for (std::size_t l = 0; l < sizes_.size(); ++l) {
       const auto n = sizes_[l].rows();

@@ -53,9 +53,9 @@ inline double of_node(const ModelRun& run, int node, int k, bool rate) {
     const LineModel& line = model.line[l];
     const auto n = static_cast<std::size_t>(model.unknowns);
     std::vector<double> re(run.state.u, run.state.u + n), im(run.state.v, run.state.v + n);
-    Configuration at{rate && model.condensed == 0 ? run.state.v : run.state.u,
+    Configuration at{rate && model.form == Form::banded ? run.state.v : run.state.u,
                      {re.data(), im.data()}};
-    for (std::int32_t i = 0; rate && model.condensed != 0 && i < line.size; ++i) {
+    for (std::int32_t i = 0; rate && model.form == Form::condensed && i < line.size; ++i) {
       const std::size_t j = static_cast<std::size_t>(line.first) + static_cast<std::size_t>(i);
       const double u = re[j], v = im[j];
       re[j] = line.modal.rate.re[i] * u - line.modal.rate.im[i] * v;

@@ -63,8 +63,8 @@ void add_modes(std::vector<Change>& changes, const Model& model, double small,
 std::vector<Change> changes_of(const Model& model, const State& state) {
   const double small = small_change(model, state);
   std::vector<Change> changes;
-  if (model.condensed == 0) add_motion(changes, model, small, 0, model.line_unknowns);
-  for (int l = 0; model.condensed != 0 && l < model.lines; ++l)
+  if (model.form == Form::banded) add_motion(changes, model, small, 0, model.line_unknowns);
+  for (int l = 0; model.form == Form::condensed && l < model.lines; ++l)
     add_modes(changes, model, small, model.line[l]);
   for (int i = 0; i < model.vehicles; ++i) {
     const VehicleModel& vehicle = model.vehicle[i];

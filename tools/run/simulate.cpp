@@ -153,7 +153,7 @@ std::string place_in_track(const Model& model, std::int32_t unknown) {
   for (std::int32_t l = model.lines - 1; l >= 0; --l) {
     const LineModel& line = model.line[l];
     if (unknown < line.first || unknown >= line.first + line.size) continue;
-    if (model.condensed != 0)
+    if (model.form == Form::condensed)
       return fmt::format("mode {} of the track's line {}", unknown - line.first, l);
     for (const std::int32_t* table : line.unknown_of)
       for (std::int32_t i = 0; i < 27 * model.elements; ++i)
@@ -206,7 +206,7 @@ std::string unknown_place(const Simulation& run, std::int32_t unknown) {
 
 std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown) {
   const std::int32_t at = first_bad_unknown;
-  const bool of_track = run.model().condensed == 0 && at < run.model().line_unknowns;
+  const bool of_track = run.model().form == Form::banded && at < run.model().line_unknowns;
   const bool itself = of_track || !is_moderate(run.state.u[at]) || !is_moderate(run.state.v[at]);
   return fmt::format(
       "nonfinite_state: at step {}, t = {:.9g} s, {}unknown {} of the state ({}){} is not finite, "

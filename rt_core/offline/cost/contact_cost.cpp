@@ -76,7 +76,7 @@ Cost responses_cost(const Model& model, const LineModel& line) {
 
 Cost fixed_cost(const Model& model) {
   const std::int64_t count = model.fixed.count, n = model.line_unknowns;
-  if (model.condensed != 0)
+  if (model.form == Form::condensed)
     return count * (2 * work(4 * n + 8, 4 * n) + work(4 * n, 6 * n) + work(20, 10));
   return count * (work(2 * n, 3 * n) + work(20, 10)) +
          3 * work(2 * model.fixed.entries, 3 * model.fixed.entries);
@@ -100,7 +100,7 @@ Cost coupled_cost(const Model& model, std::int64_t contacts) {
 Cost contact_cost(const Model& model) {
   const std::int64_t contacts = contact_count(model), sets = model.wheelsets;
   if (contacts + model.fixed.count == 0) return {};
-  const std::int64_t moving = model.unknowns - model.condensed * model.line_unknowns;
+  const std::int64_t moving = model.unknowns - modal_unknowns(model);
   Cost sum = work(2 * moving, 3 * moving) + (sets + model.flanges) * located_pair(model) +
              sets * work(400, 200);
   for (std::int32_t l = 0; l < model.lines; ++l) sum = sum + responses_cost(model, model.line[l]);

@@ -34,7 +34,7 @@ Cost solve_cost(const Band& band) {
 
 LineCost line_cost(const Model& model, const LineModel& line) {
   const std::int64_t n = line.size, points = carried(model, line);
-  const bool modal = model.condensed != 0;
+  const bool modal = model.form == Form::condensed;
   const std::int64_t seats = turns(model) ? 2 * kPDeltaSeats : 0;
   LineCost c{};
   c.value = modal ? work(4 * n + 7, 4 * n) : work(0, 1);
@@ -53,7 +53,7 @@ Cost advance_cost(const Model& model, const LineModel& line) {
   // The traffic passes a bay border in one step at most: u, v, a, g of the line one bay on.
   const Cost shift = model.endless.bays > 0 ? 4 * work(4 * n, 7 * n) : Cost{};
   // Three complex products and two sums.
-  if (model.condensed != 0) return shift + work(22 * n, 18 * n);
+  if (model.form == Form::condensed) return shift + work(22 * n, 18 * n);
   const std::int64_t diagonals = line.mass.count + line.damping.count;
   const Cost predicted = work(10 * n, 6 * n), corrected = work(9 * n, 9 * n);
   const Cost inertia = work(3 * n + 2 * n * diagonals, n * (2 * diagonals + 9));

@@ -10,7 +10,8 @@ Cost external_cost(const Model& model) {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineCost line = line_cost(model, model.line[l]);
     const std::int64_t n = model.line[l].size;
-    const Cost press = model.condensed != 0 ? line.shape + work(8 * n, 8 * n) : line.wheel_row;
+    const Cost press =
+        model.form == Form::condensed ? line.shape + work(8 * n, 8 * n) : line.wheel_row;
     sum = sum + line.row + kPDeltaSeats * line.node_turn + 3 * press + 6 * line.wheel_row;
   }
   return sum;
@@ -26,7 +27,7 @@ Cost publish_cost(const Model& model) {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineCost line = line_cost(model, model.line[l]);
     sum = sum + model.loads * line.row + wheels * 6 * (work(3, 2) + line.value);
-    if (model.external_wheels > 0 && model.condensed != 0)
+    if (model.external_wheels > 0 && model.form == Form::condensed)
       sum = sum + work(6 * model.line[l].size, 6 * model.line[l].size);
   }
   return sum;

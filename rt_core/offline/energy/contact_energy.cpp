@@ -132,7 +132,7 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
 
 double contact_dissipation(const Model& model, const StandingContacts& before,
                            const StandingContacts& after, const double* mean_force) {
-  const bool held = model.condensed != 0;
+  const bool held = model.form == Form::condensed;
   const double late = held ? model.scheme.theta : .5;
   double sum = 0.;
   for (int i = 2 * model.wheelsets; i < after.wheels; ++i) {

@@ -94,7 +94,7 @@ void EnergyAccount::follow(const State& state) {
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) add_wheelset(now, b);
   for (std::int32_t j = 0; j < model_.fixed.count; ++j) add_port(now, j);
   for (std::int32_t b = 0; b < model_.vehicles; ++b) add_vehicle(now, b);
-  if (first_ && model_.condensed == 0) add_start(now);
+  if (first_ && model_.form == Form::banded) add_start(now);
   last_ = std::move(now);  // its views stay: a vector's memory moves with it
   first_ = false;
   note();
@@ -168,7 +168,7 @@ void EnergyAccount::add_port(const Standing& now, std::int32_t j) {
   const double d0 = last_.depth[i], d1 = now.depth[i];
   const double f0 = last_.state.port_force[j], f1 = now.state.port_force[j];
   const auto spring = [&](double d) { return k * std::max(0., d); };
-  const bool held = model_.condensed != 0;
+  const bool held = model_.form == Form::condensed;
   const double work = (held ? f1 : .5 * (f0 + f1)) * (d1 - d0);
   const double dissipated =
       held ? work - spring(theta * d1 + (1. - theta) * d0) * (d1 - d0)
@@ -182,7 +182,7 @@ void EnergyAccount::add_port(const Standing& now, std::int32_t j) {
 /// Force of the scheme on a wheel over the step, N.
 double EnergyAccount::wheel_force(const Standing& now, int wheel) const {
   const double f1 = now.state.wheel_force[wheel];
-  return model_.condensed != 0 ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
+  return model_.form == Form::condensed ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
 }
 
 /// Work of a wheelset's wheels by what its way along x alone changes of their approach: the mean of
@@ -242,7 +242,7 @@ double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
   const double f0 = outer_force(model_, w, 0, last_.state);
   const double f1 = outer_force(model_, w, 0, now.state);
   const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
-  const bool held = model_.condensed != 0;
+  const bool held = model_.form == Form::condensed;
   const double sum = passage_work(now, b) - (held ? f1 : .5 * (f0 + f1)) * du;
   if (is_held(w, 0)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
   const double g = held ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
@@ -252,7 +252,7 @@ double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
 double EnergyAccount::body_loss(const Standing& now, const WheelsetModel& w, int k) const {
   const int i = w.first + k;
   const double dt = model_.scheme.dt, du = now.state.u[i] - last_.state.u[i];
-  if (model_.condensed != 0) {
+  if (model_.form == Form::condensed) {
     if (k > 2) return 0.;
     const double f0 = outer_force(model_, w, k, last_.state);
     return .5 * (f0 - outer_force(model_, w, k, now.state)) * du;

@@ -27,7 +27,7 @@ std::vector<ExternalContact> external_in_step(const Model& model, const State& b
 
 double external_work(const Model& model, const std::vector<ExternalContact>& last,
                      const std::vector<ExternalContact>& now, const Configuration& moved) {
-  if (model.condensed != 0) return work(model, now, moved);
+  if (model.form == Form::condensed) return work(model, now, moved);
   return .5 * (work(model, last, moved) + work(model, now, moved));
 }
 

@@ -21,7 +21,7 @@ Eigen::SparseMatrix<double> diagonal(const Eigen::VectorXd& values) {
 }  // namespace
 
 LineEnergy::LineEnergy(const PackedLine& own, const Model& model, const LineModel& line)
-    : condensed_(model.condensed != 0), first_(line.first) {
+    : condensed_(model.form == Form::condensed), first_(line.first) {
   const double* const constant = model.constant_force;
   if (!condensed_) {
     mass_ = own.line.mass;

@@ -48,7 +48,7 @@ VehiclePassed vehicle_passed(const Model& model, const VehicleModel& vehicle, co
   const Eigen::VectorXd f0 = forces_on(model, vehicle, before),
                         f1 = forces_on(model, vehicle, after);
   const double work = .5 * (f0 + f1).dot(du);
-  if (model.condensed != 0)
+  if (model.form == Form::condensed)
     return {-m.weight.dot(du), work, du.dot(m.damping * du) / dt, .5 * (f0 - f1).dot(du)};
   const Eigen::VectorXd v = .5 * (part(before.v) + part(after.v));
   const Eigen::VectorXd g = .5 * (part(before.g) + part(after.g));

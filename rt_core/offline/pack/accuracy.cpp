@@ -155,7 +155,7 @@ class ModelReceptances {
     for (std::size_t i = 0; i < asked.points.size(); ++i)
       residual_[static_cast<Eigen::Index>(i)] = residual_under(
           packed.model(), rail_force(packed.model(), asked.kinds[i], asked.points[i].x, 1.));
-    if (packed.model().condensed != 0) {
+    if (packed.model().form == Form::condensed) {
       for (const PackedLine& own : packed.lines()) modal_.emplace_back(track, own, asked.points);
       pressed_.emplace(track, packed, asked.points);
       return;

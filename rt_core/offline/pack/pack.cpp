@@ -239,7 +239,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
     model_.crown_radius[rail] = heads[rail].crown_radius;
     model_.head_half_width[rail] = heads[rail].half_width;
   }
-  model_.condensed = options.reduction ? 1 : 0;
+  model_.form = options.reduction ? Form::condensed : Form::banded;
   if (track.cant != 0. && !traffic.held.empty())
     throw std::invalid_argument("bodies hold on to rails that stand upright; accepted is no cant");
   met_ = {0, track.elements()};
@@ -326,12 +326,12 @@ void take_inputs(const std::vector<double>& limits, Model& model) {
 
 void PackedModel::add_weight(const Track& track, double gravity) {
   const auto n = static_cast<std::size_t>(model_.unknowns);
-  std::vector<double> force(n * static_cast<std::size_t>(1 + model_.condensed), 0.);
+  std::vector<double> force(n * static_cast<std::size_t>(parts(model_.form)), 0.);
   for (std::size_t l = 0; l < lines_.size(); ++l) {
     Eigen::VectorXd own = preload(track, lines_[l].line);
     if (gravity != 0.) own += weight(track, lines_[l].line, gravity);
     const auto first = static_cast<std::size_t>(model_.line[l].first);
-    if (model_.condensed == 0) {
+    if (model_.form == Form::banded) {
       std::copy(own.begin(), own.end(), force.begin() + static_cast<std::ptrdiff_t>(first));
       continue;
     }

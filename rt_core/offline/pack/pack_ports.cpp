@@ -26,14 +26,14 @@ void PackedModel::add_fixed_ports(const Track& track) {
   fixed.stiffness = keep(std::move(stiffness));
   fixed.damping = keep(std::move(damping));
   fixed.gap = keep(std::move(gap));
-  if (model_.condensed != 0)
+  if (model_.form == Form::condensed)
     add_port_shapes();
   else
     add_port_rows();
   // theta row response; the lower half stands for both, as rounding makes them differ.
   const auto n = static_cast<std::size_t>(fixed.count);
   std::vector<double> compliance(n * n);
-  const std::ptrdiff_t part = model_.line_unknowns, stride = (1 + model_.condensed) * part;
+  const std::ptrdiff_t part = model_.line_unknowns, stride = parts(model_.form) * part;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
       const double* response = fixed.response + static_cast<std::ptrdiff_t>(j) * stride;

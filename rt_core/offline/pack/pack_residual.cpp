@@ -64,7 +64,7 @@ void PackedModel::add_track_sensors(const Track& track,
       const PackedLine& own = lines_[l];
       const std::int32_t first = model_.line[l].first, velocity = model_.unknowns + first;
       const Eigen::SparseVector<double> row = functional_row(track, own.line, track_sensor.track);
-      if (model_.condensed == 0) {
+      if (model_.form == Form::banded) {
         for (Eigen::SparseVector<double>::InnerIterator it(row); it; ++it) {
           entry(first + static_cast<int>(it.index()), track_sensor.displacement * it.value());
           entry(velocity + static_cast<int>(it.index()), track_sensor.velocity * it.value());
@@ -164,7 +164,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor
   std::vector<Basis> bases;
   for (const PackedLine& own : lines_) {
     lines.push_back(all[own.index]);
-    if (model_.condensed != 0)
+    if (model_.form == Form::condensed)
       bases.push_back(with_springs(own.basis, lines.back().stiffness - own.line.stiffness));
   }
   const ResidualFlexibility residual(reference, lines, bases, points);

@@ -103,7 +103,8 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   packed.wheels = wheels;
   packed.start = model_.endless.origin + vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
-  const Eigen::MatrixXd inverse = step_inverse(m, model_.scheme, model_.condensed != 0 ? .5 : 1.);
+  const Eigen::MatrixXd inverse =
+      step_inverse(m, model_.scheme, model_.form == Form::condensed ? .5 : 1.);
   const Eigen::MatrixXd give = m.wheels * inverse;
   const Eigen::MatrixXd compliance = give * m.wheels.transpose();
   packed.mass = keep(row_by_row(m.mass.diagonal()));

@@ -119,7 +119,7 @@ PortStatics port_statics(const Track& track, const PackedModel& packed,
   PortStatics sum = nothing(ports.size(), points.size());
   for (const PackedLine& own : packed.lines()) {
     const Line& line = lines[own.index];
-    if (packed.model().condensed == 0) {
+    if (packed.model().form == Form::banded) {
       add_line(at_rest, line, ports, points, sum);
       continue;
     }

@@ -11,7 +11,7 @@ std::vector<double> start_released(const PackedModel& packed) {
   State state = state_on(model, memory.data());
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     state.v[model.wheelset[b].first] = travelled(model.wheelset[b].travel, 0.).speed;
-  if (model.condensed != 0) forces(model, 0, state.a, state.g);
+  if (model.form == Form::condensed) forces(model, 0, state.a, state.g);
   return memory;
 }
 

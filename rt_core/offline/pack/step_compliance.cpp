@@ -59,7 +59,7 @@ StepCompliance::StepCompliance(const Model& model, const std::vector<PackedLine>
     : model_(model), lines_(lines) {
   const Scheme& s = model.scheme;
   for (const PackedLine& own : lines)
-    if (model.condensed == 0)
+    if (model.form == Form::banded)
       inverse_.emplace_back(own.line.stiffness + s.kv * own.line.damping + s.kg * own.line.mass);
 }
 
@@ -69,7 +69,7 @@ std::vector<double> StepCompliance::table(const Port& port, int points) const {
   // Tables of one bay, of the one that traffic on a ring stands in.
   const Endless& e = model_.endless;
   const auto first =
-      model_.condensed != 0 && e.bays > 0
+      model_.form == Form::condensed && e.bays > 0
           ? static_cast<std::int32_t>(std::lround(e.origin / e.bay_length)) * e.bay_elements
           : 0;
   for (std::int32_t element = first; element < first + model_.residual.elements; ++element)
@@ -77,7 +77,7 @@ std::vector<double> StepCompliance::table(const Port& port, int points) const {
       const RailRow row = row_of(model_, port, element, 2. * p / points - 1.);
       double sum = 0.;
       for (std::size_t l = 0; l < lines_.size(); ++l)
-        sum += model_.condensed != 0
+        sum += model_.form == Form::condensed
                    ? condensed_give(model_.line[l], row, re, im)
                    : banded_give(lines_[l].line, model_.line[l], inverse_[l], row);
       table.push_back(model_.scheme.theta * sum);

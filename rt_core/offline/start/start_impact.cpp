@@ -46,7 +46,7 @@ std::vector<double> start_under_impact(const Track& track, const PackedModel& pa
                                        double gravity) {
   const Model& model = packed.model();
   std::vector<double> memory(model.start, model.start + state_doubles(model));
-  if (model.condensed != 0 || model.fixed.count > 0) return memory;
+  if (model.form == Form::condensed || model.fixed.count > 0) return memory;
   State state = state_on(model, memory.data());
   const double dt = model.scheme.dt;
   for (std::size_t l = 0; l < packed.lines().size(); ++l) {

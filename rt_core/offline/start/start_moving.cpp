@@ -274,7 +274,7 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
           "a start on the move takes no lateral force on a wheelset at the start");
   if (model.endless.progress.bays == 0) return start_in_equilibrium(track, packed, gravity);
   const Model even = evened(model);
-  if (model.condensed == 0) {
+  if (model.form == Form::banded) {
     std::vector<double> memory = start_in_equilibrium(track, packed, gravity);
     settle(even, memory);
     return memory;

@@ -14,12 +14,12 @@ namespace {
 /// A point's row as ports see it: those of condensed lines leave out the section's own strain.
 Eigen::SparseVector<double> row_of(const Track& track, const PackedModel& packed, const Line& line,
                                    const RailPoint& at) {
-  return point_row(track, line, at, packed.model().condensed == 0);
+  return point_row(track, line, at, packed.model().form == Form::banded);
 }
 
 /// A contact's row, as the step spreads it.
 Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRow& row) {
-  const bool strains = packed.model().condensed == 0;
+  const bool strains = packed.model().form == Form::banded;
   const double factor = line.rail_factor[static_cast<std::size_t>(row.rail)];
   Eigen::VectorXd result = Eigen::VectorXd::Zero(line.unknowns());
   const auto add = [&](int unknown, int k, double value) {
@@ -74,7 +74,7 @@ void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines)
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
                                           const Acting& acting, double gravity) {
   std::vector<Eigen::VectorXd> lines;
-  if (packed.model().condensed == 0) {
+  if (packed.model().form == Form::banded) {
     std::vector<Eigen::VectorXd> load = statics.loads(acting.forces, gravity);
     for (const PackedLine& own : packed.lines())
       for (const ContactForce& f : acting.contacts)
@@ -103,7 +103,7 @@ double height_of(const Track& track, const PackedModel& packed,
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const PackedLine& own = packed.lines()[l];
     const Eigen::SparseVector<double> row = row_of(track, packed, own.line, at);
-    sum += packed.model().condensed == 0
+    sum += packed.model().form == Form::banded
                ? row.dot(lines[l])
                : own.basis.shapes.project(Eigen::VectorXd(row)).dot(own.basis.shown(lines[l]));
   }

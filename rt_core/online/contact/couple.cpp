@@ -19,11 +19,11 @@ namespace {
 /// are far above 1/dt).
 void locate_contacts(const Model& model, const Stage& stage, const State& s, Workspace& w,
                      Coupling& c) noexcept {
-  const double ahead = (model.condensed != 0 ? .5 : 1.) * stage.span;
+  const double ahead = (model.form == Form::condensed ? .5 : 1.) * stage.span;
   // Irregularities are those of where the penetration is taken; of a mean, those of the middle.
   const double later = model.scheme.mean != 0 ? 0. : model.scheme.theta * stage.span - ahead;
 #pragma omp simd
-  for (std::int32_t i = model.condensed * model.line_unknowns; i < model.unknowns; ++i)
+  for (std::int32_t i = modal_unknowns(model); i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];

@@ -77,7 +77,7 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
 /// What a unit force along a row, held over the step, makes of condensed lines, into w.solved and
 /// w.imaginary; or of banded ones at its end, into w.solved.
 void respond(const Model& model, const RailRow& row, Workspace& w) noexcept {
-  if (model.condensed == 0) {
+  if (model.form == Form::banded) {
     for (std::int32_t i = 0; i < model.line_unknowns; ++i) w.solved[i] = 0.;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       spread(model.line[l], row, 1., w.solved);
@@ -137,7 +137,8 @@ void place_external(const Model& model, std::int64_t step, const double* input,
 
 void place_in_step(const Model& model, std::int64_t step, const State& s, double* scaled,
                    ExternalContact* contact) noexcept {
-  const double dt = model.condensed != 0 ? 0. : model.scheme.dt;  // as those of wheels are located
+  const double dt =
+      model.form == Form::condensed ? 0. : model.scheme.dt;  // as those of wheels are located
 #pragma omp simd
   for (std::int32_t i = 0; i < model.line_unknowns; ++i) scaled[i] = s.u[i] + dt * s.v[i];
   place_external(model, step, s.input, {scaled, {s.u, s.v}}, contact);
@@ -149,7 +150,7 @@ void press_external(const Model& model, std::int64_t step, const State& s, Works
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
     for (int d = 0; d < 3 && contact[n].on_rail; ++d) {
       const ExternalContact& at = contact[n];
-      if (model.condensed != 0)
+      if (model.form == Form::condensed)
         press_modes(model, at.row[d], at.force[d], w);
       else
         for (std::int32_t l = 0; l < model.lines; ++l)
@@ -174,7 +175,7 @@ void publish_external(const Model& model, const State& s, const ExternalContact*
 
 void publish_external_rates(const Model& model, const State& s, const ExternalContact* contact,
                             Workspace& w, Outputs& outputs) noexcept {
-  if (model.condensed != 0) mode_rates(model, s, w);
+  if (model.form == Form::condensed) mode_rates(model, s, w);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
     for (int d = 0; d < 3; ++d)
       outputs.external_velocity[n][d] =

@@ -9,10 +9,9 @@ namespace {
 
 /// What a unit force of a port makes of the lines; the imaginary parts of condensed ones alone.
 Complex response_of(const Model& model, std::int32_t port) noexcept {
-  const std::ptrdiff_t stride =
-      static_cast<std::ptrdiff_t>(1 + model.condensed) * model.line_unknowns;
+  const std::ptrdiff_t stride = std::ptrdiff_t{parts(model.form)} * model.line_unknowns;
   const double* re = model.fixed.response + port * stride;
-  return {re, re + model.condensed * model.line_unknowns};
+  return {re, re + modal_unknowns(model)};
 }
 
 /// The law of a step for given kv and v0.
@@ -62,7 +61,7 @@ void fixed_compliance(const Model& model, std::int32_t j, const Workspace& w,
 void couple_fixed_ports(const Model& model, const State& s, const Workspace& w,
                         Coupling& c) noexcept {
   for (std::int32_t j = 0; j < model.fixed.count; ++j) {
-    if (model.condensed != 0)
+    if (model.form == Form::condensed)
       place_condensed(model, j, s, w, c);
     else
       place_banded(model, j, w, c);
@@ -78,7 +77,7 @@ void press_fixed_ports(const Model& model, const Coupling& c, State& s, Workspac
     s.port_force[j] = force;
 #pragma omp simd
     for (std::int32_t k = 0; k < model.line_unknowns; ++k) w.solved[k] -= force * response.re[k];
-    if (model.condensed == 0) continue;
+    if (model.form == Form::banded) continue;
 #pragma omp simd
     for (std::int32_t k = 0; k < model.line_unknowns; ++k) w.imaginary[k] -= force * response.im[k];
   }

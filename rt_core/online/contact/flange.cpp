@@ -28,7 +28,7 @@ Rate rate_of(const Model& model, const State& s, const Workspace& w, const Wheel
              const WheelsetModel& set) noexcept {
   const std::int32_t first = set.first;
   const double passing = at.rise * s.v[first], *located = w.scaled + first;
-  if (model.condensed != 0) {
+  if (model.form == Form::condensed) {
     const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
     const double d0 = at.penetration + lift(at, located, s.u + first);
     return {per_metre, passing - per_metre * d0};

@@ -74,20 +74,20 @@ void subtract(const double* const* unit, const double* force, int count, int siz
 /// What a line that wheel `i` presses adds to the displacement under it.
 double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
                   int i, const double* re, const double* im) noexcept {
-  if (model.condensed == 0) return motion(line, c.contact[i].row, {re, {}});
+  if (model.form == Form::banded) return motion(line, c.contact[i].row, {re, {}});
   return modes_dot(row_of(model, w, line, i), {re + line.first, im + line.first}, line.size);
 }
 
 }  // namespace
 
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
-  if (model.condensed != 0)
+  if (model.form == Form::condensed)
     respond_modes(model, w, c);
   else
     solve_bands(model, w, c);
   for (int i = 0; i < c.wheels; ++i)
-    c.located[i] = model.condensed != 0 ? track_under(model, w, c, i, s.u, s.v)
-                                        : track_under(model, w, c, i, w.scaled, nullptr);
+    c.located[i] = model.form == Form::condensed ? track_under(model, w, c, i, s.u, s.v)
+                                                 : track_under(model, w, c, i, w.scaled, nullptr);
 }
 
 double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
@@ -126,7 +126,8 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
       force[count++] = c.force[i];
     }
     subtract(re, force, count, line.size, w.solved + line.first);
-    if (model.condensed != 0) subtract(im, force, count, line.size, w.imaginary + line.first);
+    if (model.form == Form::condensed)
+      subtract(im, force, count, line.size, w.imaginary + line.first);
   }
 }
 

@@ -37,7 +37,7 @@ void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
 }
 
 /// At what part of the step the equation of motion holds.
-double held_at(const Model& model) noexcept { return model.condensed != 0 ? .5 : 1.; }
+double held_at(const Model& model) noexcept { return model.form == Form::condensed ? .5 : 1.; }
 
 /// A damper's law over the step: its force is damping (per_metre d + before).
 struct Rate {
@@ -57,7 +57,7 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
   }
   const double when = time - (1. - held_at(model)) * model.scheme.dt;
   const double passing = travelled(v.travel, when).speed * along;
-  if (model.condensed != 0) {
+  if (model.form == Form::condensed) {
     const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
     const double d0 = c.located[i] + at.irregularity + missed - dot(row, s.u + v.first, v.size);
     return {per_metre, passing - per_metre * d0};

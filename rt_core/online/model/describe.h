@@ -103,7 +103,7 @@ void describe(Archive& a, Model& m, std::int32_t at) {
     line.unknown_of[1] = line.unknown_of[0];
   else
     a.integers(line.unknown_of[1], table);
-  if (m.condensed != 0) return describe(a, line.modal, line.size);
+  if (m.form == Form::condensed) return describe(a, line.modal, line.size);
   describe(a, line.step, line.size);
   describe(a, line.mass, line.size);
   describe(a, line.damping, line.size);
@@ -261,7 +261,7 @@ void describe(Archive& a, FixedPortModel& p, const Model& m) {
   a.reals(p.stiffness, p.count);
   a.reals(p.damping, p.count);
   a.reals(p.gap, p.count);
-  if (m.condensed != 0) {
+  if (m.form == Form::condensed) {
     a.reals(p.shape, std::int64_t{2} * p.count * m.line_unknowns);
   } else {
     a.count(p.entries, kMostEntries);
@@ -269,7 +269,7 @@ void describe(Archive& a, FixedPortModel& p, const Model& m) {
     a.integers(p.index, p.entries);
     a.reals(p.value, p.entries);
   }
-  a.reals(p.response, std::int64_t{1 + m.condensed} * p.count * m.line_unknowns);
+  a.reals(p.response, std::int64_t{parts(m.form)} * p.count * m.line_unknowns);
   a.reals(p.compliance, std::int64_t{p.count} * p.count);
 }
 
@@ -286,7 +286,7 @@ void describe_track(Archive& a, Model& m) {
     a.real(cant.cosine);
     a.real(cant.sine);
   }
-  a.reals(m.constant_force, std::int64_t{1 + m.condensed} * m.unknowns);
+  a.reals(m.constant_force, std::int64_t{parts(m.form)} * m.unknowns);
   for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
   for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);
   for (std::int32_t i = 0; i < m.wheelsets; ++i) describe(a, m.wheelset[i]);
@@ -323,7 +323,9 @@ void describe(Archive& a, Model& m) {
   a.count(m.signals, kMaxSignals);
   a.count(m.elements, kMostElements);
   a.count(m.unknowns, kMostUnknowns);
-  a.count(m.condensed, 1);
+  std::int32_t form = static_cast<std::int32_t>(m.form);
+  a.count(form, static_cast<std::int32_t>(Form::condensed));
+  m.form = static_cast<Form>(form);
   a.count(m.line_unknowns, m.unknowns);
   a.count(m.steps_per_frame, kMostRows);
   a.count(m.inputs, kMaxInputs);

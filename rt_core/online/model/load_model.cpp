@@ -163,10 +163,10 @@ bool check_is_valid(const BlockHeader& h) noexcept {
 /// A step of two stages is of a track alone in full order, whose forces the model has at any time;
 /// contact forces that are means are held over the step.
 bool scheme_is_valid(const Model& m) noexcept {
-  if (m.scheme.mean != 0 && (m.condensed == 0 || m.scheme.theta != 1.)) return false;
+  if (m.scheme.mean != 0 && (m.form == Form::banded || m.scheme.theta != 1.)) return false;
   if (!(m.scheme.part >= 0.) || !(m.scheme.part < 1.)) return false;
   return m.scheme.part == 0. ||
-         (m.condensed == 0 && m.system.unknowns == 0 && m.external_wheels == 0);
+         (m.form == Form::banded && m.system.unknowns == 0 && m.external_wheels == 0);
 }
 
 /// Flops that a step has in any model of these sizes at its caps, most of them of a track alone
@@ -179,7 +179,7 @@ std::int64_t least_step_flops(const Model& m) noexcept {
     // Of a panel's columns to the left those before the first unknown are no work.
     const std::int64_t first = left / kLanes < panels ? left / kLanes : panels;
     const std::int64_t columns = kLanes * (first * (first - 1) / 2) + (panels - first) * left;
-    sum += m.condensed != 0 ? 22 * n : 22 * n + 4 * kLanes * columns + 160 * panels;
+    sum += m.form == Form::condensed ? 22 * n : 22 * n + 4 * kLanes * columns + 160 * panels;
   }
   std::int64_t elements = 0;
   for (std::int32_t b = 0; b < m.system.beams; ++b)

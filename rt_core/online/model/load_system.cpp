@@ -45,7 +45,7 @@ bool ports_give(const SystemModel& s) noexcept {
 bool stands_alone_or_beside(const Model& m) noexcept {
   const SystemModel& s = m.system;
   if (s.first != m.line_unknowns || s.unknowns != m.unknowns - m.line_unknowns) return false;
-  if (m.condensed != 0 || m.wheelsets != 0 || m.vehicles != 0 || m.vehicle_wheels != 0 ||
+  if (m.form == Form::condensed || m.wheelsets != 0 || m.vehicles != 0 || m.vehicle_wheels != 0 ||
       m.fixed.count != 0 || m.endless.bays != 0)
     return false;
   if (m.lines > 0)

@@ -60,10 +60,10 @@ bool line_is_valid(const Model& m, const LineModel& line) noexcept {
       !(within(line.shift.from, line.size, 0, line.size - 1) && line.shift.own &&
         line.shift.other && line.shift.fill))
     return false;
-  const std::int64_t most = (m.condensed != 0 ? line.modal.rows : line.size) - 1;
+  const std::int64_t most = (m.form == Form::condensed ? line.modal.rows : line.size) - 1;
   for (const std::int32_t* table : line.unknown_of)
     if (!within(table, std::int64_t{27} * m.elements, -1, most)) return false;
-  if (m.condensed != 0)
+  if (m.form == Form::condensed)
     return line.size == 0 ||
            (line.modal.rate.re && line.modal.rate.im && line.modal.keep.re && line.modal.keep.im &&
             line.modal.old_force.re && line.modal.old_force.im && line.modal.new_force.re &&
@@ -210,7 +210,7 @@ bool fixed_ports_are_valid(const Model& m) noexcept {
   if (!are_not_negative(p.stiffness, p.count) || !are_not_negative(p.damping, p.count) ||
       !diagonal_is_not_negative(p.compliance, p.count))
     return false;
-  if (m.condensed != 0) return p.shape != nullptr;
+  if (m.form == Form::condensed) return p.shape != nullptr;
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
   for (std::int32_t i = 0; i < p.count; ++i)
     if (p.start[i] > p.start[i + 1]) return false;

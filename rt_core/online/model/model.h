@@ -72,6 +72,13 @@ struct Modal {
   const double* shape;  // [rows][2][count] real and imaginary parts, kg^-1/2
 };
 
+/// The two forms of a track's lines in the step; all lines of a model have the same.
+enum class Form : std::int32_t { banded, condensed };
+
+/// Real numbers for each unknown of a line: 1 of a banded one, 2 of the complex modes of a
+/// condensed one.
+constexpr std::int32_t parts(Form form) noexcept { return form == Form::condensed ? 2 : 1; }
+
 /// One independent linear system of the track; views into the model's block. Banded or condensed.
 /// The state of a condensed line is Re z in u, Im z in v, and in a, g those of the last q.
 struct LineModel {
@@ -267,7 +274,7 @@ struct FixedPortModel {
   const double* shape;  // [count][2][line_unknowns] kg^-1/2
   /// What a unit force along the row makes of the lines at the step's end, S^-1 row; of condensed
   /// lines held_force shape, real and imaginary parts.
-  const double* response;    // [count][1 + condensed][line_unknowns]
+  const double* response;    // [count][parts(form)][line_unknowns]
   const double* compliance;  // [count][count] theta row response, m/N
 };
 
@@ -301,8 +308,8 @@ struct Model {
   std::int32_t lines, loads, wheelsets, vehicles, signals, elements;
   std::int32_t vehicle_wheels;  // of all vehicles
   std::int32_t flanges;         // wheelsets that have them
-  std::int32_t unknowns;   // of all lines, padded, 8 per wheelset, of vehicles, and the system's
-  std::int32_t condensed;  // 1: all lines are condensed, else all are banded
+  std::int32_t unknowns;  // of all lines, padded, 8 per wheelset, of vehicles, and the system's
+  Form form;              // of all lines
   std::int32_t line_unknowns;  // of all lines together: bodies and systems follow
   std::int32_t steps_per_frame;
   std::int32_t inputs;             // forces given each frame
@@ -315,7 +322,7 @@ struct Model {
   double head_z[2];              // of each railhead's middle over its rail's axis in the section, m
   double crown_radius[2];        // m
   double head_half_width[2];     // m
-  const double* constant_force;  // [1 + condensed][unknowns] N, or null: the track's weight
+  const double* constant_force;  // [parts(form)][unknowns] N, or null: the track's weight
   ResidualModel residual;
   PDeltaModel p_delta;
   TrackSensorModel track_sensor;
@@ -337,6 +344,10 @@ struct Model {
   unsigned char sum[32];  // SHA-256 of the payload it was loaded from; zeros of one that has none
 };
 
+/// How many unknowns of a state, from the first on, are modes: those of condensed lines.
+inline std::int32_t modal_unknowns(const Model& model) noexcept {
+  return model.form == Form::condensed ? model.line_unknowns : 0;
+}
 /// Wheels on the rails: left and right of each wheelset in turn, then those of each vehicle.
 inline std::int32_t wheel_count(const Model& model) noexcept {
   return 2 * model.wheelsets + model.vehicle_wheels;

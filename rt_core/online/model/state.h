@@ -99,8 +99,8 @@ inline std::int64_t start_doubles(const Model& model) noexcept {
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t contacts = contact_count(model);
-  return (4 + contacts + model.condensed * (1 + 3 * contacts)) * model.unknowns +
-         system_workspace_doubles(model.system) +
+  const std::int64_t of_modes = model.form == Form::condensed ? 1 + 3 * contacts : 0;
+  return (4 + contacts + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.part > 0. ? 2LL * model.unknowns : 0);
 }
@@ -128,22 +128,23 @@ inline State state_on(const Model& model, double* memory) noexcept {
           Status::ok};
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
+  const bool condensed = model.form == Form::condensed;
   const std::int64_t n = model.unknowns, solved = (1 + contact_count(model)) * n;
-  double* const condensed = memory + 3 * n + solved;
-  double* const row = condensed + model.condensed * solved;
-  double* const system = row + model.condensed * 2LL * contact_count(model) * n;
+  double* const imaginary = memory + 3 * n + solved;
+  double* const row = imaginary + (condensed ? solved : 0);
+  double* const system = row + (condensed ? 2LL * contact_count(model) * n : 0);
   double* const external = system + system_workspace_doubles(model.system);
   return {memory,
           memory + n,
           memory + 2 * n,
           memory + 3 * n,
-          condensed,
+          imaginary,
           row,
           system,
           external,
           external + (model.external_wheels > 0 ? state_doubles(model) : 0),
           memory + 4 * n,
-          condensed + model.condensed * n};
+          imaginary + (condensed ? n : 0)};
 }
 
 /// Puts the model's start into a state: step 0, with no matrix kept yet.

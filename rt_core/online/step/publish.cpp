@@ -69,7 +69,7 @@ std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) 
 /// First unknown that is too large, or -1.
 std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) noexcept {
   // Of a condensed track these are modes, and no displacements.
-  const std::int32_t banded = model.condensed != 0 ? 0 : model.line_unknowns;
+  const std::int32_t banded = model.line_unknowns - modal_unknowns(model);
   const std::int32_t track = first_beyond(s, 0, banded, kMostSag);
   if (track >= 0) return track;
   const std::int32_t other = first_beyond(s, banded, model.unknowns, kMostNumber);

@@ -23,7 +23,7 @@ namespace {
 void predict(const Model& model, const State& s, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
-  for (std::int32_t i = model.condensed * model.line_unknowns; i < model.unknowns; ++i) {
+  for (std::int32_t i = modal_unknowns(model); i < model.unknowns; ++i) {
     w.u_star[i] = ((s.u[i] + c.uv * s.v[i]) + c.ua * s.a[i]) + c.ug * s.g[i];
     w.v_star[i] = (s.v[i] + c.va * s.a[i]) + c.vg * s.g[i];
   }
@@ -102,15 +102,15 @@ void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
 
 /// Right-hand sides of banded lines, and condensed ones without wheels at the step's end.
 void advance_track(const Model& model, const Stage& stage, State& s, Workspace& w) noexcept {
-  if (model.condensed != 0 && !is_pressed(model)) return keep_modes(model, s, w);
+  if (model.form == Form::condensed && !is_pressed(model)) return keep_modes(model, s, w);
   forces(model, stage.step, w.solved, w.imaginary, stage.before);
-  if (model.condensed == 0) return add_inertia(model, w);
+  if (model.form == Form::banded) return add_inertia(model, w);
   for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], s, w);
 }
 
 void correct(const Model& model, State& s, const Workspace& w) noexcept {
   const Scheme c = model.scheme;
-  const std::int32_t first = model.condensed * model.line_unknowns;
+  const std::int32_t first = modal_unknowns(model);
 #pragma omp simd
   for (std::int32_t i = 0; i < first; ++i) {
     s.u[i] = without_tiny(w.solved[i]);
@@ -169,7 +169,7 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
   if (model.external_wheels > 0) press_external(model, state.steps + 1, state, w, external);
   if (has_ports(model))
     collect(model, state, couple(model, stage, state, w), outputs);
-  else if (model.condensed == 0)
+  else if (model.form == Form::banded)
     solve_bands(model, w);
   if (model.system.unknowns > 0) collect(solve_system(model, state, w), outputs);
   finish_stage(model, stage, state, w);
@@ -184,12 +184,12 @@ void forces(const Model& model, std::int64_t step, double* re, double* im, doubl
 #pragma omp simd
   for (std::int32_t i = 0; i < model.unknowns; ++i) re[i] = constant == nullptr ? 0. : constant[i];
 #pragma omp simd
-  for (std::int32_t i = 0; i < model.condensed * model.line_unknowns; ++i)
+  for (std::int32_t i = 0; i < modal_unknowns(model); ++i)
     im[i] = constant == nullptr ? 0. : constant[model.unknowns + i];
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const PlacedLoad at = place(model, model.load[i], step, before);
     for (std::int32_t l = 0; l < model.lines && at.on_rail; ++l)
-      if (model.condensed != 0)
+      if (model.form == Form::condensed)
         spread_modes(model.line[l], at.row, at.force, re, im);
       else
         spread(model.line[l], at.row, at.force, re);

@@ -13,7 +13,8 @@ Complex shape_of(const Model& model, std::int32_t port) noexcept {
 }  // namespace
 
 double closing(const Model& model, std::int32_t port, const double* re, const double* im) noexcept {
-  if (model.condensed != 0) return modes_dot(shape_of(model, port), {re, im}, model.line_unknowns);
+  if (model.form == Form::condensed)
+    return modes_dot(shape_of(model, port), {re, im}, model.line_unknowns);
   const FixedPortModel& fixed = model.fixed;
   double sum = 0.;
   for (std::int32_t k = fixed.start[port]; k < fixed.start[port + 1]; ++k)
@@ -22,7 +23,7 @@ double closing(const Model& model, std::int32_t port, const double* re, const do
 }
 
 double closing_speed(const Model& model, std::int32_t port, const State& s) noexcept {
-  if (model.condensed == 0) return closing(model, port, s.v, nullptr);
+  if (model.form == Form::banded) return closing(model, port, s.v, nullptr);
   // Re shape (rate z): what forces add to z' does not move the row (completeness).
   const Complex shape = shape_of(model, port);
   double sum = 0.;

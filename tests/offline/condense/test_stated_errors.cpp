@@ -74,7 +74,7 @@ Eigen::VectorXcd stepped(const Track& track, const PackedModel& packed,
     sum[static_cast<Eigen::Index>(i)] =
         residual_under(packed.model(), rail_force(packed.model(), 0, at[i].x, 1.));
   for (const PackedLine& own : packed.lines()) {
-    const bool condensed = packed.model().condensed != 0;
+    const bool condensed = packed.model().form == Form::condensed;
     const Eigen::MatrixXd rows = forces_of(track, own.line, at, !condensed);
     if (rows.isZero(0.)) continue;
     if (!condensed) {
