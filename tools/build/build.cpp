@@ -297,33 +297,21 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
 
 namespace {
 
-/// The trace's columns in the order in which a frame's outputs are written.
-std::vector<std::string> columns_of(const Scene& scene, const Sensors& sensors) {
-  std::vector<std::string> columns;
-  for (const LoadScene& load : scene.loads) {
-    columns.push_back(load.name + ".x_m");
-    columns.push_back(load.name + ".deflection_z_m");
-  }
-  const auto add_wheel = [&](const std::string& wheel) {
-    for (const char* quantity :
-         {"force_z_n", "force_z_mean_n", "force_z_peak_n", "impulse_z_n_s", "gap_m", "rail_z_m"})
-      columns.push_back(wheel + "." + quantity);
-  };
+TraceNames names_of(const Scene& scene, std::vector<std::string> track_sensors) {
+  TraceNames names;
+  for (const LoadScene& load : scene.loads) names.loads.push_back(load.name);
   for (const WheelsetScene& wheelset : scene.wheelsets)
-    for (const std::string& wheel : wheelset.wheels) add_wheel(wheel);
+    for (const std::string& wheel : wheelset.wheels) {
+      names.wheels.push_back(wheel);
+      if (wheelset.flange) names.flanges.push_back(wheel);
+    }
   for (const VehicleScene& vehicle : scene.vehicles)
     for (std::size_t i = 0; i < vehicle.kind.vehicle.wheels.size(); ++i)
-      add_wheel(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
-  for (const WheelsetScene& wheelset : scene.wheelsets)
-    for (const std::string& wheel : wheelset.wheels)
-      for (const char* quantity :
-           {"flange_force_n", "flange_force_peak_n", "flange_impulse_n_s", "flange_gap_m"})
-        if (wheelset.flange) columns.push_back(wheel + "." + quantity);
+      names.wheels.push_back(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
   for (const ExternalWheelScene& wheel : scene.external_wheels)
-    for (const char* quantity : {"dx_m", "dy_m", "dz_m", "vx_m_per_s", "vy_m_per_s", "vz_m_per_s"})
-      columns.push_back(wheel.name + "." + quantity);
-  columns.insert(columns.end(), sensors.columns.begin(), sensors.columns.end());
-  return columns;
+    names.external_wheels.push_back(wheel.name);
+  names.track_sensors = std::move(track_sensors);
+  return names;
 }
 
 }  // namespace
@@ -332,7 +320,6 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
   const RailSections sections = sections_of(scene);
   const Railhead head = railhead_of(scene, sections, Side::left);
   Sensors sensors = sensors_of(scene, track, sections, head);
-  std::vector<std::string> columns = columns_of(scene, sensors);
   return {{.loads = loads_of(scene, sections),
            .wheelsets = wheelsets_of(scene),
            .vehicles = vehicles_of(scene),
@@ -342,7 +329,7 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
            .input_limits = limits_of(scene.inputs),
            .external_wheels = external_wheels_of(scene),
            .right_head = railhead_of(scene, sections, Side::right)},
-          std::move(columns)};
+          names_of(scene, std::move(sensors.columns))};
 }
 
 Built::Built(const Scene& scene) try {
@@ -352,12 +339,11 @@ Built::Built(const Scene& scene) try {
   if (track.ring && !scene.condense.kind) track = window_of(std::move(track));
   TracedTraffic traced = traffic_of(scene, track);
   about = railstep::about(scene);
-  columns = {"time_s"};
-  columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
   for (const ExternalWheelScene& wheel : scene.external_wheels)
     for (const char* quantity : kExternalInputNames) inputs.push_back(wheel.name + "." + quantity);
   packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
+  columns = columns_of(packed->model(), traced.names);
   const double gravity = scene.track.gravity ? kGravity : 0.;
   if (scene.step->start == Start::equilibrium)
     packed->set_start(start_in_equilibrium(track, *packed, gravity));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "build/trace_names.h"
 #include "offline/math/constants.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/pack.h"
@@ -67,11 +68,10 @@ void change_seats(const std::vector<SeatChange>& changes, Track& track);
 double scatter_factor(std::uint64_t seed, std::uint64_t stream, int seat, std::size_t side,
                       double width);
 
-/// What acts on a track, what is read from it, and the columns that this makes in a trace: those of
-/// every load, wheel, sensor and support.
+/// What acts on a track, what is read from it, and what a trace's columns are named after.
 struct TracedTraffic {
   Traffic traffic;
-  std::vector<std::string> columns;
+  TraceNames names;
 };
 TracedTraffic traffic_of(const Scene& scene, const Track& track);
 /// Throws InputError.
@@ -81,9 +81,8 @@ PackOptions pack_options_of(const Scene& scene);
 /// kind = "modal" would.
 Reduction reduction_of(const Scene& scene);
 
-/// A scene's model, and the columns of its trace: time_s, then those of every load, wheel, sensor
-/// and support. Throws InputError, in one sentence, for what makes no model (a free rigid mode,
-/// say) and for what `railstep run` does not step.
+/// A scene's model, and the columns of its trace. Throws InputError, in one sentence, for what
+/// makes no model (a free rigid mode, say) and for what `railstep run` does not step.
 struct Built {
   explicit Built(const Scene& scene);
   Track track;

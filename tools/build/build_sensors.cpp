@@ -7,6 +7,7 @@
 
 #include "build/build.h"
 #include "build/build_endless.h"
+#include "online/step/trace_columns.h"
 
 namespace railstep {
 namespace {
@@ -81,21 +82,28 @@ void add_vehicle_point(const std::string& name, const VehicleSensor& sensor, con
 }
 
 void add_point(const std::string& name, const Point& point, Sensors& sensors) {
-  static const char* const axes[3] = {"x", "y", "z"};
-  const auto add = [&](const std::string& quantity, std::size_t d, TrackSensor track_sensor) {
-    track_sensor.track = point[d].track;
-    track_sensor.wheelset = point[d].wheelset;
-    track_sensor.coordinate = static_cast<int>(d);
-    sensors.columns.push_back(name + "." + quantity);
+  for (const SensorColumn& column : kSensorColumns) {
+    const int d = column.direction;
+    const Direction& own = point[static_cast<std::size_t>(d)];
+    TrackSensor track_sensor;
+    switch (column.quantity) {
+      case SensorQuantity::position:
+        track_sensor = {.rest = own.rest, .displacement = 1., .along = d == 0};
+        break;
+      case SensorQuantity::displacement:
+        track_sensor = {
+            .rest = own.moved, .displacement = 1., .along = d == 0 && own.wheelset >= 0};
+        break;
+      case SensorQuantity::velocity:
+        track_sensor = {.velocity = 1.};
+        break;
+    }
+    track_sensor.track = own.track;
+    track_sensor.wheelset = own.wheelset;
+    track_sensor.coordinate = d;
+    sensors.columns.push_back(fmt::format("{}.{}", name, column.name));
     sensors.track_sensors.push_back(std::move(track_sensor));
-  };
-  for (std::size_t d = 0; d < 3; ++d)
-    add(fmt::format("{}_m", axes[d]), d,
-        {.rest = point[d].rest, .displacement = 1., .along = d == 0});
-  for (std::size_t d = 0; d < 3; ++d)
-    add(fmt::format("d{}_m", axes[d]), d,
-        {.rest = point[d].moved, .displacement = 1., .along = d == 0 && point[d].wheelset >= 0});
-  add("vz_m_per_s", 2, {.velocity = 1.});
+  }
 }
 
 /// What a strain gauge on a rail reads, times Young's modulus: the mean strain along x over its

@@ -9,14 +9,10 @@
 
 namespace railstep {
 
-/// What a trace has of every sensor but those on vehicles, in its order.
-inline constexpr const char* kSensorQuantities[] = {"x_m",  "y_m",  "z_m",       "dx_m",
-                                                    "dy_m", "dz_m", "vz_m_per_s"};
-
 /// A scene's sensors and support forces as track sensors of a model.
 struct Sensors {
-  /// V.<body>.z_m of each vehicle's bodies, and .pitch_rad of those that pitch; then S.x_m ..
-  /// S.vz_m_per_s of each sensor, of one on a vehicle S.z_m, S.vz_m_per_s, S.az_m_per_s2; then
+  /// V.<body>.z_m of each vehicle's bodies, and .pitch_rad of those that pitch; then kSensorColumns
+  /// of each sensor, of one on a vehicle S.z_m, S.vz_m_per_s, S.az_m_per_s2; then
   /// support_<i>.force_z_n of the left rail's supports and support_right_<i>.force_z_n of the right
   /// rail's where the scene asks for them, then <stop>.force_n of every stop.
   std::vector<std::string> columns;

@@ -6,7 +6,6 @@
 
 #include "build/about.h"
 #include "build/build.h"
-#include "build/build_sensors.h"
 #include "build/cache_sizes.h"
 #include "build/step_scheme.h"
 #include "offline/pack/artefact.h"
@@ -49,7 +48,7 @@ System system_of(const SystemScene& scene) {
 namespace {
 
 std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& system,
-                                        std::vector<std::string>& columns) {
+                                        TraceNames& names) {
   if (!scene.track) return std::make_unique<PackedSystem>(system, options_of(scene));
   const Track track = track_of(*scene.track);
   if (!fixed_ports(track).empty())
@@ -57,7 +56,7 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
         "supports that do not pull, or have a gap, are not stepped beside bodies and beams; "
         "accepted are a scene without gap_m and unilateral, or a track alone");
   const TracedTraffic traced = traffic_of(*scene.track, track);
-  columns.insert(columns.end(), traced.columns.begin(), traced.columns.end());
+  names = traced.names;
   return std::make_unique<PackedSystem>(system, options_of(scene), track, traced.traffic,
                                         pack_options_of(*scene.track));
 }
@@ -67,18 +66,15 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
 BuiltSystem::BuiltSystem(const SystemScene& scene) try
     : names(scene.names), system((fix_cache_sizes(), system_of(scene))) {
   about = railstep::about(scene);
-  columns = {"time_s"};
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
-  packed = packed_of(scene, system, columns);
-  for (const std::string& sensor : names.sensors)
-    for (const char* quantity : kSensorQuantities)
-      columns.push_back(fmt::format("{}.{}", sensor, quantity));
+  TraceNames traced;
+  packed = packed_of(scene, system, traced);
+  traced.sensors = names.sensors;
   for (const int joint : scene.traced.joints)
-    for (const char* quantity : kJointQuantities)
-      columns.push_back(
-          fmt::format("{}.{}", names.joints[static_cast<std::size_t>(joint)], quantity));
+    traced.joints.push_back(names.joints[static_cast<std::size_t>(joint)]);
   for (const int spring : scene.traced.springs)
-    columns.push_back(fmt::format("{}.force_n", names.springs[static_cast<std::size_t>(spring)]));
+    traced.springs.push_back(names.springs[static_cast<std::size_t>(spring)]);
+  columns = columns_of(packed->model(), traced);
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
 }

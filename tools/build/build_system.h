@@ -12,12 +12,7 @@ namespace railstep {
 /// The system of a scene, its beams with their sections. Throws InputError.
 System system_of(const SystemScene& scene);
 
-/// What a trace has of a traced joint: what it does to its part B at its point, ground axes.
-inline constexpr const char* kJointQuantities[] = {"force_x_n",    "force_y_n",    "force_z_n",
-                                                   "moment_x_n_m", "moment_y_n_m", "moment_z_n_m"};
-
-/// A system's model, and the columns of its trace: time_s, those of its track (build.h), then those
-/// of every sensor on a body or a beam, of every traced joint and of every traced spring. Throws
+/// A system's model, and the columns of its trace. Throws
 /// InputError, in one sentence, for what makes no model.
 struct BuiltSystem {
   explicit BuiltSystem(const SystemScene& scene);

@@ -1,0 +1,94 @@
+#pragma once
+#include <cstddef>
+
+#include "online/model/state.h"
+#include "online/system/sensor.h"
+
+namespace railstep {
+
+// The columns of a trace behind time_s. These tables and for_each_column() alone know their order:
+// names, count and values follow from them.
+
+/// A column of a load, a wheel or a flange: the end of its name, and where frames publish it.
+template <int most>
+struct OutputColumn {
+  const char* name;
+  double (Outputs::*value)[most];
+};
+inline constexpr OutputColumn<kMaxLoads> kLoadColumns[] = {
+    {"x_m", &Outputs::load_x}, {"deflection_z_m", &Outputs::load_deflection}};
+inline constexpr OutputColumn<kMaxWheels> kWheelColumns[] = {
+    {"force_z_n", &Outputs::wheel_force},
+    {"force_z_mean_n", &Outputs::wheel_force_mean},
+    {"force_z_peak_n", &Outputs::wheel_force_peak},
+    {"impulse_z_n_s", &Outputs::wheel_impulse},
+    {"gap_m", &Outputs::wheel_gap},
+    {"rail_z_m", &Outputs::wheel_rail_z}};
+inline constexpr OutputColumn<2 * kMaxWheelsets> kFlangeColumns[] = {
+    {"flange_force_n", &Outputs::flange_force},
+    {"flange_force_peak_n", &Outputs::flange_force_peak},
+    {"flange_impulse_n_s", &Outputs::flange_impulse},
+    {"flange_gap_m", &Outputs::flange_gap}};
+
+/// A column of the rail under an external wheel.
+struct ExternalColumn {
+  const char* name;
+  double (Outputs::*value)[kMaxExternalWheels][3];
+  int direction;
+};
+inline constexpr ExternalColumn kExternalColumns[] = {
+    {"dx_m", &Outputs::external_displacement, 0},   {"dy_m", &Outputs::external_displacement, 1},
+    {"dz_m", &Outputs::external_displacement, 2},   {"vx_m_per_s", &Outputs::external_velocity, 0},
+    {"vy_m_per_s", &Outputs::external_velocity, 1}, {"vz_m_per_s", &Outputs::external_velocity, 2}};
+
+/// A column of a sensor. Sensors on rails, sleepers and wheelsets are seven track sensors, one for
+/// each of these columns.
+enum class SensorQuantity { position, displacement, velocity };
+struct SensorColumn {
+  const char* name;
+  SensorQuantity quantity;
+  int direction;
+};
+inline constexpr SensorColumn kSensorColumns[] = {
+    {"x_m", SensorQuantity::position, 0},       {"y_m", SensorQuantity::position, 1},
+    {"z_m", SensorQuantity::position, 2},       {"dx_m", SensorQuantity::displacement, 0},
+    {"dy_m", SensorQuantity::displacement, 1},  {"dz_m", SensorQuantity::displacement, 2},
+    {"vz_m_per_s", SensorQuantity::velocity, 2}};
+
+/// A column of a traced joint: what it does to its part B at its point, ground axes.
+struct JointColumn {
+  const char* name;
+  double (JointForce::*value)[3];
+  int direction;
+};
+inline constexpr JointColumn kJointColumns[] = {
+    {"force_x_n", &JointForce::force, 0},     {"force_y_n", &JointForce::force, 1},
+    {"force_z_n", &JointForce::force, 2},     {"moment_x_n_m", &JointForce::moment, 0},
+    {"moment_y_n_m", &JointForce::moment, 1}, {"moment_z_n_m", &JointForce::moment, 2}};
+
+/// The column of a traced spring: its pull.
+struct SpringColumn {
+  const char* name;
+};
+inline constexpr SpringColumn kSpringColumns[] = {{"force_n"}};
+
+/// What a column belongs to, beside track sensors, whose names are whole.
+enum class Bearer { load, wheel, flange, external_wheel, sensor, joint, spring };
+
+/// Visits the columns in their order: visit(bearer, i, columns) for bearer i of a kind, with the
+/// table of its columns, and visit(track sensors) once for the columns of all of them.
+template <typename Visit>
+void for_each_column(const Model& model, Visit& visit) {
+  for (std::int32_t i = 0; i < model.loads; ++i) visit(Bearer::load, i, kLoadColumns);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) visit(Bearer::wheel, i, kWheelColumns);
+  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) visit(Bearer::flange, i, kFlangeColumns);
+  for (std::int32_t i = 0; i < model.external_wheels; ++i)
+    visit(Bearer::external_wheel, i, kExternalColumns);
+  visit(model.track_sensor);
+  const SystemModel& s = model.system;
+  for (std::int32_t i = 0; i < s.sensors; ++i) visit(Bearer::sensor, i, kSensorColumns);
+  for (std::int32_t i = 0; i < s.traced_joints; ++i) visit(Bearer::joint, i, kJointColumns);
+  for (std::int32_t i = 0; i < s.traced_springs; ++i) visit(Bearer::spring, i, kSpringColumns);
+}
+
+}  // namespace railstep
