@@ -1,5 +1,6 @@
 #include "online/contact/fixed_port_force.h"
 
+#include "online/contact/damper.h"
 #include "online/contact/track_response.h"
 #include "online/track/closing.h"
 
@@ -14,28 +15,28 @@ Complex response_of(const Model& model, std::int32_t port) noexcept {
   return {re, re + modal_unknowns(model)};
 }
 
-/// The law of a step for given kv and v0.
-PortLaw law_of(const FixedPortModel& fixed, std::int32_t port, double kv, double v0) noexcept {
-  return {0., fixed.stiffness[port] + fixed.damping[port] * kv, fixed.damping[port] * v0};
+PortLaw law_of(const FixedPortModel& fixed, std::int32_t port, const DepthSpeed& speed) noexcept {
+  PortLaw law{0., fixed.stiffness[port], 0.};
+  add_damper(fixed.damping[port], speed, law);
+  return law;
 }
 
 void place_banded(const Model& model, std::int32_t j, const Workspace& w, Coupling& c) noexcept {
   const FixedPortModel& fixed = model.fixed;
-  const double kv = model.scheme.kv;
-  const double v0 =
-      (closing(model, j, w.v_star, nullptr) - kv * closing(model, j, w.u_star, nullptr)) +
-      kv * fixed.gap[j];
-  c.law[c.wheels + j] = law_of(fixed, j, kv, v0);
+  DepthSpeed speed = speed_at_end(model.scheme, closing(model, j, w.u_star, nullptr),
+                                  closing(model, j, w.v_star, nullptr));
+  speed.before += speed.per_metre * fixed.gap[j];  // the depth is the closing less the gap
+  c.law[c.wheels + j] = law_of(fixed, j, speed);
   c.track_free[c.wheels + j] = closing(model, j, w.solved, nullptr) - fixed.gap[j];
 }
 
 void place_condensed(const Model& model, std::int32_t j, const State& s, const Workspace& w,
                      Coupling& c) noexcept {
   const FixedPortModel& fixed = model.fixed;
-  const double theta = model.scheme.theta, kv = 1. / (theta * model.scheme.dt);
+  const double theta = model.scheme.theta;
   const double d0 = closing(model, j, s.u, s.v) - fixed.gap[j];
   const double d1 = closing(model, j, w.solved, w.imaginary) - fixed.gap[j];
-  c.law[c.wheels + j] = law_of(fixed, j, kv, -kv * d0);
+  c.law[c.wheels + j] = law_of(fixed, j, mean_speed(model.scheme, d0));
   c.track_free[c.wheels + j] = theta * d1 + (1. - theta) * d0;
 }
 

@@ -1,5 +1,6 @@
 #include "online/contact/flange.h"
 
+#include "online/contact/damper.h"
 #include "online/contact/impact.h"
 #include "online/contact/track_response.h"
 #include "online/contact/vehicle_contact.h"
@@ -19,26 +20,21 @@ double lift(const WheelContact& at, const double* p, const double* from) noexcep
   return sum;
 }
 
-/// Rate of the penetration d over the step: per_metre d + before.
-struct Rate {
-  double per_metre, before;  // 1/s, m/s
-};
-
-Rate rate_of(const Model& model, const State& s, const Workspace& w, const WheelContact& at,
-             const WheelsetModel& set) noexcept {
+DepthSpeed speed_of(const Model& model, const State& s, const Workspace& w, const WheelContact& at,
+                    const WheelsetModel& set) noexcept {
   const std::int32_t first = set.first;
   const double passing = at.rise * s.v[first], *located = w.scaled + first;
   if (model.form == Form::condensed) {
-    const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
-    const double d0 = at.penetration + lift(at, located, s.u + first);
-    return {per_metre, passing - per_metre * d0};
+    DepthSpeed speed = mean_speed(model.scheme, at.penetration + lift(at, located, s.u + first));
+    speed.before += passing;
+    return speed;
   }
   const double moved = rail_height(model, at.row, {w.u_star, {}}) -
                        rail_height(model, at.row, located_on(model, s, w));
   const double d_star = at.penetration + moved - lift(at, w.u_star + first, located);
   const double rate =
       rail_height(model, at.row, {w.v_star, {}}) - lift(at, w.v_star + first, nullptr);
-  return {model.scheme.kv, passing + rate - model.scheme.kv * d_star};
+  return speed_at_end(model.scheme, d_star, passing + rate);
 }
 
 }  // namespace
@@ -66,9 +62,8 @@ void find_flange_laws(const Model& model, const State& s, const Workspace& w,
     const FlangeModel& flange = flange_of(model, i);
     c.law[i] = {flange.contact.hertz, flange.contact.stiffness, 0.};
     if (flange.contact.damping == 0. || !c.contact[i].on_rail) continue;
-    const Rate rate = rate_of(model, s, w, c.contact[i], model.wheelset[flange.wheelset]);
-    c.law[i].slope += flange.contact.damping * rate.per_metre;
-    c.law[i].jump = flange.contact.damping * rate.before;
+    add_damper(flange.contact.damping,
+               speed_of(model, s, w, c.contact[i], model.wheelset[flange.wheelset]), c.law[i]);
   }
 }
 

@@ -12,9 +12,7 @@ namespace railstep {
 void locate_flanges(const Model& model, const State& s, const Workspace& w, double later,
                     Coupling& c) noexcept;
 
-/// Laws of the flanges over the step. A damper takes the rate of the penetration d at its end,
-/// kv (d - d*) + d*' with d* and d*' those of u* and v*; of held forces (d - d0) / (theta dt); and
-/// what the way along a rail adds to the rate.
+/// Laws of the flanges over the step. To a damper's speed (damper.h) the way along a rail adds.
 void find_flange_laws(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
 
 /// As tread_impact_is_unresolved() of treads, for the mass that the flange has alone.

@@ -1,6 +1,7 @@
 #include "online/contact/vehicle_response.h"
 
 #include "online/contact/body_force.h"
+#include "online/contact/damper.h"
 #include "online/contact/impact.h"
 #include "online/contact/mean_contact.h"
 #include "online/contact/track_response.h"
@@ -39,13 +40,8 @@ void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
 /// At what part of the step the equation of motion holds.
 double held_at(const Model& model) noexcept { return model.form == Form::condensed ? .5 : 1.; }
 
-/// A damper's law over the step: its force is damping (per_metre d + before).
-struct Rate {
-  double per_metre, before;  // 1/s, m/s
-};
-
-Rate rate_of(const Model& model, double time, const State& s, const Workspace& w, const Coupling& c,
-             int i) noexcept {
+DepthSpeed speed_of(const Model& model, double time, const State& s, const Workspace& w,
+                    const Coupling& c, int i) noexcept {
   const WheelContact& at = c.contact[i];
   const VehicleModel& v = vehicle_of(model, i);
   const double* row = row_of(model, i);
@@ -58,9 +54,10 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
   const double when = time - (1. - held_at(model)) * model.scheme.dt;
   const double passing = travelled(v.travel, when).speed * along;
   if (model.form == Form::condensed) {
-    const double per_metre = 1. / (model.scheme.theta * model.scheme.dt);
-    const double d0 = c.located[i] + at.irregularity + missed - dot(row, s.u + v.first, v.size);
-    return {per_metre, passing - per_metre * d0};
+    DepthSpeed speed = mean_speed(
+        model.scheme, c.located[i] + at.irregularity + missed - dot(row, s.u + v.first, v.size));
+    speed.before += passing;
+    return speed;
   }
   double d_star = at.irregularity + missed - dot(row, w.u_star + v.first, v.size);
   double rate = -dot(row, w.v_star + v.first, v.size);
@@ -68,7 +65,7 @@ Rate rate_of(const Model& model, double time, const State& s, const Workspace& w
     d_star += rail_height(model, at.row, {w.u_star, {}});
     rate += rail_height(model, at.row, {w.v_star, {}});
   }
-  return {model.scheme.kv, passing + rate - model.scheme.kv * d_star};
+  return speed_at_end(model.scheme, d_star, passing + rate);
 }
 
 }  // namespace
@@ -99,9 +96,7 @@ void find_vehicle_laws(const Model& model, double time, const State& s, const Wo
     const ContactModel& contact = vehicle_wheel(model, i).contact;
     c.law[i] = {contact.hertz, contact.stiffness, 0., contact.hertz == 0.};
     if (contact.damping == 0.) continue;
-    const Rate rate = rate_of(model, time, s, w, c, i);
-    c.law[i].slope += contact.damping * rate.per_metre;
-    c.law[i].jump = contact.damping * rate.before;
+    add_damper(contact.damping, speed_of(model, time, s, w, c, i), c.law[i]);
   }
 }
 
