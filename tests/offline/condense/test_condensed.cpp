@@ -23,7 +23,7 @@ Traffic peers_traffic() {
   return traffic;
 }
 
-/// Largest difference of a column over the reference's peak.
+/// Largest difference in a column, over the reference's peak.
 double error_of(const Rows& got, const Rows& want, std::size_t column) {
   REQUIRE(got.size() == want.size());
   double peak = 0., error = 0.;
@@ -36,8 +36,8 @@ double error_of(const Rows& got, const Rows& want, std::size_t column) {
 
 constexpr double kFoot = -.081;  // m, of 60E1
 
-/// S1: 16 bays under a wheelset of 10 t at 30 m/s that starts in equilibrium; sleeper and pad of
-/// seat 8 at 4.8 m, which it passes after 50 ms.
+/// S1 with 16 bays under a wheelset of 10 t at 30 m/s that starts in equilibrium. Sleeper and pad
+/// are those of seat 8 at 4.8 m, which the wheelset passes after 50 ms.
 ModelRun s1_run(int elements_per_bay, PackOptions options) {
   const Track track = s1_track(16, elements_per_bay);
   Wheelset w;
@@ -56,7 +56,7 @@ ModelRun s1_run(int elements_per_bay, PackOptions options) {
   return in_equilibrium(track, traffic, options);
 }
 
-/// Frames of 1 ms: rail_z and mean force of the left wheel, sleeper, pad force.
+/// rail_z and mean force of the left wheel, sleeper displacement and pad force, in frames of 1 ms.
 Rows s1_rows(ModelRun run, int frames) {
   Rows rows;
   double track_sensors[2];
@@ -72,8 +72,9 @@ Rows s1_rows(ModelRun run, int frames) {
 
 }  // namespace
 
-TEST_CASE("condensed: the moving load meets the converged row", "[condensed]") {
-  // reference.md, "Moving load": 1e-3 is the project's bound, the row itself is good to 2e-8 m.
+TEST_CASE("a moving load on a condensed track has the deflections of the converged row",
+          "[condensed]") {
+  // The row is reference.md, "Moving load", good to 2e-8 m; the project's bound is 1e-3.
   const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
   for (const double modes_per_bay : {.5, 1.}) {
     const Track track = peers_pair(1);
@@ -88,7 +89,7 @@ TEST_CASE("condensed: the moving load meets the converged row", "[condensed]") {
   }
 }
 
-TEST_CASE("condensed: a wheelset on a ballasted track moves as on one refined in mesh and step",
+TEST_CASE("a wheelset on condensed ballasted track moves as on one refined in mesh and step",
           "[condensed]") {
   const int frames = 80;
   const Track track = s1_track(16, 2);
@@ -98,10 +99,10 @@ TEST_CASE("condensed: a wheelset on a ballasted track moves as on one refined in
   bare_options.residual_flexibility = false;
   const Rows bare = s1_rows(s1_run(2, bare_options), frames);
   const Rows mesh = s1_rows(s1_run(2, full_order(5e-5)), frames);
-  // What condensation may add to the error of its own mesh, which full order has too.
+  // Condensation may add this to the error of its own mesh, which full order has too.
   // Displacements: 1e-3, the project's bound; an independent model of this track had 3e-4 with one
-  // mode per bay. The force differs with the rail's acceleration: 1e-2 of the static. The pad force
-  // is the difference of two displacements ten times as large: 1e-3 of those are 1e-2.
+  // mode per bay. The force follows the rail's acceleration: 1e-2 of the static force. The pad
+  // force is a difference of displacements ten times as large: 1e-2 is 1e-3 of those.
   const double added[4] = {1e-3, 1e-2, 1e-3, 1e-2};
   for (std::size_t c = 0; c < 4; ++c) {
     const double error = error_of(got, want, c), of_mesh = error_of(mesh, want, c);
@@ -109,11 +110,12 @@ TEST_CASE("condensed: a wheelset on a ballasted track moves as on one refined in
     CHECK(of_mesh < added[c] * 2.);
     CHECK(error < added[c] + of_mesh);
     CHECK(error_of(bare, want, c) >
-          added[c] + of_mesh);  // the residual flexibility brings it there
+          added[c] + of_mesh);  // the residual flexibility reduces it to that
   }
 }
 
-TEST_CASE("condensed: the paper's wheelset settles to the reactions of full order", "[condensed]") {
+TEST_CASE("on condensed track the paper's wheelset settles to the reactions of full order",
+          "[condensed]") {
   const auto settled = [](const PackOptions& options) {
     Traffic traffic{.wheelsets = {paper_wheelset(3.2)}, .head = kHead};
     for (int seat = 0; seat < 5; ++seat)
@@ -132,24 +134,24 @@ TEST_CASE("condensed: the paper's wheelset settles to the reactions of full orde
     return found;
   };
   const auto full = settled(full_order(1e-4)), modal = settled(condensed(paper_track(), 2., 1e-4));
-  for (std::size_t i = 0; i < 5; ++i)  // of the largest: what is left of the fall after 1 s
+  for (std::size_t i = 0; i < 5; ++i)  // relative to the largest, the fall leaves this after 1 s
     CHECK_THAT(modal[i], WithinAbs(full[i], 1e-6 * full[2]));
   CHECK_THAT(modal[5], WithinRel(full[5], 1e-6));
   CHECK_THAT(modal[6], WithinRel(490.5, 1e-6));
-  // The railhead on a mesh of 16 elements per bay, as the tables have it, and Hertz's approach.
+  // The railhead on a mesh of 16 elements per bay, as in the tables, and Hertz's approach.
   Track fine = paper_track();
   fine.elements_per_bay = 16;
   const RailPoint head{0, 3.2, 0., .1007375, 2};
   const double sunk = -490.5 * Statics(fine).flexibility(head, head) - modal[8];
   CHECK_THAT(modal[7], WithinRel(sunk, 1e-6));
-  // One element per bay is softer than that in the head by 2e-11 m/N, which is not taken back.
+  // One element per bay is softer in the head by 2e-11 m/N, which nothing takes back.
   CHECK_THAT(full[7], WithinRel(sunk, 2e-4));
-  // reference.md, printed to 2 digits behind the point
+  // reference.md prints 2 digits after the point.
   const double printed[5] = {8.72, 131.46, 210.14, 131.46, 8.72};
   for (std::size_t i = 0; i < 5; ++i) CHECK_THAT(modal[i], WithinAbs(printed[i], .03));
 }
 
-TEST_CASE("condensed: a load that moves converges with the second order of the step",
+TEST_CASE("a moving load on condensed track converges with the second order of the step",
           "[condensed]") {
   const Track track = peers_pair(1);
   const auto history = [&](double dt) {
@@ -165,12 +167,13 @@ TEST_CASE("condensed: a load that moves converges with the second order of the s
   const double coarse = error_of(history(1e-3), reference, 0),
                fine = error_of(history(.5e-3), reference, 0);
   CAPTURE(coarse, fine);
-  // the chord of a shape over 30 mm; kinks of the mesh are passed at other parts of a step: .3
+  // The chord of a shape is over 30 mm. Kinks of the mesh lie elsewhere in a shorter step: .3.
   CHECK_THAT(std::log2(coarse / fine), WithinAbs(2., .3));
   CHECK(coarse < 1e-3);
 }
 
-TEST_CASE("condensed: all modes without residual are full order, refined in time", "[condensed]") {
+TEST_CASE("all modes without residual flexibility agree with full order that is refined in time",
+          "[condensed]") {
   Track track = peers_pair(1);
   track.bays = 4;
   const auto history = [&](PackOptions options) {
@@ -189,7 +192,7 @@ TEST_CASE("condensed: all modes without residual are full order, refined in time
   const double coarse = error_of(history(full_order(2e-5)), modal, 0),
                fine = error_of(history(full_order(1e-5)), modal, 0);
   CAPTURE(coarse, fine);
-  // the slowest modes ring at 1e3 rad/s: (omega dt)^2 / 12 = 1e-5 of a ringing of some 1e-2
+  // The slowest modes oscillate at 1e3 rad/s: (omega dt)^2 / 12 = 1e-5 of an amplitude of 1e-2.
   CHECK(fine < 1e-6);
   CHECK_THAT(std::log2(coarse / fine), WithinAbs(2., .2));
 }

@@ -13,7 +13,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// Kinetic and strain energy of lines and wheelset, of contact and weight, J; no residual.
+/// Energy of lines and wheelset with contact and weight, J, without residual flexibility.
 double energy(const ModelRun& run) {
   const Model& model = run.model();
   double sum = 0.;
@@ -43,11 +43,11 @@ double energy(const ModelRun& run) {
 }
 
 struct Kicked {
-  double start, most, last, gain;  // J over the energy at rest; gain: largest of one step
+  double start, most, last, gain;  // J over the energy at rest; gain: largest in one step
   bool lost;
 };
 
-/// A wheelset on a track without dampers, kicked down out of its equilibrium.
+/// Run of a wheelset on a track without dampers, kicked downwards out of its equilibrium.
 Kicked kicked(double theta, int steps) {
   Track track = paper_track();
   track.support.damping = {};
@@ -75,7 +75,8 @@ Kicked kicked(double theta, int steps) {
 
 }  // namespace
 
-TEST_CASE("condensed: under a constant standing load the step does not matter", "[condensed]") {
+TEST_CASE("under a constant standing load the condensed track does not depend on the step",
+          "[condensed]") {
   const Track track = peers_pair(1);
   const auto at = [&](double dt) {
     ModelRun run(track, {.loads = {{.start = 4.5, .stop = 9.3, .force = -50e3}}},
@@ -88,7 +89,7 @@ TEST_CASE("condensed: under a constant standing load the step does not matter", 
   CHECK_THAT(coarse, WithinRel(fine, 1e-11));  // 80 steps of rounding against 2
 }
 
-TEST_CASE("condensed: contact makes no energy", "[condensed]") {
+TEST_CASE("contact on a condensed track adds no energy", "[condensed]") {
   for (const double theta : {.625, 1.}) {
     const Kicked found = kicked(theta, 100'000);
     CAPTURE(theta, found.start, found.most / found.start, found.gain / found.start,
@@ -96,17 +97,17 @@ TEST_CASE("condensed: contact makes no energy", "[condensed]") {
     CHECK(found.start > 10.);  // J; m v^2 / 2 = 12.5
     CHECK(found.lost);         // it bounces
     CHECK(found.last > 0.);
-    // The end's penetration (theta 1) never gives: V is convex. In between a step can
-    // gain where contact closes: (1 - theta) of V then, 1e-3 of a bounce at 50 us, and
-    // loses as much when it opens.
+    // With theta 1, the penetration at the step's end, no step gains: V is convex. With a smaller
+    // theta a step can gain (1 - theta) of V where contact closes, 1e-3 of a bounce at 50 us; it
+    // loses as much where contact opens.
     CHECK(found.most < found.start * (theta == 1. ? 1. + 1.4e-5 : 1. + 1e-3));
-    // What the frozen contact leaves: a step's motion squared over the crown's radius, 25 um^2 / .3
-    // m, times some 80 kN: 1.7e-4 J of 12.5.
+    // The frozen contact gains a step's motion squared over the crown's radius, 25 um^2 / .3 m,
+    // times some 80 kN: 1.7e-4 J of 12.5.
     if (theta == 1.) CHECK(found.gain < 1.4e-5 * found.start);
   }
 }
 
-TEST_CASE("condensed: two rails that share nothing share their modes", "[condensed]") {
+TEST_CASE("two uncoupled rails share the arrays of their modes", "[condensed]") {
   const Track track = peers_pair(1);
   ModelRun run(track,
                {.loads = {{.rail = 0, .start = 3., .stop = 9., .force = -1e3},
@@ -123,7 +124,7 @@ TEST_CASE("condensed: two rails that share nothing share their modes", "[condens
   CHECK(run.outputs.load_deflection[1] == run.outputs.load_deflection[0]);
 }
 
-TEST_CASE("condensed: the same bits twice, and for a frame of ten steps", "[condensed]") {
+TEST_CASE("a condensed run has the same bits twice, and in frames of ten steps", "[condensed]") {
   const auto hash_of = [](int steps_per_frame) {
     Wheelset w = paper_wheelset(2.);
     w.speed = 10.;
@@ -142,8 +143,7 @@ TEST_CASE("condensed: the same bits twice, and for a frame of ten steps", "[cond
   CHECK(hash_of(1) == hash_of(10));
 }
 
-TEST_CASE("condensed: long after the load has gone no subnormal rests in the state",
-          "[condensed]") {
+TEST_CASE("long after the load has gone the state holds no subnormal number", "[condensed]") {
   PackOptions options = condensed(peers_pair(1), 1., 1e-3);
   options.steps_per_frame = 1000;
   ModelRun run(peers_pair(1), {.loads = {{.start = 9., .speed = 30., .stop = 9.3, .force = -50e3}}},

@@ -10,9 +10,9 @@
 using namespace railstep;
 using Catch::Matchers::WithinRel;
 
-TEST_CASE("condensed: from static equilibrium nothing moves", "[condensed]") {
-  // Three loads on each rail, two of them in one element, and two wheelsets beside them; the rails'
-  // weight acts. Alike on both rails: a wheelset that rolls would slide down its own slope.
+TEST_CASE("a condensed track in static equilibrium does not move", "[condensed]") {
+  // Each rail carries three loads, two of them in one element, and both carry two wheelsets and
+  // their weight. Both rails have the same loads: a wheelset that rolls would slide down its slope.
   const Track track = paper_track();
   Traffic traffic{.wheelsets = {paper_wheelset(2.9), paper_wheelset(3.6)}, .head = kHead};
   for (const int rail : {0, 1})
@@ -43,18 +43,18 @@ TEST_CASE("condensed: from static equilibrium nothing moves", "[condensed]") {
 }
 
 TEST_CASE("a wheelset on unequal rails starts with its own weight on both wheels", "[start]") {
-  // 20 kN beside the left wheel roll the wheelset by 2.8e-3 rad, on either kind of track.
+  // 20 kN beside the left wheel roll the wheelset by 2.8e-3 rad on either kind of track.
   Traffic traffic{.wheelsets = {paper_wheelset(2.9)}, .head = kHead};
   traffic.loads = {{.start = 3.1, .stop = 7., .force = -20e3}};
   for (const PackOptions& options : {condensed(paper_track(), 2., 1e-4), full_order(1e-4)}) {
     ModelRun run = in_equilibrium(paper_track(), traffic, options);
     CHECK(run.body()[3] < -2e-3);
-    // Both contacts shift along the axle by 2.8e-3 of .448 m, on arms of .5 m.
+    // Both contacts shift along the axle by 2.8e-3 of .448 m; the arms are .5 m.
     const double start[2] = {run.state.wheel_force[0], run.state.wheel_force[1]};
     for (const double force : start) CHECK_THAT(force, WithinRel(490.5, 2.6e-3));
     for (int i = 0; i < 20; ++i) {
       run.step();
-      // It slides down its slope, 5e-8 m, and by 2e-10 m out of contacts of 4e-6 m.
+      // It slides down its slope by 5e-8 m, which costs the contacts 2e-10 m of 4e-6 m.
       for (int wheel = 0; wheel < 2; ++wheel)
         CHECK_THAT(run.outputs.wheel_force[wheel], WithinRel(start[wheel], 1e-4));
     }
@@ -62,7 +62,7 @@ TEST_CASE("a wheelset on unequal rails starts with its own weight on both wheels
   }
 }
 
-TEST_CASE("condensed: forces on one rail see each other as on the fine track", "[condensed]") {
+TEST_CASE("forces on one condensed rail affect each other as on the fine track", "[condensed]") {
   Track coarse = s1_track(8, 2), fine = s1_track(8, 16);
   const double top = .091, places[2] = {2.25, 2.4}, sets[2] = {2.85, 3.2};
   const auto deflections = [&](bool swapped) {
@@ -93,14 +93,14 @@ TEST_CASE("condensed: forces on one rail see each other as on the fine track", "
   const auto got = deflections(false), other = deflections(true);
   for (std::size_t i = 0; i < want.size(); ++i) {
     CAPTURE(i, got[i] / want[i] - 1.);
-    // tables between ports: 4 intervals an element, whose cubics meet the kink under a force with
-    // some 0.1 of an interval times the slope's jump 1/(k G A): 3e-11 of 2e-8 m/N
+    // The tables between ports have 4 intervals per element. Under a force their cubics miss the
+    // kink by some 0.1 of an interval times the jump of slope 1/(k G A): 3e-11 of 2e-8 m/N.
     CHECK_THAT(got[i], WithinRel(want[i], 2e-3));
-    CHECK_THAT(other[i], WithinRel(got[i], 1e-9));  // the order of the sums alone
+    CHECK_THAT(other[i], WithinRel(got[i], 1e-9));  // only the order of the sums differs
   }
 }
 
-TEST_CASE("condensed: started in motion a load meets no transient", "[condensed]") {
+TEST_CASE("a load that starts in motion on condensed track has no transient", "[condensed]") {
   const Track track = peers_pair(1);
   const MovingLoad load{.start = 4., .speed = 10., .stop = 9.3, .force = -50e3};
   ModelRun moving = in_equilibrium(track, {.loads = {load}}, condensed(track, 1., 1e-4)),
@@ -116,13 +116,13 @@ TEST_CASE("condensed: started in motion a load meets no transient", "[condensed]
     released = std::max(released, std::abs(still.outputs.load_deflection[0] / want - 1.));
   }
   CAPTURE(error);
-  // (v / critical)^2 of 10 m/s against some 500 m/s, and the dampers' lag c v k' / k: 3e4 10 / 3e7
-  // of the static shape's slope, 1 per m: both below 1e-2
+  // Effects of speed are (v / critical)^2, with 10 m/s against some 500 m/s, and the dampers' lag c
+  // v k' / k: 3e4 10 / 3e7 of the static shape's slope, 1 per m. Both are below 1e-2.
   CHECK(error < 1e-2);
   CHECK(released > .5);
 }
 
-TEST_CASE("condensed: a start in motion has the velocity of the static shape that moves along",
+TEST_CASE("a condensed start in motion has the velocity of the static shape that moves along",
           "[condensed]") {
   const Track track = peers_pair(1);
   const double x = 4.65, speed = 30., dx = 1e-4;
@@ -138,14 +138,14 @@ TEST_CASE("condensed: a start in motion has the velocity of the static shape tha
   for (int i = 0; i < 2; ++i) {
     const double ahead = statics.flexibility(seen[i], {0, x + dx, 0., 0., 2}),
                  behind = statics.flexibility(seen[i], {0, x - dx, 0., 0., 2});
-    // within an element the shape is a parabola over the force's place, whose difference quotient
-    // is exact: what is left is the rounding of K, 1e-9 here, over the part 1e-4 of it that differs
+    // Within an element the shape is a parabola in the force's position, so its difference quotient
+    // is exact. K's rounding is left, 1e-9 here, over the part 1e-4 of K that differs.
     CHECK_THAT(velocity[i], WithinRel(-50e3 * speed * (ahead - behind) / (2. * dx), 1e-5));
   }
-  CHECK(velocity[0] * velocity[1] < 0.);  // up behind the load, down before it
+  CHECK(velocity[0] * velocity[1] < 0.);  // up behind the load, down ahead of it
 }
 
-TEST_CASE("a start in motion at the rail's end is as one just behind it", "[start]") {
+TEST_CASE("a start in motion at the rail's end agrees with one just behind it", "[start]") {
   const Track track = peers_pair(1);
   const RailPoint at{0, .6, 0., 0., 2};
   const auto velocity_at = [&](double x, double speed, const PackOptions& options) {
@@ -157,8 +157,8 @@ TEST_CASE("a start in motion at the rail's end is as one just behind it", "[star
     read_track_sensors(run.model(), run.state, run.outputs, &velocity);
     return velocity;
   };
-  // within the end's element the shape is a parabola over the force's place: over 1e-4 m of 0.6 m
-  // its slope changes by 1e-3 at most, as neither slope passes 0 there
+  // Within the end's element the shape is a parabola in the force's position. Over 1e-4 m of 0.6 m
+  // its slope changes by 1e-3 at most, as neither slope passes 0 there.
   for (const PackOptions& options : {full_order(1e-3), condensed(track, 1000., 1e-3)}) {
     const double inside = velocity_at(1e-4, 30., options);
     CHECK(std::abs(inside) > 1e-3);

@@ -14,13 +14,13 @@ namespace {
 
 constexpr int kRun = 30;  // bays
 
-/// Deflection under a load, of a sleeper and force of its pad, over the passage of bays.
+/// Deflection under a load, sleeper displacement and pad force, while the load passes some bays.
 struct Passage {
   std::vector<double> deflection, sleeper, pad;
 };
 
-/// TrackSensors on the seat: of the sleeper under the left rail, and what opens the pad, which
-/// moves by stiffness and damping.
+/// Track sensors on a seat: displacement of the sleeper under the left rail, and the pad's force
+/// from its opening by stiffness and damping.
 std::vector<TrackSensor> seat_sensors(const Track& track, int seat) {
   Functional sleeper;
   sleeper.sleeper.push_back({0, seat, 2, 1.});
@@ -47,10 +47,10 @@ void note(const ModelRun& run, Passage& passage, const double* track_sensors) {
   passage.pad.push_back(track_sensors[1]);
 }
 
-/// One bay and the next of loads that have run for kRun bays on 200 of a fine mesh, with the
-/// sleeper last passed by the first load, at every millisecond.
+/// A bay and the next at every millisecond, for loads that have run for kRun bays of the 200 of a
+/// fine mesh, with the sleeper that the first load passed last.
 Passage reference(const std::vector<double>& behind) {
-  constexpr int kFirst = 50 + kRun, kSteps = 320;  // seat at the first bay's start, steps a bay
+  constexpr int kFirst = 50 + kRun, kSteps = 320;  // seat at the first bay's start, steps per bay
   const Track track = endless_track(200, 6);
   Traffic traffic;
   for (const double d : behind) traffic.loads.push_back(moving_load(30. - d));
@@ -75,7 +75,7 @@ Passage reference(const std::vector<double>& behind) {
   return passage;
 }
 
-/// Frames from one on, of a run whose track sensors are those of one seat.
+/// Frames from `first` on, of a run whose track sensors are those of one seat.
 Passage passage_of(ModelRun& run, std::int64_t first, std::int64_t frames) {
   Passage passage;
   for (std::int64_t frame = 1; frame < first + frames; ++frame) {
@@ -91,7 +91,7 @@ Passage passage_of(ModelRun& run, std::int64_t first, std::int64_t frames) {
 
 }  // namespace
 
-TEST_CASE("a course goes whole bays in whole steps, and else what a wide integer says") {
+TEST_CASE("bay progress counts whole bays in whole steps, and otherwise as a wide integer does") {
   const BayProgress twentieth = bay_progress(30. * 1e-3 / .6);
   CHECK(twentieth.period == 20);
   CHECK(twentieth.bays == 1);
@@ -107,8 +107,8 @@ TEST_CASE("a course goes whole bays in whole steps, and else what a wide integer
 
 namespace {
 
-/// The bound of docs/endless.md, 1e-3 of the peak; the reference is itself within 3e-4 (step
-/// halved).
+/// Checks the bound of docs/endless.md, 1e-3 of the peak. The reference itself is within 3e-4
+/// (found with half the step).
 void check_against_reference(const std::vector<double>& behind) {
   const Passage want = reference(behind);
   const auto check = [&](const char* what, const Track& track, const PackOptions& options) {
@@ -135,16 +135,16 @@ void check_against_reference(const std::vector<double>& behind) {
 
 }  // namespace
 
-TEST_CASE("a ring and a window move under a load as a long track of a fine mesh does") {
+TEST_CASE("a ring and a window move under a load as a long track with a fine mesh does") {
   check_against_reference({0.});
 }
 
-TEST_CASE("a ring and a window move under two loads as a long track of a fine mesh does") {
+TEST_CASE("a ring and a window move under two loads as a long track with a fine mesh does") {
   check_against_reference({0., 1.8});
 }
 
-TEST_CASE("on a ring every bay is as the one before", "[H29]") {
-  // H29's bound: 1e-9 of the peak; rounding makes 1e-16 a step of sums of 200 terms
+TEST_CASE("on a ring every bay moves as the bay before", "[H29]") {
+  // The bound is H29's, 1e-9 of the peak; rounding adds 1e-16 a step in sums of 200 terms.
   for (const double speed : {30., 33.}) {
     const Track ring = ring_of(endless_track(24, 2));
     Traffic traffic{.loads = {moving_load(0.)}};
@@ -162,7 +162,7 @@ TEST_CASE("on a ring every bay is as the one before", "[H29]") {
     CHECK(largest(late.deflection, first.deflection) < 1e-9);
     CHECK(largest(late.sleeper, first.sleeper) < 1e-9);
     CHECK(largest(late.pad, first.pad) < 1e-9);
-    // nor does the energy grow: the whole state is that of 10 000 bays before
+    // The energy does not grow either: the whole state is that of 10 000 bays before.
     double change = 0., size = 0.;
     for (std::size_t i = 0; i < before.size(); ++i) {
       change = std::max(change, std::abs(run.memory[i] - before[i]));

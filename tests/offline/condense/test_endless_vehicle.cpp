@@ -21,10 +21,10 @@ Traffic bogie_traffic(double start, int rail = 0) {
 
 }  // namespace
 
-TEST_CASE("a bogie on a ring or a window is heard as on a long track of a fine mesh") {
-  // the bound of docs/endless.md, 1e-3 of the peak, of means over 1 ms: the force below 440 Hz
-  // (-3 dB). A full order's means are those of its steps' ends, half a step late: of the 4 % at
-  // 50 Hz by which the force swings over sleepers 50 us make 3e-4.
+TEST_CASE("a bogie on a ring or a window has the forces of a long track with a fine mesh") {
+  // The bound of docs/endless.md is 1e-3 of the peak for means over 1 ms, which show the force
+  // below 440 Hz (-3 dB). Means of the full order are those at its steps' ends, half a step late.
+  // The force swings by 4 % at 50 Hz over the sleepers, and 50 us are 3e-4 of that.
   constexpr double dt = 5e-5;
   const auto fine = [](PackOptions options) {
     options.steps_per_frame = 20;
@@ -50,10 +50,11 @@ TEST_CASE("a bogie on a ring or a window is heard as on a long track of a fine m
   check("window", window, window_options(window, dt));
 }
 
-TEST_CASE("a bogie starts on the move, and 10 000 bays later is where it was", "[H29]") {
-  // Settled to 1e-9 of the largest coordinate from bay to bay, .02 sqrt(kg) m of a wave; of the
-  // frame's swing, e^(-3/s t), 1/(1 - e^(-.06)) = 17 times that is still to come, 3e-10 m, which
-  // 1.2e6 N/m of either axle make 4e-4 N, 1e-8 of the wheel's force. Ten times that for pitch.
+TEST_CASE("a bogie starts in motion and is at the same place of its bay 10 000 bays later",
+          "[H29]") {
+  // It settles to 1e-9 of the largest coordinate from bay to bay, a wave of .02 sqrt(kg) m. The
+  // frame's swing decays as e^(-3/s t), so 1/(1 - e^(-.06)) = 17 times that is to come: 3e-10 m. An
+  // axle's 1.2e6 N/m make 4e-4 N of it, 1e-8 of the wheel's force; pitch ten times as much.
   constexpr double dt = 5e-4;
   const Track ring = ring_of(endless_track(24, 2));
   const Traffic traffic = bogie_traffic(0.);
@@ -69,12 +70,12 @@ TEST_CASE("a bogie starts on the move, and 10 000 bays later is where it was", "
   CAPTURE(force, rail);
   CHECK(force < 1e-7);
   CHECK(rail < 1e-7);
-  // 200 020 ms and a bogie's half, less half a step: that is where contacts are looked for
+  // 200 020 ms and half a bogie, less half a step: the step locates contacts there.
   CHECK_THAT(run.outputs.wheel_x[0],
              Catch::Matchers::WithinRel(kSpeed * (200.02 - .5 * dt) + 1.28, 1e-12));
 }
 
-TEST_CASE("a vehicle on a track without end goes on from its block and from a saved state") {
+TEST_CASE("a vehicle on a track without end continues from its block and from a saved state") {
   const Track ring = ring_of(endless_track(24, 2)), window = window_of(endless_track(40, 2));
   for (const bool modal : {true, false}) {
     const Track& track = modal ? ring : window;
@@ -84,7 +85,7 @@ TEST_CASE("a vehicle on a track without end goes on from its block and from a sa
   }
 }
 
-TEST_CASE("bogie, wheelset and load run on one ring, each where it started") {
+TEST_CASE("bogie, wheelset and load run on one ring, each from its own start") {
   const Track ring = ring_of(endless_track(40, 2, 2));
   Traffic traffic = bogie_traffic(0.);
   traffic.vehicles.push_back(bogie_traffic(0., 1).vehicles[0]);
@@ -101,10 +102,10 @@ TEST_CASE("bogie, wheelset and load run on one ring, each where it started") {
   for (int frame = 0; frame < 100; ++frame) run.step();  // 3 m
   CHECK(run.seen == Status::ok);
   const double x[] = {5., 5., 1.28, -1.28, 1.28, -1.28};
-  for (int i = 0; i < 6; ++i)  // found half a step before the end; the guide's tolerance is 1e-10 m
+  for (int i = 0; i < 6; ++i)  // half a step before the end; the guide's tolerance is 1e-10 m
     CHECK_THAT(run.outputs.wheel_x[i], Catch::Matchers::WithinAbs(x[i] + 3. - 1.5e-3, 1e-4));
   CHECK_THAT(run.outputs.load_x[0], Catch::Matchers::WithinAbs(6., 1e-12));
-  // Each carries what is its own: over sleepers a wheel's force swings by some percent.
+  // Each carries its own weight: over sleepers a wheel's force swings by some percent.
   CHECK_THAT(run.outputs.wheel_force_mean[0], Catch::Matchers::WithinRel(49.05e3, .05));
   CHECK_THAT(run.outputs.wheel_force_mean[2], Catch::Matchers::WithinRel(54.54e3, .05));
 }

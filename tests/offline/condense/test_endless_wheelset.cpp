@@ -11,7 +11,7 @@ using namespace railstep;
 
 namespace {
 
-constexpr double kHeadZ = .1;  // m over the axis
+constexpr double kHeadZ = .1;  // m above the axis
 
 Traffic wheelset_traffic(double start) {
   Wheelset w;
@@ -24,7 +24,7 @@ Traffic wheelset_traffic(double start) {
   return {.wheelsets = {w}, .head = {kHeadZ, .3, .035}};
 }
 
-/// A model with NaN for all that its lines and levers have of elements that it leaves out.
+/// A model with NaN in everything that its lines and levers hold of elements that it leaves out.
 struct Poisoned {
   Model model;
   std::vector<std::vector<double>> reals;
@@ -66,9 +66,9 @@ struct Poisoned {
 };
 }  // namespace
 
-TEST_CASE("a wheelset on a ring or a window is heard as on a long track of a fine mesh") {
-  // the bound of docs/endless.md, 1e-3 of the peak, of means over 1 ms: the force below 440 Hz (-3
-  // dB)
+TEST_CASE("a wheelset on a ring or a window has the forces of a long track with a fine mesh") {
+  // The bound of docs/endless.md is 1e-3 of the peak for means over 1 ms, which show the force
+  // below 440 Hz (-3 dB).
   const Track track = endless_track(70, 6, 2);
   ModelRun reference(track, wheelset_traffic(12.), framed({.scheme = generalised_alpha(kDt, .6)}));
   reference.packed->set_start(start_in_equilibrium(track, *reference.packed, 0.));
@@ -86,10 +86,10 @@ TEST_CASE("a wheelset on a ring or a window is heard as on a long track of a fin
   check("window", moving_run(window, wheelset_traffic(0.), window_options(window, kDt)));
 }
 
-TEST_CASE("a wheelset starts on the move without a jolt") {
-  // Its force swings with the bays, at the start as later: settled to 1e-9 of the displacement
-  // under it, 4e-13 m, which is 4e-4 N of the contact's 1e9 N/m, 1e-8 of the force; what a start in
-  // static equilibrium leaves is there to be seen.
+TEST_CASE("a wheelset starts in motion without a jolt") {
+  // The force swings with the bays, at the start as later. The start settles to 1e-9 of the
+  // displacement under the wheel, 4e-13 m: 4e-4 N by the contact's 1e9 N/m, 1e-8 of the force. A
+  // start in static equilibrium leaves more, which must show.
   const Track ring = ring_of(endless_track(24, 2, 2));
   const auto strayed = [&](const std::vector<double>& start, ModelRun& run) {
     run.packed->set_start(start);
@@ -105,13 +105,13 @@ TEST_CASE("a wheelset starts on the move without a jolt") {
   CHECK(still > 1e-3);
 }
 
-TEST_CASE("a joint at a kilometre is met once, not once a turn of the ring") {
+TEST_CASE("a wheel meets a joint at a kilometre once, and not once in each turn of the ring") {
   const Track ring = ring_of(endless_track(24, 2, 2));  // 14.4 m
   Traffic traffic = wheelset_traffic(0.);
   ModelRun smooth = moving_run(ring, traffic, ring_options(ring, 2, kDt));
   traffic.irregularities.push_back({0, 2, dipped_joint(20.1, 1e-3, .5, {.01, 0.})});
   ModelRun run = moving_run(ring, traffic, ring_options(ring, 2, kDt));
-  std::vector<double> met;  // x of frames in which the joint is heard, m
+  std::vector<double> met;  // x of frames in which the joint shows, m
   for (int frame = 0; frame < 2000; ++frame) {
     run.step();
     smooth.step();
@@ -119,14 +119,14 @@ TEST_CASE("a joint at a kilometre is met once, not once a turn of the ring") {
     if (std::abs(more) > 5e3) met.push_back(run.outputs.wheel_x[0]);
   }
   REQUIRE(!met.empty());
-  // from the ramp's start to where the track has swung out, within 2 m
+  // From the start of the ramp to the end of the track's oscillation, within 2 m.
   CHECK(met.front() > 19.5);
   CHECK(met.back() < 22.1);
   CHECK_THAT(run.outputs.wheel_x[0], Catch::Matchers::WithinAbs(60., .01));
 }
 
-TEST_CASE("nothing is read of the elements that traffic on a ring never comes to") {
-  // rails that turn over their seats, a wheelset that rolls over a joint of one, bays gone
+TEST_CASE("no step reads the elements of a ring that traffic never reaches") {
+  // The rails roll over their seats, the wheelset rolls over a joint of one rail, and bays pass.
   Track ring = ring_of(endless_track(24, 2, 2));
   ring.unknowns = Unknowns::full;
   ring.support.stiffness = {50e6, 50e6, 120e6};
@@ -143,17 +143,17 @@ TEST_CASE("nothing is read of the elements that traffic on a ring never comes to
   for (int frame = 0; frame < 100; ++frame) run.step();
   CHECK(std::abs(run.body()[3]) > 1e-6);  // it rolls
   CHECK(state_hash(run.model(), run.state) == state_hash(poisoned.model, beside.state));
-  // nor when the model is made: what a bay gives way within a step is that of the traffic's
+  // Nor does the model's making: its compliance within a step is that of the bays under traffic.
   const std::vector<double> give =
       StepCompliance(run.model(), run.packed->lines()).table(run.packed->load_points()[0], 8);
   REQUIRE(give.size() == 2 * 9);
   CHECK(*std::min_element(give.begin(), give.end()) > 0.);
-  CHECK_THAT(give.front(), Catch::Matchers::WithinRel(give.back(), 1e-9));  // one bay to the next
+  CHECK_THAT(give.front(), Catch::Matchers::WithinRel(give.back(), 1e-9));  // a bay and the next
 }
 
-TEST_CASE("a window passes its track on without a jump") {
-  // what lies beyond 7 decay lengths on either side, e^-7 of the peak a length: the window cuts
-  // e^-21 off, and the long track's own start has died away to e^-20; a jump of 1e-6 shows
+TEST_CASE("a window moves along its track without a jump") {
+  // A decay length is 7 characteristic lengths: the motion falls to e^-7 over it. The window cuts
+  // e^-21 off and the long track's start has decayed to e^-20; a jump of 1e-6 shows.
   const Track track = endless_track(200, 2), window = window_of(endless_track(80, 2));
   ModelRun far(track, {.loads = {moving_load(30.)}}, {.scheme = generalised_alpha(1e-3, .6)});
   ModelRun near(window, {.loads = {moving_load(0.)}}, window_options(window));
@@ -174,13 +174,13 @@ TEST_CASE("a window passes its track on without a jump") {
   CHECK(worst < 1e-6 * std::abs(far.outputs.load_deflection[0]));
 }
 
-TEST_CASE("a track without end goes on from its block and from a saved state bit by bit") {
+TEST_CASE("a track without end continues from its block and from a saved state bit by bit") {
   const Track ring = ring_of(endless_track(24, 2, 2));
   ModelRun run = moving_run(ring, wheelset_traffic(0.), ring_options(ring, 2, kDt));
   check_goes_on(run);
 }
 
-TEST_CASE("what makes no track without end is refused in one sentence") {
+TEST_CASE("a track that cannot be without end is refused in one sentence") {
   const Track ring = ring_of(endless_track(24, 2));
   const auto refused = [](const Track& track, const Traffic& traffic, const PackOptions& options,
                           const char* why) {

@@ -1,4 +1,4 @@
-// Exact beams between seats, and named resonances and decay rates, against closed forms.
+// Exact beams between seats, with named resonances and decay rates, against closed forms.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -49,9 +49,9 @@ std::vector<Resonance> resonances(const Track& track, double x) {
 
 }  // namespace
 
-TEST_CASE("one bay between pins resonates where the closed forms say", "[exact-rail]") {
-  // rail-data.md, section 3: Timoshenko 1067.27 Hz, Euler-Bernoulli 1420.4, to half a unit of the
-  // last digit. Without damping the receptance changes its sign there.
+TEST_CASE("one bay between pins has the resonances of the closed forms", "[exact-rail]") {
+  // rail-data.md, section 3: Timoshenko has 1067.27 Hz and Euler-Bernoulli 1420.4, to half a unit
+  // of the last digit. Without damping the receptance changes its sign there.
   Track track = s1(1);
   track.support = {};
   track.sleeper.reset();
@@ -63,21 +63,21 @@ TEST_CASE("one bay between pins resonates where the closed forms say", "[exact-r
   };
   CHECK(changes(BeamTheory::timoshenko, 1067.265, 1067.275));
   CHECK(changes(BeamTheory::euler_bernoulli, 1420.35, 1420.45));
-  // Between pins H(mid) of Euler's beam = L/(4 EI (kL/2)^3) (tan - tanh)(kL/2) L^2/8 ..., in its
-  // textbook form (tan b - tanh b)/(4 EI k^3), b = k L/2.
+  // Between pins H(mid) of Euler's beam is (tan b - tanh b)/(4 EI k^3), b = k L/2, the textbook
+  // form of L/(4 EI (kL/2)^3) (tan - tanh)(kL/2) L^2/8.
   const double EI = 210e9 * 3038.3e-8, m = 7850. * 7670e-6;
   for (const double hz : {100., 900., 1700.}) {
     const double k = std::pow(m * std::pow(2. * M_PI * hz, 2) / EI, .25), b = .3 * k;
     const Value got =
         ExactRailReceptance(track, driving(.3), BeamTheory::euler_bernoulli).at(hz)[0];
-    // 1e-8: rounding of four waves whose amplitudes are 1e4 times their sum.
+    // 1e-8 is the rounding of four waves whose amplitudes are 1e4 times their sum.
     CHECK_THAT(got.real(), WithinRel((std::tan(b) - std::tanh(b)) / (4. * EI * k * k * k), 1e-8));
   }
 }
 
 TEST_CASE("an endless track has S1's receptance to the digits printed", "[exact-rail]") {
-  // rail-data.md, section 3, "exact (Timoshenko transfer matrices + Floquet)": half a unit of the
-  // last digit, nm/N.
+  // rail-data.md, section 3, "exact (Timoshenko transfer matrices + Floquet)", in nm/N to half a
+  // unit of the last digit.
   struct Row {
     double hz, mid, mid_half, over, over_half;
   };
@@ -92,7 +92,7 @@ TEST_CASE("an endless track has S1's receptance to the digits printed", "[exact-
       longer(s1(9), driving(2.7), BeamTheory::timoshenko, true);
   for (const Row& row : kRows) {
     CAPTURE(row.hz);
-    // A tenth more for the constants' own digits (k G A to 1e-4 of it).
+    // A tenth more covers the digits of the constants (k G A is known to 1e-4).
     CHECK_THAT(1e9 * std::abs(mid.at(row.hz)[0]), WithinAbs(row.mid, 1.1 * row.mid_half));
     CHECK_THAT(1e9 * std::abs(over.at(row.hz)[0]), WithinAbs(row.over, 1.1 * row.over_half));
     CHECK(std::abs(longer.at(row.hz)[0] / mid.at(row.hz)[0] - 1.) < 1e-9);
@@ -100,7 +100,7 @@ TEST_CASE("an endless track has S1's receptance to the digits printed", "[exact-
 }
 
 TEST_CASE("Euler-Bernoulli is 17 % stiffer on S1 at 200 to 400 Hz", "[exact-rail]") {
-  // The figure users of Euler codes are told; 15 to 24 % over the band at mid-bay.
+  // Users of Euler codes read this figure; over the band it is 15 to 24 % at mid-bay.
   const Track track = s1(40);
   ExactRailReceptance timoshenko(track, driving(12.3), BeamTheory::timoshenko),
       euler(track, driving(12.3), BeamTheory::euler_bernoulli);
@@ -117,9 +117,9 @@ TEST_CASE("Euler-Bernoulli is 17 % stiffer on S1 at 200 to 400 Hz", "[exact-rail
   CHECK_THAT(sum / count, WithinAbs(.2, .03));
 }
 
-TEST_CASE("the resonances of S1 are found and named", "[resonances]") {
-  // rail-data.md, extrema of the infinite track: frequencies within 1 %, heights but that of the
-  // pinned-pinned peak within 2 %.
+TEST_CASE("the program finds and names the resonances of S1", "[resonances]") {
+  // rail-data.md, extrema of the infinite track: frequencies hold within 1 %, heights within 2 %
+  // except that of the pinned-pinned peak.
   const Track track = s1(120);
   const std::vector<Resonance> mid = resonances(track, 36.3), over = resonances(track, 36.);
   const double mid_hz[4] = {63., 199.25, 401., 1067.25}, mid_nm[3] = {12.016, 2.405, 6.437};
@@ -140,12 +140,12 @@ TEST_CASE("the resonances of S1 are found and named", "[resonances]") {
     CHECK_THAT(1e9 * over[i].found->magnitude, WithinRel(over_nm[i], .02));
   }
   CHECK(mid[3].found->peak);
-  CHECK_FALSE(over[3].found->peak);  // under a seat the same wave stands still
+  CHECK_FALSE(over[3].found->peak);  // under a seat the same wave has a node
 }
 
-TEST_CASE("a decay rate is the standard's sum over its 29 positions", "[decay-rate]") {
-  // EN 15461, A.1 and A.2: e^(-beta x) has 8.686 beta dB/m. Positions 0, 0.5 and 1.4 m stand for
-  // 0.25, 0.7 and 0.9 m.
+TEST_CASE("a decay rate is the sum of the standard over its 29 positions", "[decay-rate]") {
+  // EN 15461, A.1 and A.2: e^(-beta x) has 8.686 beta dB/m. The positions 0, 0.5 and 1.4 m stand
+  // for 0.25, 0.7 and 0.9 m.
   CHECK_THAT(decay_rate({0., .5, 1.4}, {4., 1., .5}),
              WithinRel(4.343 / (.25 + .7 / 4. + .9 / 8.), 1e-14));
   std::vector<double> distance, energy;
@@ -153,14 +153,14 @@ TEST_CASE("a decay rate is the standard's sum over its 29 positions", "[decay-ra
     distance.push_back(.01 * i);
     energy.push_back(std::exp(-2. * .3 * distance.back()));
   }
-  // (beta dx)^2/3 = 3e-6 of the trapezoidal rule, 2e-5 of 4.343 for 10 lg e.
+  // The trapezoidal rule errs by (beta dx)^2/3 = 3e-6, 4.343 for 10 lg e by 2e-5.
   CHECK_THAT(decay_rate(distance, energy), WithinRel(20. * std::log10(std::exp(.3)), 1e-4));
   const Track track = s1(200);
   const std::vector<double> grid = decay_distances(track, 60.3);
   CHECK(grid.size() == 29);
   CHECK_THAT(grid.back(), WithinRel(39.6, 1e-14));
   CHECK(decay_distances(track, 100.).size() == 29);  // towards the far end
-  CHECK(decay_distances(s1(10), 3.3).size() == 15);  // 5 of the 5.5 bays that are left
+  CHECK(decay_distances(s1(10), 3.3).size() == 15);  // 5 of the 5.5 bays that remain
   const std::vector<ThirdOctave> bands = third_octaves(89., 1200.);
   REQUIRE(bands.size() == 11);
   CHECK(bands.front().nominal_hz == 100);
@@ -169,8 +169,9 @@ TEST_CASE("a decay rate is the standard's sum over its 29 positions", "[decay-ra
   CHECK(third_octaves(1., 1e5).size() == 18);
 }
 
-TEST_CASE("a rail on a foundation decays along it as the closed form", "[decay-rate]") {
-  // Springs each 50 mm stand for a foundation; EN 15461's positions are then 12.5 mm to 3.3 m from
+TEST_CASE("the vibration of a rail on a foundation decays along it as in the closed form",
+          "[decay-rate]") {
+  // Springs each 50 mm stand for a foundation; the positions of EN 15461 are 12.5 mm to 3.3 m from
   // the force.
   Track track;
   track.section = peers_rectangle();
@@ -202,17 +203,17 @@ TEST_CASE("a rail on a foundation decays along it as the closed form", "[decay-r
     }
     const double want = decay_rate(distance, energy), of_wave = -20. * std::log10(M_E) * slowest;
     CAPTURE(got.band.nominal_hz, got.rate, want, of_wave);
-    // The same sum of the closed form: 2e-3 as its receptances (springs for a foundation).
+    // The closed form gives the same sum to 2e-3, as its receptances do (springs for a foundation).
     CHECK_THAT(got.rate, WithinRel(want, 2e-3));
-    // Near field and travelling wave make twice the energy of the wave alone at the force, so that
-    // the sum is down to half of the wave's and the rate up to twice; without a travelling wave,
-    // below the cut-on, it is near the rate itself.
+    // At the force, near field and travelling wave have twice the energy of the wave alone. So the
+    // sum is down to half of the wave's and the rate up to twice the wave's. Below the cut-on there
+    // is no travelling wave and the rate is near that of the near field.
     CHECK(got.rate / of_wave > .8);
     CHECK(got.rate / of_wave < 2.1);
   }
 }
 
-TEST_CASE("exact rails refuse what they have no answer to", "[exact-rail]") {
+TEST_CASE("exact rails refuse tracks and points that they cannot solve", "[exact-rail]") {
   Track track = s1(4);
   const Functional sideways = rail_point({0, .3, 0., 0., 1});
   CHECK_THROWS_AS(ExactRailReceptance(track, {sideways, {sideways}}, BeamTheory::timoshenko),
@@ -223,7 +224,7 @@ TEST_CASE("exact rails refuse what they have no answer to", "[exact-rail]") {
   pressed.axial_force = -1e5;
   CHECK_THROWS_AS(ExactRailReceptance(pressed, driving(.3), BeamTheory::timoshenko),
                   std::invalid_argument);
-  // Without damping waves run for ever above the cut-on.
+  // Without damping, waves above the cut-on travel without end.
   track.sleeper.reset();
   track.support.damping[2] = 0.;
   ExactRailReceptance endless(track, driving(.3), BeamTheory::timoshenko, true);

@@ -9,7 +9,8 @@ using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
-TEST_CASE("between ports, model and residual make the fine track's flexibility", "[flexibility]") {
+TEST_CASE("model and residual add up to the fine track's flexibility between ports",
+          "[flexibility]") {
   const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
   const auto [elements_per_bay, ends] =
       GENERATE(std::pair{1, RailEnds{}}, std::pair{2, RailEnds{RailEnd::clamped, RailEnd::clamped}},
@@ -33,7 +34,7 @@ TEST_CASE("between ports, model and residual make the fine track's flexibility",
         for (int e2 = 0; e2 < coarse.elements(); ++e2)
           for (const int q : {0, 3, 6}) {
             const double x2 = place(coarse, e2, q);
-            // What port b reads: the whole row on the fine track, its own row in the model.
+            // Port b reads its whole row on the fine track, and its own row in the model.
             const double want = exact(fine, at_point({b.rail, x2, 0., b.z, 2}), moved);
             const double read_z = kind == Kind::full ? b.z : 0.;
             const double kept = model(at_point({b.rail, x2, 0., read_z, 2}), a.rail, x, a.z);
@@ -45,15 +46,15 @@ TEST_CASE("between ports, model and residual make the fine track's flexibility",
       }
     CAPTURE(static_cast<int>(kind), elements_per_bay, b.rail, b.z, table.reach, missing / largest);
     CHECK(inside / largest < kRounding);
-    CHECK(beyond / largest < 1e-4);                         // what the reach promises
+    CHECK(beyond / largest < 1e-4);                         // the reach states this
     if (b.rail == a.rail) CHECK(missing / largest > 1e-3);  // there is something to add
   }
 }
 
-TEST_CASE("sides that differ, pads with lengths: model and residual make the fine track",
+TEST_CASE("model and residual add up to the fine track with unlike sides or long pads",
           "[flexibility]") {
-  // Pads with lengths spread their force over the fine track's shapes, which the coarse functional
-  // of a pad's mean gap, at Gauss points of its own elements, reads as the fine track does.
+  // Long pads spread their force over the fine track's shapes. The coarse functional reads a pad's
+  // mean gap at Gauss points of its own elements, just as the fine track does.
   const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
   const auto make = GENERATE(&lopsided_track, &long_pads);
   const Track coarse = make(1);
@@ -90,7 +91,7 @@ TEST_CASE("sides that differ, pads with lengths: model and residual make the fin
   CHECK(missing / largest > 1e-3);
 }
 
-TEST_CASE("from a port to rail points, sleepers and pads, model and residual make the fine track",
+TEST_CASE("model and residual add up to the fine track from a port to rails, sleepers and pads",
           "[flexibility]") {
   const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
   const Track coarse = sleeper_track(1);
@@ -103,7 +104,7 @@ TEST_CASE("from a port to rail points, sleepers and pads, model and residual mak
     const char* name;
     Functional functional;
   };
-  // 1.57 and 2.03 are no nodes of the fine track.
+  // 1.57 m and 2.03 m are not at nodes of the fine track.
   const Case cases[] = {{"along x", at_point({0, 1.57, .02, kHeadZ, 0})},
                         {"lateral, other rail", at_point({1, 2.03, -.01, kHeadZ, 1})},
                         {"lateral, own rail", at_point({0, 2.03, 0., kFootZ, 1})},
@@ -133,16 +134,16 @@ TEST_CASE("from a port to rail points, sleepers and pads, model and residual mak
         size = std::max(size, std::abs(want));
       }
     CAPTURE(c.name, static_cast<int>(kind), size, missing / size);
-    CHECK(error / 2e-8 < kRounding);  // of the rail's own flexibility, m/N
+    CHECK(error / 2e-8 < kRounding);  // over the rail's own flexibility, m/N
     CHECK(missing > 10. * error);     // the table is not noise
-    CHECK(size > 1e-12);              // m/N: nor is the functional
+    CHECK(size > 1e-12);              // m/N: the functional is not noise either
   }
 }
 
-TEST_CASE("a functional inside an element is read from the exact element", "[flexibility]") {
-  // At 1.57 m of 0.6 m elements with 8 parts, against 32 parts. The part, h = 75 mm, is read
-  // quadratically where the rail is cubic: V h^3/(125 EI) = 2e-13 m/N; at the head the squeeze of
-  // the section, with its decay over some 0.05 m, is what 8 parts per element make of it.
+TEST_CASE("a functional inside an element reads the exact element", "[flexibility]") {
+  // At 1.57 m in 0.6 m elements with 8 parts, against 32 parts. A part, h = 75 mm, is read
+  // quadratically where the rail is cubic: V h^3/(125 EI) = 2e-13 m/N. At the head 8 parts per
+  // element miss the squeeze of the section, which decays over some 0.05 m.
   const Track coarse = sleeper_track(1);
   const Statics fine(sleeper_track(32));
   const ResidualFlexibility residual(
@@ -156,7 +157,7 @@ TEST_CASE("a functional inside an element is read from the exact element", "[fle
   }
 }
 
-TEST_CASE("a rigid sleeper shifts under both rails alike", "[flexibility]") {
+TEST_CASE("a rigid sleeper moves equally under both rails", "[flexibility]") {
   const Track t = sleeper_track(1);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility whole(t, lines, bases_of(Kind::nothing_kept, t, lines), kPoints);
@@ -187,7 +188,7 @@ TEST_CASE("residual flexibility is symmetric in its ports", "[flexibility]") {
   CHECK(error / 2e-8 < kRounding);
 }
 
-TEST_CASE("on the diagonal the pairs are what a single port gives", "[flexibility]") {
+TEST_CASE("on the diagonal the table of pairs equals that of a single port", "[flexibility]") {
   const Kind kind = GENERATE(Kind::full, Kind::modal);
   const Track t = sleeper_track(2);
   const std::vector<Line> lines = assemble(t);
@@ -202,11 +203,11 @@ TEST_CASE("on the diagonal the pairs are what a single port gives", "[flexibilit
           WithinAbs(under[static_cast<std::size_t>(e * (kPoints + 1) + 2 * p)], kRounding * 2e-8));
 }
 
-TEST_CASE("the residual carries the slope jump of a point force", "[flexibility]") {
-  // A Timoshenko beam's slope jumps by -1/(k G A) under a unit force; around it the deflection is
-  // cubic on both sides, so differences over 1, 2 and 3 intervals give the jump without a rest. No
-  // model has it inside an element. Rounding: 1e-8 of G (condition 1e8), times 12 for the
-  // differences, over jump x h = G/400: 5e-5.
+TEST_CASE("the residual flexibility holds the jump of slope under a point force", "[flexibility]") {
+  // A Timoshenko beam's slope jumps by -1/(k G A) under a unit force. The deflection is cubic on
+  // both sides, so differences over 1, 2 and 3 intervals give the jump exactly; no model has it
+  // inside an element. Rounding is 1e-8 of G (condition 1e8), times 12 for the differences, over
+  // jump x h = G/400: 5e-5.
   const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
   const Track t = peers_track(1);
   const std::vector<Line> lines = assemble(t);
@@ -226,8 +227,8 @@ TEST_CASE("the residual carries the slope jump of a point force", "[flexibility]
     }
 }
 
-TEST_CASE("the reach is where the residual becomes negligible", "[flexibility]") {
-  // By hand from fine and coarse statics, or modes: the largest of |G_res| by distance.
+TEST_CASE("the reach ends where the residual flexibility becomes negligible", "[flexibility]") {
+  // The largest |G_res| at each distance, by hand from fine and coarse statics or from modes.
   const Kind kind = GENERATE(Kind::full, Kind::modal);
   const Track coarse = peers_track(1);
   const Statics fine(peers_track(4));
@@ -243,7 +244,7 @@ TEST_CASE("the reach is where the residual becomes negligible", "[flexibility]")
       const double want = exact(fine, there, moved);
       const double lost = std::abs(want - model(there, 0, .15 * i, 0.));
       if (i == j) largest = std::max(largest, want);
-      // a border belongs to the elements on both sides: the nearest and the farthest count
+      // A border belongs to the elements on both sides: the nearest and the farthest count.
       const int first = (i + 3) / 4 - 1, last = i / 4, first2 = (j + 3) / 4 - 1, last2 = j / 4;
       for (const int e : {std::max(first, 0), std::min(last, 15)})
         for (const int e2 : {std::max(first2, 0), std::min(last2, 15)}) {
@@ -261,17 +262,17 @@ TEST_CASE("the reach is where the residual becomes negligible", "[flexibility]")
   CHECK(table.value.size() == static_cast<std::size_t>(16 * (2 * table.reach + 1) * 25));
 }
 
-TEST_CASE("residual flexibility is below 0 by the squeeze of a section alone", "[flexibility]") {
+TEST_CASE("residual flexibility is below 0 only by the squeeze of a section", "[flexibility]") {
   const auto lowest = [](const std::vector<double>& table) {
     return *std::min_element(table.begin(), table.end());
   };
-  // Two Gauss points see 5/6 of the energy of a squeeze at one end node: the element is too soft
-  // there, by some 1e-11 m/N; rounding is 2e-15.
+  // Two Gauss points see 5/6 of the energy of a squeeze at one end node. The element is too soft
+  // there by some 1e-11 m/N; rounding is 2e-15.
   const Track soft = sleeper_track(2);
   const ResidualFlexibility at_head(soft, assemble(soft), {}, kPoints);
   CHECK(lowest(at_head.under({0, kHeadZ})) < -1e-12);
-  // The modes of a track are a projection of it: on the axis no residual is below 0 but by
-  // rounding.
+  // The modes of a track are a projection of it: on the axis only rounding makes a residual
+  // negative.
   const Track t = peers_track(2);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, bases_of(Kind::modal, t, lines), kPoints);
@@ -282,10 +283,10 @@ TEST_CASE("lines that the port does not move may be free", "[flexibility]") {
   Track t = sleeper_track(1);
   t.rails = 1;
   t.sleeper.reset();
-  t.support = {.stiffness = {3e6, 0., 3e7}};  // nothing holds it sideways or in roll
-  t.section.shear_centre_z = 0.;              // r_z and b_z come apart
+  t.support = {.stiffness = {3e6, 0., 3e7}};  // nothing holds the rail sideways or in roll
+  t.section.shear_centre_z = 0.;              // r_z and b_z decouple
   CHECK_NOTHROW(ResidualFlexibility(t, assemble(t), {}, 4).under({0, kHeadZ}));
-  t.support.stiffness = {0., 0., 3e7};  // x, on b_z's line, which the axis does not move
+  t.support.stiffness = {0., 0., 3e7};  // x is on b_z's line, which the axis does not move
   CHECK_NOTHROW(ResidualFlexibility(t, assemble(t), {}, 4).under({0, 0.}));
   CHECK_THROWS_WITH(ResidualFlexibility(t, assemble(t), {}, 4).under({0, kHeadZ}),
                     Catch::Contains("free rigid mode"));
@@ -296,7 +297,7 @@ TEST_CASE("lines that the port does not move may be free", "[flexibility]") {
   CHECK_THROWS_AS(loose.from({0, 0.}, {}), std::invalid_argument);
 }
 
-TEST_CASE("what makes no table is refused", "[flexibility]") {
+TEST_CASE("tables of bad size, basis or place are refused", "[flexibility]") {
   const Track t = peers_track(1);
   const std::vector<Line> lines = assemble(t);
   CHECK_THROWS_WITH(ResidualFlexibility(t, lines, {}, 2), Catch::Contains("3 intervals"));

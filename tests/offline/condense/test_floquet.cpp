@@ -13,7 +13,7 @@ using namespace railstep;
 
 namespace {
 
-/// All directions, two rails, so that lines couple bending, twist and stretch.
+/// A ring with all directions and two rails, so that lines couple bending, twist and stretch.
 Track full_ring(int bays) {
   Track t = ring_of(endless_track(bays, 2, 2));
   t.unknowns = Unknowns::full;
@@ -30,8 +30,8 @@ double largest(const Eigen::MatrixXd& A) { return A.size() == 0 ? 0. : A.cwiseAb
 }  // namespace
 
 TEST_CASE("waves of all wave numbers have the frequencies of the whole ring") {
-  // two ways to the eigenvalues of one matrix; lowest omega^2 over highest is 1e-7, rounding 1e-16
-  // of the highest: 1e-9 of omega^2, 1e-8 with room
+  // Both find the eigenvalues of one matrix. Lowest omega^2 over highest is 1e-7 and rounding is
+  // 1e-16 of the highest: 1e-9 of omega^2, 1e-8 with room.
   for (const int bays : {7, 8})
     for (const Track& ring : {ring_of(endless_track(bays, 2)), full_ring(bays)})
       for (const Line& line : assemble(ring)) {
@@ -41,33 +41,33 @@ TEST_CASE("waves of all wave numbers have the frequencies of the whole ring") {
         std::vector<double> hz;
         for (const double omega : waves.basis.omega) hz.push_back(omega / (2. * M_PI));
         std::sort(hz.begin(), hz.end());
-        // the lowest two of every wave number are pure; dampers' shapes mix with the others
+        // The lowest two of every wave number are pure; the dampers' shapes mix with the others.
         REQUIRE(hz.size() >= static_cast<std::size_t>(bays));
         for (std::size_t i = 0; i < static_cast<std::size_t>(bays); ++i)
           CHECK(std::abs(hz[i] / whole.frequency[static_cast<Eigen::Index>(i)] - 1.) < 1e-8);
       }
 }
 
-TEST_CASE("ring modes are normal over the ring's own mass and stiffness") {
+TEST_CASE("ring modes are normal over the mass and stiffness of the ring") {
   const Track ring = full_ring(6);
   for (const Line& line : assemble(ring)) {
     const RingModes waves = ring_modes(ring, line, {18, std::numeric_limits<double>::infinity()});
     const Eigen::MatrixXd S = waves.basis.shapes.dense();
     const Eigen::VectorXd square = waves.basis.omega.cwiseAbs2();
     const Eigen::Index n = square.size();
-    // rounding, times the condition of K over the kept shapes (below 1e6)
+    // Rounding times the condition of K over the kept shapes (below 1e6).
     CHECK(largest(S.transpose() * (line.mass * S) - Eigen::MatrixXd::Identity(n, n)) < 1e-10);
     CHECK(largest(S.transpose() * (line.stiffness * S) - Eigen::MatrixXd(square.asDiagonal())) <
           1e-9 * square.maxCoeff());
-    // the damping couples no two waves: what the small systems have is all there is
+    // Damping does not couple two waves: the whole of it is in the small systems.
     const Eigen::MatrixXd damping(waves.modes.damping());
     CHECK(largest(S.transpose() * (line.damping * S) - damping) <
           1e-9 * std::max(1., largest(damping)));
   }
 }
 
-TEST_CASE("shapes kept wave by wave are those of the whole ring, row by row and in products") {
-  // sums of some hundred terms of size 1 in another order
+TEST_CASE("shapes kept wave by wave agree with the whole ring's, in rows and in products") {
+  // Both sum some hundred terms of size 1, but in another order.
   for (const int bays : {6, 7}) {
     const Track ring = full_ring(bays);
     for (const Line& line : assemble(ring)) {
@@ -87,7 +87,7 @@ TEST_CASE("shapes kept wave by wave are those of the whole ring, row by row and 
   }
 }
 
-TEST_CASE("a step back by a bay turns each wave's coordinates") {
+TEST_CASE("a step back by a bay rotates the coordinates of each wave") {
   const Track ring = full_ring(6);
   for (const Line& line : assemble(ring)) {
     const RingModes waves = ring_modes(ring, line, {18, std::numeric_limits<double>::infinity()});
@@ -109,17 +109,17 @@ TEST_CASE("a step back by a bay turns each wave's coordinates") {
   }
 }
 
-TEST_CASE("a ring's table of one bay gives two places of any bay their flexibility") {
-  // Modes and residual flexibility against the ring with 16 times the elements, at their ends,
-  // where an element is exact: so are the tables there, and between two places the beam is a cubic,
-  // as their interpolation is. 1e-16 times K's condition of 1e7 and 512 elements leave 1e-9.
+TEST_CASE("a ring's table of one bay gives the flexibility between two places of any bay") {
+  // Modes and residual flexibility are compared with the ring of 16 times the elements at their
+  // ends. An element is exact there and so are the tables; between two places the beam is a cubic,
+  // like their interpolation. 1e-16 times K's condition of 1e7 and 512 elements leave 1e-9.
   const Track ring = ring_of(endless_track(16, 2));
   const Traffic traffic{.loads = {moving_load(0.), moving_load(1.5)}};
   const PackedModel packed(ring, traffic, ring_options(ring, 1));
   const Model& model = packed.model();
   const PackedLine& own = packed.lines()[0];
   CHECK(model.residual.elements == 2);
-  CHECK(model.residual.pair[0][0].reach <= 7);  // 1.5 m of .3 m, and one either way
+  CHECK(model.residual.pair[0][0].reach <= 7);  // 1.5 m of .3 m, and one on each side
   Track fine = ring;
   fine.elements_per_bay *= 16;
   const Statics exact(fine);
@@ -145,5 +145,5 @@ TEST_CASE("a ring's table of one bay gives two places of any bay their flexibili
       }
   CAPTURE(worst / peak, missed / peak);
   CHECK(worst < 1e-8 * peak);
-  CHECK(missed > 1e-2 * peak);  // the modes alone
+  CHECK(missed > 1e-2 * peak);  // modes without residual flexibility
 }

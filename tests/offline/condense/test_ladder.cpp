@@ -18,7 +18,7 @@ namespace {
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr int kBays = 24, kSeat = 12;
 
-/// 60E1 on pads, sleepers and ballast: one rail.
+/// One rail 60E1 on pads, sleepers and ballast.
 Track long_rail(int elements_per_bay) {
   Track t = s1_track(kBays, elements_per_bay);
   t.unknowns = Unknowns::vertical;
@@ -28,7 +28,7 @@ Track long_rail(int elements_per_bay) {
   return t;
 }
 
-/// 50 kN at 30 m/s that was there before; the pad and the sleeper of the middle seat.
+/// 50 kN at 30 m/s in steady motion, with sensors on the pad and the sleeper of the middle seat.
 Traffic passing(const Track& track) {
   const double x = kSeat * track.bay_length;
   const Functional gap{.rail = {{{0, x, 0., 0., 2}, 1.}}, .sleeper = {{0, kSeat, 2, -1.}}};
@@ -39,7 +39,7 @@ Traffic passing(const Track& track) {
 
 using Row = std::array<double, 3>;  // deflection under the load, m; pad, N; sleeper, m
 
-/// From .1 s, when the start is over, to .28 s, every ms.
+/// Every ms from .1 s, when the start is over, to .28 s.
 std::vector<Row> rows_of(int elements_per_bay, PackOptions options, int steps_per_frame) {
   const Track track = long_rail(elements_per_bay);
   options.steps_per_frame = steps_per_frame;
@@ -76,22 +76,22 @@ PackOptions options_of(ReductionKind kind, double per_bay, bool residual) {
 
 }  // namespace
 
-TEST_CASE("each rung of the ladder is as near as it is said to be", "[ladder]") {
-  // Of the mesh alone: full order of the same elements, exact in time as far as matters here.
+TEST_CASE("each rung of the ladder is as accurate as stated", "[ladder]") {
+  // Full order of the same elements, with a small step, leaves only the mesh's error.
   const std::vector<Row> want = rows_of(2, full_order(2.5e-5), 40);
   const Row of_reference = errors(rows_of(2, full_order(5e-5), 20), want);
   CAPTURE(of_reference[0], of_reference[1], of_reference[2]);
-  CHECK(of_reference[0] < 5e-5);  // of twice the step, three times the reference's own
+  CHECK(of_reference[0] < 5e-5);  // twice the step errs three times as much as the reference
   struct Rung {
     const char* name;
     ReductionKind kind;
     double per_bay;
     Row most;     // with residual flexibility
-    double bare;  // of the deflection, at least, without
+    double bare;  // least error of the deflection without it
   };
-  // Deflections: a prototype, judged alike, had 3.6e-4 with two modes a bay and no damper's shape,
-  // 6e-5 with complex modes and 2e-5 with Craig and Bampton's, six coordinates a bay; Guyan's,
-  // which it did not have, must stay near the 1e-3 of design section 8. Pads: a difference of
+  // Deflections: a prototype had 3.6e-4 with two modes per bay and no damper's shape, 6e-5 with
+  // complex modes and 2e-5 with Craig and Bampton's, all with six coordinates per bay. It did not
+  // have Guyan's, which must stay near the 1e-3 of design section 8. Pads: a difference of
   // displacements 5 times as large, at a seat that the load passes in two frames.
   const Rung rungs[] = {{"modal", ReductionKind::modal, 2., {3.6e-4, 5e-3, 1e-3}, 1e-2},
                         {"guyan", ReductionKind::guyan, 0., {2e-3, 5e-3, 2e-3}, 5e-2},
@@ -118,25 +118,25 @@ TEST_CASE("a model of any kind starts in its own equilibrium and stays there", "
         ReductionKind::craig_bampton, ReductionKind::krylov, ReductionKind::complex_modes}) {
     ModelRun run = in_equilibrium(track, standing, options_of(kind, 2., true));
     double start[2], end[2];
-    run.step();  // which publishes where the load is
+    run.step();  // a step publishes the load's place
     read_track_sensors(run.model(), run.state, run.outputs, start);
     run.until(.1);
     read_track_sensors(run.model(), run.state, run.outputs, end);
     CAPTURE(static_cast<int>(kind), start[1], end[1]);
-    // rounding of sums over some 100 modes, of what is completed to 1e-9
+    // Sums over some 100 modes round; completeness holds to 1e-9.
     CHECK(std::abs(end[0] - start[0]) < 1e-8 * std::abs(start[0]));
     CHECK(std::abs(end[1] - start[1]) < 1e-8 * std::abs(start[1]));
   }
 }
 
-TEST_CASE("a wheel that goes back and forth over borders and bays gains nothing", "[ladder]") {
+TEST_CASE("a wheel that goes back and forth over borders and bays gains no energy", "[ladder]") {
   Track track = s1_track(6, 1);
   track.unknowns = Unknowns::vertical;
   track.rails = 1;
   track.support.damping = {0., 0., 20e3};
   track.support.height_z = 0.;
-  // A wheel of 600 kg with 5 t on it, by turns at +-24 m/s: 1.2 m to and fro every .2 s, over three
-  // seats and as many borders of elements.
+  // A wheel of 600 kg under 5 t moves at +-24 m/s in turn: 1.2 m back and forth every .2 s, over
+  // three seats and as many borders of elements.
   constexpr int kTrips = 10'000;
   constexpr double kPeriod = .2, kFast = 24.;
   RunningVehicle wheel = running(point_mass(600.), 1.2, 0.);
@@ -163,7 +163,7 @@ TEST_CASE("a wheel that goes back and forth over borders and bays gains nothing"
     CAPTURE(static_cast<int>(kind), first, last);
     CHECK_FALSE(has(run.seen, Status::nonfinite_state));
     CHECK(first > 5600. * 9.81);
-    // A steady to and fro, which grows by nothing and forgets nothing.
+    // The motion repeats: it neither grows nor decays.
     CHECK(last < first * (1. + 1e-6));
     CHECK(last > first * (1. - 1e-6));
   }

@@ -13,7 +13,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 namespace {
 
-/// Of springs between neighbours up to a width apart, held everywhere by a little.
+/// Matrix of springs between neighbours up to `width` apart, all held by a weak spring.
 Sparse chain(int n, int width, std::mt19937& random) {
   std::uniform_real_distribution<double> value(0., 2.);
   std::vector<Eigen::Triplet<double>> entries;
@@ -31,7 +31,7 @@ Sparse chain(int n, int width, std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("near and far from loads a local inverse gives the solution", "[flexibility]") {
+TEST_CASE("near loads and far from them a local inverse gives the solution", "[flexibility]") {
   const int width = GENERATE(1, 2, 5);
   const auto seed = GENERATE(1U, 2U, 3U);
   std::mt19937 random(seed);
@@ -39,7 +39,7 @@ TEST_CASE("near and far from loads a local inverse gives the solution", "[flexib
   const Sparse matrix = chain(n, width, random);
   const LocalInverse inverse(matrix);
   const Eigen::LDLT<Eigen::MatrixXd> whole{Eigen::MatrixXd(matrix)};
-  // One row, rows within a band, rows far apart, both ends.
+  // One row, rows within a band, rows far apart, rows at both ends.
   for (const std::vector<int>& rows : std::vector<std::vector<int>>{
            {0}, {n - 1}, {17}, {17, 18}, {16, 20}, {3, 4, 30, 31}, {0, n - 1}}) {
     Eigen::SparseVector<double> load(n);
@@ -57,7 +57,7 @@ TEST_CASE("near and far from loads a local inverse gives the solution", "[flexib
   }
 }
 
-TEST_CASE("a port's own table is the diagonal of that between ports", "[flexibility]") {
+TEST_CASE("a port's own table is the diagonal of the table between ports", "[flexibility]") {
   const auto make = GENERATE(&lopsided_track, &long_pads);
   const Track track = make(1);
   const std::vector<Line> lines = assemble(track);

@@ -36,7 +36,7 @@ double largest(const std::vector<double>& values, std::size_t first, std::size_t
 
 }  // namespace
 
-TEST_CASE("a functional's table ends where nothing is left of it", "[flexibility]") {
+TEST_CASE("a functional's table ends where its value is negligible", "[flexibility]") {
   const Track t = long_track(GENERATE(false, true));
   const int seat = GENERATE(0, 3, 90, kBays);
   const std::vector<Line> lines = assemble(t);
@@ -51,7 +51,7 @@ TEST_CASE("a functional's table ends where nothing is left of it", "[flexibility
   const double peak = exact_line(t, lines[0], kPoints)
                           ->from(port, functional, kPoints, {0, t.elements()})
                           .lpNorm<Eigen::Infinity>();
-  constexpr std::size_t places = kPoints + 1;  // of an element
+  constexpr std::size_t places = kPoints + 1;  // per element
   const std::size_t first = places * static_cast<std::size_t>(near.at.first),
                     last = places * static_cast<std::size_t>(near.at.last);
   REQUIRE(near.value.size() == last - first);
@@ -63,8 +63,7 @@ TEST_CASE("a functional's table ends where nothing is left of it", "[flexibility
   CHECK(largest(whole, last, whole.size()) <= 1.01e-8 * peak);
 }
 
-TEST_CASE("on a long track pads near and far from a load feel what statics gives",
-          "[flexibility]") {
+TEST_CASE("on a long track pads near a load and far from it move as in statics", "[flexibility]") {
   const Track t = long_track(false);
   const double place = GENERATE(.1, 30.17, 60.4, 119.7);  // m, inside elements
   Traffic traffic;
@@ -89,13 +88,13 @@ TEST_CASE("on a long track pads near and far from a load feel what statics gives
     error = std::max(error, std::abs(got[static_cast<std::size_t>(seat)] - want));
   }
   CAPTURE(place, peak, error / peak);
-  CHECK(error < 2e-5 * peak);  // tables are read by cubics between eight points an element
+  CHECK(error < 2e-5 * peak);  // cubics read tables of eight intervals per element
 }
 
-TEST_CASE("what a vertical track's few unknowns miss does not grow with its length",
+TEST_CASE("the error of a vertical track's few unknowns does not grow with its length",
           "[flexibility]") {
   // The squeeze under a force lengthens the rail, which must not push springs along it: with one at
-  // each node 10 000 bays gave 1.2e-9 less than 40. The ends of 40 are felt by 3e-12.
+  // each node 10 000 bays gave 1.2e-9 less than 40. The ends of the 40 bays matter by 3e-12.
   const auto under_middle = [](int bays) {
     Track t = long_track(false);
     t.unknowns = Unknowns::vertical;
@@ -109,7 +108,7 @@ TEST_CASE("what a vertical track's few unknowns miss does not grow with its leng
   CHECK_THAT(under_middle(10000), Catch::Matchers::WithinRel(under_middle(40), 1e-11));
 }
 
-TEST_CASE("tables beyond the track, or within one another, are refused", "[artefact]") {
+TEST_CASE("tables beyond the track or inside one another are refused", "[artefact]") {
   const Track t = long_track(false);
   Traffic traffic;
   traffic.loads = {{.rail = 0, .start = 30., .stop = 90., .force = -50e3}};

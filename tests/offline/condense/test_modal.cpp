@@ -26,7 +26,7 @@ namespace {
 using Value = std::complex<double>;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-/// Lines of the tracks under test; those without stiffness along x are left out.
+/// Lines of the tracks under test, but for those without stiffness along x.
 std::vector<Line> lines_under_test() {
   std::vector<Line> all;
   for (const Track& track : {peers_pair(1), s1_track(8, 2), paper_track()})
@@ -36,7 +36,7 @@ std::vector<Line> lines_under_test() {
 
 Basis basis_of(const Line& line, int modes) { return modal_basis(line, {modes, kUnlimited}); }
 
-/// What is left of shapes outside the span of a basis, over their size; norms over the mass.
+/// Part of a shape outside the span of a basis, over its size, in norms over the mass.
 double outside(const Line& line, const Basis& basis, const Eigen::VectorXd& shape) {
   const Eigen::VectorXd within = basis.shapes.displacement(basis.shapes.project(line.mass * shape));
   const Eigen::VectorXd left = shape - within;
@@ -59,7 +59,7 @@ double residual(const Basis& basis, const DampedModes& modes) {
   return largest;
 }
 
-/// What Re sum shape shape' = 0 and Re sum rate shape shape' = I are missed by.
+/// Largest error of Re sum shape shape' = 0 and Re sum rate shape shape' = I.
 double incompleteness(const DampedModes& modes) {
   const Eigen::MatrixXd position = (modes.shape * modes.shape.transpose()).real();
   const Eigen::MatrixXd velocity =
@@ -69,7 +69,7 @@ double incompleteness(const DampedModes& modes) {
                   std::abs(modes.rate[0]) * position.cwiseAbs().maxCoeff());
 }
 
-/// One coordinate y'' + c y' + omega^2 y.
+/// Modes of one coordinate y'' + c y' + omega^2 y.
 DampedModes one_coordinate(double omega, double c) {
   Eigen::SparseMatrix<double> damping(1, 1);
   damping.insert(0, 0) = c;
@@ -89,19 +89,19 @@ TEST_CASE("the basis is orthonormal over the mass and makes the stiffness diagon
     const Eigen::MatrixXd mass = S.transpose() * (line.mass * S);
     const Eigen::MatrixXd stiffness = S.transpose() * (line.stiffness * S);
     const Eigen::MatrixXd square = basis.omega.cwiseAbs2().asDiagonal();
-    // sums of some hundred terms of size 1, with room 1e4 for the shapes' own cancellation
+    // Sums of some hundred terms of size 1, with room of 1e4 for cancellation within shapes.
     CHECK((mass - Eigen::MatrixXd::Identity(m, m)).cwiseAbs().maxCoeff() < 1e-10);
-    // the same over the largest of the basis
+    // The same, over the largest of the basis.
     CHECK((stiffness - square).cwiseAbs().maxCoeff() < 1e-10 * square.maxCoeff());
   }
 }
 
-TEST_CASE("the basis spans the lowest modes and what every damper needs", "[modal]") {
+TEST_CASE("the basis spans the lowest modes and the shapes that dampers need", "[modal]") {
   for (const Line& line : lines_under_test()) {
     const Basis basis = basis_of(line, 8);
     const Modes all = modes(line);
     for (Eigen::Index k = 0; k < 8; ++k)
-      CHECK(outside(line, basis, all.shape.col(k)) < 1e-7);  // rounding, as a root of 1e-14
+      CHECK(outside(line, basis, all.shape.col(k)) < 1e-7);  // rounding as a root of 1e-14
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(line.stiffness);
     const Basis bare{2. * M_PI * all.frequency.head(8), all.shape.leftCols(8)};
     double most_by_modes = 0.;
@@ -109,16 +109,16 @@ TEST_CASE("the basis spans the lowest modes and what every damper needs", "[moda
       if (line.damping.col(j).norm() == 0.) continue;
       const Eigen::VectorXd shape = factor.solve(Eigen::VectorXd(line.damping.col(j)));
       most_by_modes = std::max(most_by_modes, outside(line, bare, shape));
-      // directions below 1e-10 of the largest Gram eigenvalue are dropped: 1e-5 of a shape
+      // Directions below 1e-10 of the largest Gram eigenvalue are dropped: 1e-5 of a shape.
       CHECK(outside(line, basis, shape) < 1e-5);
     }
-    // ten times what the basis may miss, or nothing was asked for
+    // The lowest modes must miss ten times what the basis may miss, or the test asks nothing.
     if (line.damping.norm() > 0.) CHECK(most_by_modes > 1e-4);
   }
 }
 
-TEST_CASE("one shape is added per damper", "[modal]") {
-  // 17 seats of one rail of 16 bays; with sleepers a pad and the ballast at each
+TEST_CASE("each damper adds one shape", "[modal]") {
+  // 17 seats of one rail of 16 bays; with sleepers, a pad and the ballast at each.
   CHECK(basis_of(assemble(peers_pair(1))[0], 16).omega.size() == 16 + 17);
   Track sleepers = s1_track(16, 1);
   sleepers.unknowns = Unknowns::vertical;
@@ -131,7 +131,7 @@ TEST_CASE("damped modes are complete and solve their equation", "[modal]") {
   for (const Line& line : lines_under_test()) {
     const Basis basis = basis_of(line, 8);
     const DampedModes modes = damped_modes(basis, line.damping);
-    // the eigen solver is backward stable: some hundred eps times the spread of the rates, 1e4
+    // The eigen solver is backward stable: some hundred eps times the spread of the rates, 1e4.
     CHECK(residual(basis, modes) < 1e-9);
     CHECK(incompleteness(modes) < 1e-9);
     CHECK(modes.rate.real().maxCoeff() <= 1e-9 * modes.rate.cwiseAbs().maxCoeff());
@@ -149,13 +149,13 @@ TEST_CASE("modes of a line without dampers do not decay", "[modal]") {
   const DampedModes modes = damped_modes(basis, line.damping);
   REQUIRE(modes.rate.size() == 16);
   for (Eigen::Index k = 0; k < 16; ++k) {
-    // backward error of a skew matrix: eps times its norm, with room for its size
+    // Backward error of a skew matrix: eps times its norm, with room for its size.
     CHECK(std::abs(modes.rate[k].real()) < 1e-12 * basis.omega[15]);
     CHECK_THAT(modes.rate[k].imag(), WithinAbs(basis.omega[k], 1e-12 * basis.omega[15]));
   }
 }
 
-TEST_CASE("one coordinate has its textbook rates and shapes", "[modal]") {
+TEST_CASE("one coordinate has the rates and shapes of the textbook", "[modal]") {
   const double omega = 300.;
   const DampedModes under = one_coordinate(omega, 2. * .3 * omega);
   REQUIRE(under.rate.size() == 1);
@@ -167,7 +167,7 @@ TEST_CASE("one coordinate has its textbook rates and shapes", "[modal]") {
   CHECK_THAT(over.rate[1].real(), WithinRel(-2. * omega, 1e-12));
 }
 
-TEST_CASE("what forces hold and velocity come back from their modes", "[modal]") {
+TEST_CASE("displacement under forces and velocity are recovered from the modes", "[modal]") {
   for (const Line& line : lines_under_test()) {
     const Basis basis = basis_of(line, 8);
     const DampedModes modes = damped_modes(basis, line.damping);
@@ -181,21 +181,21 @@ TEST_CASE("what forces hold and velocity come back from their modes", "[modal]")
     const Eigen::VectorXd y = force.cwiseQuotient(Eigen::VectorXd(basis.omega.cwiseAbs2())),
                           back = (modes.shape * z).real(),
                           rate = (modes.shape * modes.rate.cwiseProduct(z)).real();
-    // y = -[Re sum shape shape' / rate] f + [Re sum shape shape'] y', y' alike with one rate more:
-    // completeness of 1e-9 counts by these terms
+    // y = -[Re sum shape shape' / rate] f + [Re sum shape shape'] y', and y' the same with one more
+    // rate: a completeness of 1e-9 counts relative to these terms.
     const double slowest = std::abs(modes.rate[0]);
     CHECK((back - y).norm() < 1e-9 * (y.norm() + velocity.norm() / slowest));
     CHECK((rate - velocity).norm() < 1e-9 * (force.norm() / slowest + velocity.norm()));
-    // held alone, each mode is where its force holds it
+    // Without velocity, each mode rests where its force holds it.
     const Eigen::VectorXcd held = modes.from(force, Eigen::VectorXd::Zero(m)),
                            forces = modes.shape.transpose() * force;
     CHECK((modes.rate.cwiseProduct(held) + forces).norm() < 1e-14 * forces.norm());
   }
 }
 
-TEST_CASE("slow real roots that cluster are told apart by what they must add up to", "[modal]") {
-  // Dampers of 29e6 N s/m on 60 alike seats: 61 roots near -k/c = -48.3 1/s. The eigen solver's
-  // vectors of the cluster are no longer orthogonal, and completeness is missed by 1e-5 and more.
+TEST_CASE("completeness separates slow real roots that cluster", "[modal]") {
+  // Dampers of 29e6 N s/m on 60 equal seats have 61 roots near -k/c = -48.3 1/s. The eigen solver's
+  // vectors of the cluster are no longer orthogonal, and completeness errs by 1e-5 and more.
   Track track = peers_pair(2);
   track.bays = 60;
   track.support.stiffness[2] = 1.4e9;
@@ -205,13 +205,13 @@ TEST_CASE("slow real roots that cluster are told apart by what they must add up 
   REQUIRE(basis.omega.size() == 60 + 61);
   const DampedModes modes = damped_modes(basis, line.damping);
   CHECK(incompleteness(modes) < 1e-9);
-  // a mix of shapes whose rates agree to 1e-8 leaves a residual of 1e-8 times the mix
+  // A mix of shapes whose rates agree to 1e-8 leaves a residual of 1e-8 times the mix.
   CHECK(residual(basis, modes) < 1e-9);
 }
 
-TEST_CASE("rates that are one have shapes of their own", "[modal]") {
-  // Five directions of six are alike in mass, stiffness and damping; the seventh couples to none.
-  // Any mixture of their shapes is a shape, and some have no product with themselves.
+TEST_CASE("equal rates have separate shapes", "[modal]") {
+  // Five of six directions have the same mass, stiffness and damping; the seventh is uncoupled. Any
+  // mixture of their shapes is a shape, and some mixtures have a zero product with themselves.
   for (const double c : {0., 60., 900.}) {
     Eigen::VectorXd omega = Eigen::VectorXd::Constant(7, 300.), along(7);
     omega[6] = 500.;
@@ -226,9 +226,9 @@ TEST_CASE("rates that are one have shapes of their own", "[modal]") {
   }
 }
 
-TEST_CASE("alike cells in any mixture have the rates of one cell, each as often", "[modal]") {
-  // Two coupled coordinates whose dampers do not share the springs' shapes: by the dampers'
-  // strength two pairs, a pair and two real rates, four real rates. A rotation mixes the cells.
+TEST_CASE("equal cells in any mixture have the rates of one cell, each once per cell", "[modal]") {
+  // Two coupled coordinates, whose dampers do not share the springs' shapes, have two pairs, one
+  // pair and two real rates, or four real ones, by the dampers' strength. A rotation mixes cells.
   constexpr int kCells = 16, kSize = 2 * kCells;
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -263,16 +263,16 @@ TEST_CASE("alike cells in any mixture have the rates of one cell, each as often"
     REQUIRE(all.rate.size() == kCells * one.rate.size());
     CHECK(incompleteness(all) < 1e-9);
     const double fastest = one.rate.cwiseAbs().maxCoeff();
-    // Slow rates have the round-off of the fastest.
+    // Slow rates have the round-off of the fastest rate.
     CHECK(residual(basis, all) < 1e-9 + 2.3e-16 * fastest / std::abs(one.rate[0]));
     for (Eigen::Index k = 0; k < all.rate.size(); ++k)
       CHECK(std::abs(all.rate[k] - one.rate[k / kCells]) < 1e-11 * fastest);
   }
 }
 
-TEST_CASE("shapes that the solver leaves parallel are found anew", "[modal]") {
-  // Two of three coordinates are alike. The solver's second shape of theirs is the first, and
-  // round-off along the third.
+TEST_CASE("shapes that the solver leaves parallel are computed again", "[modal]") {
+  // Two of three coordinates are equal. The solver's second shape of these is the first one, with
+  // round-off along the third coordinate.
   const Eigen::Vector3d omega(300., 300., 500.), c(60., 60., 80.);
   Eigen::VectorXcd rates(6);
   Eigen::MatrixXcd vectors = Eigen::MatrixXcd::Zero(6, 6);
@@ -291,8 +291,8 @@ TEST_CASE("shapes that the solver leaves parallel are found anew", "[modal]") {
   CHECK(residual({omega, Eigen::MatrixXd::Identity(3, 3)}, modes) < 1e-9);
 }
 
-TEST_CASE("slow rates beside very fast ones are their own", "[modal]") {
-  // -Omega^2 x / (D x): 8e-5 1/s apart beside rates of 1e8, of which 1e-12 is more than they are.
+TEST_CASE("slow rates are right beside very fast ones", "[modal]") {
+  // -Omega^2 x / (D x): slow rates 8e-5 1/s apart beside rates of 1e8, of which 1e-12 is more.
   Eigen::Matrix2d D;
   D << .7e8, .2e8, .2e8, 1e8;
   const DampedModes modes =
@@ -304,7 +304,7 @@ TEST_CASE("slow rates beside very fast ones are their own", "[modal]") {
   for (Eigen::Index k = 0; k < 2; ++k) CHECK_THAT(-modes.rate[k].real(), WithinRel(slow[k], 1e-4));
 }
 
-TEST_CASE("near critical damping the answer is right or it is refused", "[modal]") {
+TEST_CASE("near critical damping the answer is right or the line is refused", "[modal]") {
   CHECK_THROWS_WITH(one_coordinate(300., 600.), Contains("critical"));
   const double omega = 300., t = 2. / omega;
   int accepted = 0;
@@ -321,14 +321,14 @@ TEST_CASE("near critical damping the answer is right or it is refused", "[modal]
     double y = 0.;
     for (Eigen::Index k = 0; k < z.size(); ++k)
       y += (modes.shape(0, k) * std::exp(modes.rate[k] * t) * z[k]).real();
-    // critical: y = (1 + omega t) e^(-omega t), off by (omega t)^3/3 e^(-omega t) = .36 per unit of
-    // `off`; a missed completeness of 1e-7 counts as much
+    // Critical: y = (1 + omega t) e^(-omega t), which differs by (omega t)^3/3 e^(-omega t) = .36
+    // per unit of `off`. A completeness wrong by 1e-7 counts as much.
     CHECK_THAT(y, WithinAbs(3. * std::exp(-2.), std::abs(off) + 1e-6));
   }
   CHECK(accepted >= 4);  // 1e-2, 1e-4 and their negatives leave 14 and 12 digits
 }
 
-TEST_CASE("what has no modes to keep is refused in a sentence", "[modal]") {
+TEST_CASE("lines without modes to keep are refused in a sentence", "[modal]") {
   Track free = peers_pair(1);
   free.support.stiffness[2] = 0.;
   CHECK_THROWS_WITH(basis_of(assemble(free)[0], 8), Contains("free rigid mode"));
@@ -339,7 +339,7 @@ TEST_CASE("what has no modes to keep is refused in a sentence", "[modal]") {
   Track undamped = peers_pair(1);
   undamped.support.damping = {};
   CHECK_THROWS_WITH(basis_of(assemble(undamped)[0], 0), Contains("keeps one mode or more"));
-  // with dampers their shapes alone are a basis, and a limit in Hz counts like one in modes
+  // Shapes of dampers are a basis on their own, and a limit in Hz works as one in modes.
   CHECK(basis_of(assemble(peers_pair(1))[0], 0).omega.size() == 17);
   const Line line = assemble(undamped)[0];
   const Modes all = modes(line);

@@ -1,4 +1,4 @@
-// Receptances of the full order and of damped modes, against published and closed forms.
+// Receptances of the full order and of damped modes, against published values and closed forms.
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -47,8 +47,8 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 }  // namespace
 
 TEST_CASE("set S1 has its reference receptances", "[receptance]") {
-  // rail-data.md, section 3: nm/N and degrees of the infinite track; 2 % to 900 Hz is its own
-  // uncertainty between two models (with 1 degree, the phase of 2 %), 1000 to 1250 Hz is left out.
+  // rail-data.md, section 3, in nm/N and degrees of the infinite track. Its own uncertainty between
+  // two models is 2 % up to 900 Hz (with 1 degree, the phase of 2 %); 1000 to 1250 Hz is left out.
   struct Row {
     double hz, mid, mid_phase, over, over_phase;
   };
@@ -69,10 +69,10 @@ TEST_CASE("set S1 has its reference receptances", "[receptance]") {
   }
 }
 
-TEST_CASE("a short rail on springs is a mass on springs", "[receptance]") {
-  // One bay of 50 mm of a rail 100 times as stiff as steel: heave alone. Its own flexibility is
-  // L/(4 k G A) = 4e-13 m/N, of 8e-8 at least (5e-6); rounding of EI/h^3 = 4e14 N/m leaves some N/m
-  // of the dynamic stiffness of 1e6 N/m (1e-6), ten times that in a small answer: 5e-5.
+TEST_CASE("a short rail on springs moves as a mass on springs", "[receptance]") {
+  // A 50 mm bay of a rail 100 times as stiff as steel only heaves. Its own flexibility, L/(4 k G A)
+  // = 4e-13 m/N, is 5e-6 of 8e-8 at least. Rounding of EI/h^3 = 4e14 N/m leaves some N/m of the
+  // dynamic stiffness of 1e6 N/m (1e-6), ten times that in a small answer: 5e-5.
   Track track;
   track.section = section_f();
   track.material.young = 2.1e13;
@@ -106,8 +106,8 @@ TEST_CASE("a short rail on springs is a mass on springs", "[receptance]") {
   }
 }
 
-TEST_CASE("transfer is the same there and back", "[receptance]") {
-  // Two rails with sleepers, all nine unknowns; vertical and lateral, head, foot and sleeper.
+TEST_CASE("transfer receptance is the same in both directions", "[receptance]") {
+  // Two rails with sleepers have all nine unknowns: vertical and lateral, head, foot and sleeper.
   const Track track = s1_track(12, 2);
   const std::vector<Functional> points = {on_rail(3.3, 2, .09), on_rail(4.45, 1, .09, 1),
                                           on_rail(2.71, 1, -.08), on_sleeper(5, 1)};
@@ -118,8 +118,7 @@ TEST_CASE("transfer is the same there and back", "[receptance]") {
   for (const double hz : {30., 210., 900.}) {
     Eigen::MatrixXcd all(4, 4);
     for (int i = 0; i < 4; ++i) all.col(i) = from[static_cast<std::size_t>(i)]->at(hz);
-    // 1e-10: rounding of a solve with a condition of 1e8 at worst, relative to what a force moves
-    // at its own place.
+    // 1e-10 is the rounding of a solve with condition 1e8 at worst, over the direct receptance.
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < i; ++j)
         CHECK(std::abs(all(i, j) - all(j, i)) <
@@ -128,12 +127,12 @@ TEST_CASE("transfer is the same there and back", "[receptance]") {
   }
 }
 
-TEST_CASE("at no frequency receptance is static flexibility", "[receptance]") {
+TEST_CASE("at frequency 0 receptance is static flexibility", "[receptance]") {
   const Track track = s1_track(12, 2);
   const Statics statics(track);
   const RailPoint head{0, 3.6, 0., .09, 2}, other{1, 4.8, 0., .09, 1};
-  // The same K factored twice, of condition 1e8: 1e-9 (the residual, which is no part of `static`,
-  // is left out).
+  // The same K is factored twice, with condition 1e8: 1e-9. The residual is left out because
+  // `static` does not have it.
   const Eigen::VectorXcd found =
       FullOrderReceptance(track, {rail_point(head), {rail_point(head), rail_point(other)}}, false)
           .at(0.);
@@ -151,14 +150,14 @@ TEST_CASE("at no frequency receptance is static flexibility", "[receptance]") {
                  Statics(vertical).flexibility(axis, axis)) < 1e-9);
 }
 
-TEST_CASE("between nodes the elements' error is taken out", "[receptance]") {
-  // One element of 0.6 m per bay, a force an eighth of the bay beside the sleeper and a reading at
-  // three eighths, against exact beams. As good as static (0.1 Hz; damper and inertia are 1e-3 of
-  // the seat): 1e-5. At 50 Hz the damper adds half the ballast's stiffness, which the residual does
-  // not know of: half of what it owes to other seats, 5e-3 of the flexibility (flexibility.h).
+TEST_CASE("between nodes the residual corrects the error of the elements", "[receptance]") {
+  // One element of 0.6 m per bay, a force an eighth of the bay from the sleeper and a reading at
+  // three eighths, against exact beams. Near statics (0.1 Hz; damper and inertia are 1e-3 of the
+  // seat) it is exact to 1e-5. At 50 Hz the damper adds half the ballast's stiffness, which the
+  // residual lacks: half of its share from other seats, 5e-3 of the flexibility (flexibility.h).
   Track track = s1_track(24, 1);
   track.unknowns = Unknowns::vertical;
-  track.support.height_z = 0.;  // no foot to be squeezed
+  track.support.height_z = 0.;  // the foot is not squeezed
   const Functional force = on_rail(7.275), read = on_rail(7.425);
   const Transfer transfer{force, {force, read}};
   ExactRailReceptance exact(track, transfer, BeamTheory::timoshenko);
@@ -173,9 +172,9 @@ TEST_CASE("between nodes the elements' error is taken out", "[receptance]") {
   }
 }
 
-TEST_CASE("full order agrees with exact beams on sleepers under two rails", "[receptance]") {
-  // 16 elements per bay; what is left is the mesh, (pi/16)^4/720 of the pinned-pinned frequency.
-  // (In a vertical track rails do not roll, as exact beams; these have no foot to be squeezed.)
+TEST_CASE("full order agrees with exact beams for two rails on sleepers", "[receptance]") {
+  // 16 elements per bay leave the mesh's error, (pi/16)^4/720 of the pinned-pinned frequency. (In a
+  // vertical track rails do not roll, as with exact beams; nothing squeezes these feet.)
   Track track = s1_track(10, 16);
   track.unknowns = Unknowns::vertical;
   track.support.height_z = 0.;
@@ -198,10 +197,11 @@ TEST_CASE("full order agrees with exact beams on sleepers under two rails", "[re
   CHECK((got - want).norm() < 1e-4 * want.norm());
 }
 
-TEST_CASE("damped modes with their residual are the full order's receptance", "[receptance]") {
-  // All modes: the same numbers but for rounding of the damped modes, which are accepted complete
-  // to 1e-7. Modes to 3 kHz: beyond them inertia is left out, (f/3000)^2 of the residual, which is
-  // below 5 % of the receptance: 1e-3 at 400 Hz.
+TEST_CASE("damped modes with their residual have the receptance of the full order",
+          "[receptance]") {
+  // All modes give the same numbers but for the rounding of damped modes, which are complete to
+  // 1e-7. Modes to 3 kHz leave out inertia beyond them, (f/3000)^2 of the residual, which is below
+  // 5 % of the receptance: 1e-3 at 400 Hz.
   Track track = s1_track(4, 2);
   const Transfer transfer{on_rail(2.1, 2, .09),
                           {on_rail(2.1, 2, .09), on_rail(2.4, 2, -.08, 1), on_sleeper(3, 0)}};
@@ -221,7 +221,7 @@ TEST_CASE("damped modes with their residual are the full order's receptance", "[
 }
 
 TEST_CASE("a rail on pads of 30 MN/m has the hard case's receptance", "[receptance]") {
-  // hard-cases.md, H28: 5e-4; peak 1141.5 +-1 Hz, its height depends on the length.
+  // H28 of hard-cases.md: 5e-4; the peak is at 1141.5 +-1 Hz, its height depends on the length.
   Track track;
   track.section = section_f();
   track.section.shear_factor_z = .472;
@@ -242,11 +242,12 @@ TEST_CASE("a rail on pads of 30 MN/m has the hard case's receptance", "[receptan
   CHECK_THAT(at, WithinAbs(1141.5, 1.));
 }
 
-TEST_CASE("a rail driven sideways on close supports is a beam on a foundation", "[receptance]") {
-  // A rectangle, whose shear centre is its centroid, held sideways on its axis each 50 mm, against
-  // the closed form of a Timoshenko beam on a foundation. 2e-3: springs at distance d for a
+TEST_CASE("a rail driven sideways on close supports acts as a beam on a foundation",
+          "[receptance]") {
+  // A rectangle, whose shear centre is its centroid, is held sideways on its axis each 50 mm. The
+  // closed form is a Timoshenko beam on a foundation. Springs at a distance d in place of a
   // foundation err by the beam's static softness between two of them, d^3/(192 EI) + d/(4 k G A) =
-  // 6e-11 m/N, of 6e-8.
+  // 6e-11 m/N of 6e-8: 2e-3.
   Track track;
   track.section = peers_rectangle();
   track.rails = 1;
@@ -270,7 +271,8 @@ TEST_CASE("a rail driven sideways on close supports is a beam on a foundation", 
   }
 }
 
-TEST_CASE("16 bays with plain ends are good to 400 Hz, and are told so above", "[receptance]") {
+TEST_CASE("16 bays with plain ends are good to 400 Hz, and the program reports errors above",
+          "[receptance]") {
   Track track = shipped_s1();
   track.bays = 16;
   const Transfer transfer = driving(on_rail(5.1));
@@ -288,7 +290,7 @@ TEST_CASE("16 bays with plain ends are good to 400 Hz, and are told so above", "
     CAPTURE(hz[i], error, effect[i]);
     if (hz[i] < 400.) CHECK(effect[i] < .01);
     if (hz[i] > 600.) CHECK(effect[i] > .01);
-    // Its size, of errors that the mesh of 1e-3 does not hide.
+    // The estimate has the size of the error, where the mesh's 1e-3 does not hide it.
     if (error > 3e-3) {
       CHECK(effect[i] > .5 * error);
       CHECK(effect[i] < 8. * error);

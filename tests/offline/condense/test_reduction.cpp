@@ -28,7 +28,7 @@ constexpr ReductionKind kAll[] = {ReductionKind::modal,  ReductionKind::guyan,
                                   ReductionKind::irs,    ReductionKind::craig_bampton,
                                   ReductionKind::krylov, ReductionKind::complex_modes};
 
-/// A ballasted rail, its damping left out or the paper's 29e6 N s/m in its pads.
+/// A ballasted rail; its pads have no damping, some, or the paper's 29e6 N s/m.
 Track rail(int bays, double pad_damping, bool ballast_damped = true) {
   Track t = s1_track(bays, 2);
   t.unknowns = Unknowns::vertical;
@@ -43,7 +43,7 @@ Reduction of(ReductionKind kind, int most, std::vector<double> hz = {50., 400., 
   return {.kind = kind, .limit = {most, kUnlimited}, .expansion_hz = std::move(hz)};
 }
 
-/// Receptance between rows of a line, and of a reduced one, at a frequency.
+/// Receptance at a frequency between rows of a full line, and below of a reduced line.
 Eigen::MatrixXcd receptance(const Line& line, const Eigen::MatrixXd& rows, double hz) {
   const Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor(
       dynamic_stiffness(line, {0., 2. * M_PI * hz}));
@@ -78,7 +78,7 @@ Eigen::VectorXd frequencies(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M) 
          (2. * M_PI);
 }
 
-/// The textbook's partition, dense: T of Guyan, and its improvement.
+/// The textbook's dense partition: T of Guyan, and its improvement.
 struct Textbook {
   Eigen::MatrixXd T, improved, K, M;
 
@@ -102,7 +102,7 @@ struct Textbook {
 
 }  // namespace
 
-TEST_CASE("every kind but damped modes is Galerkin's", "[reduction]") {
+TEST_CASE("every kind except damped modes is a Galerkin projection", "[reduction]") {
   for (const Track& track : {rail(8, 20e3), rail(8, 29e6), paper_track(), s1_track(6, 2)})
     for (const Line& line : assemble(track)) {
       if (modes(line).frequency[0] < 1.) continue;  // free along x
@@ -116,11 +116,11 @@ TEST_CASE("every kind but damped modes is Galerkin's", "[reduction]") {
         const Eigen::MatrixXd stiffness = S.transpose() * (line.stiffness * S);
         const Eigen::MatrixXd square = basis.omega.cwiseAbs2().asDiagonal();
         CAPTURE(static_cast<int>(kind), line.unknowns(), m);
-        // as test_modal has it: sums of some hundred terms of size 1, with room for cancellation
+        // As in test_modal: sums of some hundred terms of size 1, with room for cancellation.
         CHECK((mass - Eigen::MatrixXd::Identity(m, m)).cwiseAbs().maxCoeff() < 1e-10);
         CHECK((stiffness - square).cwiseAbs().maxCoeff() < 1e-10 * square.maxCoeff());
-        // Rayleigh and Ritz: no frequency lies below its own of the line, but for rounding of a
-        // part in 1e-12 of the highest
+        // Rayleigh and Ritz: no frequency is below that of the line, but for rounding of 1e-12 of
+        // the highest.
         const double rounding = 1e-12 * square.maxCoeff();
         for (Eigen::Index k = 0; k < std::min(m, exact.frequency.size()); ++k)
           CHECK(square(k, k) >=
@@ -129,7 +129,7 @@ TEST_CASE("every kind but damped modes is Galerkin's", "[reduction]") {
     }
 }
 
-TEST_CASE("Guyan's shapes and the improved ones are the textbook's", "[reduction]") {
+TEST_CASE("Guyan's shapes and the improved ones are those of the textbook", "[reduction]") {
   const Track track = rail(8, 0., false);  // without dampers there are no other shapes
   const Line line = assemble(track)[0];
   for (const int nodes : {1, 2, 4}) {
@@ -146,13 +146,13 @@ TEST_CASE("Guyan's shapes and the improved ones are the textbook's", "[reduction
     REQUIRE(ours_improved.size() == improved.size());
     const Eigen::VectorXd exact = modes(line).frequency;
     for (Eigen::Index k = 0; k < guyan.size(); ++k) {
-      // dense inverses of matrices of condition 1e6 or less
+      // The textbook inverts dense matrices of condition 1e6 or less.
       CHECK_THAT(ours[k], WithinRel(guyan[k], 1e-8));
       CHECK_THAT(ours_improved[k], WithinRel(improved[k], 1e-8));
     }
-    // with r = (f / f held)^2 Guyan's shapes leave out r, so that its frequencies err by r; the
-    // improved shapes leave out r^2 and err by r^3
-    for (Eigen::Index k = 0; nodes < 4 && k < 4; ++k) {  // with 4 nothing is left to follow
+    // With r = (f / f held)^2, Guyan's shapes leave out r, so that their frequencies err by r. The
+    // improved shapes leave out r^2 and err by r^3.
+    for (Eigen::Index k = 0; nodes < 4 && k < 4; ++k) {  // 4 nodes leave nothing to condense
       const double left = guyan[k] / exact[k] - 1., left_improved = improved[k] / exact[k] - 1.;
       CAPTURE(nodes, k, left, left_improved);
       CHECK(left > 0.);
@@ -161,7 +161,7 @@ TEST_CASE("Guyan's shapes and the improved ones are the textbook's", "[reduction
   }
 }
 
-TEST_CASE("static condensation answers forces on what it keeps exactly", "[reduction]") {
+TEST_CASE("static condensation is exact for forces on the unknowns that it keeps", "[reduction]") {
   const Track track = rail(8, 0., false);  // dampers' shapes would answer too
   const Line line = assemble(track)[0];
   const ReducedLineModel model = reduce(track, line, of(ReductionKind::guyan, 0));
@@ -178,10 +178,10 @@ TEST_CASE("static condensation answers forces on what it keeps exactly", "[reduc
       model.basis.shapes.displacement(model.basis.give(model.basis.shapes.project(between)));
   const double got = between.dot(there);
   const RailPoint at{0, 4.5 * track.bay_length, 0., 0., 2};
-  CHECK(got < (1. - 1e-3) * statics.flexibility(at, at));  // and no other: that is left to G_res
+  CHECK(got < (1. - 1e-3) * statics.flexibility(at, at));  // others need G_res
 }
 
-TEST_CASE("Craig and Bampton's parts are bays with their ends held, and all of them the line",
+TEST_CASE("Craig and Bampton's parts are bays with held ends; all of them are the line",
           "[reduction]") {
   const Track track = rail(6, 0., false);
   const Line line = assemble(track)[0];
@@ -190,7 +190,7 @@ TEST_CASE("Craig and Bampton's parts are bays with their ends held, and all of t
     return reduce(track, line, of(ReductionKind::craig_bampton, per_bay * track.bays)).basis.omega /
            (2. * M_PI);
   };
-  // 2 elements a bay: 3 nodes of 2 unknowns between seats
+  // 2 elements per bay have 3 nodes of 2 unknowns between seats.
   const Eigen::VectorXd all = hz(6);
   REQUIRE(all.size() == exact.size());
   for (Eigen::Index k = 0; k < exact.size(); ++k) CHECK_THAT(all[k], WithinRel(exact[k], 1e-7));
@@ -204,7 +204,7 @@ TEST_CASE("Craig and Bampton's parts are bays with their ends held, and all of t
     CHECK(error < last);
     last = error;
   }
-  // The part itself: one bay clamped at both ends.
+  // The part itself is one bay clamped at both ends.
   Track bay = track;
   bay.bays = 1;
   bay.ends = {RailEnd::clamped, RailEnd::clamped};
@@ -219,7 +219,7 @@ TEST_CASE("Craig and Bampton's parts are bays with their ends held, and all of t
   }
 }
 
-TEST_CASE("rational Krylov shapes meet the receptance at their expansion points, damping in full",
+TEST_CASE("rational Krylov shapes have the damped receptance at their expansion points",
           "[reduction]") {
   const std::vector<double> points = {300.};
   for (const double damping : {20e3, 29e6}) {
@@ -238,8 +238,8 @@ TEST_CASE("rational Krylov shapes meet the receptance at their expansion points,
     // Shapes below 1e-14 of the strain energy are left out, 1e-7 of the largest amplitude.
     REQUIRE(all.basis.omega.size() < line.unknowns() / 2);
     CHECK(miss(all, 300.) < 1e-7);
-    CHECK(miss(all, 1400.) > 1e-4);  // elsewhere it is not the line
-    // A smaller basis misses it; the more it keeps the less.
+    CHECK(miss(all, 1400.) > 1e-4);  // elsewhere it differs from the line
+    // A smaller basis misses it, and less so the more it keeps.
     const ReducedLineModel few = reduce(track, line, of(ReductionKind::krylov, 3, points)),
                            more = reduce(track, line, of(ReductionKind::krylov, 18, points));
     CHECK(miss(few, 300.) > 1e-5);
@@ -247,7 +247,7 @@ TEST_CASE("rational Krylov shapes meet the receptance at their expansion points,
   }
 }
 
-TEST_CASE("damped modes of all are the line, and the slowest answer slow forces", "[reduction]") {
+TEST_CASE("all damped modes are the line, and the slowest ones answer slow forces", "[reduction]") {
   for (const double damping : {20e3, 29e6}) {
     const Track track = rail(6, damping);
     const Line line = assemble(track)[0];
@@ -255,7 +255,7 @@ TEST_CASE("damped modes of all are the line, and the slowest answer slow forces"
     const ReducedLineModel all = reduce(track, line, of(ReductionKind::complex_modes, 10'000));
     const Basis whole = modal_basis(line, {10'000, kUnlimited});
     const Eigen::MatrixXd square = whole.omega.cwiseAbs2().cwiseInverse().asDiagonal();
-    // completeness of 1e-7 at most, in units of the softest mode
+    // Completeness is 1e-7 at most, in units of the softest mode.
     CHECK((all.basis.flexibility - square).cwiseAbs().maxCoeff() < 1e-7 * square.maxCoeff());
     const ReducedLineModel slow = reduce(track, line, of(ReductionKind::complex_modes, 18));
     CHECK(kept_coordinates(slow.basis, slow.modes) <= 18);
@@ -270,8 +270,8 @@ TEST_CASE("damped modes of all are the line, and the slowest answer slow forces"
                    with = (got + missing.cast<Value>() - want).cwiseAbs().maxCoeff() /
                           want.cwiseAbs().maxCoeff();
       CAPTURE(damping, hz, bare, with);
-      // what the residual flexibility leaves grows from nothing with the frequency over the
-      // fastest kept
+      // The error left with residual flexibility grows from 0 with the frequency over the fastest
+      // kept.
       const double fastest = std::abs(slow.modes.rate[slow.modes.rate.size() - 1]);
       CHECK(with < 4. * bare * 2. * M_PI * hz / fastest);
       CHECK(bare > 1e-4);
@@ -279,7 +279,8 @@ TEST_CASE("damped modes of all are the line, and the slowest answer slow forces"
   }
 }
 
-TEST_CASE("with residual flexibility every kind gives way as the refined rail", "[reduction]") {
+TEST_CASE("with residual flexibility every kind has the static flexibility of the refined rail",
+          "[reduction]") {
   const Track track = rail(8, 20e3);
   const Traffic traffic{.loads = {{.start = 1., .speed = 5., .stop = 4., .force = -1e3}}};
   for (const ReductionKind kind : kAll)
@@ -289,14 +290,14 @@ TEST_CASE("with residual flexibility every kind gives way as the refined rail", 
       const PackedModel packed(track, traffic, options);
       const double error = static_error(track, packed);
       CAPTURE(static_cast<int>(kind), residual, error);
-      // tables of 16 intervals read by cubics: 1e-5; without them what the coordinates miss
+      // Cubics on tables of 16 intervals err by 1e-5; without tables the missing coordinates count.
       CHECK((residual ? error < 2e-5 : error > 1e-3));
     }
 }
 
-TEST_CASE("of two real modes that nearly share a shape none is kept alone", "[reduction]") {
-  // One mass, y'' + 2.01 y' + 1.01 y: rates -1 and -1.01, shapes' squares 100 and -100. The slower
-  // alone is 99 times too soft.
+TEST_CASE("two real modes that nearly share a shape are kept or left together", "[reduction]") {
+  // One mass, y'' + 2.01 y' + 1.01 y: the rates are -1 and -1.01, the squares of the shapes 100 and
+  // -100. The slower mode alone is 99 times too soft.
   Line line{};
   line.mass.resize(1, 1);
   line.mass.insert(0, 0) = 1.;
@@ -312,7 +313,7 @@ TEST_CASE("of two real modes that nearly share a shape none is kept alone", "[re
   CHECK(std::abs(both.basis.at_once(0, 0)) < 1e-9);
 }
 
-TEST_CASE("what cannot be condensed so is refused in a sentence", "[reduction]") {
+TEST_CASE("lines that a reduction cannot condense are refused in a sentence", "[reduction]") {
   const Track track = rail(4, 20e3);
   const Line line = assemble(track)[0];
   Reduction odd = of(ReductionKind::guyan, 0);

@@ -1,9 +1,9 @@
-// Every error that the program states of a model is found once more, another way: the largest over
-// the band, the window and the places that the statement speaks of, on random scenes.
-// RAILSTEP_SEEDS=FIRST:COUNT takes others than the twenty of every run. Of the first 220 three
-// fail, by 3 % at most, all under loads that stand: their places within elements change with the
-// mesh, so that its error does not fall evenly, and the reference's, estimated at 2e-8 to 1.5e-7 of
-// the peak, is 1.4 to 2.7 times that.
+// Every error that the program states of a model is found again in another way: as the largest over
+// the band, the window and the places of the statement, on random scenes.
+// RAILSTEP_SEEDS=FIRST:COUNT replaces the twenty seeds of every run. Three of the first 220 fail,
+// by 3 % at most, all under standing loads: their places within elements change with the mesh, so
+// that its error does not fall evenly. The reference's error, estimated at 2e-8 to 1.5e-7 of the
+// peak, is 1.4 to 2.7 times that.
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -40,7 +40,7 @@ std::vector<std::uint64_t> seeds() {
   return all;
 }
 
-/// A unit force of each kind of port at each place, over a line: [unknowns][places].
+/// Unit forces at some places of a line: [unknowns][places].
 Eigen::MatrixXd forces_of(const Track& track, const Line& line, const std::vector<RailPoint>& at,
                           bool strain) {
   Eigen::MatrixXd rows(line.unknowns(), static_cast<Eigen::Index>(at.size()));
@@ -49,8 +49,8 @@ Eigen::MatrixXd forces_of(const Track& track, const Line& line, const std::vecto
   return rows;
 }
 
-/// b' (K + i omega C - omega^2 M)^-1 b of each column, solved as it stands: 0 at a frequency of 0
-/// is the statics. `along` false: the rails without inertia along x.
+/// b' (K + i omega C - omega^2 M)^-1 b of each column, without reduction; at frequency 0 it is the
+/// statics. Rows and columns of `massless` unknowns have no mass.
 Eigen::VectorXcd solved(const Line& line, const Eigen::MatrixXd& forces, double hz,
                         const std::vector<bool>& massless) {
   const double omega = 2. * M_PI * hz;
@@ -66,7 +66,7 @@ Eigen::VectorXcd solved(const Line& line, const Eigen::MatrixXd& forces, double 
   return left.cwiseProduct(right).colwise().sum().transpose();
 }
 
-/// A model's answer by its modes written out: Re and Im of sum shape shape' / (i omega - rate).
+/// A model's answer by its modes, written out: Re and Im of sum shape shape' / (i omega - rate).
 Eigen::VectorXcd stepped(const Track& track, const PackedModel& packed,
                          const std::vector<RailPoint>& at, double hz) {
   Eigen::VectorXcd sum = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(at.size()));
@@ -99,7 +99,7 @@ Eigen::VectorXcd stepped(const Track& track, const PackedModel& packed,
   return sum;
 }
 
-/// What a model is off by at a frequency, and the receptance of a mesh of `elements` a bay.
+/// Error of a model at a frequency, and the receptance of a mesh of `elements` per bay.
 class Beside {
  public:
   Beside(const Track& track, const PackedModel& packed, int elements,
@@ -136,8 +136,8 @@ class Beside {
   std::vector<Eigen::MatrixXd> forces_;
 };
 
-/// The largest error over the largest receptance: on a grid of `points` linear steps, then around
-/// the eight highest of each by steps a tenth as long, three times.
+/// Largest error over largest receptance: on a grid of `points` linear steps, then around the three
+/// highest of each in steps a fifth as long, three times.
 double found_receptance_error(const Beside& beside, double from, double to, int points) {
   double error = 0., largest = 0.;
   std::vector<std::pair<double, double>> errors, sizes;  // value, frequency
@@ -166,8 +166,8 @@ double found_receptance_error(const Beside& beside, double from, double to, int 
   return error / largest;
 }
 
-TEST_CASE("a peak that no sample meets is found from its flanks", "[stated]") {
-  // Forty modes, one of them damped by a millionth, in a second group another one.
+TEST_CASE("the search finds a peak between samples from its flanks", "[stated]") {
+  // Forty modes, one of them damped by a millionth; the second response is shifted.
   const auto response = [](double hz, double shift) {
     Value sum = 0.;
     for (int k = 1; k <= 40; ++k) {
@@ -190,7 +190,7 @@ TEST_CASE("a peak that no sample meets is found from its flanks", "[stated]") {
   CHECK(found.unresolved < 1e-2);
 }
 
-TEST_CASE("a response without damping has no largest", "[stated]") {
+TEST_CASE("a response without damping has no largest value", "[stated]") {
   const BandSearch found = largest_over(
       [](double hz) {
         return Eigen::MatrixXcd{{1. / Value(hz * hz - 1e6, 0.) + 1. / Value(4e5 - hz * hz, 9e3)}};
@@ -200,7 +200,7 @@ TEST_CASE("a response without damping has no largest", "[stated]") {
   CHECK(*found.undamped_hz == Approx(1000.).epsilon(1e-6));
 }
 
-TEST_CASE("the receptance error is the largest of its band on random tracks", "[stated]") {
+TEST_CASE("the stated receptance error is the largest of its band on random tracks", "[stated]") {
   for (const std::uint64_t seed : seeds()) {
     const StatedScene made(seed);
     const Scene scene = read_scene(made.file());
@@ -208,7 +208,7 @@ TEST_CASE("the receptance error is the largest of its band on random tracks", "[
     const std::array<double, 2> band = {20., 1500.};
     const ReceptanceError told = receptance_error(built.track, *built.packed, band);
     CAPTURE(seed, stated_scene(seed), told.hz, told.solves);
-    if (told.undamped_hz) {  // a node at every damper: then the grid meets a peak without end
+    if (told.undamped_hz) {  // a node at every damper: the grid meets an infinite peak
       WARN("seed " << seed << ": undamped at " << *told.undamped_hz << " Hz");
       continue;
     }
@@ -218,19 +218,19 @@ TEST_CASE("the receptance error is the largest of its band on random tracks", "[
     const std::vector<double> places = receptance_places(built.track);
     const double same = found_receptance_error(Beside(built.track, *built.packed, elements, places),
                                                20., 1500., 400);
-    // The same reference, another way to the largest: kMet is what the search may miss.
+    // The same reference with another search for the largest: the program's may miss kMet.
     CHECK(same <= *told.largest * (1. + 3. * kMet));
     CHECK(same >= *told.largest * (1. - 2e-2));
   }
 }
 
-TEST_CASE("the static error is the largest along random tracks", "[stated]") {
+TEST_CASE("the stated static error is the largest along random tracks", "[stated]") {
   for (const std::uint64_t seed : seeds()) {
     const StatedScene made(seed);
     const Scene scene = read_scene(made.file());
     const Built built(scene);
     const double told = static_error(built.track, *built.packed);
-    // Twenty places a bay, which are the nodes of a mesh of their own, and the ends.
+    // Twenty places per bay, which are nodes of a mesh of their own, and the ends.
     double error = 0., largest = 0., where = 0.;  // bays
     Track fine = with_strain(built.track);
     fine.elements_per_bay = 20;
@@ -254,12 +254,12 @@ TEST_CASE("the static error is the largest along random tracks", "[stated]") {
       largest = std::max(largest, want);
     }
     CAPTURE(seed, stated_scene(seed), told, error / largest, where, built.track.bays);
-    CHECK(error / largest <= told * (1. + 1e-2));  // of places that neither has
+    CHECK(error / largest <= told * (1. + 1e-2));  // places that neither has
     CHECK(told <= 30. * error / largest);
   }
 }
 
-TEST_CASE("the transient error holds over the whole of random scenes", "[stated]") {
+TEST_CASE("the stated transient error holds over the whole of random scenes", "[stated]") {
   for (const std::uint64_t seed : seeds()) {
     const StatedScene made(seed);
     const Scene scene = read_scene(made.file());
@@ -271,8 +271,8 @@ TEST_CASE("the transient error holds over the whole of random scenes", "[stated]
       const Model& model = run.model();
       return compared(run.columns(), simulate(run, model.steps / model.steps_per_frame, {}, true));
     };
-    // Another reference, by another scheme: eight times the elements and a tenth of the step, and
-    // half of either, from which it knows its own error: both are of second order.
+    // Another reference by another scheme: eight times the elements and a tenth of the step. Half
+    // of both, at second order, tells its own error.
     const auto finer = [&](int elements, double dt) {
       std::vector<std::string> own = {
           "condense.kind=\"full\"", "step.contact=\"penetration\"", "step.scheme=\"newmark\"",

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kRadius = 100., kAngle = std::numbers::pi / 4., kShear = 5. / 6.;
 
-/// A section of another height keeps its bending stiffness: what differs then is of second order in
-/// height over radius. GJ = EI, as the published solutions take it: J = Iy + Iz.
+/// Side `height` with the bending stiffness of side 1: heights differ by a term of second order in
+/// height over radius. GJ = EI, as in the published solutions: J = Iy + Iz.
 struct Bend {
   BeamSection section;
   Material material;
@@ -51,10 +51,10 @@ Vector3d end_under(const Structure& s, double force) {
 
 }  // namespace
 
-TEST_CASE("the 45-degree bend comes near its published ends", "[bend]") {
-  // Simo and Vu-Quoc, Comput. Meth. Appl. Mech. Eng. 58 (1986), 79-116, with 8 linear elements;
-  // Bathe and Bolourchi's own displacement under 600, (-13.4, -23.5, 53.4), is an end at (15.9,
-  // 47.2, 53.4). Those two differ by 0.11, which is the tolerance: no entry is known better.
+TEST_CASE("the 45-degree bend ends near its published positions", "[bend]") {
+  // The rows are of Simo and Vu-Quoc, Comput. Meth. Appl. Mech. Eng. 58 (1986), 79-116, with 8
+  // linear elements. Bathe and Bolourchi's displacement under 600, (-13.4, -23.5, 53.4), puts the
+  // end at (15.9, 47.2, 53.4). These differ by 0.11, the tolerance: no entry is known better.
   struct Published {
     double force;
     Vector3d end;
@@ -70,7 +70,7 @@ TEST_CASE("the 45-degree bend comes near its published ends", "[bend]") {
 }
 
 TEST_CASE("the bend's end converges to the exact curved rod", "[bend]") {
-  // Of thin sections: at equal stiffness the difference falls with the square of the height.
+  // For thin sections of equal stiffness the difference falls with the square of the height.
   const auto difference = [](double height) -> Vector3d {
     const Bend bend(height);
     return end_under(bend.clamped(64), 600.) -
@@ -78,9 +78,9 @@ TEST_CASE("the bend's end converges to the exact curved rod", "[bend]") {
   };
   const Vector3d thick = difference(1.), thin = difference(.5);
   CAPTURE(thick.transpose(), thin.transpose());
-  // The mesh leaves up to 1e-5 of it (next test) in 6e-5 for x: an order of 2 +- 0.1.
+  // The mesh leaves up to 1e-5 (next test) of a difference of 6e-5 in x, so the order is 2 +- 0.1.
   for (int i = 0; i < 3; ++i) CHECK_THAT(observed_order(thick[i], thin[i]), WithinAbs(2., .1));
-  // The law's own terms are (height times curvature)^2, and bending reaches 0.02: 4e-4 of 53.
+  // The law adds terms of (height times curvature)^2. Bending reaches 0.02: 4e-4 of 53.
   CHECK(thick.norm() < .02);
 }
 

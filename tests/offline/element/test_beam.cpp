@@ -20,7 +20,7 @@ BeamSection with_moments(BeamSection section, const SectionMoments& m) {
   return section;
 }
 
-/// Twisted by `turn` over the length, about x.
+/// A straight element twisted about x by `turn` over its length.
 Vector27 twisted_nodes(double length, double turn) {
   Vector27 q = straight_nodes(length);
   for (int i = 0; i < 3; ++i) {
@@ -37,7 +37,7 @@ struct Case {
   Vector27 rest;
 };
 
-/// Every rule and shape at rest that differs in kind.
+/// Elements with every rule and every kind of shape at rest.
 std::vector<Case> cases() {
   const BeamSection f = with_moments(section_f(), moments(kSectionF));
   const BeamSection b = with_moments(peers_rectangle(), rectangle_moments(.2319, .0375));
@@ -61,7 +61,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-/// The shape at rest, turned and moved as a body, then every unknown shaken.
+/// The shape at rest, rotated and moved as a rigid body; then every unknown is shaken.
 Vector27 bent(const Vector27& rest, unsigned seed, double shake) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-1., 1.);
@@ -81,7 +81,8 @@ Vector27 force_of(const Beam& beam, const Vector27& q) {
 
 }  // namespace
 
-TEST_CASE("the force is the energy's slope and the tangent the force's", "[beam]") {
+TEST_CASE("the force is the gradient of the energy and the tangent is that of the force",
+          "[beam]") {
   for (const Case& c : cases()) {
     INFO(c.name);
     const Vector27 q = bent(c.rest, 7, .02);
@@ -94,8 +95,8 @@ TEST_CASE("the force is the energy's slope and the tangent the force's", "[beam]
     Vector27 slope;
     Matrix27 numeric;
     for (int i = 0; i < 27; ++i) {
-      // U is of degree 4 in q: the 5-point difference is exact but for round-off, and so is the
-      // force's.
+      // U is of degree 4 in q, so the 5-point difference is exact to round-off; that of the force
+      // is too.
       const double h = 1e-2;
       const auto shifted = [&](double by) {
         Vector27 to = q;
@@ -130,15 +131,15 @@ TEST_CASE("a rigid motion by any angle strains nothing", "[beam]") {
         turned.segment<3>(3 * i) = R * at_rest.segment<3>(3 * i);
         if (i % 3 == 0) q.segment<3>(3 * i) += Vector3d(1., -2., .5);
       }
-      // Round-off of positions of size 2 over elements of 0.6 m: 1e-14 of the stiffness.
+      // Round-off of positions of size 2 in elements of 0.6 m is 1e-14 of the stiffness.
       CHECK((force_of(c.beam, q) - turned).norm() < 1e-14 * scale);
     }
   }
 }
 
 TEST_CASE("a uniform Green-Lagrange strain gives its closed-form energy", "[beam]") {
-  // Stretch 1 + e along x and free contraction of the section to E22 = E33 = -nu E11: U = E A L
-  // E11^2 / 2, with all of the section's moments of a rest shape that is straight.
+  // The element stretches by 1 + e along x and the section contracts freely to E22 = E33 = -nu E11:
+  // U = E A L E11^2 / 2. The section has all its moments, and the shape at rest is straight.
   const BeamSection f = with_moments(section_f(), moments(kSectionF));
   for (const double axis_z : {0., -.085, .1}) {
     const Beam beam = beam_element(beam_law(f, {}, {}, axis_z), straight_nodes(.6));
@@ -154,7 +155,7 @@ TEST_CASE("a uniform Green-Lagrange strain gives its closed-form energy", "[beam
 
 TEST_CASE("the section's moments are exact", "[section]") {
   const SectionMoments m = moments(kSectionF);
-  // Closed forms: int y^4 = sum h w^5/80, int y^2 z^2 = sum w^3/12 int z^2, the rest by hand.
+  // Closed forms are int y^4 = sum h w^5/80, int y^2 z^2 = sum w^3/12 int z^2; others are by hand.
   double bottom = -.085, y4 = 0., z4 = 0., yyzz = 0., z3 = 0., yyz = 0.;
   for (std::size_t i = 0; i < 3; ++i) {
     const double w = kSectionF.width[i], top = bottom + kSectionF.height[i];
@@ -168,7 +169,7 @@ TEST_CASE("the section's moments are exact", "[section]") {
     yyzz += w * w * w / 12. * over(2);
     bottom = top;
   }
-  // The rectangles' centroid is 85 mm to the 1e-9 m of their printed digits.
+  // The printed digits of the rectangles give the centroid's 85 mm to 1e-9 m.
   CHECK_THAT(m.of[4][0], WithinRel(y4, 1e-12));
   CHECK_THAT(m.of[0][4], WithinRel(z4, 1e-6));
   CHECK_THAT(m.of[0][3], WithinRel(z3, 1e-6));
@@ -203,7 +204,7 @@ TEST_CASE("an outline's moments are those of its rectangles, and of a disc", "[s
   CHECK_THAT(disc.of[2][2], WithinRel(r6 / 24., 1e-12));
 }
 
-TEST_CASE("nodes that make no element are refused", "[beam]") {
+TEST_CASE("nodes that cannot form an element are refused", "[beam]") {
   const BeamLaw law = beam_law(section_f(), {});
   Vector27 flat = straight_nodes(.6);
   flat.segment<3>(6) = flat.segment<3>(3);

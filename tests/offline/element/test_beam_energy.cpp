@@ -18,7 +18,7 @@ namespace {
 
 const double kFoot = -properties(kSectionF).centroid_height;  // from the centroid, m
 
-/// The element as the equations read: F = j J0^-1 point by point, no inner products, no moments.
+/// The element by its equations: F = j J0^-1 point by point, no inner products, no moments.
 struct NaiveBeam {
   BeamLaw law;
   double foot;  // height of the section's lowest line over the reference line, m
@@ -38,7 +38,7 @@ struct NaiveBeam {
   }
   double volume(double xi, double y, double z) const { return lines(rest, xi, y, z).determinant(); }
 
-  /// [E11 E22 E33 2E23 2E13 2E12] along the section's normal, a0, and across both.
+  /// [E11 E22 E33 2E23 2E13 2E12] in axes along the section's normal, along a0 and across both.
   Vector6 strain(const Vector27& q, double xi, double y, double z) const {
     const Matrix3d J0 = lines(rest, xi, y, z), F = lines(q, xi, y, z) * J0.inverse();
     Matrix3d frame;
@@ -50,7 +50,7 @@ struct NaiveBeam {
         .finished();
   }
 
-  /// Energies per unit of xi over the section, at one xi.
+  /// Energies per unit of xi, integrated over the section at one xi.
   double over_section(const Vector27& q, double xi) const {
     const Material& m = law.material;
     const double G = m.shear_modulus();
@@ -75,7 +75,8 @@ struct NaiveBeam {
     const SectionMoments central = raised(law.moments, z_c);
     const double Iz = central.of[2][0], Iy = central.of[0][2],
                  Iys = Iy + A * std::pow(law.shear_centre_z - z_c, 2);
-    const double h = 1e-3;  // the field is linear over a straight element's section: exact there
+    // The field is linear over a straight element's section: the difference is exact there.
+    const double h = 1e-3;
     const Vector6 e = strain(q, xi, 0., z_c), s = strain(q, xi, 0., law.shear_centre_z);
     const Vector6 by_y = (strain(q, xi, h, z_c) - strain(q, xi, -h, z_c)) / (2. * h);
     const Vector6 by_z = (strain(q, xi, 0., z_c + h) - strain(q, xi, 0., z_c - h)) / (2. * h);
@@ -107,10 +108,10 @@ TEST_CASE("the element's energy is the pointwise integral of its strains", "[bea
     Vector27 rest;
     double shake, tolerance;
   };
-  // Straight: the same polynomial summed in two ways, strains of 0.1 over unit slopes: 1e-12.
-  // R = 30 m: cut at degree 4, the stiffness of a section that is not symmetric about the reference
-  // line loses 13 (h/R)^3 at most, h half its height: 4e-7. Shaken little: the terms of second
-  // degree in the displacement are cut earlier.
+  // Straight: both sum the same polynomial, with strains of 0.1 on unit slopes, so 1e-12. R = 30 m:
+  // the stiffness is cut at degree 4, so a section that is not symmetric about the reference line
+  // loses 13 (h/R)^3 at most, h being half its height: 4e-7. The nodes are shaken little because
+  // terms of second degree in the displacement are cut earlier.
   const double cut = 13. * std::pow(.0929 / 30., 3);
   const Vector27 straight = straight_nodes(.6);
   for (const Case& c :

@@ -1,4 +1,4 @@
-// Critical loads, as where the tangent at equilibrium loses its first positive pivot.
+// Critical loads: the tangent at equilibrium loses its first positive pivot there.
 #include <Eigen/SparseCholesky>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi, kShear = 5. / 6.;
 
-/// Negative pivots of L D L', in the order of the nodes: negative eigenvalues, by Sylvester's law.
+/// Negative pivots of L D L' in the nodes' order; as many eigenvalues are negative (Sylvester).
 int negative_pivots(const Structure& s, const Eigen::VectorXd& q) {
   using Sparse = Eigen::SparseMatrix<double>;
   const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(
@@ -22,7 +22,7 @@ int negative_pivots(const Structure& s, const Eigen::VectorXd& q) {
   return static_cast<int>((factor.vectorD().array() < 0.).count());
 }
 
-/// The factor on a load where stability is lost, by bisection along the symmetric path, to 1e-9.
+/// Load factor at which stability is lost, by bisection to 1e-9 along the symmetric path.
 double critical_factor(const Structure& s, const StructureLoad& load, double low, double high) {
   Eigen::VectorXd q = s.rest;
   const auto at = [&](double factor) {
@@ -58,7 +58,7 @@ struct Column {
   double critical(bool pinned, int elements) const {
     Structure s = straight_chain(beam_law(section, material), 1., elements);
     if (pinned) {
-      hold(s, 0, {0, 1, 2, 3, 5});  // 3 and 5: turns about z and x
+      hold(s, 0, {0, 1, 2, 3, 5});  // 3 and 5 are rotations about z and x
       hold(s, last_node(s), {1, 2, 5});
     } else {
       clamp_directions(s, 0);
@@ -68,12 +68,12 @@ struct Column {
   }
 };
 
-/// Critical load of the element's law, length l between points of zero moment. With the axis'
+/// Critical load of the element's law; points of zero moment are the length l apart. With the axis'
 /// Green-Lagrange strain -e, stretch^2 = 1 - 2 e and slopes^2 = 1 + 2 nu e, the homogeneous
-/// equations of deflection and turn give
-///   e (1 - 2 e)/(1 - e E/(k G (1 + 2 nu e))) = (pi/l)^2 I/A (1 - 3 e) (1 + 2 nu e), P = E A e
-///   stretch:
-/// Euler's load less (2 - 2 nu + E/(k G)) (pi/l)^2 I/A of it, to first order.
+/// equations of deflection and rotation give
+///   e (1 - 2 e)/(1 - e E/(k G (1 + 2 nu e))) = (pi/l)^2 I/A (1 - 3 e) (1 + 2 nu e),
+///   P = E A e stretch.
+/// To first order P is Euler's load less the part (2 - 2 nu + E/(k G)) (pi/l)^2 I/A of it.
 double law_critical(const Column& c, double length) {
   const double E = c.material.young, kG = kShear * c.material.shear_modulus();
   const double slender = std::pow(kPi / length, 2) * c.section.inertia_y / c.section.area;
@@ -88,8 +88,8 @@ double law_critical(const Column& c, double length) {
 }  // namespace
 
 TEST_CASE("slender columns buckle at Euler's load", "[buckling]") {
-  // Length over height 100, 16 elements: the law's own reduction is 0.9e-4 clamped and free, 3.6e-4
-  // pinned. 1e-3 is the demand.
+  // Length over height is 100, with 16 elements. The law reduces the load by 0.9e-4 when clamped
+  // and free, by 3.6e-4 when pinned; the demand is 1e-3.
   for (const double poisson : {0., .3})
     for (const bool pinned : {false, true}) {
       const Column column{.01, poisson};
@@ -100,7 +100,7 @@ TEST_CASE("slender columns buckle at Euler's load", "[buckling]") {
 }
 
 TEST_CASE("thick columns buckle at the critical load of their law, from above", "[buckling]") {
-  // Length over height 10: 0.9 and 3.5 % below Euler.
+  // Length over height is 10: the critical loads are 0.9 and 3.5 % below Euler's.
   for (const double poisson : {0., .3})
     for (const bool pinned : {false, true}) {
       const Column column{.1, poisson};
@@ -109,7 +109,7 @@ TEST_CASE("thick columns buckle at the critical load of their law, from above", 
       for (int i = 0; i < 3; ++i) error[i] = column.critical(pinned, 4 << i) / exact - 1.;
       CAPTURE(poisson, pinned, exact / column.euler(pinned ? 1. : 2.), error[0], error[1],
               error[2]);
-      // Order 4, down to what the bisection leaves.
+      // The order is 4, down to the tolerance of the bisection.
       CHECK(error[2] > -1e-8);
       CHECK_THAT(observed_order(error[0], error[1]), WithinAbs(4., .15));
       CHECK_THAT(observed_order(error[1], error[2]), WithinAbs(4., .15));
@@ -118,8 +118,8 @@ TEST_CASE("thick columns buckle at the critical load of their law, from above", 
 
 TEST_CASE("a narrow strip under an end force tips over at Timoshenko's load", "[buckling]") {
   // Timoshenko and Gere, Theory of Elastic Stability, section 6.4: P L^2 = 4.013 sqrt(EIz GJ),
-  // twice the first root of J_-1/4, 2.00629967, for a strip rigid in its plane. What its own
-  // plane's bending adds goes with (width over height)^2 and is taken out by extrapolation.
+  // twice the first root of J_-1/4, 2.00629967, for a strip rigid in its plane. Bending in its
+  // plane adds a term of (width over height)^2, which extrapolation takes out.
   const auto bessel = [](double x) {  // J_-1/4 (x), up to a positive factor
     double sum = 0., term = 1.;
     for (int k = 0; k < 40; ++k) {
@@ -151,8 +151,8 @@ TEST_CASE("a narrow strip under an end force tips over at Timoshenko's load", "[
     CHECK(fine < middle);
     CHECK(fine > exact);
     CHECK_THAT(observed_order(coarse - middle, middle - fine), WithinAbs(4., .3));
-    // The mesh leaves a fifteenth of its last change, 3e-6 of the load; the strip's width to the
-    // fourth, 2e-7.
+    // The mesh leaves a fifteenth of its last change, 3e-6 of the load; the fourth power of the
+    // strip's width leaves 2e-7.
     const double limit = (4. * fine - wide) / 3. - (middle - fine) / 15.;
     CHECK_THAT(limit, WithinRel(exact, 3e-6));
   }

@@ -1,4 +1,4 @@
-// Contact forces that are means of Hertz's law over the step: no impact makes energy.
+// Contact forces that are means of Hertz's law over the step: no impact adds energy.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,8 +17,8 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// The same numbers on every machine: 53 bits of the generator's, without the library's
-/// distributions.
+/// Random numbers that are the same on every machine: 53 bits of the generator, without the
+/// library's distributions.
 class Random {
  public:
   double between(double a, double b) {
@@ -32,7 +32,7 @@ class Random {
 
 double stored(double C, double d) { return d > 0. ? .4 * C * d * d * std::sqrt(d) : 0.; }
 
-/// The force of one mean law at a depth: solved for without compliance.
+/// Force of one mean law at a depth: the ports are solved without compliance.
 double force_of(double C, double from, double d) {
   PortLaw law{C, 0., 0.};
   law.mean = true;
@@ -45,13 +45,14 @@ double force_of(double C, double from, double d) {
 
 }  // namespace
 
-TEST_CASE("a mean law is the mean of Hertz's over the way", "[contact]") {
+TEST_CASE("a mean law gives the mean of Hertz's force over the path of the penetration",
+          "[contact]") {
   const double C = 9.412508e10;
   const auto hertz = [&](double d) { return d > 0. ? C * d * std::sqrt(d) : 0.; };
   for (const double from : {-3e-5, 0., 1e-6, 5e-5})
     for (const double d : {-2e-5, 1e-7, 4.999999e-5, 5e-5, 9e-5}) {
       CAPTURE(from, d);
-      // Midpoints of 1e5 parts, of which 300 or more have a force: second order, 1e-5.
+      // 300 or more of the 1e5 midpoints have a force; the sum is of second order, 1e-5.
       double sum = 0.;
       constexpr int kParts = 100000;
       for (int i = 0; i < kParts; ++i) sum += hertz(from + (d - from) * (i + .5) / kParts);
@@ -60,14 +61,14 @@ TEST_CASE("a mean law is the mean of Hertz's over the way", "[contact]") {
         CHECK(force_of(C, from, d) == 0.);
       else
         CHECK_THAT(force_of(C, from, d), WithinRel(mean, 1e-4));
-      // Its work is what the contact stores, where that is no small difference.
+      // Its work is the energy that the contact stores, where the difference is not small.
       if (std::abs(d - from) > 1e-6)
         CHECK_THAT(force_of(C, from, d) * (d - from) + stored(C, 1e-4),
                    WithinRel(stored(C, d) - stored(C, from) + stored(C, 1e-4), 1e-13));
     }
 }
 
-TEST_CASE("the forces of many means are found within the cap, and are the only ones", "[contact]") {
+TEST_CASE("the forces of many mean laws are found within the cap and are unique", "[contact]") {
   Random random;
   for (int n = 0; n < 2000; ++n) {
     const int ports = 1 + n % 8;
@@ -75,7 +76,7 @@ TEST_CASE("the forces of many means are found within the cap, and are the only o
     std::vector<double> W(size * size, 0.), row(size), free(size), force(size), depth(size);
     std::vector<PortLaw> law(size, PortLaw{9.4e10, 0., 0.});
     const double scale = random.of_any_size(1e-11, 1e-8);
-    for (std::size_t k = 0; k < size; ++k) {  // sums of squares
+    for (std::size_t k = 0; k < size; ++k) {  // the matrix is a sum of squares
       for (double& own : row) own = random.between(-1., 1.);
       for (std::size_t i = 0; i < size; ++i)
         for (std::size_t j = 0; j < size; ++j) W[i * size + j] += scale * row[i] * row[j];
@@ -87,7 +88,7 @@ TEST_CASE("the forces of many means are found within the cap, and are the only o
         solve_ports(ports, W.data(), law.data(), free.data(), force.data(), depth.data());
     CAPTURE(n, ports, found.iterations, found.residual);
     CHECK(found.status == PortStatus::converged);
-    double left = 0., largest = 0.;  // of kPortTolerance
+    double left = 0., largest = 0.;  // residual, and the term that kPortTolerance is relative to
     for (std::size_t k = 0; k < size; ++k) {
       double own = free[k] - depth[k], terms = std::abs(free[k]);
       for (std::size_t j = 0; j < size; ++j) {
@@ -97,21 +98,20 @@ TEST_CASE("the forces of many means are found within the cap, and are the only o
       left = std::max(left, std::abs(own));
       largest = std::max(largest, terms);
       CHECK(force[k] >= 0.);
-      if (law[k].mean && std::abs(depth[k] - law[k].from) > 1e-6) {  // no small difference
+      if (law[k].mean && std::abs(depth[k] - law[k].from) > 1e-6) {  // the difference is not small
         const double gained = stored(9.4e10, depth[k]) - stored(9.4e10, law[k].from);
         CHECK_THAT(force[k] * (depth[k] - law[k].from) + stored(9.4e10, 1e-4),
                    WithinRel(gained + stored(9.4e10, 1e-4), 1e-9));
       }
     }
-    CHECK(left <= 2. * kPortTolerance * largest);  // and rounding
+    CHECK(left <= 2. * kPortTolerance * largest);  // the factor 2 is for rounding
   }
 }
 
-TEST_CASE("no impact of 1e5 makes energy, whatever the masses, the speed and the step",
-          "[contact]") {
-  // A wheel on a rail that is a mass on a spring, both exact under forces held over a step, some
-  // with a massless flexibility under the wheel. The energy of a step is missed by force times what
-  // the solve leaves of the penetration, kPortTolerance of its largest term, and by rounding.
+TEST_CASE("1e5 impacts add no energy, whatever the masses, the speed and the step", "[contact]") {
+  // A wheel meets a rail that is a mass on a spring. Both are exact under forces held over a step;
+  // some have a massless flexibility under the wheel. A step's energy errs by rounding and by the
+  // force times the penetration's residual, kPortTolerance of its largest term.
   Random random;
   int grown = 0, capped = 0;
   for (int n = 0; n < 100000; ++n) {
@@ -169,9 +169,9 @@ ModelRun falling(const Track& track, double x, const Scheme& scheme, bool residu
   return {track, {.vehicles = {wheel}}, options};
 }
 
-/// Bounces the wheel from `above` its rail, and has the largest growth of energy in a step over all
-/// there is. The contact's energy is that of the step's own penetration and force, d = -gap and f:
-/// 2/5 C d^2.5 + G f^2/2; or, `standing`, that of the account, of the state as it stands.
+/// Bounces the wheel from `above` its rail. Returns the largest growth of energy in a step over the
+/// whole energy. The contact's energy is that of the step's own penetration and force, d = -gap and
+/// f: 2/5 C d^2.5 + G f^2/2; if `standing`, that of the energy account at the present state.
 double most_growth(ModelRun& run, double speed, double above, bool standing) {
   const Model& model = run.model();
   const VehicleWheel& wheel = model.vehicle_wheel[0];
@@ -218,15 +218,15 @@ TEST_CASE("a wheel that bounces on a condensed track never gains energy", "[cont
           const double speed = random.of_any_size(.01, 1.);
           const double above = random.between(0., 2.) * speed * dt;
           CAPTURE(dt, x, residual, speed, above);
-          // Modes keep their energy to the eigen solver's 1e-10 of it; contact solves 1e-12.
+          // Modes keep their energy to the eigen solver's 1e-10, the contact solves to 1e-12.
           CHECK(most_growth(mean, speed, above, false) < 1e-9);
           by_point = std::max(by_point, most_growth(point, speed, above, true));
         }
       }
-  CHECK(by_point > 1e-4);  // a law taken at one point of the step does gain
+  CHECK(by_point > 1e-4);  // a law at one point of the step does gain
 }
 
-TEST_CASE("the discrete gradient is of condensed tracks alone", "[scene]") {
+TEST_CASE("the discrete gradient needs condensed tracks", "[scene]") {
   const std::string mean = "step.contact=\"discrete-gradient\"";
   CHECK_THROWS_WITH(read_scene(kScenes + "ballasted_track.toml", {mean, "condense.kind=\"full\""}),
                     Catch::Contains("accepted with condense.kind = \"modal\""));
@@ -234,11 +234,11 @@ TEST_CASE("the discrete gradient is of condensed tracks alone", "[scene]") {
   CHECK_FALSE(read_scene(kScenes + "ballasted_track.toml").step->mean_contact);
 }
 
-TEST_CASE("a moving wheelset's forces do not hang on how its contact follows the penetration",
+TEST_CASE("both ways to follow the penetration give a moving wheelset the same forces",
           "[contact]") {
-  // Means over the step and a law at its middle (rho_inf = 1) are both of second order: at 50 us
-  // the fastest that matters, 1 kHz, has omega dt = 0.3, and they part by (omega dt)^2/12 of it or
-  // less.
+  // Means over the step and a law at its middle (rho_inf = 1) are both of second order. At 50 us
+  // the fastest motion that matters, 1 kHz, has omega dt = 0.3: they differ by (omega dt)^2/12 of
+  // it or less.
   const std::vector<std::string> changes = {"track.bays=24", "step.duration_s=0.05",
                                             "step.rho_inf=1.0"};
   const Traced middle("ballasted_track", changes);

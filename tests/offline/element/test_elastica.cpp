@@ -1,4 +1,4 @@
-// A cantilever under an end force that keeps its direction, into large deflections.
+// A cantilever with large deflections under an end force that keeps its direction.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -10,9 +10,9 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-/// Deflection and shortening of the inextensible, unshearable cantilever over its length, for
-/// alpha = F L^2/EI: Bisshopp and Drucker, Quart. Appl. Math. 3 (1945), 272-275. With theta the
-/// end's slope, p^2 = (1 + sin theta)/2 and sin phi = 1/(p sqrt 2),
+/// Deflection and shortening over the length of a cantilever without stretch and shear, for alpha =
+/// F L^2/EI: Bisshopp and Drucker, Quart. Appl. Math. 3 (1945), 272-275. With the end's slope
+/// theta, p^2 = (1 + sin theta)/2 and sin phi = 1/(p sqrt 2),
 ///   sqrt(alpha) = K(p) - F(p, phi), w/L = 1 - 2 (E(p) - E(p, phi))/sqrt(alpha),
 ///   u/L = 1 - sqrt(2 sin(theta)/alpha).
 struct Elastica {
@@ -33,7 +33,7 @@ Elastica elastica(double alpha) {
 
 constexpr double kShear = 5. / 6.;
 
-/// Length 1, EI 1, square.
+/// A square beam of length 1 and EI = 1.
 struct Slender {
   BeamSection section;
   Material material;
@@ -52,7 +52,7 @@ struct Slender {
   }
 };
 
-/// Ends under each load, each from the equilibrium before.
+/// Ends under each load; each solution starts from the equilibrium before.
 std::vector<Vector3d> ends(const Structure& s, const std::vector<double>& alphas) {
   std::vector<Vector3d> result;
   Eigen::VectorXd q = s.rest;
@@ -68,14 +68,14 @@ const std::vector<double> kAlphas = {1., 2., 4., 10.};
 }  // namespace
 
 TEST_CASE("the elliptic integrals give the elastica's printed values", "[elastica]") {
-  // reference.md, "Elastica, F L^2/EI = 4": five digits.
+  // The five digits of reference.md, "Elastica, F L^2/EI = 4".
   const Elastica at = elastica(4.);
   CHECK_THAT(at.deflection, WithinAbs(.66996, 5e-6));
   CHECK_THAT(at.shortening, WithinAbs(.32894, 5e-6));
 }
 
 TEST_CASE("a rod rigid in shear and stretch is the elastica", "[elastica]") {
-  // Two routes to the reference itself; 400 Runge-Kutta steps of 2.5e-3 leave 1e-10.
+  // These are two ways to the reference itself; 400 Runge-Kutta steps of 2.5e-3 leave 1e-10.
   for (const double alpha : kAlphas) {
     const Elastica at = elastica(alpha);
     const Rod rod{1., {1e14, 1e14, 1e14}, {1., 1., 1.}};
@@ -86,9 +86,9 @@ TEST_CASE("a rod rigid in shear and stretch is the elastica", "[elastica]") {
 }
 
 TEST_CASE("a slender cantilever bends into the elastica", "[elastica]") {
-  // Length over height 500. What is not the elastica's: shear, F L/(k G A) = alpha EI/(k G A L^2),
+  // Length over height is 500. The elastica lacks shear, F L/(k G A) = alpha EI/(k G A L^2) =
   // 1.0e-6 alpha, and effects of the material law of that size (next test): together below 4e-6
-  // alpha. What the mesh leaves is less than what its last halving changed.
+  // alpha. The mesh's error is less than the change by its last halving.
   for (const double poisson : {0., .3}) {
     const Slender beam(2e-3, poisson);
     const std::vector<Vector3d> coarse = ends(beam.clamped(16), kAlphas);
@@ -100,16 +100,15 @@ TEST_CASE("a slender cantilever bends into the elastica", "[elastica]") {
       const double change = (fine[i] - middle[i]).norm(), error = (fine[i] - exact).norm();
       CAPTURE(poisson, kAlphas[i], change, error);
       CHECK(error < change + 4e-6 * kAlphas[i]);
-      // At least second order; fourth where an element is no longer than about 15 heights.
+      // The order is at least 2; it is 4 where an element is shorter than about 15 heights.
       CHECK(change < (middle[i] - coarse[i]).norm() / 4.);
     }
   }
 }
 
-TEST_CASE("the element's difference from the exact rod goes with the square of the height",
-          "[elastica]") {
+TEST_CASE("the difference from the exact rod falls with the square of the height", "[elastica]") {
   // Stress resultants of Green-Lagrange strain differ from Reissner's linear ones by (curvature
-  // times height)^2; shear and stretch, of the same size, are in both.
+  // times height)^2. Shear and stretch are of the same size and are in both.
   for (const double poisson : {0., .3})
     for (const double alpha : {1., 4., 10.}) {
       const auto difference = [&](double height) -> Vector3d {
@@ -120,8 +119,8 @@ TEST_CASE("the element's difference from the exact rod goes with the square of t
       };
       const Vector3d thick = difference(.04), thin = difference(.02);
       CAPTURE(poisson, alpha, thick.transpose(), thin.transpose());
-      // The next terms, of the third power at the clamp (which keeps the section from swelling) and
-      // of the fourth, are a height over length smaller: .04, or .06 of the order.
+      // The next terms are a height over length smaller, .04, which is .06 of the order: the third
+      // power at the clamp (which keeps the section from swelling), and the fourth.
       for (const int i : {0, 2}) CHECK_THAT(observed_order(thick[i], thin[i]), WithinAbs(2., .06));
       CHECK(thick.norm() < alpha * .04 * .04);
       CHECK(std::abs(thin[1]) < 1e-12);

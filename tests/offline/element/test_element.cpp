@@ -11,8 +11,8 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// Displacements of the three nodes when the element moves by a small rigid rotation about an axis
-/// through x = 0: slopes turn with it. Positions at x = 0, L/2, L.
+/// Displacements of the three nodes, at x = 0, L/2 and L, under a small rigid rotation about an
+/// axis through x = 0; the slopes turn with it.
 Vector27 rigid_rotation(int axis, double length) {
   Eigen::Vector3d w = Eigen::Vector3d::Zero();
   w[axis] = 1.;
@@ -33,7 +33,7 @@ Vector27 translation(int axis) {
 
 }  // namespace
 
-TEST_CASE("shape functions are one at their node, sum to one and have the stated slopes") {
+TEST_CASE("shape functions are 1 at their node, sum to 1 and have the stated slopes") {
   const double nodes[3] = {-1., 0., 1.};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) CHECK(shape(nodes[j])[i] == (i == j ? 1. : 0.));
@@ -55,7 +55,7 @@ TEST_CASE("rigid motion strains nothing and carries the whole mass and inertia")
       const ElementMatrices e = element_matrices(s, beam_law(s, steel, rule), L);
       const double scale = e.stiffness.cwiseAbs().maxCoeff();
       for (int axis = 0; axis < 3; ++axis) {
-        // 27 products of rounding error eps each: 1e-14 of the largest entry is ample
+        // 27 products with the rounding error eps each: 1e-14 of the largest entry is ample
         CHECK((e.stiffness * translation(axis)).norm() < 1e-14 * scale);
         CHECK((e.stiffness * rigid_rotation(axis, L)).norm() < 1e-14 * scale);
         CHECK_THAT(translation(axis).dot(e.mass * translation(axis)),
@@ -72,12 +72,12 @@ TEST_CASE("rigid motion strains nothing and carries the whole mass and inertia")
     }
 }
 
-TEST_CASE("the stiffness is symmetric with six zero modes; one axial point has more") {
+TEST_CASE("the stiffness is symmetric with six zero modes, and with more for one axial point") {
   const auto zero_modes = [](int points, Shear shear) {
     const ElementRule rule{.axial_points = points, .shear = shear};
     const ElementMatrices e = element_matrices(section_f(), beam_law(section_f(), {}, rule), .6);
     CHECK((e.stiffness - e.stiffness.transpose()).norm() == 0.);
-    // Rank against the mass matrix, which scales positions and slopes alike.
+    // The rank is taken against the mass matrix, which scales positions and slopes alike.
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
         Eigen::MatrixXd(e.stiffness), Eigen::MatrixXd(e.mass));
     const Eigen::VectorXd& values = solver.eigenvalues();
@@ -89,7 +89,7 @@ TEST_CASE("the stiffness is symmetric with six zero modes; one axial point has m
   CHECK(zero_modes(1, Shear::twist) > 6);
 }
 
-TEST_CASE("Poisson's coupling makes the stretched section contract by nu") {
+TEST_CASE("Poisson coupling contracts the stretched section by nu times the strain") {
   const BeamSection s = section_f();
   const Material steel;
   const ElementMatrices e = element_matrices(s, beam_law(s, steel), 1.);

@@ -21,7 +21,7 @@ struct FramedBeam {
   FloatingFrame frame;
 };
 
-/// The tangent frame of a clamped beam, or the mean axes of a free one.
+/// A floating frame: the tangent frame of a clamped beam, or the mean axes of a free one.
 FramedBeam framed(int bending, int axial, bool stiffening, bool clamped = true) {
   FramedBeam f{clamped ? hubbed(spin_up_beam(8), true) : spin_up_beam(8), {}, {}};
   f.modes = planar_modes(f.beam, bending, axial);
@@ -29,7 +29,7 @@ FramedBeam framed(int bending, int axial, bool stiffening, bool clamped = true) 
   return f;
 }
 
-/// The frame somewhere, its beam bent by a few percent of the length; the last mode is axial.
+/// A general position, the beam bent by some percent of its length; the last mode is axial.
 VectorXd somewhere(const FloatingFrame& f, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-1., 1.);
@@ -39,7 +39,7 @@ VectorXd somewhere(const FloatingFrame& f, unsigned seed) {
   return q;
 }
 
-/// Momentum in x and z and about the origin, and energy.
+/// Quantities that a free beam keeps: momentum in x, in z and about the origin, and energy.
 Eigen::Vector4d kept(const FloatingFrame& f, const Motion& m) {
   const VectorXd p = mass_matrix(f, m.q) * m.v;
   return {p[0], p[1], m.q[0] * p[1] - m.q[1] * p[0] + p[2], energy(f, m.q, m.v, Vector2d::Zero())};
@@ -48,8 +48,8 @@ Eigen::Vector4d kept(const FloatingFrame& f, const Motion& m) {
 }  // namespace
 
 TEST_CASE("the mass matrix of a frame is that of its material points", "[frame]") {
-  // The naive twin: 2 x 2 points over the section, 3 along each element, all integrals of the
-  // shapes exact; the shapes by point_row, their motion by hand.
+  // The simple twin has 2 x 2 points over the section and 3 along each element, which integrate the
+  // shapes exactly; point_row gives the shapes, their motion is by hand.
   const FramedBeam b = framed(3, 1, false);
   const VectorXd q = somewhere(b.frame, 3);
   const double c = std::cos(q[2]), s = std::sin(q[2]), part = kSpinUpLength / 8;
@@ -78,11 +78,11 @@ TEST_CASE("the mass matrix of a frame is that of its material points", "[frame]"
           const double mass = b.beam.material.density * b.beam.section.area * part / 8. * g.weight;
           M += mass * J.transpose() * J;
         }
-  // Sums of a hundred products: 1e-13 of the largest entry.
+  // Sums of a hundred products err by 1e-13 of the largest entry.
   CHECK((M - mass_matrix(b.frame, q)).cwiseAbs().maxCoeff() < 1e-13 * M.cwiseAbs().maxCoeff());
 }
 
-TEST_CASE("a point's Jacobian is the slope of its place", "[frame]") {
+TEST_CASE("a point's Jacobian is the derivative of its position", "[frame]") {
   const FramedBeam b = framed(3, 1, true);
   const FramePoint tip = frame_point(b.beam.structure, b.modes, 16, true);
   const VectorXd q = somewhere(b.frame, 5);
@@ -91,16 +91,16 @@ TEST_CASE("a point's Jacobian is the slope of its place", "[frame]") {
     VectorXd more = q, less = q;
     more[i] += 1e-4;
     less[i] -= 1e-4;
-    // The place is quadratic in eta; h^2/6 of the third derivative, L, by the angle: 2e-8.
+    // The position is quadratic in eta; for the angle h^2/6 of the third derivative, L, is 2e-8.
     CHECK((J.col(i) - (position(tip, more) - position(tip, less)) / 2e-4).norm() < 3e-8);
   }
-  // Slope w' = 2 W x/L^2 has H = 4 W^2/(3 L) at the tip; the first mode's is within a few percent.
+  // H = 4 W^2/(3 L) for a slope w' = 2 W x/L^2; the first mode's is within a few percent of it.
   const double w = tip.shape(1, 0);
   CHECK_THAT(tip.shortening(0, 0), WithinRel(4. * w * w / (3. * kSpinUpLength), .15));
 }
 
 TEST_CASE("a thrown beam keeps its momentum and energy to the scheme's order", "[frame]") {
-  // Every velocity force takes part; one that is wrong leaves a change that no step makes smaller.
+  // Every velocity force takes part; a wrong one leaves a change that smaller steps do not reduce.
   const bool stiffening = GENERATE(false, true);
   const FramedBeam b = framed(3, 1, stiffening, false);
   const auto lost = [&](double step) {
@@ -127,9 +127,9 @@ TEST_CASE("a thrown beam keeps its momentum and energy to the scheme's order", "
 }
 
 TEST_CASE("a spinning frame has the published frequencies only with its stiffening", "[frame]") {
-  // Wright, Smith, Thresher and Wang (1982): flap frequency of a uniform cantilever on a hub of no
-  // radius over sqrt(EI/(rho A L^4)), at spins over the same unit; in the plane it is less by the
-  // spin in the square. Printed to 5 digits; slenderness 754 costs 1e-5.
+  // Wright, Smith, Thresher and Wang (1982): flap frequency of a uniform cantilever on a hub
+  // without radius, over sqrt(EI/(rho A L^4)), at spins over the same unit. The frequency in the
+  // plane is sqrt(flap^2 - spin^2). They print 5 digits; a slenderness of 754 costs 1e-5.
   const double published[][2] = {{0., 3.5160}, {1., 3.6817}, {2., 4.1373},
                                  {4., 5.5850}, {6., 7.3604}, {10., 11.2023}};
   const FramedBeam with = framed(10, 1, true), without = framed(10, 1, false);
@@ -145,24 +145,24 @@ TEST_CASE("a spinning frame has the published frequencies only with its stiffeni
     INFO("spin " << spin);
     const double square = lowest(with.frame, spin * unit) / (unit * unit) + spin * spin;
     CHECK_THAT(std::sqrt(square), WithinAbs(flap, 5e-5 + 2e-5 * flap));
-    // Without, the spin is taken from the frequency at rest, and from that speed on there is none.
+    // Without stiffening the spin lowers the frequency, down to 0 at the frequency at rest.
     CHECK_THAT(lowest(without.frame, spin * unit) / (unit * unit),
                WithinAbs(3.5160 * 3.5160 - spin * spin, 4e-4 + 4e-5 * 3.5160 * 3.5160));
   }
 }
 
-TEST_CASE("a frame's mass matrix changes with its turn and with its bending", "[frame]") {
+TEST_CASE("a frame's mass matrix changes with its rotation and with its bending", "[frame]") {
   const FramedBeam b = framed(3, 1, true);
   VectorXd q = VectorXd::Zero(7);
   const MatrixXd rest = mass_matrix(b.frame, q);
   q[2] = 4. * std::atan(1.);
   const MatrixXd turned = mass_matrix(b.frame, q);
-  // The coupling of the frame's origin with all else turns with the frame: half a turn reverses it.
+  // The origin's coupling with the rest turns with the frame: half a turn reverses it.
   CHECK((turned.topRightCorner<2, 5>() + rest.topRightCorner<2, 5>()).norm() <
         1e-14 * rest.topRightCorner<2, 5>().norm());
   CHECK((turned.bottomRightCorner<5, 5>() - rest.bottomRightCorner<5, 5>()).norm() == 0.);
-  // Bending changes the rest: the inertia about the origin by the tip's shortening and lateral
-  // place, of order (w/L)^2.
+  // Bending changes the rest: the inertia about the origin changes with the tip's shortening and
+  // lateral position, of order (w/L)^2.
   const FramePoint tip = frame_point(b.beam.structure, b.modes, 16, true);
   q.setZero();
   q[3] = .5 / tip.shape(1, 0);

@@ -1,6 +1,6 @@
-// The Princeton beam: a thin aluminium strip under an end force at an angle to its sides, in
-// bending about both axes and torsion. Data, and displacements by ANSYS, as in Exudyn's model
-// ANCFBeamTest.py after Obrezkov and others, Nonlinear Dyn. 109 (2022).
+// The Princeton beam: a thin aluminium strip bends about both axes and twists under an end force at
+// an angle to its sides. Data and ANSYS displacements are those of Exudyn's model ANCFBeamTest.py,
+// after Obrezkov and others, Nonlinear Dyn. 109 (2022).
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,8 +14,8 @@ namespace {
 constexpr double kLength = .508, kShear = 5. / 6., kHeight = 12.3777e-3, kWidth = 3.2024e-3;
 const Material kAluminium{.young = 71.7e9, .poisson = .31};
 
-/// Displacements along the stiff and along the soft side, m: by ANSYS's beam elements and by
-/// its solids, 4 x 12 x 500 of them.
+/// Displacements along the stiff and the soft side, m: from ANSYS's beam elements and from its 4 x
+/// 12 x 500 solid elements.
 struct Angle {
   double degrees, along, across, solid_along, solid_across;
 };
@@ -34,7 +34,7 @@ const Angle kF3[] = {{0., 1.606423724e-2, 0., 1.603700622e-2, 0.},
                      {75., 6.248967384e-3, .196097131, 6.062461977e-3, .192972233},
                      {90., 0., .200677707, 0., .197669499}};
 
-/// The soft side along z.
+/// Section of the strip; its soft side is along z.
 BeamSection strip() { return rectangle_section(kWidth, kHeight, kShear); }
 
 Vector3d direction(double degrees) {
@@ -50,9 +50,9 @@ Vector3d end_under(const Vector3d& force) {
 
 }  // namespace
 
-TEST_CASE("the Princeton beam bends as by ANSYS's elements", "[princeton]") {
-  // Nearer to ANSYS's beams than these are to its solids (0.2 to 3 %). They take another torsion
-  // constant, which acts at the angles between.
+TEST_CASE("the Princeton beam bends as ANSYS's elements do", "[princeton]") {
+  // The difference from ANSYS's beams is smaller than that between those and its solids (0.2 to 3
+  // %). ANSYS's beams have another torsion constant, which matters at the angles between.
   const auto check = [](double force, const Angle& at) {
     const Vector3d end = end_under(force * direction(at.degrees));
     CAPTURE(force, at.degrees, end.transpose());
@@ -65,9 +65,9 @@ TEST_CASE("the Princeton beam bends as by ANSYS's elements", "[princeton]") {
 }
 
 TEST_CASE("the Princeton beam follows the exact rod", "[princeton]") {
-  // Same J. The law's own terms are (curvature times height)^2: along the strip's sides of 3.2 mm
-  // and radii down to 1.2 m (0.2 m deflection in 0.5 m) 7e-6, times 0.2 m; the mesh, 16 elements,
-  // 4e-6 m by halving it.
+  // Both have the same J. Terms of the material law are (curvature times height)^2: with sides of
+  // 3.2 mm and radii down to 1.2 m (0.2 m deflection in 0.5 m) they are 7e-6, times 0.2 m. Halving
+  // the mesh of 16 elements shows an error of 4e-6 m.
   const BeamSection s = strip();
   const double E = kAluminium.young, G = kAluminium.shear_modulus(), A = s.area;
   const Rod rod{kLength,

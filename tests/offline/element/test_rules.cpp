@@ -13,8 +13,8 @@ using nlohmann::json;
 
 namespace {
 
-/// A cantilever of quadratic Timoshenko elements of two unknowns per node, w and psi, with `points`
-/// Gauss points each: none of the code under test. Deflection under a unit load at x.
+/// Deflection at x under a unit load there, of a cantilever of quadratic Timoshenko elements of two
+/// unknowns per node, w and psi, with `points` Gauss points each. No code of the study is used.
 double twin_compliance(const Material& m, double shear_factor, int points, int elements, double x) {
   const double length = study::kLength / elements, bending = m.young * kInertiaY;
   const double shear = shear_factor * m.shear_modulus() * kArea;
@@ -45,14 +45,14 @@ double twin_compliance(const Material& m, double shear_factor, int points, int e
 
 }  // namespace
 
-TEST_CASE("the default rule is exact at the tip with one element, for every Poisson's ratio",
+TEST_CASE("the default rule is exact at the tip with one element for every Poisson's ratio",
           "[rules]") {
   int seen = 0;
   for (const json& r : rows_of("axial"))
     if (r["rule"] == "default" && r["load"] == "tip node") {
       INFO("nu " << r["poisson"] << ", elements " << r["elements"]);
       CHECK(std::abs(r["tip_error"].get<double>()) < kRoundOff);
-      // The same spring against torsion, eps lambda A L^2/(G J), is 2e-9 at nu = .499.
+      // The same spring in torsion, eps lambda A L^2/(G J), is 2e-9 at nu = .499.
       CHECK(std::abs(r["twist_error"].get<double>()) < (r["poisson"] == .499 ? 1e-8 : kRoundOff));
       CHECK(r["rank_deficiency"] == 0);
       CHECK(r["negative_eigenvalues"] == 0);
@@ -61,8 +61,7 @@ TEST_CASE("the default rule is exact at the tip with one element, for every Pois
   CHECK(seen == 25);
 }
 
-TEST_CASE("every number of axial points errs as a Timoshenko element of two unknowns per node does",
-          "[rules]") {
+TEST_CASE("axial points err as in a Timoshenko element of two unknowns per node", "[rules]") {
   for (const int points : {2, 3, 4, 5})
     for (const int elements : {1, 2, 8})
       for (const double nu : {0., .3, .499}) {
@@ -81,7 +80,7 @@ TEST_CASE("every number of axial points errs as a Timoshenko element of two unkn
 }
 
 TEST_CASE("three axial points lock by 21 % with one element and 0.4 % with four", "[rules]") {
-  // k = 1, nu = .3: two figures of an independent prototype, of two and one digits.
+  // k = 1 and nu = .3. An independent prototype gave these errors with two digits and with one.
   const Material m;
   const auto error = [&](int elements) {
     const BeamLaw law = study_law({.element = {.axial_points = 3, .shear = Shear::published}}, m);
@@ -103,18 +102,19 @@ TEST_CASE("one axial point strains in 12 ways, so 9 modes of 27 are free beside 
     }
 }
 
-TEST_CASE("a load between two nodes converges as the element's length, and no faster", "[rules]") {
-  // What is left is the kink of shear under the load, F l/(k G A) times a constant.
+TEST_CASE("the error of a load between two nodes falls with the element's length, and no faster",
+          "[rules]") {
+  // The kink of shear under the load is left, F l/(k G A) times a constant.
   const auto error = [](int n) {
     return row(rows_of("axial"), "default", .3, n, "between nodes")["tip_error"].get<double>();
   };
   CHECK(error(1) > .05);  // reduced integration of one long element is too soft there
   for (const int n : {2, 4, 8, 16}) CHECK(error(n) < 0.);
-  // 16 against 8: half, less what the deflection at x itself changes and the l^3 of bending.
+  // 16 elements err half as much as 8, but for the change of the deflection at x and bending's l^3.
   CHECK_THAT(error(16) / error(8), WithinAbs(.5, .1));
 }
 
-TEST_CASE("Dv at points where D0 is not looked at makes the stiffness indefinite", "[rules]") {
+TEST_CASE("Dv at points without D0 makes the stiffness indefinite", "[rules]") {
   std::set<std::string> indefinite, others;
   for (const json& r : rows_of("coupling-points"))
     if (r["poisson"] == .3 && r["elements"] == 1)
@@ -126,9 +126,8 @@ TEST_CASE("Dv at points where D0 is not looked at makes the stiffness indefinite
                                         "D0 at 3 and Dv at 4", "D0 at 4 and Dv at 2"});
 }
 
-TEST_CASE("the mode of negative energy is a section that widens as it flattens, by hand",
-          "[rules]") {
-  // E22 = -E33 = 1 - 3 xi^2 is 0 at both points of D0, where only its slopes cost energy:
+TEST_CASE("the mode of negative energy is a section that widens as it flattens", "[rules]") {
+  // E22 = -E33 = 1 - 3 xi^2 is 0 at both points of D0, where only its slopes cost energy. By hand:
   //   2U = G (Iy + Iz) 48/L - E nu/(1 + nu) 2 A L f, f = 1 with Dv at one point, 4/5 at three.
   const Material m;
   for (const int points : {1, 3})
@@ -143,13 +142,13 @@ TEST_CASE("the mode of negative energy is a section that widens as it flattens, 
       const double f = points == 1 ? 1. : .8;
       const double by_hand = m.shear_modulus() * (kInertiaY + kInertiaZ) * 48. / L -
                              m.young * m.poisson / (1. + m.poisson) * 2. * kArea * L * f;
-      // Round-off of terms of E A L and G (Iy + Iz) 48/L.
+      // This is the round-off of terms of E A L and G (Iy + Iz) 48/L.
       CHECK_THAT(u.dot(e.stiffness * u), WithinAbs(by_hand, kPrinted * m.young * kArea));
       CHECK((by_hand < 0.) == (L > .5 || (L == .5 && points == 1)));
     }
 }
 
-TEST_CASE("D that is not split locks, the more the nearer nu is to 1/2, on every mesh", "[rules]") {
+TEST_CASE("D that is not split locks on every mesh, more as nu is nearer to 1/2", "[rules]") {
   double previous = 0.;
   for (const double nu : {0., .3, .45, .49, .499}) {
     // Sections that cannot strain in their plane bend with the uniaxial-strain modulus.
@@ -168,8 +167,7 @@ TEST_CASE("D that is not split locks, the more the nearer nu is to 1/2, on every
   CHECK_THAT(previous, WithinAbs(-.973, .0005));
 }
 
-TEST_CASE("Dv on a reference line off the centroid stiffens, at the centroid it does not",
-          "[rules]") {
+TEST_CASE("Dv on a reference line stiffens off the centroid, but not at the centroid", "[rules]") {
   const json& rows = rows_of("reference-line");
   const auto error = [&](const std::string& rule, double nu) {
     return row(rows, rule, nu, 16, "tip node")["tip_error"].get<double>();
@@ -177,16 +175,16 @@ TEST_CASE("Dv on a reference line off the centroid stiffens, at the centroid it 
   for (const double nu : {0., .3, .499})
     CHECK(std::abs(error("reference line at foot", nu)) < kRoundOff);
   CHECK(std::abs(error("reference line and Dv at foot", 0.)) < kRoundOff);
-  // An independent prototype: up to 2 %.
+  // An independent prototype found up to 2 %.
   CHECK_THAT(error("reference line and Dv at foot", .3), WithinAbs(-.015, .005));
   CHECK(error("reference line and Dv at foot", .499) < -.02);
   CHECK(std::abs(error("reference line and Dv at mid-height", .3)) < 1e-3);
 }
 
-TEST_CASE("nine tenths and more of what Dv off the centroid stiffens is the clamp's", "[rules]") {
-  // Bent, the section at rest on a line z off the centroid widens by nu z kappa for nothing; only
-  // its change along the beam costs, G (Iy + Iz) (nu z kappa')^2, if the clamp lets it widen: then
-  // the tip sinks less by 3 G (Iy + Iz) nu^2 z^2 / (E Iy L^2).
+TEST_CASE("the clamp causes nine tenths of the stiffening by Dv off the centroid", "[rules]") {
+  // A bent section, at rest on a line z off the centroid, widens by nu z kappa without energy. Only
+  // the change of this along the beam costs energy, G (Iy + Iz) (nu z kappa')^2, if the clamp lets
+  // the section widen. Then the tip sinks less by 3 G (Iy + Iz) nu^2 z^2 / (E Iy L^2).
   const Material m;
   const double z = -study::kCentroidHeight, L = study::kLength, nu = m.poisson;
   const BeamLaw law =
@@ -206,7 +204,7 @@ TEST_CASE("nine tenths and more of what Dv off the centroid stiffens is the clam
   const double error = found / exact_compliance(m, L) - 1.;
   const double by_hand = -3. * m.shear_modulus() * (kInertiaY + kInertiaZ) * nu * nu * z * z /
                          (m.young * kInertiaY * L * L);
-  // The free tip saves it in a layer sqrt(G Iy/(E A)) = 5 cm of the 2 m: a few parts in a hundred.
+  // The free tip saves that energy in a layer of sqrt(G Iy/(E A)) = 5 cm of 2 m: a few percent.
   CHECK_THAT(error, WithinRel(by_hand, .1));
   CHECK(std::abs(error) < .1 * .012);
 }

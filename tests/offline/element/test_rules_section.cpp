@@ -9,15 +9,15 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using nlohmann::json;
 
-TEST_CASE("without the split of torsion the bar is 23 times too stiff, by shear factors 11 times",
+TEST_CASE("without the split of torsion a bar is 23 times too stiff, with shear factors 11 times",
           "[rules]") {
   const double J = study_section(0).torsion;
   const auto stiffness = [&](const std::string& rule, int elements) {
     const json r = row(rows_of("shear"), rule, .3, elements, "tip node");
     return 1. / (1. + r["twist_error"].get<double>());
   };
-  // Layers at both ends, of the section's radius sqrt(Iy/A) = 7 cm, in which y and z slopes turn
-  // by different angles, are up to 3 % of 2 m.
+  // In layers at both ends, as long as the section's radius sqrt(Iy/A) = 7 cm, y and z slopes turn
+  // by different angles; the layers are up to 3 % of 2 m.
   for (const int elements : {1, 4, 16}) {
     CHECK_THAT(stiffness("neither factors nor split", elements),
                WithinRel((kInertiaY + kInertiaZ) / J, .03));
@@ -54,27 +54,27 @@ TEST_CASE("one point per rectangle loses its own inertia, two are exact in small
   }
 }
 
-TEST_CASE("in large bending fourth moments count, and two points per rectangle hold them to 1e-4",
+TEST_CASE("large bending needs fourth moments, which two points per rectangle hold to 1e-4",
           "[rules]") {
   const auto error = [](const std::string& rule, int elements) {
     return row(rows_of("section"), rule, .3, elements, "large bending")["tip_error"].get<double>();
   };
   for (const int elements : {1, 4, 16}) {
     const double exact = error("default", elements);
-    // The same moments; Newton's residual, 1e-10 of the load.
+    // The moments are the same; Newton's residual is 1e-10 of the load.
     CHECK_THAT(error("3x3 per rectangle", elements), WithinAbs(exact, 1e-9));
-    // F's bending strain reaches 12 %, its square counts; the fourth moment in z is 2.4 % off.
+    // Bending strain reaches 12 %, so its square counts; the fourth moment in z is 2.4 % off.
     CHECK(error("2x2 per rectangle", elements) - exact > 1e-6);
     CHECK(error("2x2 per rectangle", elements) - exact < 1e-4);
     CHECK(error("1x1 per rectangle", elements) - exact > .03);
   }
-  // Order of a quadratic element: eight times less and more at each halving.
+  // A quadratic element converges so that each halving divides the error by eight or more.
   CHECK(std::abs(error("default", 8)) < std::abs(error("default", 4)) / 8.);
   CHECK(std::abs(error("default", 16)) < 1e-5);
 }
 
-TEST_CASE("large bending lies above the elastica by less than its shear", "[rules]") {
-  // w/L = 0.66996 for F L^2/(EI) = 4 (reference numbers); F/(k G A) of a beam that does not turn.
+TEST_CASE("large bending differs from the elastica by less than its shear deflection", "[rules]") {
+  // w/L = 0.66996 for F L^2/(EI) = 4 (reference numbers); F/(k G A) without rotation.
   const Material m{.poisson = 0.};
   const double w = large_deflection(study_law({}, m), 16) / study::kLength;
   const double shear = study::kLargeLoad * m.young * kInertiaY /
@@ -83,9 +83,9 @@ TEST_CASE("large bending lies above the elastica by less than its shear", "[rule
   CHECK(w < .66996 + shear);
 }
 
-TEST_CASE("a large twist stiffens by Wagner's fourth moments, which two points miss", "[rules]") {
-  // Free to shorten and to bend, a bar twisted by t per length stretches by (r^2 - its linear part)
-  // t^2/2 at radius r: T = G J t + E W t^3/2, W = int r^4 - (int r^2)^2/A - (int z r^2)^2/Iy.
+TEST_CASE("Wagner's fourth moments stiffen a large twist, and two points miss them", "[rules]") {
+  // A bar twisted by t per length, free to shorten and to bend, stretches by (r^2 - its linear
+  // part) t^2/2 at radius r: T = G J t + E W t^3/2, W = int r^4 - (int r^2)^2/A - (int z r^2)^2/Iy.
   const auto wagner = [](const SectionMoments& m, double E, double GJ) {
     const double r4 = m.of[4][0] + 2. * m.of[2][2] + m.of[0][4], r2 = m.of[2][0] + m.of[0][2];
     const double zr2 = m.of[2][1] + m.of[0][3];
@@ -100,7 +100,7 @@ TEST_CASE("a large twist stiffens by Wagner's fourth moments, which two points m
   const double by_hand = wagner(moments(study::kRectangles), m.young, GJ);
   const double by_two = wagner(moments(study::kRectangles, 2), m.young, GJ);
   const double exact = large_turn(study_law({}, m), 8);
-  // The section's change of width, of the order of the strain t^2 r^2/2 = 0.1 %, is not in it.
+  // The formula leaves out the section's change of width, about the strain t^2 r^2/2 = 0.1 %.
   CHECK_THAT(exact, WithinRel(by_hand, 2e-3));
   CHECK(by_hand < .99 * study::kLargeTwist * study::kLength);  // 1.5 % less than without W
   const double two = large_turn(study_law({.section_points = 2}, m), 8);
@@ -110,7 +110,7 @@ TEST_CASE("a large twist stiffens by Wagner's fourth moments, which two points m
   CHECK(row(rows_of("section"), "1x1 per rectangle", .3, 8, "large twist")["tip_error"].is_null());
 }
 
-TEST_CASE("flops grow with the points, not with the rule of the section", "[rules]") {
+TEST_CASE("flops grow with the points, but not with the rule of the section", "[rules]") {
   const auto flops = [](const std::string& family, const std::string& rule) {
     return row(rows_of(family), rule, .3, 1, "tip node")["force_flops"].get<int>();
   };
@@ -124,14 +124,14 @@ TEST_CASE("flops grow with the points, not with the rule of the section", "[rule
   CHECK(r["tangent_us"] > r["force_us"]);
 }
 
-TEST_CASE("rules writes every row as CSV, and refuses a family it does not know", "[rules]") {
+TEST_CASE("rules writes every row as CSV and refuses a family that it does not know", "[rules]") {
   const auto folder = fresh_folder("rules");
   const auto file = folder / "rules.csv";
   const Ran ran = railstep_program("rules --family coupling --csv '" + file.string() + "'");
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Catch::Contains("D not split"));
   const std::string text = text_of(file);
-  // A header; 5 x 5 x 2 rows of each rule, 5 x 2 of the default's large ones.
+  // A header, 5 x 5 x 2 rows of each rule, and 5 x 2 large ones of the default.
   CHECK(std::count(text.begin(), text.end(), '\n') == 1 + 100 + 10);
   CHECK_THAT(text, Catch::StartsWith("family,rule,axial_points,coupling_points,section_rule,"));
   std::istringstream lines(text);

@@ -1,4 +1,4 @@
-// Beams of section F, a rail's three rectangles, against the prototype's and the solid's figures.
+// Beams of section F, a rail of three rectangles, against the figures of a prototype and of solids.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -11,7 +11,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// Section F, a cantilever of 2 m with 63 kN down at its end (reference.md, hard-cases.md H11).
+/// Section F as a cantilever of 2 m with 63 kN down at its end (reference.md, hard-cases.md H11).
 struct RailCantilever {
   double poisson;
   BeamSection section = section_f();
@@ -25,7 +25,7 @@ struct RailCantilever {
   }
 };
 
-/// One linear step from rest.
+/// End after one linear step from rest.
 Vector3d linear_end(const Structure& s, const StructureLoad& load) {
   const Eigen::MatrixXd K = free_part(s, tangent(s, s.rest));
   const Eigen::VectorXd u = K.ldlt().solve(free_part(s, load.force));
@@ -37,24 +37,24 @@ const Vector3d kDown(0., 0., -63e3);
 }  // namespace
 
 TEST_CASE("nearly incompressible material does not lock", "[section]") {
-  // H11: 2.0950868e-2 m is Timoshenko's with k_z = 0.472, to half of its last digit.
+  // H11 has 2.0950868e-2 m, Timoshenko's with k_z = 0.472, to half of its last digit.
   for (const int elements : {1, 4, 10}) {
     const Structure s = RailCantilever{.499}.clamped(elements);
     CHECK_THAT(linear_end(s, end_force(s, kDown))[2], WithinAbs(-2.0950868e-2, 5e-10));
-    // Large deflections take 2.7e-4 of it, as they take 2.7e-4 at nu = 0.3 (reference.md); asked:
+    // Large deflections reduce it by 2.7e-4, as they do at nu = 0.3 (reference.md); the demand is
     // 1e-3.
     const double nonlinear = end_position(s, solved(s, end_force(s, kDown)))[2];
     CHECK_THAT(nonlinear, WithinRel(-2.0950868e-2, 1e-3));
   }
-  // Over the whole section the coupling holds the bent section's fibres, as in plane strain, by
-  // (1 - nu)/((1 + nu)(1 - 2 nu)) = 167: this is what the split avoids.
+  // Coupling over the whole section holds the bent section's fibres as in plane strain: the
+  // stiffness grows by (1 - nu)/((1 + nu)(1 - 2 nu)) = 167. The split avoids this.
   const Structure s = RailCantilever{.499}.clamped(4, Coupling::section);
   CHECK(linear_end(s, end_force(s, kDown))[2] > -2.0950868e-2 / 10.);
 }
 
 TEST_CASE("section F's cantilever bends as the reference says", "[section]") {
-  // reference.md, "section F at the centroid", to half of the last digit. The prototype spread the
-  // shear factor over the section and had one for vertical shear alone.
+  // The rows are those of reference.md, "section F at the centroid", to half of the last digit. The
+  // prototype had the shear factor over the section, and one for vertical shear only.
   struct Row {
     Shear shear;
     double nonlinear, shortening, linear;
@@ -76,11 +76,11 @@ TEST_CASE("section F's cantilever bends as the reference says", "[section]") {
     const Vector3d end = end_position(s, solved(s, end_force(s, kDown)));
     CHECK_THAT(linear[2], WithinAbs(row.linear, 5e-8));
     CHECK_THAT(end[2], WithinAbs(row.nonlinear, 5e-8));
-    // Its mesh is not told: 10 elements, the scene's, and 40 differ by 6e-10.
+    // The prototype's mesh is not known: 10 elements, as in the scene, and 40 differ by 6e-10.
     CHECK_THAT(end[0] - 2., WithinAbs(row.shortening, 5e-10 + 6e-10));
   }
-  // With the twist held apart the deflections are the same. The clamp, which keeps the section from
-  // swelling, shortens by 2e-9 more: of J, there is less to hold the slopes.
+  // Twist on its own terms leaves the deflections the same. The clamp, which keeps the section from
+  // swelling, shortens by 2e-9 more: J is less than Iy + Iz to hold the slopes.
   const Structure s = clamped(Shear::twist);
   const Vector3d end = end_position(s, solved(s, end_force(s, kDown)));
   CHECK_THAT(end[2], WithinAbs(-2.08871e-2, 5e-8));
@@ -88,8 +88,8 @@ TEST_CASE("section F's cantilever bends as the reference says", "[section]") {
 }
 
 TEST_CASE("section F's bar twists by TL/GJ", "[section]") {
-  // reference.md, "Torsion of a clamped 2 m bar": 1.2689e-2 rad under 1 kN m. The published rule
-  // has G (Iy + Iz) in place of GJ: 5.69e-4.
+  // reference.md, "Torsion of a clamped 2 m bar", has 1.2689e-2 rad under 1 kN m. The published
+  // rule has G (Iy + Iz) in place of GJ and gives 5.69e-4.
   const auto twist = [](Shear shear) {
     BeamSection section = section_f();
     section.moments = moments(kSectionF);
@@ -103,8 +103,8 @@ TEST_CASE("section F's bar twists by TL/GJ", "[section]") {
   CHECK_THAT(twist(Shear::published), WithinAbs(5.69e-4, 5e-7));
 }
 
-TEST_CASE("a free rail of section F vibrates as its solid, but for warping", "[section]") {
-  // reference.md, "Frequencies of a free-free 2 m rail": lateral, torsion, vertical,
+TEST_CASE("a free rail of section F vibrates as its solid does, except for warping", "[section]") {
+  // reference.md, "Frequencies of a free-free 2 m rail", gives lateral, torsion, vertical and
   // lateral-torsion.
   struct Rule {
     Shear shear;
@@ -128,12 +128,12 @@ TEST_CASE("a free rail of section F vibrates as its solid, but for warping", "[s
     const auto hertz = [&](int i) {
       return std::sqrt(std::max(0., modes.eigenvalues()[i])) / (2. * std::numbers::pi);
     };
-    CHECK(hertz(5) < .01);  // six rigid modes, to round-off of the highest, 4e5 Hz
+    CHECK(hertz(5) < .01);  // six rigid modes, to the round-off of the highest frequency, 4e5 Hz
     for (const auto& [mode, expected] : rule.hertz)
-      CHECK_THAT(hertz(6 + mode), WithinAbs(expected, .06));  // one digit, mesh 0.01
+      CHECK_THAT(hertz(6 + mode), WithinAbs(expected, .06));  // one digit; mesh 0.01
     if (rule.shear == Shear::published) continue;
-    // Solid: 117.7, 170.4, 290.2, 307.5. Bending differs by less than 0.4 %; torsion is 2.3 % and
-    // lateral-torsion 2.8 % too soft, since the section is not held from warping.
+    // The solid has 117.7, 170.4, 290.2 and 307.5 Hz. Bending differs by less than 0.4 %. Torsion
+    // is 2.3 % and lateral-torsion 2.8 % too soft, since the section is free to warp.
     CHECK_THAT(hertz(6), WithinRel(117.7, .004));
     CHECK_THAT(hertz(8), WithinRel(290.2, .004));
     CHECK(hertz(7) < 170.4);

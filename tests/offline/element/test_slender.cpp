@@ -1,4 +1,4 @@
-// A beam so slender that its stretch is 1e8 times as stiff as its bending.
+// A beam so slender that its axial stiffness is 1e8 times its bending stiffness.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -9,7 +9,7 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-/// End deflection over P L^3/3EI of a cantilever of length over height 1e4 under the load that
+/// End deflection, over P L^3/3EI, of a cantilever with length over height 1e4, under the load that
 /// gives it `deflection` (over the length).
 double slender_ratio(double poisson, double deflection, int elements) {
   const double length = 2., height = length / 1e4;
@@ -25,16 +25,16 @@ double slender_ratio(double poisson, double deflection, int elements) {
 }  // namespace
 
 TEST_CASE("a cantilever of length over height 1e4 bends by PL^3/3EI", "[slender]") {
-  // hard-cases.md H12. Left out of the formula: shear, below (h/L)^2 = 1e-8, and the end's shorter
-  // lever, of the slope's square, 1e-8 and less.
+  // This is H12 of hard-cases.md. The formula leaves out shear, below (h/L)^2 = 1e-8, and the end's
+  // shorter lever, which is of the slope squared, 1e-8 and less.
   for (const double poisson : {0., .3})
     for (const double deflection : {1e-6, 1e-4}) {
       for (const int elements : {1, 2, 4}) {
         CAPTURE(poisson, deflection, elements);
         CHECK_THAT(slender_ratio(poisson, deflection, elements), WithinAbs(1., 1e-6));
       }
-      // Rounding: K's condition grows with the square of length over an element's height and with
-      // the elements' number; H12 lets 1e-4 be lost with 64, and 1.6e-7 is.
+      // K's condition grows with the number of elements and with the square of length over an
+      // element's height. H12 allows rounding to lose 1e-4 with 64 elements; it loses 1.6e-7.
       const double many = slender_ratio(poisson, deflection, 64);
       CAPTURE(poisson, deflection, many - 1.);
       CHECK_THAT(many, WithinAbs(1., 1e-5));

@@ -12,7 +12,7 @@ using namespace railstep;
 
 namespace {
 
-/// All single calls of a row of elements: forces summed in the batch's order, tangents one by one.
+/// Elements of a row called one by one: forces summed in the batch's order, single tangents.
 struct OneByOne {
   std::vector<double> force, tangent;  // [2n + 1][9], [n][27][27]
 
@@ -31,7 +31,7 @@ struct OneByOne {
 
 }  // namespace
 
-TEST_CASE("the straight kernel is the general one", "[straight]") {
+TEST_CASE("the straight kernel gives the results of the general kernel", "[straight]") {
   const BeamSection f = full_section_f();
   const struct {
     const char* name;
@@ -58,14 +58,14 @@ TEST_CASE("the straight kernel is the general one", "[straight]") {
         Matrix27 K_want, K_got;
         beam_tangent(general, q.data(), want.data(), K_want.data());
         straight_tangent(fast, q.data(), got.data(), K_got.data());
-        // Products near 1 carry 1e-16 each, over strains of 2e-2: 5e-15 a term, and some ten terms.
+        // Products near 1 carry 1e-16 each, over strains of 2e-2: 5e-15 in each of some ten terms.
         CHECK((got - want).cwiseAbs().maxCoeff() < 1e-13 * want.cwiseAbs().maxCoeff());
         CHECK((K_got - K_want).cwiseAbs().maxCoeff() < 1e-13 * K_want.cwiseAbs().maxCoeff());
       }
     }
 }
 
-TEST_CASE("force and tangent agree, and the tangent is symmetric, to the bit", "[straight]") {
+TEST_CASE("to the bit, force and tangent agree and the tangent is symmetric", "[straight]") {
   const StraightBeam beam = made_up_beam();
   for (unsigned seed = 1; seed <= 50; ++seed) {
     const std::vector<double> q = shaken_nodes(1, seed, .5);
@@ -78,13 +78,13 @@ TEST_CASE("force and tangent agree, and the tangent is symmetric, to the bit", "
   }
 }
 
-TEST_CASE("a batch of straight elements has the bits of its elements", "[straight]") {
+TEST_CASE("a batch of straight elements gives the bits of its single elements", "[straight]") {
   const StraightBeam beam = made_up_beam();
   for (int n = 1; n <= 9; ++n) {
     INFO(n);
     const std::vector<double> q = shaken_nodes(n, 100 + static_cast<unsigned>(n), .3);
     const OneByOne want(beam, n, q);
-    // NaN where nothing has been written yet, and a canary behind.
+    // Outputs hold NaN until they are written; a canary stands behind them.
     const auto filled = [](std::size_t size) {
       return std::vector<double>(size + 1, std::numeric_limits<double>::quiet_NaN());
     };
@@ -110,7 +110,7 @@ TEST_CASE("a batch of straight elements has the bits of its elements", "[straigh
   }
 }
 
-TEST_CASE("the straight kernel's bits are the same everywhere", "[straight]") {
+TEST_CASE("the straight kernel gives the same bits on every machine", "[straight]") {
   const StraightBeam beam = made_up_beam();
   std::uint64_t single = kEmpty;
   for (unsigned element = 0; element < 1000; ++element) {
@@ -119,11 +119,11 @@ TEST_CASE("the straight kernel's bits are the same everywhere", "[straight]") {
     straight_tangent(beam, q.data(), force, tangent);
     single = hash(hash(single, force, 27), tangent, 729);
   }
-  // Stored from g++ 12, -O3, SSE2; equal for every compiler, level and vector width that was tried.
+  // Stored from g++ 12, -O3, SSE2; every compiler, level and vector width that was tried agrees.
   CHECK(single == 0xf09b797caa43c189ULL);
 }
 
-TEST_CASE("a cantilever's tip by the batch is that of the general kernel", "[straight]") {
+TEST_CASE("the batch gives a cantilever's tip as the general kernel does", "[straight]") {
   constexpr int n = 10;
   const BeamLaw law = beam_law(full_section_f(), {});
   const Vector27 rest = straight_nodes(.2);
@@ -156,11 +156,11 @@ TEST_CASE("a cantilever's tip by the batch is that of the general kernel", "[str
   }
   const double tip = q[18 * n + 2], reference = want.q[18 * n + 2];
   CHECK(reference < -.0199);
-  // Newton's residual there is 1e-10 of the load at most, and so is what the tip owes to it.
+  // Newton's residual is 1e-10 of the load at most there, and the tip errs as much.
   CHECK(std::abs(tip - reference) < 1e-10 * std::abs(reference));
 }
 
-TEST_CASE("a law that is no straight element's is refused", "[straight]") {
+TEST_CASE("a law that does not fit a straight element is refused", "[straight]") {
   const BeamSection f = full_section_f();
   const auto with = [&](const ElementRule& rule) { return beam_law(f, {}, rule); };
   CHECK_THROWS_WITH(straight_beam(with({.axial_points = 3}), .6), Catch::Contains("two points"));

@@ -26,7 +26,7 @@ constexpr RailEnds kCantilever = {RailEnd::clamped, RailEnd::free};
 
 }  // namespace
 
-TEST_CASE("a Timoshenko element strains in none of six rigid motions and in each of the others",
+TEST_CASE("a Timoshenko element has no strain in six rigid motions, and strain in all others",
           "[timoshenko]") {
   const Matrix12 K = timoshenko_stiffness(section_f(), {}, .7);
   CHECK((K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-15 * K.cwiseAbs().maxCoeff());
@@ -53,7 +53,7 @@ TEST_CASE("a Timoshenko cantilever has the closed forms in every direction", "[t
     const RailPoint at{0, L, y, z, force}, sensor{0, L, 0., 0., to};
     return statics.at(statics.solve({{at, 1.}}), sensor);
   };
-  // 1e-9: round-off of a condition of about 1e6.
+  // 1e-9 is the round-off at a condition of about 1e6.
   CHECK_THAT(moved(0, 0), WithinRel(L / (E * s.area), 1e-9));
   CHECK_THAT(moved(0, 2), WithinRel(-z * L * L / (2. * E * s.inertia_y), 1e-9));
   CHECK_THAT(moved(0, 1), WithinRel(-y * L * L / (2. * E * s.inertia_z), 1e-9));
@@ -83,8 +83,8 @@ TEST_CASE("a Timoshenko cantilever sinks under its own weight", "[timoshenko]") 
 
 TEST_CASE("both formulations agree at the nodes of a rail on pads", "[timoshenko]") {
   // At element ends the quadratic element with two points is exact under forces there, as long as
-  // nothing stretches the section: seats and loads on the axis, and no Poisson's ratio, since a
-  // jump of the axial force wants one of the section's contraction. Round-off of condition 1e8.
+  // nothing stretches the section. So seats and loads are on the axis and Poisson's ratio is 0,
+  // since a jump of the axial force needs one of the section's contraction. The condition is 1e8.
   Track t = beam(8, 4.8, {RailEnd::free, RailEnd::pinned});
   t.support.stiffness = {10e6, 30e6, 60e6};
   t.support.roll_stiffness = 2e5;
@@ -112,7 +112,7 @@ TEST_CASE("forces between element borders are exact too", "[timoshenko]") {
              WithinRel(fine.at(fine.solve({force}), at), 1e-9));
 }
 
-TEST_CASE("what a Timoshenko beam does not hold is refused", "[timoshenko]") {
+TEST_CASE("features that a Timoshenko beam lacks are refused", "[timoshenko]") {
   const auto refused = [](const Track& t) { return TimoshenkoStatics(t, {}); };
   Track two = beam(2, 2., kCantilever), on_sleepers = two, loose = two, off = two, locked = two;
   two.rails = 2;

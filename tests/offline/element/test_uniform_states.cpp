@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Square section of height `height`, EI = 1, length 1; the sections free to swell at the clamp.
+/// Square section of side `height`, EI = 1, length 1; the sections can swell at the clamp.
 struct Square {
   BeamSection section;
   Material material;
@@ -29,8 +29,8 @@ struct Square {
 };
 
 /// Pure bending at the curvature kappa (per length at rest). With |r'| = l, |b| = beta and c =
-/// kappa beta, E11 = ((l - c z)^2 - 1)/2. No axial force asks (l^2 - 1)/2 + 3 c^2 I/(2A) to be
-/// balanced by the coupling, and no force on |b| asks E33's stress to carry beta's share of the
+/// kappa beta, E11 = ((l - c z)^2 - 1)/2. There is no axial force if the coupling balances (l^2 -
+/// 1)/2 + 3 c^2 I/(2A). There is no force on |b| if E33's stress carries beta's share of the
 /// bending energy U(l, c): A sigma33 beta^2 = -c dU/dc. So the centroid's strains are those of the
 /// stresses -1.5 E c^2 I/A and sigma33, and M = beta dU/dc, where
 ///   dU/dc = E (3 l^2 c I + c^3 I4 - c I)/2, I4 = int z^4 dA.
@@ -42,7 +42,7 @@ PureBending pure_bending(const Square& of, double kappa) {
   const double A = of.section.area, I = of.section.inertia_y, E = of.material.young;
   const double I4 = of.section.moments->of[0][4], nu = of.material.poisson;
   double l2 = 1., beta2 = 1., by_c = 0.;
-  for (int i = 0; i < 200; ++i) {  // a contraction by (kappa height)^2
+  for (int i = 0; i < 200; ++i) {  // the map contracts by (kappa height)^2
     const double c = kappa * std::sqrt(beta2);
     by_c = .5 * E * (3. * l2 * c * I + c * c * c * I4 - c * I);
     const double stress11 = -1.5 * c * c * I / A, stress33 = -by_c * c / (beta2 * A * E);
@@ -52,9 +52,9 @@ PureBending pure_bending(const Square& of, double kappa) {
   return {by_c * std::sqrt(beta2), std::sqrt(l2), std::sqrt(beta2)};
 }
 
-/// Uniform twist tau about x of a bar free to shorten. E11 = e1 + tau^2 (y^2 (1 + 2 e2) + z^2
-/// (1 + 2 e3))/2 with the strains e of the axis, and t = tau sqrt((1 + 2 e2)(1 + 2 e3)): at a given
-/// tau the energy is a quadratic form in e, stationary at free ends, and T = dU/dtau.
+/// Uniform twist tau about x of a bar that is free to shorten. E11 = e1 + tau^2 (y^2 (1 + 2 e2) +
+/// z^2 (1 + 2 e3))/2 with the strains e of the axis, and t = tau sqrt((1 + 2 e2)(1 + 2 e3)). At a
+/// given tau the energy is a quadratic form in e, stationary at free ends, and T = dU/dtau.
 struct Twisting {
   double torque, stretch;
 };
@@ -88,7 +88,7 @@ Eigen::VectorXd under_moment(const Structure& s, const Vector3d& moment) {
 }  // namespace
 
 TEST_CASE("an end moment bends a cantilever into half and whole circles", "[bending]") {
-  // Length over height 10: strains up to 0.3, where the law's moment is 3 to 16 % below EI kappa.
+  // Length over height is 10: strains reach 0.3, and the law's moment is 3 to 16 % below EI kappa.
   for (const double poisson : {0., .3})
     for (const double turn : {kPi, 2. * kPi}) {
       const Square beam(.1, poisson);
@@ -104,16 +104,16 @@ TEST_CASE("an end moment bends a cantilever into half and whole circles", "[bend
         CHECK_THAT(slope, WithinAbs(exact.slope, error[i]));
       }
       CAPTURE(poisson, turn, exact.moment / turn, error[0], error[1]);
-      // Nodal values of quadratic elements with two Gauss points: order 4, reached to 0.1 once the
-      // next term, (turn per element)^2 = 0.15, is below 1.
+      // Nodal values of quadratic elements with two Gauss points are of order 4. It is reached to
+      // 0.1 once the next term, (rotation per element)^2 = 0.15, is below 1.
       CHECK_THAT(observed_order(error[0], error[1]), WithinAbs(4., .1));
       CHECK(error[1] < 1e-4);
     }
 }
 
 TEST_CASE("2 pi EI/L rolls a slender cantilever up", "[bending]") {
-  // Length over height 1000. The law's moment is 1.3e-5 below EI kappa, which leaves the end L
-  // 1.3e-5 from its root; the rest is the mesh, of order 4 and taken out by extrapolation.
+  // Length over height is 1000. The law's moment is 1.3e-5 below EI kappa, which leaves the end
+  // 1.3e-5 L from its root. The mesh's error is of order 4, and extrapolation takes it out.
   const Square beam(1e-3, .3);
   const double law = 1. - pure_bending(beam, 2. * kPi).moment / (2. * kPi);
   CHECK_THAT(law, WithinAbs(1.3e-5, 5e-7));
@@ -134,7 +134,7 @@ TEST_CASE("a bar twists by TL/GJ", "[torsion]") {
     const Structure s = bar.clamped(1);
     const Eigen::VectorXd q = under_moment(s, {GJ * turn, 0., 0.});
     const Vector3d b = q.segment<3>(9 * last_node(s) + 6);
-    // Terms in (twist times height)^2 = 1e-10, and those in the turn itself squared, 1e-8.
+    // Terms of (twist times height)^2 are 1e-10, and those of the rotation squared 1e-8.
     CHECK_THAT(std::atan2(-b[1], b[2]), WithinRel(turn, 1e-8));
   }
 }

@@ -15,14 +15,14 @@ double slope(const Signal& signal, double place) { return signal_at(signal.model
 
 }  // namespace
 
-TEST_CASE("a dipped joint has straight ramps, and its angle is not changed by the contact patch") {
+TEST_CASE("a dipped joint has straight ramps, and the contact patch leaves its angle unchanged") {
   for (const double patch : {0., .014}) {
     const Signal dip = dipped_joint(30., .01, 1., {2e-3, patch});
     CHECK(at(dip, 28.9) == Approx(0.).margin(1e-12));
     CHECK(at(dip, 31.1) == Approx(0.).margin(1e-12));
     CHECK(at(dip, 29.5) == Approx(-5e-3).epsilon(1e-9));
-    // The mean over a patch lifts a kink of angle 2 depth / ramp by an eighth of the patch times
-    // it.
+    // A mean over the patch raises a kink by an eighth of the patch times its angle, 2 depth /
+    // ramp.
     CHECK(at(dip, 30.) == Approx(-.01 + .02 * patch / 8.).epsilon(patch > 0. ? 1e-3 : 1e-12));
     const double away = 8 * 2e-3 + patch;  // a kink moves the spline n samples off by 0.27^n
     CHECK(slope(dip, 30. - away) == Approx(-.01).epsilon(1e-3));
@@ -50,17 +50,18 @@ TEST_CASE("flats have their depths, and the wheel is whole elsewhere") {
   for (const Signal* flat : {&fresh, &rounded}) {
     CHECK(at(*flat, .5 * turn_length - .6 * l) == Approx(0.).margin(1e-10));
     CHECK(at(*flat, .1) == Approx(0.).margin(1e-14));
-    // Every turn alike.
+    // Every turn of the wheel is the same.
     CHECK(at(*flat, .5 * turn_length + .01 + 1000. * turn_length) ==
           Approx(at(*flat, .5 * turn_length + .01)).epsilon(1e-9));
   }
-  // A quarter of its length from the middle: (l/4)^2 / 2R of fall from the corner; a half wave.
+  // A quarter of the length from the middle: the fresh flat falls by (l/4)^2 / 2R from its corner;
+  // the rounded one is a half wave.
   CHECK(at(fresh, .5 * turn_length + .25 * l) == Approx(-l * l / (32. * R)).epsilon(1e-5));
   CHECK(at(rounded, .5 * turn_length + .25 * l) == Approx(-l * l / (32. * R)).epsilon(1e-5));
   CHECK(slope(fresh, .5 * turn_length + .25 * l) == Approx(l / (4. * R)).epsilon(1e-4));
 }
 
-TEST_CASE("an out-of-round wheel is a wave around its turn") {
+TEST_CASE("an out-of-round wheel is a wave around its circumference") {
   const double R = .46;
   const Signal oval = out_of_round(R, 3, 2e-4, {.01, 0.});
   for (int k = 0; k < 12; ++k) {
@@ -69,12 +70,12 @@ TEST_CASE("an out-of-round wheel is a wave around its turn") {
   }
 }
 
-TEST_CASE("defects that are none are refused") {
+TEST_CASE("invalid defects are refused") {
   CHECK_THROWS_AS(dipped_joint(0., .01, 0., {1e-3, 0.}), std::invalid_argument);
   CHECK_THROWS_AS(dipped_joint(0., .01, 1., {0., 0.}), std::invalid_argument);
   CHECK_THROWS_AS(dipped_joint(0., .01, 1., {1e-9, 0.}), std::invalid_argument);
   CHECK_THROWS_AS(corrugation(0., .1, .1, 1e-5, {1e-3, 0.}), std::invalid_argument);
-  // A ramp of a nanometre under a patch of 12 mm: 6e8 samples; of 1e-300 m, more than an int holds.
+  // Under a patch of 12 mm a ramp of 1 nm needs 6e8 samples, one of 1e-300 m more than int holds.
   for (const double ramp : {1e-9, 1e-300})
     CHECK_THROWS_AS(dipped_joint(0., .01, ramp, {ramp / 50., .012}), std::invalid_argument);
   CHECK_THROWS_AS(fresh_flat(.46, .5, {1e-3, 0.}), std::invalid_argument);

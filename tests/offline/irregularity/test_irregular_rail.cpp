@@ -19,9 +19,9 @@ constexpr double kWheelMass = 600., kLoad = 60e3;
 constexpr double kMiddle = 300.;  // m
 constexpr double kPi = 3.14159265358979323846;
 
-/// Rails that move as one mass each under a wheel near their middle: stiff bars 600 m long on a
-/// seat at each end. A wheel e off the middle meets 12 (e / 600 m)^2 less of the mass: 2e-4 at 2.5
-/// m.
+/// Rails that each move as one mass under a wheel near their middle: stiff bars 600 m long with a
+/// seat at each end. A wheel at a distance e from the middle meets 12 (e / 600 m)^2 less of the
+/// mass, 2e-4 at 2.5 m.
 Track rigid_rails() {
   Track t;
   t.section = {.area = 1e6, .inertia_y = 1e12, .inertia_z = 1e12, .torsion = 1e12};
@@ -35,7 +35,7 @@ Track rigid_rails() {
   return t;
 }
 
-/// A wheelset of two such wheels, from equilibrium.
+/// A wheelset of two such wheels that starts in equilibrium.
 Wheelset wheels(double start, double speed) {
   Wheelset w;
   w.mass = 2. * kWheelMass;
@@ -90,7 +90,7 @@ Peak peak_of(Ride& ride, double until) {
 
 constexpr DefectGrid kFine = {2e-4, 0.};
 
-/// Over a joint dipped by 10 mm in ramps of 1 m; time counts from the joint.
+/// A wheel passes a joint dipped by 10 mm with ramps of 1 m; time counts from the joint.
 Peak over_dip(double speed, double dt) {
   const double start = kMiddle - 1.05;
   Traffic traffic{.wheelsets = {wheels(start, speed)}};
@@ -105,7 +105,7 @@ Peak over_dip(double speed, double dt) {
   return peak;
 }
 
-/// A rounded flat of 50 mm passes; time counts from where it begins.
+/// A wheel passes on a rounded flat of 50 mm; time counts from the start of the flat.
 Peak over_flat(double speed, double dt) {
   const double radius = .46, length = .05, half_turn = kPi * radius;
   const Signal flat = rounded_flat(radius, length, length * length / (16. * radius), {1e-4, 0.});
@@ -121,15 +121,16 @@ Peak over_flat(double speed, double dt) {
 
 }  // namespace
 
-TEST_CASE("R5: a wheel over a dipped joint meets the reference's peak; Jenkins' is in its band") {
-  // hard-cases.md R5: 146.965 kN at 0.4745 ms past the joint, to 1e-6; 1 % wanted at 50 us and 1e-3
-  // at 10 us.
+TEST_CASE(
+    "R5: a wheel over a dipped joint meets the reference's peak, which Jenkins' formula bounds") {
+  // R5 of hard-cases.md has 146.965 kN at 0.4745 ms past the joint, to 1e-6. The demand is 1 % at
+  // 50 us and 1e-3 at 10 us.
   const Peak coarse = over_dip(10., 50e-6), fine = over_dip(10., 10e-6);
   CHECK(coarse.force == Approx(146.965e3).epsilon(1e-2));
   CHECK(fine.force == Approx(146.965e3).epsilon(1e-3));
   CHECK(fine.time == Approx(.4745e-3).margin(20e-6));
   CHECK(fine.least > 0.);  // it stays on the rail
-  // Jenkins, Stephenson, Clayton, Morland and Lyon (1974), 2 alpha = 0.02, contact linear at P0.
+  // Jenkins, Stephenson, Clayton, Morland and Lyon (1974): 2 alpha = 0.02, contact linear at P0.
   const double angle = .02, contact = 1.2151e9, both = kRailMass / kWheelMass;
   const double p1 = kLoad + angle * 10. * std::sqrt(contact * kRailMass / (1. + both));
   CHECK(p1 == Approx(136.4e3).epsilon(1e-3));
@@ -138,15 +139,15 @@ TEST_CASE("R5: a wheel over a dipped joint meets the reference's peak; Jenkins' 
   CHECK(over_dip(30., 10e-6).least == 0.);
 }
 
-TEST_CASE("R5: behind the joint, wheel and rail sink together, as hard as Jenkins' P2 says") {
+TEST_CASE("R5: behind the joint wheel and rail move down together with the force P2 of Jenkins") {
   constexpr double kStep = 20e-6, kSpeed = 10., kAhead = 1.05;
   Traffic traffic{.wheelsets = {wheels(kMiddle - kAhead, kSpeed)}};
   for (const int rail : {0, 1})
     traffic.irregularities.push_back({rail, 2, dipped_joint(kMiddle, .01, 1., kFine)});
   Ride ride(traffic, kStep);
   while (ride.time() < kAhead / kSpeed) ride.step();
-  // From the joint on, the force's running mean over one swing of wheel against rail, of 120 kg on
-  // 1.2151e9 N/m. That of a contact that is not linear is longer and leaves a ripple of 3 %.
+  // The force's running mean from the joint on, over one oscillation of wheel against rail: 120 kg
+  // on 1.2151e9 N/m. The oscillation on a nonlinear contact is longer and leaves a ripple of 3 %.
   const auto window = static_cast<std::size_t>(2. * kPi * std::sqrt(120. / 1.2151e9) / kStep);
   std::vector<double> force;
   double highest = 0.;
@@ -179,8 +180,8 @@ TEST_CASE("R5: a wheel flat meets the reference's peak at both speeds") {
 }
 
 TEST_CASE("a slow ride follows the irregularity of rail and tread") {
-  // 0.1 m/s over waves of 5 m: accelerations of 1e-4 m/s2, forces of 0.1 N of 60 kN. Both rails and
-  // both wheels alike: a wheelset that rolls slides off to the side, since nothing rubs.
+  // At 0.1 m/s over waves of 5 m accelerations are 1e-4 m/s2 and forces 0.1 N of 60 kN. Both rails
+  // and both wheels have one shape: a wheelset that rolls would slide sideways without friction.
   const double amplitude = 1e-3, speed = .1;
   std::vector<double> samples(50);
   for (std::size_t k = 0; k < samples.size(); ++k)
@@ -195,7 +196,7 @@ TEST_CASE("a slow ride follows the irregularity of rail and tread") {
            signal_at(set.tread[0].model(), rolled).value;
   };
   const double level = *z - lifted(0.);
-  // Off the middle the bar sinks by 4 (e / 600 m)^2 more, by 1.25 m at most; 0.6 N are 1e-8 m.
+  // At most 1.25 m from the middle, the bar sinks by 4 (e / 600 m)^2 more; 0.6 N are 1e-8 m.
   const double sunk = kLoad / kRailStiffness * 4. * std::pow(1.25 / 600., 2) + 1e-8;
   for (int k = 0; k < 12500; ++k) {  // a quarter of a wave
     ride.step();
@@ -207,7 +208,7 @@ TEST_CASE("a slow ride follows the irregularity of rail and tread") {
   CHECK(ride.met == Status::ok);
 }
 
-TEST_CASE("irregularities of rails that are none are refused") {
+TEST_CASE("irregularities of missing rails or directions are refused") {
   const Track track = rigid_rails();
   const PackOptions options{.scheme = generalised_alpha(1e-3, .6), .residual_flexibility = false};
   Traffic traffic{.wheelsets = {wheels(kMiddle, 1.)}};

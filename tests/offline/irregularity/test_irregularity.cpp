@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Standard deviation of a band by quadrature of the density over log W.
+/// Standard deviation of a band, by quadrature of the density over log W.
 double deviation(const Spectrum& spectrum, double shortest, double longest) {
   const int steps = 20000;
   const double low = std::log(2. * kPi / longest), high = std::log(2. * kPi / shortest);
@@ -31,7 +31,7 @@ const Spectrum& named(const char* name, Geometry geometry) {
   return find_spectra(name)->of[static_cast<std::size_t>(geometry)];
 }
 
-/// n samples of one turn of a wave, from its phase on (in turns).
+/// n samples of one period of a wave, starting at its phase (in periods).
 std::vector<double> wave(int n, double phase) {
   std::vector<double> samples(static_cast<std::size_t>(n));
   for (int k = 0; k < n; ++k)
@@ -40,7 +40,7 @@ std::vector<double> wave(int n, double phase) {
   return samples;
 }
 
-/// Amplitude of the wave that fits n times into a periodic signal, by direct transformation.
+/// Amplitude of the wave that fits n times into a periodic signal, by a direct Fourier sum.
 double amplitude(const Signal& signal, int n) {
   const int samples = 16 * signal.model().intervals;
   const double step = signal.step / 16.;
@@ -53,7 +53,7 @@ double amplitude(const Signal& signal, int n) {
 
 }  // namespace
 
-TEST_CASE("a turn is the library's cosine and sine to their last bits") {
+TEST_CASE("cosine and sine of a turn agree with the library's to their last bits") {
   for (int i = -4000; i <= 4000; ++i) {
     const double t = i / 997.;
     const CosineSine own = cosine_sine(t);
@@ -67,7 +67,7 @@ TEST_CASE("a turn is the library's cosine and sine to their last bits") {
   }
 }
 
-TEST_CASE("the random numbers are uniform and do not follow each other") {
+TEST_CASE("random numbers are uniform and do not correlate") {
   const int n = 100000;
   double mean = 0., square = 0., next = 0., other = 0.;
   for (std::uint64_t i = 0; i < n; ++i) {
@@ -78,15 +78,15 @@ TEST_CASE("the random numbers are uniform and do not follow each other") {
     next += u * (uniform(7, 0, i + 1) - .5) / n;
     other += u * (uniform(7, 1, i) - .5) / n;
   }
-  // Four standard deviations of each mean: sqrt(1/12 n), sqrt(1/180 n), sqrt(1/144 n).
+  // Each bound is four standard deviations of a mean: sqrt(1/12 n), sqrt(1/180 n), sqrt(1/144 n).
   CHECK(std::fabs(mean) < 4. * std::sqrt(1. / 12. / n));
   CHECK(std::fabs(square - 1. / 12.) < 4. * std::sqrt(1. / 180. / n));
   CHECK(std::fabs(next) < 4. / 12. / std::sqrt(n));
   CHECK(std::fabs(other) < 4. / 12. / std::sqrt(n));
 }
 
-TEST_CASE("named spectra have the deviations that are published for their bands") {
-  // rail-data: standard deviations of the one-sided densities, four digits.
+TEST_CASE("named spectra have the published deviations in their bands") {
+  // rail-data gives standard deviations of the one-sided densities to four digits.
   CHECK(deviation(named("ore_low", Geometry::vertical), 3., 25.) == Approx(.984e-3).epsilon(1e-3));
   CHECK(deviation(named("ore_high", Geometry::vertical), 3., 25.) ==
         Approx(1.611e-3).epsilon(1e-3));
@@ -101,13 +101,13 @@ TEST_CASE("named spectra have the deviations that are published for their bands"
         Approx(8.2268e-3).epsilon(2e-3));
   CHECK(2. * kPi * named("ore_high", Geometry::alignment).at(.02) ==
         Approx(4.6657e-3).epsilon(2e-3));
-  // Of the cross level, far above all corners: 4 Av Wc2 / W4 of heights over 1.5 m.
+  // Far above all corners the cross level has 4 Av Wc2 / W4 of heights over 1.5 m.
   CHECK(named("ore_low", Geometry::cross_level).at(1e3) ==
         Approx(4. * 4.032e-7 * .8246 * .8246 / 1e12).epsilon(1e-5));
   CHECK(find_spectra("ore_middle") == nullptr);
 }
 
-TEST_CASE("a signal runs through its samples, twice differentiable, constant beyond its ends") {
+TEST_CASE("a signal passes its samples, is twice differentiable and is constant beyond its ends") {
   std::vector<double> samples;
   for (std::uint64_t k = 0; k < 40; ++k) samples.push_back(uniform(3, 0, k));
   for (const bool periodic : {false, true}) {
@@ -130,7 +130,7 @@ TEST_CASE("a signal runs through its samples, twice differentiable, constant bey
     }
     if (periodic) {
       CHECK(std::fabs(signal_at(model, 1.37).value - signal_at(model, 1.37 + 7e6 * 10.).value) <
-            1e-6);  // a place of 7e7 m is known to 1.5e-8
+            1e-6);  // a position of 7e7 m is known to 1.5e-8
     } else {
       CHECK(std::fabs(signal_at(model, -100.).value - samples.front()) < 1e-14);
       CHECK(std::fabs(signal_at(model, 1e9).value - samples.back()) < 1e-14);
@@ -139,7 +139,7 @@ TEST_CASE("a signal runs through its samples, twice differentiable, constant bey
   }
 }
 
-TEST_CASE("a wave's spline converges with the fourth order of the step") {
+TEST_CASE("the spline of a wave converges with the fourth order of the sample distance") {
   double before = 0.;
   for (const int n : {8, 16, 32, 64}) {
     const Signal signal = fit_signal(wave(n, 0.), 0., 1. / n, true);
@@ -153,7 +153,7 @@ TEST_CASE("a wave's spline converges with the fourth order of the step") {
   }
 }
 
-TEST_CASE("a mean over the contact patch leaves sin(x) / x of a wave") {
+TEST_CASE("a mean over the contact patch multiplies a wave by sin(x) / x") {
   const int n = 64;
   const double length = .3, x = kPi * length;
   const Signal mean = averaged(fit_signal(wave(n, .25), 0., 1. / n, true), length);
@@ -170,7 +170,8 @@ TEST_CASE("a mean over the contact patch leaves sin(x) / x of a wave") {
   CHECK(at(40.) == Approx(1e-3).epsilon(1e-12));
 }
 
-TEST_CASE("a generated signal has the spectrum asked for, wave by wave, and the band's variance") {
+TEST_CASE(
+    "a generated signal has the spectrum asked for in every wave, and the variance of the band") {
   GenerateOptions options;
   options.length = 200.;
   options.seed = 42;
@@ -181,7 +182,7 @@ TEST_CASE("a generated signal has the spectrum asked for, wave by wave, and the 
     const double step = 2. * kPi / options.length;
     for (const int n : {8, 9, 20, 41, 66}) {
       const double got = amplitude(signal, n);
-      // The spline's own error at 16 samples per shortest wave: 6e-5.
+      // The spline errs by 6e-5 at 16 samples per shortest wave.
       CHECK(got * got / (2. * step) == Approx(spectrum.at(n * step)).epsilon(2e-4));
     }
     CHECK(amplitude(signal, 7) < 1e-7);   // longer than 25 m
@@ -189,12 +190,12 @@ TEST_CASE("a generated signal has the spectrum asked for, wave by wave, and the 
     double square = 0.;
     const int samples = signal.model().intervals;
     for (const double z : sampled(signal, 0., signal.step, samples)) square += z * z / samples;
-    // Whole waves at both ends of the band: one more or less of 59.
+    // Whole waves fill the band: at both ends one more or less of 59.
     CHECK(std::sqrt(square) == Approx(deviation(spectrum, 3., 25.)).epsilon(.05));
   }
 }
 
-TEST_CASE("a generated signal is that of its seed and stream, and of no other") {
+TEST_CASE("a generated signal depends on its seed and its stream only") {
   const Spectrum& spectrum = named("fra_5", Geometry::alignment);
   GenerateOptions options;
   options.length = 100.;
@@ -217,7 +218,7 @@ TEST_CASE("a generated signal is that of its seed and stream, and of no other") 
   CHECK(std::fabs(correlation(generate(spectrum, options, 0))) < .7);
 }
 
-TEST_CASE("rails lie where the track's geometry says") {
+TEST_CASE("rails lie where the track geometry places them") {
   std::array<Signal, kGeometries> geometry;
   GenerateOptions options;
   options.length = 100.;
@@ -239,7 +240,7 @@ TEST_CASE("rails lie where the track's geometry says") {
   CHECK_THROWS_WITH(rails_of(geometry), "a track's geometries want the same places");
 }
 
-TEST_CASE("bands that hold no wave or ask for too much are refused") {
+TEST_CASE("bands without a whole wave, or with too many samples, are refused") {
   const Spectrum& spectrum = named("fra_5", Geometry::vertical);
   GenerateOptions options;
   options.shortest = 24.;
