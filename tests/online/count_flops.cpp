@@ -1,5 +1,5 @@
 // Steps a model file with a build of the online library in which every `double` counts its
-// arithmetic (counted/counted.h). Fails where a frame takes more than the model states.
+// arithmetic (counted/counted.h). Fails where a frame takes more flops than the model states.
 #include <string_view>
 
 #include "model_file.h"

@@ -1,6 +1,6 @@
 // Solves random ports, hard ones among them, with arithmetic that counts (counted/counted.h). Fails
-// where a solve takes more than rt_core/offline/cost states, where one with a W that has energy
-// does not converge, or if no other uses its whole cap.
+// if a solve takes more than rt_core/offline/cost states, if one with a definite W does not
+// converge, or if no other uses its whole cap.
 #include "offline/cost/cost.h"
 #include "online/contact/ports.h"
 
@@ -15,7 +15,7 @@ class Random {
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     return static_cast<double>(static_cast<std::int64_t>(state_ >> 11)) * 0x1p-53;
   }
-  /// Over some powers of ten, all alike.
+  /// A number from 10^from to 10^to; each power of ten is equally likely.
   double spread(int from, int to) {
     double x = 1. + 9. * next();
     for (int power = from + static_cast<int>(next() * (to - from)); power > 0; --power) x *= 10.;
@@ -31,7 +31,7 @@ struct Ports {
   PortLaw law[kPorts];
 };
 
-/// @param indefinite  W has no energy: most such solves use their whole cap
+/// @param indefinite  W is not positive definite: most such solves use their whole cap
 /// @param means       some contacts' laws are means over a step
 void fill(Random& random, int n, bool indefinite, bool means, Ports& ports) {
   for (int i = 0; i < n; ++i)
@@ -50,8 +50,8 @@ void fill(Random& random, int n, bool indefinite, bool means, Ports& ports) {
   }
 }
 
-/// The most of random solves. @param capped  counts those that use the whole cap
-/// @param lost  counts those with a W that has energy that do not converge
+/// The most flops of random solves. @param capped  counts those that use the whole cap
+/// @param lost  counts those with a definite W that do not converge
 std::int64_t most_flops(int n, bool means, int& capped, int& lost) {
   Random random;
   static Ports ports;

@@ -1,5 +1,5 @@
 #pragma once
-// A model file in memory with a state to step, for programs that need the online library alone.
+// A model file in memory with a state to step, for programs that need only the online library.
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -14,7 +14,7 @@ namespace railstep {
 
 class ModelFile {
  public:
-  /// Of what is no model file of this version `model` is null, and it says so.
+  /// If the file is not a model of this version, `model` is null and an error is printed.
   explicit ModelFile(const char* path) {
     std::ifstream file(path, std::ios::binary);
     const std::vector<char> content{std::istreambuf_iterator<char>(file), {}};
@@ -33,8 +33,8 @@ class ModelFile {
     reset(*model, state);
   }
 
-  /// Makes every guide and every system go on to its caps: nothing is near enough for them, and
-  /// Newton's matrix, where it is not kept, is made anew each time.
+  /// Makes every guide and every system iterate up to its cap: no tolerance can be met, and
+  /// Newton's matrix, unless it is kept, is built again in each iteration.
   void go_to_caps() {
     SystemModel& system = model->system;
     system.tolerance = system.joint_tolerance = -1.;

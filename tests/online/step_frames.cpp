@@ -1,5 +1,5 @@
-// Steps a model file and does nothing beside, so that a tool that counts what the calls of
-// advance_frame() execute sees frames alone.
+// Steps a model file and does nothing else, so that a tool that counts what the calls of
+// advance_frame() execute sees only frames.
 #include <cinttypes>
 #include <cstdlib>
 #include <string_view>
@@ -24,7 +24,7 @@ int main(int count, char** text) {
   ModelFile file(text[1]);
   if (file.model == nullptr) return 2;
   if (caps) file.go_to_caps();
-  use_kernels(&kBaseKernels);  // the instructions that a model states are theirs
+  use_kernels(&kBaseKernels);  // a model states the instructions of these kernels
   Outputs outputs{};
   for (long frame = 0; frame < frames; ++frame)
     (void)advance_frame(*file.model, file.state, file.workspace, outputs);

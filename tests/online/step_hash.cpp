@@ -1,6 +1,6 @@
-// Steps a model file, prints what it comes to, and makes sure that neither the host's
-// floating-point mode, nor what stood in the workspace, nor the kernels that the processor has
-// chosen have a part in it. Needs the online library alone, so that it runs wherever that does.
+// Steps a model file and prints the hashes of its state and outputs. They must depend neither on
+// the host's floating-point mode, nor on the workspace's old content, nor on the kernels that the
+// processor has chosen. Needs only the online library, so it runs wherever that does.
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
@@ -81,7 +81,7 @@ class Run {
   }
 
   void frame() {
-    // All bits set is a NaN, which no arithmetic made: the mode has no part in it.
+    // All bits set is a NaN that no arithmetic makes, so it is the same in every mode.
     if (!scratch_.empty()) std::memset(scratch_.data(), 0xff, sizeof(double) * scratch_.size());
     called(
         [&] { status_ = status_ | advance_frame(model_, input_, state_, workspace_, outputs_); });
@@ -144,7 +144,7 @@ class Run {
     }
   }
 
-  /// Of every wheel, flange and one-sided port, whether it bears a force.
+  /// Whether each wheel, flange and one-sided port bears a force.
   std::vector<bool> closed() const {
     std::vector<bool> bears;
     const auto add = [&bears](const double* force, std::int32_t count) {
@@ -170,7 +170,7 @@ class Run {
   bool kept_mode_ = true;
 };
 
-/// A file in whole words, so that the block in them is aligned; `bytes` of them count.
+/// A file in whole words, so that the block in them is aligned; `bytes` is the file's length.
 std::vector<std::int64_t> words_of(const char* path, std::size_t& bytes) {
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> content{std::istreambuf_iterator<char>(file), {}};
@@ -190,7 +190,7 @@ int fail(const char* path, const char* why) {
   return 1;
 }
 
-/// What a run must come to; empty: not known.
+/// Expected hashes of a run; an empty one is not checked.
 struct Wanted {
   const char *state, *outputs;
 };

@@ -40,7 +40,7 @@ std::string with(std::string model, std::size_t at, T value) {
   return model.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// A model whose sums are those of what it now holds.
+/// The model with checksums of its present content.
 std::string with_its_sums(std::string model) {
   const std::size_t from = header_of(good_model()).header_bytes;
   sha256(model.data() + from, model.size() - from,
@@ -49,7 +49,7 @@ std::string with_its_sums(std::string model) {
   return with(std::move(model), kCrcAt, std::uint64_t{header_crc(block, from)});
 }
 
-/// Both the run and the paced run refuse a model, where outputs stand.
+/// Checks that `run` and `hil` refuse a model and leave existing output files alone.
 void program_refuses(const std::string& model, const std::vector<std::string>& said) {
   const BadInput bad("model");
   const std::string file = bad.file("x.model", model);
@@ -59,7 +59,7 @@ void program_refuses(const std::string& model, const std::vector<std::string>& s
   bad.refused("hil " + file + " --rate 100 --duration 0.1" + bad.old("--report", "h.html"), all);
 }
 
-/// Of the C interface; where it refuses, no model is handed out.
+/// A model loaded by the C interface; checks that no model is handed out when it is refused.
 struct Loaded {
   std::int32_t result = -1;
   const railstep_model* model = nullptr;
@@ -67,7 +67,7 @@ struct Loaded {
   explicit Loaded(const std::string& bytes)
       : block(bytes.size() / 8 + 1), memory(railstep_model_bytes() / 8 + 1) {
     std::memcpy(block.data(), bytes.data(), bytes.size());
-    model = reinterpret_cast<const railstep_model*>(memory.data());  // must not be left
+    model = reinterpret_cast<const railstep_model*>(memory.data());  // a refusal clears this
     result =
         railstep_load(block.data(), bytes.size(), memory.data(), railstep_model_bytes(), &model);
     if ((result == RAILSTEP_OK) != (model != nullptr)) FAIL("a model is there where none is");
@@ -115,7 +115,7 @@ TEST_CASE("a model cut at any byte is refused", "[bad_input][cli]") {
   for (const std::size_t size : {0u, 1u, 7u}) program_refuses(good.substr(0, size), {});
 }
 
-TEST_CASE("a model with any bit turned over is refused", "[bad_input][cli]") {
+TEST_CASE("a model with any flipped bit is refused", "[bad_input][cli]") {
   const std::string& good = good_model();
   const std::size_t from = header_of(good).header_bytes;
   std::size_t bits = 0, refused = 0;
@@ -134,7 +134,7 @@ TEST_CASE("a model with any bit turned over is refused", "[bad_input][cli]") {
   program_refuses(bad, {"header does not match its CRC-32"});
 }
 
-TEST_CASE("counts whose product with a size wraps are refused, whatever the sums",
+TEST_CASE("counts whose product with a size overflows are refused even with right checksums",
           "[bad_input][cli]") {
   const std::string& good = good_model();
   const BlockHeader header = header_of(good);
@@ -152,7 +152,7 @@ TEST_CASE("counts whose product with a size wraps are refused, whatever the sums
     for (const std::int64_t value : wrapping) {
       const Loaded other(with_its_sums(with(good, header.section[kWords].at + 8 * i, value)));
       CAPTURE(i, value);
-      if (other.result == RAILSTEP_OK) {  // no count: the frames of a scene
+      if (other.result == RAILSTEP_OK) {  // not a count: the frames of a scene
         ++harmless;
         CHECK(railstep_run_bytes(other.model) == railstep_run_bytes(whole.model));
       } else {
@@ -170,7 +170,7 @@ TEST_CASE("counts whose product with a size wraps are refused, whatever the sums
                   {"not finite or out of its range"});
 }
 
-TEST_CASE("a model with bytes behind its end is refused", "[bad_input][cli]") {
+TEST_CASE("a model with bytes after its end is refused", "[bad_input][cli]") {
   for (const std::size_t more : {1u, 8u, 4096u}) {
     const std::string longer = good_model() + std::string(more, '\0');
     program_refuses(longer, {"cut short or run on"});
@@ -181,7 +181,7 @@ TEST_CASE("a model with bytes behind its end is refused", "[bad_input][cli]") {
   }
 }
 
-TEST_CASE("NaN in a matrix of a model is refused, whatever the sums", "[bad_input][cli]") {
+TEST_CASE("NaN in a matrix of a model is refused even with right checksums", "[bad_input][cli]") {
   const std::string& good = good_model();
   const BlockSection reals = header_of(good).section[kReals];
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -220,11 +220,11 @@ TEST_CASE("names, frames and costs of a model that no scene could have are refus
   std::string long_frames = with(good, of_steps, kMany);
   long_frames = with(long_frames, offsetof(BlockHeader, steps_per_frame), kMany);
   CHECK_FALSE(places(40).empty());
-  for (const std::size_t at : places(40))  // one of them is of the steps a frame
+  for (const std::size_t at : places(40))  // one of them holds the steps per frame
     program_refuses(with_its_sums(with(long_frames, at, kMany)), {"out of its range"});
 }
 
-TEST_CASE("memory that is misaligned or too small makes no model and no run", "[bad_input]") {
+TEST_CASE("memory that is misaligned or too small gives no model and no run", "[bad_input]") {
   const std::string& bytes = good_model();
   std::vector<double> block(bytes.size() / 8 + 2), memory(railstep_model_bytes() / 8 + 2);
   std::memcpy(block.data(), bytes.data(), bytes.size());
@@ -263,7 +263,8 @@ TEST_CASE("memory that is misaligned or too small makes no model and no run", "[
     CHECK(std::strlen(railstep_result_text(result)) > 5);
 }
 
-TEST_CASE("a recording that is cut, changed or none is refused", "[bad_input][cli]") {
+TEST_CASE("a recording that is cut or changed is refused, and so is a file that is not a recording",
+          "[bad_input][cli]") {
   const BadInput bad("recording");
   const std::string file = bad.path("good.rec");
   REQUIRE(railstep_program("run " + shipped("moving_load") + " --duration 0.01 --record " + file)

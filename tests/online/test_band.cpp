@@ -9,7 +9,7 @@
 #include "online/math/diagonals.h"
 #include "online/model/caps.h"
 
-// The reference answers are in long double on purpose; clang counts that as a promotion.
+// The references use long double on purpose; clang warns of these promotions.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 using namespace railstep;
@@ -71,14 +71,14 @@ TEST_CASE("the band solve is backward stable for every size and bandwidth", "[ba
         worst = std::max(worst, backward_error(A, got, b));
         worst_dense = std::max(worst_dense, backward_error(A, dense, b));
         for (std::size_t i = static_cast<std::size_t>(n); i < x.size(); ++i) CHECK(x[i] == 0.0);
-        // Both are backward stable, so they part by the condition of these matrices times a few
-        // eps: scaled by rows it is below 2/margin. Width + 8 products are summed per unknown.
+        // Both are backward stable, so they differ by a few eps times the condition of these
+        // matrices: scaled by rows it is below 2/margin. Width + 8 products are summed per unknown.
         const double scale = dense.cwiseAbs().maxCoeff();
         CHECK((got - dense).cwiseAbs().maxCoeff() <= 2e6 * (bandwidth + 8) * kEps * scale);
       }
   INFO("componentwise backward error / eps: band " << worst << ", Eigen LDLT " << worst_dense);
   // Higham, Accuracy and Stability, th. 9.3 for dominant matrices: a small multiple of the sums'
-  // length, at most (203 + 8); rounding errors do not line up, so that bound is loose.
+  // length, at most (203 + 8). Rounding errors do not all add up, so the bound is loose.
   CHECK(worst < 203 + 8);
 }
 
@@ -94,7 +94,7 @@ void check_bits(const BandFactor& factor, std::mt19937& random) {
   CHECK(std::memcmp(together.data(), alone.data(), together.size() * sizeof(double)) == 0);
 }
 
-TEST_CASE("several right-hand sides give the bits of one", "[band]") {
+TEST_CASE("several right-hand sides give the same bits as one", "[band]") {
   std::mt19937 random(2);
   for (int n : {8, 24, 96, 168})
     for (int bandwidth : {0, 5, 26, 60}) {
@@ -105,7 +105,8 @@ TEST_CASE("several right-hand sides give the bits of one", "[band]") {
     }
 }
 
-TEST_CASE("a matrix that is not positive definite is refused by its unknown", "[band]") {
+TEST_CASE("a matrix that is not positive definite is refused with the number of its unknown",
+          "[band]") {
   Eigen::MatrixXd A = Eigen::MatrixXd::Identity(20, 20);
   A(13, 13) = -1.0;
   CHECK_THROWS_WITH(factor_band(A.sparseView()), Catch::Contains("unknown 13"));
@@ -129,7 +130,8 @@ TEST_CASE("the dot product adds eight partial sums in the written order", "[dens
   }
 }
 
-TEST_CASE("the small solve is exact to rounding and refuses what is not positive", "[dense]") {
+TEST_CASE("the small solve is exact to rounding and refuses a matrix that is not positive definite",
+          "[dense]") {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (int n = 0; n <= kPorts; ++n) {

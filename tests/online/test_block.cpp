@@ -10,7 +10,8 @@
 
 using namespace railstep;
 
-TEST_CASE("every flipped bit of a block is refused, in the header as what it is", "[block]") {
+TEST_CASE("every flipped bit of a block is refused; in the header the error names the field",
+          "[block]") {
   const Block good = smallest_block();
   const std::size_t payload = payload_of(good);
   const auto expected = [payload](std::size_t byte) {
@@ -43,7 +44,9 @@ TEST_CASE("a block of the other byte order is refused as such", "[block]") {
   CHECK(status_of(other) == LoadStatus::other_byte_order);
 }
 
-TEST_CASE("a block cut short or run on is refused, signed anew or not", "[block]") {
+TEST_CASE(
+    "a block that is too short or too long is refused, with its old checksums and with new ones",
+    "[block]") {
   const Block good = smallest_block();
   for (std::size_t size = 0; size < good.size(); ++size) {
     Block cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
@@ -63,7 +66,7 @@ TEST_CASE("a block cut short or run on is refused, signed anew or not", "[block]
   }
 }
 
-TEST_CASE("a header states what its payload says, or is refused though its sums are right",
+TEST_CASE("a header that contradicts its payload is refused although its checksums are right",
           "[block]") {
   const Block good = small_block(true, true);
   const BlockHeader stated = header_of(good.data());
@@ -122,7 +125,8 @@ bool same_bits(const Model& model) {
 
 }  // namespace
 
-TEST_CASE("what a step came to where a block was written is checked where it is read", "[block]") {
+TEST_CASE("a reader checks that its steps have the bits of the steps where the block was written",
+          "[block]") {
   for (const bool modal : {false, true}) {
     const Block good = small_block(modal, true);
     const auto same = [](const Block& block) {
@@ -131,7 +135,7 @@ TEST_CASE("what a step came to where a block was written is checked where it is 
       return same_bits(model);
     };
     CHECK(same(good));
-    Block other = good;  // a number of the check, in its last bit
+    Block other = good;  // the last bit of a number of the check
     other[section_at(other, kCheck) + 8] ^= std::byte{1};
     sign(other);
     CHECK_FALSE(same(other));
@@ -141,7 +145,7 @@ TEST_CASE("what a step came to where a block was written is checked where it is 
     std::memcpy(other.data(), &header, sizeof header);
     sign(other);
     CHECK_FALSE(same(other));
-    Model model;  // arithmetic that rounds otherwise
+    Model model;  // stands for arithmetic that rounds differently
     REQUIRE(read(good, model).status == LoadStatus::ok);
     model.scheme.dt = std::nextafter(model.scheme.dt, 1.);
     CHECK_FALSE(same_bits(model));

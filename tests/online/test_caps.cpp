@@ -1,5 +1,5 @@
-// What a model may hold: each kind at its cap, by a second way to the same numbers, and one beyond
-// it.
+// Caps of a model: each kind is tested at its cap against a second way to the same numbers, and one
+// more is refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -22,7 +22,7 @@ Track two_rails(int bays) {
   return t;
 }
 
-/// Of some runs of one kind, the state after some steps.
+/// Displacements of a track and its traffic some steps after rest.
 std::vector<double> moved(const Track& track, const Traffic& traffic, int steps = 20) {
   PackOptions options = full_order(1e-3);
   ModelRun run = from_rest(track, traffic, options);
@@ -69,7 +69,7 @@ Traffic bogies(int count) {
 
 }  // namespace
 
-TEST_CASE("as many loads as there may be are the sum of their forces", "[caps]") {
+TEST_CASE("loads up to their cap act as the sum of their forces", "[caps]") {
   const Track track = two_rails(20);
   Traffic many, few;
   for (int i = 0; i < kMaxLoads; ++i)
@@ -83,7 +83,7 @@ TEST_CASE("as many loads as there may be are the sum of their forces", "[caps]")
   refused(track, many, "more than 32 loads");
 }
 
-TEST_CASE("as many irregularities as there may be are their sum", "[caps]") {
+TEST_CASE("irregularities up to their cap act as their sum", "[caps]") {
   const Track track = two_rails(30);
   Traffic many = bogies(4), few = many;
   constexpr int kOfARail = kMaxSignals / 2;
@@ -92,12 +92,12 @@ TEST_CASE("as many irregularities as there may be are their sum", "[caps]") {
   for (int rail : {0, 1}) few.irregularities.push_back({rail, 2, dip(2e-3)});
   const std::vector<double> want = moved(track, few);
   CHECK(apart(moved(track, many), want) <= 1e-10 * largest(want));
-  CHECK(apart(moved(track, bogies(4)), want) > 1e-3 * largest(want));  // the dip is felt
+  CHECK(apart(moved(track, bogies(4)), want) > 1e-3 * largest(want));  // the dip has an effect
   many.irregularities.push_back(many.irregularities[0]);
   refused(track, many, "more than 32 irregularities");
 }
 
-TEST_CASE("as many forces on a body as there may be are their sum", "[caps]") {
+TEST_CASE("forces on a body up to their cap act as their sum", "[caps]") {
   const Track track = two_rails(20);
   Traffic many = bogies(2), few = many;
   for (RunningVehicle& v : many.vehicles)
@@ -149,9 +149,9 @@ TEST_CASE("heights at which vertical forces act are counted rail by rail", "[cap
   refused(track, traffic, "more than 4 heights");
 }
 
-TEST_CASE("a track may fall into as many lines as a model has room for", "[caps]") {
-  // Under gravity each sleeper without pads is a line, twice in mirror coordinates, beside the
-  // rails.
+TEST_CASE("a track may split into as many lines as a model has room for", "[caps]") {
+  // Under gravity each sleeper without pads is a line, two in mirror coordinates; the rails are
+  // further lines.
   const auto hanging = [](int count) {
     Track t = s1_track(24, 1);
     t.unknowns = Unknowns::vertical;
@@ -172,7 +172,7 @@ TEST_CASE("a track may fall into as many lines as a model has room for", "[caps]
   CHECK_THROWS_WITH(hanging(count), Contains("too many lines"));
 }
 
-TEST_CASE("as many external wheels and inputs as there may be act as each by itself", "[caps]") {
+TEST_CASE("external wheels and inputs up to their caps act as the sum of each alone", "[caps]") {
   const Track track = two_rails(20);
   const auto displacement = [&](int pressing) {
     Traffic traffic;
@@ -209,8 +209,8 @@ TEST_CASE("as many external wheels and inputs as there may be act as each by its
   refused(track, more, "more than 96 inputs");
 }
 
-TEST_CASE("as many bodies and rows as there may be move as a pendulum by itself", "[caps]") {
-  // Planar pendulums, two rows each, of lengths that differ; a body without a joint falls.
+TEST_CASE("bodies and rows up to their caps move as each pendulum does alone", "[caps]") {
+  // Planar pendulums of different lengths, two rows each; a body without a joint falls.
   const auto pendulum = [](int i, std::vector<RigidBody>& bodies, std::vector<Joint>& joints) {
     const double length = .5 + .01 * i;
     RigidBody rod{.mass = 2., .position = {3. * i + length, 0., 0.}};

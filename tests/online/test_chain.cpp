@@ -18,7 +18,7 @@ using LongMatrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
 constexpr double kLength = .6;       // m, of an element
 constexpr double kMassFactor = 4e6;  // 4 / dt2 of the midpoint rule, dt 1 ms
 
-/// The spatial unknown of each.
+/// Number of the spatial unknown that is unknown i of the chain.
 template <int W>
 int spatial_of(int i) {
   return W == 9 ? i : i / W * 9 + kPlanarOf[i % W];
@@ -69,7 +69,7 @@ struct Case {
                                                    force.data(), tangents.data());
   }
 
-  /// k K + m M, held rows and columns those of the identity.
+  /// k K + m M, with rows and columns of the identity at held unknowns.
   Eigen::MatrixXd dense(double mass_factor, double k_factor) const {
     Eigen::MatrixXd S = k_factor * K + mass_factor * M;
     for (const std::int32_t h : held) {
@@ -80,7 +80,7 @@ struct Case {
     return S;
   }
 
-  /// Factor of k K + m M, a canary behind it checked.
+  /// Factor of k K + m M; also checks that nothing is written behind it.
   std::vector<double> factor(double mass_factor, double k_factor, int& bad) {
     std::vector<double> found(static_cast<std::size_t>(chain_factor_doubles<W>(chain.elements)) + 1,
                               std::numeric_limits<double>::quiet_NaN());
@@ -103,7 +103,7 @@ template <int W>
 void check_solution(Case<W> c, double k_factor) {
   const Eigen::MatrixXd S = c.dense(kMassFactor, k_factor);
   const Eigen::Index size = S.rows();
-  // Scaled to a unit diagonal, so that metres and slopes compare.
+  // Scaled to a unit diagonal, so that metres and slopes can be compared.
   const Eigen::VectorXd scale = S.diagonal().cwiseSqrt();
   Eigen::MatrixXd b = Eigen::Map<const Eigen::Matrix<double, kChainSides, Eigen::Dynamic>>(
                           random_sides(size, 3).data(), kChainSides, size)
@@ -144,13 +144,13 @@ void check_solution(Case<W> c, double k_factor) {
   const auto error =
       static_cast<double>((y - want).cwiseAbs().maxCoeff() / want.cwiseAbs().maxCoeff());
   INFO("condition " << condition << " residual " << residual << " error " << error);
-  // A backward error of 1.1e-16 for each of the some 27 terms of a row and those of the factor's
-  // rows behind it (Higham, theorem 10.4: at most 4 * 27 of them); errors the condition above it.
+  // The backward error is 1.1e-16 for each of some 27 terms of a row and for those of the factor's
+  // rows behind it (Higham, theorem 10.4: at most 4 * 27). The error is larger by the condition.
   CHECK(residual <= 27. * 1.2e-16);
   CHECK(error <= condition * 27. * 1.2e-16);
 }
 
-/// Clamped at the start, pinned at the end, one unknown of a mid and one of an inner end node held.
+/// Clamped start, pinned end, and one held unknown of a mid node and of an inner end node.
 template <int W>
 std::vector<std::int32_t> held_somewhere(int n) {
   std::vector<std::int32_t> held;
@@ -162,7 +162,7 @@ std::vector<std::int32_t> held_somewhere(int n) {
   return held;
 }
 
-/// Eigenvalues below 0, by a route of its own.
+/// Number of eigenvalues below 0, without the chain's own functions.
 int negative(const Eigen::MatrixXd& S) {
   const Eigen::VectorXd scale = S.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
   const Eigen::VectorXd values =
@@ -175,7 +175,8 @@ int negative(const Eigen::MatrixXd& S) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE_SIG("a chain's solution is the dense one", "[chain]", ((int W), W), 9, 5) {
+TEMPLATE_TEST_CASE_SIG("a chain's solution is that of the dense matrix", "[chain]", ((int W), W), 9,
+                       5) {
   const double k_factor = GENERATE(1., .5);
   for (int n = 1; n <= 9; ++n) {
     INFO(n << " elements");
@@ -184,7 +185,7 @@ TEMPLATE_TEST_CASE_SIG("a chain's solution is the dense one", "[chain]", ((int W
   }
 }
 
-TEMPLATE_TEST_CASE_SIG("without stiffness the chain's factor is the mass's", "[chain]",
+TEMPLATE_TEST_CASE_SIG("without stiffness the chain's factor is that of the mass matrix", "[chain]",
                        ((int W), W), 9, 5) {
   for (const int n : {1, 4, 6}) check_solution(Case<W>(n, -.085, 1e-3), 0.);
 }
@@ -204,17 +205,17 @@ TEMPLATE_TEST_CASE_SIG("a chain's inertia is that of the element's mass matrix",
       const Eigen::VectorXd want = force + c.M * g;
       const Eigen::VectorXd size_of = force.cwiseAbs() + c.M.cwiseAbs() * g.cwiseAbs();
       chain_inertia<W>(c.chain, g.data(), force.data());
-      // Round-off of ten operations on what is summed, in each row by itself.
+      // Round-off of ten operations relative to the summed terms of each row.
       for (Eigen::Index i = 0; i < size; ++i)
         CHECK(std::abs(force[i] - want[i]) <= 1e-15 * size_of[i]);
     }
 }
 
-TEMPLATE_TEST_CASE_SIG("pivots that are not positive are as many as negative eigenvalues",
+TEMPLATE_TEST_CASE_SIG("the number of pivots that are not positive is that of negative eigenvalues",
                        "[chain]", ((int W), W), 9, 5) {
   for (const int n : {1, 2, 3, 4, 7}) {
     for (const double mass_factor : {0., 1e3, 1e6, 4e6}) {
-      // Pressed by a tenth of E A: buckled in many ways, fewer the more mass holds it.
+      // Compressed by a tenth of E A: many modes have buckled, fewer with more mass.
       Case<W> c(n, 0., 1e-3, held_somewhere<W>(n), -1.8e8);
       const int want = negative(c.dense(mass_factor, .5));
       int bad = -1;
@@ -252,6 +253,6 @@ TEST_CASE("the chain's bits are the same everywhere", "[chain]") {
   };
   take(std::integral_constant<int, 9>{});
   take(std::integral_constant<int, 5>{});
-  // Stored from g++ 12, -O3, SSE2; equal for every compiler, level and vector width that was tried.
+  // Stored from g++ 12, -O3, SSE2; equal for every compiler, level and vector width tried.
   CHECK(bits == 0xf1aea3d8508929e0ULL);
 }

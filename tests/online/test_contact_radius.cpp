@@ -1,4 +1,4 @@
-// The coupled step of a wheel on a linearised contact over a track on pads: its spectral radius.
+// Spectral radius of the coupled step of a wheel on a linearised contact over a track on pads.
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -39,9 +39,8 @@ const Offered kOffered[] = {
     {"held 1", [](double dt) { return held_contact(dt, 1.); }},
     {"held 0.6, 3 modes", [](double dt) { return held_contact(dt, .6, 3); }}};  // H30
 
-/// Rail and wheel as one mass each, (m, pad, wheel on contact): forces on both but that of the
-/// contact are in the matrix, that one goes linearly from its value at the step's start to that at
-/// its end.
+/// Rail and wheel are one mass each, the rail stands on a pad. All forces but the contact's are in
+/// the matrix; the contact's force is linear between its values at the step's start and end.
 double radius_of_linear_hold(double rail, double pad, double damping, double dt) {
   MatrixXd A = MatrixXd::Zero(6, 6);  // rail u v, wheel u v, force, its rate
   A(0, 1) = A(2, 3) = A(4, 5) = 1.;
@@ -61,10 +60,11 @@ double radius_of_linear_hold(double rail, double pad, double damping, double dt)
 
 }  // namespace
 
-TEST_CASE("no scheme that is offered with contact lets a wheel on its pads grow", "[contact]") {
-  // A step's rounding is 1e-12 of its numbers (condition 1e4 of what is solved). Undamped schemes
-  // have double roots at -1 of what is far above the step, which it parts by its root, 1e-6, and a
-  // factor; with rho_inf = 1 their own third one comes to these: the cube root, 1e-4.
+TEST_CASE("no scheme offered with contact lets the motion of a wheel over its pads grow",
+          "[contact]") {
+  // A step rounds to 1e-12 of its numbers (condition 1e4). In undamped schemes motions far faster
+  // than the step have double roots at -1, which rounding splits by its root, 1e-6, and a factor.
+  // With rho_inf = 1 the scheme's own third root joins them: the cube root, 1e-4.
   for (const Offered& own : kOffered) {
     const double rounding = own.name == "generalised-alpha 1" ? 1e-4 : 1e-5;
     for (const PadCase& pad : pads())
@@ -75,10 +75,11 @@ TEST_CASE("no scheme that is offered with contact lets a wheel on its pads grow"
   }
 }
 
-TEST_CASE("a contact force that is linear over an exact step grows at a millisecond", "[contact]") {
-  // design.md section 6: up to 1.28 at 1 ms. Of the wheel against a rail without mass the step is
-  // the linear acceleration method's (Newmark, beta = 1/6): stable up to omega dt = sqrt 12, 1.6 ms
-  // at sqrt(k/m) = 2.2e3 1/s; the rail's own mass takes that down to its share.
+TEST_CASE("motion under a contact force that is linear over an exact step grows at 1 ms",
+          "[contact]") {
+  // The design expects up to 1.28 at 1 ms. On a massless rail the wheel's step is the linear
+  // acceleration method (Newmark, beta = 1/6), stable up to omega dt = sqrt 12: 1.6 ms at sqrt(k/m)
+  // = 2.2e3 1/s. The mass of the rail lowers this limit.
   double worst = 0.;
   for (const double pad : {1e7, 1e8, 1e9})
     worst = std::max(worst, radius_of_linear_hold(40., pad, 3e4, 1e-3));

@@ -31,7 +31,7 @@ std::int64_t subnormals(const double* from, std::int64_t count) {
   return found;
 }
 
-/// Numbers below the size at which a state's end.
+/// Count of numbers that a state should have set to 0, as they are below kTiny.
 std::int64_t tiny(const double* from, std::int64_t count) {
   std::int64_t found = 0;
   for (std::int64_t i = 0; i < count; ++i)
@@ -47,10 +47,10 @@ double largest(const double* from, std::int64_t count) {
 
 /// Steps a scene on for kSteps after its loads are gone.
 struct Decayed {
-  std::int64_t subnormal = 0;  // numbers, of state and workspace after any step
-  std::int64_t tiny = 0;       // of the state after any step
+  std::int64_t subnormal = 0;  // numbers of state and workspace, summed over steps
+  std::int64_t tiny = 0;       // numbers of the state, summed over steps
   double before = 0., after = 0.;
-  std::int64_t zero_from = -1;  // the step from which on all of the state is 0
+  std::int64_t zero_from = -1;  // the step from which the whole state is 0
 };
 Decayed decayed(const std::string& name, const std::vector<std::string>& overrides) {
   const auto run = simulation_of(
@@ -78,7 +78,7 @@ Decayed decayed(const std::string& name, const std::vector<std::string>& overrid
 
 }  // namespace
 
-TEST_CASE("the bits of a subnormal are seen", "[decay]") {
+TEST_CASE("the bits of a subnormal number are recognised", "[decay]") {
   CHECK(is_subnormal(1e-310));
   CHECK(is_subnormal(-5e-324));
   CHECK_FALSE(is_subnormal(0.));
@@ -86,8 +86,8 @@ TEST_CASE("the bits of a subnormal are seen", "[decay]") {
   CHECK_FALSE(is_subnormal(2.3e-308));
 }
 
-TEST_CASE("a track without load comes to rest through no subnormal number", "[decay]") {
-  // A force that ends after 10 steps of 1 ms; then nothing but dampers.
+TEST_CASE("a track without load comes to rest without a subnormal number", "[decay]") {
+  // The force ends after 10 steps of 1 ms; from then on dampers alone act.
   const std::string gone =
       "load=[{name=\"a\", rail=\"left\", start_m=4.5, speed_m_per_s=0, "
       "force_z_n=-50e3, table=[[0, 1], [0.0099, 1], [0.01, 0]]}]";

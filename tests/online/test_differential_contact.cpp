@@ -1,4 +1,4 @@
-// The coupled contact solve against bisection in long double.
+// Compares the coupled contact solve with bisection in long double.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,7 +8,7 @@
 #include "online/contact/ports.h"
 #include "support/random_draw.h"
 
-// Doubles are wanted in long double arithmetic here.
+// Doubles enter long double arithmetic here on purpose.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 using namespace railstep;
@@ -20,8 +20,8 @@ using Real = long double;
 Real energy(Real C, Real d) { return d > 0.L ? .4L * C * d * d * std::sqrt(d) : 0.L; }
 Real hertz(Real C, Real d) { return d > 0.L ? C * d * std::sqrt(d) : 0.L; }
 
-/// The mean of Hertz's law between two depths: of near ones by Gauss's five points, whose error is
-/// 1e-18 of it where they part by a tenth.
+/// Mean of Hertz's law between two depths. Where the depths differ by less than a tenth, Gauss's
+/// five points give it with a relative error of 1e-18.
 Real mean_of(Real C, Real d, Real e) {
   const Real way = d - e;
   if (std::fabs(way) > .1L * std::fmax(std::fabs(d), std::fabs(e)))
@@ -47,7 +47,7 @@ Real force_of(const PortLaw& law, Real d) {
   return std::fmax(0.L, law.slope * d + law.jump * part);
 }
 
-/// d + w f(d) = free, by halving: f rises, so that d lies between free and free - w f(free).
+/// Solves d + w f(d) = free by halving: f rises, so d lies between free and free - w f(free).
 Real depth_by_bisection(const PortLaw& law, Real w, Real free) {
   const Real there = free - w * force_of(law, free);
   Real low = std::fmin(free, there), high = std::fmax(free, there);
@@ -63,7 +63,7 @@ struct Problem {
   int n;
   std::vector<double> W, free, start;
   std::vector<PortLaw> law;
-  double condition, least;  // of W's eigenvalues: largest over least, and the least, m/N
+  double condition, least;  // largest eigenvalue of W over the least; the least, m/N
 };
 
 PortLaw random_law(Draw& draw) {
@@ -81,7 +81,7 @@ PortLaw random_law(Draw& draw) {
   return law;
 }
 
-/// Compliances of one size and angles between them: A A' of a random A, and a part of the diagonal.
+/// Random ports; W is A A' of a random A plus a part of the identity, times a random size.
 Problem random_problem(Draw& draw, int n) {
   Problem p{n, {}, {}, {}, {}, 1., 0.};
   const double size = draw.of_any_size(1e-12, 1e-6), own = draw.of_any_size(1e-2, 1.);
@@ -101,17 +101,17 @@ Problem random_problem(Draw& draw, int n) {
   return p;
 }
 
-/// What the solve and the slow way each leave, m.
+/// Results of the solve and of the slow way.
 struct Found {
   PortResult result;
   std::vector<double> f, d;
   std::vector<Real> slow_f, slow_d;
-  Real left;   // by the slow way
-  Real scale;  // the largest |free| + sum |W| f, which kPortTolerance is of
+  Real left;   // last change of the slow way, m
+  Real scale;  // largest |free| + sum |W| f; kPortTolerance is relative to it
 };
 
-/// Port after port by bisection under the others' forces, till nothing moves: descent of a convex
-/// function along its coordinates.
+/// The slow way solves port after port by bisection under the others' forces until nothing moves.
+/// It descends a convex function along its coordinates.
 Found solve_both_ways(const Problem& p) {
   const auto n = static_cast<std::size_t>(p.n);
   Found x{
@@ -139,8 +139,8 @@ Found solve_both_ways(const Problem& p) {
   return x;
 }
 
-/// What is left of d + W f = free at the answer: of the scale that the solve works to, or where it
-/// says that it has not come so far what it says; twice that for the sums' own round-off.
+/// Bound of the residual of d + W f = free: the tolerance of the solve, or what the solve reports
+/// if that is larger; twice that for the sums' own round-off.
 Real left_by(const Found& x) {
   const Real wanted = static_cast<Real>(kPortTolerance) * x.scale;
   return 2.L * std::fmax(wanted, static_cast<Real>(x.result.residual));
@@ -161,9 +161,9 @@ Real round_off(const Problem& p, const Found& x) {
 
 }  // namespace
 
-TEST_CASE("one port's solve is what bisection finds", "[differential][contact]") {
-  // Of d + w f = free, f rising, d errs by no more than what is left, and w f by no more. The solve
-  // comes to 1e-12 of |free| + w f, or to the round-off of a law whose terms cancel.
+TEST_CASE("one port's solve agrees with bisection", "[differential][contact]") {
+  // f rises in d + w f = free, so neither d nor w f errs by more than the residual. The solve
+  // reaches 1e-12 of |free| + w f, or the round-off of a law whose terms cancel.
   double worst = 0.;
   int capped = 0;
   for (std::uint64_t seed = 1; seed <= 20000; ++seed) {
@@ -182,10 +182,11 @@ TEST_CASE("one port's solve is what bisection finds", "[differential][contact]")
   CHECK(capped == 0);
 }
 
-TEST_CASE("coupled ports' solve is what bisection of one after the other finds",
+TEST_CASE("the solve of coupled ports agrees with bisection of one port after the other",
           "[differential][contact]") {
-  // With r left of d + W f = free and laws that rise, df' W df <= df' r: |df| <= |r| / least of W's
-  // values, and |dd| <= |r| (1 + condition of W), |r| being sqrt n times the largest or less.
+  // With the residual r of d + W f = free and laws that rise, df' W df <= df' r. So |df| <= |r| /
+  // least eigenvalue of W and |dd| <= |r| (1 + condition of W); |r| is at most sqrt n times its
+  // largest entry.
   double worst = 0., slowest = 0.;
   int capped = 0, capped_means = 0, means = 0;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
@@ -198,7 +199,7 @@ TEST_CASE("coupled ports' solve is what bisection of one after the other finds",
     if (x.result.status != PortStatus::converged && x.result.residual > 4.L * round_off(p, x))
       ++(mean ? capped_means : capped);
     const Real bound = std::sqrt(static_cast<Real>(p.n)) * (1.L + p.condition) * left_by(x);
-    Real off = 0.L;  // forces by what they are of the bound on them
+    Real off = 0.L;  // forces are scaled so that depths and forces share one bound
     for (std::size_t i = 0; i < x.d.size(); ++i) {
       off = std::fmax(off, std::fabs(x.d[i] - x.slow_d[i]));
       off = std::fmax(off, std::fabs(x.f[i] - x.slow_f[i]) * p.least * (1.L + p.condition));
@@ -210,9 +211,9 @@ TEST_CASE("coupled ports' solve is what bisection of one after the other finds",
   }
   CAPTURE(worst, slowest, capped, capped_means, means);
   CHECK(slowest < 1e-15);
-  // ports.cpp found one of 9600 without means that its eight iterations did not solve.
+  // Eight iterations do not solve one of 9600 cases without means, as ports.cpp says.
   CHECK(capped <= 1);
-  // Newton on coupled means is not made global: some of these, whose stiffnesses over compliances
-  // spread over ten decades, stay unsolved and say so.
+  // Newton's method is not globalised for coupled means. Some cases, whose stiffnesses over
+  // compliances spread over ten decades, stay unsolved and are reported so.
   CHECK(20 * capped_means < means);
 }

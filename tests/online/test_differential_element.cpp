@@ -1,5 +1,6 @@
-// The nonlinear element's force and tangent at large turns and strains against the complex step of
-// its energy in long double, every rule; the fast straight kernels and the plane too.
+// Compares the nonlinear element's force and tangent at large rotations and strains with the
+// complex step of its energy in long double: every rule, the fast straight kernels, the planar
+// ones.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -39,8 +40,8 @@ Nodes complex_nodes(const Vector27& q) {
   return to;
 }
 
-/// K w, by five-point differences of the complex step's force: exact, as it is cubic in q, but for
-/// what a step of 1/64 leaves of long double's round-off, 1e-17 of K.
+/// K w by five-point differences of the complex step's force. These are exact, as the force is
+/// cubic in q, except for long double's round-off, 1e-17 of K with a step of 1/64.
 std::array<Real, 27> tangent_along(const NaiveElement& naive, const Vector27& q,
                                    const Vector27& w) {
   const Real h = 1.L / 64.L;
@@ -90,12 +91,12 @@ Kernel planar(const BeamLaw& law, const Vector27& q) {
   return k;
 }
 
-/// What force and tangent are off, over what they may be.
+/// Errors of force and tangent, each over its bound.
 ///
-/// A product of the axis' vectors errs by eps times r' = sum N' r of terms up to 5/m of 1 m, a few
-/// times; a stress by C times that, a force by that times five terms of N' V. With K = C N'^2 V^2
-/// and N' up to 5/m that is 100 eps of K's largest entry times 1 m, and of each entry of K twice as
-/// much.
+/// A product of the axis' vectors errs by a few times eps r', where r' = sum N' r has terms up to
+/// 5/m of 1 m. A stress errs by C times that, a force by five terms of N' V times that. With K = C
+/// N'^2 V^2 and N' up to 5/m this is 100 eps of K's largest entry times 1 m. Each entry of K errs
+/// by twice as much.
 struct Off {
   double force, tangent, strain_energy;
 };
@@ -145,17 +146,19 @@ void compare(std::uint64_t first, int states, bool two_points, bool flat, const 
 
 }  // namespace
 
-TEST_CASE("force and tangent of every rule are the slopes of the energy in words",
+TEST_CASE("force and tangent of every rule are the derivatives of the energy as it is defined",
           "[differential][beam]") {
   compare(1, 600, false, false, general);
 }
 
-TEST_CASE("the straight kernel's force and tangent are the slopes of the energy in words",
-          "[differential][beam]") {
+TEST_CASE(
+    "the straight kernel's force and tangent are the derivatives of the energy as it is defined",
+    "[differential][beam]") {
   compare(1001, 300, true, false, straight);
 }
 
-TEST_CASE("the planar kernel's force and tangent are the slopes of the energy in words",
-          "[differential][planar]") {
+TEST_CASE(
+    "the planar kernel's force and tangent are the derivatives of the energy as it is defined",
+    "[differential][planar]") {
   compare(2001, 300, true, true, planar);
 }

@@ -26,7 +26,8 @@ constexpr double kSmallest = std::numeric_limits<double>::min();
 
 }  // namespace
 
-TEST_CASE("inside the guard subnormal results and operands are zero, outside not", "[float]") {
+TEST_CASE("inside the guard subnormal results and operands are zero, outside they are not",
+          "[float]") {
   const double subnormal = kSmallest / 4.0;
   CHECK(multiply(kSmallest, 0.5) > 0.0);
   double result = 1.0, operand = 1.0;
@@ -41,7 +42,7 @@ TEST_CASE("inside the guard subnormal results and operands are zero, outside not
   CHECK(multiply(subnormal, 0x1p60) > 0.0);
 }
 
-TEST_CASE("inside the guard sums round to nearest, then as the caller wants again", "[float]") {
+TEST_CASE("inside the guard sums round to nearest, after it as the caller chose", "[float]") {
   REQUIRE(fesetround(FE_UPWARD) == 0);
   const auto word = FloatMode::read();
   const double before = add(1.0, 0x1p-60);
@@ -56,13 +57,13 @@ TEST_CASE("inside the guard sums round to nearest, then as the caller wants agai
   CHECK(before > 1.0);
   CHECK(inside == 1.0);
   CHECK(after == before);
-  // The caller's own word, but for the sticky flags its own sum raised before it was read.
+  // The caller's own word, except for sticky flags that its own sum raised before it was read.
   CHECK((restored | 0x3fu) == (word | 0x3fu));
 }
 
 TEST_CASE(
-    "inside the guard nothing traps, however the caller traps, nor does it raise the caller's "
-    "flags",
+    "inside the guard nothing traps even if the caller traps, and the caller's flags stay as they "
+    "were",
     "[float]") {
   feclearexcept(FE_ALL_EXCEPT);
   if (feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) == -1) return;  // no traps here
@@ -78,7 +79,7 @@ TEST_CASE(
   CHECK(restored == word);
 }
 
-TEST_CASE("inside the guard the word is the same, whatever the caller's", "[float]") {
+TEST_CASE("inside the guard the control word is the same, whatever the caller's is", "[float]") {
   FloatMode::Word usual;
   {
     const FloatMode guard;

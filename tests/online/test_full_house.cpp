@@ -1,5 +1,5 @@
-// Every place at the contacts taken: wheels, hanging sleepers and loads up to their caps, each step
-// against a dense one in long double.
+// Models with all contacts in use: wheels, hanging sleepers and loads up to their caps. Each step
+// is compared with a dense one in long double.
 #include <catch2/catch.hpp>
 
 #include "support/flanged.h"
@@ -9,7 +9,7 @@ using namespace railstep;
 
 namespace {
 
-/// Largest differences of a step over the largest of its kind.
+/// Largest differences, each over the largest value of its kind.
 struct Difference {
   double force = 0., displacement = 0.;
   Status seen = Status::ok;
@@ -17,7 +17,7 @@ struct Difference {
   double peak = 0.;  // N
 };
 
-/// Steps a house; each step of the reference starts where the run stands.
+/// Steps both; each step of the reference starts from the run's present state.
 Difference compared(const House& house, double dt, int steps) {
   PackOptions options{.scheme = newmark(dt), .residual_flexibility = false};
   ModelRun run(house.track, house.traffic, options);
@@ -50,7 +50,8 @@ Difference compared(const House& house, double dt, int steps) {
 
 }  // namespace
 
-TEST_CASE("a full house is stepped as by a dense solve in long double", "[full house]") {
+TEST_CASE("a model with all contacts in use agrees with a dense solve in long double",
+          "[full house]") {
   struct Case {
     int wheels, hanging, loads;
   };
@@ -64,16 +65,16 @@ TEST_CASE("a full house is stepped as by a dense solve in long double", "[full h
   CHECK(found.unsolved == 0);
   CHECK(!has(found.seen, Status::cap_reached));
   CHECK(!has(found.seen, Status::contact_ill_posed));
-  // The solve of the contacts leaves 1e-12 of their depths, whose forces rise as d^1.5 at most; the
-  // 20 steps of 5e-5 s, whose depths are smallest beside the motion, are off by 2.5e-12.
+  // The contact solve leaves 1e-12 of its depths, and forces rise as d^1.5 at most. The 20 steps of
+  // 5e-5 s are off by 2.5e-12: their depths are smallest beside the motion.
   CHECK(found.force < 1e-11);
   CHECK(found.displacement < 1e-13);
 }
 
 namespace {
 
-/// Largest difference between the contacts' forces and their laws at the gaps that are published,
-/// over the largest force; and how many contacts bore at some time.
+/// Largest difference between the contacts' forces and their laws at the published gaps, the
+/// largest force, and which contacts bore a force at some time.
 struct Laws {
   double off = 0., largest = 0.;
   std::vector<bool> wheel_bore, flange_bore, port_bore;
@@ -116,7 +117,8 @@ bool all_of(const std::vector<bool>& bore) {
 
 }  // namespace
 
-TEST_CASE("every contact of a full house bears by its law, condensed too", "[full house]") {
+TEST_CASE("every contact of a model with all contacts in use follows its law, condensed too",
+          "[full house]") {
   const bool modal = GENERATE(false, true);
   const double dt = GENERATE(1e-3, 5e-5);
   House house = full_house(32, 32, 32);
@@ -132,7 +134,7 @@ TEST_CASE("every contact of a full house bears by its law, condensed too", "[ful
   CHECK(all_of(found.port_bore));
 }
 
-TEST_CASE("wheelsets with flanges, bogies and hanging sleepers fill a house together",
+TEST_CASE("wheelsets with flanges, bogies and hanging sleepers can use all contacts together",
           "[full house]") {
   const bool modal = GENERATE(false, true);
   const double dt = GENERATE(1e-3, 5e-5);

@@ -15,7 +15,7 @@ namespace {
 const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const char* const kPushed = "wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]";
 
-/// A model and a run of it by the C interface alone, in memory of their own.
+/// A model and a run of it through the C interface, in memory of their own.
 struct Held {
   std::vector<double> model_memory, run_memory;
   const railstep_model* model = nullptr;
@@ -37,7 +37,7 @@ struct Held {
 
 }  // namespace
 
-TEST_CASE("a run by the C interface has the bits of one by the program", "[interface]") {
+TEST_CASE("a run through the C interface has the bits of a run of the program", "[interface]") {
   for (const char* name : {"wheelset_on_track", "wheelset_flange", "hanging_sleeper",
                            "bogie_at_speed", "double_pendulum", "spring_pendulum"}) {
     const auto run = simulation_of(read_any_scene(kFolder + name + ".toml"));
@@ -78,7 +78,7 @@ TEST_CASE("inputs and outputs have names", "[interface]") {
   CHECK(railstep_input_name(held.model, -1, nullptr, 0) == 0);
 }
 
-TEST_CASE("inputs act, bad ones are refused and told of, and a reset forgets", "[interface]") {
+TEST_CASE("inputs act, a bad one is reported, and a reset goes back to the start", "[interface]") {
   const Simulation run(read_scene(kFolder + "wheelset_on_track.toml", {kPushed}));
   const Held held(run.block()), other(run.block());
   const auto y = static_cast<std::size_t>(railstep_find_output(held.model, "wheelset.y_m"));
@@ -100,7 +100,7 @@ TEST_CASE("inputs act, bad ones are refused and told of, and a reset forgets", "
   CHECK(railstep_step(held.run, nullptr) == 0);
 }
 
-TEST_CASE("a response to null is that to the inputs that are held", "[interface]") {
+TEST_CASE("a response without inputs is that to the held inputs", "[interface]") {
   const Simulation run(
       read_scene(kFolder + "open_track.toml", {"step.dt_s=1e-3", "step.frame_s=1e-3"}));
   const Held held(run.block());
@@ -115,7 +115,7 @@ TEST_CASE("a response to null is that to the inputs that are held", "[interface]
   for (int i = 0; i < 12; ++i) CHECK(as_held[i] == given[i]);
 }
 
-TEST_CASE("snapshots go from one run to another", "[interface]") {
+TEST_CASE("a snapshot of one run is restored into another", "[interface]") {
   const Simulation run(read_scene(kFolder + "wheelset_flange.toml", {}));
   const Held held(run.block()), other(run.block());
   for (int n = 0; n < 20; ++n) static_cast<void>(railstep_step(held.run, nullptr));
@@ -133,7 +133,8 @@ TEST_CASE("snapshots go from one run to another", "[interface]") {
   CHECK(other.outputs() == held.outputs());
 }
 
-TEST_CASE("blocks and memory that do not do are refused, with a sentence each", "[interface]") {
+TEST_CASE("unfit blocks and unfit memory are refused, and every result has a sentence",
+          "[interface]") {
   const Simulation run(read_scene(kFolder + "moving_load.toml", {}));
   std::vector<std::byte> block = run.block();
   std::vector<double> memory(railstep_model_bytes() / 8 + 2);

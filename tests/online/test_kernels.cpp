@@ -12,7 +12,7 @@ using namespace railstep;
 
 namespace {
 
-/// Whether the processor has a feature, as its system says; what it says where it says nothing.
+/// Whether /proc/cpuinfo lists a feature of the processor; `otherwise` if it lists none.
 bool system_says(const std::string& feature, bool otherwise) {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
@@ -25,8 +25,8 @@ bool system_says(const std::string& feature, bool otherwise) {
   return otherwise;
 }
 
-/// All that the calls for a row write, one after the other; NaN where one has written nothing. Of a
-/// factor its solutions: some of its numbers nobody reads.
+/// Everything that the calls for a row of elements write, in order; NaN where nothing was written.
+/// A factor is given by its solutions, as some of its numbers are never read.
 template <int W>
 std::vector<double> all_written(const RowKernels& row, int n, std::uint64_t seed, bool half) {
   std::vector<double> all;
@@ -92,14 +92,14 @@ void check_rows(const RowKernels& own, const RowKernels& base) {
 
 }  // namespace
 
-TEST_CASE("the kernels of this processor have the bits of the base", "[kernels]") {
+TEST_CASE("the kernels of this processor have the bits of the base kernels", "[kernels]") {
   if (&kernels_in_use() == &kBaseKernels)
     WARN("this processor or build has the base alone: nothing is compared");
   check_rows<9>(kernels_in_use().space, kBaseKernels.space);
   check_rows<5>(kernels_in_use().plane, kBaseKernels.plane);
 }
 
-TEST_CASE("the kernels are those that the processor has", "[kernels]") {
+TEST_CASE("the best kernels that the processor supports are in use", "[kernels]") {
   CHECK(std::string(kBaseKernels.name) == "base");
   const std::string own = kernels_in_use().name;
 #ifdef RAILSTEP_HAS_AVX2_KERNELS

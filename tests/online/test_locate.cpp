@@ -6,7 +6,7 @@
 
 #include "online/contact/locate.h"
 
-// The reference answers are in long double on purpose; clang counts that as a promotion.
+// The references use long double on purpose; clang warns of these promotions.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 using namespace railstep;
@@ -21,8 +21,8 @@ struct Rail {
   RailShape shape() const { return {static_cast<int>(nodes.size() / 9 - 1) / 2, nodes.data()}; }
 };
 
-/// 0.6 m elements on a circle in the vertical plane, `angle` in all (up if positive), and turned
-/// by `twist` about its axis from end to end.
+/// 0.6 m elements on an arc in the vertical plane through `angle` (up if positive), rotated by
+/// `twist` about its axis from end to end.
 Rail arc(int elements, double angle, double twist = 0.0) {
   Rail rail;
   const double length = 0.6 * elements;
@@ -39,7 +39,7 @@ Rail arc(int elements, double angle, double twist = 0.0) {
   return rail;
 }
 
-/// r + y a + z b (and its derivative by xi) in long double, written apart from the kernel.
+/// r + y a + z b (and its derivative by xi) in long double, independent of the kernel.
 void evaluate(const Rail& rail, int element, Real xi, Real y, Real z, Real* at, Real* slope) {
   const Real N[3] = {xi * (xi - 1) / 2, 1 - xi * xi, xi * (xi + 1) / 2};
   const Real N1[3] = {xi - Real(0.5), -2 * xi, xi + Real(0.5)};
@@ -86,7 +86,7 @@ Distance distance(const Rail& rail, const Axle& axle, Real z_crown, int element,
   return out;
 }
 
-/// The nearest place of all: a fine scan, then golden section between its neighbours.
+/// Nearest place of the whole rail: a fine scan, then golden section around the best point.
 Real golden(const Rail& rail, const Axle& axle, Real z_crown) {
   const int elements = rail.shape().elements, cells = 200 * elements;
   const auto square = [&](Real s) {
@@ -115,7 +115,7 @@ const std::vector<Rail> kRails{arc(6, 0.0), arc(3, 1.5707963), arc(3, -1.5707963
 
 }  // namespace
 
-TEST_CASE("a point of the rail is found where it was made, over every border", "[locate]") {
+TEST_CASE("a point of the rail is found where it was made, over every element border", "[locate]") {
   int most = 0;
   double worst = 0.0, worst_section = 0.0;
   const double ulp_in = 1.0 - kEps / 2.0;
@@ -143,8 +143,8 @@ TEST_CASE("a point of the rail is found where it was made, over every border", "
             }
   }
   INFO("most steps " << most << ", place off by " << worst << " m, section by " << worst_section);
-  // Coordinates up to 3.6 m are rounded to 2^-52 * 2 = 4.4e-16 m each; some ten such roundings,
-  // magnified by up to 1.25 where the section lies inside of the bend (1/(1 - 0.1/R), R = 1.15).
+  // Coordinates up to 3.6 m are rounded to 2^-52 * 2 = 4.4e-16 m each. Some ten such roundings are
+  // magnified by up to 1.25 where the section lies inside the bend (1/(1 - 0.1/R), R = 1.15).
   CHECK(worst <= 1.1e-14);
   CHECK(worst_section <= 1.1e-14);
 }
@@ -163,7 +163,7 @@ TEST_CASE("both sides of a border and one ulp around it are one point", "[locate
         const auto right = locate_point(rail.shape(), point, {border, -1.0});
         CHECK(left.status == LocateStatus::found);
         CHECK(right.status == LocateStatus::found);
-        // As above: ten roundings of 4.4e-16 m over a half element of 0.3 m, by xi.
+        // As above: ten roundings of 4.4e-16 m over half an element, 0.3 m, in xi.
         CHECK(std::abs(along(left.place) - along(right.place)) <= 1.5e-14);
         CHECK(std::abs(along(left.place) - border) <= 1.5e-14);
         CHECK(std::abs(left.z - right.z) <= 4.4e-15);
@@ -171,7 +171,7 @@ TEST_CASE("both sides of a border and one ulp around it are one point", "[locate
     }
 }
 
-TEST_CASE("beyond either end the search says which", "[locate]") {
+TEST_CASE("beyond an end of the rail the search says which end", "[locate]") {
   for (const Rail& rail : kRails) {
     const RailShape shape = rail.shape();
     for (int end : {0, 1}) {
@@ -193,7 +193,8 @@ TEST_CASE("beyond either end the search says which", "[locate]") {
   }
 }
 
-TEST_CASE("the axle's nearest crown point is that of golden section and of the slope", "[locate]") {
+TEST_CASE("the crown point nearest to the axle agrees with golden section and with the slope",
+          "[locate]") {
   int most = 0, cases = 0, other_side = 0;
   double worst_distance = 0.0;
   for (const Rail& rail : kRails) {
@@ -215,7 +216,7 @@ TEST_CASE("the axle's nearest crown point is that of golden section and of the s
         most = std::max(most, got.steps);
         ++cases;
         // Where the interpolated curve has a kink towards the axle, each side of that border may
-        // have a nearest point of its own; within one element there is but one.
+        // have a nearest point of its own. Within one element there is only one.
         if (std::abs(along(got.place) - static_cast<double>(want)) > 1e-6) {
           const double border = std::round(static_cast<double>(want));
           CHECK((along(got.place) - border) * (static_cast<double>(want) - border) <= 0.0);
@@ -227,7 +228,7 @@ TEST_CASE("the axle's nearest crown point is that of golden section and of the s
           worst_distance =
               std::max(worst_distance, std::abs(got.distance - static_cast<double>(nearest)));
         }
-        // The place: the slope's sign changes within 2e-14 of it, or over the border it lies on.
+        // The slope's sign changes within 2e-14 of the place, or across the border that it lies on.
         const Real h = 2e-14L;
         const auto pull = [&](Real at) {
           const int e = std::clamp(static_cast<int>(at), 0, shape.elements - 1);
@@ -273,7 +274,7 @@ TEST_CASE("an axle over a kink stands on the border", "[locate]") {
   }
 }
 
-TEST_CASE("the cap is kept, and no input makes a result that is not finite", "[locate]") {
+TEST_CASE("the cap is kept, and every input gives a finite result", "[locate]") {
   const Rail rail = arc(3, 1.5707963);
   const double* node = rail.nodes.data() + 9 * 5;
   const auto early = locate_point(rail.shape(), node, {0, -0.9}, 2);

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kPaint = 0x7ff8'5ca1'ab1e'0001;  // a NaN that no arithmetic makes
 constexpr std::size_t kGuard = 64;
 
-/// Memory that is painted, with as much before and behind it that nobody may touch.
+/// Painted memory between two guards that nobody may write to.
 class Painted {
  public:
   explicit Painted(std::int64_t doubles)
@@ -28,7 +28,7 @@ class Painted {
       if (!is_painted(i) || !is_painted(kGuard + size_ + i)) return false;
     return true;
   }
-  /// Part of it that was written to.
+  /// Share of it that was written to.
   double used() const {
     std::size_t count = 0;
     for (std::size_t i = kGuard; i < kGuard + size_; ++i) count += is_painted(i) ? 0 : 1;
@@ -45,7 +45,7 @@ class Painted {
 
 }  // namespace
 
-TEST_CASE("state and workspace are of the stated size, and what is stated is used", "[memory]") {
+TEST_CASE("state and workspace have the stated size and make use of it", "[memory]") {
   int scenes = 0;
   for (const char* name :
        {"moving_load", "wheelset_on_track", "ballasted_track", "bogie_at_speed", "hanging_sleeper",
@@ -72,8 +72,8 @@ TEST_CASE("state and workspace are of the stated size, and what is stated is use
       CHECK(memory.is_guarded());
       CHECK(scratch.is_guarded());
       CHECK(memory.used() == 1.);
-      // What a wheel would write to that stays off, the predictor of banded lines in condensed
-      // ones, and the state that external wheels try, stand idle.
+      // The rest is for wheels whose flanges are inactive, for the predictor of banded lines where
+      // lines are condensed, and for the trial state of external wheels.
       CHECK(scratch.used() > .25);
       ++scenes;
     }

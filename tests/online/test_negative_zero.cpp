@@ -1,4 +1,4 @@
-// A zero has no sign: -0.0, which a script writes that turns a scene round by -x, is read as 0.0.
+// -0.0 is read as 0.0: a script that mirrors a scene by -x writes such zeros.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -25,7 +25,7 @@ using namespace railstep;
 
 namespace {
 
-/// The place of every number under a node, as --set names it.
+/// Calls `found` with every number under a node and its place, as --set names it.
 void numbers_under(const toml::node& node, const std::string& path,
                    const std::function<void(const std::string&, double)>& found) {
   if (const toml::table* table = node.as_table())
@@ -45,7 +45,7 @@ std::vector<std::string> places(const std::filesystem::path& scene, bool zeros_a
   return all;
 }
 
-/// Of everything that a step of the scene reads, and of its start.
+/// Checksum of all that a step of the scene reads, and of its start.
 std::array<std::uint8_t, 32> model_sum(const std::filesystem::path& scene,
                                        const std::vector<std::string>& overrides) {
   std::array<std::uint8_t, 32> sum;
@@ -60,7 +60,7 @@ bool has_run(const std::filesystem::path& scene) {
 
 }  // namespace
 
-TEST_CASE("every number of a scene, a table and a CSV is read without the sign of its zero",
+TEST_CASE("numbers of scenes, tables and CSV files are read without the sign of a zero",
           "[negative_zero]") {
   const Table table = read_toml_text("a = -0.0\nb = [-0.0, 1]\nc = [[-0.0, -0e3]]\n", "t.toml");
   std::vector<double> all = {table.number("a", any_number()), table.slope("a", any_number(), 1.),
@@ -104,7 +104,7 @@ TEST_CASE("any number of a small scene that may be 0 may be -0.0", "[negative_ze
   CHECK(tried > 30);
 }
 
-TEST_CASE("a standing load turned round by -x does what it did", "[negative_zero]") {
+TEST_CASE("a standing load that is mirrored by -x gives the same deflection", "[negative_zero]") {
   const auto deflection = [](const char* start, const char* speed) {
     const Traced run("moving_load", {fmt::format("load[0].start_m={}", start),
                                      fmt::format("load[0].speed_m_per_s={}", speed),
@@ -117,7 +117,7 @@ TEST_CASE("a standing load turned round by -x does what it did", "[negative_zero
   for (std::size_t i = 0; i < here.size(); ++i) CHECK(std::abs(here[i] - there[i]) < 1e-12);
 }
 
-TEST_CASE("a model's load that is taken off before it begins is refused", "[negative_zero]") {
+TEST_CASE("a model whose load is taken off before it begins is refused", "[negative_zero]") {
   const std::unique_ptr<PackedModel> packed = small_model(false, true);
   const auto status = [&](double speed, double stop) {
     Model model = packed->model();

@@ -27,10 +27,9 @@ std::atomic<long> allocations{0};
 
 }  // namespace
 
-// Every new of the program comes here; malloc itself is watched by the allocator's own account. Not
-// inlined: g++ that sees half of a pair takes free for the wrong end of new and refuses it. And a
-// sanitizer brings its own form that does not throw, which Catch2 uses: its memory comes back here
-// too.
+// Every `new` of the program comes here; malloc itself is watched by mallinfo2(). Not inlined: if
+// g++ sees one half of a pair, it reports that free() does not match new. The nothrow form is
+// replaced too: Catch2 uses it, a sanitizer has its own, and its memory is freed here.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
@@ -48,7 +47,7 @@ std::atomic<long> allocations{0};
 
 namespace {
 
-/// What the heap is known to have given out: calls of new, and bytes by malloc's account.
+/// Use of the heap: calls of new, and bytes by malloc's own count.
 struct Heap {
   long news = allocations;
   std::size_t bytes = mallinfo2().uordblks + mallinfo2().hblkhd;
@@ -58,7 +57,7 @@ struct Heap {
 
 }  // namespace
 
-TEST_CASE("the account sees one allocation, so it could fail", "[no_heap]") {
+TEST_CASE("one allocation is counted, so this test can fail", "[no_heap]") {
   const Heap before;
   double* volatile by_new = new double[3];  // volatile: a compiler may leave out an unused pair
   const Heap after_new;
@@ -90,11 +89,11 @@ TEST_CASE("a thousand frames take nothing from the heap", "[no_heap]") {
     CHECK(after.bytes == before.bytes);
     CHECK(after.free_chunks == before.free_chunks);
     CHECK(run.state.steps == 1000);
-    CHECK(has(met, Status::off_rail));  // the way out past the rail's end was among the frames
+    CHECK(has(met, Status::off_rail));  // some frames went past the rail's end
   }
 }
 
-TEST_CASE("no shipped scene takes anything from the heap, snapshots included", "[no_heap]") {
+TEST_CASE("no shipped scene takes anything from the heap, not even for snapshots", "[no_heap]") {
   int scenes = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(RAILSTEP_SOURCE) + "/config/scenes"))
@@ -139,7 +138,7 @@ TEST_CASE("no shipped scene takes anything from the heap, snapshots included", "
   CHECK(scenes >= 28);
 }
 
-TEST_CASE("a model is loaded, and refused, without the heap", "[no_heap]") {
+TEST_CASE("a model is loaded or refused without the heap", "[no_heap]") {
   const Scene scene = read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/moving_load.toml",
                                  {"condense.kind=\"modal\""});
   const Simulation run(scene);
@@ -164,9 +163,9 @@ TEST_CASE("a model is loaded, and refused, without the heap", "[no_heap]") {
   CHECK(cut == LoadStatus::wrong_size);
 }
 
-TEST_CASE("what goes wrong in a run takes nothing from the heap either", "[no_heap]") {
-  // a wheelset that runs off the end, stands free of the rails on its way and ends as no number;
-  // a guide that may turn once is not there yet at its cap
+TEST_CASE("errors in a run take nothing from the heap", "[no_heap]") {
+  // The wheelset runs off the end, lifts off the rails on its way and ends as NaN. A guide that may
+  // iterate once has not converged at its cap.
   for (const char* kind : {"full", "modal"}) {
     const Scene scene = read_scene(
         std::string(RAILSTEP_SOURCE) + "/config/scenes/wheelset_on_track.toml",
@@ -214,7 +213,7 @@ TEST_CASE("a system of beams and joints takes nothing from the heap", "[no_heap]
   options.constraint_method = hold;
   options.renew = renew;
   System scene = pendulum_system({}, 5, planar);
-  scene.joints.push_back(scene.joints[0]);  // twice: rows without a force of their own
+  scene.joints.push_back(scene.joints[0]);  // redundant: these rows get no force of their own
   const PackedSystem packed(scene, options);
   const Model& model = packed.model();
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(model))),

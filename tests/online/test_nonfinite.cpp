@@ -1,5 +1,5 @@
-// What follows from the unknowns and is no number while each of them is one: the status says so,
-// and the sentence names the part. High powers of unknowns overflow long before these do.
+// A result is not a number although each unknown is one: the status says so, and the sentence names
+// the part. High powers of unknowns overflow long before the unknowns do.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -24,14 +24,14 @@ Simulation system_run(const std::string& scene) {
   return Simulation(std::get<SystemScene>(read_any_scene(scene, {})));
 }
 
-/// What publish_start() says of a run as it stands.
+/// Outputs of publish_start() for the run's present state.
 Outputs published(const Simulation& run) {
   Outputs outputs{};
   publish_start(run.model(), run.state, outputs);
   return outputs;
 }
 
-/// Is the status set, and does the sentence name the part as what follows from its unknowns?
+/// Checks that the status is set and that the sentence names the part whose result is lost.
 void check_lost(const Simulation& run, const Outputs& outputs, std::int32_t first,
                 const std::string& part) {
   CHECK(has(outputs.status, Status::nonfinite_state));
@@ -52,7 +52,7 @@ TEST_CASE("a wheelset's gaps that overflow set nonfinite_state", "[nonfinite]") 
   check_lost(run, outputs, first, "wheelset");
 }
 
-TEST_CASE("a contact's force that is no number sets nonfinite_state, on treads and flanges",
+TEST_CASE("a contact force that is not a number sets nonfinite_state, on treads and flanges",
           "[nonfinite]") {
   const int contact = GENERATE(0, 1, 2, 3);
   Simulation run(read_scene(kFlanged));
@@ -61,7 +61,8 @@ TEST_CASE("a contact's force that is no number sets nonfinite_state, on treads a
   check_lost(run, published(run), run.model().wheelset[0].first, "wheelset");
 }
 
-TEST_CASE("an orientation that is no number sets nonfinite_state, by its own body", "[nonfinite]") {
+TEST_CASE("an orientation that is not a number sets nonfinite_state and names its own body",
+          "[nonfinite]") {
   const int body = GENERATE(0, 1);
   Simulation run = system_run(kCrank);
   CHECK(published(run).first_bad_unknown == -1);
@@ -78,7 +79,7 @@ TEST_CASE("a joint's force beyond 1.6e60 sets nonfinite_state", "[nonfinite]") {
   check_lost(run, outputs, outputs.first_bad_unknown, "of body");
 }
 
-TEST_CASE("an unknown beyond 1.6e60 is named itself", "[nonfinite]") {
+TEST_CASE("an unknown beyond 1.6e60 is itself named", "[nonfinite]") {
   const double bad = GENERATE(1.7e60, -1.7e60, std::numeric_limits<double>::infinity(), kNaN);
   const bool speed = GENERATE(false, true);
   Simulation run(read_scene(kFlanged));
@@ -91,7 +92,7 @@ TEST_CASE("an unknown beyond 1.6e60 is named itself", "[nonfinite]") {
   CHECK_THAT(nonfinite_sentence(run, at), !Contains("what follows"));
 }
 
-TEST_CASE("a large state below 1.6e60 is none that is lost", "[nonfinite]") {
+TEST_CASE("a large state below 1.6e60 is not reported as lost", "[nonfinite]") {
   Simulation run = system_run(kCrank);
   run.state.v[run.model().system.first] = 1.5e60;
   CHECK(published(run).first_bad_unknown == -1);

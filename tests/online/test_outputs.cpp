@@ -16,8 +16,8 @@ namespace {
 
 const std::string kConfig = std::string(RAILSTEP_SOURCE) + "/config/";
 
-/// A scene that reads a profile, a vehicle and an irregularity beside it. The links are other names
-/// of the profile.
+/// A scene that reads a profile, a vehicle and an irregularity of its own folder. The links are
+/// other names of the profile.
 struct ReadingScene {
   explicit ReadingScene(const BadInput& folder)
       : scene(folder.file("scene.toml", text())),
@@ -41,7 +41,7 @@ struct ReadingScene {
   }
 };
 
-/// What a folder has beside files that are whole.
+/// Number of unfinished output files in a folder.
 std::size_t parts_in(const std::filesystem::path& folder) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -53,7 +53,7 @@ const std::string kRun = "run " + shipped("moving_load") + " --duration 0.01 ";
 
 }  // namespace
 
-TEST_CASE("no output takes the place of a file that the scene reads", "[bad_input][cli]") {
+TEST_CASE("no output replaces a file that the scene reads", "[bad_input][cli]") {
   const BadInput bad("read");
   const ReadingScene made(bad);
   REQUIRE(railstep_program("run " + made.scene + " --duration 0.001").code == 0);
@@ -68,7 +68,7 @@ TEST_CASE("no output takes the place of a file that the scene reads", "[bad_inpu
   bad.refused("run " + fitted + " --duration 0.001 --trace " + section, {"--trace", "s.toml"});
 }
 
-TEST_CASE("every output of every command is kept off what the scene reads", "[bad_input][cli]") {
+TEST_CASE("no output of any command replaces a file that the scene reads", "[bad_input][cli]") {
   const BadInput bad("every");
   const ReadingScene made(bad);
   const std::string& scene = made.scene;
@@ -86,7 +86,7 @@ TEST_CASE("every output of every command is kept off what the scene reads", "[ba
                 {words.substr(words.rfind("--")) + " " + made.profile, "which is read"});
 }
 
-TEST_CASE("outputs with names of the program's own are kept off what the scene reads",
+TEST_CASE("outputs whose names the program chooses do not replace a file that the scene reads",
           "[bad_input][cli]") {
   const BadInput bad("own");
   const ReadingScene made(bad);
@@ -110,7 +110,7 @@ TEST_CASE("outputs with names of the program's own are kept off what the scene r
        "shown/other.pvd");
 }
 
-TEST_CASE("what has the name of a part is left alone", "[cli]") {
+TEST_CASE("a file or link that has the name of an unfinished output is left alone", "[cli]") {
   const BadInput files("part");
   const std::string scene = files.file("x.csv.part", text_of(shipped("moving_load"))),
                     victim = files.file("victim", "precious\n"), trace = files.path("y.csv");
@@ -126,7 +126,8 @@ TEST_CASE("what has the name of a part is left alone", "[cli]") {
   CHECK(parts_in(files.path("")) == 2);
 }
 
-TEST_CASE("runs with one trace at once leave that of one of them, whole", "[cli]") {
+TEST_CASE("runs that write one trace at the same time leave the whole trace of one of them",
+          "[cli]") {
   const BadInput files("at_once");
   const std::vector<std::string> durations = {"0.3", "0.25", "0.2"};
   std::vector<std::string> alone;

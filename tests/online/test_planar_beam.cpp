@@ -12,7 +12,7 @@ namespace {
 
 constexpr int W = kPlanarUnknowns;
 
-/// Nodes of n elements of 0.6 m along x, turned by an angle in the plane and shaken.
+/// Nodes of n elements of 0.6 m along x, rotated by an angle in the plane and shaken.
 std::vector<double> planar_nodes(int n, std::uint64_t seed, double shake, double angle = 0.) {
   Numbers numbers(seed);
   std::vector<double> q;
@@ -23,7 +23,7 @@ std::vector<double> planar_nodes(int n, std::uint64_t seed, double shake, double
   return q;
 }
 
-/// Numbers of the plane at their places in space.
+/// Planar numbers at their places among the spatial ones.
 std::vector<double> in_space(const std::vector<double>& planar) {
   std::vector<double> q(planar.size() / W * 9, 0.);
   for (std::size_t i = 0; i < planar.size(); ++i)
@@ -44,7 +44,7 @@ double largest(const std::vector<double>& x) {
   return peak;
 }
 
-/// NaN where nothing has been written yet, and a canary behind.
+/// NaN where nothing has been written yet, and one more at the end that must stay NaN.
 std::vector<double> unset(std::size_t size) {
   return std::vector<double>(size + 1, std::numeric_limits<double>::quiet_NaN());
 }
@@ -72,7 +72,7 @@ struct Row {
 
 }  // namespace
 
-TEST_CASE("the planar element is the spatial one in the plane", "[planar]") {
+TEST_CASE("the planar element agrees with the spatial one in the plane", "[planar]") {
   const BeamSection f = full_section_f();
   const double axis_z = GENERATE(0., -.085);
   const bool half = GENERATE(false, true);
@@ -84,7 +84,7 @@ TEST_CASE("the planar element is the spatial one in the plane", "[planar]") {
     const Row got(true, beam, n, q, half ? d.data() : nullptr);
     const Row want(false, beam, n, in_space(q), half ? in_space(d).data() : nullptr);
 
-    // The same products in another order: 1e-16 of the largest terms, some ten of them.
+    // The same products in another order: some ten roundings of 1e-16 of the largest terms.
     const double force_peak = largest(want.force), tolerance = 1e-14;
     std::vector<double> embedded = in_space(got.force);
     for (std::size_t i = 0; i < embedded.size(); ++i)
@@ -104,7 +104,7 @@ TEST_CASE("the planar element is the spatial one in the plane", "[planar]") {
   }
 }
 
-TEST_CASE("half a change makes the force the energy's discrete gradient", "[planar][straight]") {
+TEST_CASE("with half a change the force is the energy's discrete gradient", "[planar][straight]") {
   const BeamLaw law = beam_law(full_section_f(), {}, {}, -.085, -1e6);
   const Beam general = beam_element(law, straight_nodes(.6));
   const StraightBeam beam = straight_beam(law, .6);
@@ -125,13 +125,13 @@ TEST_CASE("half a change makes the force the energy's discrete gradient", "[plan
       size += std::abs(mean.force[i] * 2. * d[i]);
     }
     const double U0 = energy(q0), U1 = energy(q1);
-    CHECK(size > 1e8);  // J: steps of no small strain
-    // Round-off of some ten operations, on what is summed.
+    CHECK(size > 1e8);  // J: the strains of these steps are not small
+    // Round-off of some ten operations relative to the summed terms.
     CHECK(std::abs(work - (U1 - U0)) <= 1e-14 * (size + std::abs(U0) + std::abs(U1)));
   }
 }
 
-TEST_CASE("the tangent is the force's derivative with half a change held", "[planar][straight]") {
+TEST_CASE("the tangent is the force's derivative at a constant half change", "[planar][straight]") {
   const StraightBeam beam = straight_beam(beam_law(full_section_f(), {}, {}, .05, 1e6), .6);
   const bool planar = GENERATE(false, true);
   const int unknowns = planar ? 15 : 27;
@@ -155,8 +155,8 @@ TEST_CASE("the tangent is the force's derivative with half a change held", "[pla
     };
     for (int i = 0; i < unknowns; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      // The force is cubic in q: two differences give its derivative but for round-off of 1e-15 of
-      // forces of 1 m, over steps of 1/8 m.
+      // The force is cubic in q, so two differences give its derivative except for round-off: 1e-15
+      // of forces at 1 m over steps of 1/8 m.
       const double want = (4. * slope(.125, k) - slope(.25, k)) / 3.;
       REQUIRE(std::abs(entry(at.tangent.data(), 0, i, j) - want) <= 1e-13 * peak);
     }
@@ -177,7 +177,7 @@ TEST_CASE("the planar kernel's bits are the same everywhere", "[planar]") {
     spatial = take(spatial, Row(false, beam, 5, shaken_nodes(5, seed, .3),
                                 shaken_nodes(5, 500 + seed, .3).data()));
   }
-  // Stored from g++ 12, -O3, SSE2; equal for every compiler, level and vector width that was tried.
+  // Stored from g++ 12, -O3, SSE2; equal for every compiler, level and vector width tried.
   CHECK(plain == 0x8dcc341fb2267907ULL);
   CHECK(half == 0xc5588291c4bee376ULL);
   CHECK(spatial == 0x2049aac3a597998ULL);

@@ -7,7 +7,7 @@
 
 #include "online/contact/ports.h"
 
-// The reference answers are in long double on purpose; clang counts that as a promotion.
+// The references use long double on purpose; clang warns of these promotions.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 using namespace railstep;
@@ -30,9 +30,9 @@ double log_uniform(double low, double high, std::mt19937& random) {
   return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
 }
 
-/// W = B B' of a random rank (so often singular) plus, half the time, a small diagonal, of about
-/// 1e-11 m/N to `softest`. A wheel on a rail has w C sqrt(d) of 0.1 to 10; here it runs from 1e-5
-/// to 1e3 for 1e-8 m/N and to 1e4 for 1e-7 m/N.
+/// W = B B' of a random rank (so often singular) plus, half the time, a small diagonal; sizes are
+/// about 1e-11 m/N to `softest`. A wheel on a rail has w C sqrt(d) of 0.1 to 10; here it runs from
+/// 1e-5 to 1e3 for 1e-8 m/N and to 1e4 for 1e-7 m/N.
 Case random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::contacts) {
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<int> coin(0, 1), rank(std::min(n, 1), n);
@@ -86,8 +86,8 @@ Real bisect(Real w, const PortLaw& law, Real d_free) {
   return (low + high) / 2;
 }
 
-/// Gauss-Seidel on the convex function: each port in turn solved by bisection, which converges
-/// for every semidefinite W. Returns the forces, or none if 20000 sweeps did not settle them.
+/// Gauss-Seidel on the convex function: each port in turn is solved by bisection, which converges
+/// for every semidefinite W. Returns no forces if 20000 sweeps did not settle them.
 std::vector<Real> gauss_seidel(const Case& c) {
   const auto n = static_cast<std::size_t>(c.n);
   std::vector<Real> f(n, 0);
@@ -109,7 +109,7 @@ std::vector<Real> gauss_seidel(const Case& c) {
 
 }  // namespace
 
-TEST_CASE("a lone port agrees with bisection in long double", "[ports]") {
+TEST_CASE("a single port agrees with bisection in long double", "[ports]") {
   std::mt19937 random(1);
   int most = 0;
   double worst = 0.0;
@@ -120,7 +120,7 @@ TEST_CASE("a lone port agrees with bisection in long double", "[ports]") {
     REQUIRE(got.status == PortStatus::converged);
     most = std::max(most, got.iterations);
     const double want = static_cast<double>(bisect(c.W[0], c.law[0], c.d_free[0]));
-    // d + w C d^1.5 rises at least with slope 1 and its residual is held to 1e-12 of twice d_free.
+    // d + w C d^1.5 has a slope of at least 1, and its residual is at most 1e-12 of twice d_free.
     CHECK(std::abs(d - want) <= 2e-12 * std::abs(c.d_free[0]));
     worst = std::max(worst, std::abs(d - want) / std::abs(c.d_free[0]));
   }
@@ -174,7 +174,7 @@ TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
     if (want.empty()) continue;
     ++compared;
     for (std::size_t k = 0; k < n; ++k) {
-      // A law's force and penetration, whichever tells the answers apart less.
+      // Compares the force and, for Hertz's law, also the penetration.
       const Real by_force = std::abs(want[k] - static_cast<Real>(f[k])) * c.W[k * n + k];
       worst = std::max(worst, static_cast<double>(by_force) / length(c, want));
       if (!(c.law[k].hertz > 0.)) continue;
@@ -184,16 +184,16 @@ TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
   }
   for (int k = 0; k <= kPortSweeps; ++k) UNSCOPED_INFO(k << " iterations: " << histogram[k]);
   INFO("most iterations " << most << ", compared " << compared << ", largest error " << worst);
-  // (f - g)'(d(f) - d(g)) <= (f - g)'residual: weighted by the contact stiffnesses, d is no
-  // further off than the residual, 1e-12. Stiffnesses differ by up to (1e12/1e9) sqrt(d ratio),
-  // whose root (some 30) enters when the worst port is the softest.
+  // (f - g)'(d(f) - d(g)) <= (f - g)'residual: weighted by the contact stiffnesses, d errs by no
+  // more than the residual, 1e-12. Stiffnesses differ by up to (1e12/1e9) sqrt(d ratio), whose root
+  // (some 30) enters when the worst port is the softest.
   CHECK(worst <= 30e-12);
   CHECK(compared > 9000);
 }
 
-TEST_CASE("any number of ports up to the cap is solved: the laws hold and nothing is left",
+TEST_CASE("any number of ports up to the cap is solved: the laws hold and no residual is left",
           "[ports]") {
-  // Equations and laws together say all of a convex problem: what meets both is the answer.
+  // The problem is convex: forces that meet its equations and laws are the answer.
   const Laws laws = GENERATE(Laws::contacts, Laws::springs, Laws::both, Laws::pulling);
   std::mt19937 random(7);
   int most = 0;
@@ -219,8 +219,8 @@ TEST_CASE("any number of ports up to the cap is solved: the laws hold and nothin
   CHECK(most <= kPortSweeps);
 }
 
-TEST_CASE("compliances that no structure has are told as that", "[ports]") {
-  // W_01 beyond sqrt(W_00 W_11): two ports that push each other apart by themselves.
+TEST_CASE("compliances that no structure can have are reported", "[ports]") {
+  // W_01 is beyond sqrt(W_00 W_11): two ports push each other apart by themselves.
   const double W[4] = {1e-8, 3e-8, 3e-8, 1e-8}, d_free[2] = {1e-3, 1e-3};
   const PortLaw law[2] = {{1e11, 0., 0.}, {1e11, 0., 0.}};
   double f[2] = {}, d[2];
@@ -229,7 +229,7 @@ TEST_CASE("compliances that no structure has are told as that", "[ports]") {
   CHECK((std::isfinite(f[0]) && std::isfinite(f[1])));
 }
 
-TEST_CASE("an extreme case is solved or says how far it came", "[ports]") {
+TEST_CASE("an extreme case is solved or reports its residual", "[ports]") {
   std::mt19937 random(3);
   int capped = 0;
   for (int i = 0; i < 9600; ++i) {
@@ -249,10 +249,11 @@ TEST_CASE("an extreme case is solved or says how far it came", "[ports]") {
     }
   }
   UNSCOPED_INFO("cap of 8 reached in " << capped << " of 9600");
-  CHECK(capped < 96);  // one in a hundred: beyond that the cap would rule, not the method
+  CHECK(capped < 96);  // one in a hundred; with more, the cap and not the method would decide
 }
 
-TEST_CASE("the last forces are a start: at the answer no iteration is left", "[ports]") {
+TEST_CASE("a start from the answer needs no iteration, and a start near it needs fewer",
+          "[ports]") {
   std::mt19937 random(4);
   int cold = 0, warm = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -275,7 +276,8 @@ TEST_CASE("the last forces are a start: at the answer no iteration is left", "[p
   CHECK(warm < cold);
 }
 
-TEST_CASE("a lone spring and damper is solved in one iteration, from any start", "[ports]") {
+TEST_CASE("a single spring and damper is solved in one iteration from zero, in four from any start",
+          "[ports]") {
   std::mt19937 random(5);
   for (int i = 0; i < 3000; ++i) {
     const Case c = random_case(1, 1e-7, random, Laws::springs);
@@ -290,8 +292,8 @@ TEST_CASE("a lone spring and damper is solved in one iteration, from any start",
   }
 }
 
-TEST_CASE("bonded ports hold what is under them, pulling where they must", "[ports]") {
-  // W f = d_free but for 1e15 N/m, a part of 1e-6 of the softest W and of 1e-4 of the hardest here.
+TEST_CASE("bonded ports hold their penetration at zero and pull where they must", "[ports]") {
+  // W f = d_free except for 1e15 N/m, which is 1e-6 of the softest W and 1e-4 of the hardest here.
   std::mt19937 random(6);
   for (int i = 0; i < 1000; ++i) {
     Case c = random_case(1 + i % 8, 1e-8, random);
@@ -306,7 +308,7 @@ TEST_CASE("bonded ports hold what is under them, pulling where they must", "[por
     REQUIRE(got.status == PortStatus::converged);
     CHECK(got.iterations <= 2);  // linear: one, and one for its rounding
     for (std::size_t k = 0; k < n; ++k) {
-      // what is left of a penetration: f / 1e15
+      // The penetration that is left is f / 1e15.
       CHECK(std::abs(d[k] - f[k] / 1e15) <= 1e-12 * length(c, f));
       CHECK(std::abs(d[k]) <= 1e-6 * length(c, f));
     }
@@ -315,7 +317,7 @@ TEST_CASE("bonded ports hold what is under them, pulling where they must", "[por
 
 TEST_CASE("a row of one-sided supports is solved within the cap, step after step", "[ports]") {
   // 40 seats under a stiff beam: compliance falls with distance, a load wanders over them and lifts
-  // some. Each answer is the next one's start.
+  // some. Each answer is the start of the next solve.
   const int n = 40;
   std::vector<double> W(n * n), d_free(n), f(n, 0.0), d(n);
   std::vector<PortLaw> law(n);
@@ -344,7 +346,7 @@ TEST_CASE("a row of one-sided supports is solved within the cap, step after step
   CHECK(most <= kPortSweeps);
 }
 
-TEST_CASE("a number that is none gives no force and says so", "[ports]") {
+TEST_CASE("an input that is not a number gives no force and is reported", "[ports]") {
   const double bad = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (double x : {bad, inf, -inf})
@@ -356,7 +358,7 @@ TEST_CASE("a number that is none gives no force and says so", "[ports]") {
       CHECK(solve_ports(2, in, law, in + 4, f, d).status == PortStatus::bad_input);
       for (int k = 0; k < 2; ++k) CHECK((f[k] == 0.0 && d[k] == 0.0));
     }
-  // A start that is none is no start, not an error.
+  // Invalid laws are refused. An invalid start is ignored; it is not an error.
   for (const PortLaw none : {PortLaw{0., 0., 0.}, PortLaw{-1e9, 1e6, 0.}, PortLaw{0., -1e6, 0.}}) {
     const double W = 1e-9, d_free = 1e-4;
     double f = 1.0, d = 0.0;
@@ -370,7 +372,7 @@ TEST_CASE("a number that is none gives no force and says so", "[ports]") {
     CHECK(solve_ports(1, &W, &C, &d_free, &cold, &d_cold).status == PortStatus::converged);
     CHECK((f == cold && d == d_cold));
   }
-  // Too large to square: still finite.
+  // Too large to square: the result is still finite.
   const double huge = 1e300;
   const PortLaw hard = {huge, 0.0, 0.0};
   double f = 0.0, d = 0.0;

@@ -1,4 +1,4 @@
-// The time schemes by name: against textbooks step by step, and their orders.
+// Compares the named time schemes with textbooks step by step, and checks their orders.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// One rail on three pads, bending alone, with a load that stands between two of them.
+/// One rail on three pads, in bending only, with a load that stands between two of them.
 Track small_track() {
   Track t;
   t.section = section_f();
@@ -68,9 +68,9 @@ Textbook optimal(double rho) {
 
 namespace {
 
-/// That u, v and a are wanted ones, step by step. Both solve matrices of condition 1e4 (EI/l^3
-/// beside M/h^2) in every step: 1e-12 a step, which undamped members add up over 200 of them; and a
-/// factor. Accelerations are of differences of u over h^2: another factor.
+/// Compares u, v and a step by step. Both sides solve matrices of condition 1e4 (EI/l^3 beside
+/// M/h^2), so they differ by 1e-12 a step; undamped members add this up over 200 steps, and a
+/// factor remains. Accelerations are differences of u over h^2: another factor.
 void check_steps(const Scheme& scheme, const std::vector<DenseMotion>& wanted) {
   ModelRun run(small_track(), {.loads = {raised_cosine()}}, plain(scheme));
   double miss[3] = {}, most[3] = {};
@@ -91,7 +91,7 @@ void check_steps(const Scheme& scheme, const std::vector<DenseMotion>& wanted) {
 
 }  // namespace
 
-TEST_CASE("every named member is the textbook's, step by step", "[schemes]") {
+TEST_CASE("every named scheme agrees with the textbook step by step", "[schemes]") {
   constexpr double h = 5e-4;
   constexpr int kSteps = 200;
   const Member members[] = {
@@ -111,7 +111,7 @@ TEST_CASE("every named member is the textbook's, step by step", "[schemes]") {
   }
 }
 
-TEST_CASE("TR-BDF2 is the textbook's, step by step", "[schemes]") {
+TEST_CASE("TR-BDF2 agrees with the textbook step by step", "[schemes]") {
   constexpr double h = 5e-4;
   check_steps(tr_bdf2(h), by_tr_bdf2(dense(small_track()), h, 200, cosine_force));
 }
@@ -156,13 +156,13 @@ TEST_CASE("every scheme has its order on a smooth problem", "[schemes]") {
     const double coarse = error(own.scheme(h), exact, 2),
                  fine = error(own.scheme(h / 2.), exact, 1);
     CAPTURE(own.name, coarse, fine);
-    // The track's lowest rates are 9e2 1/s: the next term of the error is h 9e2 = 0.18 of the first
-    // or less, which changes by half of that: the order by 0.13.
+    // The track's lowest rates are 9e2 1/s, so the next term of the error is at most h 9e2 = 0.18
+    // of the first. It halves with the step, which changes the order by 0.13.
     CHECK_THAT(std::log2(coarse / fine), WithinAbs(own.order, .15));
   }
 }
 
-TEST_CASE("numbers of the members that are not stable at every step are refused", "[schemes]") {
+TEST_CASE("parameters of schemes that are not stable at every step are refused", "[schemes]") {
   const double nan = std::nan("");
   const double refused[][2] = {{.49, .3}, {.5, .24},  {.6, .29}, {1.1, .6},
                                {.5, 1.1}, {nan, .25}, {.5, nan}};
@@ -172,8 +172,9 @@ TEST_CASE("numbers of the members that are not stable at every step are refused"
     CHECK_THROWS_AS(hilber_hughes_taylor(1e-3, alpha), std::invalid_argument);
 }
 
-TEST_CASE("what never gives way is damped as the schemes' radii at infinity say", "[schemes]") {
-  // Triple roots: the cube root of 1e-16, and a factor of 10.
+TEST_CASE("an infinitely stiff motion is damped by the radius at infinity of each scheme",
+          "[schemes]") {
+  // The roots are triple: the cube root of 1e-16, and a factor of 10.
   for (const double rho : {0., .3, .6, .9, 1.})
     CHECK_THAT(radius_at_infinity(generalised_alpha(1e-3, rho)), WithinAbs(rho, 1e-4));
   for (const double alpha : {0., -.05, -.1, -.3, -1. / 3.})

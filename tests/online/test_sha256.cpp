@@ -39,7 +39,7 @@ TEST_CASE("SHA-256 gives the digests of FIPS 180-4's examples", "[sha256]") {
         "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST_CASE("the pieces do not matter, and a finished hash starts anew", "[sha256]") {
+TEST_CASE("the pieces of a text do not matter, and a finished hash starts again", "[sha256]") {
   std::string text;
   for (int i = 0; i < 300; ++i) text += static_cast<char>(i * 37);
   Sha256 hash;

@@ -28,7 +28,7 @@ Bytes saved(const Model& model, const State& state) {
   return bytes;
 }
 
-/// Another state and scratch of a model, both of NaN.
+/// A new state and workspace of a model, both filled with NaN.
 struct Fresh {
   std::vector<double> memory, scratch;
   State state;
@@ -45,14 +45,14 @@ struct Fresh {
   }
 };
 
-/// What a run met that is worth stopping at.
+/// Steps of a run at which snapshots are taken, and what was met there.
 struct Instants {
-  std::set<std::int64_t> steps;  // three by chance, and the worst ones
+  std::set<std::int64_t> steps;  // three at random, and the hardest ones
   bool airborne = false, impact = false, cap = false, shift = false;
 };
 
-/// The hardest steps of a run: a wheel in the air, its hardest blow, a cap that was reached, the
-/// step before a track without end passes on what stands under the traffic.
+/// The hardest steps of a run: a wheel in the air, its hardest impact, a cap that was reached, the
+/// step before a track without end shifts its window.
 Instants instants_of(const Model& single, std::int64_t steps) {
   Instants found;
   std::mt19937 random(7);
@@ -87,7 +87,7 @@ Instants instants_of(const Model& single, std::int64_t steps) {
   return found;
 }
 
-/// Steps to take of a scene: enough to meet what is hard in it, few enough for a test.
+/// Steps to take of a scene: enough to meet its hard ones, few enough for a test.
 std::int64_t steps_of(const Model& model, const std::string& name) {
   std::int64_t most = 1500;
   if (name == "wheel_flat") most = 8000;      // the flat strikes after 0.14 s
@@ -95,7 +95,7 @@ std::int64_t steps_of(const Model& model, const std::string& name) {
   return std::min(model.steps, most);
 }
 
-/// Restores snapshots of a run into other memory, over NaN, and goes on from each to the end.
+/// Restores snapshots of a run into other memory that holds NaN, and goes on from each to the end.
 void check_resumed(const Model& single, const std::set<std::int64_t>& at, std::int64_t steps) {
   Fresh run(single), other(single);
   Outputs outputs{}, again{};
@@ -127,7 +127,7 @@ void check_resumed(const Model& single, const std::set<std::int64_t>& at, std::i
 
 }  // namespace
 
-TEST_CASE("every scene goes on from a snapshot with the same bits, over scratch of NaN",
+TEST_CASE("every scene goes on from a snapshot with the same bits, with a workspace of NaN",
           "[snapshot]") {
   Instants met;
   int scenes = 0;
@@ -153,10 +153,10 @@ TEST_CASE("every scene goes on from a snapshot with the same bits, over scratch 
   CHECK(met.shift);
 }
 
-TEST_CASE("a scene of the other kind goes on from a snapshot too", "[snapshot]") {
+TEST_CASE("a scene condensed the other way goes on from a snapshot too", "[snapshot]") {
   for (const auto& [name, kind] :
        {std::pair{"wheel_flat", "full"}, std::pair{"hanging_sleeper", "modal"},
-        std::pair{"endless_track", "full"}}) {  // a window, which goes on by a bay after 400 steps
+        std::pair{"endless_track", "full"}}) {  // a window, which shifts by a bay after 400 steps
     const auto run = simulation_of(
         read_any_scene(kFolder + name + ".toml", {std::string("condense.kind=\"") + kind + "\""}));
     Model single = run->model();
@@ -166,7 +166,7 @@ TEST_CASE("a scene of the other kind goes on from a snapshot too", "[snapshot]")
   }
 }
 
-/// A wheelset on the paper's track, with a force along z and guided by one iteration a step.
+/// Checks runs of a wheelset on the paper's track that go on from their hardest steps.
 Instants resumed(const std::vector<std::string>& overrides, std::int64_t steps) {
   const auto run = simulation_of(read_any_scene(kFolder + "wheelset_on_track.toml", overrides));
   Model single = run->model();
@@ -192,7 +192,7 @@ TEST_CASE("in the air, mid-impact and at a cap a run goes on with the same bits"
   }
 }
 
-TEST_CASE("every bit and every end of a snapshot is watched", "[snapshot]") {
+TEST_CASE("a snapshot with a flipped bit or another length is refused", "[snapshot]") {
   const auto run = simulation_of(read_any_scene(kFolder + "spring_pendulum.toml"));
   const Model& model = run->model();
   const Bytes bytes = saved(model, run->state);
@@ -212,11 +212,11 @@ TEST_CASE("every bit and every end of a snapshot is watched", "[snapshot]") {
   Bytes longer = bytes;
   longer.push_back(0);
   CHECK(status(longer) == SnapshotStatus::wrong_size);
-  CHECK(state_hash(model, run->state) == before);  // what was refused left the state alone
+  CHECK(state_hash(model, run->state) == before);  // refused snapshots left the state alone
   CHECK(status(bytes) == SnapshotStatus::ok);
 }
 
-TEST_CASE("what is latched, and a state that is not finite, come back to the bit", "[snapshot]") {
+TEST_CASE("latched status and a state that is not finite come back to the bit", "[snapshot]") {
   const auto run = simulation_of(read_any_scene(kFolder + "moving_load.toml"));
   const Model& model = run->model();
   Outputs outputs{};
@@ -232,7 +232,7 @@ TEST_CASE("what is latched, and a state that is not finite, come back to the bit
   CHECK(state_hash(model, run->state) == hash);
 }
 
-TEST_CASE("a snapshot whose kept matrix cannot be solved with is refused", "[snapshot]") {
+TEST_CASE("a snapshot whose kept matrix is invalid is refused", "[snapshot]") {
   const auto run =
       simulation_of(read_any_scene(kFolder + "slider_crank.toml", {"joints.tangent=\"kept\""}));
   const Model& model = run->model();
@@ -244,7 +244,7 @@ TEST_CASE("a snapshot whose kept matrix cannot be solved with is refused", "[sna
   };
   const SystemTangent kept = system_tangent_on(model.system, run->state.kept);
   kept.order[0] = 1 << 30;
-  CHECK(status() == SnapshotStatus::ok);  // none is kept at the start
+  CHECK(status() == SnapshotStatus::ok);  // no matrix is kept at the start
   Outputs outputs{};
   publish_start(model, run->state, outputs);
   static_cast<void>(advance_frame(model, run->state, run->workspace, outputs));
@@ -265,7 +265,7 @@ TEST_CASE("a snapshot whose kept matrix cannot be solved with is refused", "[sna
   CHECK(status() == SnapshotStatus::ok);
 }
 
-TEST_CASE("a snapshot from where steps can no longer be counted is refused", "[snapshot]") {
+TEST_CASE("a snapshot whose number of steps is too large to count on is refused", "[snapshot]") {
   const auto run = simulation_of(read_any_scene(kFolder + "spring_pendulum.toml"));
   const Model& model = run->model();
   for (const std::int64_t last :

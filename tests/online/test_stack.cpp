@@ -24,7 +24,7 @@ void* call(void* work) {
   return nullptr;
 }
 
-/// Bytes of its stack that some work writes to, on a thread whose stack was painted before.
+/// Bytes of stack that some work writes to, on a thread whose stack was painted before.
 std::size_t stack_of(const std::function<void()>& work) {
   std::vector<unsigned char> memory(kStack + 4096, kPaint);
   auto* const from =
@@ -45,7 +45,7 @@ std::size_t stack_of(const std::function<void()>& work) {
 
 }  // namespace
 
-TEST_CASE("painted stacks show what is used, so the bound could fail", "[stack]") {
+TEST_CASE("a painted stack shows how much is used, so this bound can fail", "[stack]") {
   const std::size_t little = stack_of([] {});
 #if !defined(__SANITIZE_ADDRESS__)  // which may put a function's arrays elsewhere
   const std::size_t much = stack_of([] {
@@ -54,10 +54,10 @@ TEST_CASE("painted stacks show what is used, so the bound could fail", "[stack]"
   });
   CHECK(much > little + 90'000);
 #endif
-  CHECK(little < 100'000);  // what the thread itself keeps there
+  CHECK(little < 100'000);  // the thread itself keeps some there
 }
 
-TEST_CASE("a frame of every scene fits the stack that the step is said to need", "[stack]") {
+TEST_CASE("a frame of every scene fits the stack that the step states", "[stack]") {
   const std::size_t idle = stack_of([] {});
   std::size_t most = 0;
   for (const auto& entry :
@@ -82,5 +82,5 @@ TEST_CASE("a frame of every scene fits the stack that the step is said to need",
 #if !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
   CHECK(most <= kStepStack);
 #endif
-  CHECK(most > 4096);  // contacts are solved on it
+  CHECK(most > 4096);  // contacts are solved on the stack
 }

@@ -14,7 +14,7 @@ double at(const std::vector<double>& table, std::int32_t row, std::int32_t width
   return table[static_cast<std::size_t>(row) * static_cast<std::size_t>(width)];
 }
 
-/// By going through all rows: what the search must find.
+/// Expected result of the search, found by going through all rows.
 std::int32_t last_not_above(const std::vector<double>& table, std::int32_t width, double value) {
   const auto rows = static_cast<std::int32_t>(table.size()) / width;
   std::int32_t found = 0;
@@ -37,7 +37,7 @@ std::vector<double> rising(std::int32_t rows, std::int32_t width, std::mt19937_6
 
 }  // namespace
 
-TEST_CASE("a table's row is found as by going through all", "[table]") {
+TEST_CASE("the search finds the row that going through all rows finds", "[table]") {
   std::mt19937_64 random(7);
   for (const std::int32_t width : {1, 2, 3})
     for (const std::int32_t rows : {1, 2, 3, 4, 5, 7, 8, 9, 31, 64, 1000}) {
@@ -65,8 +65,8 @@ TEST_CASE("a table's value is linear between its rows and constant outside them"
   CHECK(table_value(table, 1, 7.) == 1.);
 }
 
-TEST_CASE("a way by a table of speeds is a parabola between its rows", "[table]") {
-  // From 10 to 20 m/s in 2 s, on at 20, at rest from 4 s to 5 s on.
+TEST_CASE("the distance by a table of speeds is a parabola between its rows", "[table]") {
+  // From 10 to 20 m/s in 2 s, then 20 m/s until 4 s, at rest from 5 s on.
   const double rows[] = {0., 10., 0., 2., 20., 30., 4., 20., 70., 5., 0., 80.};
   const TravelModel travel{20., 4, rows};
   const double times[] = {-1., 0., 1., 2., 3., 4.5, 5., 8.};

@@ -35,7 +35,7 @@ struct Case {
 
 }  // namespace
 
-TEST_CASE("R2: a wheel dropped on a mass, in two stages", "[contact]") {
+TEST_CASE("R2: a wheel dropped on a mass meets its reference in two stages", "[contact]") {
   // hard-cases.md R2 and H4: 1 % at 50 us, 1e-3 at 10 us.
   for (const double dt : {5e-5, 1e-5}) {
     const double bound = dt > 2e-5 ? 1e-2 : 1e-3;
@@ -44,14 +44,14 @@ TEST_CASE("R2: a wheel dropped on a mass, in two stages", "[contact]") {
     CHECK_THAT(found.peak, WithinRel(33.747495e3, bound));
     CHECK_THAT(found.peak_time, WithinAbs(.7328714e-3, dt));
     CHECK_THAT(found.leaves, WithinAbs(1.5365055e-3, dt));
-    CHECK_THAT(found.wheel, WithinRel(-.0692294, 2. * bound));  // up; of a step's end, 9.81 dt late
+    CHECK_THAT(found.wheel, WithinRel(-.0692294, 2. * bound));  // up; at a step's end, 9.81 dt late
   }
 }
 
-TEST_CASE("two stages and generalised-alpha go to the same", "[schemes]") {
-  // Wheelsets with guides and flanges, vehicles, supports that do not pull: all that a track in
-  // full order has. Elements short enough that their borders excite no thickness modes, which have
-  // 10 to 40 kHz and are not resolved at these steps.
+TEST_CASE("two stages and generalised-alpha converge to the same motion", "[schemes]") {
+  // The cases have all that a track in full order has: wheelsets with guides and flanges, vehicles,
+  // supports that do not pull. Elements are so short that their borders excite no thickness modes,
+  // which have 10 to 40 kHz and are not resolved at these steps.
   const Case c = GENERATE(
       Case{"ballasted_track",
            "wheel_left.force_z_n",
@@ -75,15 +75,15 @@ TEST_CASE("two stages and generalised-alpha go to the same", "[schemes]") {
   };
   const double coarse = difference("1e-4"), fine = difference("2.5e-5");
   CAPTURE(c.scene, coarse, fine);
-  // At 1e-4 s the fastest that matters (1 kHz) has omega dt = 0.6: (omega dt)^2/12 = 3 %.
+  // At 1e-4 s the fastest motion that matters (1 kHz) has omega dt = 0.6: (omega dt)^2/12 = 3 %.
   CHECK(coarse < .03);
-  // 16 times less with a quarter of the step; 4 where contact opens, or a wheel meets an element's
-  // border, within a step.
+  // A quarter of the step leaves a 16th of the difference, but a quarter where a contact opens or a
+  // wheel meets an element's border within a step.
   CHECK(fine < .5 * coarse);
 }
 
 TEST_CASE("two stages on a track without end repeat from bay to bay", "[schemes]") {
-  // Loads alone: the start is the moving steady state, each bay as the one before (H29).
+  // Loads only: the run starts in the moving steady state, each bay as the one before (H29).
   const std::vector<std::string> changes = {kFull,
                                             kTwo,
                                             "step.dt_s=1e-3",
@@ -94,12 +94,12 @@ TEST_CASE("two stages on a track without end repeat from bay to bay", "[schemes]
                                             "sensor=[]"};
   const Traced run("endless_track", changes);
   const std::vector<double> force = run["wheel_left.force_z_n"];
-  // 30 m/s: a bay of 0.6 m in 20 steps. A window settles to 1e-9 from bay to bay.
+  // At 30 m/s a bay of 0.6 m takes 20 steps. A window repeats to 1e-9 from bay to bay.
   for (std::size_t i = 21; i < force.size(); ++i)
     CHECK_THAT(force[i], WithinRel(force[i - 20], 1e-7));
 }
 
-TEST_CASE("what the named schemes lose of energy is what their account says", "[energy]") {
+TEST_CASE("the energy that the named schemes lose is that of their account", "[energy]") {
   const std::string scheme =
       GENERATE("\"newmark\"", "\"hht\"", "\"tr-bdf2\"", "\"backward-euler\"");
   Simulation run(
@@ -114,6 +114,6 @@ TEST_CASE("what the named schemes lose of energy is what their account says", "[
     energy.follow(run.state);
   }
   CAPTURE(scheme, energy.imbalance(), energy.flow().loss, energy.turned_over());
-  // As test_energy.cpp of the same run with generalised-alpha: frozen normals, 1e-4.
+  // As test_energy.cpp for the same run with generalised-alpha: frozen normals, 1e-4.
   CHECK(std::abs(energy.imbalance() + energy.flow().loss) < 1e-4 * energy.turned_over());
 }

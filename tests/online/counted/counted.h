@@ -1,6 +1,6 @@
-// Included before every source of a build of the online library that counts its arithmetic: with it
-// each `double` becomes a number that counts. Headers of the standard library come first and keep
-// theirs.
+// Included before every source of a build of the online library that counts its arithmetic: each
+// `double` becomes a number that counts. Headers of the standard library come first and keep their
+// own doubles.
 #pragma once
 #include <cinttypes>
 #include <cmath>
@@ -24,9 +24,8 @@
 
 namespace counted {
 
-/// Additions, subtractions, multiplications, divisions and square roots so far, one each; changes
-/// of sign, comparisons and conversions are none. Constants that the compiler works out are none
-/// too.
+/// Additions, subtractions, multiplications, divisions and square roots so far, one each. Changes
+/// of sign, comparisons and conversions do not count, nor do constants that the compiler works out.
 inline std::int64_t flops = 0;
 
 class Number {
@@ -77,7 +76,7 @@ static_assert(sizeof(Number) == sizeof(double) && std::is_trivially_copyable_v<N
 
 }  // namespace counted
 
-/// Apart from the number, so that a call of the sources' own functions of these names is theirs.
+/// In a namespace apart from Number, so that the sources call their own functions of these names.
 namespace counted_functions {
 inline counted::Number square_root(counted::Number x) noexcept {
   return counted::Number::did(std::sqrt(x.plain()));
@@ -85,7 +84,7 @@ inline counted::Number square_root(counted::Number x) noexcept {
 inline counted::Number magnitude(counted::Number x) noexcept { return std::fabs(x.plain()); }
 }  // namespace counted_functions
 
-// What the online sources call of the standard library.
+// Functions of the standard library that the online sources call.
 namespace std {
 inline counted::Number sqrt(counted::Number x) noexcept {
   return counted_functions::square_root(x);
@@ -96,7 +95,7 @@ template <>
 struct numeric_limits<counted::Number> : numeric_limits<double> {};
 }  // namespace std
 
-#define RAILSTEP_NO_AVX2  // such a number fills no vector
+#define RAILSTEP_NO_AVX2  // a vector register cannot hold such a number
 #define __builtin_sqrt(x) counted_functions::square_root(x)
 #define __builtin_fabs(x) counted_functions::magnitude(x)
 #define double counted::Number

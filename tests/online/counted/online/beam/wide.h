@@ -1,7 +1,7 @@
 #pragma once
 
-// Stands in for the library's own where every `double` counts (counted.h): vectors of the compiler
-// hold plain numbers alone.
+// Stands in for the library's own header where every `double` counts (counted.h): the compiler's
+// vectors hold plain numbers only.
 #define RAILSTEP_KERNELS railstep
 namespace railstep {
 
