@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "offline/contact/hertz.h"
 #include "online/step/step.h"
 
 namespace railstep {
@@ -26,9 +27,10 @@ double pressed(const State& state, int wheel) { return std::max(0., state.wheel_
 double small_change(const Model& model, const State& state) {
   double small = HUGE_VAL;
   for (int i = 0; i < model.vehicle_wheels; ++i) {
-    const double hertz = model.vehicle_wheel[i].contact.hertz;
+    const ContactModel& contact = model.vehicle_wheel[i].contact;
     const double force = pressed(state, 2 * model.wheelsets + i);
-    if (hertz > 0. && force > 0.) small = std::min(small, 5e-3 * std::pow(force / hertz, 2. / 3.));
+    if (contact.hertz > 0. && force > 0.)
+      small = std::min(small, 5e-3 * contact_depth(contact, force));
   }
   return small < HUGE_VAL ? small : 1e-8;
 }

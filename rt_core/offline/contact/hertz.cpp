@@ -85,4 +85,13 @@ HertzContact hertz_contact(double wheel_radius, double crown_radius, double youn
   return out;
 }
 
+double hertz_constant(double wheel_radius, double crown_radius, double young, double poisson) {
+  constexpr double kAnyLoad = 1e3;  // N
+  return hertz_contact(wheel_radius, crown_radius, young, poisson, kAnyLoad).constant;
+}
+
+double contact_depth(const ContactModel& contact, double force) {
+  return contact.hertz > 0. ? std::pow(force / contact.hertz, 2. / 3.) : force / contact.stiffness;
+}
+
 }  // namespace railstep

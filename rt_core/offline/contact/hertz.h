@@ -1,4 +1,5 @@
 #pragma once
+#include "online/model/model.h"
 
 namespace railstep {
 
@@ -31,5 +32,12 @@ EllipticIntegrals elliptic_integrals(double m);
 ///   (beyond 1 : 1e6) that this is a line contact, which has no C of its own
 HertzContact hertz_contact(double wheel_radius, double crown_radius, double young, double poisson,
                            double load);
+
+/// C of P = C delta^1.5 of the same contact, N/m^1.5. It does not depend on the load.
+double hertz_constant(double wheel_radius, double crown_radius, double young, double poisson);
+
+/// Penetration of a contact under a force >= 0, m: by Hertz's law, or a spring's. The step has its
+/// own root (online/contact/ports.cpp), which needs no C library.
+double contact_depth(const ContactModel& contact, double force);
 
 }  // namespace railstep

@@ -149,8 +149,7 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
     const Railhead& head = heads[static_cast<std::size_t>(rail)];
     const Material material = track.bar(rail).material;
     packed.hertz[rail] =
-        hertz_contact(wheelset.radius, head.crown_radius, material.young, material.poisson, 1e3)
-            .constant;
+        hertz_constant(wheelset.radius, head.crown_radius, material.young, material.poisson);
     packed.load_point[rail] = load_point_of_wheel(rail);
   }
   packed.guide = wheelset.guide;
@@ -195,8 +194,7 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
   const double around = (wheelset.radius + kGaugeDepth) / std::cos(flange.angle);
   if (flange.corner_radius > 0.)
     packed.contact = {
-        hertz_contact(around, flange.corner_radius, material.young, material.poisson, 1e3).constant,
-        0., 0.};
+        hertz_constant(around, flange.corner_radius, material.young, material.poisson), 0., 0.};
   for (const int rail : {0, 1}) {
     const Railhead& head = heads[static_cast<std::size_t>(rail)];
     const double inward = rail == 0 ? -1. : 1.;

@@ -37,9 +37,7 @@ ContactModel contact_of(const RunningVehicle& vehicle, double radius, const Rail
     case WheelContactKind::bonded:
       return {0., kBonded, 0.};
     default:
-      return {
-          hertz_contact(radius, head.crown_radius, material.young, material.poisson, 1e3).constant,
-          0., 0.};
+      return {hertz_constant(radius, head.crown_radius, material.young, material.poisson), 0., 0.};
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "offline/analysis/statics.h"
+#include "offline/contact/hertz.h"
 #include "offline/start/start_vehicle.h"
 #include "offline/start/start_wheelset.h"
 #include "offline/start/static_lines.h"
@@ -225,8 +226,8 @@ double contact_y(const Model& model, int rail) {
 
 std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& w,
                                         const std::array<double, 2>& height) {
-  const double into[2] = {std::pow(wheel_load(w) / w.hertz[0], 2. / 3.),
-                          std::pow(wheel_load(w) / w.hertz[1], 2. / 3.)};
+  const double into[2] = {contact_depth({w.hertz[0], 0., 0.}, wheel_load(w)),
+                          contact_depth({w.hertz[1], 0., 0.}, wheel_load(w))};
   const double roll =
       ((height[0] - height[1]) - (into[0] - into[1])) / (contact_y(model, 0) - contact_y(model, 1));
   // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "offline/contact/hertz.h"
 #include "offline/start/static_lines.h"
 #include "online/contact/body_force.h"
 #include "online/contact/wheel.h"
@@ -66,9 +67,8 @@ struct Depth {
   double value, slope;  // m, m/N
 };
 Depth depth_of(const ContactModel& contact, double force) {
-  if (contact.hertz == 0.) return {force / contact.stiffness, 1. / contact.stiffness};
-  const double value = std::pow(force / contact.hertz, 2. / 3.);
-  return {value, 2. / 3. * value / force};
+  const double value = contact_depth(contact, force);
+  return {value, contact.hertz > 0. ? 2. / 3. * value / force : 1. / contact.stiffness};
 }
 
 constexpr int kIterations = 50;  // Newton's steps; a handful is enough where there is an answer

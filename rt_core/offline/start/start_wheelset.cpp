@@ -1,9 +1,9 @@
 #include "offline/start/start_wheelset.h"
 
 #include <Eigen/LU>
-#include <cmath>
 #include <stdexcept>
 
+#include "offline/contact/hertz.h"
 #include "online/contact/body_force.h"
 
 namespace railstep {
@@ -31,10 +31,6 @@ Eigen::MatrixXd rows_of(const Stance& stance) {
 ContactModel law_of(const Model& model, std::int32_t contact) {
   if (is_flange(model, contact)) return flange_of(model, contact).contact;
   return {model.wheelset[contact / 2].hertz[contact % 2], 0., 0.};
-}
-
-double depth_of(const ContactModel& law, double force) {
-  return law.hertz > 0. ? std::pow(force / law.hertz, 2. / 3.) : force / law.stiffness;
 }
 
 }  // namespace
@@ -96,7 +92,7 @@ Eigen::VectorXd way_to_depths(const Model& model, const Stance& stance,
   for (int i = 0; i < stance.count; ++i) {
     const auto c = static_cast<std::size_t>(i);
     too_deep[i] = stance.contact[c].penetration + missed[i] -
-                  depth_of(law_of(model, stance.number[c]), stance.force[i]);
+                  contact_depth(law_of(model, stance.number[c]), stance.force[i]);
   }
   return rows_of(stance).transpose().partialPivLu().solve(too_deep);
 }
