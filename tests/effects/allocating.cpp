@@ -1,4 +1,4 @@
-// Ends under the real-time sanitizer, which must see it allocate.
+// The real-time sanitizer must see that this allocates and end it.
 #include <cstdlib>
 
 [[gnu::noinline]] void* violate(std::size_t bytes) noexcept [[clang::nonblocking]] {

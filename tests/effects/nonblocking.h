@@ -1,9 +1,8 @@
-// Included before every source of the online library by tests/checks/check-effects: what promises
-// not to throw promises clang not to block, too. A function so marked calls none that is not,
-// allocates nothing, throws nothing, waits for no lock and has no static variables that are made as
-// it runs; of a function elsewhere the mark on its declaration counts. Headers of the standard
-// library come first and keep their own words; clang knows memcpy, memset and sqrt for what they
-// are.
+// tests/checks/check-effects includes this before every source of the online library: a function
+// that promises not to throw then also promises clang not to block. Such a function calls only
+// functions of its kind, allocates nothing, throws nothing, waits for no lock and makes no static
+// variables as it runs. For a function defined elsewhere its declaration counts. Headers of the
+// standard library come first and keep their own noexcept; clang knows memcpy, memset and sqrt.
 #pragma once
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What clang must refuse, one at a time: so that the check is known to look.
+// Clang must refuse each of these violations, which proves that the check works.
 #include <cstdlib>
 #include <new>
 
@@ -20,9 +20,9 @@ int violate(int n) noexcept {
   return first;
 }
 #elif VIOLATION == 6
-// By way of a function that promises nothing itself, but can be looked into.
+// Through a function that promises nothing itself, but whose body clang sees.
 void* within(int n) { return std::malloc(static_cast<std::size_t>(n)); }
 void* violate(int n) noexcept { return within(n); }
 #else
-int violate(int n) noexcept { return n; }  // nothing is wrong with this one
+int violate(int n) noexcept { return n; }  // this one is right
 #endif

@@ -1,5 +1,5 @@
 /* Steps a model that `railstep condense --emit-c` wrote through its scene, without files, heap or
- * an operating system, and says the state's hash. C99 and C++17. Compiled with
+ * an operating system, and prints the state's hash. C99 and C++17. Compiled with
  *   MODEL_FILE  the emitted file, in quotes
  *   MODEL       its name
  * and on a machine without a system beside board.c. */
@@ -11,7 +11,7 @@
 #define JOINED(a, b) a##b
 #define BYTES_OF(name) JOINED(name, _bytes)
 
-/* Doubles, so that memory starts where it must. */
+/* Doubles, so that the memory is aligned. */
 static double model_memory[1 << 15], run_memory[1 << 16];
 
 static int fail(const char* why) {

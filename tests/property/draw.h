@@ -8,12 +8,12 @@
 
 namespace railstep::property {
 
-/// Numbers of a seed, one after the other, the same on every machine.
+/// Random numbers of a seed in order, the same on every machine.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed, std::uint64_t stream = 0) : seed_(seed), stream_(stream) {}
   double between(double a, double b) { return a + (b - a) * uniform(seed_, stream_, index_++); }
-  /// A number of two digits: text that a person reads, and sums that are not all round.
+  /// A number of two digits: a person can read the text, and sums are not all round.
   double of_any_size(double a, double b) {
     const double x = a * std::pow(b / a, between(0., 1.));
     const double unit = std::pow(10., std::floor(std::log10(x)) - 1.);

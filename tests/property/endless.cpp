@@ -8,7 +8,7 @@
 namespace railstep::property {
 namespace {
 
-/// Seats alike and points, stiff enough for a short ring.
+/// Makes all seats equal and their pads points, stiff enough for a short ring.
 void make_uniform(Draw& draw, Document& scene) {
   Document& pad = scene["support"];
   pad.erase("length_m");
@@ -40,14 +40,15 @@ Document random_endless_scene(std::uint64_t seed) {
     if (draw.chance(.1)) scene["condense"]["residual_flexibility"] = false;
   }
   add_step(draw, scene);
-  // a whole fraction of a bay a step, as the moving start wants
+  // A step moves by a whole fraction of a bay, as the moving start requires.
   const double bay = number(track, "bay_m"), dt = number(scene["step"], "dt_s");
   double speed = 0.;
   if (draw.chance(.85))
     speed = bay / dt / std::ceil(bay / dt / std::min(100., draw.between(.02, .5) * bay / dt));
   add_traffic(draw, scene, &speed);
   const bool wheels = scene.contains("wheelset") || scene.contains("vehicle");
-  if (!wheels && vertical && draw.chance(.6)) scene["step"]["start"] = "moving";  // seconds, else
+  // In other scenes the moving start takes seconds.
+  if (!wheels && vertical && draw.chance(.6)) scene["step"]["start"] = "moving";
   return scene;
 }
 

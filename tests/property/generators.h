@@ -7,30 +7,30 @@
 
 namespace railstep::property {
 
-/// The scene of a seed. What a key needs stands beside it; a few scenes are refused all the same
+/// The scene of a seed. All keys that a key needs are drawn with it. A few scenes are still refused
 /// (no equilibrium, a free rigid mode, a rail that buckles).
 Document random_track_scene(std::uint64_t seed);
 Document random_mechanism_scene(std::uint64_t seed);
 Document random_endless_scene(std::uint64_t seed);
 
-/// What stands on the ground: [track], [rail], [support], [sleeper], [ballast].
+/// Choices for [track], [rail], [support], [sleeper] and [ballast].
 struct GroundChoice {
   const char* unknowns;
   int rails;
   int bays;
 };
 void add_ground(Draw& draw, const GroundChoice& choice, Document& scene);
-/// Seats that differ, stops and rail joints.
+/// Adds seats that differ, stops and rail joints.
 void add_seats_that_differ(Draw& draw, Document& scene);
 
-/// Loads, wheelsets, vehicles, irregularities and sensors on a track, to one step.
-/// @param speed  of all of them on a track without end; else each draws its own
+/// Adds loads, wheelsets, vehicles, irregularities and sensors to a track with a step.
+/// @param speed  of all traffic on a track without end; null: each part draws its own
 void add_traffic(Draw& draw, Document& scene, const double* speed);
 void add_condensation(Draw& draw, Document& scene);
-/// Time steps, how long and by which scheme. Traffic comes after it.
+/// Adds the time step, duration and scheme. Traffic is added after it.
 void add_step(Draw& draw, Document& scene);
 
-/// Length of the track, m; of the ring or window under its traffic, of one without end.
+/// Length of the track, m; without end, length of the ring or window under its traffic.
 double length_of(const Document& scene);
 double duration_of(const Document& scene);
 bool moves_sideways(const Document& scene);

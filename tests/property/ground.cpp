@@ -6,7 +6,7 @@
 namespace railstep::property {
 namespace {
 
-/// Three rectangles about 60E1, which have a shape, or its constants, which have none.
+/// A rectangle or three near 60E1, which have a shape, or constants, which have no shape.
 void add_section(Draw& draw, Document& rail) {
   switch (draw.whole(0, 2)) {
     case 0:
@@ -51,7 +51,8 @@ void add_rail(Draw& draw, const GroundChoice& choice, Document& scene) {
   if (space && draw.chance(.12)) rail["cant"] = draw.one_of({.05, .025});
 }
 
-/// x, y and roll hold what moves in space; a vertical track has no use for the last two.
+/// A rail that moves in space needs stiffness in x, y and roll; a vertical track does not need y
+/// and roll.
 void add_pads(Draw& draw, const GroundChoice& choice, Document& scene) {
   Document& pad = scene["support"];
   pad["at"] = draw.one_of({"foot", "axis"});
@@ -110,7 +111,7 @@ void add_change(Draw& draw, int bays, bool sleepers, bool long_pads, Document& c
       change["seed"] = draw.whole(0, 1000);
       return;
     case 3:
-      change["to"] = from;  // all of them would leave the rail in the air
+      change["to"] = from;  // changes of all seats would leave the rail in the air
       if (sleepers && !long_pads && draw.chance(.6))
         change["ballast"] = {{"gap_m", draw.of_any_size(5e-5, 5e-4)}};
       else

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 Document row(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// A scene in the making. Every part hangs on one that is there, so that joints close no loops and
-/// none is redundant.
+/// Builds a scene. Every part hangs on one that exists, so joints close no loops and are not
+/// redundant.
 class Maker {
  public:
   Maker(std::uint64_t seed, Document& to) : draw_(seed, 2), scene_(to) {}
@@ -82,7 +82,7 @@ void Maker::add_step() {
                                        "hht", "energy-momentum"});
   if (step["scheme"] == "generalised-alpha") step["rho_inf"] = draw_.one_of({0., .6, .9});
   Document& joints = scene_["joints"];
-  joints["tolerance_m"] = 1e-13;  // so that what is compared is rounding
+  joints["tolerance_m"] = 1e-13;  // so that only rounding is compared
   joints["force_tolerance"] = 1e-12;
   if (!draw_.chance(.3)) return;
   joints["hold"] = step["scheme"] == "generalised-alpha" && !on_track_
@@ -102,7 +102,7 @@ void Maker::add_body(int n) {
   if (!planar_ && draw_.chance(.3)) b["rotation_deg"] = row(around(Vector3d::Zero(), 90.));
   const bool first = bodies_.empty(), ground = first || draw_.chance(.4);
   scene_["body"].push_back(b);
-  if (on_track_ && first) {  // guided upright, so that springs hold it
+  if (on_track_ && first) {  // guided along z, so that springs hold it
     scene_["joint"].push_back({{"name", "guide"},
                                {"kind", "prismatic"},
                                {"between", {"ground", placed.name}},
@@ -173,7 +173,7 @@ void Maker::add_beam() {
                     {"width_m", draw_.of_any_size(.01, .04)}};
   scene_["beam"].push_back(b);
   const Placed& held = any_body();
-  if (draw_.chance(.5) && !held.flies)  // what flies would be stopped by a hinge at once
+  if (draw_.chance(.5) && !held.flies)  // a hinge would stop a flying body at once
     scene_["joint"].push_back({{"name", "hinge"},
                                {"kind", "spherical"},
                                {"between", {"beam", held.name}},
@@ -195,7 +195,7 @@ void Maker::add_spring(const Placed& a, const Placed& b, double stiffness) {
   scene_["spring"].push_back(s);
 }
 
-/// From each rail to a body over it.
+/// Adds springs from each rail to a body over it.
 void Maker::add_feet(const Placed& body) {
   const int rails = static_cast<int>(number(scene_["track"], "rails"));
   const double stiffness = draw_.of_any_size(1e5, 1e7);
@@ -269,7 +269,7 @@ void Maker::make() {
   add_springs();
   add_forces();
   add_sensors();
-  if (slides_) scene_["step"]["start"] = "released";  // nothing would stop it
+  if (slides_) scene_["step"]["start"] = "released";  // without equilibrium
   if (on_track_ && draw_.chance(.4)) {
     scene_["load"].push_back({{"name", "passing"},
                               {"start_m", .2 * length_of(scene_)},

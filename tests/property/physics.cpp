@@ -1,4 +1,4 @@
-// Rest, energy and status.
+// Laws of rest, energy and status.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace railstep::property {
 namespace {
 
-/// The first value of rows [t, value], from t = 0 on.
+/// Keeps only the first value of rows [t, value], from t = 0 on.
 void make_constant(Document& carrier, const char* key) {
   if (carrier.contains(key)) carrier[key] = {{0., carrier[key][0][1].get<double>()}};
 }
@@ -49,7 +49,7 @@ void stand_still(Document& scene) {
     }
 }
 
-/// The scene with all that moves standing, in equilibrium.
+/// The scene with all traffic and drives stopped, in equilibrium.
 Document at_rest(const Document& scene) {
   Document still = scene;
   for (const char* carriers : {"load", "wheelset", "vehicle"})
@@ -59,8 +59,8 @@ Document at_rest(const Document& scene) {
   return still;
 }
 
-/// How far a standing trace may stray, over the scale of its quantity: of what moves, its rounding;
-/// of rates that over a step, which is how a scheme makes them.
+/// Rounding of a rate in a trace at rest: that of displacements over the step or its square, as
+/// schemes compute rates so. 0 for other units.
 double stray(const std::string& unit, double rounding, double dt, double metres) {
   if (unit == "m_per_s") return rounding * metres / dt;
   if (unit == "m_per_s2") return rounding * metres / (dt * dt);
@@ -84,7 +84,7 @@ Outcome rest(const Document& own, std::uint64_t) {
   Distance worst;
   for (std::size_t c = 1; c < trace.columns.size(); ++c) {
     const std::string unit = quantity_of(trace.columns, c).unit;
-    if (unit == "n_s") continue;  // impulses of frames: 0 of the start, which is none
+    if (unit == "n_s") continue;  // impulses of frames: the start is not a frame and has 0
     if (metres > kFar) return Outcome::none("it has gone far off to find its rest");
     const double rate = stray(unit, 1., dt, metres), scale = rate > 0. ? rate : scales[c];
     const double size = 4e-16 * std::abs(trace.at(0, c));
@@ -113,7 +113,7 @@ std::optional<Energies> energies_of(const Document& scene) {
     for (std::size_t frame = 0; frame < trace.frames(); ++frame)
       if (quantity_of(trace.columns, c).unit == "m")
         moved = std::max(moved, std::abs(trace.at(frame, c) - trace.at(0, c)));
-  if (moved < 1e-9) return std::nullopt;  // of rounding there is no balance
+  if (moved < 1e-9) return std::nullopt;  // rounding has no balance
   const auto found = balance_of_run(*run, record, frames_of(*run));
   if (!found) return std::nullopt;
   return Energies{found->error, found->numerical_loss};
@@ -138,9 +138,9 @@ bool is_damped(const Document& scene) {
 
 }  // namespace
 
-/// What the scheme takes is told in closed form, so that of a track in full order only the
-/// contact's frozen geometry is left; of a condensed track the trapezoidal sums are, of a system
-/// the loss itself is what is missing. What is left has to fall with the step.
+/// The scheme's own loss is known in closed form. So the error of a track in full order is only the
+/// contact's frozen geometry, that of a condensed track the trapezoidal sums, that of a system the
+/// loss itself. The error has to fall with the step.
 Outcome energy(const Document& scene, std::uint64_t) {
   for (const Document& j : tables(scene, "joint"))
     if (j.contains("table_rad")) return Outcome::none("a spline's drive begins with a jump");
@@ -182,7 +182,7 @@ Outcome status(const Document& scene, std::uint64_t) {
 
 namespace {
 
-/// An input, which a system and a track's bodies may have.
+/// Adds an input where a system or a track's bodies can have one.
 bool add_input(Document& scene) {
   for (const char* carriers : {"wheelset", "vehicle"})
     if (!tables(scene, carriers).empty()) {

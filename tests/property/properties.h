@@ -8,11 +8,11 @@
 
 namespace railstep::property {
 
-/// What came of a property on a scene.
+/// Result of a property on a scene.
 struct Outcome {
   enum class Kind { holds, fails, does_not_apply };
   Kind kind = Kind::holds;
-  std::string figures;  // what was seen, and what was allowed
+  std::string figures;  // found and allowed values
 
   static Outcome none(const std::string& why) { return {Kind::does_not_apply, why}; }
   static Outcome of(bool holds, const std::string& figures) {
@@ -20,7 +20,7 @@ struct Outcome {
   }
 };
 
-/// A law that every scene obeys. `check` throws InputError where the scene itself is refused.
+/// A law that every scene obeys. `check` throws InputError if the scene itself is refused.
 struct Property {
   const char* name;
   const char* law;
@@ -45,22 +45,22 @@ Outcome energy(const Document& scene, std::uint64_t seed);
 Outcome status(const Document& scene, std::uint64_t seed);
 Outcome provoked(const Document& scene, std::uint64_t seed);
 
-// What scenes have.
+// Features of a scene.
 bool is_track_alone(const Document& scene);
 bool is_condensed(const Document& scene);
 bool is_endless(const Document& scene);
 bool has_one_sided(const Document& scene);
 bool has_hertz(const Document& scene);
-bool has_bonded(const Document& scene);  // on a spring of 1e15 N/m, which no key says
+bool has_bonded(const Document& scene);  // on a spring of 1e15 N/m, for which there is no key
 
-/// How far apart two runs of one truth may be: `floor`, or where the scene itself moves by more
-/// when its numbers are changed by kJiggle of each, kJiggles times that. That much of a number is
-/// what a solve of condition 1e7 leaves of 16 digits.
+/// Allowed distance of two runs that should agree: `floor`, or kJiggles times the change of the
+/// trace when each number of the scene is changed by kJiggle of it, if that is larger. A solve of
+/// condition 1e7 leaves that part of 16 digits.
 inline constexpr double kJiggle = 1e-9, kJiggles = 10.;
 double allowed(const Document& scene, const Trace& trace, double floor);
 
-/// Rounding of a banded solve whose condition is 1e7 (docs/supports.md: 1e-8, condensed 1e-6); of a
-/// bonded wheel, whose force is 1e15 N/m times a difference of displacements, 1e-5.
+/// Rounding of a banded solve whose condition is 1e7 (docs/supports.md: 1e-8, condensed 1e-6); 1e-5
+/// with a bonded wheel, whose force is 1e15 N/m times a difference of displacements.
 double rounding_of(const Document& scene);
 
 /// Compares a scene's trace with that of its image.

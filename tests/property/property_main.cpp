@@ -1,4 +1,4 @@
-// Random scenes against laws, as many as wanted: docs/properties.md.
+// Checks any number of random scenes against laws: docs/properties.md.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ struct Options {
 struct Tally {
   int holds = 0, fails = 0, does_not_apply = 0, refused = 0;
   double seconds = 0.;
-  std::map<std::string, int> refusals;  // by what follows the file's name
+  std::map<std::string, int> refusals;  // by the message behind the file's name
 };
 
 std::string sentence_of(const std::string& refusal) {
@@ -33,7 +33,7 @@ std::string sentence_of(const std::string& refusal) {
   return at == std::string::npos ? refusal : refusal.substr(at + 6);
 }
 
-/// Prints a failure, and writes its scene, shrunk unless that is not wanted.
+/// Prints a failure and writes its scene, shrunk unless options say to keep it.
 void report(const Options& o, const std::string& generator, const Property& property,
             const Document& scene, std::uint64_t seed, const Result& result) {
   fmt::print("FAILS {} of {} {}: {}\n", property.name, generator, seed, result.figures);

@@ -1,4 +1,4 @@
-// A scene and its mirror image, across the track or along it.
+// The mirror image of a scene, across the track or along it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ void negate(Document& value) {
       n = -n.get<std::int64_t>();
   });
 }
-/// Second numbers of rows [t, value].
+/// Negates the values of rows [t, value].
 void negate_values(Document& rows) {
   for (Document& row : rows) negate(row[1]);
 }
@@ -38,7 +38,7 @@ void swap_sides(Document& scene) {
   });
 }
 
-/// [rail] says both rails, [rail.right] what is otherwise on the right one.
+/// [rail] describes both rails, [rail.right] the differences of the right one.
 void swap_rails(Document& rail) {
   if (!rail.contains("right")) return;
   Document left = rail, right = rail["right"];
@@ -58,7 +58,7 @@ void swap_rails(Document& rail) {
   rail = swapped;
 }
 
-/// What stands beside the only rail changes its side.
+/// Stops beside a single rail change sides.
 void swap_stops(Document& scene) {
   for (Document& stop : scene["stop"]) stop["side"] = other_side(stop["side"]);
 }
@@ -118,10 +118,10 @@ void reverse_track(Document& scene) {
   for (Document& defect : scene["defect"]) defect["at_m"] = length - number(defect, "at_m");
 }
 
-/// Axes of turns are taken as lines, and turns about them change their sign.
+/// Axes of rotations are mirrored as lines, and rotations about them change sign.
 void reflect_system(Document& scene, int axis, double length) {
   const bool planar = scene.contains("system") && scene["system"]["planar"] == true;
-  if (planar)  // a section's left stays on +y; of a rectangle up is down
+  if (planar)  // a section's left stays on +y, so up becomes down
     for (Document& b : scene["beam"]) negate(b["up"]);
   const auto d = static_cast<std::size_t>(axis);
   for_each_entry(scene, [&](const std::string& key, Document& value) {
@@ -150,7 +150,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// Columns of a wheel bear its number or side, those of a support its seat or rail.
+/// Names of a wheel's columns contain its number or side, those of a support its seat or rail.
 std::string image_name(const Document& scene, int axis, const std::string& column) {
   const std::string prefix = column.substr(0, column.rfind('.'));
   if (axis == 1) {
@@ -197,7 +197,7 @@ Document without_scatter(const Document& scene, int axis) {
   Document other = scene;
   other.erase("irregularity");
   if (axis == 1 && number(scene.value("track", Document::object()), "rails") == 1.)
-    other["rail"].erase("cant");  // a rail alone leans to one side
+    other["rail"].erase("cant");  // a single rail leans to one side
   if (Document& defects = other["defect"]; axis == 0 && !defects.is_null())
     defects.erase(std::remove_if(defects.begin(), defects.end(),
                                  [](const Document& d) { return d["kind"] == "corrugation"; }),

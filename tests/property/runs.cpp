@@ -56,7 +56,7 @@ Trace trace_of(const Document& scene) {
 
 namespace {
 
-/// Weights and forces on a track, N.
+/// Sum of the weights and forces on a track, N.
 double applied(const Document& scene) {
   double sum = 1.;
   for (const Document& load : tables(scene, "load"))
@@ -141,7 +141,7 @@ Distance apart(const Trace& here, const Trace& there, const ImageOf& image) {
     for (std::size_t frame = 0; frame < here.frames(); ++frame) {
       const double expected = own.factor * here.at(frame, c) + own.offset;
       const double seen = there.at(frame, d);
-      // what a double of this size cannot say is no difference
+      // A double of this size cannot represent smaller differences.
       const double size = std::max(std::abs(expected), std::abs(own.offset));
       const double off = std::max(0., std::abs(seen - expected) - 4e-16 * size);
       const double part = off == 0. ? 0. : off / (std::abs(own.factor) * scales[c]);

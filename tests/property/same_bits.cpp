@@ -12,7 +12,7 @@
 namespace railstep::property {
 namespace {
 
-/// A run by the C interface, in memory that is NaN at first.
+/// A run through the C interface, in memory that is NaN at first.
 class Held {
  public:
   explicit Held(const std::vector<std::byte>& block)
@@ -47,7 +47,7 @@ class Held {
   railstep_run* run_ = nullptr;
 };
 
-/// Of a frame's row against the trace; where they differ, in words.
+/// Describes the first difference of a frame's row from the trace; empty if none.
 std::string difference(const Trace& trace, std::size_t frame, const std::vector<double>& row) {
   for (std::size_t c = 0; c < row.size(); ++c) {
     const double expected = trace.at(frame, c);
@@ -58,7 +58,7 @@ std::string difference(const Trace& trace, std::size_t frame, const std::vector<
   return {};
 }
 
-/// Frames of interest: one of the seed, and those between which a wheel comes down or leaves.
+/// Frames for snapshots: one chosen by the seed, and those at which a wheel lands or lifts off.
 std::vector<std::size_t> frames_to_cut(const Trace& trace, std::uint64_t seed) {
   std::vector<std::size_t> cuts = {seed % trace.frames()};
   for (std::size_t c = 1; c < trace.columns.size(); ++c) {

@@ -1,4 +1,4 @@
-// What a model states of its errors, against finer meshes and steps.
+// Compares the errors that a model states with finer meshes and steps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace railstep::property {
 namespace {
 
-/// In full order, elements and steps so many times finer.
+/// The scene in full order, with elements and steps these times finer.
 Document refined(const Document& scene, int elements, int steps) {
   Document other = scene;
   other.erase("condense");
@@ -26,13 +26,13 @@ Document refined(const Document& scene, int elements, int steps) {
   return other;
 }
 
-/// Deflections of loads, heights of rails under wheels.
+/// Whether a column is a deflection under a load or a height of a rail under a wheel.
 bool is_judged(const std::string& column) {
   return column.ends_with(".deflection_z_m") || column.ends_with(".rail_z_m");
 }
 
-/// Largest difference of the judged columns over the peak of each, from a row to another; or over
-/// the largest peak of all, so that what hardly moves does not count.
+/// Largest difference of the judged columns from a row to another, over the peak of each column, or
+/// over the largest peak of all, so that columns that hardly move do not count.
 enum class Over { each, all };
 double judged_apart(const Trace& a, const Trace& b, std::size_t from, std::size_t to, Over over,
                     std::string& where) {
@@ -53,7 +53,7 @@ double judged_apart(const Trace& a, const Trace& b, std::size_t from, std::size_
   return worst;
 }
 
-/// Where a vehicle's wheels stand over its middle, m.
+/// Places of a vehicle's wheels ahead of its middle, m.
 std::vector<double> places_of(const Document& vehicle) {
   const double base = number(vehicle, "wheelbase_m"), apart = number(vehicle, "bogie_distance_m");
   if (base == 0.) return {0.};
@@ -66,7 +66,7 @@ std::vector<double> places_of(const Document& vehicle) {
   return places;
 }
 
-/// Places of all that presses, by rail, m.
+/// Places of all forces by rail, m.
 std::map<std::string, std::vector<double>> forces_of(const Document& scene) {
   std::map<std::string, std::vector<double>> on;
   for (const Document& load : tables(scene, "load"))
@@ -79,8 +79,8 @@ std::map<std::string, std::vector<double>> forces_of(const Document& scene) {
   return on;
 }
 
-/// Whether two forces on one rail are nearer than an element: what one does to the place of the
-/// other is then read across a kink, up to F / (k G A) times a quarter of an interval off.
+/// Whether two forces on one rail are nearer than an element. The effect of one at the place of the
+/// other is then interpolated across a kink: up to F / (k G A) times a quarter of an interval off.
 bool has_close_forces(const Document& scene) {
   const Document& track = scene["track"];
   const double element = number(track, "bay_m") / number(track, "elements_per_bay", 2.);
@@ -95,8 +95,8 @@ bool has_close_forces(const Document& scene) {
 
 }  // namespace
 
-/// Static deflections do not depend on mesh or condensation, but for what the model states and,
-/// with supports that do not pull, what is left out of these (docs/supports.md: 2e-3).
+/// Static deflections do not depend on mesh or condensation, except for the error that the model
+/// states and, with supports that do not pull, the part left out there (docs/supports.md: 2e-3).
 Outcome statics(const Document& own, std::uint64_t) {
   if (!is_track_alone(own) || is_endless(own)) return Outcome::none("no track with ends alone");
   Document scene = own;
@@ -106,13 +106,13 @@ Outcome statics(const Document& own, std::uint64_t) {
   if (scene.contains("condense") && !scene["condense"].value("residual_flexibility", true))
     return Outcome::none("without residual flexibility the mesh shows");
   if (has_close_forces(scene)) return Outcome::none("forces nearer than an element");
-  // between a load and what does not pull the mesh shows: by 2e-3 with two elements a bay, more
-  // with one (docs/supports.md); a condensed track and its own full order alike
+  // Between a load and a one-sided support the mesh matters: by 2e-3 with two elements a bay, more
+  // with one (docs/supports.md). This is the same for a condensed track and its own full order.
   const bool coarse = number(scene["track"], "elements_per_bay", 2.) < 2.;
   const int finer = has_one_sided(scene) && (is_condensed(scene) || coarse) ? 1 : 4;
   const auto run = simulation_of(scene);
   const Trace here = trace_of(*run);
-  // what forces do to each other is left out below 1e-4 (offline/condense/flexibility.h)
+  // Effects of forces on each other are left out below 1e-4 (offline/condense/flexibility.h).
   double bound = has_one_sided(scene) ? 2e-3 : 0.;
   for (const auto& [rail, places] : forces_of(scene))
     bound += 1e-4 * static_cast<double>(places.size());

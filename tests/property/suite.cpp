@@ -49,7 +49,7 @@ Result result_of(const Property& property, const Document& scene, std::uint64_t 
     }
   } catch (const InputError& refusal) {
     return {Result::Kind::refused, refusal.what()};
-  } catch (const nlohmann::json::exception& error) {  // a scene made too small to be one
+  } catch (const nlohmann::json::exception& error) {  // the scene was made too small
     return {Result::Kind::refused, error.what()};
   } catch (const std::exception& error) {
     return {Result::Kind::fails, std::string("threw: ") + error.what()};
@@ -59,7 +59,7 @@ Result result_of(const Property& property, const Document& scene, std::uint64_t 
 
 namespace {
 
-/// All scenes that lack one thing of this one: a table, an entry of an array, a key.
+/// Adds all scenes with one thing less than this one: a table, an entry of an array, a key.
 void collect_without(const Document& whole, const Document::json_pointer& at, int depth,
                      std::vector<Document>& simpler) {
   const Document& here = whole[at];
@@ -83,7 +83,7 @@ void collect_without(const Document& whole, const Document::json_pointer& at, in
       if (here[i].is_object()) collect_without(whole, at / i, depth - 1, simpler);
 }
 
-/// Half the frames, fewer bays and elements.
+/// Adds scenes with half the frames, or with fewer elements, rails or unknowns.
 void collect_smaller(const Document& scene, std::vector<Document>& simpler) {
   const auto with = [&](const char* table, const char* key, const Document& value) {
     if (!scene.contains(table) || scene[table].value(key, Document()) == value) return;

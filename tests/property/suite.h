@@ -14,7 +14,7 @@ struct Generator {
 };
 const std::vector<Generator>& all_generators();
 
-/// What came of one property on one scene.
+/// Result of one property on one scene.
 struct Result {
   enum class Kind { holds, fails, does_not_apply, refused };
   Kind kind;
@@ -24,8 +24,8 @@ Result result_of(const Property& property, const Document& scene, std::uint64_t 
 
 inline constexpr int kShrinkSeconds = 20;
 
-/// The smallest scene found in that time on which the property still fails: tables and keys go one
-/// by one.
+/// The smallest scene found in kShrinkSeconds on which the property still fails: tables and keys
+/// are removed one by one.
 Document shrunk(const Property& property, Document scene, std::uint64_t seed);
 
 }  // namespace railstep::property

@@ -88,8 +88,8 @@ Outcome reflected_alike(const Document& own, int axis) {
   return compared(scene, trace, other.scene, other.image, rounding_of(scene));
 }
 
-/// Lengths that no key scales: the gauge line 14 mm below the head, and 0.1 m over the axis, where
-/// the forces act to which Krylov's kind makes its answers.
+/// Whether a length has no key: the gauge line 14 mm below the head, or 0.1 m over the axis, where
+/// the forces act whose responses are Krylov's basis.
 bool has_fixed_lengths(const Document& scene) {
   if (is_condensed(scene) && scene["condense"]["kind"] == "krylov") return true;
   for (const Document& w : tables(scene, "wheelset"))
@@ -97,7 +97,7 @@ bool has_fixed_lengths(const Document& scene) {
   return false;
 }
 
-/// Numbers with units that a scene may leave out.
+/// The scene with all numbers with units that it may leave out.
 Document with_defaults(const Document& scene) {
   Document full = scene;
   const auto fill = [](Document& table, const char* key, double value) {
@@ -162,7 +162,7 @@ Outcome all_scales(const Document& scene, std::uint64_t) {
 
 namespace {
 
-/// Two bays more on either side, and the traffic in their middle.
+/// The track with more bays and other ends, without parts that belong to a place.
 Document longer(const Document& scene, int bays, const char* end) {
   Document other = scene;
   other["track"]["bays"] = static_cast<int>(number(scene["track"], "bays")) + bays;
@@ -173,7 +173,7 @@ Document longer(const Document& scene, int bays, const char* end) {
   return other;
 }
 
-/// Ends are felt: what they do is what other ends change.
+/// The ends have an effect, which is estimated by the change that other ends make.
 Outcome moved_between_ends(const Document& own) {
   constexpr int kMore = 16, kBays = 3;
   constexpr double kFelt = 1e-2;

@@ -1,4 +1,4 @@
-// Fixed seeds of random scenes, and small scenes that were found, against the laws of
+// Checks random scenes of fixed seeds, and small scenes that failed once, against the laws of
 // docs/properties.md.
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -11,7 +11,8 @@ using namespace railstep::property;
 
 namespace {
 
-// Two minutes in all in the release build; a tenth of the scenes where all is ten times slower.
+// All take two minutes in the release build. Slow builds take ten times as long, so they run a
+// tenth of the scenes.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
 constexpr int kFewer = 10;
 #else
@@ -24,15 +25,15 @@ const Property& property_named(const std::string& name) {
   throw std::invalid_argument("no property " + name);
 }
 
-// Open: seeds from which on a law is not kept, docs/properties.md.
+// Known failures: some laws fail at later seeds, docs/properties.md.
 constexpr int kMechanisms = 36;
 
-/// How many seeds of each generator, from 1 on.
+/// Number of seeds of each generator, from 1 on.
 struct Counts {
   int track, mechanism, endless;
 };
 
-/// Nothing fails, few scenes are refused, and on enough of them the property says something.
+/// Checks that nothing fails, few scenes are refused and the property applies to enough of them.
 void check(const std::string& name, const Counts& counts) {
   const Property& property = property_named(name);
   const int wanted[] = {counts.track, counts.mechanism, counts.endless};
@@ -56,35 +57,41 @@ void check(const std::string& name, const Counts& counts) {
 }  // namespace
 
 TEST_CASE("left and right may be swapped", "[property]") { check("mirror", {70, 100, 12}); }
-TEST_CASE("a track may be run over the other way", "[property]") {
+TEST_CASE("traffic may run over a track in the other direction", "[property]") {
   check("reversal", {100, kMechanisms, 0});
 }
-TEST_CASE("masses, stiffnesses and forces times 4 move nothing", "[property]") {
+TEST_CASE("masses, stiffnesses and forces times 4 change no motion", "[property]") {
   check("mass_scale", {70, 100, 12});
 }
-TEST_CASE("metres, seconds and kilograms may be others", "[property]") {
+TEST_CASE("other units of length, time and mass change nothing", "[property]") {
   check("all_scales", {45, 35, 12});
 }
-TEST_CASE("a bay is as the next one", "[property]") { check("translation", {14, kMechanisms, 12}); }
-TEST_CASE("two loads do what each does", "[property]") { check("superposition", {80, 0, 20}); }
-TEST_CASE("what stands in equilibrium stands", "[property]") { check("rest", {0, 30, 12}); }
+TEST_CASE("motion is the same in every bay", "[property]") {
+  check("translation", {14, kMechanisms, 12});
+}
+TEST_CASE("two loads act as the sum of each alone", "[property]") {
+  check("superposition", {80, 0, 20});
+}
+TEST_CASE("a scene in equilibrium stays at rest", "[property]") { check("rest", {0, 30, 12}); }
 TEST_CASE("a model file has the bits of its scene", "[property]") {
   check("model_file", {100, 100, 20});
 }
 TEST_CASE("a snapshot goes on with the same bits", "[property]") {
   check("snapshot", {100, 100, 20});
 }
-TEST_CASE("frames are of any number of steps", "[property]") { check("frames", {80, 80, 16}); }
+TEST_CASE("the number of steps per frame changes nothing", "[property]") {
+  check("frames", {80, 80, 16});
+}
 TEST_CASE("static deflections do not depend on mesh or condensation", "[property]") {
   check("statics", {80, 0, 0});
 }
 TEST_CASE("condense states its errors", "[property]") { check("stated_error", {16, 0, 0}); }
 TEST_CASE("energy is accounted for", "[property]") { check("energy", {80, 100, 16}); }
 TEST_CASE("ordinary scenes have no status bits", "[property]") { check("status", {100, 13, 20}); }
-TEST_CASE("what a scene provokes is told of", "[property]") { check("provoked", {50, 50, 12}); }
+TEST_CASE("provoked faults are reported", "[property]") { check("provoked", {50, 50, 12}); }
 
-TEST_CASE("what random scenes found stays mended", "[property]") {
-  // found/PROPERTY-WHAT.toml, as small as it was made.
+TEST_CASE("defects that random scenes found stay mended", "[property]") {
+  // found/PROPERTY-WHAT.toml, shrunk as far as possible.
   for (const auto& file : std::filesystem::directory_iterator(FOUND)) {
     const std::string name = file.path().stem().string();
     const Property& property = property_named(name.substr(0, name.find('-')));

@@ -1,4 +1,4 @@
-// What runs on a random track, and how it is stepped.
+// Traffic of a random track, its steps and its condensation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,17 +8,18 @@
 namespace railstep::property {
 namespace {
 
-/// Where something goes: a place and a speed, or a table of speeds.
+/// Motion along the track: a start, m, and a speed, m/s.
 struct Way {
   double start, speed;
 };
 
-/// Traffic of a track without end stands together: its ring is to be longer by a decay length.
+/// Length for traffic, m. On a track without end it stands together, as the ring must be longer
+/// than it by a decay length.
 double room_of(const Document& scene) {
   return (scene["track"].contains("length") ? .3 : 1.) * length_of(scene);
 }
 
-/// So that all that reaches `reach` on either side stays on the rail.
+/// A way on which wheels up to `reach` on either side stay on the rail.
 Way draw_way(Draw& draw, const Document& scene, double reach, const double* common) {
   const double edge = reach + .02, length = room_of(scene);
   Way way{draw.between(edge, length - edge), 0.};
@@ -73,7 +74,7 @@ Document random_load(Draw& draw, const Document& scene, int n, const double* com
   return load;
 }
 
-/// A wave that is passed in eight steps and more.
+/// Adds a tread defect whose wave takes at least eight steps.
 void add_tread(Draw& draw, const Document& scene, double speed, Document& carrier,
                const Document& wheel) {
   const double dt = number(scene["step"], "dt_s");
@@ -140,7 +141,7 @@ void add_bogie(Draw& draw, double wheelbase, Document& v) {
   v["primary_damping_n_s_per_m"] = draw.chance(.2) ? 0. : draw.of_any_size(1e3, 1e5);
 }
 
-/// What the vehicle weighs on; @returns how far its wheels reach before its middle, m.
+/// Adds type and masses of a vehicle. @returns how far its wheels are ahead of its middle, m.
 double add_kind(Draw& draw, const Document& scene, Document& v) {
   const double room = room_of(scene);
   const char* type = draw.one_of({"mass", "sprung_mass", "bogie", "vehicle"});

@@ -1,4 +1,4 @@
-// A scene in other units, and one that stands elsewhere.
+// A scene in other units, and a scene moved to another place.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,7 +12,7 @@
 namespace railstep::property {
 namespace {
 
-/// Powers of length, time and mass.
+/// Powers of length, time and mass in a unit.
 struct Dimension {
   int length = 0, time = 0, mass = 0;
 };
@@ -26,7 +26,7 @@ const Dimension* unit_of(const std::string& token) {
   return found == units.end() ? nullptr : &found->second;
 }
 
-/// The unit at the end of a key: force_z_n, damping_roll_n_m_s_per_rad.
+/// Dimension of the unit at the end of a key: force_z_n, damping_roll_n_m_s_per_rad.
 Dimension dimension_of(const std::string& key) {
   std::vector<std::string> tokens;
   std::istringstream in(key);
@@ -58,7 +58,7 @@ void scale(Document& value, double by) {
   if (by != 1.) for_each_number(value, [by](Document& n) { n = n.get<double>() * by; });
 }
 
-/// Rows [t, value] of a table, whose values have the unit that its name or its owner says.
+/// Scales the rows [t, value] of a table; its name or its owner gives the unit of its values.
 void scale_rows(Document& rows, double time, double by) {
   for (Document& row : rows) {
     scale(row[0], time);
@@ -68,7 +68,7 @@ void scale_rows(Document& rows, double time, double by) {
 
 void scale_entry(const std::string& key, Document& value, const Units& units) {
   if (value.is_object() || (value.is_array() && !value.empty() && value[0].is_object())) return;
-  if (key == "table") return;  // its owner knows
+  if (key == "table") return;  // its owner gives its unit
   if (key == "speed_table") return scale_rows(value, units.time, units.length / units.time);
   if (key.starts_with("table_"))
     return scale_rows(value, units.time, factor(dimension_of(key), units));

@@ -1,4 +1,4 @@
-/* What main.c needs of a Cortex-M7 without a system: vectors, the start, a console and an end by
+/* Lets main.c run on a Cortex-M7 without a system: vectors, the start, and a console and an end by
  * semihosting (Arm IHI 0100), which a debugger or an emulator answers. */
 #include <stdint.h>
 
