@@ -1,5 +1,5 @@
-// Wheels so close that tables of the residual flexibility between places round off its kink: what
-// two forces do to a track stays what takes energy from them.
+// Wheels so close that tables of the residual flexibility between places round its kink off. The
+// flexibility under both must stay positive: two forces may not gain energy.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,11 +16,11 @@ using namespace railstep;
 namespace {
 
 struct Carried {
-  double together = 0., most = 0.;  // N: mean of the last half's sum, and largest force of all
+  double together = 0., most = 0.;  // N: mean of the sum in the last half, and largest force of all
   Status seen = Status::ok;
 };
 
-/// One mass, or two of its half that stand `apart`, over 24 bays for 50 ms.
+/// One mass, or two halves of it `apart` from each other, over 24 bays for 50 ms.
 Carried ride(const std::string& contact, int masses, double apart, const std::string& kind) {
   std::string vehicles;
   for (int i = 0; i < masses; ++i)
@@ -45,8 +45,8 @@ Carried ride(const std::string& contact, int masses, double apart, const std::st
 
 }  // namespace
 
-TEST_CASE("two masses at one place ride as one", "[vehicle][contact]") {
-  // The track moves under both alike; what differs is how the tables between places err, some
+TEST_CASE("two masses at one place ride as one mass", "[vehicle][contact]") {
+  // The track moves equally under both. Only the tables between places differ, whose error is some
   // percent of the residual flexibility.
   const std::string kind = GENERATE(as<std::string>(), "full", "modal");
   const std::string contact =
@@ -58,7 +58,7 @@ TEST_CASE("two masses at one place ride as one", "[vehicle][contact]") {
     CAPTURE(kind, contact, apart, one.together, two.together, one.most, two.most);
     CHECK(!has(two.seen, Status::cap_reached));
     CHECK(std::abs(two.together / one.together - 1.) < .01);
-    // each has half of it, and what the tables' error passes from one to the other
+    // Each has half of it; the tables' error shifts a little from one to the other.
     CHECK(two.most < one.most);
   }
 }

@@ -1,4 +1,4 @@
-// The balance of energy of a run: closed forms, the scheme's loss, and that every term counts.
+// Energy balance of a run: closed forms, the scheme's loss, and proof that every term counts.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,10 +19,10 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-// Sums over thousands of steps with matrices whose condition is 1e8: 1e-16 times 1e8, and a factor.
+// 1e-16 times the matrices' condition of 1e8, and a factor for sums over thousands of steps.
 constexpr double kRoundOff = 1e-7;
 
-/// What the closed form of the loss leaves of the balance, over the largest energy turned over.
+/// Error of the balance with the closed form of the loss, over the largest energy turned over.
 double rest(const EnergyAccount& energy) {
   return std::abs(energy.imbalance() + energy.flow().loss) / energy.turned_over();
 }
@@ -38,9 +38,9 @@ PackOptions plain(const Scheme& scheme) {
   return {.scheme = scheme, .residual_flexibility = false};
 }
 
-/// One rail that moves as one mass of 150 kg on 3e7 N/m and c, with a load of that force on it. Its
-/// beam gives way by 3e7 L/(4 k G A) = 1e-7 of what the seats do, and its stiffness G A/L of 1e14
-/// N/m leaves 1e-16 1e14/3e7 = 4e-10 of round-off a product: good to kOneMass.
+/// One rail that moves as a mass of 150 kg on 3e7 N/m and c, with a load on it. Its beam gives 3e7
+/// L/(4 k G A) = 1e-7 of the seats' displacement. Its stiffness G A/L of 1e14 N/m leaves a
+/// round-off of 1e-16 1e14/3e7 = 4e-10 in a product, so it is good to kOneMass.
 constexpr double kOneMass = 1e-6;
 ModelRun mass_under(double force, double damping, const Scheme& scheme) {
   Track track = one_mass(3e7, damping);
@@ -51,7 +51,7 @@ ModelRun mass_under(double force, double damping, const Scheme& scheme) {
   return {track, {.loads = {{.start = kMiddle, .stop = 1., .force = force}}}, plain(scheme)};
 }
 
-/// Moved up by u from rest, with the acceleration that it then has.
+/// Moves the rail up by u at rest, with the acceleration that it then has.
 void lift(ModelRun& run, double u) {
   const LineModel& line = run.model().line[0];
   for (int node = 0; node < 3; ++node) {
@@ -69,7 +69,7 @@ const std::string kPushed =
     "wheelset[0].force=[{direction=\"z\", table=[[0, 0], [0.01, -20e3]]},"
     " {direction=\"y\", table=[[0, 0], [0.01, 200]]}]";
 
-/// A scene's run with its account, step by step.
+/// A run of a scene and its energy account, step by step.
 struct SceneRun {
   Simulation run;
   Model model;
@@ -91,7 +91,8 @@ struct SceneRun {
 
 }  // namespace
 
-TEST_CASE("backward Euler takes 1 - 1/(1 + w^2 dt^2) of a free mass's energy a step", "[energy]") {
+TEST_CASE("in each step backward Euler takes 1 - 1/(1 + w^2 dt^2) of a free mass's energy",
+          "[energy]") {
   const double dt = 1e-4, w2 = 3e7 / 150. * dt * dt, start = .5 * 3e7 * 1e-3 * 1e-3;
   ModelRun run = mass_under(0., 0., backward_euler(dt));
   lift(run, 1e-3);
@@ -107,8 +108,7 @@ TEST_CASE("backward Euler takes 1 - 1/(1 + w^2 dt^2) of a free mass's energy a s
   CHECK_THAT(energy.balance_error(), WithinRel(energy.numerical_loss(), kOneMass));
 }
 
-TEST_CASE("a damped mass gives its damper what the closed form says, with the step's order",
-          "[energy]") {
+TEST_CASE("a damper takes the energy of the closed form, with the order of the step", "[energy]") {
   const double d = 100., w = std::sqrt(3e7 / 150. - d * d), t = .01, up = 1e-3;
   const double c = std::cos(w * t), s = std::sin(w * t), decay = std::exp(-d * t);
   const double u = up * decay * (c + d / w * s), v = -up * decay * (w + d * d / w) * s;
@@ -125,12 +125,12 @@ TEST_CASE("a damped mass gives its damper what the closed form says, with the st
   }
   CAPTURE(miss, error);
   for (const auto& of : {miss, error})
-    for (std::size_t i = 0; i < 2; ++i)  // second order; half an order for higher terms
+    for (std::size_t i = 0; i < 2; ++i)  // second order; half an order is for higher terms
       CHECK_THAT(std::log2(of[i] / of[i + 1]), WithinAbs(2., .5));
 }
 
 TEST_CASE("a load that appears and stays spends F^2/k: half is kept, half is damped", "[energy]") {
-  // e^(-100 t) is 1e-13 after .3 s
+  // e^(-100 t) is 1e-13 after .3 s.
   const double all = 50e3 * 50e3 / 3e7;
   ModelRun run = mass_under(-50e3, 3e4, generalised_alpha(1e-4, .6));
   EnergyAccount energy(*run.packed, run.model(), run.state);
@@ -142,9 +142,10 @@ TEST_CASE("a load that appears and stays spends F^2/k: half is kept, half is dam
   CHECK(rest(energy) < kOneMass);
 }
 
-TEST_CASE("the weight of a track alone gives what it stores, by either kind of model", "[energy]") {
-  // From the unloaded track the weight's work is twice the strain of equilibrium, once it rests;
-  // the dampers take the rest.
+TEST_CASE("the weight of a track does the work that the track stores, in both kinds of model",
+          "[energy]") {
+  // From the unloaded track to rest the weight's work is twice the strain energy of equilibrium;
+  // the dampers take the other half.
   Track track = sprung_track(3e4);
   track.bays = 4;
   const Statics statics(track);
@@ -160,25 +161,25 @@ TEST_CASE("the weight of a track alone gives what it stores, by either kind of m
     EnergyAccount energy(*run.packed, run.model(), run.state);
     follow(run, energy, 2000);
     CAPTURE(condensed);
-    CHECK_THAT(energy.stored().total(), WithinRel(want, kRoundOff));  // the slowest decay: e^-36
+    CHECK_THAT(energy.stored().total(), WithinRel(want, kRoundOff));  // the slowest decay is e^-36
     CHECK_THAT(energy.flow().weight, WithinRel(2. * want, kRoundOff));
     if (!condensed) CHECK(rest(energy) < kRoundOff);
-    // trapezoids of what moves with 136 Hz are good to (855 5e-5)^2 / 12 = 1.5e-4, and faster modes
-    // add to it
+    // For motion at 136 Hz trapezoids are good to (855 5e-5)^2 / 12 = 1.5e-4; faster modes add to
+    // it.
     if (condensed) CHECK(rest(energy) < 1e-3);
   }
 }
 
-TEST_CASE("R1 to R3: a drop's energies by the account and by hand are the same", "[energy]") {
+TEST_CASE("R1 to R3: the energy account of a drop agrees with energies by hand", "[energy]") {
   const bool sprung = GENERATE(false, true);
   std::vector<double> error;
   for (const double dt : {5e-5, 1e-5}) {
     Drop drop(sprung ? sprung_track(3e4) : one_mass(3e7, 3e4), sprung ? kSeat : kMiddle, dt);
     EnergyAccount energy(*drop.packed, drop.model(), drop.state);
     const double start = drop.energy();
-    // The published penetration follows the normal that was frozen. At the seat the elements make a
-    // V of slopes up to 1e-4 that change by 1e-5 a step; axle and crown's centre are .76 m apart:
-    // 7.6e-10 m, times 40 kN. The one mass's beam of 1e17 N/m costs round-off instead.
+    // The published penetration follows the frozen normal. At the seat the elements make a V of
+    // slopes up to 1e-4 that change by 1e-5 a step. The axle is .76 m from the crown's centre:
+    // 7.6e-10 m, times 40 kN. The one mass has a beam of 1e17 N/m instead, which costs round-off.
     const double frozen = sprung ? 3e-5 : 0., stiff = sprung ? kRoundOff : 1e-5;
     bool met = false;
     while (!met || drop.force() > 0.) {
@@ -191,21 +192,22 @@ TEST_CASE("R1 to R3: a drop's energies by the account and by hand are the same",
     CHECK_THAT(energy.flow().dissipated, WithinRel(drop.dissipated, kRoundOff));
     CHECK_THAT(energy.imbalance(),
                WithinAbs(drop.energy() + drop.dissipated - start, frozen + stiff * start));
-    // Nothing moves along the rail or turns: the frozen geometry is the standing one.
+    // Nothing moves along the rail or rotates, so the frozen geometry stays right.
     CHECK(rest(energy) < stiff);
     error.push_back(energy.balance_error());
   }
   CAPTURE(sprung, error[0], error[1]);
-  CHECK(error[0] / error[1] > 25. / std::pow(5., .5));  // second order, half of one left
+  CHECK(error[0] / error[1] > 25. / std::pow(5., .5));  // second order, half an order spare
   CHECK(error[1] < 1e-3);                               // H4
 }
 
-TEST_CASE("a moving load's balance is the scheme's loss, and falls with the step", "[energy]") {
+TEST_CASE("the balance of a moving load errs by the scheme's loss, which falls with the step",
+          "[energy]") {
   std::vector<double> error;
   for (const char* dt : {"step.dt_s=5e-4", "step.dt_s=2.5e-4", "step.dt_s=1.25e-4"}) {
     SceneRun full("moving_load.toml", {dt, "load[0].table=[[0, 0], [0.05, 1]]",
                                        "load[1].stop_m=3.0", "step.duration_s=0.2"});
-    full.until(.2);  // the right one is taken off at 90 ms
+    full.until(.2);  // the right load leaves at 90 ms
     CHECK(rest(full.energy) < kRoundOff);
     SceneRun smooth("moving_load.toml",
                     {dt, "load[0].table=[[0, 0], [0.05, 1]]", "load[1].table=[[0, 0], [0.05, 1]]"});
@@ -218,8 +220,7 @@ TEST_CASE("a moving load's balance is the scheme's loss, and falls with the step
     CHECK_THAT(std::log2(error[i] / error[i + 1]), WithinAbs(2., .5));
 }
 
-TEST_CASE("a wheelset at 30 m/s on ballast balances, full or condensed, guided either way",
-          "[energy]") {
+TEST_CASE("a wheelset at 30 m/s on ballast balances in both models with both guides", "[energy]") {
   const std::string kind = GENERATE(kFull, kModal);
   const std::vector<std::string> extra =
       GENERATE(std::vector<std::string>{}, std::vector<std::string>{kBaumgarte},
@@ -229,14 +230,14 @@ TEST_CASE("a wheelset at 30 m/s on ballast balances, full or condensed, guided e
   SceneRun run("ballasted_track.toml", changes);
   run.until(.04);  // two seats
   CAPTURE(changes, run.energy.imbalance(), run.energy.flow().loss, run.energy.turned_over());
-  // Frozen geometry: a normal is off by up to 1e-4 where the head is squeezed, and trapezoids of
-  // the dissipation, a tenth of the energy, are good to (2 pi 350 Hz dt)^2 / 12 = 1e-3.
+  // Frozen geometry: a normal errs by up to 1e-4 where the head is squeezed. Trapezoids of the
+  // dissipation, a tenth of the energy, are good to (2 pi 350 Hz dt)^2 / 12 = 1e-3.
   CHECK(rest(run.energy) < 1e-4);
   CHECK(run.energy.balance_error() < 1e-3);
 }
 
-TEST_CASE("a condensed track's balance falls with the step", "[energy]") {
-  // The contact's loss, theta = 1/1.6 off the middle, is of first order.
+TEST_CASE("the balance of a condensed track improves with a smaller step", "[energy]") {
+  // The loss of the contact, whose theta of 1/1.6 is not the middle, is of first order.
   std::vector<double> error;
   for (const char* dt : {"step.dt_s=1e-4", "step.dt_s=5e-5", "step.dt_s=2.5e-5"}) {
     SceneRun run("ballasted_track.toml", {kModal, dt, "track.bays=24", "step.duration_s=0.05"});
@@ -248,7 +249,8 @@ TEST_CASE("a condensed track's balance falls with the step", "[energy]") {
     CHECK_THAT(std::log2(error[i] / error[i + 1]), WithinAbs(1., .5));
 }
 
-TEST_CASE("every term of the balance counts: without one of them it does not close", "[energy]") {
+TEST_CASE("every term of the balance counts: without any one of them it does not close",
+          "[energy]") {
   SceneRun run("ballasted_track.toml",
                {GENERATE(kFull, kModal), "track.bays=24", "step.duration_s=0.05",
                 "step.start=\"released\"", "track.gravity=true", kPushed});
@@ -259,7 +261,7 @@ TEST_CASE("every term of the balance counts: without one of them it does not clo
   CHECK(std::abs(run.energy.imbalance() + flow.loss) < bound);
   const struct {
     const char* name;
-    double energy;  // J, as it stands in the balance; a start from rest has none
+    double energy;  // J, with its sign in the balance; zero at a start from rest
   } terms[] = {{"kinetic, but for the guided speed", stored.kinetic - stored.forward},
                {"strain", stored.strain},
                {"Hertz", stored.hertz},
@@ -275,7 +277,7 @@ TEST_CASE("every term of the balance counts: without one of them it does not clo
   }
 }
 
-TEST_CASE("the account's own run ends in the bits of the run that was timed", "[energy]") {
+TEST_CASE("the account's own run ends with the bits of the timed run", "[energy]") {
   const Scene scene = read_scene(kScenes + "ballasted_track.toml", {"step.duration_s=0.02"});
   Simulation run(scene);
   const RunRecord record = simulate(run, 20, nullptr, false);
@@ -290,7 +292,7 @@ TEST_CASE("the account's own run ends in the bits of the run that was timed", "[
   CHECK(record.allocations == 0);
 }
 
-TEST_CASE("the count of heap calls sees one allocation, so it could fail", "[energy]") {
+TEST_CASE("the count of heap calls sees one allocation, so its test can fail", "[energy]") {
   const std::int64_t before = heap_calls();
   double* volatile memory = new double[3];
   CHECK(heap_calls() == before + 1);

@@ -22,7 +22,7 @@ Words both(Words a, const Words& b) {
   return a;
 }
 
-/// A run with what it published last.
+/// A run with its last outputs.
 struct Run {
   std::unique_ptr<Simulation> simulation;
   Outputs outputs{};
@@ -90,7 +90,7 @@ TEST_CASE("free motion and compliance give the frame's displacements for any for
             size += std::abs(compliance[6 * i + j] * force);
             CHECK(compliance[6 * i + j] == compliance[6 * j + i]);
           }
-          // A solve of some hundred unknowns: some hundred roundings of the largest term.
+          // A solve of some hundred unknowns rounds some hundred times in the largest term.
           CHECK(std::abs(run.outputs.external_displacement[i / 3][i % 3] - want) <=
                 1e-13 * size + 1e-18);
         }
@@ -99,7 +99,7 @@ TEST_CASE("free motion and compliance give the frame's displacements for any for
     }
 }
 
-TEST_CASE("two external wheels in one bay feel each other as on a fine rail", "[external]") {
+TEST_CASE("two external wheels in one bay affect each other as on a fine rail", "[external]") {
   const Words two = {"load=[]", "step.duration_s=0.5",
                      "external_wheel=[{name=\"a\", rail=\"left\", limit_n=1e6}, {name=\"b\", "
                      "rail=\"left\", limit_n=1e6}]"};
@@ -110,14 +110,13 @@ TEST_CASE("two external wheels in one bay feel each other as on a fine rail", "[
                   std::string("condense.residual_flexibility=") + (residual ? "true" : "false")}));
     const std::vector<double> in = {4.45, 0., 0., 0., -50e3, 4.65, 0., 0., 0., 0.};
     for (int n = 0; n < 5000; ++n) REQUIRE(run.frame(in) == Status::ok);
-    return run.outputs.external_displacement[1][2];  // of the one that does not press
+    return run.outputs.external_displacement[1][2];  // under the wheel without force
   };
   const double want = settled("full", 8, true);
   for (const char* kind : {"full", "modal"}) {
     const double got = settled(kind, 1, true), bare = settled(kind, 1, false);
     CAPTURE(kind, want, got, bare);
-    // Tables of four intervals read by cubics; without them the other is a twelfth of a per cent
-    // off.
+    // Cubics read tables of four intervals; without tables the other wheel errs by 0.08 %.
     CHECK(std::abs(got / want - 1.) < 1e-4);
     CHECK(std::abs(bare / want - 1.) > 5e-4);
   }
@@ -128,7 +127,7 @@ TEST_CASE("an external force moves the rail as a load in the model does", "[exte
     Run inside("moving_load",
                both(track_of("full", unknowns), {"load[0].at=\"head\"", "load[1].at=\"head\""}));
     Run outside("moving_load", both(track_of("full", unknowns), kTwo));
-    // The load in the model strikes the track at the start, the force from outside a step on.
+    // The load in the model acts on the track from the start, the external force from a step later.
     inside.start_at_rest();
     for (int n = 1; n <= 500; ++n) {
       REQUIRE(inside.frame({}) == Status::ok);
@@ -142,7 +141,7 @@ TEST_CASE("an external force moves the rail as a load in the model does", "[exte
   }
 }
 
-TEST_CASE("the force of a vehicle in the model, given from outside, moves the rail alike",
+TEST_CASE("the force of a vehicle moves the rail in the same way when it is external",
           "[external]") {
   const Words vehicle = {
       "load=[]",
@@ -162,7 +161,7 @@ TEST_CASE("the force of a vehicle in the model, given from outside, moves the ra
       most = std::max(most, std::abs(outside.outputs.external_displacement[0][2]));
     }
     CHECK(most > 1e-4);
-    // The suddenness of the start apart: it began in equilibrium inside, unloaded outside.
+    // Only the start differs: inside it is in equilibrium, outside the rail is unloaded.
     CHECK(outside.outputs.external_displacement[0][2] ==
           Approx(inside.outputs.wheel_rail_z[0]).epsilon(.02));
   }
@@ -172,7 +171,7 @@ TEST_CASE("the rail's velocity is the rate of its displacement", "[external]") {
   for (const char* kind : {"full", "modal"}) {
     Run run("moving_load", both(track_of(kind, "vertical"), kTwo));
     double last = 0., largest = 0., missed = 0.;
-    for (int n = 1; n <= 2000; ++n) {  // a force that grows smoothly, on one place
+    for (int n = 1; n <= 2000; ++n) {  // a force that grows smoothly at one place
       const double f = -25e3 * (1. - std::cos(3.14159265358979 * n / 2000.));
       REQUIRE(run.frame({4.3, 0., 0., 0., f, 0., 0., 0., 0., 0.}) == Status::ok);
       const double z = run.outputs.external_displacement[0][2];
@@ -185,12 +184,12 @@ TEST_CASE("the rail's velocity is the rate of its displacement", "[external]") {
     }
     CAPTURE(kind);
     CHECK(largest > 1e-3);
-    // Half a step's change of the velocity, and what the residual flexibility has of it.
+    // Half a step's change of the velocity, and the share of the residual flexibility.
     CHECK(missed < .05 * largest);
   }
 }
 
-TEST_CASE("an external wheel off the rail moves nothing and says so", "[external]") {
+TEST_CASE("an external wheel off the rail moves nothing and sets its status", "[external]") {
   Run run("moving_load", both(track_of("full", "vertical"), kTwo));
   const auto place = [&](double x, double y) {
     return run.frame({x, y, 0., 0., -50e3, 1., 0., 0., 0., 0.});
@@ -205,7 +204,7 @@ TEST_CASE("an external wheel off the rail moves nothing and says so", "[external
   CHECK(run.outputs.external_displacement[0][2] < 0.);
 }
 
-TEST_CASE("what external wheels do not stand beside is refused in one sentence",
+TEST_CASE("features that external wheels cannot be combined with are refused in one sentence",
           "[external][cli]") {
   const auto told = [](const std::string& scene, const std::string& words) {
     const Ran ran = railstep_program("run " + kFolder + scene + ".toml " + words);

@@ -1,4 +1,4 @@
-// The balance of energy where wheels of a vehicle outside the model press the track.
+// Energy balance where wheels of a vehicle outside the model press on the track.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -33,7 +33,7 @@ std::vector<std::string> words_of(const std::string& kind, const std::string& un
           "support.stiffness_roll_n_m_per_rad=1e6"};
 }
 
-/// Two wheels that go at 20 m/s, or stand, under forces that swing along all three axes.
+/// Two wheels that run at 20 m/s, or stand, under forces that oscillate along all three axes.
 struct Ride {
   double speed, dt;
   std::vector<double> in = std::vector<double>(10);
@@ -54,10 +54,9 @@ EnergyBalance balance(const Simulation& run, Ride ride, std::int64_t frames) {
 
 }  // namespace
 
-TEST_CASE("forces of wheels outside work on the way of the points under them",
-          "[external][energy]") {
+TEST_CASE("external forces do work on the path of the points under them", "[external][energy]") {
   for (const char* kind : {"full", "modal"}) {
-    // Without the residual flexibility the published way is that of the track's unknowns.
+    // Without residual flexibility the published path is that of the track's unknowns.
     std::vector<std::string> words = words_of(kind, "full", "1e-4");
     if (kind == std::string("modal")) words.emplace_back("condense.residual_flexibility=false");
     Simulation run(read_scene(kFolder + "moving_load.toml", words));
@@ -82,12 +81,12 @@ TEST_CASE("forces of wheels outside work on the way of the points under them",
     }
     CAPTURE(kind);
     CHECK(std::abs(work) > 1.);
-    // Heights hold what is of second order in the rail's roll as well: 1e-4 rad here.
+    // Heights also hold terms of second order in the rail's roll: 1e-4 rad here.
     CHECK(std::abs(account.flow().outside - work) < 1e-4 * size);
   }
 }
 
-TEST_CASE("energies balance under wheels outside", "[external][energy]") {
+TEST_CASE("energies balance under external wheels", "[external][energy]") {
   for (const char* kind : {"full", "modal"})
     for (const char* unknowns : {"vertical", "full"}) {
       const Simulation run(
@@ -95,8 +94,8 @@ TEST_CASE("energies balance under wheels outside", "[external][energy]") {
       const EnergyBalance found = balance(run, {20., 1e-4}, 2000);
       CAPTURE(kind, unknowns, found.error, found.numerical_loss);
       CHECK(found.error > 0.);
-      // Of full order the scheme's loss is all that is missing, to rounding; condensed lines leave
-      // the quadrature of dissipation, which falls with the step.
+      // In full order the scheme's loss is the whole error, to rounding. Condensed lines add the
+      // quadrature of dissipation, which falls with the step.
       CHECK(found.error < 1e-3);
       if (kind == std::string("full"))
         CHECK(std::abs(found.error - std::abs(found.numerical_loss)) < 1e-9);
@@ -106,7 +105,7 @@ TEST_CASE("energies balance under wheels outside", "[external][energy]") {
     }
 }
 
-TEST_CASE("run tells the energies of a scene with wheels outside", "[external][energy][cli]") {
+TEST_CASE("run prints the energies of a scene with external wheels", "[external][energy][cli]") {
   const auto folder = fresh_folder("external_energy");
   {
     std::ofstream table(folder / "in.csv");

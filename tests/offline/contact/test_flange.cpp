@@ -1,5 +1,5 @@
-// Flanges on rigid rails: the geometry of the contact, and its motion against closed forms and an
-// integration by itself.
+// Flanges on rigid rails: the geometry of the contact, and its motion against closed forms and a
+// separate integration.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,20 +14,20 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// Steps without residual flexibility: a rigid rail has none but for the mesh's own.
+/// Steps without residual flexibility: that of a rigid rail is only the mesh's own.
 PackOptions rigid(double dt) {
   PackOptions o = full_order(dt);
   o.residual_flexibility = false;
   return o;
 }
 
-/// On rigid rails, in the treads' equilibrium at y with that speed aside.
+/// A run on rigid rails, at y in the equilibrium of the treads, with that lateral speed.
 ModelRun rolling(const Wheelset& w, double dt, double y, double speed) {
   ModelRun run(rigid_track(), {.wheelsets = {w}, .head = kFlangedHead}, rigid(dt));
   const WheelsetModel& own = run.model().wheelset[0];
   run.state.u[own.first + 1] = y;
   run.state.v[own.first + 1] = speed;
-  double depth[2];  // the treads stand half a metre from the middle, the weight stands at y
+  double depth[2];  // the treads are half a metre from the middle, the weight is at y
   for (const int i : {0, 1}) {
     run.state.wheel_force[i] = w.weight * (.5 + (i == 0 ? y : -y));
     depth[i] = std::pow(run.state.wheel_force[i] / own.hertz[i], 2. / 3.);
@@ -47,19 +47,19 @@ PlaneWheelset plane_of(const ModelRun& run) {
   return plane;
 }
 
-/// Flange contacts of a run as it stands, left and right.
+/// Flange contacts of a run in its present state, left and right.
 std::array<WheelContact, 2> flanges_of(const ModelRun& run) {
   std::array<WheelContact, 2> sides;
   find_flanges(run.model(), run.model().flange[0], {run.state.u, {}}, sides.data());
   return sides;
 }
 
-/// A displacement of wheelset and rails as one rigid body: shift, then turn about the axes' origin.
+/// Motion of wheelset and rails as one rigid body: a shift, then a rotation about the axes' origin.
 struct RigidMotion {
   double shift[3], roll, yaw;
 };
 
-/// What it closes a contact by: of the rail's row less the wheelset's.
+/// Closure of a contact by it: that of the rail's row less that of the wheelset's.
 double closed_by(const Model& model, const WheelContact& at, const RigidMotion& m,
                  const double* centre) {
   const double L = model.element_length;
@@ -71,10 +71,10 @@ double closed_by(const Model& model, const WheelContact& at, const RigidMotion& 
                           m.shift[2] + m.roll * y,
                           -m.yaw,
                           0.,
-                          m.roll,  // of e_y
+                          m.roll,  // e_y
                           0.,
                           -m.roll,
-                          0.};  // of e_z
+                          0.};  // e_z
     for (int k = 0; k < 9; ++k) sum += at.row.coefficient[i][k] * dq[k];
   }
   const double dp[6] = {m.shift[0] - m.yaw * centre[1],
@@ -89,12 +89,12 @@ double closed_by(const Model& model, const WheelContact& at, const RigidMotion& 
 
 }  // namespace
 
-TEST_CASE("a flange's gap is that of a straight face and a point", "[flange]") {
+TEST_CASE("the gap of a flange is that between a straight face and a point", "[flange]") {
   ModelRun run = rolling(flanged_wheelset(1e6, 0.), 1e-4, 0., 0.);
   double* p = run.state.u + run.model().wheelset[0].first;
   const PlaneWheelset plane = plane_of(run);
   p[2] = 0.;
-  // A face of 70 degrees, 7 mm aside: 7 mm sin 70 along its normal, to rounding of 1 m.
+  // A face of 70 degrees, 7 mm aside, is 7 mm sin 70 away along its normal, to rounding of 1 m.
   for (const WheelContact& side : flanges_of(run))
     CHECK_THAT(side.penetration, WithinAbs(-7e-3 * std::sin(kFaceAngle), 1e-15));
   for (const auto& pose : {std::array{7e-3, 0., 0.}, std::array{9e-3, 1e-3, 0.},
@@ -114,8 +114,7 @@ TEST_CASE("a flange's gap is that of a straight face and a point", "[flange]") {
   }
 }
 
-TEST_CASE("a flange's force loads wheelset and rail at one point: no net force, no net moment",
-          "[flange]") {
+TEST_CASE("the force of a flange acts on wheelset and rail at one point", "[flange]") {
   ModelRun run = rolling(flanged_wheelset(1e6, 0.), 1e-4, 0., 0.);
   double* p = run.state.u + run.model().wheelset[0].first;
   p[1] = 8e-3;
@@ -124,24 +123,23 @@ TEST_CASE("a flange's force loads wheelset and rail at one point: no net force, 
   const double centre[3] = {3.2 + p[0], p[1], run.model().wheelset[0].rest_z + p[2]};
   for (const WheelContact& at : flanges_of(run)) {
     CHECK(at.penetration != 0.);
-    // Moved as one they do not close: f times this is the work of the force and its opposite. The
-    // origin is 3.2 m away, so rounding is some 1e-16 of that.
+    // Moved as one body they do not close: f times the closure is the work of the force and its
+    // opposite. The origin is 3.2 m away, so rounding is some 1e-16 of that.
     const auto closed = [&](const RigidMotion& m) { return closed_by(run.model(), at, m, centre); };
     CHECK_THAT(closed({{0., 1., 0.}, 0., 0.}), WithinAbs(0., 1e-14));
     CHECK_THAT(closed({{0., 0., 1.}, 0., 0.}), WithinAbs(0., 1e-14));
     CHECK_THAT(closed({{1., 0., 0.}, 0., 0.}), WithinAbs(0., 1e-14));
     CHECK_THAT(closed({{0., 0., 0.}, 1., 0.}), WithinAbs(0., 1e-14));
     CHECK_THAT(closed({{0., 0., 0.}, 0., 1.}), WithinAbs(0., 1e-14));
-    CHECK(std::abs(at.body_row[3]) > 1e-4);  // there is a moment to be balanced
+    CHECK(std::abs(at.body_row[3]) > 1e-4);  // there is a moment to balance
   }
 }
 
-TEST_CASE("a wheelset that runs into its flange moves as an integration by itself has it",
-          "[flange]") {
-  // Way aside and heights of the axle over both rails, each over its largest: of second order where
-  // the force has a kink alone. A damper's force jumps within a step, which leaves up to c sin^2 v
-  // dt / m of the speed. Each run meets the flange right before the end of a step, so that steps
-  // compare. Hertz's blow lifts the tread.
+TEST_CASE("a wheelset that runs into its flange moves as in a separate integration", "[flange]") {
+  // Lateral displacement and heights of the axle over both rails, each over its largest, are of
+  // second order where the force has only a kink. A damper's force jumps within a step, which
+  // leaves up to c sin^2 v dt / m of the speed. Each run meets the flange just before the end of a
+  // step, so that steps compare. The impact of Hertz's law lifts the tread.
   struct Law {
     double stiffness, damping, corner;
     double coarse, end;  // s
@@ -185,10 +183,10 @@ TEST_CASE("a wheelset that runs into its flange moves as an integration by itsel
   CHECK_THAT(std::log2(error[1] / error[2]), WithinAbs(2., .3));
 }
 
-TEST_CASE("a damped flange gives back what the closed form says", "[flange]") {
+TEST_CASE("a damped flange rebounds as in the closed form", "[flange]") {
   // m / sin^2 on k and c, which let go when they would pull: e = exp(-(pi - 2 asin zeta) zeta /
-  // sqrt(1 - zeta^2)) (Schwager and Poschel, 2007). The treads give way by k cos^2 / (2 k_tread) =
-  // 1e5 * .117 / 4e8 of it.
+  // sqrt(1 - zeta^2)) (Schwager and Poschel, 2007). The treads yield by k cos^2 / (2 k_tread) = 1e5
+  // * .117 / 4e8 of it.
   constexpr double kStiffness = 1e5, kSpeed = .0374;
   const double effective = 100. / std::pow(std::sin(kFaceAngle), 2);
   for (const double zeta : {0., .2, .5}) {
@@ -218,8 +216,8 @@ TEST_CASE("a mirrored run into the right flange is the mirror image", "[flange]"
   };
   const ModelRun left = run_into(1.), right = run_into(-1.);
   CHECK(left.state.v[left.model().wheelset[0].first + 1] < -.01);
-  // Sums over both rails go in one order, so mirror images differ by rounding: of steps that press
-  // with 1e3 N on 1e7 N/m, 1e-16 1e-4 m each.
+  // Sums over both rails go in one order, so mirror images differ by rounding: in steps that press
+  // with 1e3 N on 1e7 N/m, by 1e-16 1e-4 m each.
   CHECK_THAT(left.body()[1], WithinAbs(-right.body()[1], 1e-12));
   CHECK_THAT(left.body()[2], WithinAbs(right.body()[2], 1e-12));
   CHECK_THAT(left.body()[3], WithinAbs(-right.body()[3], 1e-12));
@@ -227,8 +225,8 @@ TEST_CASE("a mirrored run into the right flange is the mirror image", "[flange]"
 
 TEST_CASE("a flange holds up to Nadal's limit without friction, then climbs and runs off",
           "[flange]") {
-  // Lateral over vertical force of a wheel on its flange alone: tan 70. The push at which the left
-  // tread lets go, by balance of the wheelset: 2 N_left = V + M / half gauge, V = Q - f cos, with
+  // A wheel on its flange alone has tan 70 as lateral over vertical force. The left tread lets go
+  // at a push given by the wheelset's balance: 2 N_left = V + M / half gauge, V = Q - f cos, with
   // the moments M of flange and treads about the centre, 7 mm aside.
   const double c = std::cos(kFaceAngle), s = std::sin(kFaceAngle), Q = 981., y = 7e-3;
   const auto left = [&](double f) {
@@ -242,7 +240,7 @@ TEST_CASE("a flange holds up to Nadal's limit without friction, then climbs and 
     w.forces = {{1, {0., 0., .5, force}}};
     return rolling(w, 5e-5, 7e-3, 0.);
   };
-  // The face gives way by 0.3 mm and turns with the roll this makes: 1 % of the push, below 3 %.
+  // The face yields by 0.3 mm and turns with the resulting roll: 1 % of the push, below 3 %.
   ModelRun held = pushed(.97 * limit);
   held.until(.6);
   CHECK(held.seen == Status::ok);
@@ -253,16 +251,16 @@ TEST_CASE("a flange holds up to Nadal's limit without friction, then climbs and 
   CHECK(has(climbs.seen, Status::contact_lost));
   REQUIRE(has(climbs.seen, Status::off_rail));
   CHECK(climbs.outputs.wheel_force[0] == 0.);
-  // The tip, 28 mm below the tread, has come up to the point 14 mm below the head's top: over it by
-  // what a step of 50 us makes at up to 2 m/s.
+  // The tip, 28 mm below the tread, has come up to the point 14 mm below the head's top. It is over
+  // that point by the motion in a step of 50 us at up to 2 m/s.
   const double *p = climbs.body(), arm_y = .5 - kHalfHead - p[1], arm_z = -.162 - p[2];
   const double over = -.176 - (arm_z * std::cos(p[3]) - arm_y * std::sin(p[3]));
   CHECK_THAT(over, WithinAbs(0., 1e-4));
 }
 
-TEST_CASE("a flange that is struck too fast for the step says so", "[flange]") {
-  // Half a swing of the mass m / sin^2 with its part of roll on 1e8 N/m takes 3.3 ms, 33 steps of
-  // 0.1 ms; of 0.5 ms it takes 7.
+TEST_CASE("a flange reports an impact that is too fast for the step", "[flange]") {
+  // Half an oscillation of the mass m / sin^2, with its share of roll, on 1e8 N/m takes 3.3 ms: 33
+  // steps of 0.1 ms, or 7 of 0.5 ms.
   const auto met = [](double dt) {
     ModelRun run = rolling(flanged_wheelset(1e8, 0.), dt, 6.9e-3, .0374);
     run.until(.01);

@@ -1,5 +1,5 @@
 // Random wheels on random tracks that no drive works on: their energy never grows, in full order
-// and condensed. Damped modes ("complex-modes") tell no energies and are left out.
+// and condensed. Damped modes ("complex-modes") have no energies and are left out.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
@@ -14,24 +14,24 @@ using namespace railstep;
 
 namespace {
 
-// Two million steps in all; a sanitizer takes some twenty times as long for each.
+// Two million steps in all; each takes some twenty times as long under a sanitizer.
 #ifdef __SANITIZE_ADDRESS__
 constexpr int kShare = 20;
 #else
 constexpr int kShare = 1;
 #endif
-constexpr int kSteps = 1000;  // of a scene
+constexpr int kSteps = 1000;  // per scene
 
 const std::string kEuler = "scheme = \"backward-euler\"\n";
 const std::string kTrapezoid = "scheme = \"newmark\"\n";
 const std::string kMean = "contact = \"discrete-gradient\"\n";
 const std::string kAtEnd = "rho_inf = 0.0\n";
 
-/// What a run had at most, over what it may.
+/// Largest values of a run, over their bounds.
 struct Worst {
-  double made = 0.;     // of a step: energy made over the bound of round-off
-  double made_in = 0.;  // of a step: energy made over the largest energy
-  double all = 0.;      // of the run: the same of what all steps made together
+  double made = 0.;     // of a step: energy added over the bound of round-off
+  double made_in = 0.;  // of a step: energy added over the largest energy
+  double all = 0.;      // of the run: the same for the sum of all steps
   std::int64_t steps = 0, pressed = 0;
   bool lost = false;  // a wheel ran off, or a solve did not converge
   bool fails() const { return !(made <= 1.) || lost; }
@@ -45,7 +45,7 @@ void take(Worst& to, const Worst& from) {
   to.pressed += from.pressed;
 }
 
-/// Every step's energy is its last one's or less, by a potential that is convex.
+/// Checks that no step adds energy, for a convex potential.
 Worst never_grows(const RandomScene& scene) {
   PassiveRun run(scene);
   Worst worst;
@@ -70,7 +70,7 @@ RandomScene falling(std::uint64_t seed, const std::string& scheme, const std::st
   RandomScene s = random_track(seed, draw);
   s.steps = kSteps;
   s.scheme = scheme;
-  // One bay that is clamped at both ends has no node left to condense to.
+  // One bay that is clamped at both ends has no node left for condensation.
   if ((kind == "guyan" || kind == "irs") && s.ends[0] != "free") s.ends[1] = "free";
   s.vehicle = random_vehicle(draw, s, false);
   const bool residual = draw.chance(.5);
@@ -82,12 +82,12 @@ RandomScene falling(std::uint64_t seed, const std::string& scheme, const std::st
   return s;
 }
 
-/// What whatever carries wheels along puts into linear contacts in a step of the trapezoidal rule.
+/// Work on linear contacts by the drive of the wheels, in a step of the trapezoidal rule.
 ///
-/// f0 acts in the row of the wheel's place x0, f1 in that of x1. With p and q what the way from x0
-/// to x1 changes of the approach at the track's state before and after the step, and f (c a = d + c
-/// G f) linear, the contact keeps (f0 + f1)/2 (a1 - a0) - f0' (G1 - G0) f1 / 2, of which the bodies
-/// give (f0 row0 + f1 row1)/2 du; the rest, (f1 p + f0 q)/2 - f0' (G1 - G0) f1 / 2, is the way's.
+/// f0 acts in the row of the wheel's place x0, f1 in that of x1. The path from x0 to x1 changes the
+/// approach by p at the track's state before the step and by q at that after it. With f linear, c a
+/// = d + c G f, the contact stores (f0 + f1)/2 (a1 - a0) - f0' (G1 - G0) f1 / 2. The bodies give
+/// (f0 row0 + f1 row1)/2 du of it and the path the rest, (f1 p + f0 q)/2 - f0' (G1 - G0) f1 / 2.
 double carried(const PassiveRun& run) {
   const std::int64_t step = run.state().steps;
   const StandingWheels at00 = run.wheels(run.old(), step - 1), at01 = run.wheels(run.old(), step);
@@ -103,9 +103,9 @@ double carried(const PassiveRun& run) {
   return sum;
 }
 
-/// The trapezoidal rule on linear contacts: every step keeps the energy but for what dampers take
-/// and what comes in by the way, to round-off on both sides. Not the first, whose accelerations are
-/// the start's own.
+/// Checks the trapezoidal rule on linear contacts: to round-off on both sides every step keeps the
+/// energy except what dampers take and the path adds. The first step is left out, since its
+/// accelerations are the start's own.
 Worst is_kept(const RandomScene& scene) {
   PassiveRun run(scene);
   Worst worst;
@@ -126,11 +126,11 @@ Worst is_kept(const RandomScene& scene) {
   return worst;
 }
 
-/// Rebound speed over that of fall of one mass on the spring f = d^n, by generalised-alpha 0.6 as a
-/// textbook prints it; the largest over where in a step contact begins.
-/// @param steps  in a contact
+/// Rebound speed over impact speed of one mass on the spring f = d^n, by the textbook's
+/// generalised-alpha 0.6: the largest over all phases of the step at which contact begins.
+/// @param steps  per contact
 double largest_rebound(double n, double steps) {
-  const double af = .375, am = .125, gamma = .75, beta = .390625;  // of rho_inf = 0.6
+  const double af = .375, am = .125, gamma = .75, beta = .390625;  // for rho_inf = 0.6
   const double deepest = std::pow(.5 * (n + 1.), 1. / (n + 1.));
   const double h = 2. * deepest * std::sqrt(std::numbers::pi) * std::tgamma(1. + 1. / (n + 1.)) /
                    std::tgamma(.5 + 1. / (n + 1.)) / steps;
@@ -157,24 +157,24 @@ double largest_rebound(double n, double steps) {
   return most;
 }
 
-/// How much a rebound's speed may gain, of one mass on a spring between d^1.5, a rigid rail's, and
-/// d, a soft one's. Where a spring k lets go in the middle of a step, which is the worst place, the
-/// chord over the force's kink is over the force itself by k v h/8 in the step's mean (by k v h/12
-/// of all places): (omega h)^2/8 of the speed, omega h = pi / steps. Of many steps that is what a
-/// linear spring comes to; Hertz's, which lets go without a kink, has a third of it.
+/// Largest factor on a rebound's speed, for a mass on a spring between d^1.5 (a rigid rail) and d
+/// (a soft one). The worst is a spring k that lets go in the middle of a step: the chord over the
+/// kink of its force is above the force by k v h/8 in the step's mean (k v h/12 over all phases).
+/// That is (omega h)^2/8 of the speed, omega h = pi / steps, which a linear spring reaches with
+/// many steps. Hertz's spring lets go without a kink and has a third of it.
 double gain(double steps) {
   return 1. + std::numbers::pi * std::numbers::pi / (8. * steps * steps);
 }
 
-/// Of a rigid rail: the contact of a soft one lasts longer.
+/// Steps per contact on a rigid rail: a contact on a soft one lasts longer.
 double contact_steps(const RandomScene& s) {
   const double v = s.vehicle->drop_speed;
   const double deep = std::pow(1.25 * s.vehicle->mass * v * v / 9.412508e10, .4);
   return 2.943275 * deep / v / s.dt;
 }
 
-/// Energy that a fall under generalised-alpha 0.6 has while no wheel presses, over what each of its
-/// impacts may add.
+/// Checks the energy of a fall under generalised-alpha 0.6 while no wheel presses, over the gain
+/// that its impacts may have.
 Worst rebounds(const RandomScene& scene) {
   PassiveRun run(scene);
   Worst worst;
@@ -212,7 +212,7 @@ RandomScene dropped_mass(std::uint64_t seed) {
   return s;
 }
 
-/// The worst of many scenes; what fails is shrunk and written, and no more are tried after three.
+/// Worst of many scenes. A failing scene is shrunk and written; after three the search ends.
 template <typename Make, typename Check>
 Worst worst_of(std::uint64_t first, int scenes, const Make& make, const Check& check) {
   Worst worst;
@@ -226,7 +226,7 @@ Worst worst_of(std::uint64_t first, int scenes, const Make& make, const Check& c
       try {
         found = check(s);
       } catch (const InputError& e) {
-        return std::string(e.what()).substr(std::string(e.what()).find(' '));  // behind the file's
+        return std::string(e.what()).substr(std::string(e.what()).find(' '));  // past the file
       }
       return std::string();
     };
@@ -245,12 +245,12 @@ Worst worst_of(std::uint64_t first, int scenes, const Make& make, const Check& c
 
 }  // namespace
 
-TEST_CASE("backward Euler takes energy of every fall, in each step", "[passive]") {
+TEST_CASE("backward Euler takes energy from every fall in each step", "[passive]") {
   // With u1 = u0 + h v1 and M (v1 - v0) = -h (grad P(u1) + C v1), P convex:
   //   T1 - T0 <= v1' M (v1 - v0) = -(u1 - u0)' grad P(u1) - h v1' C v1 <= P(u0) - P(u1).
-  // Hertz springs, G f^2/2, linear and one-sided springs and weight are convex, dampers that press
-  // only add to what a closing spring takes. What the wheels had at the step's start, P(u0) at the
-  // forces f0, is not below the least over all f, which the solve's is.
+  // Hertz springs, G f^2/2, linear and one-sided springs and weight are convex. Dampers that only
+  // press add to what a closing spring takes. The energy of the wheels at the step's start, P(u0)
+  // with the forces f0, is not below the least over all f, which the solve finds.
   const Worst worst = worst_of(
       1000, 500,
       [](std::uint64_t seed) {
@@ -260,14 +260,13 @@ TEST_CASE("backward Euler takes energy of every fall, in each step", "[passive]"
       },
       never_grows);
   CAPTURE(worst.steps, worst.pressed, worst.made, worst.made_in, worst.all);
-  CHECK(worst.pressed > worst.steps / 20);  // they do meet
-  CHECK(worst.all < 1e-9);                  // a thousand steps' round-off
+  CHECK(worst.pressed > worst.steps / 20);  // wheels do meet the rail
+  CHECK(worst.all < 1e-9);                  // round-off of a thousand steps
 }
 
-TEST_CASE("no condensed track makes energy of a fall, by forces that are means of Hertz's law",
-          "[passive]") {
-  // Lines and vehicles take f du of a force held over a step, less what their dampers take; a mean
-  // law's f (d1 - d0) is V(d1) - V(d0), and with a = d + G f
+TEST_CASE("with mean contact forces no condensed track adds energy to a fall", "[passive]") {
+  // Lines and vehicles take f du of a force held over a step, less their dampers' share. A mean law
+  // has f (d1 - d0) = V(d1) - V(d0), and with a = d + G f
   //   f1' (a1 - a0) - d(V + f' G f / 2) = df' G df / 2 >= 0.
   const std::string kind =
       GENERATE(as<std::string>(), "modal", "guyan", "irs", "craig-bampton", "krylov");
@@ -278,9 +277,9 @@ TEST_CASE("no condensed track makes energy of a fall, by forces that are means o
   CHECK(worst.all < 1e-7);  // the eigen solver's 1e-10 over a thousand steps
 }
 
-TEST_CASE("no condensed track makes energy of a fall, by forces of Hertz's law at the step's end",
+TEST_CASE("with contact forces of the step's end no condensed track adds energy to a fall",
           "[passive]") {
-  // The same with theta = 1: f1 (d1 - d0) >= V(d1) - V(d0) as V is convex.
+  // The same holds with theta = 1: f1 (d1 - d0) >= V(d1) - V(d0) as V is convex.
   const std::string kind =
       GENERATE(as<std::string>(), "modal", "guyan", "irs", "craig-bampton", "krylov");
   const Worst worst = worst_of(
@@ -290,7 +289,7 @@ TEST_CASE("no condensed track makes energy of a fall, by forces of Hertz's law a
   CHECK(worst.all < 1e-7);  // the eigen solver's 1e-10 over a thousand steps
 }
 
-TEST_CASE("the trapezoidal rule keeps the energy of wheels on linear contacts, in each step",
+TEST_CASE("the trapezoidal rule keeps the energy of wheels on linear contacts in each step",
           "[passive]") {
   const Worst worst = worst_of(
       4000, 300,
@@ -300,7 +299,7 @@ TEST_CASE("the trapezoidal rule keeps the energy of wheels on linear contacts, i
         s.steps = kSteps;
         s.scheme = kTrapezoid;
         s.vehicle = random_vehicle(draw, s, true);
-        s.vehicle->gravity = true;  // which sets it going
+        s.vehicle->gravity = true;  // gravity sets it in motion
         s.condense =
             draw.chance(.5) ? "residual_flexibility = true\n" : "residual_flexibility = false\n";
         if (draw.chance(.5)) s.pad_damper = s.ballast_damper = s.vehicle->damping = 0.;
@@ -311,8 +310,8 @@ TEST_CASE("the trapezoidal rule keeps the energy of wheels on linear contacts, i
   CHECK(worst.pressed > worst.steps / 2);
 }
 
-TEST_CASE("generalised-alpha lets a rebound gain what the chord over its end does", "[passive]") {
-  // Hertz's spring gains 1.2 % at 3.0 steps a contact, and more between whole numbers of them.
+TEST_CASE("with generalised-alpha a rebound gains as much as the chord over its end", "[passive]") {
+  // Hertz's spring gains 1.2 % at 3.0 steps per contact, and more between whole numbers of steps.
   CHECK_THAT(largest_rebound(1.5, 3.), Catch::Matchers::WithinAbs(1.012, 5e-4));
   CHECK(largest_rebound(1.5, 3.25) > 1.03);
   for (double steps = 3.; steps < 102.; steps += .25) {
@@ -322,11 +321,12 @@ TEST_CASE("generalised-alpha lets a rebound gain what the chord over its end doe
   }
 }
 
-TEST_CASE("generalised-alpha lets falls on tracks gain no more than on springs", "[passive]") {
-  // The scheme keeps a norm of its own, not the energy: the bound is that of one mass on a spring
-  // for every impact. That a rail's own mass does not exceed it is seen here, not proven.
+TEST_CASE("with generalised-alpha falls on tracks gain no more than falls on springs",
+          "[passive]") {
+  // The scheme keeps a norm of its own, not the energy. The bound is that of one mass on a spring
+  // for every impact; the test shows, but does not prove, that a rail's own mass stays below it.
   const Worst worst = worst_of(5000, 200, dropped_mass, rebounds);
   CAPTURE(worst.steps, worst.pressed, worst.made, worst.made_in, worst.all);
   CHECK(worst.pressed > worst.steps / 100);
-  if (kShare == 1) CHECK(worst.all > 0.);  // of a few scenes none may gain
+  if (kShare == 1) CHECK(worst.all > 0.);  // in a few scenes none may gain
 }

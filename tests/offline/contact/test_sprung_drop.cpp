@@ -1,4 +1,4 @@
-// A wheel dropped on rails that give way: hard-cases.md R1 to R3, and that contact makes no energy.
+// A wheel dropped on flexible rails: R1 to R3 of hard-cases.md, and that contact adds no energy.
 #include <array>
 
 #include "support/drops.h"
@@ -9,10 +9,10 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// The two masses of R2 and the Hertz spring as four equations, by Runge and Kutta's rule of fourth
-/// order; nothing of it is shared with the library. Down positive.
+/// The two masses of R2 and the Hertz spring as four equations, by Runge and Kutta's fourth-order
+/// rule. It shares no code with the library. Down is positive.
 struct TwoMasses {
-  std::array<double, 4> y{0., kFall, 0., 0.};  // wheel, its speed, rail, its speed
+  std::array<double, 4> y{0., kFall, 0., 0.};  // wheel and its speed, rail and its speed
   double t = 0.;
 
   static double force(const std::array<double, 4>& y) {
@@ -38,9 +38,9 @@ struct TwoMasses {
 
 }  // namespace
 
-TEST_CASE("R2: the equations of two masses have the printed answer", "[contact]") {
-  // hard-cases.md R2, printed to 8 digits with a bracket of 1e-8. Steps of 1e-7 s: the rule's error
-  // is (1e-7 * 1e4)^4 = 1e-12, the places of the peak and the end are known to a step.
+TEST_CASE("R2: the equations of two masses have the printed solution", "[contact]") {
+  // hard-cases.md prints R2 to 8 digits with a bracket of 1e-8. With steps of 1e-7 s the rule errs
+  // by (1e-7 * 1e4)^4 = 1e-12; times of the peak and the end are known to a step.
   TwoMasses drop;
   double peak = 0., when = 0.;
   while (drop.t < .1e-3 || TwoMasses::force(drop.y) > 0.) {
@@ -56,8 +56,8 @@ TEST_CASE("R2: the equations of two masses have the printed answer", "[contact]"
   CHECK_THAT(drop.y[3], WithinAbs(.1455454, 1e-5));  // 70 m/s2 for up to 1e-7 s
 }
 
-TEST_CASE("R2: a wheel dropped on a rail that is one mass moves as the two masses", "[contact]") {
-  // H4: 1 % at 50 us, 1e-3 at 10 us, of the peak force and of the speed of fall
+TEST_CASE("R2: a wheel on a rail that is one mass moves as the two masses", "[contact]") {
+  // H4 demands 1 % at 50 us and 1e-3 at 10 us of the peak force and of the rebound speed.
   const double dt = GENERATE(5e-5, 1e-5), bound = dt > 2e-5 ? 1e-2 : 1e-3;
   Drop drop(one_mass(3e7, 3e4), kMiddle, dt);
   CHECK_THAT(drop.model().wheelset[0].hertz[0], WithinRel(kHertz, 1e-7));  // printed to 7 digits
@@ -79,9 +79,9 @@ TEST_CASE("R2: a wheel dropped on a rail that is one mass moves as the two masse
   CHECK_THAT(drop.time(), WithinAbs(1.5365055e-3, dt));  // first step without force
 }
 
-TEST_CASE("R2: the peak force errs with the step as printed", "[contact]") {
-  // hard-cases.md section 1: errors of an independent generalised-alpha 0.6, half a unit of the
-  // last printed digit
+TEST_CASE("R2: the error of the peak force falls with the step as printed", "[contact]") {
+  // Section 1 of hard-cases.md prints errors of an independent generalised-alpha 0.6, to half a
+  // unit of the last digit.
   struct Row {
     double dt, percent, half;
   };
@@ -93,11 +93,12 @@ TEST_CASE("R2: the peak force errs with the step as printed", "[contact]") {
   }
 }
 
-TEST_CASE("R3: a wheel dropped over a seat of a long track", "[contact]") {
-  // hard-cases.md R3, uncertain by 3e-4; H4: 1 % at 50 us, .5 % at 10 us
+TEST_CASE("R3: a wheel dropped over a seat of a long track has the reference's peak and rebound",
+          "[contact]") {
+  // R3 of hard-cases.md is uncertain by 3e-4; H4 demands 1 % at 50 us, .5 % at 10 us.
   const double dt = GENERATE(5e-5, 1e-5), bound = dt > 2e-5 ? 1e-2 : 5e-3;
   Drop drop(sprung_track(3e4), kSeat, dt);
-  double first = 0., first_time = 0.;  // the peak before the track answers
+  double first = 0., first_time = 0.;  // the peak before the track responds
   while (drop.time() < 1.2e-3) {
     drop.step();
     if (drop.force() <= first) continue;
@@ -113,9 +114,9 @@ TEST_CASE("R3: a wheel dropped over a seat of a long track", "[contact]") {
   CHECK_THAT(found.wheel, WithinRel(.0525, bound));
 }
 
-TEST_CASE("H10: ten tonnes against ten grams", "[contact]") {
-  // hard-cases.md H10: 111.5907 N, 3.296951e-5 s, the light body leaves at .1999998 m/s. 100 steps
-  // a contact: by section 1 the peak is then good to .1 %, the rebound to the printed 1.0000.
+TEST_CASE("H10: ten tonnes drop on ten grams as in the reference", "[contact]") {
+  // H10 of hard-cases.md has 111.5907 N and 3.296951e-5 s; the light body leaves at .1999998 m/s.
+  // With 100 steps per contact, section 1 has the peak to .1 % and the rebound to 1.0000.
   const double dt = 3.296951e-7;
   Drop drop(one_mass(1., 0., .01), kMiddle, dt, {.gravity = 0., .mass = 1e4});
   const Impact found = impact(drop);
@@ -124,17 +125,17 @@ TEST_CASE("H10: ten tonnes against ten grams", "[contact]") {
   CHECK_THAT(-drop.rail(drop.state.v, 1), WithinRel(.1999998, 5e-5));
 }
 
-TEST_CASE("contact rebounds from a rigid rail as printed, wherever in a step it begins",
+TEST_CASE("contact rebounds from a rigid rail as printed, at every phase of the step",
           "[contact]") {
-  // hard-cases.md section 1, generalised-alpha 0.6: speed ratio up to 1.012 with 3 steps a contact,
-  // 1.0000 with 100: half a unit of the last digit. Contact lasts 2.687653 ms (R1).
+  // Section 1 of hard-cases.md, generalised-alpha 0.6: the speed ratio is up to 1.012 with 3 steps
+  // per contact, 1.0000 with 100, to half the last digit. Contact lasts 2.687653 ms (R1).
   const auto largest = [](int steps) {
     const double dt = 2.687653e-3 / steps;
     double most = 0.;
     for (int phase = 0; phase < 16; ++phase) {
       Drop drop(one_mass(1e18, 0.), kMiddle, dt,
                 {.gravity = 0., .above = kFall * dt * phase / 16.});
-      // a few steps on, when the scheme has forgotten the contact's force
+      // Some steps later the scheme has forgotten the contact's force.
       impact(drop, 5);
       most = std::max(most, drop.wheel(drop.state.v) / kFall);
     }
@@ -144,10 +145,10 @@ TEST_CASE("contact rebounds from a rigid rail as printed, wherever in a step it 
   CHECK_THAT(largest(100), WithinAbs(1., 5e-5));
 }
 
-TEST_CASE("contact on a rail without dampers makes no energy, wherever in a step it begins",
+TEST_CASE("contact on a rail without dampers adds no energy, at every phase of the step",
           "[contact]") {
-  // H4: dE <= 0 on R2 and R3 at 50 and 10 us, exactly and at every step; on R3 also in the middle
-  // of one long element, where the residual flexibility holds energy of its own.
+  // H4 demands dE <= 0 on R2 and R3 at 50 and 10 us, exactly and in every step. On R3 this includes
+  // the middle of a long element, where the residual flexibility holds energy.
   const double dt = GENERATE(5e-5, 1e-5);
   Track one_element = sprung_track(0.);
   one_element.elements_per_bay = 1;
@@ -164,10 +165,10 @@ TEST_CASE("contact on a rail without dampers makes no energy, wherever in a step
   }
 }
 
-TEST_CASE("contact on a rigid rail makes no more energy than printed", "[contact]") {
-  // Generalised-alpha is no discrete gradient: hard-cases.md section 1 prints its rebound as 1.0000
-  // where a contact has many steps, so that half of the last digit is 1e-4 of the energy. H4's
-  // steps.
+TEST_CASE("contact on a rigid rail adds no more energy than printed", "[contact]") {
+  // Generalised-alpha is not a discrete gradient. Section 1 of hard-cases.md prints its rebound as
+  // 1.0000 for contacts of many steps, so half of the last digit is 1e-4 of the energy. The steps
+  // are H4's.
   const double dt = GENERATE(5e-5, 1e-5);
   for (int phase = 0; phase < 16; ++phase) {
     Drop drop(one_mass(1e18, 0.), kMiddle, dt, {.above = kFall * dt * phase / 16.});
@@ -177,9 +178,10 @@ TEST_CASE("contact on a rigid rail makes no more energy than printed", "[contact
   }
 }
 
-TEST_CASE("what the dampers take closes the balance of energy with the step's order", "[contact]") {
-  // Dissipation is summed by the trapezoidal rule and the step is of second order, so what is left
-  // of the balance falls by 25 from 50 to 10 us; half an order is left to higher terms.
+TEST_CASE("the dampers' dissipation closes the energy balance with the order of the step",
+          "[contact]") {
+  // The trapezoidal rule sums the dissipation and the step is of second order, so the error of the
+  // balance falls by 25 from 50 to 10 us; half an order is for higher terms.
   const auto gap = [](const Track& track, double x, double dt) {
     Drop drop(track, x, dt);
     return std::abs(impact(drop).last / (.5 * 2. * kWheel * kFall * kFall) - 1.);

@@ -1,4 +1,4 @@
-// Wheelsets of scenes that stand still: their weight, and the start of one on a track without end.
+// Wheelsets of scenes at rest: their weight, and the start of one on a track without end.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -7,7 +7,7 @@
 
 using namespace railstep;
 
-TEST_CASE("without gravity a wheelset and what it carries weigh nothing", "[wheelset]") {
+TEST_CASE("without gravity a wheelset and its carried mass have no weight", "[wheelset]") {
   for (const bool gravity : {true, false}) {
     const Traced run("wheelset_on_track",
                      {gravity ? "wheelset[0].gravity=true" : "wheelset[0].gravity=false",
@@ -24,7 +24,7 @@ TEST_CASE("a wheelset that stands on a track without end starts in equilibrium",
     const std::vector<double> force = run["wheel_left.force_z_n"];
     CAPTURE(bays, force.front());
     CHECK(force.front() > 1e4);
-    // of its static force, which the ring's modes find to a few millionths
+    // The ring's modes find the static force to a few millionths.
     for (const double each : force) CHECK(std::abs(each / force.front() - 1.) < 1e-5);
   }
 }

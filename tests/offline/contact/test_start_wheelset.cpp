@@ -1,4 +1,4 @@
-// A start in equilibrium under wheelsets is the state that the step keeps, contacts and all.
+// A start in equilibrium under wheelsets is a state that the step keeps, with its contacts.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,7 +12,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// The paper's rails, the right one on seats of another stiffness.
+/// The paper's rails; the right one has seats of another stiffness.
 Track unequal_track(double softer) {
   Track t;
   t.section = section_f();
@@ -53,7 +53,8 @@ std::vector<Named> all_schemes(const Track& track, double dt) {
 
 }  // namespace
 
-TEST_CASE("a wheelset on rails that sink differently starts as the step keeps it", "[start]") {
+TEST_CASE("a wheelset on rails that sink differently starts in a state that the step keeps",
+          "[start]") {
   const double softer = GENERATE(2., 8.), dt = 1e-5;
   const Track track = unequal_track(softer);
   Wheelset set = paper_wheelset(3.5);
@@ -67,8 +68,8 @@ TEST_CASE("a wheelset on rails that sink differently starts as the step keeps it
     const double depth = std::pow(start[0] / run.model().wheelset[0].hertz[0], 2. / 3.);
     for (int n = 1; n <= 20; ++n) {
       run.step();
-      // Nothing holds it aside: it slides down its own slope, g roll t^2/2, and by roll of that off
-      // its rails, of whose depth a force goes with the power 1.5.
+      // Without lateral support it slides down its own slope by g roll t^2/2, and leaves its rails
+      // by roll times that. The force goes with the depth to the power 1.5.
       const double t = n * dt, off = 1.5 * .5 * 9.81 * std::pow(roll * t, 2) / depth;
       for (const int wheel : {0, 1}) {
         CAPTURE(each.name, n, wheel, off);
@@ -79,7 +80,7 @@ TEST_CASE("a wheelset on rails that sink differently starts as the step keeps it
   }
 }
 
-TEST_CASE("a flange that the lean would turn into its rail starts beside it", "[start]") {
+TEST_CASE("a flange that roll would push into its rail starts clear of it", "[start]") {
   const double softer = GENERATE(2., 8.), dt = 1e-5;
   const Track track = unequal_track(softer);
   Wheelset set = flanged_wheelset(1e7, 1e4);

@@ -9,7 +9,7 @@ using namespace railstep;
 
 namespace {
 
-/// A car body on two frames on four wheels, ten coordinates.
+/// A car body on two frames and four wheels: ten coordinates.
 Vehicle car() {
   Vehicle v;
   v.bodies = {{16000., 9.85e5, 0.}, {1307.5, 738., 9.5}, {1307.5, 738., -9.5}, {906.5, 0., 10.78},
@@ -23,14 +23,14 @@ Vehicle car() {
 
 }  // namespace
 
-TEST_CASE("a car of ten coordinates stands on its wheels, a quarter of its weight on each") {
+TEST_CASE("a car of ten coordinates stands with a quarter of its weight on each wheel") {
   const VehicleMatrices m = vehicle_matrices(car());
   REQUIRE(m.mass.rows() == 10);
   CHECK((m.stiffness - m.stiffness.transpose()).norm() == 0.);
   const VehicleRest rest = vehicle_at_rest(m);
   const double weight = (16000. + 2. * 1307.5 + 4. * 906.5) * kGravity;
   for (int w = 0; w < 4; ++w) CHECK(rest.force[w] == Approx(weight / 4.).epsilon(1e-12));
-  // Springs in series, each under what stands on it.
+  // The springs are in series, each under the weight above it.
   const double secondary = 8000. * kGravity / 4.3e5;
   const double primary = (8000. + 1307.5) * kGravity / 2. / 1.22e6;
   CHECK(rest.displacement[0] == Approx(-secondary - primary).epsilon(1e-12));
@@ -40,8 +40,8 @@ TEST_CASE("a car of ten coordinates stands on its wheels, a quarter of its weigh
         1e-9 * weight);
 }
 
-TEST_CASE("a load ahead of the middle leans on the wheels ahead by its lever") {
-  // A beam on two wheels 2.5 m apart, its centre 0.5 m ahead of their middle.
+TEST_CASE("a load ahead of the middle loads the wheels ahead by its lever") {
+  // A beam on two wheels 2.5 m apart has its centre 0.5 m ahead of their middle.
   Vehicle v;
   v.bodies = {{1000., 300., .5}};
   v.wheels = {{0, 1.25, .46}, {0, -1.25, .46}};
@@ -50,18 +50,18 @@ TEST_CASE("a load ahead of the middle leans on the wheels ahead by its lever") {
   CHECK(rest.force[1] == Approx(1000. * kGravity * .75 / 2.5));
 }
 
-TEST_CASE("a pitch that is positive lowers what is ahead") {
+TEST_CASE("positive pitch lowers the front") {
   const VehicleMatrices m = vehicle_matrices(car());
   Eigen::VectorXd q = Eigen::VectorXd::Zero(10);
-  q[3] = 1e-3;  // of the frame ahead, whose springs are 1.28 m ahead and behind
+  q[3] = 1e-3;  // leading frame, whose springs are 1.28 m ahead and behind
   const Eigen::VectorXd force = -m.stiffness * q;
-  CHECK(force[6] == Approx(-1.28e-3 * 1.22e6));  // its wheel ahead is pressed down
+  CHECK(force[6] == Approx(-1.28e-3 * 1.22e6));  // its leading wheel is pressed down
   CHECK(force[7] == Approx(1.28e-3 * 1.22e6));
   CHECK(force[3] == Approx(-2. * 1.28 * 1.28 * 1.22e6 * 1e-3));
 }
 
-TEST_CASE("bounce and pitch of a car on held wheels have their closed frequencies") {
-  // Symmetric: bounce and pitch of the body with the frames' bounce, two masses on two springs.
+TEST_CASE("bounce and pitch of a car on held wheels have the frequencies of the closed forms") {
+  // By symmetry, bounce and pitch of body and frames are two masses on two springs.
   const VehicleMatrices m = vehicle_matrices(car());
   Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(m.stiffness.topLeftCorner(6, 6),
                                                                   m.mass.topLeftCorner(6, 6));
@@ -80,7 +80,7 @@ TEST_CASE("bounce and pitch of a car on held wheels have their closed frequencie
     CHECK(modes.eigenvalues()[i] == Approx(wanted[static_cast<std::size_t>(i)]).epsilon(1e-9));
 }
 
-TEST_CASE("vehicles that are none are refused") {
+TEST_CASE("invalid vehicles are refused") {
   Vehicle v = car();
   v.suspensions[0].lower = 7;
   CHECK_THROWS_AS(vehicle_matrices(v), std::invalid_argument);

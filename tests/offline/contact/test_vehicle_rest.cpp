@@ -1,4 +1,4 @@
-// Vehicles at rest on supports that press alone: pads and ballast that do not pull, hanging ones.
+// Vehicles at rest on one-sided supports: pads and ballast that do not pull, and hanging sleepers.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,8 +14,8 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// S1 with ballast that does not pull under some seats and a gap under others: the bogie's two
-/// wheels, 2.56 m apart, stand on both sides of the gaps.
+/// S1 with ballast that does not pull under some seats and a gap under others. The bogie's wheels,
+/// 2.56 m apart, stand on both sides of the gaps.
 Track hanging() {
   Track track = s1_rail(24);
   track.support.damping[2] *= 10.;
@@ -36,7 +36,7 @@ double load_of(const NamedVehicle& what) {
 
 }  // namespace
 
-TEST_CASE("a vehicle at rest on supports that press alone stays at rest", "[vehicle][supports]") {
+TEST_CASE("a vehicle at rest on one-sided supports stays at rest", "[vehicle][supports]") {
   BogieData three = kBogie;
   three.axles = 3;
   for (const bool modal : {false, true})
@@ -68,7 +68,7 @@ TEST_CASE("a vehicle at rest on supports that press alone stays at rest", "[vehi
 }
 
 TEST_CASE("a bogie rests on hanging sleepers as its two wheel loads do", "[vehicle][supports]") {
-  // Statics of the track alone, under forces at the railhead: where they act the same.
+  // The statics of the track alone has the forces at the railhead, where they act in the same way.
   const Track track = hanging();
   const NamedVehicle what = bogie(kBogie);
   const ModelRun run =
@@ -83,8 +83,8 @@ TEST_CASE("a bogie rests on hanging sleepers as its two wheel loads do", "[vehic
     CHECK_THAT(run.state.port_force[j], WithinAbs(pressed[j], 1e-8 * load));
 }
 
-TEST_CASE("a released vehicle comes to where the start finds it", "[vehicle][supports]") {
-  // Dropped from where its springs have no force; its bounce of 8 rad/s decays by its dampers.
+TEST_CASE("a released vehicle settles where the start finds it", "[vehicle][supports]") {
+  // It is dropped with its springs free of force; its dampers end the bounce of 8 rad/s.
   BogieData three = kBogie;
   three.axles = 3;
   three.primary_damping = 4e4;
@@ -100,9 +100,9 @@ TEST_CASE("a released vehicle comes to where the start finds it", "[vehicle][sup
                WithinAbs(rest.state.port_force[j], 1e-6 * rest.state.wheel_force[0]));
 }
 
-TEST_CASE("vehicles that nothing bears have no equilibrium on such a track", "[vehicle]") {
+TEST_CASE("vehicles without support have no equilibrium on such a track", "[vehicle]") {
   RunningVehicle v = running(bogie(kBogie), 7.5, 0.);
-  v.vehicle.bodies[0].place = 2.;  // the frame's weight ahead of both wheels
+  v.vehicle.bodies[0].place = 2.;  // the frame's weight is ahead of both wheels
   const Track track = hanging();
   PackedModel packed(track, {.vehicles = {v}}, full_order(1e-4));
   CHECK_THROWS_WITH(start_in_equilibrium(track, packed, 0.),

@@ -1,4 +1,4 @@
-// Vehicles over rails that are not even: what the drive does, and where energy goes.
+// Vehicles on rough rails: the work of the drive and the balance of energy.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,11 +17,11 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-/// A bogie at 60 m/s over waves of .6 m and .2 mm, 100 Hz.
+/// A bogie at 60 m/s over waves of .6 m and .2 mm, at 100 Hz.
 struct RoughRun {
   ModelRun run;
   EnergyAccount energy;
-  double driven = 0.;  // by the wheels' forces along the slopes they meet, J
+  double driven = 0.;  // work of the wheels' forces along the slopes, J
 
   RoughRun(bool modal, double rho, double dt, WheelContactKind contact = WheelContactKind::hertz,
            bool residual_flexibility = true)
@@ -55,7 +55,7 @@ struct RoughRun {
         track, {.vehicles = {v}, .irregularities = {{0, 2, corrugation(2., 16., .6, 2e-4, {.02})}}},
         options);
   }
-  /// Of rail and irregularity together, under both wheels as the state stands.
+  /// Slopes of rail and irregularity together, under both wheels in the present state.
   std::array<double, 2> slopes() const {
     const Model& model = run.model();
     const Configuration at{run.state.u, {run.state.u, run.state.v}};
@@ -71,9 +71,9 @@ struct RoughRun {
 
 }  // namespace
 
-TEST_CASE("over a rough rail energies balance with the second order of the step",
+TEST_CASE("on a rough rail energies balance with the second order of the step",
           "[vehicle][energy]") {
-  // Banded by any rho_inf; condensed where the contact's force is that of the step's middle.
+  // Banded lines use any rho_inf; condensed ones take the contact's force at the step's middle.
   struct Case {
     bool modal;
     double rho;
@@ -87,16 +87,16 @@ TEST_CASE("over a rough rail energies balance with the second order of the step"
     for (const double dt : {1e-4, 5e-5, 2.5e-5})
       error.push_back(RoughRun(c.modal, c.rho, dt, c.contact).energy.balance_error());
     CAPTURE(c.modal, c.rho, static_cast<int>(c.contact), error);
-    for (std::size_t i = 0; i < 2; ++i)  // half an order for higher terms
+    for (std::size_t i = 0; i < 2; ++i)  // half an order is for higher terms
       CHECK_THAT(std::log2(error[i] / error[i + 1]), WithinAbs(2., .5));
     CHECK(error[2] < 1e-3);
   }
 }
 
-TEST_CASE("a contact's force later than the step's middle takes energy and makes none",
+TEST_CASE("a contact force later than the step's middle takes energy and adds none",
           "[vehicle][energy]") {
-  // rho_inf = .6 of a condensed track: V'(d) at 5/8 of the step, with the irregularity that is
-  // there. Met in the middle, it would give the bogie 6e-4 of what is turned over.
+  // With rho_inf = .6 a condensed track takes V'(d) at 5/8 of the step, with the irregularity
+  // there. With that of the middle the bogie would gain 6e-4 of the energy turned over.
   for (const double dt : {1e-4, 5e-5}) {
     const RoughRun late(true, .6, dt);
     CAPTURE(dt, late.loss());
@@ -105,11 +105,10 @@ TEST_CASE("a contact's force later than the step's middle takes energy and makes
   }
 }
 
-TEST_CASE("what moves a vehicle works by its wheels' forces on the slopes they meet",
-          "[vehicle][energy]") {
-  // The sum over steps misses part of a step at every border of elements, at most half the way of
-  // one times the force times the kink under it, F/(k G A). Without residual flexibility, whose
-  // change of place is counted apart.
+TEST_CASE("the drive of a vehicle works by the wheels' forces on the slopes", "[vehicle][energy]") {
+  // At each border of elements the sum over steps misses part of a step: at most half of its path
+  // times the force times the kink under it, F/(k G A). This is without residual flexibility, whose
+  // change of place has its own term.
   const double dt = 5e-5, force = 55e3;
   const BeamSection section = one_rail(1).section;
   const double kink = force / (section.shear_factor_z * Material{}.shear_modulus() * section.area);
@@ -124,7 +123,7 @@ TEST_CASE("what moves a vehicle works by its wheels' forces on the slopes they m
   }
 }
 
-TEST_CASE("the bogie at speed balances its energies over a worn track", "[vehicle][energy]") {
+TEST_CASE("the energies of the bogie at speed balance on a worn track", "[vehicle][energy]") {
   for (const char* kind : {"full", "modal"})
     for (const char* irregular :
          {"irregularity={spectrum=\"fra_3\"}",

@@ -1,4 +1,4 @@
-// Vehicles in the step: what no reference is needed for, and the shipped scene.
+// Vehicles in the step: tests that need no reference, and the shipped scene.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,7 +17,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double kBogieLoad = (1307.5 + 8000. + 2. * 906.5) * 9.81 / 2.;  // of a wheel, N
+constexpr double kBogieLoad = (1307.5 + 8000. + 2. * 906.5) * 9.81 / 2.;  // per wheel, N
 
 }  // namespace
 
@@ -31,8 +31,8 @@ TEST_CASE("a vehicle at rest on a track stays at rest to rounding", "[vehicle]")
     const VehicleModel& v = run.model().vehicle[0];
     for (int i = 0; i < 1000; ++i) run.step();
     CHECK(run.seen == Status::ok);
-    // K's condition of 1e8 leaves wheel forces 1e-8 off what the step finds, and these move the
-    // body on its softest springs, 4.3e5 N/m.
+    // With K's condition of 1e8 wheel forces at the start differ by 1e-8 from those of the step.
+    // These move the body on its softest springs, 4.3e5 N/m.
     double moved = 0.;
     for (int k = 0; k < v.size; ++k)
       moved = std::max(moved, std::abs(run.state.u[v.first + k] - before.u[v.first + k]));
@@ -43,7 +43,8 @@ TEST_CASE("a vehicle at rest on a track stays at rest to rounding", "[vehicle]")
   }
 }
 
-TEST_CASE("a bogie's wheels bear half its weight each, three axles what gives way", "[vehicle]") {
+TEST_CASE("each wheel of a bogie bears half its weight; on three axles the springs share it",
+          "[vehicle]") {
   for (const bool modal : {false, true}) {
     const Track track = one_rail(20);
     const ModelRun two = from_rest(track, {.vehicles = {running(bogie(kBogie), 5.3, 0.)}},
@@ -57,17 +58,17 @@ TEST_CASE("a bogie's wheels bear half its weight each, three axles what gives wa
     const double *f = three.state.wheel_force, weight = (1307.5 + 8000. + 3. * 906.5) * 9.81;
     CHECK_THAT(f[0] + f[1] + f[2], WithinRel(weight, 1e-10));
     CHECK_THAT(f[0], WithinRel(f[2], 1e-8));  // in the middle of a symmetric track
-    // The middle one stands in the trough of the three and bears less; springs of 1.22e6 N/m over
+    // The middle wheel stands in the trough of the three and bears less. Springs of 1.22e6 N/m over
     // a rail of some 2.5e7 leave a few percent.
     CHECK(f[1] < f[0]);
     CHECK(f[1] > .9 * f[0]);
   }
 }
 
-TEST_CASE("on rigid ground a vehicle swings at its own frequencies", "[vehicle]") {
-  // Bounce of the car: body and frames, two masses on two springs (test_vehicle.cpp). The wheels
-  // are bonded to the ground before the rail. The trapezoidal rule's phase after a period is 2 pi
-  // (w dt)^2/12 off, its cosine the square of that.
+TEST_CASE("on rigid ground a vehicle oscillates at its own frequencies", "[vehicle]") {
+  // Bounce of the car: body and frames are two masses on two springs (test_vehicle.cpp). The wheels
+  // are bonded to the ground ahead of the rail. After a period the phase of the trapezoidal rule
+  // errs by 2 pi (w dt)^2/12, its cosine by the square of that.
   CarData undamped = kCar;
   undamped.bogie.primary_damping = undamped.secondary_damping = 0.;
   for (const bool modal : {false, true}) {
@@ -93,18 +94,18 @@ TEST_CASE("on rigid ground a vehicle swings at its own frequencies", "[vehicle]"
     for (int i = 0; i < steps / 4; ++i) run.step();
     CAPTURE(modal);
     const double phase = .5 * M_PI * std::pow(w * dt, 2) / 12.;
-    CHECK_THAT(q[0], WithinAbs(0., 1.1 * phase * start + 1e-9));  // bonds give way by 1e-10 m
+    CHECK_THAT(q[0], WithinAbs(0., 1.1 * phase * start + 1e-9));  // bonds yield by 1e-10 m
     for (int i = steps / 4; i < steps; ++i) run.step();
     CHECK_THAT(q[0], WithinRel(start, 1e-6));
     CHECK_THAT(q[2], WithinRel(frame, 1e-6));
     CHECK(!run.outputs.wheel_on_rail[0]);
-    CHECK(run.seen == Status::ok);  // the ground is no loss of contact
+    CHECK(run.seen == Status::ok);  // the ground is not a loss of contact
   }
 }
 
 TEST_CASE("a condensed track carries a bogie as the full one does", "[vehicle]") {
-  // Forces over frames of 5 ms: of a rail's modes of 2 a bay the last has some 1.5 kHz, and what is
-  // above rings otherwise (design: outputs of one band). 1e-3 of the static load.
+  // Forces are means over frames of 5 ms. With 2 modes per bay a rail's last mode is at 1.5 kHz,
+  // and motion above differs (design: outputs of one band). Bound: 1e-3 of the static load.
   const Track track = one_rail(30);
   const Traffic traffic{.vehicles = {running(bogie(kBogie), 4., 20.)}};
   PackOptions options[2] = {options_of(false, track, 1e-4), options_of(true, track, 1e-4)};
@@ -125,9 +126,9 @@ TEST_CASE("a condensed track carries a bogie as the full one does", "[vehicle]")
   CHECK(error < 1e-3 * kBogieLoad);
 }
 
-TEST_CASE("a vehicle comes and goes without a jolt but the rail's end", "[vehicle]") {
-  // A soft sprung mass from ground to ground over a track: its force never leaves the static one by
-  // more than the springs feel of the rail's sag.
+TEST_CASE("a vehicle comes and goes without a jolt except at the rail's end", "[vehicle]") {
+  // A soft sprung mass goes from ground to ground over a track. Its force differs from the static
+  // one only by the springs' force from the rail's sag.
   for (const bool modal : {false, true}) {
     Track track = one_rail(20);
     track.ends = {RailEnd::pinned, RailEnd::pinned};
@@ -144,7 +145,7 @@ TEST_CASE("a vehicle comes and goes without a jolt but the rail's end", "[vehicl
     }
     CHECK_THAT(on, WithinAbs(6000., 1.));
     CHECK(off > 0);
-    // The track that it has left behind swings down with some 400 1/s, 60 time constants: nothing.
+    // The track behind it has decayed with some 400 1/s over 60 time constants, to nothing.
     const Configuration standing{run.state.u, {run.state.u, run.state.v}};
     double rest = 0.;
     for (std::int32_t e = 0; e < run.model().elements; ++e)
@@ -154,7 +155,7 @@ TEST_CASE("a vehicle comes and goes without a jolt but the rail's end", "[vehicl
   }
 }
 
-TEST_CASE("vehicles on two rails, wheelsets beside them, and the same bits again", "[vehicle]") {
+TEST_CASE("vehicles on two rails run beside wheelsets and give the same bits again", "[vehicle]") {
   const auto hash_of = [](int steps_per_frame) {
     Wheelset w;
     w.mass = 1200.;
@@ -174,7 +175,7 @@ TEST_CASE("vehicles on two rails, wheelsets beside them, and the same bits again
     options.steps_per_frame = steps_per_frame;
     ModelRun run = from_rest(track, traffic, options);
     while (run.state.steps < 400) run.step();
-    // Both rails carry the same: left and right of everything are alike.
+    // Both rails carry the same load: left and right are equal everywhere.
     CHECK_THAT(run.outputs.wheel_force[2], WithinRel(run.outputs.wheel_force[4], 1e-9));
     CHECK_THAT(run.outputs.wheel_force[0], WithinRel(run.outputs.wheel_force[1], 1e-9));
     CHECK(run.outputs.wheel_force[2] > 1e4);
@@ -201,14 +202,14 @@ TEST_CASE("more vehicles than a model has room for are refused", "[vehicle]") {
 
 TEST_CASE("a vehicle that would lift a wheel has no equilibrium", "[vehicle]") {
   RunningVehicle v = running(bogie(kBogie), 5., 0.);
-  v.vehicle.bodies[0].place = 2.;  // the frame's weight ahead of both wheels
+  v.vehicle.bodies[0].place = 2.;  // the frame's weight is ahead of both wheels
   const Track track = one_rail(20);
   PackedModel packed(track, {.vehicles = {v}}, full_order(1e-4));
   CHECK_THROWS_WITH(start_in_equilibrium(track, packed, 0.),
                     "no equilibrium with all of a vehicle's wheels on the rail");
 }
 
-TEST_CASE("energy of vehicles is kept but for the scheme's loss", "[vehicle][energy]") {
+TEST_CASE("vehicles keep their energy except for the scheme's loss", "[vehicle][energy]") {
   struct Case {
     bool modal;
     WheelContactKind contact;
@@ -234,18 +235,18 @@ TEST_CASE("energy of vehicles is kept but for the scheme's loss", "[vehicle][ene
     }
     const double rest = std::abs(energy.imbalance() + energy.flow().loss) / energy.turned_over();
     CAPTURE(c.modal, static_cast<int>(c.contact), rest);
-    // Hertz contacts close to rounding (test_energy.cpp); linear ones keep their forces' place in
-    // the residual flexibility from the step, where the account has them at its end: 1e-5.
-    // Condensed: the trapezoidal quadrature of dissipation.
+    // With Hertz contacts the balance closes to rounding (test_energy.cpp). Linear ones take the
+    // place of their forces in the residual flexibility from the step, but the account takes that
+    // at its end: 1e-5. Condensed runs err by the trapezoidal quadrature of dissipation.
     CHECK(rest < (c.modal ? 1e-4 : c.contact == WheelContactKind::hertz ? 1e-7 : 1e-5));
     CHECK(energy.flow().dissipated > 0.);
   }
 }
 
-TEST_CASE("a wheel that goes back and forth over bays makes no energy", "[vehicle][energy]") {
-  // A mass on a Hertz contact over rails on springs without dampers, 2.2 m there and back 20 times:
-  // what is stored beyond the work of what moves the wheel never rises above the start by more than
-  // the contact's frozen geometry leaves, 1e-6 of what is turned over a crossing.
+TEST_CASE("a wheel that goes back and forth over bays adds no energy", "[vehicle][energy]") {
+  // A mass on a Hertz contact goes 2.2 m back and forth 20 times on rails on springs without
+  // dampers. The stored energy less the work of the drive stays below the start but for the error
+  // of the contact's frozen geometry, 1e-6 of the energy turned over in a crossing.
   Track track = one_rail(30);
   track.sleeper.reset();
   track.support.stiffness = {0., 0., 3e7};
@@ -277,12 +278,12 @@ TEST_CASE("a wheel that goes back and forth over bays makes no energy", "[vehicl
 
 namespace {
 
-/// A run of the scene, step by step: forces of both wheels, and what the bodies' way up and down
-/// says of their sum.
+/// A run of the scene, step by step: forces of both wheels, and their sum by the bodies' vertical
+/// momentum.
 struct SceneRun {
   std::vector<double> force[2];  // N
-  std::vector<double> momentum;  // of all bodies, up, kg m/s
-  std::vector<double> frame;     // height over the mean of the wheels, m
+  std::vector<double> momentum;  // of all bodies, upwards, kg m/s
+  std::vector<double> frame;     // height above the mean of the wheels, m
   double dt;
 
   explicit SceneRun(const std::vector<std::string>& changes) {
@@ -303,7 +304,7 @@ struct SceneRun {
   }
 };
 
-/// Amplitude of a frequency in values at steps dt from `from` on.
+/// Amplitude at a frequency of values at steps dt, from the index `from` on.
 double amplitude(const std::vector<double>& f, std::size_t from, double frequency, double dt) {
   std::complex<double> sum = 0.;
   for (std::size_t i = from; i < f.size(); ++i)
@@ -313,13 +314,14 @@ double amplitude(const std::vector<double>& f, std::size_t from, double frequenc
 
 }  // namespace
 
-TEST_CASE("the bogie at speed beats with its sleepers and bears its weight", "[vehicle]") {
-  // config/scenes/bogie_at_speed.toml: 80 m/s over bays of .6 m is 133.3 Hz, 150 steps a bay.
+TEST_CASE("the force of the bogie at speed swings with the sleepers and bears its weight",
+          "[vehicle]") {
+  // bogie_at_speed.toml in config/scenes: 80 m/s over bays of .6 m are 133.3 Hz, 150 steps a bay.
   const SceneRun run({});
   REQUIRE(run.dt == 5e-5);
   const std::size_t all = run.momentum.size(), from = all - 15 * 150;
-  // Newton: impulses less the weight are the change of momentum; the trapezoidal rule over the
-  // forces' harmonics leaves (2 pi/150)^2/12 = 1.5e-4 of their amplitudes' 4 %.
+  // By Newton, impulses less the weight are the change of momentum. The trapezoidal rule over the
+  // forces' harmonics errs by (2 pi/150)^2/12 = 1.5e-4 of their amplitudes' 4 %.
   double impulse = 0.;
   for (std::size_t i = from; i + 1 < all; ++i)
     for (const std::vector<double>& f : run.force) impulse += .5 * run.dt * (f[i] + f[i + 1]);
@@ -327,15 +329,15 @@ TEST_CASE("the bogie at speed beats with its sleepers and bears its weight", "[v
   const double weight = 2. * kBogieLoad * time;
   CHECK_THAT(impulse - weight,
              WithinAbs(run.momentum[all - 1] - run.momentum[from], 1e-5 * weight));
-  // The springs bear frame and what it carries, (8000 + 1307.5) g over two of 1.22e6 N/m, give or
-  // take what is left of the bounce that the start makes: a thousandth.
+  // The springs bear the frame and its carried mass, (8000 + 1307.5) g over two of 1.22e6 N/m. The
+  // rest of the bounce from the start is a thousandth.
   const double sag =
       std::accumulate(run.frame.begin() + static_cast<std::ptrdiff_t>(from), run.frame.end(), 0.) /
       static_cast<double>(all - from);
   CHECK_THAT(sag, WithinRel(-9307.5 * 9.81 / 2.44e6, 1e-3));
   for (const std::vector<double>& f : run.force) {
-    // Whole bays, 15 of them: harmonics of the passing are lines, and carry what the force swings
-    // by; beside them are what rings on and the frame's bounce, a twentieth.
+    // Over 15 whole bays the harmonics of the passing frequency are lines and hold the force's
+    // swing. Other oscillations, with the frame's bounce, are a twentieth.
     double swing = 0., lines = 0.;
     const double mean =
         std::accumulate(f.begin() + static_cast<std::ptrdiff_t>(from), f.end(), 0.) /
@@ -346,12 +348,12 @@ TEST_CASE("the bogie at speed beats with its sleepers and bears its weight", "[v
     const double first = amplitude(f, from, 80. / .6, run.dt);
     CHECK(lines > .95 * swing);
     CHECK(first > 2. * amplitude(f, from, 2. * 80. / .6, run.dt));
-    // Between the lines there is next to nothing.
+    // Between the lines there is almost nothing.
     CHECK(amplitude(f, from, 1.4 * 80. / .6, run.dt) < .02 * first);
   }
 }
 
-TEST_CASE("the bogie's energies balance, banded and condensed", "[vehicle][energy]") {
+TEST_CASE("the energies of the bogie balance, banded and condensed", "[vehicle][energy]") {
   for (const char* kind : {"full", "modal"}) {
     const Simulation run(
         read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/bogie_at_speed.toml",

@@ -36,33 +36,33 @@ PackOptions options(double dt) { return {.scheme = generalised_alpha(dt, .6)}; }
 
 }  // namespace
 
-TEST_CASE("the paper's wheelset settles where statics say", "[wheelset]") {
+TEST_CASE("the paper's wheelset settles in its static equilibrium", "[wheelset]") {
   ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
   run.until(1.);
   CHECK(run.seen == Status::ok);
-  // Frictionless wheels carry half the weight each, whatever the rails do.
+  // Wheels without friction carry half the weight each, however the rails move.
   for (int i = 0; i < 2; ++i) CHECK_THAT(run.outputs.wheel_force[i], WithinRel(490.5, 1e-9));
-  // Both rails under their wheel, on the head; the axis below it. Statics knows no contact.
+  // Both rails under their wheel, at the head and at the axis below it; statics has no contact.
   const Statics statics(paper_track());
   std::vector<PointForce> forces;
   for (const int rail : {0, 1}) forces.push_back({{rail, 3.2, 0., kHead.top_z, 2}, -490.5});
   const auto u = statics.solve(forces);
   const double axis = statics.at(u, {0, 3.2, 0., 0., 2});
   const double head = statics.at(u, {0, 3.2, 0., kHead.top_z, 2});
-  // Two routes to one equilibrium; what is left of the fall after 1 s is below 1e-8 of it.
+  // Both find one equilibrium; after 1 s less than 1e-8 of the fall is left.
   const std::ptrdiff_t place = 2 * (run.model().residual.points + 1);
   const double missed = 490.5 * run.model().residual.axis[place];
   CHECK_THAT(run.outputs.wheel_rail_z[0], WithinRel(axis - missed, 1e-6));
   CHECK_THAT(run.outputs.wheel_rail_z[1], WithinRel(axis - missed, 1e-6));
-  // reference.md: Hertz approach 3.615e-6 m under 490.5 N; printed to 4 digits
+  // reference.md has a Hertz approach of 3.615e-6 m under 490.5 N, printed to 4 digits.
   CHECK_THAT(-run.outputs.wheel_gap[0], WithinAbs(3.615e-6, 1e-9));
   const double residual = 490.5 * run.model().residual.under[place];
   CHECK_THAT(run.body()[2], WithinAbs(head - residual + run.outputs.wheel_gap[0], 1e-10));
 }
 
-TEST_CASE("released from touching, the wheelset sinks as the reference says", "[wheelset]") {
-  // reference.md: lowest wheel position -7.67e-5 m at 25.5 ms: 3 digits. There the load acts on the
-  // axis; the head is lower by its squeeze (0.02e-5), the Hertz approach is in both.
+TEST_CASE("a wheelset released as it touches sinks as in the reference", "[wheelset]") {
+  // reference.md has the lowest wheel position -7.67e-5 m at 25.5 ms, to 3 digits. Its load acts on
+  // the axis; the head is lower by its squeeze (0.02e-5), and both have the Hertz approach.
   ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
   double lowest = 0., when = 0.;
   while (run.time() < .1) {
@@ -76,8 +76,8 @@ TEST_CASE("released from touching, the wheelset sinks as the reference says", "[
   CHECK_THAT(when, WithinAbs(25.5e-3, .5e-3));
 }
 
-TEST_CASE("a lateral force meets nothing on cylinders without friction", "[wheelset]") {
-  // reference.md: y = 0.05 t^2 for 10 N on 100 kg
+TEST_CASE("on cylinders without friction nothing resists a lateral force", "[wheelset]") {
+  // reference.md has y = 0.05 t^2 for 10 N on 100 kg.
   Wheelset w = paper_wheelset();
   w.forces = {{1, {-1., 10., 1., 10.}}};
   ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
@@ -85,9 +85,9 @@ TEST_CASE("a lateral force meets nothing on cylinders without friction", "[wheel
   CHECK_THAT(run.body()[1], WithinRel(.05 * .2 * .2, 2e-3));
 }
 
-TEST_CASE("a wheel dropped on a rigid rail bounces as energy says", "[wheelset]") {
-  // hard-cases.md R1: one wheel of 600 kg at 0.1 m/s without weight: 82.13323 kN after
-  // 2.687653/2 ms, rebound -v. A wheelset of 1200 kg carries two of them; contact of .46 m on .3 m.
+TEST_CASE("a wheel dropped on a rigid rail bounces with its energy", "[wheelset]") {
+  // R1 of hard-cases.md: one wheel of 600 kg without weight at 0.1 m/s reaches 82.13323 kN after
+  // 2.687653/2 ms and rebounds with -v. A wheelset of 1200 kg has two; contact of .46 m on .3 m.
   Wheelset w;
   w.mass = 1200.;
   w.inertia_roll = w.inertia_yaw = 700.;
@@ -106,7 +106,7 @@ TEST_CASE("a wheel dropped on a rigid rail bounces as energy says", "[wheelset]"
     CHECK(has(run.seen, Status::contact_lost));
     return std::pair{peak, run.state.v[run.model().wheelset[0].first + 2]};
   };
-  // H4: 1 % at 50 us, 1e-3 at 10 us
+  // H4 demands 1 % at 50 us and 1e-3 at 10 us.
   const auto [coarse, rebound_coarse] = drop(5e-5);
   CHECK_THAT(coarse, WithinRel(82.13323e3, 1e-2));
   const auto [fine, rebound] = drop(1e-5);
@@ -114,7 +114,7 @@ TEST_CASE("a wheel dropped on a rigid rail bounces as energy says", "[wheelset]"
   CHECK_THAT(rebound, WithinRel(.1, 2e-3));
 }
 
-TEST_CASE("the guide holds by either method, with the same motion", "[wheelset]") {
+TEST_CASE("both methods of the guide hold, with the same motion", "[wheelset]") {
   const auto run_to = [](Guide guide) {
     Wheelset w = paper_wheelset();
     w.start = 2.;
@@ -133,8 +133,8 @@ TEST_CASE("the guide holds by either method, with the same motion", "[wheelset]"
   CHECK_THAT(a[1], WithinRel(b[1], 1e-6));
 }
 
-TEST_CASE("a blow that the step cannot follow is said", "[wheelset]") {
-  // hard-cases.md R1: 600 kg a wheel at 0.1 m/s is in contact for 2.69 ms: 26.9 steps of 0.1 ms
+TEST_CASE("a status reports an impact that the step cannot follow", "[wheelset]") {
+  // R1 of hard-cases.md: 600 kg per wheel at 0.1 m/s has contact for 2.69 ms, 26.9 steps of 0.1 ms.
   const auto met = [](double dt, double above) {
     Wheelset w = paper_wheelset();
     w.mass = 1200.;
@@ -153,19 +153,19 @@ TEST_CASE("a blow that the step cannot follow is said", "[wheelset]") {
   CHECK(met(1e-3, 1e-5));
 }
 
-TEST_CASE("a guide whose cap is too low says so", "[wheelset]") {
+TEST_CASE("a guide whose cap is too low sets a status", "[wheelset]") {
   Wheelset w = paper_wheelset();
   w.cap = 1;
   w.speed = 10.;
   w.start = 2.;
   ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
-  run.state.v[run.model().wheelset[0].first] = 0.;  // at rest: the guide has work to do
+  run.state.v[run.model().wheelset[0].first] = 0.;  // at rest: the guide must act
   run.step();
   CHECK(has(run.seen, Status::cap_reached));
   CHECK(std::isfinite(run.body()[0]));
 }
 
-TEST_CASE("a wheelset that runs off the rails falls, and is reported", "[wheelset]") {
+TEST_CASE("a wheelset that runs off the rails falls, and a status reports it", "[wheelset]") {
   Wheelset w = paper_wheelset();
   w.start = 6.3;
   w.speed = 10.;

@@ -1,4 +1,4 @@
-// Wheelsets by a table of speeds: where they are, what they press, and what the drive does.
+// Wheelsets with a table of speeds: their positions, their forces, and the work of the drive.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 /// 8 m/s, then 100 m/s2 up to 18 m/s, then down to 3 m/s.
 const std::vector<double> kSpeeds = {0., 8., .05, 8., .15, 18., .3, 3.};
-constexpr double kWay[] = {.4, .4 + 1.3, .4 + 1.3 + 1.575};  // m gone at .05, .15 and .3 s
+constexpr double kWay[] = {.4, .4 + 1.3, .4 + 1.3 + 1.575};  // distance at .05, .15 and .3 s, m
 
 Track two_rails() {
   Track t = one_rail(20);
@@ -47,7 +47,7 @@ ModelRun run_of(bool modal, double dt, double rho, const Wheelset& w) {
 
 }  // namespace
 
-TEST_CASE("a wheelset is where its table of speeds says", "[wheelset]") {
+TEST_CASE("a wheelset is where its table of speeds puts it", "[wheelset]") {
   for (const bool modal : {false, true}) {
     ModelRun run = run_of(modal, 1e-4, .6, quick());
     CHECK(run.state.v[run.model().wheelset[0].first] == 8.);
@@ -63,9 +63,9 @@ TEST_CASE("a wheelset is where its table of speeds says", "[wheelset]") {
   }
 }
 
-TEST_CASE("Baumgarte's guide follows a table of speeds but for its corners", "[wheelset]") {
-  // A step has the acceleration of its end: at a corner the speed is off by half a step of the
-  // jump, 200 m/s2 at most, and e'' + 2 beta e' + beta^2 e = 0 makes of it jump dt/(2 e beta) m.
+TEST_CASE("Baumgarte's guide follows a table of speeds except at its corners", "[wheelset]") {
+  // A step has the acceleration of its end. At a corner the speed errs by half a step of the jump,
+  // 200 m/s2 at most, from which e'' + 2 beta e' + beta^2 e = 0 makes jump dt/(2 e beta) m.
   for (const double dt : {4e-4, 2e-4, 1e-4}) {
     ModelRun run = run_of(false, dt, .6, quick(Guide::baumgarte));
     double most = 0., last = 0.;
@@ -82,11 +82,11 @@ TEST_CASE("Baumgarte's guide follows a table of speeds but for its corners", "[w
   }
 }
 
-TEST_CASE("a wheelset by a table presses as two masses of half its own by the same table",
+TEST_CASE("a wheelset with a table has the forces of two half masses with that table",
           "[wheelset][vehicle]") {
-  // Rails that share nothing. A vehicle's contact is upright at the place that the time says; a
-  // wheelset's is the nearest point, the radius times the rail's slope aside: .46 mm at a slope of
-  // 1e-3, which over bays of .6 m is 2 pi .46e-3/.6 of the swing.
+  // The rails are uncoupled. A vehicle's contact is vertical at the place given by time. A
+  // wheelset's is the nearest point, which is off by the radius times the rail's slope: .46 mm at a
+  // slope of 1e-3, which over bays of .6 m is 2 pi .46e-3/.6 of the swing.
   for (const bool modal : {false, true}) {
     const Track track = two_rails();
     Vehicle half;
@@ -117,7 +117,7 @@ TEST_CASE("a wheelset by a table presses as two masses of half its own by the sa
 
 namespace {
 
-/// Up to .15 s.
+/// Energy account of a run up to .15 s.
 EnergyAccount account_of(ModelRun& run) {
   EnergyAccount energy(*run.packed, run.model(), run.state);
   while (run.time() < .15 - .5 * run.model().scheme.dt) {
@@ -129,7 +129,7 @@ EnergyAccount account_of(ModelRun& run) {
 
 }  // namespace
 
-TEST_CASE("energies of a wheelset that speeds up balance as at a constant speed",
+TEST_CASE("energies of an accelerating wheelset balance as at a constant speed",
           "[wheelset][energy]") {
   for (const bool modal : {false, true})
     for (const Guide guide : {Guide::augmented_lagrangian, Guide::baumgarte}) {
@@ -144,12 +144,12 @@ TEST_CASE("energies of a wheelset that speeds up balance as at a constant speed"
         error.push_back(energy.balance_error());
         CAPTURE(modal, static_cast<int>(guide), dt, constant_error, error);
         CHECK(error.back() < 1.5 * constant_error);
-        // From 8 to 18 m/s, of Baumgarte's but for the corner that it has just met; what the rails
-        // take beside it is some J.
+        // From 8 to 18 m/s; Baumgarte's guide errs by the corner that it has just met. The rails
+        // take some J besides.
         CHECK_THAT(energy.flow().guides,
                    WithinRel(.5 * 1200. * (18. * 18. - 8. * 8.), 200. * dt / 10.));
       }
-      // Banded ones come to what the contacts' frozen geometry leaves, 1.5e-5, at any speed.
+      // Banded runs err by the contacts' frozen geometry, 1.5e-5, at any speed.
       for (std::size_t i = 0; modal && i < 2; ++i)
         CHECK_THAT(std::log2(error[i] / error[i + 1]), WithinAbs(2., .5));
     }

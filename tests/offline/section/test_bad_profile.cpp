@@ -14,7 +14,7 @@ using Words = std::vector<std::string>;
 
 const std::string kMillimetres = " --unit mm";
 
-/// Refuses a profile or a list of points, as that is what `text` is.
+/// Checks that `text` is refused both as a profile and as a list of points.
 void fit_refuses(const std::string& name, const std::string& text, const Words& said,
                  const std::string& unit = kMillimetres) {
   const BadInput bad("profile");
@@ -30,7 +30,7 @@ std::string profile(const std::string& rows) {
   return "schema = 1\nname = \"p\"\nsource = \"s\"\nhalf_outline_mm = [" + rows + "]\n";
 }
 
-/// The outline's properties that a fit tells.
+/// Properties of the outline that a fit prints.
 nlohmann::json fitted(const std::string& name, const std::string& text) {
   const BadInput good("fitted");
   const bool points = name.find(".csv") != std::string::npos;
@@ -44,7 +44,7 @@ nlohmann::json fitted(const std::string& name, const std::string& text) {
 void check_same(const nlohmann::json& a, const nlohmann::json& b) {
   CHECK(a["area_m2"] > 0.);
   for (const char* key : {"area_m2", "centroid_height_m", "inertia_y_m4", "inertia_z_m4"})
-    // some ten terms of one size, summed in another order
+    // Sums of some ten terms of one size, in another order.
     CHECK_THAT(a[key].get<double>(), WithinRel(b[key].get<double>(), 1e-12));
 }
 
@@ -75,8 +75,7 @@ TEST_CASE("a gap in an outline is refused with its width", "[bad_input][cli]") {
               {"gap of 53.8516 mm", "list the full outline"});
 }
 
-TEST_CASE("a clockwise outline is taken, with the area of the other direction",
-          "[bad_input][cli]") {
+TEST_CASE("a clockwise outline is read, with the area of the other direction", "[bad_input][cli]") {
   check_same(fitted("p.csv", "0 0\n0 100\n50 100\n50 0\n"),
              fitted("p.csv", "0 0\n50 0\n50 100\n0 100\n"));
   check_same(fitted("p.toml", profile("[0,100,0],[40,90,0],[50,0,0],[0,0,0]")),
@@ -142,7 +141,8 @@ TEST_CASE("an arc's radius under half its chord is refused", "[bad_input][cli]")
               {"row 3", "20000 mm", "10000 mm", "write 0 for a straight line"});
 }
 
-TEST_CASE("no good fit ends with 1 and tells the errors of the closest", "[bad_input][cli]") {
+TEST_CASE("without a good fit the program ends with 1 and prints the errors of the closest",
+          "[bad_input][cli]") {
   const BadInput bad("no_fit");
   const std::string out = bad.old("--out", "section.toml") + bad.old("--report", "page.html");
   bad.refused(
@@ -161,7 +161,7 @@ TEST_CASE("no good fit ends with 1 and tells the errors of the closest", "[bad_i
   CHECK(bad.content() == before);
 }
 
-TEST_CASE("a byte order mark and line ends of two bytes are taken", "[bad_input][cli]") {
+TEST_CASE("a byte order mark and line ends of two bytes are read", "[bad_input][cli]") {
   const std::string mark = "\xEF\xBB\xBF";
   check_same(fitted("p.csv", mark + "y,z\r\n0,0\r\n50,0\r\n50,100\r\n0,100\r\n"),
              fitted("p.csv", "0,0\n50,0\n50,100\n0,100\n"));
@@ -179,7 +179,7 @@ TEST_CASE("a decimal comma is refused", "[bad_input][cli]") {
               {"p.toml:5:1", "4 entries", "rows of 3 numbers"});
 }
 
-TEST_CASE("what is no file of text is refused as a profile", "[bad_input][cli]") {
+TEST_CASE("a file that is not text is refused as a profile", "[bad_input][cli]") {
   const BadInput bad("no_text");
   const std::string out = bad.old("--out", "section.toml");
   std::filesystem::create_directory(bad.path("folder.toml"));
@@ -204,7 +204,7 @@ TEST_CASE("a scene with a bad profile names the profile", "[bad_input][cli]") {
               {"p.toml:4:", "rows 2 and 3", "same point"});
 }
 
-TEST_CASE("points, a section and a profile that stand for one another are told what they are",
+TEST_CASE("points, a section and a profile in each other's place are named for what they are",
           "[bad_input][cli]") {
   const BadInput bad("stands_for");
   const std::string points = bad.file("points.csv", "y,z\n0,0\n70,0\n70,10\n");

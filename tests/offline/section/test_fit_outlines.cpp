@@ -24,7 +24,7 @@ double determinant(const std::array<std::array<double, 3>, 3>& m) {
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-/// The rectangles of these two heights that have A, A z_c and Iy + A z_c2, by Cramer's rule.
+/// Rectangles of these two heights with A, A z_c and Iy + A z_c2, by Cramer's rule.
 Rectangles<double> of_heights(const FitTargets& t, double foot, double head) {
   const std::array<double, 4> z = {0, foot / t.height, 1 - head / t.height, 1};
   const double H = t.height, c = t.area.centroid_height, A = t.area.area;
@@ -50,8 +50,8 @@ double lateral_error(const FitTargets& t, const Rectangles<double>& r) {
   return properties(r).inertia_z / t.area.inertia_z - 1;
 }
 
-/// The least symmetric difference of all exact sections, by brute force and not the way of the fit:
-/// along lines of one foot height, where it follows lines of one head height, and without Ceres.
+/// Least symmetric difference of all exact sections, by brute force. Unlike the fit, it goes along
+/// lines of one foot height and follows lines of one head height, without Ceres.
 double least_difference(const Outline& outline) {
   const FitTargets t = targets_of(outline);
   const auto points = polygon(outline, 1e-7);
@@ -78,7 +78,7 @@ double least_difference(const Outline& outline) {
   return least;
 }
 
-using Five = std::array<double, 5>;  // widths, foot's and head's height, over the whole height
+using Five = std::array<double, 5>;  // widths, heights of foot and head, over the whole height
 
 double sum_of_squares(const FitTargets& t, const Five& x) {
   const double H = t.height;
@@ -90,7 +90,7 @@ double sum_of_squares(const FitTargets& t, const Five& x) {
          e.centroid_height * e.centroid_height;
 }
 
-/// The simplex of Nelder and Mead (1965): compares values alone.
+/// The simplex of Nelder and Mead (1965), which compares only values.
 Five downhill(const FitTargets& t, const Five& start, int steps) {
   std::vector<std::pair<double, Five>> s = {{sum_of_squares(t, start), start}};
   for (std::size_t i = 0; i < 5; ++i) {
@@ -127,7 +127,7 @@ Five downhill(const FitTargets& t, const Five& start, int steps) {
   return std::min_element(s.begin(), s.end())->second;
 }
 
-/// The least error by simplices from many places; root of the sum of squares.
+/// Least error by simplices from many starts: root of the sum of squares.
 double least_error(const FitTargets& t, RandomOutlines& random) {
   Five best{1, 1, 1, .3, .3};
   for (int start = 0; start < 100; ++start) {
@@ -141,7 +141,7 @@ double least_error(const FitTargets& t, RandomOutlines& random) {
   return std::sqrt(sum_of_squares(t, best));
 }
 
-/// Fitted, nothing closer than 1 % is found; refused, nothing exact nor closer than 1 %.
+/// Fitted: no section may be closer by 1 %. Refused: none may be exact or closer by 1 %.
 void check_closest(const Outline& outline, RandomOutlines& random) {
   const FitResult r = fit(outline);
   CAPTURE(r.refusal, outline.height);
@@ -174,11 +174,11 @@ TEST_CASE("every plain rectangle is three rectangles of its width", "[fit]") {
     CHECK(largest(r.fit.errors) < 1e-14);
     for (const double width : r.fit.section.width)
       CHECK_THAT(width, WithinRel(r.outline.area.area / outline.height, 1e-9));
-    CHECK_THAT(r.section.shear.torsion, WithinRel(r.outline.shear.torsion, 1e-4));  // its bounds
+    CHECK_THAT(r.section.shear.torsion, WithinRel(r.outline.shear.torsion, 1e-4));  // bounds' gap
   }
 }
 
-TEST_CASE("a fit is the closest there is, of shapes of every kind", "[fit]") {
+TEST_CASE("a fit is the closest section to outlines of every kind", "[fit]") {
   RandomOutlines random(2);
   for (const char* name : kProfiles) {
     INFO(name);
@@ -195,7 +195,7 @@ TEST_CASE("a fit is the closest there is, of shapes of every kind", "[fit]") {
   }
 }
 
-TEST_CASE("an I-shape is found again", "[fit]") {
+TEST_CASE("the fit of an I-shape returns its dimensions", "[fit]") {
   RandomOutlines random(3);
   for (int i = 0; i < 16; ++i) {
     const FitResult r = fit(random.i_shape());

@@ -1,5 +1,4 @@
-// What an outline that is not symmetric has beside a symmetric one, and how a fit and a scene tell
-// it.
+// Properties that only an outline without symmetry has, and how a fit and a scene report them.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -38,7 +37,7 @@ std::vector<Point> rectangle(double width, double height) {
           {-width / 2, height / 2}};
 }
 
-/// A list of points as `fit` reads it, mm.
+/// Writes a list of points as `fit` reads it, in mm.
 fs::path written(const fs::path& folder, const std::vector<Point>& points) {
   fs::path file = folder / "outline.csv";
   std::ofstream out(file);
@@ -51,7 +50,7 @@ Ran fit(const fs::path& file, const std::string& more) {
   return railstep_program("fit " + file.string() + " --unit mm " + more);
 }
 
-/// 60E1 with all above the middle of its web moved to the right.
+/// 60E1 with everything above the middle of its web moved to the right.
 std::vector<Point> head_beside(double offset) {
   std::vector<Point> points = polygon(read_profile(profile_file("60e1")).outline, 1e-6);
   for (Point& p : points)
@@ -61,7 +60,7 @@ std::vector<Point> head_beside(double offset) {
 
 }  // namespace
 
-TEST_CASE("a section twists as it does turned by any angle", "[saint_venant]") {
+TEST_CASE("a section has the same torsion when it is rotated by any angle", "[saint_venant]") {
   const double w = .05, h = .1;
   const SaintVenant upright = saint_venant({{-w / 2, 0}, {w / 2, 0}, {w / 2, h}, {-w / 2, h}}, 0.3);
   for (const double angle : {0., .3, kPi / 4, 2.}) {
@@ -76,7 +75,7 @@ TEST_CASE("a section twists as it does turned by any angle", "[saint_venant]") {
 TEST_CASE("a half disc that lies on its side has its shear centre beside its centroid",
           "[saint_venant]") {
   // Timoshenko and Goodier, semicircular bar, at nu = 0, which is Trefftz's: 8/(5 pi) r from the
-  // flat side, here at y = 0; 400 chords leave 1e-5 of the area out.
+  // flat side, which is at y = 0 here. 400 chords leave out 1e-5 of the area.
   const double r = .1;
   std::vector<Point> half;
   for (int i = 0; i <= 400; ++i) {
@@ -89,17 +88,17 @@ TEST_CASE("a half disc that lies on its side has its shear centre beside its cen
   CHECK_THAT(found.shear_centre_height, WithinAbs(r, 1e-4 * r));
 }
 
-TEST_CASE("a thin angle's shear centre is where its legs meet", "[saint_venant]") {
+TEST_CASE("a thin angle has its shear centre where its legs meet", "[saint_venant]") {
   const double b = .1, t = .002;
   const Twist found = twist({{0, 0}, {b, 0}, {b, t}, {t, t}, {t, b}, {0, b}});
-  // Every leg's shear flow runs along its middle, through t/2, t/2; its own thickness blurs that.
+  // The shear flow of each leg runs along its middle, through t/2, t/2; its thickness blurs that.
   CHECK_THAT(found.shear_centre_y, WithinAbs(t / 2, t / 2));
   CHECK_THAT(found.shear_centre_height, WithinAbs(t / 2, t / 2));
-  // 1/3 b t3 a leg, less what open ends and add what the corner has: some t4 each.
+  // Each leg has 1/3 b t3; open ends take and the corner adds some t4 each.
   CHECK_THAT(found.torsion, WithinAbs(2. / 3. * b * t * t * t, 1.5 * std::pow(t, 4)));
 }
 
-TEST_CASE("products of inertia and principal axes are the textbook's", "[outline]") {
+TEST_CASE("products of inertia and principal axes are those of the textbook", "[outline]") {
   const double w = .04, h = .1, I = w * h * (h * h - w * w) / 12;
   for (const double angle : {-.7, -.2, .1, .6}) {
     const Outline outline = RandomOutlines::of_points(turned(rectangle(w, h), angle));
@@ -107,7 +106,7 @@ TEST_CASE("products of inertia and principal axes are the textbook's", "[outline
     CHECK_THAT(product, WithinAbs(-I * std::sin(2 * angle) / 2, 1e-13 * I));
     CHECK_THAT(principal_angle(properties(outline), product), WithinAbs(angle, 1e-12));
   }
-  // A quarter of a disc: r4 (1/8 - 4/(9 pi)).
+  // A quarter of a disc has r4 (1/8 - 4/(9 pi)).
   const double r = .05;
   const OutlineRow quarter[] = {{{0, 0}, 0, 1}, {{r, 0}, 0, 2}, {{0, r}, r, 3}};
   CHECK_THAT(product_of_inertia(point_outline(quarter)),
@@ -115,7 +114,7 @@ TEST_CASE("products of inertia and principal axes are the textbook's", "[outline
   CHECK(principal_angle({1, 1, 2, 1}, 0.) == 0.);
 }
 
-TEST_CASE("a grooved rail's fit tells what its section leaves out", "[cli][fit]") {
+TEST_CASE("the fit of a grooved rail prints what its section leaves out", "[cli][fit]") {
   const fs::path folder = fresh_folder("grooved");
   const fs::path file = written(folder, polygon(RandomOutlines::grooved(0.), 1e-6));
   const std::string section = (folder / "section.toml").string();
@@ -130,7 +129,7 @@ TEST_CASE("a grooved rail's fit tells what its section leaves out", "[cli][fit]"
   CHECK(all["outline"]["shear_centre_height_m"] > 0.);
   CHECK(all["outline"]["shear_factor_y"].is_null());
   const json& own = all["asymmetry"];
-  // By Green's theorem over its corners.
+  // Green's theorem over its corners gives this.
   CHECK_THAT(own["product_of_inertia_m4"].get<double>(),
              WithinRel(product_of_inertia(RandomOutlines::grooved(0.)), 1e-9));
   for (const char* key :
@@ -138,7 +137,7 @@ TEST_CASE("a grooved rail's fit tells what its section leaves out", "[cli][fit]"
     CHECK(std::abs(own[key].get<double>()) > 0.);
   CHECK_THAT(text_of(page), Contains("Warning: the outline is lopsided") && Contains("Iyz"));
   CHECK_THAT(fit(file, "").out, Contains("Iyz, 1e6 mm4") && Contains("principal axis, degrees"));
-  // A scene whose rail has that section says so too; with a symmetric rail's it does not.
+  // A scene with that section warns too, but not with the section of a symmetric rail.
   const std::string scene = std::string(RAILSTEP_SOURCE) + "/config/scenes/free_rail.toml";
   const auto modes = [&scene](const std::string& with) {
     return railstep_program("modes " + scene + " --count 1 --set 'rail={section=\"" + with +
@@ -152,7 +151,7 @@ TEST_CASE("a grooved rail's fit tells what its section leaves out", "[cli][fit]"
   fs::remove_all(folder);
 }
 
-TEST_CASE("a rail within its standard's asymmetry is not warned of", "[cli][fit]") {
+TEST_CASE("a rail within the asymmetry of its standard gives no warning", "[cli][fit]") {
   const fs::path folder = fresh_folder("lopsided");
   const Ran ran = fit(written(folder, head_beside(1.2e-3)), "--json");
   REQUIRE(ran.code == 0);
@@ -165,7 +164,7 @@ TEST_CASE("a rail within its standard's asymmetry is not warned of", "[cli][fit]
   fs::remove_all(folder);
 }
 
-TEST_CASE("a refused fit has its outline all the same", "[cli][fit]") {
+TEST_CASE("a refused fit prints its outline all the same", "[cli][fit]") {
   const fs::path folder = fresh_folder("refused");
   const double r = .04;
   const fs::path file = written(folder, polygon(RandomOutlines::circle(r), 1e-7));
@@ -176,7 +175,8 @@ TEST_CASE("a refused fit has its outline all the same", "[cli][fit]") {
   const json all = json::parse(ran.out);
   CHECK(all["section"].is_null());
   CHECK_THAT(all["outline"]["area_m2"].get<double>(), WithinRel(kPi * r * r, 1e-5));
-  // Chords up to 1e-5 m within the circle leave out 2/3 of that over r/2 of the area, J twice that.
+  // Chords up to 1e-5 m inside the circle take 2/3 of that over r/2 from the area, twice as much
+  // from J.
   CHECK_THAT(all["outline"]["torsion_m4"].get<double>(), WithinRel(kPi / 2 * std::pow(r, 4), 7e-4));
   CHECK_THAT(all["refusal"].get<std::string>(), Contains("the closest found err by"));
   CHECK(!fs::exists(folder / "section.toml"));

@@ -17,7 +17,7 @@ using Catch::WithinRel;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Sums of some ten terms of one size, each right to half a unit in the last place (1.1e-16).
+// Sums have some ten terms of one size, each right to half a unit in the last place (1.1e-16).
 constexpr double kRoundOff = 1e-14;
 
 /// Rows numbered from 1.
@@ -63,41 +63,42 @@ AreaProperties<double> polygon_properties(const std::vector<Point>& p) {
 
 }  // namespace
 
-TEST_CASE("a rectangle has its textbook properties from either direction", "[outline]") {
+TEST_CASE("a rectangle has its textbook properties in either direction", "[outline]") {
   const double b = 0.03, h = 0.02;
   const AreaProperties<double> want{b * h, h / 2, b * h * h * h / 12, h * b * b * b / 12};
-  // Off the axis and above the foot line: both are moved away.
+  // The outline is beside the axis and above the foot line; its properties are shifted back.
   const auto one =
       rows({{1.0, 2.0, 0}, {1.0 + b, 2.0, 0}, {1.0 + b, 2.0 + h, 0}, {1.0, 2.0 + h, 0}});
   const std::vector<OutlineRow> other(one.rbegin(), one.rend());
-  // 2 m away from its own size of 0.02 m the moments lose (2/0.02)^2 of the digits.
+  // At 2 m, over its size of 0.02 m, the moments lose (2/0.02)^2 of the digits.
   check_same(properties(point_outline(one)), want, 1e4 * kRoundOff);
   check_same(properties(point_outline(other)), want, 1e4 * kRoundOff);
   CHECK_THAT(point_outline(one).height, WithinRel(h, 1e-13));
 }
 
-TEST_CASE("arcs integrate exactly: circle, and a rectangle less two half circles", "[outline]") {
+TEST_CASE("arcs integrate exactly for a circle and for a rectangle less two half circles",
+          "[outline]") {
   const double r = 0.05;
   const auto circle = mirrored_outline(rows({{0, 0, 0}, {r, r, r}, {0, 2 * r, r}}));
   const double quarter = kPi * r * r * r * r / 4;
   check_same(properties(circle), {kPi * r * r, r, quarter, quarter}, kRoundOff);
   CHECK_THAT(circle.height, WithinRel(2 * r, kRoundOff));
 
-  // A rectangle of 4r x 2r with a half circle taken from each side: concave arcs, half a turn each.
+  // A rectangle of 4r x 2r with a half circle cut from each side: concave arcs of half a turn.
   const double w = 2 * r;
   const auto waist = mirrored_outline(rows({{0, 0, 0}, {w, 0, 0}, {w, 2 * r, -r}, {0, 2 * r, 0}}));
   const double area = 2 * w * 2 * r - kPi * r * r;
   const double inertia_y = 2 * w * 8 * r * r * r / 12 - quarter;
-  // Half circles: centroid 4r/3pi from the flat side, second moment about the flat side pi r4/8.
+  // Half circle: the centroid is 4r/3pi from the flat side, the second moment about that pi r4/8.
   const double c = 4 * r / (3 * kPi), half = kPi * r * r / 2;
   const double own = kPi * r * r * r * r / 8 - half * c * c;
   const double inertia_z = 2 * r * 8 * w * w * w / 12 - 2 * (own + half * (w - c) * (w - c));
   check_same(properties(waist), {area, r, inertia_y, inertia_z}, 10 * kRoundOff);
 }
 
-TEST_CASE("a bulge above its end points counts in the height", "[outline]") {
+TEST_CASE("an arc that bulges above its end points counts in the height", "[outline]") {
   const double w = 0.05, r = 0.06;
-  // The arc spans the whole head from the left corner to the right one.
+  // The arc spans the whole head, from the left corner to the right one.
   std::vector<OutlineRow> list = rows({{-w, 0, 0}, {w, 0, 0}, {w, 0.1, 0}, {-w, 0.1, r}});
   CHECK_THAT(point_outline(list).height, WithinRel(0.1 + r - std::sqrt(r * r - w * w), 1e-13));
 }
@@ -105,7 +106,7 @@ TEST_CASE("a bulge above its end points counts in the height", "[outline]") {
 TEST_CASE("rectangles and their polygon have the same properties", "[outline]") {
   const Rectangles<double> section{{0.138, 0.025, 0.077}, {0.021, 0.133, 0.032}};
   check_same(properties(section), polygon_properties(polygon(section)), kRoundOff);
-  // Section P of the paper, printed to four digits: half of the last.
+  // Section P of the paper, printed to four digits: half of the last digit.
   const auto p = properties(Rectangles<double>{{.140, .024, .078}, {.022, .130, .032}});
   CHECK_THAT(p.area, WithinAbs(8696e-6, 0.5e-6));
   CHECK_THAT(p.centroid_height, WithinAbs(83.33e-3, 0.005e-3));
@@ -115,16 +116,16 @@ TEST_CASE("rectangles and their polygon have the same properties", "[outline]") 
 
 namespace {
 
-/// Integrals of the same rows by another program, printed to the digits given; mm.
+/// Integrals of the same rows by another program, to the digits printed; mm.
 struct Known {
   const char* name;
   double area, centroid, inertia_y, inertia_z;  // mm2, mm, 1e6 mm4, 1e6 mm4
   double digit_area, digit_inertia;             // last printed digit
-  double off_area, off_y, off_z, off_centroid;  // relative, of the published values
+  double off_area, off_y, off_z, off_centroid;  // relative differences of the published values
 };
 
-// Published values differ by at most 0.04 % for the EN rails; for the AREMA ones, radii partly
-// inferred, by what the sources state: 136RE -0.13 % and -0.6 %, 115RE -0.33, -0.3, -0.2, +0.54 %.
+// Published values differ by at most 0.04 % for the EN rails. The AREMA radii are partly inferred;
+// there the sources state -0.13 % and -0.6 % for 136RE, -0.33, -0.3, -0.2 and +0.54 % for 115RE.
 const Known kKnown[] = {
     {"60e1", 7669.96, 80.92, 30.383, 5.1230, 0.01, 0.001, 4e-4, 4e-4, 4e-4, 0},
     {"54e1", 6977.4, 75.13, 23.379, 4.1906, 0.1, 0.001, 4e-4, 4e-4, 4e-4, 0},
@@ -141,7 +142,7 @@ TEST_CASE("the shipped profiles have their known and published properties", "[ou
     INFO(known.name);
     const Profile profile = read_profile(profile_file(known.name));
     const AreaProperties<double> got = properties(profile.outline);
-    // Half of the last printed digit, and as much for the printed value's own rounding of Iz.
+    // Half of the last printed digit, and as much again for the rounding of the printed Iz.
     CHECK_THAT(1e6 * got.area, WithinAbs(known.area, 0.5 * known.digit_area + 1e-9));
     CHECK_THAT(1e3 * got.centroid_height, WithinAbs(known.centroid, 0.00501));
     CHECK_THAT(1e12 * got.inertia_y, WithinAbs(1e6 * known.inertia_y, 0.5e6 * known.digit_inertia));
@@ -152,7 +153,7 @@ TEST_CASE("the shipped profiles have their known and published properties", "[ou
     CHECK_THAT(got.inertia_z, WithinRel(published.inertia_z, known.off_z));
     if (known.off_centroid > 0)
       CHECK_THAT(got.centroid_height, WithinRel(published.centroid_height, known.off_centroid));
-    // Section moduli: 0.1 % (EN), 0.9 % (AREMA, as their Iy and centroid).
+    // Section moduli hold to 0.1 % (EN) and 0.9 % (AREMA, as their Iy and centroid).
     const double off = known.off_centroid > 0 ? 9e-3 : 1e-3;
     CHECK_THAT(got.inertia_y / got.centroid_height, WithinRel(published.section_modulus_foot, off));
     CHECK_THAT(got.inertia_y / (profile.outline.height - got.centroid_height),
@@ -160,7 +161,7 @@ TEST_CASE("the shipped profiles have their known and published properties", "[ou
   }
 }
 
-TEST_CASE("a finer polygon converges to the exact properties with its tolerance", "[outline]") {
+TEST_CASE("a finer polygon converges to the exact properties within its tolerance", "[outline]") {
   for (const char* name : kProfiles) {
     INFO(name);
     const Outline outline = read_profile(profile_file(name)).outline;
@@ -181,8 +182,8 @@ TEST_CASE("a finer polygon converges to the exact properties with its tolerance"
   }
 }
 
-TEST_CASE("areas and lengths inside a polygon are those of a comb", "[outline]") {
-  // A comb of two teeth, 1 wide each, 1 apart, 2 high on a back 1 high: not convex.
+TEST_CASE("areas and lengths inside a polygon are right for a comb", "[outline]") {
+  // A comb with two teeth, each 1 wide and 2 high, 1 apart, on a back 1 high: it is not convex.
   const std::vector<Point> comb = {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
   CHECK_THAT(area_inside(comb, 0.5, 2.5, 0.5, 2), WithinAbs(2 * 0.5 + 2 * 0.5, 1e-15));
   CHECK_THAT(area_inside(comb, -9, 9, -9, 9), WithinAbs(7, 1e-14));
@@ -191,13 +192,13 @@ TEST_CASE("areas and lengths inside a polygon are those of a comb", "[outline]")
   CHECK_THAT(length_inside(comb, 0, 1.5, -1, 5), WithinAbs(1, 1e-15));
 }
 
-TEST_CASE("a lopsided outline's two mirrored sides have its mean area", "[outline]") {
+TEST_CASE("the mirrored sides of a lopsided outline have its mean area", "[outline]") {
   const std::vector<Point> kite = {{0, 0}, {0.03, 0.05}, {0, 0.1}, {-0.02, 0.05}};
   const double right = polygon_properties(mirrored_side(kite, 1, 0)).area;
   const double left = polygon_properties(mirrored_side(kite, -1, 0)).area;
   CHECK_THAT(right, WithinAbs(0.003, 1e-17));
   CHECK_THAT(left, WithinAbs(0.002, 1e-17));
-  // |0.03 - 0.02| at mid height, a triangle on each side of the axis: 2 x 0.0005 over 0.0025.
+  // |0.03 - 0.02| at mid height makes a triangle on each side of the axis: 2 x 0.0005 over 0.0025.
   CHECK_THAT(asymmetry(kite), WithinAbs(0.4, 4e-4));
 }
 
@@ -230,7 +231,7 @@ TEST_CASE("a bad outline is refused in a sentence that says why", "[outline][bad
              Contains("accepted"));
   CHECK_THAT(refusal(rows({{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 11}, {0, 0.1, 0}}), true),
              Contains("row 3") && Contains("over the limit of 10000 mm"));
-  // An arc that runs through the opposite side although its end points do not.
+  // This arc runs through the opposite side, although its end points do not.
   CHECK_THAT(refusal(rows({{0, 0, 0},
                            {0.1, 0, 0},
                            {0.1, 0.1, -0.0501},
@@ -245,6 +246,6 @@ TEST_CASE("points that stop half way round leave a gap", "[outline][bad_input]")
   std::vector<std::array<double, 3>> half_circle;
   for (int i = 0; i <= 20; ++i)
     half_circle.push_back({0.1 * std::cos(kPi * i / 20), 0.1 * std::sin(kPi * i / 20), 0});
-  // Sides of 15.7 mm, ends 200 mm apart.
+  // The sides are 15.7 mm, the ends 200 mm apart.
   CHECK_THAT(refusal(rows(half_circle), false), Contains("gap of 200 mm"));
 }

@@ -22,7 +22,7 @@ Polygon rectangle(double width, double height) {
   return {{-width / 2, 0.0}, {width / 2, 0.0}, {width / 2, height}, {-width / 2, height}};
 }
 
-/// Foot, web, head, each width and height in mm.
+/// Polygon of foot, web and head, with each width and height in mm.
 Polygon three_rectangles(const std::array<double, 6>& mm) {
   const double a = mm[0] / 2e3, b = mm[2] / 2e3, c = mm[4] / 2e3;
   const double z1 = mm[1] / 1e3, z2 = z1 + mm[3] / 1e3, z3 = z2 + mm[5] / 1e3;
@@ -37,7 +37,7 @@ Polygon section_f() {
 
 Polygon section_p() { return three_rectangles({140.0, 22.0, 24.0, 130.0, 78.0, 32.0}); }
 
-/// Sides around the circle of the same area, so that only the shape is chorded.
+/// Polygon with the area of the circle, so that chords change only the shape.
 Polygon circle(double radius, int sides) {
   const double turn = 2.0 * kPi / sides;
   const double corner = radius * std::sqrt(turn / std::sin(turn));
@@ -57,11 +57,11 @@ Polygon half_disc(double radius, int sides) {
   return p;
 }
 
-struct Row {  // end of a segment, mm; radius 0 straight, positive turning left
+struct Row {  // end of a segment, mm; radius 0 is straight, positive turns left
   double y, z, radius;
 };
 
-/// Points after `from` up to the row's, an arc in chords of at most 1 degree.
+/// Appends points up to the row's end; an arc becomes chords of at most 1 degree.
 void follow(Polygon& p, const Row& to) {
   const double y0 = p.back()[0], z0 = p.back()[1], y1 = to.y / 1e3, z1 = to.z / 1e3;
   const double chord = std::hypot(y1 - y0, z1 - z0), r = to.radius / 1e3;
@@ -80,7 +80,7 @@ void follow(Polygon& p, const Row& to) {
   p.push_back({y1, z1});
 }
 
-/// UIC 60, from the drawing of EN 13674-1 (the rows of its right half, foot to crown).
+/// UIC 60 by the drawing of EN 13674-1 (the rows of its right half, from foot to crown).
 Polygon rail_60e1() {
   const std::vector<Row> rows = {{73, 0, 0},
                                  {75, 2, 2},
@@ -115,7 +115,7 @@ double polygon_area(const Polygon& p) {
   return twice / 2.0;
 }
 
-/// Saint-Venant's series, long side a, short side b.
+/// Saint-Venant's series for the long side a and the short side b.
 double rectangle_torsion(double a, double b) {
   double sum = 0.0;
   for (int n = 1; n < 40; n += 2) sum += std::tanh(n * kPi * a / (2.0 * b)) / std::pow(n, 5);
@@ -128,11 +128,11 @@ double circle_factor(double nu) { return 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu); }
 
 struct Flexure {
   double line;    // height of a lateral force whose stresses are those of chi, m
-  double factor;  // lateral, from the energy of these stresses
+  double factor;  // lateral factor from the energy of these stresses
 };
 
-/// Stresses of a lateral force from chi (Love's flexure, no torsion added), their resultant and
-/// their energy. Shares the elements with saint_venant, but none of its formulas for k and z_s.
+/// Stresses of a lateral force from chi (Love's flexure, without torsion), with their resultant and
+/// their energy. It shares the elements with saint_venant, but not its formulas for k and z_s.
 Flexure lateral_flexure(const Polygon& polygon, double centroid, double nu) {
   Polygon half = right_half(polygon);
   for (auto& p : half) p[1] -= centroid;
@@ -173,9 +173,9 @@ TEST_CASE("a rectangle has Saint-Venant's torsion and Cowper's factor", "[saint_
   const double height = 0.1;
   const SaintVenant s = saint_venant(rectangle(width, height), nu);
   const double J = rectangle_torsion(std::max(width, height), std::min(width, height));
-  // The bounds end the refinement within 1e-4 of each other, so their mean errs by half of it.
+  // The refinement ends when the bounds are within 1e-4, so their mean errs by half of that.
   CHECK_THAT(s.torsion, Catch::WithinRel(J, 5e-5));
-  // Errors of k are of the order of those of J's bounds, being energies too.
+  // k errs by the order of the gap of J's bounds: both are energies.
   CHECK_THAT(s.shear_factor_y, Catch::WithinRel(rectangle_factor(nu), 1e-4));
   CHECK_THAT(s.shear_factor_z, Catch::WithinRel(rectangle_factor(nu), 1e-4));
   CHECK_THAT(s.shear_centre_height, Catch::WithinAbs(height / 2.0, 1e-4 * height));
@@ -184,20 +184,21 @@ TEST_CASE("a rectangle has Saint-Venant's torsion and Cowper's factor", "[saint_
 TEST_CASE("a circle has its polar moment and Cowper's factor", "[saint_venant]") {
   const double nu = GENERATE(0.0, 0.3);
   const SaintVenant s = saint_venant(circle(0.05, 400), nu);
-  // Half the largest gap of the bounds; 400 chords of a circle of equal area add 1e-8.
+  // Half the largest gap of the bounds; 400 chords with the circle's area add 1e-8.
   CHECK_THAT(s.torsion, Catch::WithinRel(kPi / 2.0 * std::pow(0.05, 4), 5e-5));
   CHECK_THAT(s.shear_factor_y, Catch::WithinRel(circle_factor(nu), 1e-4));
   CHECK_THAT(s.shear_factor_z, Catch::WithinRel(circle_factor(nu), 1e-4));
   CHECK_THAT(s.shear_centre_height, Catch::WithinAbs(0.05, 1e-6));
 }
 
-TEST_CASE("a half disc's shear centre is off its centroid, on the known side", "[saint_venant]") {
+TEST_CASE("the shear centre of a half disc is off its centroid, on the known side",
+          "[saint_venant]") {
   const double r = 0.1;
   const SaintVenant s = saint_venant(half_disc(r, 200), 0.3);
-  // Closed forms (Timoshenko and Goodier, Theory of Elasticity, semicircular bar): torsion
-  // (pi/2 - 4/pi) r^4; centre 8/(15 pi) (3 + 4 nu)/(1 + nu) r from the flat side at nu = 0, where
-  // it is Trefftz's. Centroid at 4/(3 pi) r = 0.424 r, below it. Tolerance: half the gap of the
-  // bounds.
+  // Closed forms (Timoshenko and Goodier, Theory of Elasticity, semicircular bar): torsion (pi/2 -
+  // 4/pi) r^4; shear centre 8/(15 pi) (3 + 4 nu)/(1 + nu) r from the flat side, at nu = 0, where it
+  // is Trefftz's. The centroid, at 4/(3 pi) r = 0.424 r, is below it. The tolerance is half the gap
+  // of the bounds.
   CHECK_THAT(s.torsion, Catch::WithinRel((kPi / 2.0 - 4.0 / kPi) * std::pow(r, 4), 5e-5));
   CHECK_THAT(s.shear_centre_height, Catch::WithinRel(8.0 / (5.0 * kPi) * r, 1e-4));
   Polygon turned = half_disc(r, 200);
@@ -208,9 +209,9 @@ TEST_CASE("a half disc's shear centre is off its centroid, on the known side", "
 
 TEST_CASE("three rectangles agree with an independent finite-element solution",
           "[saint_venant][published]") {
-  // The required accuracy, 1e-3. The other solution's mesh was not graded towards the re-entrant
-  // corners, so that it is too stiff: its values are above these by 2e-4 to 5e-4 (these
-  // elements ungraded, 2.5 mm wide, give k_y 0.4796 and k_z 0.4721 and J 1.952e-6 from above).
+  // 1e-3 is the required accuracy. The mesh of the other solution was not graded towards the
+  // re-entrant corners, so it is too stiff: its values are 2e-4 to 5e-4 above these. (These
+  // elements without grading, 2.5 mm wide, give k_y 0.4796, k_z 0.4721 and J 1.952e-6 from above.)
   const SaintVenant f = saint_venant(section_f(), 0.3);
   CHECK_THAT(f.torsion, Catch::WithinRel(1.9514e-6, 1e-3));
   CHECK_THAT(f.shear_factor_z, Catch::WithinRel(0.4721, 1e-3));
@@ -225,34 +226,35 @@ TEST_CASE("three rectangles agree with an independent finite-element solution",
 
 TEST_CASE("the 60E1 rail has its known torsion constant", "[saint_venant][published]") {
   const Polygon rail = rail_60e1();
-  // Published area; a chord errs by r^2 a^3/12, a one degree; the four web arcs
-  // of 120 mm have the most, together 5e-5 of the area.
+  // The published area. A chord errs by r^2 a^3/12 for an angle a of one degree; most is in the
+  // four web arcs of 120 mm, together 5e-5 of the area.
   CHECK_THAT(polygon_area(rail), Catch::WithinRel(7669.96e-6, 1e-4));
   const SaintVenant s = saint_venant(rail, 0.3);
-  // Finite differences on a 0.5 mm grid, good to 1 %.
+  // This is from finite differences on a 0.5 mm grid, good to 1 %.
   CHECK_THAT(s.torsion, Catch::WithinRel(221.0e-8, 0.01));
 }
 
-TEST_CASE("the 60E1 rail's flexure leads to its shear centre and factors",
+TEST_CASE("the flexure of the 60E1 rail gives its shear centre and factors",
           "[saint_venant][published]") {
   const Polygon rail = rail_60e1();
-  const double centroid = 80.92e-3;  // published, to half of 1e-5 m; so is the load line below
+  const double centroid = 80.92e-3;  // published to half of 1e-5 m, as the load line below
   const SaintVenant none = saint_venant(rail, 0.0);
   const Flexure straight = lateral_flexure(rail, centroid, 0.0);
-  // With nu = 0 the flexure's force is at Trefftz's centre and energy and Cowper's mean agree.
+  // At nu = 0 the flexure's force is at Trefftz's centre, and energy and Cowper's mean agree.
   CHECK_THAT(none.shear_centre_height, Catch::WithinAbs(straight.line, 2e-5));
   CHECK_THAT(none.shear_factor_y, Catch::WithinRel(straight.factor, 3e-4));
-  // The open track code "rolland" has 33 mm below the centroid, 0.538 and, which nu does not
-  // change, 0.393. These are its energy factors and the force's line with nu = 0.3, not Cowper's
-  // factors (0.558, 0.395) nor Trefftz's centre (34.7 mm). Half a digit; 0.538 is 0.3 % off, so
-  // its own outline or mesh must account for that.
+  // The open track code "rolland" has 33 mm below the centroid, 0.538 and 0.393, which nu does not
+  // change. These are the energy factors and the line of the force at nu = 0.3, not Cowper's
+  // factors (0.558, 0.395) nor Trefftz's centre (34.7 mm). Tolerances are half a digit; 0.538 is
+  // 0.3 % off, for which its own outline or mesh must account.
   const Flexure published = lateral_flexure(rail, centroid, 0.3);
   CHECK_THAT(centroid - published.line, Catch::WithinAbs(33e-3, 0.5e-3));
   CHECK_THAT(none.shear_factor_z, Catch::WithinAbs(0.393, 0.0005));
   CHECK_THAT(published.factor, Catch::WithinRel(0.538, 0.01));
 }
 
-TEST_CASE("the bounds of the torsion constant close as the mesh is refined", "[saint_venant]") {
+TEST_CASE("the bounds of the torsion constant close with refinement of the mesh",
+          "[saint_venant]") {
   const Polygon section = GENERATE(rectangle(0.1, 0.05), section_f(), section_p(), rail_60e1());
   const TorsionBounds coarse = torsion_bounds(section, 0.2);
   const TorsionBounds fine = torsion_bounds(section, 0.05);
@@ -262,16 +264,17 @@ TEST_CASE("the bounds of the torsion constant close as the mesh is refined", "[s
   CHECK(fine.lower <= fine.upper);
   CHECK(fine.lower > coarse.lower);
   CHECK(fine.upper < coarse.upper);
-  // Energy converges at least linearly with the size even at a corner left ungraded.
+  // The energy converges at least linearly with the size, even at a corner without grading.
   CHECK(gap(fine) < gap(coarse) / 4.0);
 }
 
-TEST_CASE("units and height of the foot do not change the section's numbers", "[saint_venant]") {
+TEST_CASE("the unit and the height of the foot do not change the section's numbers",
+          "[saint_venant]") {
   const SaintVenant want = saint_venant(section_f(), 0.3);
   Polygon other = section_f();
   for (auto& p : other) p = {1000.0 * p[0], 1000.0 * p[1] - 250.0};
   const SaintVenant got = saint_venant(other, 0.3);
-  // The mesh may differ by rounding; then both are within the gap of the bounds.
+  // Rounding may change the mesh; then both are within the gap of the bounds.
   CHECK_THAT(got.torsion, Catch::WithinRel(1e12 * want.torsion, 1e-4));
   CHECK_THAT(got.shear_factor_y, Catch::WithinRel(want.shear_factor_y, 1e-4));
   CHECK_THAT(got.shear_factor_z, Catch::WithinRel(want.shear_factor_z, 1e-4));
@@ -287,7 +290,7 @@ TEST_CASE("the same section gives the same bits", "[saint_venant]") {
   CHECK(a.shear_centre_height == b.shear_centre_height);
 }
 
-TEST_CASE("the half section's mesh fills it with well-shaped triangles", "[saint_venant]") {
+TEST_CASE("the mesh of the half section fills it with well-shaped triangles", "[saint_venant]") {
   const Polygon section = GENERATE(section_f(), rail_60e1());
   const SectionMesh mesh = mesh_half(right_half(section), 0.01);
   double area = 0.0, flattest = 0.0;
@@ -302,13 +305,13 @@ TEST_CASE("the half section's mesh fills it with well-shaped triangles", "[saint
     area += twice / 2.0;
     flattest = std::max(flattest, ab * bc * ca / (2.0 * twice) / std::min({ab, bc, ca}));
   }
-  // Rounding of a few thousand triangles.
+  // This is the rounding of a few thousand triangles.
   CHECK_THAT(area, Catch::WithinRel(polygon_area(section) / 2.0, 1e-12));
-  CHECK(flattest < 1.5 + 1e-9);  // Ruppert's bound as asked for, circumradius over shortest edge
+  CHECK(flattest < 1.5 + 1e-9);  // Ruppert's bound, circumradius over shortest edge
 }
 
-TEST_CASE("a rectangle of any size is triangulated", "[saint_venant]") {
-  // Of the first the middle of a side is left of both of its triangles, to rounding.
+TEST_CASE("a rectangle of any size can be triangulated", "[saint_venant]") {
+  // In the first rectangle, to rounding, the middle of a side is left of both of its triangles.
   for (int i = 0; i < 200; ++i) {
     const double width = i == 0 ? 0.061 * (1.0 - 1e-14) : 1e-3 * (20 + i * 37 % 80);
     const double height = i == 0 ? 0.115 : 1e-3 * (20 + i * 53 % 120);
@@ -325,7 +328,8 @@ TEST_CASE("a rectangle of any size is triangulated", "[saint_venant]") {
   }
 }
 
-TEST_CASE("what is not a section is refused in one sentence", "[saint_venant][bad_input]") {
+TEST_CASE("polygons that are not sections are refused in one sentence",
+          "[saint_venant][bad_input]") {
   const Polygon good = rectangle(0.1, 0.2);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto says = [](const Polygon& p, const std::string& words) {
@@ -338,14 +342,14 @@ TEST_CASE("what is not a section is refused in one sentence", "[saint_venant][ba
   says({good[0], good[1], good[2], good[3], good[0]}, "repeat");
   says({good[3], good[2], good[1], good[0]}, "counter-clockwise");
   says({{-1, 0}, {0, 0}, {1, 0}}, "enclose an area");
-  // a square with a small loop across its top
+  // A square has a small loop across its top.
   says({{-1, 0}, {1, 0}, {1, 2}, {-0.1, 2.5}, {0.1, 2.5}, {-1, 2}}, "crosses itself");
   says({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "symmetric");
-  // the points are symmetric, the way through them is not
+  // The points are symmetric, but not the path through them.
   says({{-2, 0}, {2, 0}, {0, 3}, {1, 1}, {-1, 1}}, "symmetric");
-  // a waist of no width
+  // The waist has no width.
   says({{-1, 0}, {1, 0}, {1e-8, 1}, {1, 2}, {-1, 2}, {-1e-8, 1}}, "exactly twice");
-  // a tall web on a narrow foot: Cowper's lateral denominator is negative
+  // A tall web stands on a narrow foot: the denominator of Cowper's lateral factor is negative.
   const Polygon tall = three_rectangles({66.4616, 5.96772, 19.542, 223.889, 34.4917, 12.3391});
   says(tall, "Cowper");
   CHECK(saint_venant(tall, 0.0).shear_factor_y > 0.0);
