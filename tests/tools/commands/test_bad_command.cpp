@@ -17,7 +17,7 @@ namespace {
 const std::string kMovingLoad = shipped("moving_load"), kWheelset = shipped("wheelset_on_track"),
                   kProfile = std::string(RAILSTEP_SOURCE) + "/config/profiles/60e1.toml";
 
-/// The program behind other words of a shell.
+/// Runs the program after other words of a shell command.
 Ran behind(const std::string& before, const std::string& words) {
   const BadInput files("behind");
   const std::string command = before + " '" RAILSTEP_PROGRAM "' >'" + files.path("out") + "' 2>'" +
@@ -29,7 +29,8 @@ Ran behind(const std::string& before, const std::string& words) {
 
 }  // namespace
 
-TEST_CASE("a step that is no number, negative or beyond doubles is refused", "[bad_input][cli]") {
+TEST_CASE("a step that is not a number, is negative or is beyond doubles is refused",
+          "[bad_input][cli]") {
   const BadInput bad("step");
   const std::string run = "run " + kMovingLoad + bad.old("--trace", "t.csv");
   for (const char* step : {"abc", "1e-3x", "1,5", "' 1'", "1e400", "-1e400", "nan", "inf"})
@@ -40,7 +41,7 @@ TEST_CASE("a step that is no number, negative or beyond doubles is refused", "[b
   bad.refused(run + " --step 1e-3 --step 1e-3", {"--step"});
 }
 
-TEST_CASE("every option that takes a number refuses what is none", "[bad_input][cli]") {
+TEST_CASE("every option that takes a number refuses text that is not one", "[bad_input][cli]") {
   const BadInput bad("numbers");
   const std::string hil = "hil " + kWheelset + bad.old("--report", "h.html") + " ";
   const std::string paced = hil + "--rate 100 --duration 0.1 ";
@@ -80,7 +81,7 @@ TEST_CASE("an empty word is refused", "[bad_input][cli]") {
   bad.refused(run + " --set =", {"--set =", "accepted is key.path=value"});
 }
 
-TEST_CASE("unknown words are refused with what is near", "[bad_input][cli]") {
+TEST_CASE("unknown words are refused with the nearest known ones", "[bad_input][cli]") {
   const BadInput bad("words");
   const std::string out = bad.old("--out", "section.toml");
   bad.refused("run " + kMovingLoad + " --stepp 1e-3",
@@ -93,7 +94,7 @@ TEST_CASE("unknown words are refused with what is near", "[bad_input][cli]") {
   bad.refused("fit " + kProfile + " --unit inch" + out, {"--unit", "inch", "mm"});
 }
 
-TEST_CASE("a file that is read, or written already, is not written over", "[bad_input][cli]") {
+TEST_CASE("a command overwrites no file that it reads or has already written", "[bad_input][cli]") {
   const BadInput bad("same");
   const std::string scene = bad.file("scene.toml", text_of(kMovingLoad));
   const std::string run = "run " + scene + " --duration 0.01 ";
@@ -110,7 +111,8 @@ TEST_CASE("a file that is read, or written already, is not written over", "[bad_
   CHECK(railstep_program(run + "--trace /dev/null --record /dev/null").code == 0);
 }
 
-TEST_CASE("a full disk ends with 1 and the file is named", "[bad_input][cli]") {
+TEST_CASE("a full disk ends the program with exit code 1 and the message names the file",
+          "[bad_input][cli]") {
   const BadInput bad("full");
   const std::string run = "run " + kMovingLoad + " --duration 0.05 ";
   for (const std::string option : {"--trace", "--record"})
@@ -124,13 +126,13 @@ TEST_CASE("a full disk ends with 1 and the file is named", "[bad_input][cli]") {
   CHECK_THAT(told.err, Contains("standard output: No space left on device"));
 }
 
-TEST_CASE("a disk that fills while tracing leaves the old trace whole", "[bad_input][cli]") {
+TEST_CASE("a disk that fills up while tracing leaves the old trace whole", "[bad_input][cli]") {
   const BadInput bad("fills");
   const std::string trace = bad.old("--trace", "t.csv"), record = bad.old("--record", "r.bin"),
                     model = bad.old("--out", "x.model");
   const auto before = bad.content();
   const auto fails = [&](const std::string& words, const std::string& file) {
-    // 8 blocks of 512 bytes: some 40 of 301 rows
+    // 8 blocks of 512 bytes hold some 40 of 301 rows.
     const Ran ran = behind("ulimit -f 8;", words);
     CAPTURE(words, ran.err);
     CHECK(ran.code == 1);
@@ -143,10 +145,11 @@ TEST_CASE("a disk that fills while tracing leaves the old trace whole", "[bad_in
   fails("condense " + kMovingLoad + " --skip-errors" + model, "x.model");
 }
 
-TEST_CASE("a place that is a folder, or in none, is refused before the run", "[bad_input][cli]") {
+TEST_CASE("an output path that is a folder or lies in no folder is refused before the run",
+          "[bad_input][cli]") {
   const BadInput bad("places");
   std::filesystem::create_directory(bad.path("folder"));
-  // A year of simulated time: found at its end, the fault would not be told here.
+  // The run would simulate a year, so the message has to come before its end.
   const std::string run = "run " + kMovingLoad + " --set step.duration_s=3e7 ";
   const std::vector<std::string> writers = {
       run + "--trace",
@@ -178,8 +181,8 @@ TEST_CASE("an option that has no effect without another is refused", "[bad_input
   bad.refused(hil + "--grace 0.2", {"--grace 0.2", "up to --duration, 0.1"});
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which take all addresses
-TEST_CASE("what does not fit into memory is refused in a sentence", "[bad_input][cli]") {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these take all addresses
+TEST_CASE("work that does not fit into memory is refused in one sentence", "[bad_input][cli]") {
   const BadInput bad("memory");
   const auto refused = [&bad](const std::string& words, const std::string& said) {
     const auto before = bad.content();
@@ -203,7 +206,7 @@ TEST_CASE("what does not fit into memory is refused in a sentence", "[bad_input]
 }
 #endif
 
-TEST_CASE("what is quoted stays in one line", "[bad_input][cli]") {
+TEST_CASE("a quoted word stays on one line of the message", "[bad_input][cli]") {
   const BadInput bad("lines");
   const std::string hil = "hil " + kWheelset + " --rate 100 --duration 0.1 ";
   bad.refused(hil + "--udp \"$(printf 'a\\nb')\"", {"--udp a?b: accepted is HOST:PORT"});
@@ -219,8 +222,8 @@ TEST_CASE("a processor that is not there is refused", "[bad_input][cli]") {
   bad.refused(hil + " --cpu 99999999999", {"--cpu", "99999999999"});
 }
 
-TEST_CASE("without the right to a priority a run warns and goes on", "[bad_input][cli]") {
-  // root has the right by a capability, which is taken from it
+TEST_CASE("a run without the right to a priority warns and goes on", "[bad_input][cli]") {
+  // Root has the right by a capability, which is removed here.
   std::string before = "ulimit -r 0;";
   if (geteuid() == 0) before += " setpriv --inh-caps=-sys_nice --bounding-set=-sys_nice";
   const Ran ran =

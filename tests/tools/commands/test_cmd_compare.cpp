@@ -9,7 +9,7 @@ using namespace railstep;
 
 namespace {
 
-/// What compare says of two traces with these rows.
+/// Output of compare for two traces with these rows.
 struct Compared {
   Ran ran;
   nlohmann::json told;
@@ -45,7 +45,8 @@ TEST_CASE("traces of one run are identical", "[compare][cli]") {
   CHECK(told["max_relative_difference"] == 0.);
 }
 
-TEST_CASE("the first difference is named, and the largest over its column's peak", "[compare]") {
+TEST_CASE("compare names the first difference and the largest one over its column's peak",
+          "[compare]") {
   const Compared found = compared(kHead + "0,4\n1,-8\n2,1\n", kHead + "0,4\n1,-8\n2,1.5\n");
   CHECK(found.ran.code == 1);
   CHECK(found.told["identical"] == false);
@@ -56,7 +57,7 @@ TEST_CASE("the first difference is named, and the largest over its column's peak
   CHECK(found.told["max_relative_difference"] == .5 / 8.);
 }
 
-TEST_CASE("within a tolerance traces differ and pass", "[compare]") {
+TEST_CASE("traces that differ within a tolerance pass", "[compare]") {
   const std::string a = kHead + "0,4\n1,-8\n", b = kHead + "0,4\n1,-8.5\n";
   CHECK(compared(a, b, "--tolerance 0.0625").ran.code == 0);
   CHECK(compared(a, b, "--tolerance 0.06").ran.code == 1);

@@ -18,7 +18,7 @@ const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const std::string kMovingLoad = kScenes + "moving_load.toml";
 const std::string kCondensed = " --set 'condense={kind=\"modal\", modes_per_bay=1}'";
 
-/// The scene condensed into a file of the folder; the JSON of it.
+/// Condenses the scene into the file. @returns the JSON that is printed
 Json condense(const std::string& words, const std::filesystem::path& file) {
   const Ran ran = railstep_program("condense " + words + " --json --out " + file.string());
   CAPTURE(words, ran.err);
@@ -27,7 +27,7 @@ Json condense(const std::string& words, const std::filesystem::path& file) {
   return Json::parse(ran.out);
 }
 
-/// Exit 2, one sentence, nothing on stdout.
+/// Expects exit code 2, one sentence and nothing on stdout.
 void check_refused(const Ran& ran, const std::string& said) {
   CAPTURE(ran.out, ran.err);
   CHECK(ran.code == 2);
@@ -38,7 +38,7 @@ void check_refused(const Ran& ran, const std::string& said) {
 
 }  // namespace
 
-TEST_CASE("a model runs to the bits of its scene, full and condensed", "[condense]") {
+TEST_CASE("a full or condensed model file gives the same bits as its scene", "[condense]") {
   const auto folder = fresh_folder("same_bits");
   for (const char* name : {"moving_load", "wheelset_on_track", "ballasted_track"})
     for (const bool modal : {false, true}) {
@@ -62,7 +62,7 @@ TEST_CASE("a model runs to the bits of its scene, full and condensed", "[condens
     }
 }
 
-TEST_CASE("every kind of condensed model runs from its file to the bits of its scene",
+TEST_CASE("every kind of condensed model gives the same bits from its file as from its scene",
           "[condense]") {
   const auto folder = fresh_folder("kinds");
   const auto file = folder / "made.model";
@@ -80,11 +80,11 @@ TEST_CASE("every kind of condensed model runs from its file to the bits of its s
     CHECK(a.at("state_hash") == Json::parse(of_model.out).at("state_hash"));
     CHECK(a.at("allocations") == 0);
     CHECK(made.at("kept_unknowns") < made.at("full_unknowns"));
-    CHECK(made.at("static_error") < 1e-3);  // the line of design section 8
+    CHECK(made.at("static_error") < 1e-3);  // the limit of design section 8
   }
 }
 
-TEST_CASE("a model of a system runs to the bits of its scene", "[condense]") {
+TEST_CASE("a model file of a system gives the same bits as its scene", "[condense]") {
   const auto folder = fresh_folder("system_bits");
   const auto file = folder / "made.model";
   for (const std::string& words :
@@ -129,7 +129,8 @@ TEST_CASE("the unknowns of a system are counted without those that are held", "[
   CHECK_THAT(table.out, Contains("9 of 9 unknowns") && Contains("not known"));
 }
 
-TEST_CASE("a model file of a system names what it met by its place in the scene", "[condense]") {
+TEST_CASE("a run of a system's model file names a redundant joint by its place in the scene",
+          "[condense]") {
   const auto folder = fresh_folder("redundant");
   const std::string scene = kScenes +
                             "slider_crank.toml --set step.duration_s=0.01 --set "
@@ -157,21 +158,21 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
   CHECK(made.at("state_bytes") == 4 * 2 * 40 * 8);      // u v a g, rails, 33 modes padded, double
   CHECK(made.at("workspace_bytes") == 5 * 2 * 40 * 8);  // u* v* scaled, solved in two parts
   const double static_error = made.at("static_error"), transient = made.at("transient_error");
-  // tables of 16 intervals, whose cubics leave (1/16)^4 of a bay's own modulation
+  // The cubics of tables with 16 intervals miss (1/16)^4 of a bay's own modulation.
   CHECK(static_error > 0.);
   CHECK(static_error < 1e-4);
-  CHECK(transient < 1e-3 + 2e-3);  // of the model, and of a reference of 2 elements per bay
+  CHECK(transient < 1e-3 + 2e-3);  // errors of the model and of a reference with 2 elements per bay
   const Json& parts = made.at("transient_error_parts");
   const double mesh = parts.at("mesh"), condensation = parts.at("condensation"),
                step = parts.at("step"), reference = made.at("transient_reference_error");
   CHECK(transient <= (mesh + condensation + step) * (1. + 1e-9));
-  CHECK(mesh > 10. * reference);  // one element a bay: what the reference is refined from
+  CHECK(mesh > 10. * reference);  // one element per bay, from which the reference is refined
   CHECK(step < mesh);
-  CHECK(parts.at("contact_law").is_null());  // loads have none
+  CHECK(parts.at("contact_law").is_null());  // loads have no contact law
   CHECK(made.at("receptance_error") > static_error);
   const std::string sum = made.at("sha256");
   CHECK(sum.find_first_not_of("0123456789abcdef") == std::string::npos);
-  // the same scene gives the same bytes, another one others
+  // The same scene gives the same bytes, another scene gives other bytes.
   CHECK(condense(kMovingLoad + kCondensed, folder / "b.model").at("sha256") == sum);
   CHECK(text_of(folder / "a.model") == text_of(folder / "b.model"));
   const Json other =
@@ -190,7 +191,7 @@ TEST_CASE("the option --json has the contract's keys with their meaning", "[cond
   CHECK_THAT(pads.out, Contains("32 supports: as springs, or where each force alone presses them"));
 }
 
-TEST_CASE("what a contact that is not Hertz's takes away is stated", "[condense]") {
+TEST_CASE("condense states the error of a contact law that is not Hertz's", "[condense]") {
   const auto folder = fresh_folder("law");
   const std::string bogie =
       std::string(RAILSTEP_SOURCE) +
@@ -210,7 +211,7 @@ TEST_CASE("what a contact that is not Hertz's takes away is stated", "[condense]
   CHECK(soft > 10. * near);
 }
 
-TEST_CASE("a model is what it is: only its duration can be chosen", "[condense]") {
+TEST_CASE("only the duration of a model file can be changed", "[condense]") {
   const auto folder = fresh_folder("changes");
   const std::string file = (folder / "x.model").string();
   condense(kMovingLoad + kCondensed + " --set step.frame_s=5e-3", file);
@@ -229,7 +230,7 @@ TEST_CASE("a model is what it is: only its duration can be chosen", "[condense]"
   CHECK(Json::parse(longer.out).at("steps") == 400);
 }
 
-TEST_CASE("without its errors a model steps the same", "[condense]") {
+TEST_CASE("a model file without its errors makes the same steps", "[condense]") {
   const auto folder = fresh_folder("skipped");
   const std::string with = (folder / "with").string(), without = (folder / "without").string();
   const Ran full = railstep_program("condense " + kMovingLoad + " --json --out " + with);
@@ -244,7 +245,7 @@ TEST_CASE("without its errors a model steps the same", "[condense]") {
   const std::size_t errors = offsetof(BlockHeader, static_error);
   const std::size_t hash = offsetof(BlockHeader, check_hash);
   CHECK(a.substr(0, errors) == b.substr(0, errors));
-  CHECK(a.substr(errors, hash - errors) != b.substr(errors, hash - errors));  // NaN without
+  CHECK(a.substr(errors, hash - errors) != b.substr(errors, hash - errors));  // else NaN
   CHECK(a.substr(kCrcAt + 8) == b.substr(kCrcAt + 8));
   for (const char* key : {"static_error", "receptance_error", "transient_error"})
     CHECK(told.at(key).is_null());

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An empty folder, gone with the object.
+/// An empty folder that is deleted with the object.
 struct Folder {
   fs::path path;
   Folder() {
@@ -94,7 +94,7 @@ TEST_CASE("fit prints one JSON object with the contract's keys", "[cli]") {
         CHECK(all[part][key].get<double>() > 0.0);
     }
     const json& d = all["dimensions"];
-    // The printed numbers are the whole double: heights add up to the section's.
+    // Doubles are printed with all digits, so the heights add up to the section's.
     CHECK_THAT(d["foot_height_m"].get<double>() + d["web_height_m"].get<double>() +
                    d["head_height_m"].get<double>(),
                WithinAbs(all["outline"]["height_m"].get<double>(), 1e-15));
@@ -105,15 +105,15 @@ TEST_CASE("fit prints one JSON object with the contract's keys", "[cli]") {
     CHECK(all["symmetric_difference_m2"].get<double>() > 0.0);
     CHECK(all["symmetric_difference_m2"] < 0.2 * all["outline"]["area_m2"].get<double>());
     CHECK(all["solver"].contains("iterations"));
-    // Published J where there is one (2.212e6 mm4 for 60E1, by another program: 0.5 %).
+    // The published J, where there is one (2.212e6 mm4 for 60E1, by another program: 0.5 %).
     const Published published = read_profile(profile_file(name)).published;
     if (!std::isnan(published.torsion))
       CHECK_THAT(all["outline"]["torsion_m4"].get<double>(), WithinRel(published.torsion, 5e-3));
   }
 }
 
-TEST_CASE("the outline's torsion constant is that of finite differences", "[cli]") {
-  // Prandtl finite differences on a 0.5 mm grid, stated to 1 %, cm4.
+TEST_CASE("the outline's torsion constant agrees with finite differences", "[cli]") {
+  // Torsion constants in cm4 by Prandtl finite differences on a 0.5 mm grid, stated to 1 %.
   const std::pair<const char*, double> known[] = {
       {"60e1", 221.0}, {"54e1", 189.0}, {"136re", 273}, {"115re", 186}};
   for (const auto& [name, torsion] : known) {
@@ -122,7 +122,7 @@ TEST_CASE("the outline's torsion constant is that of finite differences", "[cli]
   }
 }
 
-TEST_CASE("a list of points fits as its profile, whatever its writing", "[cli]") {
+TEST_CASE("a list of points fits as its profile in every way of writing it", "[cli]") {
   const Folder folder;
   const json want = json::parse(fit(profile_file("60e1").string() + " --json").out);
   const std::string plain = points_of("60e1", 1e3, ",", "\n", false);
@@ -131,17 +131,18 @@ TEST_CASE("a list of points fits as its profile, whatever its writing", "[cli]")
       folder.file("b.csv", points_of("60e1", 1.0, " ", "\n", false)) + " --unit m",
       folder.file("c.csv", "\xEF\xBB\xBFy,z\r\n" + points_of("60e1", 1e3, "\t", "\r\n", true)) +
           " --unit mm",
-      // Closed: the first line again at the end.
+      // This outline is closed: the first line stands again at the end.
       folder.file("d.csv", plain + plain.substr(0, plain.find('\n') + 1)) + " --unit mm"};
   for (const std::string& arguments : variants) {
     const Ran ran = fit(arguments + " --json");
     INFO(arguments << ran.error);
     REQUIRE(ran.code == 0);
     const json got = json::parse(ran.out);
-    // Chords 1e-7 m off 0.3 m of arcs leave out up to 2e-8 m2 of 7.7e-3: 3e-6.
+    // Chords up to 1e-7 m off arcs of 0.3 m miss up to 2e-8 m2 of 7.7e-3 m2: 3e-6.
     CHECK_THAT(got["outline"]["area_m2"].get<double>(),
                WithinRel(want["outline"]["area_m2"].get<double>(), 3e-6));
-    // The fit moves by the error times its sensitivity, 0.44 m at most, four properties: 5e-6 m.
+    // The fit moves by the error times its sensitivity, at most 0.44 m, times four properties:
+    // 5e-6.
     for (const auto& [key, value] : want["dimensions"].items())
       CHECK_THAT(got["dimensions"][key].get<double>(), WithinAbs(value.get<double>(), 5e-6));
     CHECK_THAT(got["outline"]["torsion_m4"].get<double>(),
@@ -149,7 +150,7 @@ TEST_CASE("a list of points fits as its profile, whatever its writing", "[cli]")
   }
 }
 
-TEST_CASE("targets alone give the section of the reference table", "[cli]") {
+TEST_CASE("targets without an outline give the section of the reference table", "[cli]") {
   const Ran ran =
       fit("--target area_m2=8700e-6,inertia_y_m4=39e-6,inertia_z_m4=6e-6,centroid_height_m=0.085,"
           "height_m=0.1857375 --head-width-m 0.07461 --json");
@@ -163,7 +164,7 @@ TEST_CASE("targets alone give the section of the reference table", "[cli]") {
   CHECK(all["outline"]["area_m2"] == 8700e-6);
 }
 
-TEST_CASE("the written section reads back bit for bit, and the page stands alone", "[cli]") {
+TEST_CASE("the written section reads back bit for bit and the page loads no other file", "[cli]") {
   const Folder folder;
   const std::string out = (folder.path / "section.toml").string();
   const std::string page = (folder.path / "page.html").string();
@@ -188,7 +189,7 @@ TEST_CASE("the written section reads back bit for bit, and the page stands alone
   CHECK_THAT(html, Contains("<svg") && Contains("class=\"outline\"") &&
                        Contains("class=\"rectangles\"") && Contains("136RE, 10 in crown"));
   CHECK_THAT(html, !Contains("http") && !Contains("src="));
-  CHECK(folder.entries() == 2);  // nothing left beside them
+  CHECK(folder.entries() == 2);  // no other file is left beside them
   const Ran table = fit(profile_file("136re").string());
   CHECK_THAT(table.out, Contains("outline") && Contains("head height, mm"));
 }
@@ -213,7 +214,7 @@ TEST_CASE("a usage error ends with 2 and names the option", "[cli][bad_input]") 
   }
 }
 
-TEST_CASE("a plain rectangle is three rectangles of one width", "[cli]") {
+TEST_CASE("a plain rectangle is fitted by three rectangles of the same width", "[cli]") {
   const Folder folder;
   const std::string file = folder.file("bar.csv", "0 0\n30 0\n30 20\n0 20\n");
   const Ran ran = fit(file + " --unit mm --json");
@@ -225,7 +226,7 @@ TEST_CASE("a plain rectangle is three rectangles of one width", "[cli]") {
   CHECK_THAT(all["symmetric_difference_m2"].get<double>(), WithinAbs(0.0, 1e-10));
 }
 
-TEST_CASE("a place that cannot be written is refused and named", "[cli]") {
+TEST_CASE("an output path that cannot be written is refused and named", "[cli]") {
   const Ran ran = fit(profile_file("60e1").string() + " --out /no/such/folder/section.toml");
   CHECK(ran.code == 2);
   CHECK_THAT(ran.error, Contains("/no/such/folder/section.toml"));

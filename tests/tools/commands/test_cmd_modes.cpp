@@ -40,7 +40,7 @@ Listed modes_of(const std::string& words) {
   return found;
 }
 
-/// Exit 2, one sentence with this in it, nothing on stdout.
+/// Expects exit code 2, one sentence with this in it and nothing on stdout.
 void check_refused(const std::string& words, const std::string& sentence) {
   const Ran ran = railstep_program("modes --json " + words);
   INFO(words << ": " << ran.err);
@@ -53,8 +53,8 @@ void check_refused(const std::string& words, const std::string& sentence) {
 }  // namespace
 
 TEST_CASE("a free rail has six rigid modes and the published frequencies", "[modes]") {
-  // reference.md, free-free 2 m rail: 117.3, 166.4, 290.3, 298.8 Hz; 0.2 Hz for its own unstated
-  // mesh and the print.
+  // reference.md, free-free 2 m rail: 117.3, 166.4, 290.3, 298.8 Hz. The bound of 0.2 Hz covers its
+  // unstated mesh and the rounding of its print.
   const Listed found = modes_of(shipped("free_rail"));
   REQUIRE(found.hz.size() == 10);
   for (std::size_t i = 0; i < 6; ++i) CHECK(found.hz[i] == 0.);
@@ -65,11 +65,11 @@ TEST_CASE("a free rail has six rigid modes and the published frequencies", "[mod
 
 TEST_CASE("a pinned bay has the closed form's frequency and its mesh errors", "[modes]") {
   // Timoshenko's lower root for one half wave on 0.6 m with k_z = .472: 1141.4281 Hz. (reference.md
-  // prints 1141.44: half a unit of k_z's last digit is .05 Hz.) The element errs by (pi/16)^4/720 =
-  // 2e-6 or so on the shipped mesh; twice that.
+  // prints 1141.44: half a unit of k_z's last digit is .05 Hz.) The element's error is about
+  // (pi/16)^4/720 = 2e-6 on the shipped mesh; the bound is twice that.
   const double closed = 1141.4281487;
   CHECK_THAT(modes_of(shipped("pinned_bay") + " --count 1").hz[0], WithinRel(closed, 4e-6));
-  // +6.8, +0.82 and +0.056 % with 1, 2 and 4 elements, to half a unit of the last digit.
+  // The errors are +6.8, +0.82 and +0.056 % with 1, 2 and 4 elements, to half the last digit.
   const auto error = [closed](int elements) {
     const Listed found =
         modes_of(shipped("pinned_bay") +
@@ -101,13 +101,14 @@ TEST_CASE("without its dampers a ballasted track has the modes of a dense soluti
   std::sort(all.begin(), all.end());
   REQUIRE(found.hz.size() == 40);
   for (std::size_t i = 0; i < 40; ++i) {
-    // The dense solution's rounding, 1e-16 of the highest square (1e5 Hz)^2 over (60 Hz)^2.
+    // Rounding of the dense solution: 1e-16 of the highest square (1e5 Hz)^2 over (60 Hz)^2.
     CHECK_THAT(found.hz[i], WithinRel(all[i], 1e-9));
     CHECK(found.ratio[i] == 0.);
   }
 }
 
-TEST_CASE("with them each mode has a ratio between 0 and 1", "[modes]") {
+TEST_CASE("with dampers each mode of a ballasted track has a damping ratio between 0 and 1",
+          "[modes]") {
   const Listed found = modes_of(shipped("ballasted_track") + " --count 20");
   REQUIRE(found.hz.size() == 20);
   for (std::size_t i = 0; i < 20; ++i) {
@@ -115,15 +116,15 @@ TEST_CASE("with them each mode has a ratio between 0 and 1", "[modes]") {
     CHECK(found.ratio[i] > 0.);
     CHECK(found.ratio[i] < 1.);
   }
-  // More of them does not change the first ones; 1e-8 is what a mode's forces are closed to.
+  // More modes do not change the first ones; a mode's forces are in balance to 1e-8.
   const Listed few = modes_of(shipped("ballasted_track") + " --count 3");
   REQUIRE(few.hz.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) CHECK_THAT(few.hz[i], WithinRel(found.hz[i], 1e-8));
 }
 
 TEST_CASE("strong dampers hold their seats still", "[modes]") {
-  // Twice as strong, dampers of 29e6 N s/m leave the lateral mode between seats where it is: what
-  // still moves there is of the order of the rail's own force over c w.
+  // Dampers twice as strong as 29e6 N s/m leave the lateral mode between seats where it is: its
+  // remaining motion at the seats is of the order of the rail's own force over c w.
   const Listed found = modes_of(shipped("wheelset_on_track") + " --count 24");
   CHECK(found.hz.size() == 24);
   const Listed twice =
@@ -134,14 +135,14 @@ TEST_CASE("strong dampers hold their seats still", "[modes]") {
   }
 }
 
-TEST_CASE("the table says what the object says", "[modes]") {
+TEST_CASE("the table shows the same modes as the JSON", "[modes]") {
   const Ran ran = railstep_program("modes --count 8 " + shipped("free_rail"));
   CHECK(ran.code == 0);
   CHECK_THAT(ran.out, Catch::Contains("frequency, Hz") && Catch::Contains("166.3"));
   CHECK(std::count(ran.out.begin(), ran.out.end(), '\n') == 9);
 }
 
-TEST_CASE("modes refuses what makes no track", "[modes]") {
+TEST_CASE("modes refuses a scene that makes no track", "[modes]") {
   const std::string bay = shipped("pinned_bay");
   check_refused(bay + " --set 'track.ends=\"pined\"'", "accepted are");
   check_refused(bay + " --set 'track.ends=[\"pinned\"]'", "accepted are 2");
@@ -155,12 +156,12 @@ TEST_CASE("modes refuses what makes no track", "[modes]") {
     CHECK(ran.out.empty());
     CHECK_THAT(ran.err, Catch::Contains("--count"));
   }
-  // A scene of few unknowns lists what it has: 3 heights less two pins, and 3 slopes.
+  // A scene of few unknowns lists all its modes: 3 heights less two pins, and 3 slopes.
   const std::string coarse = bay + " --count 1000 --set track.elements_per_bay=1";
   CHECK(modes_of(coarse).hz.size() == 4);
 }
 
-TEST_CASE("a scene without [step] is no run", "[modes]") {
+TEST_CASE("run and condense refuse a scene without [step]", "[modes]") {
   for (const std::string& words :
        {"run " + shipped("pinned_bay") + " --set 'load=[{name=\"l\",start_m=0.3,force_z_n=-1.0}]'",
         "condense " + shipped("pinned_bay") +
@@ -174,7 +175,7 @@ TEST_CASE("a scene without [step] is no run", "[modes]") {
 
 namespace {
 
-/// A pinned rail of section F, 3 m, with this axial force.
+/// A pinned rail of section F, 3 m long, with this axial force.
 std::string three_metres(const std::string& unknowns, double force) {
   return shipped("pinned_bay") + " --set track.bay_m=3 --set 'track.unknowns=\"" + unknowns +
          "\"' --set track.elements_per_bay=40 --set rail.axial_force_n=" + std::to_string(force);
@@ -185,9 +186,11 @@ double unit_of(double compression) { return compression / (4. * 7850. * 8.7e-3 *
 
 }  // namespace
 
-TEST_CASE("compression lowers each mode between pins by the same law", "[modes][preload]") {
+TEST_CASE("compression lowers the frequency of each mode between pins by the same law",
+          "[modes][preload]") {
   // hard-cases.md, R7: f_10 59.49949 Hz, P_cr 8.703979 MN, 18.81539 and 5.94995 Hz at .9 and .99 of
-  // it. k_z = .472 against its own: 1e-4 of the share of shear (2 %); the last two 1e-4 and 1e-3.
+  // it. R7 has its own k_z, here it is .472: 1e-4 of the share of shear (2 %). Bounds of the last
+  // two are 1e-4 and 1e-3.
   const Listed bent = modes_of(three_metres("vertical", 0.) + " --count 4");
   CHECK_THAT(bent.hz[0], WithinRel(59.49949, 1e-5));
   CHECK_THAT(modes_of(three_metres("vertical", -.9 * 8.703979e6) + " --count 1").hz[0],
@@ -204,9 +207,10 @@ TEST_CASE("compression lowers each mode between pins by the same law", "[modes][
   }
 }
 
-TEST_CASE("in space each mode between pins has its number of half waves", "[modes][preload]") {
-  // (f_0^2 - f^2)/(P/(4 m L^2)) = n^2, to H13's 1e-3, for vertical and lateral bending and torsion
-  // alike; the 17 lowest keep their order and hold n = 1 to 4 of all three.
+TEST_CASE("in three dimensions each mode between pins has its number of half waves",
+          "[modes][preload]") {
+  // (f_0^2 - f^2)/(P/(4 m L^2)) = n^2, to H13's 1e-3, for vertical bending, lateral bending and
+  // torsion. The 17 lowest modes keep their order and hold n = 1 to 4 of all three.
   const Listed free = modes_of(three_metres("full", 0.) + " --count 17");
   const double critical = 4. * 7850. * 8.7e-3 * 9. * free.hz[0] * free.hz[0];
   for (const double part : {.9, .99}) {
@@ -225,7 +229,8 @@ TEST_CASE("in space each mode between pins has its number of half waves", "[mode
   check_refused(three_metres("full", -1.01 * critical), "buckles at 1356");
 }
 
-TEST_CASE("at the critical force the track is refused with both numbers", "[modes][preload]") {
+TEST_CASE("at the critical force the track is refused and the message gives both forces",
+          "[modes][preload]") {
   check_refused(three_metres("vertical", -1.01 * 8.703979e6), "8791019 N");
   check_refused(three_metres("vertical", -1.01 * 8.703979e6), "buckles at 870");
   modes_of(three_metres("vertical", -.999 * 8.703979e6));
@@ -236,12 +241,12 @@ TEST_CASE("at the critical force the track is refused with both numbers", "[mode
     CHECK(ran.code == 2);
     CHECK_THAT(ran.err, Catch::Contains("4e+07 N") && Catch::Contains("buckles at"));
   }
-  // A warm rail between pins: alpha E A dT.
+  // A heated rail between pins has the axial force alpha E A dT.
   const std::string rail = three_metres("vertical", 0.);
   const double per_kelvin = 1.15e-5 * 210e9 * 8.7e-3;
   const Listed warm = modes_of(rail + " --set rail.temperature_rise_k=40 --count 1");
   const Listed pressed = modes_of(three_metres("vertical", -40. * per_kelvin) + " --count 1");
-  CHECK_THAT(warm.hz[0], WithinRel(pressed.hz[0], 1e-9));  // to_string writes 1e-6 N
+  CHECK_THAT(warm.hz[0], WithinRel(pressed.hz[0], 1e-9));  // to_string writes six decimals, 1e-6 N
   CHECK(warm.hz[0] < 58.);
   check_refused(rail + " --set rail.temperature_rise_k=40 --set 'track.ends=[\"pinned\",\"free\"]'",
                 "free end");

@@ -1,4 +1,4 @@
-// railstep pareto and tune as they are called.
+// Tests of railstep pareto and tune from the command line.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ Ran pareto(const std::string& words) { return railstep_program("pareto " + words
 
 }  // namespace
 
-TEST_CASE("the help says which options want commas", "[pareto]") {
+TEST_CASE("the help says which options take lists with commas", "[pareto]") {
   for (const char* command : {"pareto", "tune"}) {
     const std::string help = railstep_program(std::string(command) + " --help").out;
     for (const char* option : {"--models MODEL,MODEL", "--meshes INT,INT", "--steps FLOAT,FLOAT",
@@ -71,7 +71,7 @@ TEST_CASE("the help says which options want commas", "[pareto]") {
   }
 }
 
-TEST_CASE("pareto tells error and cost of every setting", "[pareto]") {
+TEST_CASE("pareto prints error and cost of every setting", "[pareto]") {
   const auto folder = fresh_folder("pareto");
   const std::string csv = (folder / "t.csv").string(), page = (folder / "t.html").string();
   const Ran ran =
@@ -97,8 +97,8 @@ TEST_CASE("pareto tells error and cost of every setting", "[pareto]") {
     front = front || row["on_front"].get<bool>();
   }
   CHECK(front);
-  // Half the unknowns of half the mesh, fewer in modes; five times the flops in a fifth of the
-  // step.
+  // Half the mesh has half the unknowns, and modes have fewer. A fifth of the step costs five times
+  // the flops.
   CHECK(rows[0]["kept_unknowns"].get<int>() < rows[2]["kept_unknowns"].get<int>());
   CHECK(rows[1]["flops_per_frame"].get<double>() ==
         Approx(5. * rows[0]["flops_per_frame"].get<double>()).epsilon(.1));  // and publishing
@@ -109,7 +109,7 @@ TEST_CASE("pareto tells error and cost of every setting", "[pareto]") {
                                 Contains("Error over frequency"));
 }
 
-TEST_CASE("an error is what the traces themselves show", "[pareto]") {
+TEST_CASE("pareto's error is the one that the traces show", "[pareto]") {
   const auto folder = fresh_folder("pareto_trace");
   const std::string reference = (folder / "r.csv").string(), trace = (folder / "t.csv").string();
   const std::string run = "run " + kMovingLoad + " --set track.bays=8 --set step.duration_s=0.14";
@@ -141,13 +141,13 @@ TEST_CASE("an error is what the traces themselves show", "[pareto]") {
   CHECK_THAT(result["reference"]["how"].get<std::string>(), Contains("r.csv"));
 }
 
-TEST_CASE("pareto goes on where it was stopped", "[pareto]") {
+TEST_CASE("pareto continues where it was stopped", "[pareto]") {
   const auto folder = fresh_folder("pareto_resume");
   const std::string kept = (folder / "k.jsonl").string();
   const std::string words = kMovingLoad + kFew + " --json --resume " + kept;
   const Ran first = pareto(words);
   REQUIRE(first.code == 0);
-  // As if it had been stopped in the middle of its sixth row.
+  // The file looks as if the program had been stopped in the middle of its sixth row.
   std::istringstream lines(text_of(kept));
   std::string text, line;
   for (int n = 0; n < 7 && std::getline(lines, line); ++n) text += line + "\n";
@@ -162,10 +162,10 @@ TEST_CASE("pareto goes on where it was stopped", "[pareto]") {
     CHECK(a["rows"][i]["error_parts"] == b["rows"][i]["error_parts"]);
     if (i < 5) CHECK(a["rows"][i]["frame_us_median"] == b["rows"][i]["frame_us_median"]);
   }
-  CHECK(pareto(words + " --from 0.1").code == 2);  // another question
+  CHECK(pareto(words + " --from 0.1").code == 2);  // this is another question
 }
 
-TEST_CASE("what pareto cannot do is one clear error", "[pareto]") {
+TEST_CASE("pareto refuses in one clear message what it cannot do", "[pareto]") {
   const std::map<std::string, std::string> refused = {
       {kMovingLoad + " --models modes", "model \"modes\": accepted is KIND"},
       {kMovingLoad + " --models full --schemes held:0.6", "no model goes with any of the schemes"},
@@ -186,7 +186,7 @@ TEST_CASE("what pareto cannot do is one clear error", "[pareto]") {
   }
 }
 
-TEST_CASE("tune writes a scene that meets the error, and reproduces the choice", "[tune]") {
+TEST_CASE("tune writes a scene that meets the error and reproduces the choice", "[tune]") {
   const auto folder = fresh_folder("tune");
   const std::string out = (folder / "tuned.toml").string();
   const Ran ran = railstep_program(fmt::format(
@@ -202,7 +202,7 @@ TEST_CASE("tune writes a scene that meets the error, and reproduces the choice",
   const json& choice = result["choice"];
   for (const char* part : {"step", "condensation", "mesh"})
     CHECK(choice["error_parts"][part].get<double>() <= 1e-2 / 3.);
-  // The scene stands elsewhere, and refers to the same profile: the same bits.
+  // The scene stands in another folder and refers to the same profile: it gives the same bits.
   const Ran tuned = railstep_program("run " + out + " --json"),
             asked = railstep_program(fmt::format(
                 "run {}ballasted_track.toml --json --set track.bays=24 --set step.duration_s=0.1 "
@@ -215,7 +215,7 @@ TEST_CASE("tune writes a scene that meets the error, and reproduces the choice",
     CHECK(json::parse(tuned.out)["state_hash"] == json::parse(asked.out)["state_hash"]);
 }
 
-TEST_CASE("a ring too short to be a window has a reference that is longer", "[pareto][tune]") {
+TEST_CASE("a ring too short to be a window gets a longer reference", "[pareto][tune]") {
   const auto folder = fresh_folder("ring");
   const std::string out = (folder / "tuned.toml").string(), scene = (folder / "ring.toml").string(),
                     one = " --meshes 2 --steps 1e-4";
@@ -228,10 +228,10 @@ TEST_CASE("a ring too short to be a window has a reference that is longer", "[pa
     CAPTURE(words, ran.err);
     CHECK(ran.code == 0);
   }
-  CHECK(read_scene(out).track.bays > 16);  // in full order it is a window
+  CHECK(read_scene(out).track.bays > 16);  // in full order the ring is a window
 }
 
-TEST_CASE("tune says no where error or deadline cannot be met", "[tune]") {
+TEST_CASE("tune refuses an error or a deadline that cannot be met", "[tune]") {
   const auto folder = fresh_folder("tune_no");
   const std::string few =
       " --set track.bays=8 --set step.duration_s=0.14 --models full,modal:1 "

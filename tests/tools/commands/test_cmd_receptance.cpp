@@ -1,4 +1,4 @@
-// The program's receptance command on the shipped scenes, and its answer against a hammer blow in
+// The program's receptance command on the shipped scenes, and its agreement with a hammer blow in
 // time.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -44,7 +44,7 @@ std::vector<Value> values_of(const nlohmann::json& json) {
   return values;
 }
 
-/// Exit 2, nothing on stdout, this in the sentence.
+/// Expects exit code 2, nothing on stdout and this in the sentence.
 void check_refused(const std::string& words, const std::string& sentence) {
   const Ran ran = railstep_program("receptance --json " + words);
   INFO(words << ": " << ran.err);
@@ -58,7 +58,7 @@ const std::string kBand = " --from 50 --to-hz 400";
 
 }  // namespace
 
-TEST_CASE("the command answers at the frequencies that are asked", "[receptance]") {
+TEST_CASE("the command answers at the requested frequencies", "[receptance]") {
   const nlohmann::json usual = answer(kS1 + " --at mid_bay" + kBand);
   const auto hz = usual.at("frequency_hz").get<std::vector<double>>();
   REQUIRE(hz.size() == 200);
@@ -66,7 +66,7 @@ TEST_CASE("the command answers at the frequencies that are asked", "[receptance]
   CHECK(hz.back() == 400.);
   CHECK_THAT(hz[1] / hz[0], WithinRel(std::pow(8., 1. / 199.), 1e-12));
   CHECK(usual.at("magnitude_m_per_n").size() == 200);
-  // rail-data.md, section 3: 11.695 nm/N at -23.2 degrees; 2 %, 1 degree.
+  // rail-data.md, section 3: 11.695 nm/N at -23.2 degrees. Bounds: 2 %, 1 degree.
   CHECK_THAT(usual["magnitude_m_per_n"][0].get<double>(), WithinRel(11.695e-9, .02));
   CHECK_THAT(usual["phase_rad"][0].get<double>(), WithinAbs(-23.2 * M_PI / 180., M_PI / 180.));
   CHECK(usual.at("warnings").empty());
@@ -82,7 +82,8 @@ TEST_CASE("the command answers at the frequencies that are asked", "[receptance]
     CHECK(answer(kS1 + " --at mid_bay " + alone) == one);
 }
 
-TEST_CASE("the command reads there what it reads back, sideways too", "[receptance]") {
+TEST_CASE("swapping force and response leaves the receptance the same, in lateral direction too",
+          "[receptance]") {
   const std::string scene = shipped("ballasted_track");
   const auto there = values_of(answer(scene + " --at pad --to sleeper --points 4" + kBand)),
              back = values_of(answer(scene + " --at sleeper --to pad --points 4" + kBand));
@@ -93,14 +94,14 @@ TEST_CASE("the command reads there what it reads back, sideways too", "[receptan
                  answer(scene + " --at pad --direction z --to-direction y --points 3" + kBand)),
              along = values_of(answer(scene + " --at pad --direction y --points 3" + kBand));
   for (std::size_t i = 0; i < 3; ++i) {
-    // Sleepers that roll couple the two by some percent; 1e-10 of the lateral receptance.
+    // Sleepers that roll couple y and z by some percent. Bound: 1e-10 of the lateral receptance.
     CHECK(std::abs(across[i] - up[i]) < 1e-10 * std::abs(along[i]));
     CHECK(std::abs(across[i]) > 1e-3 * std::abs(along[i]));
     CHECK(std::abs(across[i]) < std::abs(along[i]));
   }
 }
 
-TEST_CASE("other models stand beside the answer", "[receptance]") {
+TEST_CASE("the answer has the receptances of other models beside it", "[receptance]") {
   const std::string words = kS1 +
                             " --at mid_bay --points 12 --set track.bays=40 --set "
                             "'sensor[0].position_m=12.3' --set 'sensor[1].position_m=12' --set "
@@ -112,8 +113,9 @@ TEST_CASE("other models stand beside the answer", "[receptance]") {
              euler = values_of(json.at("beside").at("euler")),
              endless = values_of(json.at("beside").at("endless"));
   for (std::size_t i = 0; i < full.size(); ++i) {
-    // 40 bays decay to 1e-7 at their ends to 400 Hz, the mesh errs by 1e-4 (its own sizes, as the
-    // tests of receptances have them); modes to 1 kHz by (f/1 kHz)^2 of the residual's 5 %.
+    // Up to 400 Hz, waves in 40 bays decay to 1e-7 at the ends and the mesh errs by 1e-4 (its own
+    // sizes, as in the tests of receptances). Modes up to 1 kHz err by (f/1 kHz)^2 of the 5 %
+    // residual.
     CHECK(std::abs(full[i] / endless[i] - 1.) < 2e-4);
     CHECK(std::abs(full[i] / condensed[i] - 1.) < 1e-2);
     CHECK(std::abs(full[i] / euler[i]) > 1.03);
@@ -124,7 +126,7 @@ TEST_CASE("other models stand beside the answer", "[receptance]") {
   CHECK(values_of(other.at("beside").at("full")) == full);
 }
 
-TEST_CASE("resonances, decay rates and warnings are in the answer", "[receptance]") {
+TEST_CASE("the answer has resonances, decay rates and warnings", "[receptance]") {
   const nlohmann::json json = answer(kS1 + " --at mid_bay --from 40 --to-hz 1300 --decay-rate");
   REQUIRE(json.at("resonances").size() == 4);
   CHECK(json["resonances"][3]["name"] == "pinned-pinned");
@@ -133,7 +135,7 @@ TEST_CASE("resonances, decay rates and warnings are in the answer", "[receptance
   CHECK(decay.at("distance_m").size() == 29);
   CHECK(decay.at("band_hz") ==
         std::vector<int>{100, 125, 160, 200, 250, 315, 400, 500, 630, 800, 1000});
-  // The sleeper's anti-resonance stops waves, the pinned-pinned one lets them run.
+  // The sleeper's anti-resonance stops waves, the pinned-pinned resonance lets them run.
   const auto rate = decay.at("db_per_m").get<std::vector<double>>();
   CHECK(*std::max_element(rate.begin(), rate.end()) == rate[4]);
   CHECK(*std::min_element(rate.begin(), rate.end()) == rate[10]);
@@ -155,12 +157,12 @@ TEST_CASE("resonances, decay rates and warnings are in the answer", "[receptance
   }
 }
 
-TEST_CASE("a hammer blow in time has the same receptance", "[receptance]") {
+TEST_CASE("a hammer blow in time gives the same receptance", "[receptance]") {
   // 24 bays of S1 under a blow of 0.2 ms and 1 N, 0.4 s at 20 us: displacements have fallen to 1e-4
-  // of their peak. Fourier sums at multiples of 2.5 Hz over the blow's transform, T sinc^2. To 700
-  // Hz 1 %: there omega dt = .09, of which the scheme takes (omega dt)^2/6 = 1.3e-3 off the
-  // frequency and a slope of 20 dB per octave makes three times that; more in narrow resonances
-  // above.
+  // of their peak. Fourier sums at multiples of 2.5 Hz are divided by the blow's transform, T
+  // sinc^2. The bound is 1 % up to 700 Hz. There omega dt is .09, and the scheme lowers the
+  // frequency by (omega dt)^2/6 = 1.3e-3. A slope of 20 dB per octave makes three times that.
+  // Narrow resonances above 700 Hz have larger errors.
   constexpr double dt = 20e-6, blow = 1e-4;
   constexpr int steps = 20'000;
   for (const bool condensed : {false, true}) {
@@ -190,12 +192,12 @@ TEST_CASE("a hammer blow in time has the same receptance", "[receptance]") {
       read_track_sensors(run.model(), run.state, run.outputs, track_sensors);
       for (int k = 0; k < 2; ++k) history[k].push_back(track_sensors[k]);
     }
-    for (auto& h : history) h.back() *= .5;  // trapezoidal rule; it begins with 0
+    for (auto& h : history) h.back() *= .5;  // trapezoidal rule; the first sample is 0
     FullOrderReceptance full(track, {here, {here, sleeper}});
     Eigen::FFT<double> fft;
     std::vector<Value> transform[2];
     for (int k = 0; k < 2; ++k) {
-      history[k].pop_back();  // a last sample of 1e-4 of the peak
+      history[k].pop_back();  // the last sample, 1e-4 of the peak
       fft.fwd(transform[k], history[k]);
     }
     double worst = 0.;
@@ -216,7 +218,7 @@ TEST_CASE("a hammer blow in time has the same receptance", "[receptance]") {
   }
 }
 
-TEST_CASE("what has no receptance is refused in one sentence", "[receptance]") {
+TEST_CASE("receptance refuses in one sentence a track or a point that has none", "[receptance]") {
   check_refused(kS1 + " --at nowhere" + kBand, "accepted are mid_bay, over_sleeper, sleeper");
   check_refused(kS1 + " --at mid_bay --to nowhere" + kBand, "no sensor is named 'nowhere'");
   check_refused(kS1 + " --at mid_bay --from 500 --to-hz 400", "--from 500 is above --to-hz 400");
@@ -247,7 +249,7 @@ TEST_CASE("what has no receptance is refused in one sentence", "[receptance]") {
 }
 
 TEST_CASE("a free rail answers with its mass below its modes", "[receptance]") {
-  // At 1 Hz the middle of 2 m of rail moves as -1/(m omega^2), to (1 Hz/290 Hz)^2 = 1.2e-5.
+  // At 1 Hz the middle of a 2 m rail moves as -1/(m omega^2), to (1 Hz/290 Hz)^2 = 1.2e-5.
   const nlohmann::json json = answer(
       shipped("free_rail") +
       " --set 'sensor=[{name=\"a\", on=\"rail\", position_m=1.0}]' --at a --from 1 --to-hz 1");
@@ -258,7 +260,7 @@ TEST_CASE("a free rail answers with its mass below its modes", "[receptance]") {
   CHECK_FALSE(json.contains("end_effect"));
 }
 
-TEST_CASE("curves and report are written", "[receptance]") {
+TEST_CASE("receptance writes its curves and its report", "[receptance]") {
   const auto folder = fresh_folder("receptance");
   const std::string csv = (folder / "curves.csv").string(), page = (folder / "page.html").string();
   const nlohmann::json json = answer(kS1 +

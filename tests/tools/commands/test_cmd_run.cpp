@@ -37,7 +37,7 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// A folder of one test case's own, empty.
+/// An empty folder of one test case.
 std::filesystem::path fresh_folder(const std::string& name) {
   auto folder = std::filesystem::temp_directory_path() /
                 ("railstep_run_" + std::to_string(getpid()) + "_" + name);
@@ -57,7 +57,7 @@ struct Ran {
   std::string out, err;
 };
 
-/// The real program with these words, through the shell.
+/// Runs the real program with these words through the shell.
 Ran railstep_program(const std::string& words, const std::string& environment = "") {
   const auto folder = fresh_folder("words");
   const std::string command = environment + " '" RAILSTEP_PROGRAM "' " + words + " >'" +
@@ -80,7 +80,7 @@ std::vector<std::vector<double>> rows_of(const std::string& csv) {
   return rows;
 }
 
-/// Memory of the largest child so far, KiB.
+/// Largest memory of any child so far, KiB.
 long memory_of_children() {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
@@ -89,13 +89,13 @@ long memory_of_children() {
 
 }  // namespace
 
-TEST_CASE("the moving-load scene's trace meets the converged row", "[run]") {
+TEST_CASE("the trace of the moving-load scene agrees with the converged row", "[run]") {
   const auto trace = fresh_folder("trace") / "moving_load.csv";
   const Ran ran = railstep_program("run " + kMovingLoad + " --trace " + trace.string());
   CAPTURE(ran.err);
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
-  CHECK(entries(trace.parent_path()) == 1);  // nothing stays beside it
+  CHECK(entries(trace.parent_path()) == 1);  // no other file is left beside it
   const std::string csv = text_of(trace);
   CHECK(csv.substr(0, csv.find('\n')) ==
         "time_s,load_left.x_m,load_left.deflection_z_m,load_right.x_m,load_right.deflection_z_m");
@@ -106,14 +106,15 @@ TEST_CASE("the moving-load scene's trace meets the converged row", "[run]") {
   const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
   for (std::size_t i = 0; i < 5; ++i) {
     const auto& row = rows[50 * (i + 1)];
-    CHECK(row[0] == static_cast<double>(50 * (i + 1)) * 1e-3);  // t = n dt, never a running sum
+    CHECK(row[0] == static_cast<double>(50 * (i + 1)) * 1e-3);  // t = n dt, not a running sum
     CHECK(row[1] == .3 + 30. * row[0]);
     CHECK_THAT(row[2], WithinRel(converged[i], 1e-3));
-    CHECK(row[4] == row[2]);  // two equal lines in the same order of sums
+    CHECK(row[4] == row[2]);  // both lines are equal, and so is the order of their sums
   }
 }
 
-TEST_CASE("the option --json has the contract's keys, and the same bits twice", "[run]") {
+TEST_CASE("the option --json prints the contract's keys, and a second run gives the same bits",
+          "[run]") {
   const Ran first = railstep_program("run " + kMovingLoad + " --json");
   REQUIRE(first.code == 0);
   const auto json = nlohmann::json::parse(first.out);
@@ -125,7 +126,7 @@ TEST_CASE("the option --json has the contract's keys, and the same bits twice", 
   CHECK(us.at("median") > 0.);
   CHECK(us.at("median") <= us.at("p99"));
   CHECK(us.at("p99") <= us.at("max"));
-  // nothing but what the scheme takes of the ringing of loads that appear suddenly
+  // The only error is the scheme's loss of vibration energy of loads that appear suddenly.
   CHECK(json.at("energy_balance_error") > 0.);
   CHECK(json.at("energy_balance_error") < 1e-3);
   CHECK_THAT(json.at("numerical_loss").get<double>(),
@@ -155,7 +156,7 @@ TEST_CASE("a model file has no matrices, so its energies are null", "[run]") {
   CHECK_THAT(table.out, Contains("energy balance") && Contains("not known"));
 }
 
-TEST_CASE("the options --set, --step and --duration change the scene as if written in it",
+TEST_CASE("the options --set, --step and --duration act as if they were written in the scene",
           "[run]") {
   const auto folder = fresh_folder("set");
   const std::string trace = " --trace " + (folder / "t.csv").string();
@@ -167,18 +168,18 @@ TEST_CASE("the options --set, --step and --duration change the scene as if writt
       railstep_program(short_run + " --set 'load[0].force_z_n=-100e3' --set rail.young_pa=210e9")
           .code == 0);
   const auto twice = rows_of(text_of(folder / "t.csv"));
-  // linear: a factor 2 is exact in every product and sum
+  // The track is linear: a factor 2 is exact in every product and sum.
   CHECK(twice.back()[2] == 2. * plain.back()[2]);
   CHECK(twice.back()[4] == plain.back()[4]);
   REQUIRE(railstep_program(short_run + " --step 0.5e-3 --set step.frame_s=1e-3").code == 0);
   const auto fine = rows_of(text_of(folder / "t.csv"));
   REQUIRE(fine.size() == 51);
-  // the step's own error at 1 ms is 1e-3 of the peak at most (reference.md, integrators); not 0
+  // The step's own error at 1 ms is at most 1e-3 of the peak (reference.md, integrators), not 0.
   CHECK_THAT(fine.back()[2], WithinRel(plain.back()[2], 1e-3));
   CHECK(fine.back()[2] != plain.back()[2]);
 }
 
-TEST_CASE("a trace or report that cannot be written is one sentence", "[run]") {
+TEST_CASE("a trace or report that cannot be written is reported in one sentence", "[run]") {
   const auto folder = fresh_folder("unwritable");
   const Ran none =
       railstep_program("run " + kMovingLoad + " --trace " + (folder / "no_folder/t.csv").string());
@@ -187,7 +188,7 @@ TEST_CASE("a trace or report that cannot be written is one sentence", "[run]") {
   const Ran full = railstep_program("run " + kMovingLoad + " --trace /dev/full");
   CHECK(full.code == 1);
   CHECK_THAT(full.err, Contains("/dev/full: cannot be written"));
-  // a folder without gnuplot as the whole path; the program itself is named by its full path
+  // The path is one folder without gnuplot; the program itself is called by its full path.
   const Ran drawn =
       railstep_program("run " + kMovingLoad + " --report " + (folder / "r.html").string(),
                        "PATH=" + folder.string());
@@ -196,7 +197,7 @@ TEST_CASE("a trace or report that cannot be written is one sentence", "[run]") {
   CHECK(entries(folder) == 0);
 }
 
-TEST_CASE("the report is one page with its plots", "[run]") {
+TEST_CASE("the report is one page with all its plots", "[run]") {
   const auto page = fresh_folder("report") / "r.html";
   const Ran ran = railstep_program("run " + kMovingLoad + " --report " + page.string());
   CAPTURE(ran.err);
@@ -208,10 +209,10 @@ TEST_CASE("the report is one page with its plots", "[run]") {
   for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1))
     ++drawings;
   CHECK(drawings == 4);                           // deflections, both rails' shapes, frame times
-  CHECK(html.find("src=") == std::string::npos);  // nothing is fetched from elsewhere
+  CHECK(html.find("src=") == std::string::npos);  // the page loads nothing from elsewhere
 }
 
-TEST_CASE("a load that leaves the rail is said in words and is no failure", "[run]") {
+TEST_CASE("a load that leaves the rail is reported in words and the run succeeds", "[run]") {
   const Ran ran = railstep_program("run " + kMovingLoad +
                                    " --json --duration 0.4 --set 'load[0].may_leave_rail=true'"
                                    " --set 'load[1].may_leave_rail=true'");
@@ -220,7 +221,7 @@ TEST_CASE("a load that leaves the rail is said in words and is no failure", "[ru
   CHECK_THAT(ran.err, Contains("lengthen the track"));
 }
 
-TEST_CASE("a rail that sinks farther than tracks do raises the question of units", "[run]") {
+TEST_CASE("a rail that sinks farther than real tracks do brings a note about units", "[run]") {
   const std::string short_run =
       "run " + kMovingLoad + " --json --duration 0.01 --set 'step.start=\"equilibrium\"'";
   const std::string sank = "a rail sank by";
@@ -233,7 +234,7 @@ TEST_CASE("a rail that sinks farther than tracks do raises the question of units
   CHECK_THAT(warnings[0].get<std::string>(), Contains(sank));
 }
 
-TEST_CASE("constants of no shape raise the question of units", "[run]") {
+TEST_CASE("constants that no shape has bring a note about units", "[run]") {
   const std::string hammer = "run " + kScenes + "impact_hammer.toml --json --duration 1e-3";
   const std::string asked = "is it given in m4?";
   CHECK_THAT(railstep_program(hammer).err, !Contains(asked));
@@ -243,7 +244,7 @@ TEST_CASE("constants of no shape raise the question of units", "[run]") {
   CHECK(nlohmann::json::parse(hundredfold.out).at("warnings").size() == 1);
 }
 
-TEST_CASE("from equilibrium a load that stands still moves nothing", "[run]") {
+TEST_CASE("a load that stands still in equilibrium moves nothing", "[run]") {
   const Scene scene = read_scene(
       kMovingLoad, {"step.start=\"equilibrium\"", "load[0].speed_m_per_s=0",
                     "load[1].speed_m_per_s=0", "load[0].start_m=4.8", "load[1].start_m=4.5",
@@ -254,7 +255,7 @@ TEST_CASE("from equilibrium a load that stands still moves nothing", "[run]") {
   CHECK_THAT(record.rows[2], WithinAbs(-567.05e-6, 1e-8));
   CHECK_THAT(record.rows[4], WithinAbs(-574.34e-6, 1e-8));
   for (std::size_t r = 1; r <= 50; ++r)
-    for (const std::size_t c : {2u, 4u})  // the condition of K, 1e8, times round-off
+    for (const std::size_t c : {2u, 4u})  // bound: the condition of K, 1e8, times round-off
       CHECK_THAT(record.rows[5 * r + c], WithinRel(record.rows[c], 1e-7));
 }
 
@@ -267,7 +268,7 @@ TEST_CASE("a table's force is zero before its first row", "[run]") {
   CHECK(record.rows[5 * 9 + 4] < 0.);   // the other load has no table
 }
 
-TEST_CASE("a state that stops being finite ends the run, names its place and keeps the trace",
+TEST_CASE("a state that is no longer finite ends the run, names its place and keeps the trace",
           "[run]") {
   const auto file = fresh_folder("nonfinite") / "t.csv";
   const Scene scene = read_scene(kMovingLoad);
@@ -279,15 +280,15 @@ TEST_CASE("a state that stops being finite ends the run, names its place and kee
       run.state.u[run.model().line[1].first + 7] = std::numeric_limits<double>::infinity();
   });
   trace.finish();
-  CHECK(run.state.steps == 11 * 40);  // to the end of the frame
+  CHECK(run.state.steps == 11 * 40);  // steps go on to the end of the frame
   CHECK(status_names(record.status) == std::vector<std::string>{"nonfinite_state"});
   REQUIRE(record.first_bad_unknown >= run.model().line[1].first);
   CHECK_THAT(unknown_place(run, record.first_bad_unknown), Contains("of rail node"));
   CHECK(rows_of(text_of(file)).size() == 12);
 }
 
-TEST_CASE("sections of every kind agree where they are the same", "[run]") {
-  // Section F as three rectangles: reference.md prints its constants to 4 or 5 digits
+TEST_CASE("the ways to give a section agree where they give the same section", "[run]") {
+  // Section F as three rectangles: reference.md prints its constants to 4 or 5 digits.
   const Section f = section_of(read_scene(kScenes + "wheelset_on_track.toml"));
   CHECK_THAT(f.area.area, WithinRel(8700e-6, 1e-8));  // dimensions printed to 10 digits
   CHECK_THAT(f.area.inertia_y, WithinRel(39.0e-6, 1e-8));
@@ -297,14 +298,14 @@ TEST_CASE("sections of every kind agree where they are the same", "[run]") {
   CHECK_THAT(f.shear.shear_centre_height, WithinAbs(45.9e-3, 1e-4));
   CHECK(f.shear.shear_factor_z == .472);  // the scene's own
   CHECK_THAT(f.shear.shear_factor_y, WithinRel(.4796, 1e-3));
-  // a rectangle, and three equal ones stacked, without their own shear factors
+  // A rectangle is three equal ones stacked; this one has no shear factors of its own.
   const Section one = section_of(read_scene(kScenes + "moving_load.toml",
                                             {"rail.rectangle={height_m=0.2319, width_m=0.0375}"}));
-  // Cowper (1966): 10 (1 + nu) / (12 + 11 nu) for a rectangle, when it is deep and narrow
+  // Cowper (1966): 10 (1 + nu) / (12 + 11 nu) for a rectangle that is deep and narrow.
   CHECK_THAT(one.shear.shear_factor_z, WithinRel(13. / 15.3, 1e-3));
 }
 
-TEST_CASE("a scene takes its rail from a profile and from what fit wrote of it alike", "[run]") {
+TEST_CASE("a profile and the section that fit wrote of it give a scene the same bits", "[run]") {
   const auto folder = fresh_folder("profile");
   const std::string profile = std::string(RAILSTEP_SOURCE) + "/config/profiles/60e1.toml";
   REQUIRE(railstep_program("fit " + profile + " --out " + (folder / "s.toml").string()).code == 0);
@@ -318,7 +319,7 @@ TEST_CASE("a scene takes its rail from a profile and from what fit wrote of it a
                                          << way << "\n"
                                          << plain.substr(end);
     const Scene scene = read_scene(folder / "scene.toml");
-    // EN 13674-1: 76.70 cm2, 3038.3 cm4; the fit meets the outline's own, which differs by rounding
+    // EN 13674-1: 76.70 cm2, 3038.3 cm4. The fit meets the outline's area and inertia; both round.
     CHECK_THAT(section_of(scene).area.area, WithinRel(76.70e-4, 2e-3));
     CHECK_THAT(section_of(scene).area.inertia_y, WithinRel(3038.3e-8, 2e-3));
     const Ran ran = railstep_program("run --json " + (folder / "scene.toml").string());
@@ -329,7 +330,7 @@ TEST_CASE("a scene takes its rail from a profile and from what fit wrote of it a
   CHECK(hashes[0] == hashes[1]);  // 17 digits keep every bit
 }
 
-TEST_CASE("every shipped scene runs, and twice to the same bits", "[run]") {
+TEST_CASE("every shipped scene runs and gives the same bits twice", "[run]") {
   for (const char* name : {"moving_load", "wheelset_on_track", "ballasted_track"}) {
     const std::string words = "run " + kScenes + name + ".toml --duration 0.05 --json";
     const Ran first = railstep_program(words), second = railstep_program(words);
@@ -366,10 +367,10 @@ TEST_CASE("the wheelset of the paper stands still, then drifts sideways", "[run]
   CHECK_THAT(at(2000, "wheelset.dy_m"), WithinRel(.05, 2e-3));  // y = 0.05 t^2
 }
 
-TEST_CASE("a run's memory does not grow with its frames", "[run][cli]") {
+TEST_CASE("a run's memory does not grow with the number of frames", "[run][cli]") {
   const std::filesystem::path folder = fresh_folder("long");
   const std::string model = (folder / "ring.model").string();
-  // of a model file no energies are told, so that frames are all there is
+  // A run of a model file reports no energies, so that only frames could use memory.
   REQUIRE(railstep_program("condense " + std::string(RAILSTEP_SOURCE) +
                            "/config/hard/h34_ten_million_steps.toml --set step.frame_s=1e-3 "
                            "--skip-errors --out " +
@@ -380,6 +381,6 @@ TEST_CASE("a run's memory does not grow with its frames", "[run][cli]") {
     REQUIRE(ran.code == 0);
     return memory_of_children();
   };
-  const long once = run(1500), twice = run(3000);  // 1.5 and 3 million frames, 12 MB of times more
+  const long once = run(1500), twice = run(3000);  // 1.5 and 3 million frames: times of 12 MB more
   CHECK(twice <= once + 512);
 }

@@ -29,7 +29,8 @@ constexpr std::size_t z_of(std::size_t sensor) { return x_of(sensor) + 2; }
 
 }  // namespace
 
-TEST_CASE("the double pendulum's trace has its sensors' columns and meets the reference", "[run]") {
+TEST_CASE("the double pendulum's trace has its sensors' columns and agrees with the reference",
+          "[run]") {
   const Rows trace = traced(kPendulum);
   std::string header = "time_s";
   for (const char* sensor : {"A", "B", "C"})
@@ -37,7 +38,7 @@ TEST_CASE("the double pendulum's trace has its sensors' columns and meets the re
       header += std::string(",") + sensor + "." + quantity;
   CHECK(trace.header == header);
   REQUIRE(trace.row.size() == 1001);
-  // at rest B is at 0.4 and C at 0.8 m; interpolation rounds by an ulp
+  // At rest B is at 0.4 m and C at 0.8 m; interpolation rounds by an ulp.
   CHECK_THAT(trace.row[0][x_of(1)], WithinAbs(.4, 1e-16));
   CHECK_THAT(trace.row[0][x_of(2)], WithinAbs(.8, 2e-16));
   const double reference[4][5] = {{.1, .395226, -.061927, .794770, -.042493},
@@ -48,8 +49,8 @@ TEST_CASE("the double pendulum's trace has its sensors' columns and meets the re
     const auto& row = trace.row[static_cast<std::size_t>(std::round(at[0] * 1000.))];
     CAPTURE(at[0]);
     CHECK(row[0] == std::round(at[0] * 1000.) * 1e-3);
-    // reference.md, "Double pendulum", good to 1e-5 m; 4 elements at 1 ms are asked to be within
-    // 0.2 mm at C (issue: error below 0.2 mm up to 1 s), B is held to the same.
+    // reference.md, "Double pendulum", good to 1e-5 m. The requirement for 4 elements at 1 ms is an
+    // error below 0.2 mm at C up to 1 s; B has the same bound.
     CHECK_THAT(row[x_of(1)], WithinAbs(at[1], 2e-4));
     CHECK_THAT(row[z_of(1)], WithinAbs(at[2], 2e-4));
     CHECK_THAT(row[x_of(2)], WithinAbs(at[3], 2e-4));
@@ -61,9 +62,9 @@ TEST_CASE("the double pendulum's trace has its sensors' columns and meets the re
   }
 }
 
-TEST_CASE("planar is spatial, for beams and for bodies", "[run]") {
-  // Both solve the same equations: what is left is where Newton's method stops, so it is taken to
-  // round-off; 1e-9 m is the bound that the two ways are asked to share.
+TEST_CASE("a planar system moves as in three dimensions, for beams and for bodies", "[run]") {
+  // Both solve the same equations and differ by where Newton's method stops, so it runs to
+  // round-off here. The required agreement is 1e-9 m.
   const std::string tight = " --duration 0.5 --set joints.force_tolerance=1e-12";
   const auto compare = [&](const std::string& scene) {
     const Rows space = traced(scene + tight + " --set system.planar=false"),
@@ -73,7 +74,7 @@ TEST_CASE("planar is spatial, for beams and for bodies", "[run]") {
     double largest = 0.;
     for (std::size_t r = 0; r < space.row.size(); ++r)
       for (std::size_t c = 0; c < space.row[r].size(); ++c) {
-        const bool speed = c > 0 && c % 7 == 0;  // m/s: held to it over a frame of 1 ms
+        const bool speed = c > 0 && c % 7 == 0;  // m/s: the bound over a frame of 1 ms
         const double apart = std::abs(space.row[r][c] - plane.row[r][c]) * (speed ? 1e-3 : 1.);
         largest = std::max(largest, apart);
       }
@@ -85,20 +86,21 @@ TEST_CASE("planar is spatial, for beams and for bodies", "[run]") {
   compare(kCrank);
 }
 
-TEST_CASE("from equilibrium the double pendulum hangs, stretched by its weight", "[run]") {
+TEST_CASE("in equilibrium the double pendulum hangs straight, stretched by its weight", "[run]") {
   const std::string hanging = kPendulum + " --duration 0.05 --set 'step.start=\"equilibrium\"'";
   for (const char* hold :
        {"augmented-lagrangian", "baumgarte", "gear-gupta-leimkuhler", "direct"}) {
     const Rows trace =
         traced(hanging + " --set 'joints.hold=\"" + hold + "\"' --set 'joint[0].trace=true'");
     CAPTURE(hold);
-    // each link by half its own weight, the upper one by all of the lower's too; the Green strain
-    // of these 3e-4 is half their square off, and the weight pulls on what is stretched
+    // Each link is stretched by half its own weight, and the upper one by all of the lower one's
+    // too. These strains are 3e-4; the Green strain differs by half their square, and the weight
+    // acts on the stretched links.
     const double per_weight = 7900. * 9.81 * .4 * .4 / 210e6;
     CHECK(trace.row[0][z_of(1)] + .4 == Approx(-1.5 * per_weight).epsilon(1e-3));
     CHECK(trace.row[0][z_of(2)] + .8 == Approx(-2. * per_weight).epsilon(1e-3));
     CHECK_THAT(trace.row[0][x_of(2)], WithinAbs(0., 1e-9));  // 1e-9 m/s2 over (3 rad/s)^2
-    // B of the hinge is the lower link, 20 x 30 mm
+    // B of the hinge is the lower link, 20 x 30 mm.
     const std::size_t force = trace.column("hinge.force_z_n");
     CHECK(trace.row[0][force] == Approx(7900. * 9.81 * .4 * .02 * .03).epsilon(1e-8));
     for (const auto& row : trace.row)
@@ -106,7 +108,7 @@ TEST_CASE("from equilibrium the double pendulum hangs, stretched by its weight",
   }
 }
 
-TEST_CASE("a driven slider-crank is where its links put it", "[run]") {
+TEST_CASE("a driven slider-crank is where its geometry puts it", "[run]") {
   const Rows trace = traced(kCrank);
   double largest = 0.;
   for (const auto& row : trace.row) {
@@ -116,14 +118,14 @@ TEST_CASE("a driven slider-crank is where its links put it", "[run]") {
                         std::abs(row[z_of(0)] + across), std::abs(row[x_of(1)] - piston),
                         std::abs(row[z_of(1)])});
   }
-  // each joint and the drive close to 1e-10 m or rad (joints.tolerance_m); a chain of 5 adds up,
-  // and at a transmission of at most 1 + 0.1 / 0.3 it stays below ten of them
+  // Each joint and the drive are closed to 1e-10 m or rad (joints.tolerance_m). The errors of a
+  // chain of 5 add up, with a transmission of at most 1 + 0.1 / 0.3: they stay below ten of them.
   CHECK(largest < 1e-9);
 }
 
-TEST_CASE("a body below its spring swings as the damped oscillator", "[run]") {
-  // Straight below the ground's point, let go 0.1 m under the spring's own length:
-  // z = s + e^(-d t) (a cos w t + b sin w t), s the sag, d = c / (2 m), w^2 = k / m - d^2.
+TEST_CASE("a body below its spring moves as a damped oscillator", "[run]") {
+  // Released straight below the ground's point, 0.1 m under the spring's own length: z = s + e^(-d
+  // t) (a cos w t + b sin w t), s the sag, d = c / (2 m), w^2 = k / m - d^2.
   const std::string below =
       kSpring +
       " --set 'body[0].position_m=[0.0, 0.0, -1.0]' --set 'body[0].velocity_m_per_s=[0.0, 0.0, "
@@ -140,8 +142,8 @@ TEST_CASE("a body below its spring swings as the damped oscillator", "[run]") {
     }
     return largest;
   };
-  // a is 1.9 mm; a second-order scheme errs by about (w dt)^2 / 12 (w t) = 8e-5 of it at 1 ms,
-  // numerical damping of rho_inf 0.9 and the damper's share stay within five times that
+  // a is 1.9 mm. A second-order scheme errs by about (w dt)^2 / 12 (w t) = 8e-5 of it at 1 ms.
+  // Numerical damping of rho_inf 0.9 and the damper's share stay within five times that.
   const double coarse = largest_error(""),
                fine = largest_error(" --step 5e-4 --set step.frame_s=1e-3");
   CHECK(coarse < 5. * 8e-5 * 1.9e-3 * 1.);
@@ -149,7 +151,7 @@ TEST_CASE("a body below its spring swings as the damped oscillator", "[run]") {
   CHECK(coarse / fine < 4.5);
 }
 
-TEST_CASE("the option --json of a system has the contract's keys, and the same bits twice",
+TEST_CASE("--json of a system prints the contract's keys, and a second run gives the same bits",
           "[run]") {
   const std::string brief = kPendulum + " --duration 0.2";
   const nlohmann::json first = told(brief);
@@ -172,14 +174,13 @@ TEST_CASE("the option --json of a system has the contract's keys, and the same b
   CHECK(fine.at("steps_per_frame") == 2);
 }
 
-TEST_CASE("energies of a system: kept by energy-momentum, lost by the others as they say",
-          "[run]") {
+TEST_CASE("energy-momentum keeps the energy of a system, backward Euler damps it most", "[run]") {
   const std::string half = kPendulum + " --duration 0.5";
   const nlohmann::json kept = told(half +
                                    " --set 'step.scheme=\"energy-momentum\"' --set "
                                    "joints.force_tolerance=1e-12");
-  // Newton's residual, 1e-12 of the largest force, times 500 steps, and rounding of slopes that are
-  // stiff: EA / (weight of a beam) = 126e6 / 19 makes 1e-16 count as 1e-9
+  // Newton's residual, 1e-12 of the largest force, times 500 steps; and rounding of stiff slopes:
+  // EA / (weight of a beam) = 126e6 / 19 turns 1e-16 into 1e-9.
   CHECK(kept.at("energy_balance_error") < 1e-8);
   const double euler =
       told(half + " --set 'step.scheme=\"backward-euler\"'").at("numerical_loss").get<double>();
@@ -188,7 +189,7 @@ TEST_CASE("energies of a system: kept by energy-momentum, lost by the others as 
   CHECK(std::abs(alpha) < .1 * euler);
 }
 
-TEST_CASE("a step so long that the scheme makes energy is told", "[run]") {
+TEST_CASE("run reports a step so long that the scheme makes energy", "[run]") {
   const std::string noted = "the scheme made energy";
   const Ran wild = railstep_program("run " + kPendulum +
                                     " --json --set step.dt_s=0.01 --set "
@@ -200,7 +201,7 @@ TEST_CASE("a step so long that the scheme makes energy is told", "[run]") {
   CHECK_THAT(railstep_program("run " + kPendulum).err, !Contains(noted));
 }
 
-TEST_CASE("a balance that is off is told of condensed tracks too", "[run]") {
+TEST_CASE("run reports an energy balance that is off for condensed tracks too", "[run]") {
   const std::string noted = "note: the energy balance is off by 0.";
   const std::string run = "run " + kScenes +
                           "moving_load.toml --set 'condense.kind=\"modal\"' --json "
@@ -213,10 +214,10 @@ TEST_CASE("a balance that is off is told of condensed tracks too", "[run]") {
   CHECK_THAT(railstep_program(run + "0.001").err, !Contains(noted));
 }
 
-TEST_CASE("a drive's work and a damper's heat close the balance, whatever holds the joints",
+TEST_CASE("drive work and damper heat close the energy balance with every constraint method",
           "[run]") {
-  // Means over a step are of second order, and so are the schemes: half the step, a quarter of the
-  // error. At 10 rad/s and 1 ms, (w dt)^2 = 1e-4 is its size.
+  // Means over a step are of second order, and so are the schemes: half the step makes a quarter of
+  // the error. Its size at 10 rad/s and 1 ms is (w dt)^2 = 1e-4.
   const auto check = [](const std::string& scene) {
     const double coarse = told(scene + " --duration 0.5").at("energy_balance_error").get<double>();
     const double fine = told(scene + " --duration 0.5 --step 5e-4").at("energy_balance_error");
@@ -231,7 +232,8 @@ TEST_CASE("a drive's work and a damper's heat close the balance, whatever holds 
   check(kSpring);
 }
 
-TEST_CASE("bad systems are refused in one sentence with exit 2 and nothing written", "[run]") {
+TEST_CASE("bad systems are refused in one sentence with exit code 2 and nothing is written",
+          "[run]") {
   const struct {
     std::string words, said;
   } cases[] = {
@@ -269,7 +271,7 @@ TEST_CASE("static and modes say that a system is for run and condense", "[run]")
   }
 }
 
-TEST_CASE("a system's report has the paths of its sensors and its joints' residual", "[run]") {
+TEST_CASE("a system's report shows the paths of its sensors and its joints' residual", "[run]") {
   const auto page = fresh_folder("report") / "r.html";
   const Ran ran = railstep_program("run " + kCrank + " --report " + page.string());
   CAPTURE(ran.err);
@@ -285,7 +287,7 @@ TEST_CASE("the first unknown that is not finite is named with its part", "[run]"
         read_any_scene(scene, {std::string("system.planar=") + (planar ? "true" : "false")})));
     run.state.v[run.model().system.first + unknown] = std::numeric_limits<double>::quiet_NaN();
     const RunRecord record = simulate(run, 10, nullptr, false);
-    CHECK(record.frame_us.empty());  // seen at the start, nothing is stepped
+    CHECK(record.frame_us.empty());  // the run sees it at the start and makes no step
     REQUIRE(record.first_bad_unknown >= 0);
     CHECK(unknown_place(run, record.first_bad_unknown).find("of ") != std::string::npos);
     return unknown_place(run, run.model().system.first + unknown);
@@ -296,8 +298,8 @@ TEST_CASE("the first unknown that is not finite is named with its part", "[run]"
   CHECK(named(kCrank, false, 8) == "z position of body \"rod\"");
 }
 
-TEST_CASE("a loop in space has redundant rows, and their joints are named", "[run]") {
-  // Five rows at each hinge and the guide, one of the motor: 21 on 18 unknowns that can turn once.
+TEST_CASE("a loop in three dimensions has redundant rows, and its joints are named", "[run]") {
+  // Five rows of each hinge and the guide, one of the motor: 21 on 18 unknowns with one free turn.
   const std::string spatial = kCrank + " --duration 0.01 --set system.planar=false";
   const Ran direct = railstep_program("run " + spatial + " --set 'joints.hold=\"direct\"'");
   CHECK(direct.code == 0);

@@ -9,7 +9,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// What a case gives for a scene's tip, and the digits it was printed with.
+/// Words of a case, displacements of the tip and their bounds by the printed digits.
 struct Row {
   std::string words;
   double z, x;          // m
@@ -31,11 +31,11 @@ double timoshenko_tip(double area, double inertia_y, double shear_factor_z) {
 
 }  // namespace
 
-TEST_CASE("cantilevers: the rows of reference.md", "[static]") {
-  // Half a unit of the last printed digit: 5e-8 in z, 5e-10 in x. The linear rows are of k_z = .472
-  // (printed to 5e-5, which moves z by 4.0e-8): 9e-8. The nonlinear rows are of ten elements and of
-  // the section's shear unsplit; the split moves x by up to 9e-10 (7e-6 of it): the shear's
-  // variation over the section, of second order in the load, keeps the whole G then.
+TEST_CASE("cantilevers agree with the rows of reference.md", "[static]") {
+  // Half a unit of the last printed digit is 5e-8 in z and 5e-10 in x. The linear rows have k_z =
+  // .472 (printed to 5e-5, which moves z by 4.0e-8): 9e-8. The nonlinear rows have ten elements and
+  // the section's shear unsplit. The split moves x by up to 9e-10 (7e-6 of it): the shear's
+  // variation over the section, of second order in the load, then keeps the whole G.
   const Row row = GENERATE(
       Row{shipped("cantilever_rectangle"), -2.06522e-2, -1.27763e-4, 5e-8, 5e-10},
       Row{shipped("cantilever_rectangle") + kSplit, -2.06522e-2, -1.27763e-4, 5e-8, 5e-10 + 9e-10},
@@ -58,7 +58,7 @@ TEST_CASE("cantilevers: the rows of reference.md", "[static]") {
   CHECK((result["iterations"].get<int>() > 1) == (row.x != 0.));
 }
 
-TEST_CASE("forty elements reach what other code converges to", "[static]") {
+TEST_CASE("forty elements agree with the converged result of other code", "[static]") {
   // reference.md: Chrono's ANCF 3333 with 40 elements, six digits in x, seven in z.
   const auto [x, y, z] =
       point(solved(shipped("cantilever_rectangle") + "--set track.elements_per_bay=4"));
@@ -66,12 +66,12 @@ TEST_CASE("forty elements reach what other code converges to", "[static]") {
   CHECK_THAT(x, WithinAbs(-1.27764e-4, 5e-10));
 }
 
-TEST_CASE("the linearised cantilever is Timoshenko's closed form", "[static]") {
-  // 1e-7: the rectangles' printed digits (11) leave less, round-off of condition 1e8 1e-8.
+TEST_CASE("the linearised cantilever agrees with Timoshenko's closed form", "[static]") {
+  // Bound 1e-7: the rectangles' printed digits (11) cause less, round-off of condition 1e8 1e-8.
   const double f = timoshenko_tip(8700e-6, 39.0e-6, .4721);
   CHECK_THAT(point(solved(shipped("cantilever_rail_linear")))[2], WithinRel(f, 1e-7));
   CHECK_THAT(point(solved(shipped("cantilever_beam")))[2], WithinRel(f, 1e-7));
-  // Section P: area and inertia as reference.md prints them, to 1e-4 and 1.3e-4 of the inertia.
+  // Section P has area and inertia to the digits of reference.md, 1e-4 and 1.3e-4 of the inertia.
   const double p = timoshenko_tip(8696e-6, 38.78e-6, .4458);
   const std::string printed =
       shipped("cantilever_rail") + kSplit + kPrinted + "--set rail.shear_factor_z=0.4458 --model ";
@@ -82,26 +82,26 @@ TEST_CASE("the linearised cantilever is Timoshenko's closed form", "[static]") {
   }
 }
 
-TEST_CASE("wherever the nodes are, the neutral axis moves alike", "[static]") {
+TEST_CASE("the neutral axis moves the same for every place of the nodes", "[static]") {
   const std::string scene = shipped("cantilever_rail") + kSplit;
   const auto centroid = point(solved(scene));
   for (const char* line : {"mid-height", "foot", "head"}) {
     const std::string words = scene + "--set 'track.reference_line=\"" + line + "\"' ";
     INFO(words);
     const auto tip = point(solved(words));
-    // The interpolation is linear over the section, so a shifted line is a change of unknowns: the
-    // same discrete problem, to the 1e-9 at which round-off stops Newton.
+    // The interpolation is linear over the section, so a shifted line is a change of unknowns of
+    // the same discrete problem. They agree to 1e-9, where round-off stops Newton's method.
     CHECK_THAT(tip[2], WithinRel(centroid[2], 1e-9));
     CHECK_THAT(tip[0], WithinRel(centroid[0], 1e-7));
-    // With the Poisson coupling on that line, as Eq. 18 reads, it is another beam: stiffer.
+    // With the Poisson coupling on that line, as Eq. 18 reads, it is another, stiffer beam.
     const auto stiff = point(solved(words + "--set 'rail.rule.coupling=\"axis\"'"));
     CHECK(stiff[2] / centroid[2] < 1. - 1e-5);
     CHECK(stiff[2] / centroid[2] > .97);
   }
 }
 
-TEST_CASE("a point off the neutral axis moves along by the turn", "[static]") {
-  // Linear: theta = F L^2/(2 E I) on the section's end, x = theta z.
+TEST_CASE("a point off the neutral axis moves along x by the section's turn", "[static]") {
+  // Linear beam: the end section turns by theta = F L^2/(2 E I), and x = theta z.
   const double theta = 63e3 * 4. / (2. * 210e9 * 39e-6);
   for (const auto& [at, z] : {std::pair("head", .1007375), std::pair("foot", -.085)})
     CHECK_THAT(
@@ -109,9 +109,9 @@ TEST_CASE("a point off the neutral axis moves along by the turn", "[static]") {
         WithinRel(theta * z, 1e-6));
 }
 
-TEST_CASE("the elastica", "[static]") {
-  // reference.md, F L^2/(E I) = 4: w/L .66996, u/L .32894, half a digit 5e-6. A plate 4 mm high on
-  // 2 m: shear adds F/(k G A) = 4e-6.
+TEST_CASE("a thin cantilever bends as the elastica", "[static]") {
+  // reference.md, F L^2/(E I) = 4: w/L .66996, u/L .32894, half a digit 5e-6. For a plate 4 mm high
+  // and 2 m long shear adds F/(k G A) = 4e-6.
   const std::string thin =
       "--set rail.rectangle.height_m=0.004 --set rail.rectangle.width_m=0.1 "
       "--set 'load[0].force_z_n=-112.0' --set track.elements_per_bay=4";
@@ -120,11 +120,11 @@ TEST_CASE("the elastica", "[static]") {
   CHECK_THAT(x / 2., WithinAbs(-.32894, 9e-6));
 }
 
-TEST_CASE("sections: points per rectangle, and an outline itself", "[static]") {
+TEST_CASE("a section is integrated by points per rectangle or by its outline", "[static]") {
   const std::string linear = shipped("cantilever_rail_linear");
   const auto with = [&](const std::string& more) { return point(solved(linear + more))[2]; };
   CHECK_THAT(with("--set rail.rule.section_points=3"), WithinRel(with(""), 1e-9));
-  // One point in each rectangle leaves out its own w h^3/12.
+  // One point in each rectangle misses the rectangle's own w h^3/12.
   const double w[] = {.1380985536, .02522171327, .07720505094};
   const double h[] = {.020996636, .13308941227, .03165145173};
   double inertia = 39.0e-6;
@@ -150,7 +150,7 @@ TEST_CASE("sections: points per rectangle, and an outline itself", "[static]") {
     const auto linear_tip = point(solved(own.words()));
     CHECK_THAT(linear_tip[2], WithinRel(expected, 1e-7));
     const auto tip = point(solved(own.words() + "--model nonlinear"));
-    // As section F's: 2.7e-4 stiffer; here the beam bends by 1.3 times as much, squared.
+    // As for section F, the beam is 2.7e-4 stiffer; this one bends by 1.3 times as much, squared.
     CHECK_THAT(tip[2], WithinRel(expected, 6e-4));
     CHECK(std::abs(tip[2]) < std::abs(linear_tip[2]));
     CHECK(tip[0] < -1e-4);

@@ -12,7 +12,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// A shipped scene with more tables behind it; profiles stay where they are.
+/// A shipped scene with more tables after its own; paths to profiles stay valid.
 std::string longer(const std::string& name, const std::string& more) {
   std::string text = text_of(RAILSTEP_SOURCE "/config/scenes/" + name + ".toml");
   if (const auto at = text.find("../profiles"); at != text.npos)
@@ -33,21 +33,21 @@ const std::string kUnder =
 
 }  // namespace
 
-TEST_CASE("a wheelset is half its weight on each railhead", "[static]") {
+TEST_CASE("a wheelset presses with half its weight on each railhead", "[static]") {
   const OwnScene own(longer("wheelset_on_track", kUnder + "3.2\n"));
   // reference.md: the rail settles at -7.0046e-5 m, with its own weight at -4.36163e-4 m. The
-  // head's force squeezes the section too, which the axis feels by less than 1e-4 of it.
+  // head's force squeezes the section too, which moves the axis by less than 1e-4 of that.
   CHECK_THAT(point(solved(own.words()), "under")[2], WithinRel(-7.0046e-5, 1e-4));
   CHECK_THAT(point(solved(own.words() + "--set track.gravity=true"), "under")[2],
              WithinRel(-4.36163e-4, 1e-4));
-  // So light a load leaves the nonlinear rail linear: theta = 1e-4, squared.
+  // Under so light a load the nonlinear rail is linear: theta = 1e-4, squared.
   CHECK_THAT(point(solved(own.words() + "--model nonlinear"), "under")[2],
              WithinRel(-7.0046e-5, 2e-4));
   refuse("static " + own.words() + "--set 'wheelset[0].force[0].table=[[0.0, 10.0]]'",
          "weight alone");
 }
 
-TEST_CASE("a load is what it is at t = 0", "[static]") {
+TEST_CASE("static applies the load of t = 0", "[static]") {
   const OwnScene own(longer("moving_load", kUnder + "4.5\n"));
   const std::string still =
       "--set track.elements_per_bay=8 --set 'load[0].start_m=4.5' --set "
@@ -55,7 +55,7 @@ TEST_CASE("a load is what it is at t = 0", "[static]") {
   const auto under = [&](const std::string& more) {
     return point(solved(own.words() + still + more), "under")[2];
   };
-  // reference.md: 574.34 um at mid-bay, half a digit.
+  // reference.md: 574.34 um at mid-bay; the bound is half the last digit.
   CHECK_THAT(under(""), WithinAbs(-574.34e-6, 5e-9));
   CHECK_THAT(under("--set 'load[0].table=[[0.0, 0.5], [1.0, 1.0]]'"),
              WithinRel(under("") / 2., 1e-12));
@@ -63,22 +63,22 @@ TEST_CASE("a load is what it is at t = 0", "[static]") {
   CHECK(under("--set 'load[0].may_leave_rail=true' --set 'load[0].start_m=-1.0'") == 0.);
 }
 
-TEST_CASE("a ballasted track bends nonlinearly too", "[static]") {
+TEST_CASE("static solves a ballasted track nonlinearly too", "[static]") {
   const OwnScene own(longer("ballasted_track", kUnder + "4.5\n"));
   const nlohmann::json linear = solved(own.words()),
                        bent = solved(own.words() + "--model nonlinear");
   for (const char* name : {"under", "sleeper", "pad"}) point(linear, name);
   const double a = point(linear, "under")[2], b = point(bent, "under")[2];
-  // About 0.5 mm under 49 kN, and slopes of 1e-3: what is nonlinear is below 1e-3 of it.
+  // About 0.5 mm under 49 kN and slopes of 1e-3: nonlinear effects are below 1e-3 of it.
   CHECK(a < -3e-4);
   CHECK(a > -1e-3);
   CHECK_THAT(b, WithinRel(a, 1e-3));
   CHECK(b != a);
-  // The sleeper next to the wheelset sinks; both ends alike, by mirror symmetry.
+  // The sleeper next to the wheelset sinks; both ends are alike by mirror symmetry.
   CHECK(bent["residual"].get<double>() < 1e-7);
 }
 
-TEST_CASE("the shape of the neutral axis", "[static]") {
+TEST_CASE("static writes the shape of the neutral axis", "[static]") {
   const auto folder = fresh_folder("shape");
   const std::string file = (folder / "axis.csv").string();
   const Ran ran =
@@ -102,8 +102,8 @@ TEST_CASE("the shape of the neutral axis", "[static]") {
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("the far end of a rail is on it, whatever its bays round to", "[static]") {
-  // 7 x 0.6 m over elements of 0.6 m is 7 + 1e-15 in doubles.
+TEST_CASE("the far end of a rail lies on it for every rounding of its bays", "[static]") {
+  // 7 x 0.6 m over elements of 0.6 m gives 7 + 1e-15 in doubles.
   for (const char* model : {"linearised", "nonlinear", "timoshenko"})
     CHECK(railstep_program(
               "static " + shipped("cantilever_rail") +
@@ -113,7 +113,7 @@ TEST_CASE("the far end of a rail is on it, whatever its bays round to", "[static
               .code == 0);
 }
 
-TEST_CASE("no equilibrium is exit 1, with the history", "[static]") {
+TEST_CASE("without an equilibrium the exit code is 1 and the history is printed", "[static]") {
   const auto folder = fresh_folder("shape");
   const std::string file = (folder / "axis.csv").string();
   const Ran ran = railstep_program("static " + shipped("cantilever_rail") +
@@ -126,13 +126,13 @@ TEST_CASE("no equilibrium is exit 1, with the history", "[static]") {
   CHECK_THAT(ran.err, Contains("0.25"));  // the last of two halvings
   CHECK_FALSE(std::filesystem::exists(file));
   std::filesystem::remove_all(folder);
-  // Steps that are small enough get there.
+  // Load steps that are small enough reach the equilibrium.
   CHECK(railstep_program("static " + shipped("cantilever_rail") +
                          "--set static.most_iterations=3 " + "--set static.tolerance=1e-3")
             .code == 0);
 }
 
-TEST_CASE("static says in one sentence what it cannot solve", "[static]") {
+TEST_CASE("static refuses in one sentence what it cannot solve", "[static]") {
   const std::string rail = "static " + shipped("cantilever_rail"),
                     beam = "static " + shipped("cantilever_beam");
   refuse(rail + "--model elastic", "--model");
@@ -152,7 +152,7 @@ TEST_CASE("static says in one sentence what it cannot solve", "[static]") {
   refuse(rail + "--set static.tolerance=0.0", "tolerance");
 }
 
-TEST_CASE("a section of constants has no shape to bend nonlinearly", "[static]") {
+TEST_CASE("a section given by constants has no shape for nonlinear bending", "[static]") {
   const OwnScene own(
       "schema = 1\n[track]\nunknowns = \"full\"\nrails = 1\nbays = 10\n"
       "bay_m = 0.2\nelements_per_bay = 1\nends = [\"clamped\", \"free\"]\n"
@@ -168,7 +168,7 @@ TEST_CASE("a section of constants has no shape to bend nonlinearly", "[static]")
   refuse(words + "--set rail.rule.section_points=2", "not given by rectangles");
 }
 
-TEST_CASE("run steps the linearised rail about its centroid alone", "[static]") {
+TEST_CASE("run steps the linearised rail about its centroid only", "[static]") {
   refuse("run " + shipped("wheelset_on_track") + "--set 'track.model=\"nonlinear\"'", "linearised");
   refuse("run " + shipped("wheelset_on_track") + "--set 'track.reference_line=\"foot\"'",
          "centroid");

@@ -20,17 +20,17 @@ namespace {
 using Words = std::vector<std::string>;
 
 const std::filesystem::path kRoot = RAILSTEP_SOURCE;
-constexpr char kVaries = '\x01';  // stands for what a sentence is given as it is made
+constexpr char kVaries = '\x01';  // stands for the values that a sentence gets
 
 // Sentences of the sources -----------------------------------------------------------------------
 
-/// Text in the place of a literal's escape; of what no sentence has, nothing.
+/// Text of a literal's escape; empty for escapes that no sentence has.
 std::string unescaped(char escape) {
   if (escape == 'n') return "\n";
   return escape == '"' || escape == '\\' || escape == '\'' ? std::string(1, escape) : "";
 }
 
-/// A literal's text as it is printed, {} of a format being what varies.
+/// A literal's text as printed; each {} of a format becomes kVaries.
 std::string printed(std::string_view literal) {
   std::string text;
   for (std::size_t i = 0; i < literal.size(); ++i) {
@@ -49,7 +49,7 @@ std::string printed(std::string_view literal) {
   return text;
 }
 
-/// Behind the quote that ends the literal which begins at `begin`.
+/// Place after the quote that ends the literal which begins at `begin`.
 std::size_t end_of_literal(std::string_view source, std::size_t begin) {
   const char quote = source[begin];
   std::size_t i = begin + 1;
@@ -57,7 +57,7 @@ std::size_t end_of_literal(std::string_view source, std::size_t begin) {
   return std::min(i + 1, source.size());
 }
 
-/// Literals of each statement, one behind the other: joined where nothing but blanks lies between.
+/// Literals of each statement, one after the other; those with only blanks between are joined.
 Words statements(std::string_view source) {
   Words all(1);
   bool joined = false;
@@ -72,7 +72,7 @@ Words statements(std::string_view source) {
       joined = true;
       i = end;
     } else if (c == '\'') {
-      // A quote between digits parts them; others begin a character.
+      // A quote between digits separates them; others begin a character.
       const bool digits = i > 0 && std::isxdigit(static_cast<unsigned char>(source[i - 1])) != 0;
       i = digits ? i + 1 : end_of_literal(source, i);
     } else {
@@ -84,7 +84,7 @@ Words statements(std::string_view source) {
   return all;
 }
 
-/// Whatever the program can say.
+/// All sentences that the program can print.
 Words sentences() {
   Words all;
   for (const char* folder : {"tools", "rt_core/offline"})
@@ -97,7 +97,7 @@ Words sentences() {
   return all;
 }
 
-/// Whether the parts of `quoted`, between its "...", stand in `said` one behind the other.
+/// Whether the parts of `quoted`, between its "...", stand in `said` one after the other.
 bool has_parts(const std::string& said, const std::string& quoted) {
   std::size_t at = 0;
   for (std::size_t begin = 0; begin <= quoted.size();) {
@@ -159,7 +159,7 @@ Words first_cells(const std::string& text, const std::string& head) {
 
 // Commands ---------------------------------------------------------------------------------------
 
-/// Words of a command, as the shell parts them; a comment is none.
+/// Words of a command, separated as by the shell, without comments.
 Words words_of(const std::string& command) {
   Words words;
   static const std::regex kWord(R"((?:'[^']*'|"[^"]*"|[^\s'"])+)");
@@ -173,7 +173,7 @@ Words words_of(const std::string& command) {
   return words;
 }
 
-/// What stands indented or fenced in a page, and its code spans of more than one word.
+/// Indented or fenced lines of a page, and its code spans of more than one word.
 std::vector<Words> commands_of(const std::string& text) {
   std::vector<Words> commands;
   bool fenced = false;
@@ -195,7 +195,7 @@ bool is_program(const std::string& word) {
   return word == "railstep" || word.ends_with("/railstep");
 }
 
-/// Looks like the name of a file of the repository, or of one that a command made.
+/// Whether it looks like the name of a file of the repository, or of one that a command made.
 bool is_file(const std::string& word) {
   static const std::regex kFolder("^(config|docs|tests|tools|rt_core|bench)/.*");
   static const std::regex kEnding(R"(^[\w./-]+\.(toml|csv|model|recording|html|tuned)$)");
@@ -209,7 +209,7 @@ bool is_written_by(const std::string& option) {
   return kWriting.count(option) != 0;
 }
 
-/// What is wrong with a page's commands, a line each.
+/// Faults of a page's commands, one line each.
 Words faults_of(const std::vector<Words>& commands) {
   Words faults;
   std::set<std::string> written;
@@ -248,7 +248,7 @@ TEST_CASE("sentences of sources are found as they are printed", "[docs]") {
   CHECK_FALSE(is_said(sentences(), "a sentence that no one says"));
 }
 
-TEST_CASE("every status bit is told of, and no other", "[docs]") {
+TEST_CASE("the page describes every status bit and no other", "[docs]") {
   const Words told = first_cells(page("troubleshooting.md"), "bit");
   for (const StatusText& text : kStatusTexts) {
     CAPTURE(text.name);
@@ -257,7 +257,7 @@ TEST_CASE("every status bit is told of, and no other", "[docs]") {
   CHECK(told.size() == std::size(kStatusTexts));
 }
 
-TEST_CASE("every sentence that is told of is one of the program's", "[docs]") {
+TEST_CASE("every sentence on the page is one of the program's", "[docs]") {
   const Words told = first_cells(page("troubleshooting.md"), "sentence"), all = sentences();
   CHECK(told.size() > 300);
   for (const std::string& quoted : told) {
@@ -266,7 +266,7 @@ TEST_CASE("every sentence that is told of is one of the program's", "[docs]") {
   }
 }
 
-TEST_CASE("commands of a page have a name, options and files that are there", "[docs]") {
+TEST_CASE("commands of a page have a name, options and files that exist", "[docs]") {
   const std::vector<Words> bad = {{"railstep", "walk"},
                                   {"railstep", "run", "config/scenes/none.toml", "--haste"},
                                   {"railstep", "replay", "a.recording"}};
@@ -280,7 +280,7 @@ TEST_CASE("commands of a page have a name, options and files that are there", "[
   }
 }
 
-TEST_CASE("links of a page lead to files, and hashes are those that are stored", "[docs]") {
+TEST_CASE("links of a page lead to files, and its hashes are the stored ones", "[docs]") {
   static const std::regex kLink(R"(\]\(([\w-]+\.md)[)#])");
   for (const char* name : {"promises.md", "troubleshooting.md"}) {
     const std::string text = page(name);

@@ -1,4 +1,4 @@
-// The largest growth factor of a step against closed forms, so that a map of it can be trusted.
+// The largest growth factor of a step against closed forms, so that maps of it can be trusted.
 #include <fmt/core.h>
 
 #include <Eigen/Eigenvalues>
@@ -17,7 +17,7 @@ namespace {
 /// on 0.7e9 N/m at each end. Its pitch is its slowest motion.
 const double kPitchRate = std::sqrt(.25 * 1.4e9 * .1 * .1 / (50. * .1 * .1 / 12. + 5.));  // rad/s
 
-/// The rail gives way by 4e-4 of its seats; what backward Euler takes goes with the rate's square.
+/// The rail gives way by 4e-4 of its seats; backward Euler's loss goes with the rate's square.
 constexpr double kGives = 1e-3;
 
 double growth(const std::string& scheme, double dt) {
@@ -27,8 +27,8 @@ double growth(const std::string& scheme, double dt) {
   return growth_of(run);
 }
 
-/// Of generalised-alpha with equilibrium at the step's end, of u, v dt, a dt^2 and g dt^2 of one
-/// mass.
+/// Largest factor of generalised-alpha with equilibrium at the step's end, for u, v dt, a dt^2 and
+/// g dt^2 of one mass.
 /// @param turn  omega dt
 double of_one_mass(double rho, double turn) {
   const double am = (2. * rho - 1.) / (rho + 1.), af = rho / (1. + rho);
@@ -71,7 +71,7 @@ TEST_CASE("generalised-alpha's largest factor is that of one mass", "[stability]
 }
 
 TEST_CASE("a condensed track's largest factor is that of its slowest decay", "[stability]") {
-  // k u + c u' = 0 of the seats, which hold far more than the rail's mass does
+  // k u + c u' = 0 for the seats, whose forces are far larger than those of the rail's mass.
   for (const double dt : {1e-5, 1e-3}) {
     CAPTURE(dt);
     Simulation run(read_scene(RAILSTEP_SOURCE "/config/hard/h01_stiff_damper.toml",
@@ -80,8 +80,8 @@ TEST_CASE("a condensed track's largest factor is that of its slowest decay", "[s
   }
 }
 
-TEST_CASE("dampers are seen of a wheel on a condensed track", "[stability]") {
-  // Its bounce on the seats is slow: little of a step of 0.1 ms, but far from nothing.
+TEST_CASE("a wheel on a condensed track is damped by the track's dampers", "[stability]") {
+  // Its bounce on the seats is slow: a step of 0.1 ms damps it little, but far more than nothing.
   const std::vector<std::string> condensed = {"condense.kind=\"modal\"", "step.dt_s=1e-4",
                                               "step.rho_inf=1.0",
                                               "condense.residual_flexibility=false"};
@@ -93,7 +93,7 @@ TEST_CASE("dampers are seen of a wheel on a condensed track", "[stability]") {
   CHECK(growth_of(takes) < 1. - 1e-4);
 }
 
-TEST_CASE("the state is left as it was", "[stability]") {
+TEST_CASE("a search for the growth factor leaves the state as it was", "[stability]") {
   Simulation run(read_scene(RAILSTEP_SOURCE "/config/hard/h49_stability.toml"));
   const std::uint64_t before = state_hash(run.model(), run.state);
   static_cast<void>(growth_of(run));

@@ -1,4 +1,4 @@
-// The suite of hard cases by its own program: what it runs, tells, and refuses. The cases
+// The suite of hard cases by its own command: what it runs, prints and refuses. The cases
 // themselves are tests of their own, `ctest -L hard`.
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,7 +20,7 @@ const std::string kFolder = " --scenes '" + kHardScenes.string() + "' ";
 
 }  // namespace
 
-TEST_CASE("every hard case has its scene, and every scene its case", "[hard]") {
+TEST_CASE("every hard case has its scene and every scene its case", "[hard]") {
   std::set<std::string> scenes, told;
   for (const auto& file : std::filesystem::directory_iterator(kHardScenes))
     scenes.insert(file.path().stem().string().substr(0, 3));
@@ -39,11 +39,11 @@ TEST_CASE("every hard case has its scene, and every scene its case", "[hard]") {
     CHECK_FALSE(std::string(own.source).empty());
     told.insert(scene.substr(0, 3));
   }
-  CHECK(last >= 46);  // 36 of the list, ten and more beside it
+  CHECK(last >= 46);  // 36 from the list and ten or more besides
   CHECK(scenes == told);
 }
 
-TEST_CASE("a check passes at its bound, and fails over it or without a figure", "[hard]") {
+TEST_CASE("a check passes at its bound and fails above it or without a figure", "[hard]") {
   CHECK(HardCheck{"error", 1e-3, 1e-3}.passed());
   CHECK_FALSE(HardCheck{"error", 1.001e-3, 1e-3}.passed());
   CHECK_FALSE(HardCheck{"error", std::nan(""), 1e-3}.passed());
@@ -56,7 +56,7 @@ TEST_CASE("a check passes at its bound, and fails over it or without a figure", 
   CHECK_FALSE(HardOutcome{hard_cases().front(), result}.passed());
 }
 
-TEST_CASE("`hard` tells cases in JSON and draws them on a page", "[hard][cli]") {
+TEST_CASE("`hard` prints cases in JSON and draws them on a page", "[hard][cli]") {
   const std::filesystem::path folder = fresh_folder("hard");
   const std::string page = (folder / "hard.html").string();
   const Ran ran = railstep_program("hard --case H1 --case H34 --json --report " + page + kFolder);
@@ -73,8 +73,8 @@ TEST_CASE("`hard` tells cases in JSON and draws them on a page", "[hard][cli]") 
              Contains("H34") && Contains("<svg") && Contains("margin") && Contains("us a frame"));
 }
 
-TEST_CASE("`hard` ends with 1 where a figure is over its bound", "[hard][cli]") {
-  // A scene of its own in which the damper is a tenth of what the closed form has.
+TEST_CASE("`hard` ends with exit code 1 if a figure exceeds its bound", "[hard][cli]") {
+  // In this scene the damper is a tenth of the closed form's.
   const std::filesystem::path folder = fresh_folder("hard_over");
   std::string text = text_of(kHardScenes / "h01_stiff_damper.toml");
   text.replace(text.find("14.5e6"), 6, "1.45e6");
@@ -84,7 +84,7 @@ TEST_CASE("`hard` ends with 1 where a figure is over its bound", "[hard][cli]") 
   CHECK_THAT(ran.out, Contains("FAILED H1") && Contains("OVER"));
 }
 
-TEST_CASE("`hard` refuses a case or a folder that is not there", "[hard][cli]") {
+TEST_CASE("`hard` refuses a case or a folder that does not exist", "[hard][cli]") {
   const Ran none = railstep_program("hard --case H0" + kFolder);
   CHECK(none.code == 2);
   CHECK_THAT(none.err, Contains("--case H0") && Contains("H1 to H"));

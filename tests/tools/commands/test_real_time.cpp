@@ -1,4 +1,4 @@
-// The table of docs/real-time.md: of every shipped scene that runs, as it stands.
+// The table of docs/real-time.md: it must have every shipped scene that runs, as it is shipped.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 
 const std::filesystem::path kRoot = RAILSTEP_SOURCE;
 
-using Row = std::map<std::string, std::string>;  // by the name of the column
+using Row = std::map<std::string, std::string>;  // by name of column
 
 std::vector<std::string> parts(const std::string& line, char between) {
   std::vector<std::string> found;
@@ -28,7 +28,7 @@ std::vector<std::string> parts(const std::string& line, char between) {
   return found;
 }
 
-/// Rows of a file of docs/data, by their scene; each scene stands there once.
+/// Rows of a file of docs/data by their scene; each scene has one row.
 std::map<std::string, Row> stored(const char* name) {
   std::istringstream in(text_of(kRoot / "docs/data" / name));
   std::string line;
@@ -46,7 +46,7 @@ std::map<std::string, Row> stored(const char* name) {
   return rows;
 }
 
-/// Scenes of config/scenes that have a [step], and how they step.
+/// Scenes of config/scenes that have a [step], with that table.
 std::map<std::string, StepScene> runnable() {
   std::map<std::string, StepScene> found;
   for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
@@ -65,7 +65,7 @@ std::string first_line(const std::filesystem::path& file) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Lines of the page's table about a scene.
+/// Number of lines about a scene in the page's table.
 int lines_about(const std::string& page, const std::string& scene) {
   const std::vector<std::string> lines = parts(page, '\n');
   return static_cast<int>(std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
@@ -75,7 +75,8 @@ int lines_about(const std::string& page, const std::string& scene) {
 
 }  // namespace
 
-TEST_CASE("every scene that runs has its row of times and of errors, and no other", "[docs]") {
+TEST_CASE("every scene that runs has its row of times and of errors, and no other scene has",
+          "[docs]") {
   const std::map<std::string, StepScene> scenes = runnable();
   CHECK(scenes.size() > 15);
   const std::string page = text_of(kRoot / "docs/real-time.md");
@@ -93,7 +94,7 @@ TEST_CASE("every scene that runs has its row of times and of errors, and no othe
   }
 }
 
-TEST_CASE("rows of times are of the scenes' own steps, frames, meshes and models", "[docs]") {
+TEST_CASE("rows of times have the scenes' own steps, frames, meshes and models", "[docs]") {
   const std::map<std::string, StepScene> scenes = runnable();
   for (const auto& [name, row] : stored("real_time.csv")) {
     CAPTURE(name);

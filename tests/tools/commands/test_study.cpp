@@ -36,7 +36,7 @@ SettingRow row(double us, double error) {
 
 }  // namespace
 
-TEST_CASE("every setting of the defaults makes a scene that says so", "[study]") {
+TEST_CASE("every default setting makes a scene with that setting", "[study]") {
   for (const char* name : {"moving_load.toml", "ballasted_track.toml", "endless_track.toml",
                            "hanging_sleeper.toml", "bogie_at_speed.toml"}) {
     const Scene own = read_scene(kScenes / name);
@@ -56,7 +56,7 @@ TEST_CASE("every setting of the defaults makes a scene that says so", "[study]")
   }
 }
 
-TEST_CASE("words of models and schemes are read whole", "[study]") {
+TEST_CASE("words of models and schemes are read to their last letter", "[study]") {
   const auto overrides = [](const std::string& model, const std::string& scheme) {
     return overrides_of({model, 2, scheme, 1e-4});
   };
@@ -73,10 +73,10 @@ TEST_CASE("words of models and schemes are read whole", "[study]") {
                       Contains("accepted are own, generalised-alpha:RHO"));
 }
 
-TEST_CASE("errors are over each column's peak, from a time on", "[study]") {
+TEST_CASE("errors are relative to each column's peak, from a chosen time on", "[study]") {
   const std::vector<std::string> names = {"time_s", "a.deflection_z_m", "b.deflection_z_m",
                                           "w.force_z_mean_n"};
-  // Peaks 4, 10 and 100; what is at t = 0 is left out.
+  // Peaks are 4, 10 and 100; the row at t = 0 is left out.
   const TraceTable reference = table(names, {0., 9., 9., 9., 1., 4., -10., 100., 2., 1., 1., 50.});
   const TraceTable got = table(names, {0., 0., 0., 0., 1., 4., -9., 100., 2., .6, 1., 40.});
   const TraceErrors errors = errors_of(got, reference, {.from = 1., .outputs = {}});
@@ -95,7 +95,7 @@ TEST_CASE("errors are over each column's peak, from a time on", "[study]") {
                     Contains("no rows from 3 s on"));
 }
 
-TEST_CASE("what ended early or is not finite has no error that is small", "[study]") {
+TEST_CASE("a trace that ended early or is not finite has an infinite error", "[study]") {
   const std::vector<std::string> names = {"time_s", "a.deflection_z_m"};
   const TraceTable reference = table(names, {0., 1., 1., 2.});
   const double infinite = std::numeric_limits<double>::infinity();
@@ -105,9 +105,9 @@ TEST_CASE("what ended early or is not finite has no error that is small", "[stud
                     Contains("the reference has no column a.deflection_z_m"));
 }
 
-TEST_CASE("a reference's own error is what it is off by", "[study]") {
+TEST_CASE("a reference's own error estimates its distance from a finer one", "[study]") {
   const Studied study = study_of(kMovingLoad, {}, {});
-  CHECK(study.judged.from == Approx(.06));  // starts released: a fifth of 0.3 s
+  CHECK(study.judged.from == Approx(.06));  // the scene starts released: a fifth of 0.3 s
   const auto level = [&](int levels) {
     return refine(study,
                   {.elements_per_bay = 1, .step = 1e-4, .target = 0., .most_levels = levels});
@@ -116,10 +116,10 @@ TEST_CASE("a reference's own error is what it is off by", "[study]") {
   const double off = errors_of(coarse.trace, fine.trace, study.judged).judged;
   CAPTURE(coarse.error, fine.error, off);
   CHECK(fine.error < .3 * coarse.error);
-  // An estimate: within a factor of 3 of what two more levels show.
+  // An estimate: within a factor of 3 of the error that two more levels show.
   CHECK(coarse.error < 3. * off);
   CHECK(coarse.error > off / 3.);
-  // Refined no further than is asked.
+  // The reference is refined no further than requested.
   CHECK_THAT(
       refine(study, {.elements_per_bay = 1, .step = 1e-4, .target = 1., .most_levels = 5}).how,
       Contains("2 elements a bay") && Contains("2 levels"));
@@ -134,24 +134,24 @@ TEST_CASE("the parts of an error are those of mesh, condensation and step", "[st
   const SettingRow fine = all.row_of({"modal:0.25", 2, "held:0.6", 2e-4});
   REQUIRE(coarse.failure.empty());
   REQUIRE(fine.failure.empty());
-  // Another mesh changes the mesh's part alone, by the fourth power or so of the element's length.
+  // Another mesh changes only the mesh's part, by about the fourth power of the element's length.
   CHECK(fine.parts.mesh < .3 * coarse.parts.mesh);
   CHECK(fine.parts.condensation == Approx(coarse.parts.condensation).epsilon(.3));
-  // No part is left out: the error is at most the sum.
+  // No part is left out: the error is at most their sum.
   for (const SettingRow& own : {coarse, fine})
     CHECK(own.errors.judged <= own.parts.sum() * (1. + 1e-9));
-  // Backward Euler: first order in the step, and nothing of condensation.
+  // Backward Euler has first order in the step and no error of condensation.
   const SettingRow longer = all.row_of({"full", 2, "backward-euler", 1e-3}),
                    shorter = all.row_of({"full", 2, "backward-euler", 5e-4});
   CHECK(longer.parts.condensation == 0.);
   CHECK(longer.parts.mesh == fine.parts.mesh);
   CHECK(longer.parts.step / shorter.parts.step == Approx(2.).epsilon(.25));
-  // What a scene cannot have is a row without a result.
+  // A setting that the scene cannot have gives a row without a result.
   const SettingRow none = all.row_of({"modal:100000", 1, "held:0.6", 2e-4});
   CHECK(none.failure.empty() == (none.kept_unknowns > 0));
 }
 
-TEST_CASE("a front has what nothing cheaper is as good as", "[study]") {
+TEST_CASE("a front has the settings that no cheaper one equals", "[study]") {
   std::vector<SettingRow> rows = {row(3., 1e-3), row(1., 1e-2), row(2., 2e-2),
                                   row(4., 1e-3), row(5., 1e-6), row(6., 1e-7)};
   rows.push_back(row(.1, 0.));
@@ -160,16 +160,16 @@ TEST_CASE("a front has what nothing cheaper is as good as", "[study]") {
   std::vector<bool> front;
   front.reserve(rows.size());
   for (const SettingRow& own : rows) front.push_back(own.on_front);
-  // The last two are both below what can be told apart: the cheaper one stands for them.
+  // The last two errors are both too small to be told apart: the cheaper setting stands for both.
   CHECK(front == std::vector<bool>{true, true, false, false, true, false, false});
   CHECK(cheapest(rows, 1e-2)->cost.us == 1.);
   CHECK(cheapest(rows, 9e-3)->cost.us == 3.);
   CHECK(cheapest(rows, 1e-8) == nullptr);
-  rows[1].parts.mesh = 1.;  // a mesh that a step makes up for
+  rows[1].parts.mesh = 1.;  // an error of the mesh that the step's error cancels
   CHECK(cheapest(rows, 1e-2)->cost.us == 3.);
 }
 
-TEST_CASE("a study's file gives back what it was given, and only to the same study", "[study]") {
+TEST_CASE("a study's file returns what it was given, and only to the same study", "[study]") {
   const auto file = fresh_folder("study_file") / "kept.jsonl";
   SettingRow kept = row(1.25, 1e-3);
   kept.setting = {"modal:1", 2, "held:0.6", 1e-4};

@@ -1,4 +1,4 @@
-// Files for ParaView: what stands in them, decoded here by a reader of its own.
+// Files for ParaView: their content, decoded here by a separate reader.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -64,7 +64,7 @@ const std::string kScenes = RAILSTEP_SOURCE "/config/scenes/";
 
 }  // namespace
 
-TEST_CASE("a mesh says in base64 what was put into it", "[vtk]") {
+TEST_CASE("a mesh file holds in base64 the values put into it", "[vtk]") {
   VtkMesh mesh;
   mesh.add_force({9.F, 8.F, 7.F}, {0.F, 0.F, -1e-3F}, {0.F, 0.F, -5e4F});
   for (const float x : {0.F, 1.F})
@@ -83,8 +83,8 @@ TEST_CASE("a mesh says in base64 what was put into it", "[vtk]") {
   CHECK(array_of<std::int32_t>(file, "part") == std::vector<std::int32_t>{3, 1, 1, 1, 1, 1});
 }
 
-TEST_CASE("a run for ParaView shows the trace's deflection and forces", "[vtk]") {
-  // A load that stands on a node, where the lines alone are exact; single precision: 1e-6.
+TEST_CASE("a run's files for ParaView show the trace's deflection and forces", "[vtk]") {
+  // The load stands on a node, where the lines alone are exact; single precision: 1e-6.
   const auto folder = fresh_folder("vtk");
   const std::string trace = (folder / "trace.csv").string(), out = (folder / "pictures").string();
   const Ran ran = railstep_program("run " + kScenes +
@@ -107,7 +107,7 @@ TEST_CASE("a run for ParaView shows the trace's deflection and forces", "[vtk]")
   CHECK(deflection < -1e-4);
   CHECK(force[2] == -50e3F);
   CHECK_THAT(static_cast<double>(moved[2]), WithinRel(deflection, 1e-6));
-  // The whole section over the seat moves with it, and the rail is as high as its section.
+  // The whole section over the seat moves with the load, and the rail is as high as its section.
   float low = 1.F, high = -1.F;
   int found = 0;
   for (std::size_t i = 6; i < rest.size(); i += 3) {
@@ -117,13 +117,13 @@ TEST_CASE("a run for ParaView shows the trace's deflection and forces", "[vtk]")
     high = std::max(high, rest[i + 2]);
     ++found;
   }
-  CHECK(found == 4);  // a rectangle
+  CHECK(found == 4);  // a rectangle has 4 corners
   CHECK_THAT(static_cast<double>(high) - static_cast<double>(low), WithinAbs(.2319, 1e-6));
   const auto faces = array_of<std::int32_t>(last, "connectivity", 1);
   CHECK(*std::max_element(faces.begin(), faces.end()) < static_cast<std::int32_t>(rest.size() / 3));
 }
 
-TEST_CASE("wheels stand on the rails in their files, with what they carry", "[vtk]") {
+TEST_CASE("the files show wheels on the rails with the forces that they carry", "[vtk]") {
   const auto folder = fresh_folder("vtk_wheels");
   const std::string trace = (folder / "trace.csv").string(), out = (folder / "pictures").string();
   const std::string model = GENERATE("full", "condensed");
@@ -149,7 +149,7 @@ TEST_CASE("wheels stand on the rails in their files, with what they carry", "[vt
   CHECK_THAT(shown[1], WithinRel(last_of(text_of(trace), "wheel_right.force_z_n"), 1e-6));
 }
 
-TEST_CASE("vehicles stand in their files with their wheels' forces and their frame's pitch",
+TEST_CASE("the files show vehicles with the forces of their wheels and the pitch of their frame",
           "[vtk]") {
   const auto folder = fresh_folder("vtk_vehicle");
   const std::string trace = (folder / "trace.csv").string(), out = (folder / "pictures").string();
@@ -175,7 +175,7 @@ TEST_CASE("vehicles stand in their files with their wheels' forces and their fra
     CHECK_THAT(
         shown[wheel],
         WithinRel(last_of(csv, "bogie.wheel_" + std::to_string(wheel + 1) + ".force_z_n"), 1e-6));
-  // Discs of 48 faces and two ends, and the frame's block: its eight points are the last.
+  // Discs have 48 faces and two ends; the frame is a block whose eight points are the last ones.
   const auto part = array_of<std::int32_t>(last, "part");
   CHECK(std::count(part.begin(), part.end(), 2) == 2 * 50);
   REQUIRE(std::count(part.begin(), part.end(), 4) == 6);
@@ -185,7 +185,7 @@ TEST_CASE("vehicles stand in their files with their wheels' forces and their fra
     return static_cast<double>(values[block + 3 * point + d]);
   };
   CHECK_THAT(of(rest, 4, 0) - of(rest, 0, 0), WithinAbs(length, 1e-5));
-  // At rest its springs, two of 1.22 MN/m, sag under frame and body. Single precision of 5 mm.
+  // At rest its two springs of 1.22 MN/m sag under frame and body. Bound: single precision of 5 mm.
   const double sag = 9307.5 * 9.81 / 2.44e6, height = last_of(csv, "bogie.frame.z_m") + sag;
   CHECK(std::abs(pitch) > 1e-4);
   CHECK_THAT(of(moved, 4, 2) - of(moved, 0, 2), WithinAbs(-length * pitch, 1e-8));
@@ -193,7 +193,7 @@ TEST_CASE("vehicles stand in their files with their wheels' forces and their fra
   CHECK_THAT(of(moved, 2, 0) - of(moved, 0, 0), WithinAbs(.3 * pitch, 1e-8));
 }
 
-TEST_CASE("pictures of what has none are refused", "[vtk]") {
+TEST_CASE("--vtk refuses a scene without rails and a path that is a file", "[vtk]") {
   const auto folder = fresh_folder("vtk_bad");
   const Ran bodies =
       railstep_program("run " + kScenes + "double_pendulum.toml --vtk " + (folder / "a").string());

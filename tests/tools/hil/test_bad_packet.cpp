@@ -26,9 +26,9 @@ namespace {
 using Bytes = std::vector<unsigned char>;
 
 const std::vector<std::string> kInputs = {"push.force_n"};
-constexpr double kLimit = 1e3;  // N, of the input
+constexpr double kLimit = 1e3;  // N, limit of the input
 
-/// A packet as the program wants it.
+/// A packet of inputs in the program's own format.
 Bytes packet(std::uint64_t sequence, double value) {
   Bytes bytes(packet_bytes(1));
   encode({.kind = PacketKind::inputs,
@@ -45,7 +45,7 @@ Bytes with(Bytes bytes, std::size_t at, unsigned char value) {
   return bytes;
 }
 
-/// The vehicle's end: a socket of its own on the loopback.
+/// The vehicle's side: a socket on the loopback.
 class Sender {
  public:
   explicit Sender(std::uint16_t port = 0) : file_(socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -73,7 +73,7 @@ class Sender {
   Bytes receive() const {
     Bytes bytes(4096);
     ssize_t got = -1;
-    do  // that nobody listens any more is told before what came
+    do  // an error that nobody listens any more comes before the packets that have arrived
       got = recv(file_, bytes.data(), bytes.size(), 0);
     while (got < 0 && errno == ECONNREFUSED);
     bytes.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
@@ -91,17 +91,17 @@ class Sender {
   int file_;
 };
 
-/// What a packet of outputs tells.
+/// Content of a packet of outputs.
 struct Told {
   PacketHead head;
-  double y;  // of the wheelset, m
+  double y;  // y of the wheelset, m
 };
 
 /// A paced run of a wheelset that an input pushes sideways; it begins with the first good packet.
 class PacedRun {
  public:
   explicit PacedRun(const std::string& words = "", int seconds = 1) {
-    port_ = Sender().own_port();  // free a moment ago
+    port_ = Sender().own_port();  // this port was free a moment ago
     const std::string names = folder_.path("names");
     std::string all = "hil " + shipped("wheelset_on_track") +
                       " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]'"
@@ -117,7 +117,7 @@ class PacedRun {
   PacedRun& operator=(const PacedRun&) = delete;
 
   void send(const Bytes& bytes) const { peer_->send(bytes); }
-  /// From another sender.
+  /// Sends from another sender.
   void send_as_stranger(const Bytes& bytes) const { Sender(port_).send(bytes); }
   Told receive() const {
     std::vector<double> values(outputs_.size());
@@ -127,13 +127,13 @@ class PacedRun {
     const auto y = std::find(outputs_.begin(), outputs_.end(), "wheelset.y_m");
     return {*head, values[static_cast<std::size_t>(y - outputs_.begin())]};
   }
-  /// Outputs until those of a frame.
+  /// Receives outputs up to those of a frame.
   Told receive_until(std::int64_t frame) const {
     Told told = receive();
     while (told.head.frame < frame) told = receive();
     return told;
   }
-  /// Outputs until these bits are set.
+  /// Receives outputs until these bits are set.
   Told receive_until(Status bits) const {
     Told told = receive();
     while ((told.head.status & static_cast<std::uint32_t>(bits)) == 0 &&
@@ -142,7 +142,7 @@ class PacedRun {
     CHECK((told.head.status & static_cast<std::uint32_t>(bits)) != 0);
     return told;
   }
-  /// What the program said at its end.
+  /// Ends the program. @returns the JSON that it printed
   nlohmann::json end(int code = 0) {
     ran_ = hil_->end();
     CAPTURE(ran_.err);
@@ -152,7 +152,7 @@ class PacedRun {
   const std::string& errors() const { return ran_.err; }
 
  private:
-  /// The names behind the line "outputs N SUM".
+  /// Reads the names after the line "outputs N SUM".
   void read_outputs(const std::string& text) {
     std::istringstream lines(text.substr(text.find("outputs ")));
     std::string line;
@@ -170,32 +170,31 @@ class PacedRun {
 
 }  // namespace
 
-TEST_CASE("short, long, foreign and other versions' packets are dropped and counted",
+TEST_CASE("packets that are short, long, foreign or of another version are dropped and counted",
           "[bad_input][hil][cli]") {
   PacedRun run;
-  const Bytes good = packet(1, 10.), wild = packet(1, 1e9);  // whose force would be told of
+  const Bytes good = packet(1, 10.), wild = packet(1, 1e9);  // its force would set a bit
   std::vector<Bytes> bad = {{}, {'R'}, Bytes(51, 'R'), Bytes(1500, 0)};
   for (const std::size_t size : {std::size_t{4}, kPacketHead, wild.size() - 8, wild.size() - 1})
     bad.emplace_back(wild.begin(), wild.begin() + static_cast<std::ptrdiff_t>(size));
   bad.push_back(wild);
-  bad.back().push_back(0);  // long by a byte
-  // another protocol, version, kind, model, count and, behind its sum, another value
+  bad.back().push_back(0);  // a byte too long
+  // Another protocol, version, kind, model, count or, with the old sum, another value.
   for (const std::size_t at : {0u, 4u, 6u, 8u, 12u, 45u})
     bad.push_back(with(wild, at, static_cast<unsigned char>(wild[at] ^ 2)));
   for (const Bytes& each : bad) run.send(each);
   run.send(good);
   run.receive_until(3);
   run.send(packet(2, 10.));
-  run.send_as_stranger(packet(3, 1e9));  // the first one is not silent yet
+  run.send_as_stranger(packet(3, 1e9));  // the first sender is not silent yet
   const auto told = run.end();
   CHECK(told["packets"]["foreign"] == bad.size() + 1);
   CHECK(told["packets"]["good"] == 2);
   CHECK(told["frames"] == 200);
-  CHECK(told["status"].empty());  // none of their forces came through
+  CHECK(told["status"].empty());  // no force of theirs was applied
 }
 
-TEST_CASE("of repeated packets and those out of order the newest is held",
-          "[bad_input][hil][cli]") {
+TEST_CASE("the newest of repeated and reordered packets is held", "[bad_input][hil][cli]") {
   PacedRun run("", 3);
   run.send(packet(1, 10.));
   run.receive_until(3);
@@ -216,7 +215,7 @@ TEST_CASE("a flood of packets leaves the newest and costs no frame", "[bad_input
   PacedRun run("", 4);
   std::uint64_t sent = 0;
   for (int n = 0; n < 5000; ++n) run.send(packet(++sent, 10.));
-  bool last = false, saturated = false;  // the system drops what does not fit: until it is through
+  bool last = false, saturated = false;  // the system may drop packets: until one comes through
   while (!last && !saturated) {
     for (int n = 0; n < 100; ++n) run.send(packet(++sent, 2. * kLimit));
     const Told told = run.receive();
@@ -233,7 +232,7 @@ TEST_CASE("a flood of packets leaves the newest and costs no frame", "[bad_input
   CHECK(in["good"] > 1);
 }
 
-TEST_CASE("NaN and infinity are told of, and the last good force is held",
+TEST_CASE("NaN and infinity set a status bit and the last good force is held",
           "[bad_input][hil][cli]") {
   const auto end_of = [](const std::vector<double>& then) {
     PacedRun run;
@@ -252,12 +251,12 @@ TEST_CASE("NaN and infinity are told of, and the last good force is held",
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
   const double pushed = end_of({});
-  CHECK(pushed > 1e-4);  // the force is felt
+  CHECK(pushed > 1e-4);  // the force has an effect
   CHECK(end_of({nan}) == pushed);
   CHECK(end_of({infinite, -infinite}) == pushed);
 }
 
-TEST_CASE("a huge force is told of and cut to its limit", "[bad_input][hil][cli]") {
+TEST_CASE("a huge force sets a status bit and is cut to its limit", "[bad_input][hil][cli]") {
   const auto end_of = [](double value) {
     PacedRun run;
     run.send(packet(1, value));
@@ -272,13 +271,13 @@ TEST_CASE("a huge force is told of and cut to its limit", "[bad_input][hil][cli]
   CHECK(end_of(1e300) == cut);
 }
 
-TEST_CASE("lost packets are waited for with the last force, then comes a safe stop",
+TEST_CASE("while packets are missing the last force is held, then the run makes a safe stop",
           "[bad_input][hil][cli]") {
   constexpr std::int64_t kSilence = 40;  // frames
   PacedRun run("--silence 0.2 --ramp 0.05");
   run.send(packet(1, 300.));
   run.receive_until(10);
-  run.send(packet(8, 300.));  // 6 are lost
+  run.send(packet(8, 300.));  // 6 packets are lost
   Told told = run.receive();
   const std::int64_t from = told.head.frame;
   while ((told.head.flags & kSafeStop) == 0 && (told.head.flags & kLastFrame) == 0)

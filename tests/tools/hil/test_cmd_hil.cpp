@@ -28,7 +28,7 @@ nlohmann::json told(const Ran& ran) {
   return nlohmann::json::parse(ran.out);
 }
 
-/// A program in a folder of its own, so that two can run side by side.
+/// Runs a program in its own folder, so that two can run side by side.
 Ran ran_in(const std::filesystem::path& folder, const std::string& program,
            const std::string& words) {
   std::filesystem::create_directories(folder);
@@ -38,7 +38,7 @@ Ran ran_in(const std::filesystem::path& folder, const std::string& program,
   return {WEXITSTATUS(status), text_of(folder / "out"), text_of(folder / "err")};
 }
 
-/// A port on the loopback that was free a moment ago, and the socket that holds it until it goes.
+/// A port on the loopback that was free a moment ago, with the socket that holds it.
 struct FreePort {
   FreePort() : file(socket(AF_INET, SOCK_DGRAM, 0)) {
     at.sin_family = AF_INET;
@@ -57,7 +57,7 @@ struct FreePort {
 
 std::string free_address() { return FreePort().address(); }
 
-/// What the client printed of one output.
+/// Value of an output that the client printed.
 double printed(const std::string& text, const std::string& name) {
   const std::size_t at = text.find("  " + name + " ");
   REQUIRE(at != std::string::npos);
@@ -66,7 +66,7 @@ double printed(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a paced run tells its times, settings and state", "[hil][cli]") {
+TEST_CASE("a paced run prints its times, settings and state", "[hil][cli]") {
   const Ran ran = railstep_program("hil " + kWheelset + " --rate 500 --duration 0.4 --json");
   REQUIRE(ran.code == 0);
   const auto result = told(ran);
@@ -83,18 +83,18 @@ TEST_CASE("a paced run tells its times, settings and state", "[hil][cli]") {
   CHECK(result["allocations"] == 0);
   for (const char* setting : {"memory_locked", "stack_touched", "timer_slack_1ns", "sched_fifo"})
     CHECK_THAT(result["realtime"][setting].get<std::string>(),
-               Contains("done") || Contains("refused: "));  // either, as the system lets it
+               Contains("done") || Contains("refused: "));  // either, as the system allows
   CHECK_FALSE(result["realtime"].contains("cpu_pinned"));
 }
 
-TEST_CASE("bodies and joints are paced too, without the heap", "[hil][cli]") {
+TEST_CASE("bodies and joints are paced without the heap too", "[hil][cli]") {
   const auto result = told(
       railstep_program("hil " + kFolder + "slider_crank.toml --rate 500 --duration 0.2 --json"));
   CHECK(result["allocations"] == 0);
   CHECK(result["frames"].get<int>() >= 1);
 }
 
-TEST_CASE("paced frames are the frames of a run, to the bit", "[hil][cli]") {
+TEST_CASE("paced frames give the same bits as a run", "[hil][cli]") {
   const auto folder = fresh_folder("hil_model");
   const std::string model = (folder / "track.model").string();
   REQUIRE(railstep_program("condense " + kWheelset + " --out " + model).code == 0);
@@ -107,7 +107,7 @@ TEST_CASE("paced frames are the frames of a run, to the bit", "[hil][cli]") {
   CHECK(paced["state_hash"] == run["state_hash"]);
 }
 
-TEST_CASE("a frame that stalls meets each policy", "[hil][cli]") {
+TEST_CASE("each policy treats a stalled frame in its own way", "[hil][cli]") {
   const auto stalled = [](const std::string& policy, int code) {
     const Ran ran = railstep_program("hil " + kWheelset +
                                      " --rate 100 --duration 0.4 --grace 0 --stall-frame 10 "
@@ -119,7 +119,7 @@ TEST_CASE("a frame that stalls meets each policy", "[hil][cli]") {
   };
   const auto stop = stalled("stop", 1);
   CHECK(stop["overruns"] == 1);
-  CHECK(stop["frames"].get<int>() <= 11);  // a busy machine may stop it before
+  CHECK(stop["frames"].get<int>() <= 11);  // on a busy machine it may stop earlier
   const auto skip = stalled("skip", 0);
   CHECK(skip["overruns"].get<int>() >= 1);
   CHECK(skip["skipped"].get<int>() >= 4);
@@ -135,16 +135,16 @@ TEST_CASE("a frame that stalls meets each policy", "[hil][cli]") {
   CHECK_FALSE(free_run["realtime"].contains("sched_fifo"));
 }
 
-TEST_CASE("an overrun in the grace is counted apart", "[hil][cli]") {
+TEST_CASE("an overrun during the grace time is counted separately", "[hil][cli]") {
   const auto result = told(railstep_program("hil " + kWheelset +
                                             " --rate 100 --duration 0.3 --grace 0.3 --policy stop "
                                             "--stall-frame 2 --stall-us 30000 --json"));
   CHECK(result["overruns"] == 0);
   CHECK(result["grace_overruns"].get<int>() >= 1);
-  CHECK(result["frame_us"]["max"].is_null());  // nothing is left to be told
+  CHECK(result["frame_us"]["max"].is_null());  // no frame is left to report
 }
 
-TEST_CASE("the program and the client over UDP", "[hil][cli]") {
+TEST_CASE("the program and the client exchange packets over UDP", "[hil][cli]") {
   const auto folder = fresh_folder("hil_udp");
   const std::string address = free_address(), names = (folder / "names").string();
   Started hil("hil " + kPushed +
@@ -164,11 +164,11 @@ TEST_CASE("the program and the client over UDP", "[hil][cli]") {
   CHECK(result["packets"]["sent"].get<int>() >= 1);
   CHECK(result["allocations"] == 0);
   CHECK_THAT(client.out, Contains("frame 99, ") && Contains("flags 1"));
-  CHECK(printed(client.out, "wheelset.y_m") > 0.);  // it was pushed
+  CHECK(printed(client.out, "wheelset.y_m") > 0.);  // the input pushed it
   CHECK(printed(client.out, "time_s") == Approx(result["final_time_s"].get<double>()));
 }
 
-TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
+TEST_CASE("the program and the client exchange blocks over shared memory", "[hil][cli]") {
   const auto folder = fresh_folder("hil_shm");
   const std::string name = "railstep_cli_" + std::to_string(getpid());
   const std::string recording = (folder / "recording").string();
@@ -186,11 +186,11 @@ TEST_CASE("the program and the client over shared memory", "[hil][cli]") {
   CHECK_THAT(client.out, Contains("frame 99, ") && Contains("flags 1"));
   CHECK(printed(client.out, "wheelset.y_m") > 0.);
   const Ran again = railstep_program("replay " + recording + " --json");
-  CHECK(again.code == 0);  // whenever the inputs came, they come again then
+  CHECK(again.code == 0);  // the recording has the inputs at the frames in which they came
   CHECK(told(again)["frames"] == 100);
 }
 
-TEST_CASE("a silence ends in a safe stop, and in exit code 1", "[hil][cli]") {
+TEST_CASE("a silence ends with a safe stop and exit code 1", "[hil][cli]") {
   const auto folder = fresh_folder("hil_silence");
   const std::string name = "railstep_silence_" + std::to_string(getpid());
   Started hil("hil " + kPushed +
@@ -206,7 +206,7 @@ TEST_CASE("a silence ends in a safe stop, and in exit code 1", "[hil][cli]") {
   CHECK(told(ran)["safe_stop_frame"].get<int>() >= 20);
 }
 
-TEST_CASE("without inputs in time nothing is run", "[hil][cli]") {
+TEST_CASE("a run without inputs in time ends before its first frame", "[hil][cli]") {
   const Ran ran = railstep_program("hil " + kPushed +
                                    " --rate 100 --duration 1 --wait 0.05 --udp " + free_address());
   CHECK(ran.code == 1);
@@ -227,7 +227,7 @@ TEST_CASE("hil --report writes histograms", "[hil][cli]") {
   CHECK(entries(folder) == 1);
 }
 
-TEST_CASE("bad words to hil get one sentence and exit code 2", "[hil][cli]") {
+TEST_CASE("bad options of hil are refused in one sentence with exit code 2", "[hil][cli]") {
   const auto refused = [](const std::string& words, const std::string& scene = kWheelset) {
     const Ran ran = railstep_program("hil " + scene + " " + words);
     CAPTURE(words, ran.out, ran.err);

@@ -35,7 +35,7 @@ std::uint64_t word_of(const std::string& bytes, std::size_t word) {
   return value;
 }
 
-/// How often outputs were written into shared memory.
+/// Number of times that outputs were written into shared memory.
 std::uint64_t outputs_of(const std::string& name) {
   const std::string bytes = text_of(shared_file(name));
   if (word_of(bytes, 1) != 1) return 0;
@@ -44,7 +44,7 @@ std::uint64_t outputs_of(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a signal ends a run between two frames, and it is told", "[hil][cli]") {
+TEST_CASE("a signal ends a run between two frames and the program says so", "[hil][cli]") {
   const auto folder = fresh_folder("hil_signal");
   Started hil("hil " + kWheelset + " --rate 100 --duration 6000 --json --names " +
               (folder / "names").string());
@@ -57,8 +57,8 @@ TEST_CASE("a signal ends a run between two frames, and it is told", "[hil][cli]"
   CHECK(nlohmann::json::parse(ran.out)["interrupted"] == true);
 }
 
-TEST_CASE("a signal is heard within a period, however long it is", "[hil][cli]") {
-  // Of 1000 s, so that no patience of the test takes the end of one for it.
+TEST_CASE("a signal ends a run within a period of any length", "[hil][cli]") {
+  // The period is 1000 s: the test would not wait for its end.
   const std::string name = shared_name("slow");
   Started hil("hil " + kPushed + " --rate 0.001 --duration 1e5 --shm " + name);
   hil.await(shared_file(name));
@@ -69,7 +69,7 @@ TEST_CASE("a signal is heard within a period, however long it is", "[hil][cli]")
   CHECK_FALSE(std::filesystem::exists(shared_file(name)));
 }
 
-TEST_CASE("a signal ends the wait for the first inputs, and it is told", "[hil][cli]") {
+TEST_CASE("a signal ends the wait for the first inputs and the program says so", "[hil][cli]") {
   const std::string name = shared_name("waits");
   Started hil("hil " + kPushed + " --rate 100 --duration 1 --wait 1e4 --shm " + name);
   hil.await(shared_file(name));
@@ -79,21 +79,21 @@ TEST_CASE("a signal ends the wait for the first inputs, and it is told", "[hil][
   CHECK_THAT(ran.err, Contains("ended by a signal"));
 }
 
-TEST_CASE("a second signal in a frame that does not end leaves no shared memory", "[hil][cli]") {
+TEST_CASE("a second signal during a frame without end leaves no shared memory", "[hil][cli]") {
   const std::string name = shared_name("stalls");
   Started hil(
       "hil " + kPushed +
       " --rate 1000 --duration 1e5 --policy free-run --stall-frame 1 --stall-us 1e8 --shm " + name);
   hil.await([&] { return outputs_of(name) > 0; });  // frame 0 is over, and 1 takes 100 s
   hil.signal(SIGINT);
-  usleep(100'000);  // two at once may be taken for one
+  usleep(100'000);  // two signals at once may count as one
   hil.signal(SIGINT);
   const Ran ran = hil.end();
   CHECK((ran.code == -SIGINT || ran.code == 1));
   CHECK_FALSE(std::filesystem::exists(shared_file(name)));
 }
 
-TEST_CASE("shared memory that another process cuts short ends the run with a sentence",
+TEST_CASE("shared memory that another process cuts short ends the run with one sentence",
           "[hil][cli]") {
   for (const std::uintmax_t left : {0u, 16u}) {
     const std::string name = shared_name("cut");
@@ -102,7 +102,7 @@ TEST_CASE("shared memory that another process cuts short ends the run with a sen
                             (folder / "recording").string(), name));
     hil.await([&] { return outputs_of(name) > 3; });
     std::filesystem::resize_file(shared_file(name), left);
-    if (left > 0) {  // within a page nothing is met: it is written over
+    if (left > 0) {  // a cut within a page raises no signal, so the rest is overwritten
       const std::string none(left, '\0');
       std::ofstream(shared_file(name), std::ios::binary) << none;
     }

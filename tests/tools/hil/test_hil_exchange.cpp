@@ -30,7 +30,7 @@ namespace {
 const std::vector<std::string> kInputs = {"push.force_n"}, kOutputs = {"time_s", "y_m", "z_m"};
 const ExchangeLayout kLayout{kInputs, kOutputs, 1e6, -1};
 
-/// A socket on the loopback with a port of its own.
+/// A socket on the loopback with its own port.
 class Socket {
  public:
   Socket() : file_(socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -72,7 +72,7 @@ class Socket {
   int file_;
 };
 
-/// Free a moment ago.
+/// A port that was free a moment ago.
 std::uint16_t free_port() { return Socket().port(); }
 
 std::vector<unsigned char> inputs_packet(std::uint64_t sequence, double value,
@@ -98,12 +98,12 @@ void await(Exchange& exchange, std::int64_t frame, double value) {
   FAIL("an input did not come");
 }
 
-/// A name that no other test's process has.
+/// A name that no other process of a test has.
 std::string own_name() { return "railstep_test_" + std::to_string(getpid()); }
 
 }  // namespace
 
-TEST_CASE("the newest value gets through, whole, and only once", "[hil]") {
+TEST_CASE("the newest value arrives whole and only once", "[hil]") {
   constexpr std::int64_t kMost = 100'000;
   NewestBox box(16);
   std::thread producer([&box] {
@@ -128,7 +128,7 @@ TEST_CASE("the newest value gets through, whole, and only once", "[hil]") {
   CHECK(box.take() == nullptr);
 }
 
-TEST_CASE("a queue hands on all, in order, and refuses when it is full", "[hil]") {
+TEST_CASE("a queue hands on all values in order and refuses more when it is full", "[hil]") {
   Queue<int> queue(4, 2);
   const double values[2] = {1., 2.};
   for (int n = 0; n < 4; ++n) CHECK(queue.put(n, values));
@@ -150,15 +150,15 @@ TEST_CASE("a queue hands on all, in order, and refuses when it is full", "[hil]"
   CHECK_FALSE(queue.take([](int, const double*) {}));
 }
 
-TEST_CASE("inputs are held, then a silence takes them to 0 for good", "[hil]") {
+TEST_CASE("inputs are held until a silence takes them to 0 for good", "[hil]") {
   const double good = 8., fresh = 12.;  // the model cut 12 to 8
   HeldInputs held(1, 3, 4);
   for (int n = 0; n < 10; ++n) CHECK(held.next(nullptr, &good)[0] == 0.);
-  CHECK_FALSE(held.stopping());  // nothing ever came
+  CHECK_FALSE(held.stopping());  // no input ever came
   CHECK(held.next(&fresh, &good)[0] == 12.);
   CHECK(held.next(nullptr, &good)[0] == 12.);
   CHECK(held.next(nullptr, &good)[0] == 12.);
-  CHECK(held.next(&fresh, &good)[0] == 12.);  // just in time: it counts anew
+  CHECK(held.next(&fresh, &good)[0] == 12.);  // just in time: the count starts again
   CHECK(held.next(nullptr, &good)[0] == 12.);
   CHECK(held.next(nullptr, &good)[0] == 12.);
   CHECK_FALSE(held.stopping());
@@ -176,13 +176,13 @@ TEST_CASE("inputs are held, then a silence takes them to 0 for good", "[hil]") {
   for (int n = 0; n < 1000; ++n) CHECK(patient.next(nullptr, &good)[0] == 12.);
 }
 
-TEST_CASE("over UDP packets come in, are counted, and outputs go back", "[hil]") {
+TEST_CASE("over UDP packets come in and are counted, and outputs go back", "[hil]") {
   const std::uint16_t port = free_port();
   UdpExchange exchange("127.0.0.1:" + std::to_string(port), kLayout);
   const Socket client, stranger;
   const double values[3] = {1e-3, 2., 3.};
   client.send(inputs_packet(1, 1.), port);
-  await(exchange, 7, 1.);  // the frame stands before the next packets are sent
+  await(exchange, 7, 1.);  // the exchange has the frame before the next packets are sent
   client.send(inputs_packet(2, 2., 9), port);
   client.send(inputs_packet(2, 2., 9), port);         // repeated
   client.send(inputs_packet(5, 5., 6), port);         // 3 and 4 are missing; late
@@ -217,7 +217,7 @@ TEST_CASE("over UDP packets come in, are counted, and outputs go back", "[hil]")
   CHECK(exchange.sent().dropped == 0);
 }
 
-TEST_CASE("outputs that no one asked for, and too many at once, are counted", "[hil]") {
+TEST_CASE("outputs that no one asked for or that are too many at once are counted", "[hil]") {
   UdpExchange exchange("127.0.0.1:" + std::to_string(free_port()), {kInputs, kOutputs, 1e9, -1});
   const double values[3] = {};
   for (int n = 0; n < 100'000; ++n) exchange.outputs({n, Status::ok, 0, values});
@@ -227,14 +227,14 @@ TEST_CASE("outputs that no one asked for, and too many at once, are counted", "[
   CHECK(exchange.sent().unheard + exchange.sent().dropped == 100'000);
 }
 
-TEST_CASE("a flood of packets leaves the newest", "[hil]") {
+TEST_CASE("of a flood of packets the newest one stays", "[hil]") {
   const std::uint16_t port = free_port();
   UdpExchange exchange("127.0.0.1:" + std::to_string(port), kLayout);
   const Socket client;
   std::uint64_t sequence = 0;
   for (int n = 0; n < 20'000; ++n) client.send(inputs_packet(++sequence, 1.), port);
   std::atomic<bool> came{false};
-  std::thread last([&] {  // the system drops what does not fit: until it comes through
+  std::thread last([&] {  // the system may drop packets: until one comes through
     while (!came) client.send(inputs_packet(++sequence, 2.), port);
   });
   await(exchange, 0, 2.);
@@ -246,7 +246,7 @@ TEST_CASE("a flood of packets leaves the newest", "[hil]") {
   CHECK(in.good + in.lost <= static_cast<std::int64_t>(sequence));
 }
 
-TEST_CASE("addresses that cannot be listened on get one sentence", "[hil]") {
+TEST_CASE("an address on which no one can listen is refused in one sentence", "[hil]") {
   const Socket busy;
   const auto told = [](const std::string& address) {
     try {
@@ -264,7 +264,7 @@ TEST_CASE("addresses that cannot be listened on get one sentence", "[hil]") {
   CHECK_THAT(told("no.such.host.invalid:9000"), Contains("no address of this name"));
 }
 
-TEST_CASE("no reader sees half a change", "[hil]") {
+TEST_CASE("no reader sees a half-written change", "[hil]") {
   constexpr std::size_t kWords = 24;
   constexpr std::uint64_t kChanges = 50'000;
   std::vector<SeqLock::Word> memory(1 + kWords);
@@ -291,7 +291,7 @@ TEST_CASE("no reader sees half a change", "[hil]") {
   CHECK(whole >= 2);
 }
 
-TEST_CASE("a writer at work, and one that died at it, do not hold up the reader", "[hil]") {
+TEST_CASE("a writer that is at work or died at work does not delay the reader", "[hil]") {
   std::vector<SeqLock::Word> memory(3);
   SeqLock lock(memory.data(), 2);
   const std::uint64_t words[2] = {4, 5};
@@ -302,7 +302,7 @@ TEST_CASE("a writer at work, and one that died at it, do not hold up the reader"
   memory[0].store(3);
   CHECK_FALSE(lock.read(got, 1000, seen));
   CHECK(seen == 2);
-  lock.write(words);  // the next one mends it
+  lock.write(words);  // the next write repairs it
   CHECK(lock.read(got, 1, seen));
   CHECK(seen == 4);
 }
@@ -312,11 +312,11 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
   std::vector<std::string> inputs;
   inputs.reserve(12);
   for (int i = 0; i < 12; ++i) inputs.push_back("force_" + std::to_string(i));
-  const std::string name = own_name();  // the child has another number
+  const std::string name = own_name();  // the child has another process number
   SharedExchange exchange(name, {inputs, kOutputs, 1e6, -1});
   const pid_t child = fork();
   REQUIRE(child >= 0);
-  if (child == 0) {  // only what a child of a program with threads may do
+  if (child == 0) {  // only calls that a child of a program with threads may make
     const int file = shm_open(("/" + name).c_str(), O_RDWR, 0);
     auto* const word = static_cast<SeqLock::Word*>(
         mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0));
@@ -338,7 +338,7 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
   for (double last = 0.; last < static_cast<double>(kChanges);) {
     const double* const came = exchange.inputs(4);
     if (came == nullptr) {
-      REQUIRE(waitpid(child, nullptr, WNOHANG) == 0);  // else this would wait for ever
+      REQUIRE(waitpid(child, nullptr, WNOHANG) == 0);  // otherwise endless
       continue;
     }
     for (int i = 1; i < 12; ++i) torn += came[i] == came[0] ? 0 : 1;
@@ -346,9 +346,9 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
     last = came[0];
   }
   CHECK(torn == 0);
-  CHECK(exchange.inputs(4) == nullptr);  // nothing new
+  CHECK(exchange.inputs(4) == nullptr);  // there is no new value
   CHECK(exchange.counts().fresh >= 1);
-  CHECK(exchange.counts().late >= 1);  // at least the last one
+  CHECK(exchange.counts().late >= 1);  // at least the last one is late
   const double values[3] = {0., 1., 7.5};
   exchange.outputs({41, Status::large_turn, kSafeStop, values});
   int status = -1;
@@ -356,9 +356,9 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
   CHECK(WEXITSTATUS(status) == 0);
 }
 
-TEST_CASE("memory that is cut short gives zeros and is known as lost", "[hil]") {
+TEST_CASE("memory that is cut short gives zeros and counts as lost", "[hil]") {
   const std::string file = "/dev/shm/" + own_name();
-  std::vector<std::string> many(2000, "x");  // over several pages
+  std::vector<std::string> many(2000, "x");  // they fill several pages
   for (const int left : {0, 4096}) {
     SharedExchange exchange(own_name(), {many, many, 1e6, -1});
     const std::vector<double> values(many.size(), 1.);
@@ -372,7 +372,7 @@ TEST_CASE("memory that is cut short gives zeros and is known as lost", "[hil]") 
   CHECK(access(file.c_str(), F_OK) != 0);
 }
 
-TEST_CASE("the memory says what is in it, and goes with the exchange", "[hil]") {
+TEST_CASE("the shared memory describes its content and is removed with the exchange", "[hil]") {
   const std::string path = "/dev/shm/" + own_name();
   {
     const SharedExchange exchange(own_name(), kLayout);
@@ -380,7 +380,7 @@ TEST_CASE("the memory says what is in it, and goes with the exchange", "[hil]") 
     REQUIRE(file >= 0);
     std::uint64_t head[kSharedHead];
     CHECK(read(file, head, sizeof head) == sizeof head);
-    // blocks of 4 and 6 words with their locks, on lines of 64 bytes
+    // Blocks of 4 and 6 words with their locks, on lines of 64 bytes.
     const std::uint64_t want[] = {0x316d68736c696172ULL, 1, 1, 3, 64, 128, 192, 28};
     for (std::size_t i = 0; i < kSharedHead; ++i) CHECK(head[i] == want[i]);
     std::string names(28, ' ');

@@ -13,7 +13,7 @@ using Catch::Contains;
 
 namespace {
 
-/// From 20 ns to beyond the last bin, most of them short.
+/// Samples from 20 ns to beyond the last bin; most of them are short.
 std::vector<std::int64_t> samples(std::size_t count) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> exponent(3.5, 1.3);
@@ -25,7 +25,7 @@ std::vector<std::int64_t> samples(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("quantiles are those of the sorted samples, up to a bin", "[hil]") {
+TEST_CASE("quantiles are those of the sorted samples up to the width of a bin", "[hil]") {
   std::vector<std::int64_t> ns = samples(100'001);
   Latency times;
   for (const std::int64_t each : ns) times.add(each);
@@ -35,7 +35,7 @@ TEST_CASE("quantiles are those of the sorted samples, up to a bin", "[hil]") {
     const std::int64_t exact = ns[rank - 1];
     const double width = exact < Latency::kFineEnd ? .01 : exact < Latency::kCoarseEnd ? 1. : 3e6;
     CAPTURE(q, exact);
-    // up to the rounding of a decimal
+    // The bounds allow for the rounding of a decimal.
     CHECK(times.quantile_us(q) >= 1e-3 * static_cast<double>(exact) - 1e-9);
     CHECK(times.quantile_us(q) <= 1e-3 * static_cast<double>(exact) + width + 1e-9);
   }
@@ -54,7 +54,7 @@ TEST_CASE("bins of 1 us hold the samples that begin with that microsecond", "[hi
   CHECK(times.microseconds() == naive);
 }
 
-TEST_CASE("borders of bins, nothing, and less than nothing", "[hil]") {
+TEST_CASE("borders of bins, no samples and negative samples are counted", "[hil]") {
   Latency times;
   CHECK(std::isnan(times.quantile_us(.5)));
   times.add(-5);

@@ -21,8 +21,8 @@ std::atomic<int> realtime_asked{0}, monotonic_asked{0}, bad_sleeps{0}, sleeps{0}
 
 }  // namespace
 
-// In the place of the C library's: a time of day that jumps by an hour whenever someone looks, and
-// an account of who asks for which clock.
+// These replace the C library's functions: the time of day jumps by an hour at each reading, and
+// every reading of a clock is counted.
 extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
   const auto code = static_cast<int>(syscall(SYS_clock_gettime, clock, time));
   if (clock == CLOCK_REALTIME) time->tv_sec += 3600 * ++realtime_asked;
@@ -39,12 +39,12 @@ namespace {
 
 constexpr double kPeriod = 1e6;  // ns
 
-/// Time that passes where a test lets it: in frames, and a little at each wake-up.
+/// A clock that moves only where a test lets it: in frames, and a little at each wake-up.
 struct FakeClock {
   std::int64_t* time;
   std::int64_t wakes_late = 0;
   std::int64_t now() const noexcept { return *time; }
-  std::int64_t until = std::numeric_limits<std::int64_t>::max();  // when it is interrupted
+  std::int64_t until = std::numeric_limits<std::int64_t>::max();  // time of an interruption
   bool sleep_until(std::int64_t ns) const noexcept {
     *time = ns + wakes_late;
     return ns < until;
@@ -53,11 +53,11 @@ struct FakeClock {
 
 struct Told {
   Paced paced;
-  std::vector<double> begun;  // of each frame, in periods from the first slot's begin
+  std::vector<double> begun;  // start of each frame, in periods from the start of the first slot
   Latency wakeup, work;
 };
 
-/// Frames that take 0.3 periods each but for one of them.
+/// Runs frames of 0.3 periods each except for one.
 Told paced(Policy policy, std::int64_t slots, std::int64_t grace, std::int64_t long_frame,
            double long_periods, std::int64_t wakes_late = 0) {
   std::int64_t time = 123'456'789;
@@ -83,7 +83,7 @@ void check_begun(const Told& told, const std::vector<double>& want) {
 
 }  // namespace
 
-TEST_CASE("stop ends the run behind the frame that ended late", "[hil]") {
+TEST_CASE("stop ends the run after the frame that ended late", "[hil]") {
   const Told told = paced(Policy::stop, 10, 0, 2, 1.5);
   check_begun(told, {0., 1., 2.});
   CHECK(told.paced.stopped);
@@ -99,35 +99,35 @@ TEST_CASE("a frame that ends with its slot is in time", "[hil]") {
   CHECK(told.paced.overruns == 0);
 }
 
-TEST_CASE("skip leaves slots empty that have begun", "[hil]") {
+TEST_CASE("skip leaves the slots empty that have begun", "[hil]") {
   const Told told = paced(Policy::skip, 9, 0, 2, 2.5);
   check_begun(told, {0., 1., 2., 5., 6., 7., 8.});
   CHECK(told.paced.overruns == 1);
   CHECK(told.paced.skipped == 2);
   CHECK(told.paced.frames + told.paced.skipped == 9);
   check_begun(paced(Policy::skip, 9, 0, 2, 3.),
-              {0., 1., 2., 5., 6., 7., 8.});  // it begins just then
+              {0., 1., 2., 5., 6., 7., 8.});  // the next slot begins at that time
   const Told at_the_end = paced(Policy::skip, 4, 0, 2, 7.);
   CHECK(at_the_end.paced.frames == 3);
   CHECK(at_the_end.paced.skipped == 1);
 }
 
-TEST_CASE("catch-up makes every frame, at once until the schedule is met", "[hil]") {
+TEST_CASE("catch-up makes every frame without a wait until the schedule is met", "[hil]") {
   const Told told = paced(Policy::catch_up, 8, 0, 2, 2.5);
   check_begun(told, {0., 1., 2., 4.5, 4.8, 5.1, 6., 7.});
-  CHECK(told.paced.overruns == 3);  // the long one, and two that began behind it
+  CHECK(told.paced.overruns == 3);  // the long one and two that began late
   CHECK(told.paced.skipped == 0);
-  CHECK(told.wakeup.count() == 5);  // of frames that slept
+  CHECK(told.wakeup.count() == 5);  // of the frames that slept
 }
 
-TEST_CASE("free-run never waits, and counts frames longer than a period", "[hil]") {
+TEST_CASE("free-run never waits and counts frames longer than a period", "[hil]") {
   const Told told = paced(Policy::free_run, 5, 0, 1, 1.2);
   check_begun(told, {0., .3, 1.5, 1.8, 2.1});
   CHECK(told.paced.overruns == 1);
   CHECK(told.wakeup.count() == 0);
 }
 
-TEST_CASE("within the grace an overrun is passed over, whatever the policy", "[hil]") {
+TEST_CASE("an overrun within the grace time counts as none under every policy", "[hil]") {
   for (const Policy policy : {Policy::stop, Policy::skip, Policy::catch_up}) {
     const Told told = paced(policy, 9, 3, 1, 2.5);
     check_begun(told, {0., 1., 4., 5., 6., 7., 8.});
@@ -135,12 +135,12 @@ TEST_CASE("within the grace an overrun is passed over, whatever the policy", "[h
     CHECK(told.paced.overruns == 0);
     CHECK(told.paced.grace_overruns == 1);
     CHECK(told.paced.skipped == 2);
-    CHECK(told.work.count() == 5);  // those of the grace are not told
+    CHECK(told.work.count() == 5);  // frames in the grace time are not counted
   }
-  CHECK(paced(Policy::stop, 9, 3, 3, 2.5).paced.stopped);  // just behind it
+  CHECK(paced(Policy::stop, 9, 3, 3, 2.5).paced.stopped);  // the first frame after the grace time
 }
 
-TEST_CASE("wake-up latency is apart from what a frame takes", "[hil]") {
+TEST_CASE("wake-up latency is separate from the time of a frame", "[hil]") {
   const Told told = paced(Policy::skip, 50, 0, -1, 0., 7'000);
   CHECK(told.wakeup.quantile_us(.5) == Approx(7.));
   CHECK(told.work.quantile_us(.5) == Approx(300.));
@@ -165,11 +165,11 @@ TEST_CASE("an interrupted sleep ends the run before its frame", "[hil]") {
   const FakeClock clock{&time, 0, static_cast<std::int64_t>(5.5 * kPeriod)};
   const Paced met = pace(
       {kPeriod, 10, 0, Policy::skip}, clock, [](std::int64_t) { return true; }, wakeup, work);
-  CHECK(met.frames == 5);  // the first one a period behind the start
+  CHECK(met.frames == 5);  // the first one begins a period after the start
   CHECK(met.ended);
 }
 
-TEST_CASE("a sleep ends where it is asked to, however long it was to be", "[hil]") {
+TEST_CASE("a sleep of any length ends when it is interrupted", "[hil]") {
   std::atomic<bool> interrupted{false};
   const MonotonicClock clock{&interrupted};
   CHECK(clock.sleep_until(clock.now() + 1'000'000));
@@ -185,10 +185,11 @@ TEST_CASE("a sleep ends where it is asked to, however long it was to be", "[hil]
   CHECK_FALSE(clock.sleep_until(before));
 }
 
-TEST_CASE("slots do not drift, and the first from a time on is that", "[hil]") {
+TEST_CASE("slots do not drift, and the first slot from a time on begins at that time or later",
+          "[hil]") {
   const Schedule thirds{1e9 / 3., 1, 0, Policy::skip};
   for (const std::int64_t s : {1LL, 100LL, 86'400LL, 31'536'000LL})
-    // a period is rounded to 2^-53 of itself: 2e-16 of the time, and half a ns of the slot
+    // A period is rounded to 2^-53 of itself: 2e-16 of the time. A slot adds half a ns.
     CHECK(std::abs(thirds.begin(3 * s) - s * 1'000'000'000) <= 1 + s / 5'000'000);
   std::mt19937_64 random(3);
   for (const double period : {1e3, 1e9 / 3., 62'500., 1e6 / 7., 1e12}) {
@@ -203,11 +204,11 @@ TEST_CASE("slots do not drift, and the first from a time on is that", "[hil]") {
   }
 }
 
-TEST_CASE("a time of day that jumps does not reach the pacing", "[hil]") {
+TEST_CASE("a jump of the time of day does not affect the pacing", "[hil]") {
   timespec day{}, later{};
   clock_gettime(CLOCK_REALTIME, &day);
   clock_gettime(CLOCK_REALTIME, &later);
-  REQUIRE(later.tv_sec >= day.tv_sec + 3600);  // it does jump, and the account does see who asks
+  REQUIRE(later.tv_sec >= day.tv_sec + 3600);  // it does jump, and readings are counted
   REQUIRE(realtime_asked >= 2);
   realtime_asked = monotonic_asked = bad_sleeps = sleeps = 0;
   Latency wakeup, work;
@@ -216,7 +217,7 @@ TEST_CASE("a time of day that jumps does not reach the pacing", "[hil]") {
   const Paced met = pace(
       {kPeriod, 20, 0, Policy::catch_up}, clock, [](std::int64_t) { return true; }, wakeup, work);
   const std::int64_t took = clock.now() - before;
-  const int looked = realtime_asked;  // before the test's own framework looks
+  const int looked = realtime_asked;  // before the test framework reads the clock
   CHECK(looked == 0);
   CHECK(met.frames == 20);
   CHECK(took >= 20 * static_cast<std::int64_t>(kPeriod));

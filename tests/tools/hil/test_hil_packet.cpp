@@ -30,7 +30,7 @@ Bytes packet(std::uint64_t sequence, std::int64_t frame = -1, double first = 1.5
   return bytes;
 }
 
-/// A receiver, and what it took last.
+/// A receiver with the values that it took last.
 struct Ear {
   Receiver receiver{names_sum(kNames), 2};
   double value[2] = {0., 0.};
@@ -53,8 +53,8 @@ TEST_CASE("the sum is the CRC-32 of zlib", "[hil]") {
   CHECK(names_sum(kNames) == 0x575e95fau);
 }
 
-TEST_CASE("a packet, byte by byte", "[hil]") {
-  // written with Python's struct and zlib from the table of docs/hil.md
+TEST_CASE("a packet has the documented bytes", "[hil]") {
+  // Written with Python's struct and zlib from the table of docs/hil.md.
   const Bytes want = {0x52, 0x53, 0x48, 0x4c, 0x01, 0x00, 0x01, 0x00, 0xfa, 0x95, 0x5e, 0x57,
                       0x02, 0x00, 0x00, 0x00, 0x08, 0x07, 0x06, 0x05, 0x04, 0x03, 0x02, 0x01,
                       0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x00, 0x00, 0x00, 0x00,
@@ -63,7 +63,7 @@ TEST_CASE("a packet, byte by byte", "[hil]") {
   CHECK(packet(0x0102030405060708) == want);
 }
 
-TEST_CASE("what is decoded is what was encoded", "[hil]") {
+TEST_CASE("decoding returns the values that were encoded", "[hil]") {
   const double values[3] = {std::numeric_limits<double>::quiet_NaN(), -0.,
                             std::numeric_limits<double>::denorm_min()};
   const PacketHead head{PacketKind::outputs, 5, 3, 1ULL << 40, 1LL << 50, 0x1234, kSafeStop};
@@ -97,11 +97,12 @@ TEST_CASE("every flipped bit, every other length and other names are refused", "
   CHECK_FALSE(decode(whole, PacketKind::outputs, names, 2, values));
   CHECK_FALSE(decode(whole, PacketKind::inputs, names + 1, 2, values));
   CHECK_FALSE(decode(whole, PacketKind::inputs, names, 3, values));
-  CHECK(values[0] == 4.);  // nothing was written
+  CHECK(values[0] == 4.);  // no value was written
   CHECK(decode(whole, PacketKind::inputs, names, 2, values));
 }
 
-TEST_CASE("lost, repeated and reordered packets are told apart, the newest wins", "[hil]") {
+TEST_CASE("lost, repeated and reordered packets are counted separately and the newest wins",
+          "[hil]") {
   Ear ear;
   CHECK(ear.take(packet(10, -1, 10.)));
   CHECK(ear.take(packet(11, -1, 11.)));
@@ -114,14 +115,14 @@ TEST_CASE("lost, repeated and reordered packets are told apart, the newest wins"
   CHECK_FALSE(ear.take(packet(13, -1, 13.)));
   CHECK_FALSE(ear.take(packet(15, -1, 15.)));
   CHECK(ear.counts().repeated == 2);
-  CHECK_FALSE(ear.take(packet(9)));  // from before the first: it was never missed
+  CHECK_FALSE(ear.take(packet(9)));  // it came before the first one, so it was not missing
   CHECK(ear.counts().reordered == 2);
   CHECK(ear.counts().lost == 2);
   CHECK(ear.value[0] == 15.);
   CHECK(ear.take(packet(15 + Receiver::kMemory)));
-  CHECK_FALSE(ear.take(packet(14)));  // too long ago to be known
+  CHECK_FALSE(ear.take(packet(14)));  // too old to be remembered
   CHECK(ear.counts().repeated == 3);
-  CHECK_FALSE(ear.take(packet(16)));  // but this is not
+  CHECK_FALSE(ear.take(packet(16)));  // this one is remembered
   CHECK(ear.counts().reordered == 3);
   CHECK(ear.counts().good == 4);
   CHECK(ear.counts().foreign == 0);
@@ -165,7 +166,7 @@ TEST_CASE("foreign packets and other senders change nothing", "[hil]") {
   CHECK(ear.counts().lost == 0);
 }
 
-TEST_CASE("one number far ahead does not shut out those that follow", "[hil]") {
+TEST_CASE("one number far ahead does not shut out those that follow it", "[hil]") {
   Ear ear;
   CHECK(ear.take(packet(1)));
   CHECK_FALSE(ear.take(packet(Receiver::kMostSequence)));
@@ -174,11 +175,11 @@ TEST_CASE("one number far ahead does not shut out those that follow", "[hil]") {
   CHECK(ear.take(packet(2 + Receiver::kMostAhead)));
   CHECK(ear.counts().lost == static_cast<std::int64_t>(Receiver::kMostAhead - 1));
   ear.now += Receiver::kPeerSilence;
-  CHECK(ear.take(packet(Receiver::kMostSequence)));  // the sender begins anew there
+  CHECK(ear.take(packet(Receiver::kMostSequence)));  // the sender starts again there
   CHECK(ear.counts().lost == static_cast<std::int64_t>(Receiver::kMostAhead - 1));
 }
 
-TEST_CASE("behind a silence another sender is taken, and one that starts anew", "[hil]") {
+TEST_CASE("after a silence another sender or one that starts again is accepted", "[hil]") {
   Ear ear;
   CHECK(ear.take(packet(100)));
   CHECK_FALSE(ear.take(packet(1)));
@@ -189,11 +190,11 @@ TEST_CASE("behind a silence another sender is taken, and one that starts anew", 
   CHECK(ear.take(packet(1), 9));
   CHECK_FALSE(ear.take(packet(2), 7));
   ear.now += Receiver::kPeerSilence;
-  CHECK(ear.take(packet(5), 9));  // the same one goes on: what is missing was lost
+  CHECK(ear.take(packet(5), 9));  // the same sender goes on: missing packets were lost
   CHECK(ear.counts().lost == 3);
 }
 
-TEST_CASE("inputs for a frame that has begun are taken, and counted as late", "[hil]") {
+TEST_CASE("inputs for a frame that has begun are accepted and counted as late", "[hil]") {
   Ear ear;
   CHECK(ear.take(packet(1, 6), 7, 5));
   CHECK(ear.counts().late == 0);

@@ -27,7 +27,7 @@ const std::string kTwoWheels =
     "limit_n=1e6}]";
 constexpr double kDt = 1e-3, kHertz = 9e10;
 constexpr int kFrames = 200;
-/// Of one wheel: what is sent, and what stands at the end of what comes.
+/// Places of one wheel in the packets: from the start of what is sent, from the end of the answer.
 enum { kPlace = 0, kForce = 4, kNextPlace = 5, kSent = 7, kAnswer = 11, kFreeZ = 4, kGive = 10 };
 
 std::unique_ptr<Simulation> open_track() {
@@ -49,7 +49,7 @@ HilPlan plan_of(std::int64_t frames) {
   return plan;
 }
 
-/// The vehicle of tools/examples, which sends a packet for each one that comes.
+/// The vehicle of tools/examples, which sends a packet for each one that it receives.
 struct Rider {
   ::Scheme scheme = scheme_of(kDt);
   ::Vehicle vehicle{};
@@ -69,7 +69,7 @@ struct Rider {
   }
 };
 
-/// Forces on the rail where vehicle and track are in one program, and the track's state at the end.
+/// Forces on the rail if vehicle and track are in one program, and the track's state at the end.
 struct Coupled {
   Values force;
   std::uint64_t hash = 0;
@@ -95,7 +95,7 @@ Coupled in_one_program() {
   return all;
 }
 
-/// Lets each frame wait for its inputs, so that no clock decides which ones it takes.
+/// Makes each frame wait for its inputs, so that no clock decides which inputs it takes.
 class LockStep : public Exchange {
  public:
   explicit LockStep(Exchange& of) : of_(of) {}
@@ -112,7 +112,7 @@ class LockStep : public Exchange {
   Exchange& of_;
 };
 
-/// The ride of a vehicle that is reached by packets alone.
+/// Forces of a vehicle that is reached only by packets.
 /// @param track  steps the track until it has made its frames
 template <class Track>
 Values ride(const ExchangeLayout& layout, Peer& peer, Track&& track) {
@@ -158,7 +158,7 @@ Coupled by_packets(const std::string& way) {
   return all;
 }
 
-/// Gives two wheels' inputs frame by frame, but none in one frame, and keeps what comes back.
+/// Gives the inputs of two wheels for every frame but one and keeps the outputs.
 struct Script : Exchange {
   static constexpr int kSilent = 7;
   std::vector<Values> given, made;
@@ -178,7 +178,7 @@ double x_at(int wheel, int frame) { return 4. + .7 * wheel + .03 * frame; }
 
 }  // namespace
 
-TEST_CASE("a vehicle reached by packets alone is the vehicle in one program, to the bit",
+TEST_CASE("a vehicle reached only by packets gives the same bits as a vehicle in one program",
           "[hil][response]") {
   const Coupled want = in_one_program();
   CHECK(*std::min_element(want.force.begin(), want.force.end()) < -5e4);
@@ -223,7 +223,7 @@ TEST_CASE("the response in each output is that of the next frame", "[hil][respon
     for (int frame = -1; frame < kMade; ++frame) {
       CAPTURE(kind, frame);
       if (frame >= 0) {
-        const int of = frame == Script::kSilent ? frame - 1 : frame;  // held
+        const int of = frame == Script::kSilent ? frame - 1 : frame;  // the inputs are held
         const Values& in = script.given[static_cast<std::size_t>(of)];
         static_cast<void>(
             advance_frame(beside->model(), in.data(), beside->state, beside->workspace, outputs));
@@ -242,7 +242,7 @@ TEST_CASE("the response in each output is that of the next frame", "[hil][respon
   }
 }
 
-TEST_CASE("places that meet something say so a frame before", "[hil][response]") {
+TEST_CASE("a place that meets a limit sets its status bit one frame earlier", "[hil][response]") {
   const auto run = open_track();
   Script script;
   script.made.assign(4, Values(layout_of(*run).outputs.size()));
@@ -258,10 +258,10 @@ TEST_CASE("places that meet something say so a frame before", "[hil][response]")
   const std::vector<Status> want = {Status::ok, Status::ok, Status::off_rail, Status::ok,
                                     Status::ok};  // the start, the frames, the last one again
   CHECK(told.status == want);
-  CHECK(record.status == Status::ok);  // no frame was made there
+  CHECK(record.status == Status::ok);  // no frame was made at that place
 }
 
-TEST_CASE("the example's vehicle over UDP, paced, is that of the C interface",
+TEST_CASE("the example's vehicle, paced over UDP, rides as that of the C interface",
           "[hil][response][cli]") {
   const auto folder = fresh_folder("hil_response");
   const auto file = [&](const char* name) { return (folder / name).string(); };
@@ -271,8 +271,8 @@ TEST_CASE("the example's vehicle over UDP, paced, is that of the C interface",
   REQUIRE(std::system(
               (std::string(OWN_VEHICLE) + " " + file("model") + " 0.05 9e10 > " + file("own.csv"))
                   .c_str()) == 0);
-  // A frame that is made before its forces came, on a busy machine, is another ride: once more,
-  // with more time for each.
+  // On a busy machine a frame may be made before its forces came, which is another ride: the test
+  // then repeats it with more time for each frame.
   bool in_time = false;
   for (int rate = 100; rate >= 10 && !in_time; rate -= 30) {
     std::filesystem::remove(file("names"));
@@ -294,7 +294,8 @@ TEST_CASE("the example's vehicle over UDP, paced, is that of the C interface",
   CHECK(text_of(file("udp.csv")) == text_of(file("own.csv")));
 }
 
-TEST_CASE("a response of nothing, and to no one, is refused", "[hil][response][cli]") {
+TEST_CASE("a response without external wheels or without an exchange is refused",
+          "[hil][response][cli]") {
   const Ran alone = railstep_program("hil " + kTrack + " --rate 100 --duration 0.1 --response");
   CHECK(alone.code == 2);
   CHECK_THAT(alone.err, Contains("want --udp or --shm"));

@@ -15,13 +15,13 @@ using namespace railstep;
 namespace {
 
 const std::string kTrack = std::string(RAILSTEP_SOURCE) + "/config/scenes/open_track.toml";
-/// The vehicle of tools/examples/own_vehicle.c, in the model.
+/// The vehicle of tools/examples/own_vehicle.c as a part of the model.
 const std::string kInside =
     " --set 'external_wheel=[]' --set 'vehicle=[{name=\"v\", type=\"sprung_mass\", mass_kg=5000, "
     "unsprung_mass_kg=900, stiffness_n_per_m=1e6, damping_n_s_per_m=2e4, start_m=0.3, "
     "speed_m_per_s=30}]'";
 
-/// Words for `run`: steps of that length, each a frame.
+/// Options of `run` for steps of this length, one step a frame.
 std::string stepped(const std::string& dt) { return " --step " + dt + " --set step.frame_s=" + dt; }
 
 /// The constant of that vehicle's Hertz contact, N/m^1.5.
@@ -33,7 +33,7 @@ double hertz_of_inside() {
   return run->model().vehicle_wheel[0].contact.hertz;
 }
 
-/// What the program in C says of its ride over the track.
+/// Rows that the program in C prints of its ride over the track.
 Rows ride(const std::string& dt, const std::string& seconds, const char* way = "") {
   const auto folder = fresh_folder("own_vehicle");
   const std::string model = (folder / "track.model").string();
@@ -66,22 +66,22 @@ double difference(const Rows& own, const Rows& inside) {
 
 }  // namespace
 
-TEST_CASE("a vehicle outside, coupled by the step's compliance, is the vehicle in the model",
+TEST_CASE("a vehicle outside, coupled by the step's compliance, rides as the vehicle in the model",
           "[own_vehicle]") {
   for (const char* dt : {"1e-4", "1e-3"}) {
     const Rows inside = traced(fmt::format("{}{} --duration 0.5{}", kTrack, stepped(dt), kInside));
     const Rows own = ride(dt, "0.5");
     CAPTURE(dt);
-    // 2^-52 times the track's stiffness against its own inertia terms (1e6 a step) over thousands
-    // of steps; the wheel's Newton stops at 1e-16 of the penetration on both sides.
+    // Rounding 2^-52 times the ratio of the track's stiffness to its inertia terms (1e6 a step),
+    // over thousands of steps. Both wheels' Newton iterations stop at 1e-16 of the penetration.
     CHECK(difference(own, inside) < 1e-9);
   }
 }
 
-TEST_CASE("coupled by the force of the frame before it is not", "[own_vehicle]") {
+TEST_CASE("a vehicle coupled by the force of the frame before rides differently", "[own_vehicle]") {
   const Rows inside = traced(kTrack + stepped("1e-3") + " --duration 0.1" + kInside);
   const Rows own = ride("1e-3", "0.1", "explicit");
-  const bool lost = own.row.size() + 1 < inside.row.size();  // it ended beyond 1e12 N
+  const bool lost = own.row.size() + 1 < inside.row.size();  // the ride ended beyond 1e12 N
   if (!lost) CHECK(difference(own, inside) > .5);
   const Rows fine = traced(kTrack + stepped("1e-5") + " --duration 0.1" + kInside);
   CHECK(difference(ride("1e-5", "0.1", "explicit"), fine) < .1);

@@ -15,7 +15,7 @@ const std::string kMovingLoad = shipped("moving_load"), kPendulum = shipped("dou
 
 std::string set(const std::string& override) { return " --set '" + override + "'"; }
 
-/// Refuses a run of a scene with keys replaced, where a trace and a recording stand.
+/// Checks that a run of a scene with replaced keys is refused and keeps an old trace and recording.
 void run_refuses(const std::string& scene, const Words& overrides, const Words& said) {
   const BadInput bad("scene");
   std::string words = "run " + scene;
@@ -23,7 +23,7 @@ void run_refuses(const std::string& scene, const Words& overrides, const Words& 
   bad.refused(words + bad.old("--trace", "t.csv") + bad.old("--record", "r.bin"), said);
 }
 
-/// Refuses a scene of this text; its line and column are in the words.
+/// Checks that a scene of this text is refused; its line and column are among the words.
 void text_refused(const std::string& text, const Words& said) {
   const BadInput bad("text");
   bad.refused("run " + bad.file("bad.toml", text) + bad.old("--trace", "t.csv"), said);
@@ -31,14 +31,14 @@ void text_refused(const std::string& text, const Words& said) {
 
 std::string moving_load() { return text_of(kMovingLoad); }
 
-/// A piece of the shipped scene replaced.
+/// Checks that the shipped scene is refused after `old` was replaced by `fresh`.
 void text_refused(const std::string& old, const std::string& fresh, const Words& said) {
   text_refused(replaced(moving_load(), old, fresh), said);
 }
 
 }  // namespace
 
-TEST_CASE("an unknown key is refused with the nearest", "[bad_input][cli]") {
+TEST_CASE("an unknown key is refused with the nearest known one", "[bad_input][cli]") {
   run_refuses(
       kMovingLoad, {"support.stifness_z_n_per_m=1"},
       {"[support] unknown key 'stifness_z_n_per_m'", "did you mean 'stiffness_z_n_per_m'?"});
@@ -51,7 +51,7 @@ TEST_CASE("an unknown key is refused with the nearest", "[bad_input][cli]") {
   text_refused("bay_m = 0.6", "bay = 0.6", {"bad.toml:9:1", "[track]", "'bay_m'", "'bay'"});
 }
 
-TEST_CASE("a key given twice is refused where it stands again", "[bad_input][cli]") {
+TEST_CASE("a key given twice is refused at its second place", "[bad_input][cli]") {
   text_refused("bays = 16", "bays = 16\nbays = 3", {"bad.toml:9:", "bays"});
   text_refused(moving_load() + "[support]\nat = \"foot\"\n", {"bad.toml:46:", "support"});
   text_refused("schema = 1\n", "schema = 1\nrail.rectangle = {}\n", {"bad.toml:13:", "rectangle"});
@@ -69,7 +69,7 @@ TEST_CASE("a number given as text is refused", "[bad_input][cli]") {
   run_refuses(kMovingLoad, {"load[0].may_leave_rail=1"}, {"may_leave_rail", "an integer"});
 }
 
-TEST_CASE("masses, stiffnesses and lengths that are none are refused", "[bad_input][cli]") {
+TEST_CASE("impossible masses, stiffnesses and lengths are refused", "[bad_input][cli]") {
   const struct {
     std::string scene, override, said;
   } cases[] = {
@@ -94,7 +94,7 @@ TEST_CASE("masses, stiffnesses and lengths that are none are refused", "[bad_inp
       {kPendulum, "beam[0].rectangle={height_m=0.02, width_m=-0.03}", "width_m = -0.03"},
   };
   for (const auto& c : cases) run_refuses(c.scene, {c.override}, {c.override.substr(0, 8), c.said});
-  const BadInput good("massless");  // but a sleeper may weigh nothing
+  const BadInput good("massless");  // a sleeper may weigh nothing
   CHECK(railstep_program("run " + shipped("ballasted_track") + " --model full --duration 1e-3" +
                          set("sleeper.mass_kg=0"))
             .code == 0);
@@ -112,8 +112,7 @@ TEST_CASE("a rail's modulus given in N/mm2 is refused with the unit named", "[ba
               {"young_pa = 210000 is out of range", "(Pa; was it given in N/mm2?)"});
 }
 
-TEST_CASE("a stiffness out of range is not asked whether it was in millimetres",
-          "[bad_input][cli]") {
+TEST_CASE("a stiffness out of range brings no question about millimetres", "[bad_input][cli]") {
   const Ran ran = railstep_program("run " + kMovingLoad + set("support.stiffness_z_n_per_m=3e13"));
   CHECK(ran.code == 2);
   CHECK_THAT(ran.err, Catch::Contains("stiffness_z_n_per_m = 30000000000000 is out of range"));
@@ -137,7 +136,8 @@ TEST_CASE("a section file with constants that no shape has is refused", "[bad_in
           {"section.toml:4:", "inertia_y_m4 = 0.003038", "accepted is at most", "5.645e-05"});
 }
 
-TEST_CASE("a record of places that the track has not is refused with both", "[bad_input][cli]") {
+TEST_CASE("a record that does not reach the track is refused with both ranges of places",
+          "[bad_input][cli]") {
   const BadInput bad("record");
   std::string rows = "distance_m,vertical_mm\n";
   for (int i = 0; i < 40; ++i) rows += std::to_string(12345 + i) + ",0.5\n";
@@ -147,7 +147,7 @@ TEST_CASE("a record of places that the track has not is refused with both", "[ba
               {"chainage.csv", "m, and the track from 0 to 24 m", "accepted"});
 }
 
-TEST_CASE("a step of 0, of NaN and over the duration is refused", "[bad_input][cli]") {
+TEST_CASE("a step that is 0 or NaN or exceeds the duration is refused", "[bad_input][cli]") {
   for (const char* step : {"0", "-1e-3", "nan", "inf", "1", "1e-300"})
     run_refuses(kMovingLoad, {"step.dt_s=" + std::string(step)},
                 {"[step] dt_s = ", "accepted is at least 1e-07, at most 0.1"});
@@ -166,7 +166,7 @@ TEST_CASE("a spectral radius outside 0 to 1 is refused", "[bad_input][cli]") {
                   {"[step] rho_inf = " + std::string(rho), "accepted is at least 0, at most 1"});
 }
 
-TEST_CASE("Poisson's ratio of -1 and under, of 0.5 and over is refused", "[bad_input][cli]") {
+TEST_CASE("a Poisson's ratio outside -1 to 0.5 or at either end is refused", "[bad_input][cli]") {
   for (const char* nu : {"-2", "-1", "0.5", "0.6", "nan"}) {
     run_refuses(kMovingLoad, {"rail.poisson=" + std::string(nu)},
                 {"[rail] poisson = " + std::string(nu), "accepted is above -1, below 0.5"});
@@ -174,7 +174,7 @@ TEST_CASE("Poisson's ratio of -1 and under, of 0.5 and over is refused", "[bad_i
   }
 }
 
-TEST_CASE("a sensor or body that is not there is refused with those that are", "[bad_input][cli]") {
+TEST_CASE("an unknown sensor or body is refused with the known ones", "[bad_input][cli]") {
   run_refuses(kMovingLoad, {"sensor=[{name=\"s\", on=\"wheel\"}]"},
               {"[sensor[0]] on = \"wheel\"", "\"rail\", \"sleeper\", \"wheelset\", \"vehicle\""});
   run_refuses(kWheelset, {"sensor[0].wheelset=\"front\""},
@@ -189,7 +189,7 @@ TEST_CASE("a sensor or body that is not there is refused with those that are", "
               {"middle", "mid_bay"});
 }
 
-TEST_CASE("a name given twice is refused with who has it", "[bad_input][cli]") {
+TEST_CASE("a name given twice is refused with its owner", "[bad_input][cli]") {
   run_refuses(kMovingLoad, {"load[1].name=\"load_left\""},
               {"[load[1]] name = \"load_left\" is taken by [load[0]]", "used once"});
   run_refuses(kMovingLoad,
@@ -202,7 +202,8 @@ TEST_CASE("a name given twice is refused with who has it", "[bad_input][cli]") {
   run_refuses(kMovingLoad, {"load[0].name=\"a,b\""}, {"name = \"a,b\" is no name", "accepted are"});
 }
 
-TEST_CASE("a load that leaves its rail is refused unless it may", "[bad_input][cli]") {
+TEST_CASE("a load that leaves its rail is refused unless may_leave_rail is set",
+          "[bad_input][cli]") {
   run_refuses(kMovingLoad, {"step.duration_s=0.4"},
               {"moving_load.toml:31:", "x = 12.3 m, off the rail", "0 to 9.6", "may_leave_rail"});
   run_refuses(kMovingLoad, {"load[1].start_m=-0.1"}, {"[load[1]] start_m = -0.1", "at most 9.6"});
@@ -212,7 +213,7 @@ TEST_CASE("a load that leaves its rail is refused unless it may", "[bad_input][c
   CHECK(ran.code == 0);
 }
 
-TEST_CASE("a free rigid mode is refused by its name", "[bad_input][cli]") {
+TEST_CASE("a free rigid mode is refused with its name", "[bad_input][cli]") {
   const Words named = {"moving_load.toml", "free rigid mode", "nothing holds the rails along z",
                        "support.stiffness_z_n_per_m above 0"};
   const std::string loose = kMovingLoad + set("support.stiffness_z_n_per_m=0");
@@ -238,7 +239,8 @@ TEST_CASE("compression at which the rails buckle is refused with both forces", "
   bad.refused("condense " + pressed + bad.old("--out", "x.model"), both);
 }
 
-TEST_CASE("a track of too many elements is refused with its bytes", "[bad_input][cli]") {
+TEST_CASE("a track of too many elements is refused with the bytes it would need",
+          "[bad_input][cli]") {
   const BadInput bad("huge");
   const Words bytes = {"[track] bays = 1000000000 makes 2000000000 elements", "3.07e+12 bytes",
                        "at most 100000 elements"};
@@ -251,7 +253,7 @@ TEST_CASE("a track of too many elements is refused with its bytes", "[bad_input]
   run_refuses(kPendulum, {"beam[0].elements=1000000000"}, {"[beam[0]] elements = 1000000000"});
 }
 
-TEST_CASE("integers over 2^63, NUL and what is not UTF-8 are refused", "[bad_input][cli]") {
+TEST_CASE("integers over 2^63, NUL and text that is not UTF-8 are refused", "[bad_input][cli]") {
   text_refused("bays = 16", "bays = 9223372036854775808", {"bad.toml:8:", "9223372036854775808"});
   run_refuses(kMovingLoad, {"track.bays=9223372036854775808"}, {"9223372036854775808"});
   run_refuses(kMovingLoad, {"track.bays=9223372036854775807"},
@@ -262,7 +264,7 @@ TEST_CASE("integers over 2^63, NUL and what is not UTF-8 are refused", "[bad_inp
   run_refuses(kMovingLoad, {"load[0].name=\"\xff\""}, {"is not a TOML value"});
 }
 
-TEST_CASE("a hundred thousand arrays in each other are refused", "[bad_input][cli]") {
+TEST_CASE("a hundred thousand nested arrays are refused", "[bad_input][cli]") {
   const std::string deepest = "nested deeper than 32; at most 32 levels are accepted";
   const std::string text = moving_load();
   const auto many = [](const std::string& piece) {
@@ -274,13 +276,13 @@ TEST_CASE("a hundred thousand arrays in each other are refused", "[bad_input][cl
   text_refused("deep = " + many("{a=") + "\n" + text, {"bad.toml:1:", deepest});
   text_refused("[" + many("a.") + "a]\n", {"bad.toml:1:", deepest});
   text_refused("wide = [" + many("[],") + "]\n" + text, {"bad.toml:1:", "unknown key 'wide'"});
-  // one word of a command line holds 128 KiB
+  // One word of a command line holds at most 128 KiB.
   run_refuses(kMovingLoad, {"track.bays=" + many("[")},
               {"--set track.bays=[[", "not a TOML value"});
   run_refuses(kMovingLoad, {many("a").substr(0, 60'000) + "=1"}, {"--set aaa", "unknown key"});
 }
 
-TEST_CASE("a scene is a file that can be read", "[bad_input][cli]") {
+TEST_CASE("a scene that is not a readable file is refused", "[bad_input][cli]") {
   const BadInput bad("no_scene");
   const std::string trace = bad.old("--trace", "t.csv");
   std::filesystem::create_directory(bad.path("folder"));
@@ -289,7 +291,7 @@ TEST_CASE("a scene is a file that can be read", "[bad_input][cli]") {
   bad.refused("run " + bad.file("empty.toml", "") + trace, {"empty.toml: is empty"});
   bad.refused("run /dev/zero" + trace, {"/dev/zero: is longer than 1048576 bytes"});
   bad.refused("run /proc/self/mem" + trace, {"/proc/self/mem: cannot be read"});
-  if (geteuid() != 0) {  // to whom nothing is closed
+  if (geteuid() != 0) {  // root may read every file
     std::filesystem::permissions(bad.file("closed.toml", "schema = 1\n"),
                                  std::filesystem::perms::none);
     const Ran ran = railstep_program("run " + bad.path("closed.toml"));
@@ -298,7 +300,7 @@ TEST_CASE("a scene is a file that can be read", "[bad_input][cli]") {
   }
 }
 
-TEST_CASE("a scene comes through a pipe as from a file", "[bad_input][cli]") {
+TEST_CASE("a scene may come through a pipe", "[bad_input][cli]") {
   const std::string run = "'" RAILSTEP_PROGRAM "' run /dev/stdin --duration 0.01 >/dev/null";
   CHECK(std::system(("cat '" + kMovingLoad + "' | " + run).c_str()) == 0);
   const BadInput bad("pipe");

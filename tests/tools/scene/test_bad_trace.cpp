@@ -19,7 +19,7 @@ void compare_refuses(const std::string& a, const std::string& b,
   bad.refused(words + " --json --tolerance 1e300", said);
 }
 
-/// What compare says of two traces it takes, with this exit code.
+/// JSON of compare for two accepted traces, with this exit code.
 nlohmann::json compared(const std::string& a, const std::string& b, int code,
                         const std::string& words = "") {
   const BadInput files("compared");
@@ -33,7 +33,7 @@ nlohmann::json compared(const std::string& a, const std::string& b, int code,
 
 }  // namespace
 
-TEST_CASE("traces of other columns are refused", "[bad_input][cli]") {
+TEST_CASE("traces with different columns are refused", "[bad_input][cli]") {
   compare_refuses(kHead + "0,1\n", "time_s,w.y_m\n0,1\n",
                   {"column 1 is w.z_m in", "a.csv", "w.y_m in", "b.csv", "the same columns"});
   compare_refuses(kHead + "0,1\n", "time_s\n0\n",
@@ -41,7 +41,7 @@ TEST_CASE("traces of other columns are refused", "[bad_input][cli]") {
   compare_refuses("w.z_m,time_s\n1,0\n", kHead + "0,1\n", {"column 0 is w.z_m in"});
 }
 
-TEST_CASE("traces of other rows are refused", "[bad_input][cli]") {
+TEST_CASE("traces with different rows are refused", "[bad_input][cli]") {
   compare_refuses(kHead + "0,1\n1,2\n2,3\n", kHead + "0,1\n1,2\n",
                   {"a.csv has 3 rows", "b.csv has 2", "as many rows"});
   compare_refuses(kHead + "0,1\n", kHead + "0,1\n1,2\n", {"a.csv has 1 rows", "b.csv has 2"});
@@ -49,14 +49,14 @@ TEST_CASE("traces of other rows are refused", "[bad_input][cli]") {
   compare_refuses(kHead + "0,1,2\n", kHead + "0,1\n", {"a.csv:2: 3 values", "2 columns"});
 }
 
-TEST_CASE("traces of another step are refused", "[bad_input][cli]") {
+TEST_CASE("traces with different steps are refused", "[bad_input][cli]") {
   compare_refuses(kHead + "0,1\n0.001,2\n0.002,3\n", kHead + "0,1\n0.002,2\n0.004,3\n",
                   {"a.csv has a row each 0.001 s", "b.csv each 0.002 s", "the same step"});
   compare_refuses(kHead + "0,1\n0.001,2\n0.002,3\n", kHead + "0,1\n0.002,2\n", {"the same step"});
   compared(kHead + "0,1\n0.001,2\n", kHead + "0,1\n0.0010000000000000002,2\n", 1);
 }
 
-TEST_CASE("empty traces, and what is none, are refused", "[bad_input][cli]") {
+TEST_CASE("empty traces and other files are refused", "[bad_input][cli]") {
   const std::string good = kHead + "0,1\n";
   compare_refuses("", good, {"a.csv: is empty"});
   compare_refuses(good, "", {"b.csv: is empty"});

@@ -26,7 +26,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file) << text;
 }
 
-/// y of the wheelset's centre after each frame of a run.
+/// y of the wheelset's centre, m, after each frame of a run.
 std::vector<double> sideways(const std::string& force, const std::string& kind,
                              const FrameInputs& inputs, std::int64_t frames) {
   Simulation run(read_scene(kWheelset, {force, "condense.kind=\"" + kind + "\""}));
@@ -42,9 +42,9 @@ std::vector<double> sideways(const std::string& force, const std::string& kind,
 
 }  // namespace
 
-TEST_CASE("an input pushes as a table of the same force does, to the bit", "[inputs]") {
-  // A force of 0 up to frame 20 and 30 N from then on: between steps a table that jumps is the
-  // same.
+TEST_CASE("an input gives the same bits as a table of the same force", "[inputs]") {
+  // The force is 0 up to frame 20 and 30 N from then on; a table that jumps between two steps is
+  // the same force.
   const std::vector<double> none = {0.}, thirty = {30.};
   const FrameInputs inputs = [&](std::int64_t frame) {
     return (frame < 20 ? none : thirty).data();
@@ -58,7 +58,7 @@ TEST_CASE("an input pushes as a table of the same force does, to the bit", "[inp
   }
 }
 
-TEST_CASE("an input that is not finite leaves the last good one, one too large is cut",
+TEST_CASE("the last good input replaces one that is not finite, and one that is too large is cut",
           "[inputs]") {
   Simulation run(read_scene(kWheelset, {kPushed}));
   REQUIRE(run.inputs() == std::vector<std::string>{"push.force_n"});
@@ -75,7 +75,7 @@ TEST_CASE("an input that is not finite leaves the last good one, one too large i
     CHECK(run.state.input[0] == 7.);
     CHECK_FALSE(has(run.state.latched, Status::force_saturated));
   }
-  CHECK(has(frame(5.), Status::nonfinite_input));  // it stays set
+  CHECK(has(frame(5.), Status::nonfinite_input));  // the bit stays set
   CHECK(run.state.input[0] == 5.);
   CHECK(has(frame(-2e3), Status::force_saturated));
   CHECK(run.state.input[0] == -1e3);
@@ -86,7 +86,7 @@ TEST_CASE("an input that is not finite leaves the last good one, one too large i
   CHECK(frame(1e3) == Status::ok);
 }
 
-TEST_CASE("a state that is no longer finite stays, and so does what was published", "[inputs]") {
+TEST_CASE("a state that is no longer finite is kept, and so are the last outputs", "[inputs]") {
   Simulation run(read_scene(kWheelset, {}));
   const Model& model = run.model();
   Outputs outputs{};
@@ -106,10 +106,10 @@ TEST_CASE("a state that is no longer finite stays, and so does what was publishe
   }
   const std::int64_t steps = run.state.steps;
   CHECK(has(advance_frame(model, run.state, run.workspace, outputs), Status::nonfinite_state));
-  CHECK(run.state.steps == steps);  // it is not stepped on
+  CHECK(run.state.steps == steps);  // no further step is made
 }
 
-TEST_CASE("energies balance under inputs, of wheelsets and of systems", "[inputs]") {
+TEST_CASE("energies balance under inputs of wheelsets and of systems", "[inputs]") {
   std::vector<double> value = {0.};
   const FrameInputs swinging = [&](std::int64_t frame) {
     value[0] = 200. * std::sin(.1 * static_cast<double>(frame));
@@ -121,8 +121,8 @@ TEST_CASE("energies balance under inputs, of wheelsets and of systems", "[inputs
     const EnergyBalance balance = balance_of(*run.packed(), run.model(), 200, {}, swinging);
     CHECK(record.first_bad_unknown < 0);
     CHECK(balance.hash == state_hash(run.model(), run.state));
-    // Condensed lines hold forces over a step, which loses to first order; a table of the same
-    // force loses as much.
+    // Condensed lines hold forces over a step, which loses energy to first order. A table of the
+    // same force loses as much.
     CHECK(balance.error < (kind == std::string("modal") ? 1e-2 : 1e-3));
     CHECK(std::abs(balance.error - balance.numerical_loss) < 1e-5);
   }
@@ -148,7 +148,7 @@ TEST_CASE("energies balance under inputs, of wheelsets and of systems", "[inputs
   }
 }
 
-TEST_CASE("a moment of an input turns a body as a constant one does", "[inputs]") {
+TEST_CASE("a moment from an input turns a body as a constant moment does", "[inputs]") {
   const auto turned = [](const std::string& size, bool given) {
     const auto run =
         simulation_of(read_any_scene(kFolder + "spring_pendulum.toml",
@@ -158,8 +158,8 @@ TEST_CASE("a moment of an input turns a body as a constant one does", "[inputs]"
     simulate(*run, 100, nullptr, false, {}, given ? inputs : FrameInputs{});
     return std::vector<double>(run->state.quaternion, run->state.quaternion + 4);
   };
-  // M t^2 / (2 J) from half a step on, to the scheme's second order: a constant moment is in
-  // balance at t = 0, the input comes with the first step.
+  // The turn is M t^2 / (2 J), to the scheme's second order. A constant moment is in balance at t =
+  // 0; the input starts with the first step and lags by half a step.
   const auto half_turn = [](double t) { return std::sin(.5 * (.5 * .02 / 8e-3 * t * t)); };
   CHECK(turned("moment_n_m=0.02", false)[2] == Approx(half_turn(.1)).epsilon(1e-4));
   CHECK(turned("input=\"motor\", limit_n_m=1", true)[2] ==
@@ -179,7 +179,8 @@ TEST_CASE("a table of inputs holds each row until the next", "[inputs]") {
   }
 }
 
-TEST_CASE("bad tables of inputs and bad inputs of scenes get one sentence", "[inputs][cli]") {
+TEST_CASE("bad tables of inputs and bad inputs of scenes are refused in one sentence",
+          "[inputs][cli]") {
   const auto folder = fresh_folder("bad_inputs");
   const auto file = (folder / "in.csv").string();
   const auto told = [&](const std::string& text, const std::string& scene) {

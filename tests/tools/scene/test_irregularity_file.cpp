@@ -33,7 +33,7 @@ double at(const Signal& signal, double place) { return signal_at(signal.model(),
 
 }  // namespace
 
-TEST_CASE("a track's geometry is read with its units") {
+TEST_CASE("a track's geometry is read in its units") {
   const RailSignals rails = read_irregularities(
       written("\xEF\xBB\xBF# a car's record\r\ndistance_m,vertical_mm,cross_level_m,gauge_mm\r\n"
               "100.0,1,0.002,4\r\n100.25,-1,0,0\r\n100.5,2,0,0\r\n100.75,3,0.001,2\r\n"));
@@ -43,10 +43,10 @@ TEST_CASE("a track's geometry is read with its units") {
   CHECK(at(rails.z[1], 100.75) == Approx(2.5e-3));
   CHECK(at(rails.y[0], 100.) == Approx(2e-3));
   CHECK(at(rails.y[1], 100.) == Approx(-2e-3));
-  CHECK(at(rails.z[0], 90.) == Approx(2e-3));  // constant beyond its ends
+  CHECK(at(rails.z[0], 90.) == Approx(2e-3));  // constant beyond the record's ends
 }
 
-TEST_CASE("rails are read each for itself") {
+TEST_CASE("irregularities of each rail are read separately") {
   const RailSignals rails = read_irregularities(
       written("left_z_mm;distance_m;right_y_m\n1;0;.01\n2;.5;.02\n3;1;.03\n4;1.5;.04\n"));
   CHECK(at(rails.z[0], .5) == Approx(2e-3));
@@ -55,7 +55,7 @@ TEST_CASE("rails are read each for itself") {
   CHECK(rails.y[0].coefficient.empty());
 }
 
-TEST_CASE("a file that is no record of irregularities is refused with its line") {
+TEST_CASE("a file that is not a record of irregularities is refused with its line") {
   const std::string rows = "0,1\n.5,2\n1,3\n1.5,4\n";
   CHECK_THAT(refusal(""), Contains("empty"));
   CHECK_THAT(refusal(rows), Contains(":1:") && Contains("'0'") && Contains("distance_m"));
@@ -76,7 +76,7 @@ TEST_CASE("a file that is no record of irregularities is refused with its line")
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,nan\n1,1\n1.5,3\n"), Contains(":3:"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n0.5;2,5\n1,1\n1.5,3\n"), Contains("decimal comma"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5\n1,1\n1.5,3\n"), Contains("1 values"));
-  // What a spline would overflow on.
+  // A spline through these numbers would overflow.
   CHECK_THAT(refusal("distance_m,vertical_m\n-8e307,0\n-2.7e307,0\n2.7e307,0\n8e307,0\n"),
              Contains(":2:") && Contains("at least -1000000000, at most 1000000000 m"));
   CHECK_THAT(refusal("distance_m,left_z_m\n0,0\n1,1e308\n2,0\n3,0\n"),

@@ -20,7 +20,7 @@ Table parse(const std::string& text, const Overrides& overrides = {}) {
   return read_toml_text(text, "bay.toml", overrides);
 }
 
-/// The sentence of the InputError that `act` throws; "accepted" where it throws none.
+/// The sentence of the InputError that `act` throws, or "accepted" if it throws none.
 std::string sentence(const std::function<void()>& act) {
   try {
     act();
@@ -49,7 +49,8 @@ std::string file_with(const std::string& name, const std::string& content) {
 
 }  // namespace
 
-TEST_CASE("a number may be written as an integer, a string is refused with its place", "[read]") {
+TEST_CASE("a number may be written as an integer, and a string is refused with its place",
+          "[read]") {
   const Table root = parse("[rail]\nyoung_pa = 210000000000\npoisson = \"0.3\"\n");
   const Table rail = root.table("rail");
   CHECK(rail.number("young_pa", above(0)) == 210e9);
@@ -71,7 +72,7 @@ TEST_CASE("numbers out of range or not finite are refused with the range", "[rea
   CHECK_FALSE((Range{.most = 0.5, .most_itself = false}).holds(0.5));
 }
 
-TEST_CASE("each getter refuses what is not of its kind", "[read]") {
+TEST_CASE("each getter refuses a value of another kind", "[read]") {
   const Table root = parse("x = 1.5\nt = true\ns = \"\"\nn = 7\nm = \"stiff\"\na = [1, \"2\"]\n");
   CHECK_THAT(sentence([&] { (void)root.integer("x", 0, 9); }), Contains("an integer is accepted"));
   CHECK_THAT(sentence([&] { (void)root.integer("n", 0, 5); }), Contains("accepted is 0 to 5"));
@@ -94,7 +95,7 @@ TEST_CASE("each getter refuses what is not of its kind", "[read]") {
   CHECK_THAT(sentence([&] { (void)root.tables("a"); }), Contains("[[a]] tables are accepted"));
 }
 
-TEST_CASE("getters return what the file says, or the default", "[read]") {
+TEST_CASE("getters return the value in the file or the default", "[read]") {
   const Table root = parse(
       "m = \"hard\"\nv = [1, 2.5]\nr = [[0, 1], [2, 3]]\nf = \"../a/b.toml\"\n[[load]]\nn=1\n"
       "[[load]]\nn=2\n");
@@ -138,7 +139,7 @@ TEST_CASE("an unknown key is refused with the nearest known one, in any opened t
   CHECK_THAT(parse_sentence("a=1\nb=1\nc=1\nd=1\ne=1\nf=1\ng=1\n"), EndsWith("and 2 more"));
 }
 
-TEST_CASE("a missing key is named, with the misspelt one where there is one", "[read]") {
+TEST_CASE("a missing key is named, with a misspelt one if there is one", "[read]") {
   const Table root = parse("[step]\ndt = 0.001\n\n[rail]\nx = 1\n");
   CHECK(sentence([&] { (void)root.table("step").number("dt_s", above(0)); }) ==
         "bay.toml:2:1: [step] key 'dt_s' is missing; did you mean it by 'dt'?");
@@ -146,14 +147,14 @@ TEST_CASE("a missing key is named, with the misspelt one where there is one", "[
              Contains("bay.toml:4:1: [rail] key 'poisson' is missing; it has no default"));
 }
 
-TEST_CASE("nearest counts edits and forgives a missing end", "[read]") {
+TEST_CASE("the search for the nearest key counts edits and forgives a missing end", "[read]") {
   CHECK(nearest("stifness", {"at", "half_spread_m", "stiffness_z_n_per_m"}) ==
         "stiffness_z_n_per_m");
   CHECK(nearest("posson", {"profile", "poisson", "young_pa"}) == "poisson");
   CHECK(nearest("x", {}).empty());
 }
 
-TEST_CASE("what is not one TOML document is refused with line and column", "[read]") {
+TEST_CASE("a text that is not one TOML document is refused with line and column", "[read]") {
   CHECK_THAT(parse_sentence("a = 1\na = 2\n"), Contains("bay.toml:2:"));           // row 12
   CHECK_THAT(parse_sentence("a = 9223372036854775808"), Contains("bay.toml:1:"));  // row 24, 2^63
   CHECK_THAT(parse_sentence(std::string("a = 1\nb\0c = 2\n", 14)),
@@ -169,7 +170,9 @@ TEST_CASE("what is not one TOML document is refused with line and column", "[rea
   CHECK_NOTHROW(marked.finish());
 }
 
-TEST_CASE("deep nesting is refused without running out of stack, strings excepted", "[read]") {
+TEST_CASE(
+    "deep nesting is refused without running out of stack; brackets in strings are not nesting",
+    "[read]") {
   const std::string deep(100'000, '[');  // row 25
   CHECK_THAT(parse_sentence("a = " + deep), Contains("bay.toml:1:37: nested deeper than 32"));
   std::string dotted = "[a";
@@ -196,7 +199,7 @@ TEST_CASE("a file that cannot be read whole is refused by name", "[read]") {
              Contains("over.toml: is longer than 1048576 bytes"));
 }
 
-TEST_CASE("the option --set writes a key as if it stood in the file", "[read]") {
+TEST_CASE("the option --set acts as if the key stood in the file", "[read]") {
   const std::string text =
       "[rail]\npoisson = 0.3\nv = [[1, 2], [3, 4]]\n[[load]]\nn = 1\n[[load]]\nn = 2\n";
   const Table root = parse(text, {"rail.poisson=0.25", "rail.v[1][0]=9", "load[1].n = 5",
@@ -217,7 +220,7 @@ TEST_CASE("the option --set writes a key as if it stood in the file", "[read]") 
         "--set rail.posson=0.2: [rail] unknown key 'posson'; did you mean 'poisson'?");
 }
 
-TEST_CASE("an option --set that cannot be applied names itself", "[read]") {
+TEST_CASE("an option --set that cannot be applied is named in the message", "[read]") {
   const std::string text = "a = [1, 2]\n[b]\nc = 1\n";
   const auto refusal = [&](const std::string& option) {
     return sentence([&] { parse(text, {option}); });
@@ -242,11 +245,11 @@ TEST_CASE("a file is written whole or not at all", "[write]") {
   write_file(file, "first");
   write_file(file, "second");
   CHECK(read_text(file) == "second");
-  std::ptrdiff_t files = 0;  // nothing in the making is left beside it
+  std::ptrdiff_t files = 0;  // no unfinished file is left beside it
   for (const auto& entry : std::filesystem::directory_iterator(own))
     files += entry.exists() ? 1 : 0;
   CHECK(files == 1);
   CHECK_THROWS_WITH(write_file("nowhere/a/b.txt", "x"), Contains("nowhere/a/b.txt"));
-  // Linux's always full device stands for a full disk.
+  // Linux's device that is always full stands for a full disk.
   CHECK_THROWS_WITH(write_file("/dev/full", std::string(10'000, 'x')), Contains("/dev/full"));
 }

@@ -46,7 +46,7 @@ Recording pushed() {
 
 }  // namespace
 
-TEST_CASE("a recorded run is made again with the same hashes", "[recording]") {
+TEST_CASE("a replay of a recorded run gives the same hashes", "[recording]") {
   const Recording made = pushed();
   CHECK(made.hashes.size() == 5);  // after frames 5, 10, 15, 20 and 23
   CHECK(replay(made, "it").identical);
@@ -54,7 +54,7 @@ TEST_CASE("a recorded run is made again with the same hashes", "[recording]") {
 
 TEST_CASE("replay finds the frames in which another input was given", "[recording]") {
   Recording made = pushed();
-  made.inputs[11] += 1e-9;  // of frame 12
+  made.inputs[11] += 1e-9;  // input of frame 12
   const Replay again = replay(made, "it");
   CHECK_FALSE(again.identical);
   CHECK(again.first.frame == 15);
@@ -63,12 +63,12 @@ TEST_CASE("replay finds the frames in which another input was given", "[recordin
   CHECK_THROWS_WITH(replay(made, "it"), Contains("do not belong together"));
 }
 
-TEST_CASE("every bit and every end of a recording is watched", "[recording]") {
+TEST_CASE("a flipped bit or a missing end of a recording is refused", "[recording]") {
   const auto folder = fresh_folder("recording");
   const std::vector<std::byte> bytes = pushed().bytes();
   write(folder / "whole", bytes);
   CHECK(Recording::read(folder / "whole").bytes() == bytes);
-  // A block's own bits are watched by test_artefact's; here one in 997, and all of the header.
+  // test_artefact checks the bits of a block. Here: the whole header and one bit in 997.
   for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += bit < 8 * 64 ? 1 : 997) {
     std::vector<std::byte> flipped = bytes;
     flipped[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
@@ -82,7 +82,7 @@ TEST_CASE("every bit and every end of a recording is watched", "[recording]") {
   }
 }
 
-TEST_CASE("a recording whose hashes are farther apart than frames are counted is refused",
+TEST_CASE("a recording with hashes farther apart than frames can be counted is refused",
           "[recording]") {
   const auto folder = fresh_folder("recording_every");
   Recording made = pushed();
@@ -92,7 +92,7 @@ TEST_CASE("a recording whose hashes are farther apart than frames are counted is
   CHECK_THROWS_WITH(Recording::read(folder / "far"), Contains("number out of range"));
 }
 
-TEST_CASE("run --record and replay, by the program", "[recording][cli]") {
+TEST_CASE("the program records a run and replays it", "[recording][cli]") {
   const auto folder = fresh_folder("replay");
   const std::string file = (folder / "run.recording").string();
   const Ran ran = railstep_program("run " + kFolder +

@@ -18,7 +18,7 @@ std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(RAILSTEP_SOURCE) / "config/scenes" / (name + ".toml");
 }
 
-/// What a shipped scene with one option says; "accepted" where it is read.
+/// Message for a shipped scene with one option, or "accepted" if it is read.
 std::string with(const std::string& name, const Overrides& overrides) {
   try {
     read_scene(shipped(name), overrides);
@@ -28,7 +28,7 @@ std::string with(const std::string& name, const Overrides& overrides) {
   return "accepted";
 }
 
-/// What a shipped scene says after `from` was replaced by `to` in its text.
+/// Message for a shipped scene after `from` was replaced by `to` in its text, or "accepted".
 std::string edited(const std::string& name, const std::string& from, const std::string& to) {
   std::string text = read_text(shipped(name));
   const auto at = text.find(from);
@@ -48,7 +48,7 @@ std::string edited(const std::string& name, const std::string& from, const std::
 
 }  // namespace
 
-TEST_CASE("moving_load is the reference's scene", "[scene]") {
+TEST_CASE("moving_load is the scene of the reference", "[scene]") {
   const Scene s = read_scene(shipped("moving_load"));
   CHECK(s.track.unknowns == Unknowns::vertical);
   CHECK(s.track.bays * s.track.elements_per_bay == 16);
@@ -69,10 +69,10 @@ TEST_CASE("moving_load is the reference's scene", "[scene]") {
   CHECK(s.step->start == Start::released);
 }
 
-TEST_CASE("wheelset_on_track is the paper's scene", "[scene]") {
+TEST_CASE("wheelset_on_track is the scene of the paper", "[scene]") {
   const Scene s = read_scene(shipped("wheelset_on_track"));
   const auto& r = std::get<RectangleSizes>(s.rail.shape);
-  // The three heights are those of 136RE, 185.7375 mm, to the 10 digits written.
+  // The three heights add up to that of 136RE, 185.7375 mm, to the 10 digits written.
   CHECK_THAT(r.foot_height + r.web_height + r.head_height, Catch::WithinAbs(0.1857375, 1e-10));
   CHECK(s.support->y.damping == 29e6);
   CHECK(s.support->roll.stiffness == 1e6);
@@ -91,7 +91,7 @@ TEST_CASE("wheelset_on_track is the paper's scene", "[scene]") {
   CHECK(s.trace_supports);
 }
 
-TEST_CASE("ballasted_track has sleepers, ballast and its sensors", "[scene]") {
+TEST_CASE("ballasted_track has sleepers, ballast and sensors", "[scene]") {
   const Scene s = read_scene(shipped("ballasted_track"));
   CHECK(std::get<ProfileFile>(s.rail.shape).path ==
         (shipped("x").parent_path().parent_path() / "profiles/60e1.toml").lexically_normal());
@@ -105,7 +105,7 @@ TEST_CASE("ballasted_track has sleepers, ballast and its sensors", "[scene]") {
   CHECK(std::get<RailSensor>(s.sensors[1].on).at == Height::foot);
 }
 
-TEST_CASE("a time table is 0 before, linear between and held after", "[scene]") {
+TEST_CASE("a time table is 0 before its rows, linear between them and held after them", "[scene]") {
   const TimeTable t{{1.0, 2.0, 4.0}, {10.0, 20.0, 0.0}};
   CHECK(t.at(0.5) == 0.0);
   CHECK(t.at(1.5) == 15.0);
@@ -114,7 +114,7 @@ TEST_CASE("a time table is 0 before, linear between and held after", "[scene]") 
   CHECK((TimeTable{{0.0}, {2.0}}).at(5.0) == 2.0);
 }
 
-TEST_CASE("rows 11 to 13: misspelt, doubled and mistyped keys", "[scene]") {
+TEST_CASE("rows 11 to 13: misspelt, doubled and mistyped keys are refused", "[scene]") {
   CHECK_THAT(edited("moving_load", "stiffness_z_n_per_m = 3.0e7", "stifness_z_n_per_m = 3.0e7"),
              Contains("bay.toml:24:1:") && Contains("[support]") &&
                  Contains("stifness_z_n_per_m") && Contains("'stiffness_z_n_per_m'"));
@@ -127,7 +127,7 @@ TEST_CASE("rows 11 to 13: misspelt, doubled and mistyped keys", "[scene]") {
              Contains("bay.toml:9:9: [track] bay_m = \"0.6\" is a string; a number is accepted"));
 }
 
-TEST_CASE("row 14: what must be positive", "[scene]") {
+TEST_CASE("row 14: numbers that must be positive are checked", "[scene]") {
   CHECK_THAT(with("ballasted_track", {"wheelset[0].mass_kg=-1200"}),
              Contains("--set wheelset[0].mass_kg=-1200: [wheelset[0]] mass_kg = -1200") &&
                  Contains("accepted is above 0"));
@@ -139,7 +139,7 @@ TEST_CASE("row 14: what must be positive", "[scene]") {
   CHECK_THAT(with("moving_load", {"support.stiffness_z_n_per_m=-1"}), Contains("at least 0"));
 }
 
-TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio", "[scene]") {
+TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio are checked", "[scene]") {
   CHECK_THAT(with("moving_load", {"step.dt_s=0"}), Contains("dt_s = 0 is out of range"));
   CHECK_THAT(with("moving_load", {"step.dt_s=nan"}), Contains("dt_s = nan is not finite"));
   CHECK_THAT(with("moving_load", {"step.dt_s=0.05", "step.duration_s=0.01"}),
@@ -170,7 +170,7 @@ TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio", "[scene]") {
   CHECK(with("moving_load", {"rail.poisson=0.499"}) == "accepted");
 }
 
-TEST_CASE("rows 18 and 19: names", "[scene]") {
+TEST_CASE("rows 18 and 19: unknown and doubled names are refused", "[scene]") {
   CHECK_THAT(with("wheelset_on_track", {"sensor[0].wheelset=\"bogie\""}),
              Contains("wheelset = \"bogie\" is unknown; accepted are \"wheelset\""));
   CHECK_THAT(with("moving_load", {"sensor=[{name=\"s\", on=\"wheelset\", wheelset=\"w\"}]"}),
@@ -202,7 +202,7 @@ TEST_CASE("row 20: a path must stay on the rail unless it may leave", "[scene]")
   CHECK_THAT(with("ballasted_track", {"step.duration_s=1"}), Contains("x = 34.5 m, off the rail"));
 }
 
-TEST_CASE("a wheelset starts from equilibrium on the rail alone", "[scene]") {
+TEST_CASE("a wheelset in equilibrium must start on the rail", "[scene]") {
   const Overrides beyond = {"wheelset[0].start_m=24.5", "wheelset[0].may_leave_rail=true"};
   Overrides released = beyond;
   released.emplace_back("step.start=\"released\"");
@@ -211,7 +211,7 @@ TEST_CASE("a wheelset starts from equilibrium on the rail alone", "[scene]") {
   CHECK(with("ballasted_track", released) == "accepted");
 }
 
-TEST_CASE("row 23: a billion elements are refused with their bytes", "[scene]") {
+TEST_CASE("row 23: a billion elements are refused with the bytes they would need", "[scene]") {
   // 2 rails * 1e9 bays * 1 element; 4 unknowns each, 4 bands of 12 doubles: 2e9 * 4 * 12 * 32
   // bytes.
   CHECK_THAT(with("moving_load", {"track.bays=1000000000"}),
@@ -220,7 +220,7 @@ TEST_CASE("row 23: a billion elements are refused with their bytes", "[scene]") 
   CHECK_THAT(with("moving_load", {"track.bays=50001"}), Contains("100002 elements"));
 }
 
-TEST_CASE("rows 24 and 25 through a scene", "[scene]") {
+TEST_CASE("rows 24 and 25: huge integers and deep nesting in a scene are refused", "[scene]") {
   CHECK_THAT(with("moving_load", {"track.bays=9223372036854775808"}), Contains("not a TOML value"));
   CHECK_THAT(edited("moving_load", "bays = 16", "bays = 9223372036854775808"),
              Contains("bay.toml:8:"));
@@ -247,7 +247,7 @@ TEST_CASE("the section is given in exactly one way", "[scene]") {
              Contains("high together"));
 }
 
-TEST_CASE("tables that need each other are asked for", "[scene]") {
+TEST_CASE("a table without another one that it needs is refused", "[scene]") {
   CHECK_THAT(with("moving_load", {"sleeper.mass_kg=300"}), Contains("no [ballast]"));
   CHECK_THAT(with("moving_load", {"ballast.stiffness_z_n_per_m=5e7"}), Contains("no [sleeper]"));
   CHECK_THAT(with("ballasted_track", {"track.rails=1"}), Contains("a wheelset needs two rails"));
@@ -276,8 +276,8 @@ TEST_CASE("tables that need each other are asked for", "[scene]") {
 
 namespace {
 
-/// The keys that `source` names in quotes right after an opening bracket or a bracketed table's
-/// name: every getter's first argument.
+/// The keys that `source` names in quotes right after an opening bracket or the name of a table in
+/// brackets, which are the first arguments of all getters.
 std::vector<std::string> quoted_keys(const std::string& source) {
   std::vector<std::string> keys;
   for (const std::string opener :
@@ -293,7 +293,7 @@ std::vector<std::string> quoted_keys(const std::string& source) {
 
 }  // namespace
 
-TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]") {
+TEST_CASE("config/README.md has every key that the scene reader asks for", "[scene]") {
   const std::filesystem::path source(RAILSTEP_SOURCE);
   const std::string documented = read_text(source / "config/README.md");
   std::size_t count = 0;
@@ -301,7 +301,7 @@ TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]")
     for (const std::string& key : quoted_keys(read_text(file.path()))) {
       if (key.size() == 1) continue;  // an axis, whose full keys are checked below
       INFO(key);
-      // As a key of its own, after its table's name, as a table's own heading, or before the unit
+      // The key stands alone, after its table's name, as the heading of a table, or before the unit
       // of a fishplate's stiffness.
       bool found = false;
       for (const char* before : {"`", ".", "["})
@@ -310,7 +310,7 @@ TEST_CASE("config/README.md has every key the scene reader asks for", "[scene]")
       CHECK(found);
       ++count;
     }
-  CHECK(count > 120);  // the openers above still see the reader's getters
+  CHECK(count > 120);  // the openers above still find the reader's getters
   for (const std::string axis : {"x", "y", "z"}) {
     CHECK_THAT(documented, Contains("`stiffness_" + axis + "_n_per_m`"));
     CHECK_THAT(documented, Contains("`damping_" + axis + "_n_s_per_m`"));

@@ -20,7 +20,7 @@ SystemScene scene_with(const Overrides& overrides = {}) {
   return std::get<SystemScene>(read_any_scene(exciter(), overrides));
 }
 
-/// What the exciter's scene with this option says; "accepted" where it is read and built.
+/// Message for the exciter's scene with this option, or "accepted" if it is read and built.
 std::string with(const Overrides& overrides) {
   try {
     static_cast<void>(BuiltSystem(scene_with(overrides)));
@@ -32,7 +32,7 @@ std::string with(const Overrides& overrides) {
 
 }  // namespace
 
-TEST_CASE("exciter_on_track has a track, bodies, and springs between them", "[scene]") {
+TEST_CASE("exciter_on_track has a track, bodies and springs between them", "[scene]") {
   const SystemScene s = scene_with();
   REQUIRE(s.track);
   CHECK(s.track->track.rails == 2);
@@ -48,7 +48,7 @@ TEST_CASE("exciter_on_track has a track, bodies, and springs between them", "[sc
   CHECK(s.system.springs[0].a.index == 0);
   CHECK(s.system.springs[3].a.index == 1);
   CHECK(s.system.springs[3].point_a == Eigen::Vector3d(12.3, -.75, .091));
-  // sensors on rails and sleepers are the track's, the others the system's
+  // Sensors on rails and sleepers belong to the track, the others to the system.
   CHECK(s.names.sensors == std::vector<std::string>{"frame_centre"});
   REQUIRE(s.track->sensors.size() == 2);
   CHECK(std::get<RailSensor>(s.track->sensors[0].on).position == 12.);
@@ -56,7 +56,7 @@ TEST_CASE("exciter_on_track has a track, bodies, and springs between them", "[sc
   CHECK(s.traced.springs == std::vector<int>{0, 1});
 }
 
-TEST_CASE("the columns of a scene with both", "[scene]") {
+TEST_CASE("a scene with a track and bodies has the columns of both", "[scene]") {
   const BuiltSystem built(
       scene_with({"output.supports=true",
                   "load=[{name=\"axle\", rail=\"left\", start_m=6, force_z_n=-1e4}]"}));
@@ -78,7 +78,7 @@ TEST_CASE("the columns of a scene with both", "[scene]") {
   CHECK(built.columns.size() == 114);
 }
 
-TEST_CASE("what is not stepped beside bodies is refused by its key", "[scene]") {
+TEST_CASE("keys that cannot be stepped beside bodies are refused", "[scene]") {
   const auto refused = [](const std::string& option, const std::string& said) {
     CAPTURE(option);
     CHECK_THAT(with({option}), Contains(said));
@@ -107,7 +107,7 @@ TEST_CASE("what is not stepped beside bodies is refused by its key", "[scene]") 
   refused("body=[]", "neither a [[body]] nor a [[beam]]");
 }
 
-TEST_CASE("rails are named, and points lie on them", "[scene]") {
+TEST_CASE("names of rails are known, and points must lie on them", "[scene]") {
   CHECK_THAT(with({"spring[0].between=[\"rail lift\", \"frame\"]"}),
              Contains("between has \"rail lift\", which is a rail that the track has not; accepted "
                       "are \"ground\", \"frame\", \"disc_left\", \"disc_right\", \"rail left\", "
@@ -127,14 +127,14 @@ TEST_CASE("rails are named, and points lie on them", "[scene]") {
   CHECK_THAT(with({"load=[{name=\"frame\", rail=\"left\", start_m=6, force_z_n=-1e4}]"}),
              Contains("[body[0]] name = \"frame\" is taken by [load[0]]"));
   CHECK_THAT(with({"spring[1].name=\"frame\""}), Contains("is taken by [body[0]]"));
-  // the same spring with no name: nothing to name its column by
+  // Without a name the same spring has no name for its column.
   CHECK_THAT(with({"spring=[{between=[\"rail left\", \"frame\"], point_m=[11.7, 0.75, 0.091], "
                    "other_point_m=[11.7, 0.75, 0.341], stiffness_n_per_m=1e6, trace=true}]"}),
              Contains("[spring[0]] trace = true wants a name"));
 }
 
-TEST_CASE("a body that nothing holds finds no equilibrium", "[scene]") {
-  // the disc that no joint holds
+TEST_CASE("a body that nothing holds has no equilibrium", "[scene]") {
+  // No joint holds this disc.
   CHECK_THAT(with({"joint[2].between=[\"frame\", \"disc_left\"]", "joint[2].point_m=[12, 0.3, 0.6]",
                    "joint[4].between=[\"frame\", \"disc_left\"]", "joint[4].point_m=[12, 0.3, 0.6]",
                    "joint[4].polynomial_rad=[0, 188.49555921538759]"}),

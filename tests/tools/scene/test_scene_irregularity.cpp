@@ -24,7 +24,7 @@ constexpr double kPi = 3.14159265358979323846;
 const std::string kFull = "condense.kind=\"full\"";  // a start in a tenth of the time
 constexpr double kStatic = 10000. * 9.81 / 2.;       // N under each wheel of these scenes
 
-/// A shipped scene with more tables, TOML, behind it.
+/// A shipped scene with more tables in TOML after its own.
 std::filesystem::path with(const std::string& name, const std::string& tables) {
   std::ifstream in(kScenes + name + ".toml");
   std::string text((std::istreambuf_iterator<char>(in)), {});
@@ -57,8 +57,8 @@ double largest(const std::vector<double>& value) {
   return *std::max_element(value.begin(), value.end());
 }
 
-/// Amplitude of the force of each wheel over the scene's corrugation, which it meets at 333 Hz, by
-/// the mean over a bay of r / (track + wheel + contact), each a receptance and r the corrugation
+/// Amplitude of the force of each wheel over the scene's corrugation, which passes at 333 Hz: the
+/// mean over a bay of r / (track + wheel + contact), with three receptances and the corrugation r
 /// as the contact patch feels it.
 double corrugation_force(const Scene& scene) {
   const Track track = track_of(scene);
@@ -80,7 +80,7 @@ double corrugation_force(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("an irregularity is read with its defaults and made into the rails' signals") {
+TEST_CASE("an irregularity is read with its defaults and gives the rails' signals") {
   const Scene scene =
       read_scene(with("ballasted_track", "[irregularity]\nspectrum = \"german_high\"\n"));
   REQUIRE(scene.irregularity);
@@ -103,7 +103,7 @@ TEST_CASE("an irregularity is read with its defaults and made into the rails' si
         irregularities_of(again)[0].signal.coefficient);
 }
 
-TEST_CASE("a record stands beside its scene") {
+TEST_CASE("a record is found in the folder of its scene") {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_railstep_record.csv");
   std::ofstream(file) << "distance_m,left_z_mm\n0,0\n0.25,1\n0.5,0\n0.75,2\n1,0\n";
@@ -129,9 +129,9 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
              Contains("\"gauge\" is none that ore_low has"));
   CHECK_THAT(refusal(ore + "geometries = [\"vertical\", \"vertical\"]\n"), Contains("twice"));
   CHECK_THAT(refusal(ore + "longest_wavelength_m = 2.0\n"), Contains("longest_wavelength_m"));
-  CHECK_THAT(refusal(ore + "shortest_wavelength_m = 30.0\n"),  // over the default longest
+  CHECK_THAT(refusal(ore + "shortest_wavelength_m = 30.0\n"),  // above the default longest
              Contains("shortest_wavelength_m = 30") && Contains("25"));
-  // 30 m/s at 1 ms: eight steps are 0.24 m.
+  // At 30 m/s and 1 ms eight steps are 0.24 m.
   CHECK(refusal(ore + "shortest_wavelength_m = 0.241\n", {"step.dt_s=1e-3"}) == "accepted");
   CHECK_THAT(refusal(ore + "shortest_wavelength_m = 0.239\n", {"step.dt_s=1e-3"}),
              Contains("[irregularity] a wave of 0.239 m") && Contains("8 steps or more"));
@@ -144,7 +144,7 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
   CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 9.0\nto_m = 9.05\n"
                      "wavelength_m = 0.06\namplitude_m = 1e-5\n"),
              Contains("to_m"));
-  // Samples of a fiftieth of the shape over all it spans are too many.
+  // Samples at a fiftieth of the shape over the whole span are too many.
   CHECK_THAT(refusal("[[defect]]\nkind = \"corrugation\"\nfrom_m = 0.0\nto_m = 1e6\n"
                      "wavelength_m = 0.06\namplitude_m = 1e-5\n"),
              Contains("to_m: 1e+06 m in samples") && Contains("too many; accepted are 2e+07"));
@@ -153,7 +153,7 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
   CHECK_THAT(refusal("[[wheelset.tread]]\nkind = \"fresh_flat\"\nlength_m = 1e-7\n",
                      {"wheelset[0].speed_m_per_s=0"}),
              Contains("length_m: ") && Contains("too many"));
-  // Steeper than 45 degrees.
+  // The slope is steeper than 45 degrees.
   CHECK_THAT(refusal("[[wheelset.tread]]\nkind = \"out_of_round\"\norder = 200\n"
                      "amplitude_m = 0.1\n"),
              Contains("amplitude_m = 0.1 is out of range; accepted is at least -0.0023"));
@@ -167,25 +167,25 @@ TEST_CASE("irregularities that no run can hold are refused at their key") {
              Contains("order"));
 }
 
-TEST_CASE("dipped_joint: the wheels strike at the joint, as hard as Jenkins says within a band") {
+TEST_CASE("dipped_joint: the wheels strike at the joint with Jenkins' P1 force within a band") {
   const Traced run("dipped_joint");
   CHECK(run.status == Status::ok);
   CHECK(time_of_peak(run, "wheel_left.force_z_peak_n") == Approx((12.3 - 4.5) / 30.).margin(3e-3));
-  // P1 of Jenkins and others (1974): the rail's effective mass over its contact, 0.4 m of it here,
-  // on a contact linear at the static load. R5 of hard-cases.md: a band of 25 %.
+  // P1 of Jenkins and others (1974) has the rail's effective mass over its contact, 0.4 m of it
+  // here, on a contact that is linear at the static load. R5 of hard-cases.md gives a band of 25 %.
   const double angle = 2. * 2.5e-3 / .5, rail = .4 * 60.2, contact = 1.21e9;
   const double p1 = kStatic + angle * 30. * std::sqrt(contact * rail / (1. + rail / 600.));
   const double peak = largest(run["wheel_left.force_z_peak_n"]);
   CHECK(peak == Approx(p1).epsilon(.25));
   CHECK(largest(run["wheel_right.force_z_peak_n"]) == Approx(peak).epsilon(1e-6));
-  // Half the angle is half of what comes on top, but for the contact's nonlinearity: its stiffness
+  // Half the angle gives half the added force, but for the contact's nonlinearity: its stiffness
   // goes with the cube root of the force, so its root with 1.7 % per 10 % of force.
   const Traced half("dipped_joint", {"defect[0].depth_m=1.25e-3", kFull});
   const double half_peak = largest(half["wheel_left.force_z_peak_n"]);
   CHECK((peak - kStatic) / (half_peak - kStatic) == Approx(2.).epsilon(.15));
 }
 
-TEST_CASE("wheel_flat: it strikes once a turn, and the mean force is the weight") {
+TEST_CASE("wheel_flat: the flat strikes once a turn, and the mean force is the weight") {
   const Traced run("wheel_flat", {kFull});
   CHECK(run.status == Status::ok);
   const std::vector<double> time = run["time_s"], peak = run["wheel_left.force_z_peak_n"];
@@ -201,18 +201,18 @@ TEST_CASE("wheel_flat: it strikes once a turn, and the mean force is the weight"
     CHECK(most > 1.4 * kStatic);
     CHECK(at == Approx(strikes).margin(4e-3));  // a flat takes 2 ms, and the wheel returns after it
   }
-  // The right wheel feels it through the sleepers and the axle alone.
+  // Only sleepers and axle carry the strike to the right wheel.
   CHECK(largest(run["wheel_right.force_z_peak_n"]) - kStatic < .35 * (largest(peak) - kStatic));
-  // Impulse of both wheels: weight times time, and the change of momentum.
+  // The impulse of both wheels is weight times time plus the change of momentum.
   double impulse = 0.;
   for (const char* wheel : {"wheel_left", "wheel_right"})
     for (const double part : run[std::string(wheel) + ".impulse_z_n_s"]) impulse += part;
-  // 1200 kg at no more than 0.02 m/s at the end: 24 N s of 49 kN s.
+  // The change is 1200 kg at no more than 0.02 m/s at the end: 24 N s of 49 kN s.
   CHECK(impulse == Approx(2. * kStatic * time.back()).epsilon(1e-3));
 }
 
-TEST_CASE("corrugation: the force sways with the wheel's passage, in proportion to the height") {
-  const auto sway = [](const Traced& run) {  // amplitude at 333 Hz while over it, and the mean
+TEST_CASE("corrugation: the force varies with the passing frequency, in proportion to the height") {
+  const auto sway = [](const Traced& run) {  // amplitude at 333 Hz over the waves, and the mean
     const std::vector<double> time = run["time_s"], force = run["wheel_left.force_z_n"];
     double c = 0., s = 0., mean = 0.;
     int count = 0;
@@ -235,9 +235,9 @@ TEST_CASE("corrugation: the force sways with the wheel's passage, in proportion 
       sway(Traced("corrugation", {fine[0], fine[1], "defect[0].amplitude_m=10.0e-6"}));
   CHECK(amplitude / half.first == Approx(2.).epsilon(.01));
 
-  // Both rails' receptance under both wheels, wheel and contact in series, over a bay: what the
-  // waves that run with and against the wheel change, and the contact's nonlinearity at 8 % of the
-  // load, is left.
+  // Both rails' receptance under both wheels, with wheel and contact in series, over a bay. The
+  // difference is caused by waves that run with and against the wheel, and by the contact's
+  // nonlinearity at 8 % of the load.
   const double expected = corrugation_force(read_scene(kScenes + "corrugation.toml"));
   CAPTURE(amplitude, expected);
   CHECK(amplitude == Approx(expected).epsilon(.02));

@@ -1,4 +1,4 @@
-// [[support_change]] and [rail.right]: what scenes say of seats and rails that differ.
+// [[support_change]] and [rail.right]: seats and rails of a scene that differ.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -21,13 +21,13 @@ std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(RAILSTEP_SOURCE) / "config/scenes" / (name + ".toml");
 }
 
-/// With a plain rectangle for a rail, which needs no fit.
+/// A track whose rail is a plain rectangle, which needs no fit.
 Track track(const std::string& name, Overrides overrides) {
   overrides.insert(overrides.begin(), "rail={rectangle={height_m=0.17, width_m=0.045}}");
   return track_of(read_scene(shipped(name), overrides));
 }
 
-/// What the ballasted track says to one change; "accepted" where it is read and built.
+/// Message for the ballasted track with one change, or "accepted" if it is read and built.
 std::string with(const std::string& change, const std::string& name = "ballasted_track") {
   try {
     (void)track(name, {"support_change=[{" + change + "}]"});
@@ -39,7 +39,7 @@ std::string with(const std::string& change, const std::string& name = "ballasted
 
 }  // namespace
 
-TEST_CASE("a change reaches its seats and its side alone", "[seats]") {
+TEST_CASE("a change reaches only its seats and its side", "[seats]") {
   const Track t =
       track("ballasted_track", {"support_change=["
                                 "{from=3, to=4, rail=\"left\", support={stiffness_z_n_per_m=1e8}},"
@@ -60,7 +60,7 @@ TEST_CASE("a change reaches its seats and its side alone", "[seats]") {
   CHECK(is_symmetric(track("ballasted_track", {"support_change=[{missing=\"ballast\"}]"})));
 }
 
-TEST_CASE("a pair is a transition along the seats", "[seats]") {
+TEST_CASE("two values make a transition along the seats", "[seats]") {
   const Track t = track("ballasted_track",
                         {"support_change=[{from=10, to=14, ballast={stiffness_factor=[1, 3], "
                          "damping_z_n_s_per_m=[80e3, 40e3]}}]"});
@@ -70,7 +70,7 @@ TEST_CASE("a pair is a transition along the seats", "[seats]") {
   }
 }
 
-TEST_CASE("what is missing", "[seats]") {
+TEST_CASE("missing pads, ballast and sleepers carry nothing", "[seats]") {
   const Track t = track("ballasted_track", {"support_change=[{seats=[5], missing=\"pad\"},"
                                             "{seats=[6], rail=\"right\", missing=\"ballast\"},"
                                             "{seats=[7], missing=\"sleeper\"}]"});
@@ -82,14 +82,14 @@ TEST_CASE("what is missing", "[seats]") {
   CHECK(t.seat(6).sleeper.has_value());
   CHECK_FALSE(t.seat(7).sleeper.has_value());
   CHECK(t.seat(7).pad[0].stiffness[2] == 0.);
-  // It stands, and what carries the rest is more.
+  // The track still stands, and the other seats carry more.
   const Statics whole(track("ballasted_track", {})), gone(t);
   const RailPoint over{0, 4.2, 0., 0., 2};
   CHECK(gone.flexibility(over, over) > 1.3 * whole.flexibility(over, over));
 }
 
-TEST_CASE("scatter: even, by seed, the same everywhere", "[seats]") {
-  // The same integers and one division by 2^53, computed apart from this program.
+TEST_CASE("scatter is even, follows its seed and is the same on every machine", "[seats]") {
+  // The same integers and one division by 2^53, computed without this program.
   CHECK(scatter_factor(7, 0, 3, 0, .2) == 0x1.ae189daca866ep-1);
   CHECK(scatter_factor(7, 2, 3, 1, .2) == 0x1.a4c92fd6aad22p-1);
   CHECK(scatter_factor(0, 0, 0, 0, .5) == 0x1.4704eb7871f97p-1);
@@ -117,10 +117,10 @@ TEST_CASE("scatter: even, by seed, the same everywhere", "[seats]") {
   const double k = all.seat(9).pad[0].stiffness[2] / 200e6,
                c = all.seat(9).pad[0].damping[2] / 20e3;
   CHECK_THAT(all.seat(9).pad[0].stiffness[0], WithinRel(50e6 * k, 1e-15));
-  CHECK(std::abs((k - 1.) / .2 - (c - 1.) / .4) > 1e-3);  // drawn by themselves
+  CHECK(std::abs((k - 1.) / .2 - (c - 1.) / .4) > 1e-3);  // each is drawn separately
 }
 
-TEST_CASE("changes that are refused, each in a sentence", "[seats]") {
+TEST_CASE("bad changes are refused, each in one sentence", "[seats]") {
   CHECK_THAT(with("seats=[41], missing=\"pad\""), Contains("accepted is at least 0, at most 40"));
   CHECK_THAT(with("seats=[3.5], missing=\"pad\""), Contains("3.5 is no number of a seat"));
   CHECK_THAT(with("seats=[4, 3], missing=\"pad\""), Contains("3 does not rise"));
@@ -153,18 +153,18 @@ TEST_CASE("the right rail may differ", "[seats]") {
                                               "young_pa=200e9, axial_force_n=1e5}"});
   const Track t = track_of(scene);
   REQUIRE(t.right);
-  // rail-data's 54E1: 6977 mm2; the fit meets it to its printed digits.
+  // rail-data's 54E1 has 6977 mm2; the fit meets its printed digits.
   CHECK_THAT(t.right->section.area, WithinRel(6977.4e-6, 1e-4));
   CHECK_THAT(t.section.area, WithinRel(7670e-6, 1e-4));
   CHECK(t.right->material.young == 200e9);
   CHECK(t.right->material.density == 7850.);
   CHECK(t.right->axial_force == 1e5);
   CHECK(t.axial_force == 0.);
-  // Pads reach each rail's own foot, under its centroid: 80.92 and 75.13 mm.
+  // Pads reach each rail's own foot, 80.92 and 75.13 mm below its centroid.
   CHECK_THAT(t.seat(7).pad[0].height_z, WithinAbs(-80.92e-3, 5e-5));
   CHECK_THAT(t.seat(7).pad[1].height_z, WithinAbs(-75.13e-3, 5e-5));
   CHECK_FALSE(is_symmetric(t));
-  // Heads are level: a rectangle 20 mm lower has its middle 10 mm higher.
+  // The heads are level, so the middle of a rectangle 20 mm lower is 10 mm higher.
   const Scene low =
       read_scene(shipped("ballasted_track"), {"rail={rectangle={height_m=0.17, width_m=0.045}, "
                                               "right={rectangle={height_m=0.15, width_m=0.045}}}"});
@@ -192,7 +192,7 @@ TEST_CASE("the program runs a track whose sides and rails differ", "[seats]") {
   CHECK(ran.err.empty());
   REQUIRE(ran.code == 0);
   CHECK_THAT(ran.out, Contains("\"status\": []"));
-  // The left one hangs, and the same seed makes the same track.
+  // The left rail hangs over two seats, and the same seed makes the same track.
   const std::string trace = text_of(folder / "once.csv");
   CHECK_THAT(trace, Contains("support_8.force_z_n") && Contains("support_right_12.force_z_n"));
   REQUIRE(railstep_program(words_of("twice.csv")).code == 0);

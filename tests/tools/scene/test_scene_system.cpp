@@ -21,7 +21,7 @@ SystemScene system_scene(const std::string& name, const Overrides& overrides = {
   return std::get<SystemScene>(read_any_scene(shipped(name), overrides));
 }
 
-/// What a shipped scene with these options says; "accepted" where it is read.
+/// Message for a shipped scene with these options, or "accepted" if it is read.
 std::string with(const std::string& name, const Overrides& overrides) {
   try {
     read_any_scene(shipped(name), overrides);
@@ -36,7 +36,7 @@ const std::string kPendulum = "double_pendulum", kCrank = "slider_crank",
 
 }  // namespace
 
-TEST_CASE("double_pendulum is the paper's", "[scene]") {
+TEST_CASE("double_pendulum is the pendulum of the paper", "[scene]") {
   const SystemScene s = system_scene(kPendulum);
   CHECK_FALSE(s.system.planar);
   CHECK(s.system.gravity == Eigen::Vector3d(0., 0., -9.81));
@@ -50,7 +50,7 @@ TEST_CASE("double_pendulum is the paper's", "[scene]") {
   CHECK(s.system.beams[0].ends[0] == BeamEnd::pinned);
   CHECK(s.system.beams[0].ends[1] == BeamEnd::free);
   CHECK(std::get<RectangleSize>(s.bars[0].bar.shape).height == .02);
-  CHECK(s.bars[0].bar.young == 210e6);  // the paper's, a thousandth of steel's
+  CHECK(s.bars[0].bar.young == 210e6);  // the paper's value, a thousandth of steel's
   CHECK(s.bars[0].bar.density == 7900.);
   CHECK(s.bars[0].bar.shear_factor_z == 1.);
   REQUIRE(s.system.joints.size() == 1);
@@ -65,7 +65,7 @@ TEST_CASE("double_pendulum is the paper's", "[scene]") {
   CHECK(s.step.steps == 1000);
 }
 
-TEST_CASE("slider_crank and spring_pendulum say what their comments say", "[scene]") {
+TEST_CASE("slider_crank and spring_pendulum have the values in their comments", "[scene]") {
   const SystemScene crank = system_scene(kCrank);
   CHECK(crank.system.planar);
   REQUIRE(crank.system.bodies.size() == 3);
@@ -84,7 +84,7 @@ TEST_CASE("slider_crank and spring_pendulum say what their comments say", "[scen
   CHECK(spring.system.springs[0].b.kind == Part::Kind::body);
 }
 
-TEST_CASE("the keys of [joints] and their defaults", "[scene]") {
+TEST_CASE("the keys of [joints] have their defaults and limits", "[scene]") {
   const SystemOptions defaults{}, plain = system_scene(kPendulum).options;
   CHECK(plain.constraint_method == ConstraintMethod::augmented_lagrangian);
   CHECK(plain.cap == defaults.cap);
@@ -120,7 +120,7 @@ TEST_CASE("the keys of [joints] and their defaults", "[scene]") {
   CHECK_THAT(with(kPendulum, {"joints.pennalty=5"}), Contains("did you mean 'penalty'?"));
 }
 
-TEST_CASE("where a body stands and how it is turned", "[scene]") {
+TEST_CASE("a body stands and turns as its keys say", "[scene]") {
   const RigidBody b = system_scene(kSpring, {"body[0].rotation_deg=[0, 0, 90]",
                                              "body[0].inertia_kg_m2=[3, 2, 2.5, 0.1, 0.2, 0.3]",
                                              "body[0].angular_velocity_rad_per_s=[1, 2, 3]"})
@@ -132,7 +132,7 @@ TEST_CASE("where a body stands and how it is turned", "[scene]") {
   CHECK(b.angular_velocity == Eigen::Vector3d(1., 2., 3.));
 }
 
-TEST_CASE("a beam's axes: the section's left is +y where it lies in x and z", "[scene]") {
+TEST_CASE("a beam in the plane of x and z has the section's left at +y", "[scene]") {
   const auto axes = [](const Overrides& overrides) {
     return system_scene(kPendulum, overrides).system.beams[0].axes;
   };
@@ -151,16 +151,16 @@ TEST_CASE("a beam's axes: the section's left is +y where it lies in x and z", "[
   CHECK_THAT(with(kPendulum, {"beam[0].direction=[0, 0, 0]"}), Contains("has no direction"));
 }
 
-TEST_CASE("numbers that no mass has", "[scene]") {
+TEST_CASE("numbers that no mass has are refused", "[scene]") {
   CHECK_THAT(with(kSpring, {"body[0].mass_kg=0"}),
              Contains("[body[0]] mass_kg = 0 is out of range; accepted is above 0"));
   CHECK_THAT(with(kSpring, {"body[0].mass_kg=nan"}), Contains("mass_kg = nan is not finite"));
   CHECK_THAT(with(kSpring, {"body[0].inertia_kg_m2=[1, 1, 2.1]"}),
              Contains("principal inertias 1, 1 and 2.1 are those of no mass"));
-  CHECK(with(kSpring, {"body[0].inertia_kg_m2=[0.1, 0.2, 0.3]"}) == "accepted");  // flat
+  CHECK(with(kSpring, {"body[0].inertia_kg_m2=[0.1, 0.2, 0.3]"}) == "accepted");  // a flat body
   CHECK_THAT(with(kSpring, {"body[0].inertia_kg_m2=[1, 1, 0]"}),
              Contains("the least principal inertia is 0; accepted is above 0"));
-  // eigenvalues 3, 1, -1
+  // The eigenvalues are 3, 1 and -1.
   CHECK_THAT(with(kSpring, {"body[0].inertia_kg_m2=[1, 1, 1, 2, 0, 0]"}),
              Contains("the least principal inertia is -1"));
   CHECK_THAT(with(kSpring, {"body[0].inertia_kg_m2=[1, 1, 1, 2]"}), Contains("has 4 entries"));
@@ -177,7 +177,7 @@ TEST_CASE("numbers that no mass has", "[scene]") {
   CHECK_THAT(with(kSpring, {"system.gravity_m_per_s2=[0, 0, inf]"}), Contains("not finite"));
 }
 
-TEST_CASE("names are known, and given once", "[scene]") {
+TEST_CASE("an unknown name or one given twice is refused", "[scene]") {
   CHECK_THAT(with(kPendulum, {"joint[0].between=[\"uper\", \"lower\"]"}),
              Contains("[joint[0]] between has \"uper\", which is unknown; accepted are "
                       "\"ground\", \"upper\", \"lower\""));
@@ -196,13 +196,13 @@ TEST_CASE("names are known, and given once", "[scene]") {
   CHECK_THAT(with(kPendulum, {"beam[0].name=\"a b\""}), Contains("is no name"));
 }
 
-TEST_CASE("points lie on their beam", "[scene]") {
+TEST_CASE("points must lie on their beam", "[scene]") {
   CHECK_THAT(with(kPendulum, {"sensor[1].position_m=[0.41, 0, 0]"}),
              Contains("[sensor[1]] position_m is at 0.41 m along beam \"upper\"; accepted is 0 to "
                       "0.4 m"));
   CHECK_THAT(with(kPendulum, {"joint[0].point_m=[0.39, 0, 0]"}),
              Contains("point_m is at -0.01 m along beam \"lower\""));
-  // the section's diagonal is sqrt(0.02^2 + 0.03^2) = 0.0361 m
+  // The section's diagonal is sqrt(0.02^2 + 0.03^2) = 0.0361 m.
   CHECK_THAT(with(kPendulum, {"sensor[1].position_m=[0.4, 0, 0.04]"}),
              Contains("position_m is 0.04 m beside beam \"upper\"; accepted is at most 0.0360555"));
   CHECK(with(kPendulum, {"sensor[1].position_m=[0.4, 0.015, 0.01]"}) == "accepted");  // a corner
@@ -210,7 +210,7 @@ TEST_CASE("points lie on their beam", "[scene]") {
              Contains("'position_m' is missing"));
 }
 
-TEST_CASE("what a kind of joint has and has not", "[scene]") {
+TEST_CASE("a kind of joint refuses keys of other kinds", "[scene]") {
   const auto joint = [](const std::string& keys) {
     return with(kSpring, {"joint=[{name=\"j\", between=[\"ground\", \"bob\"], " + keys + "}]"});
   };
@@ -255,7 +255,7 @@ TEST_CASE("what a kind of joint has and has not", "[scene]") {
   CHECK(joint(at + "kind=\"rotation\", axis=[0, 0, 1], table_rad=[[0, 0], [1, 3]]") == "accepted");
 }
 
-TEST_CASE("forces and moments, constant or over time", "[scene]") {
+TEST_CASE("forces and moments are constant or given over time", "[scene]") {
   const auto force = [](const std::string& keys) {
     return "force=[{on=\"bob\", direction=[0, 0, 2], " + keys + "}]";
   };
@@ -276,7 +276,7 @@ TEST_CASE("forces and moments, constant or over time", "[scene]") {
              Contains("'direction' is missing"));
 }
 
-TEST_CASE("a planar system has nothing across its plane", "[scene]") {
+TEST_CASE("a planar system refuses everything that leaves its plane", "[scene]") {
   CHECK(with(kPendulum, {"system.planar=true"}) == "accepted");
   const std::string planar = "system.planar=true";
   CHECK_THAT(with(kPendulum, {planar, "sensor[0].position_m=[0, 0.01, 0]"}),
@@ -299,7 +299,7 @@ TEST_CASE("a planar system has nothing across its plane", "[scene]") {
              Contains("a cylindrical joint leaves the plane"));
 }
 
-TEST_CASE("a scene without a track has nothing of one", "[scene]") {
+TEST_CASE("a scene without a track refuses a track's keys", "[scene]") {
   CHECK_THAT(with("moving_load", {"body=[]"}), Contains("neither a [[body]] nor a [[beam]]"));
   CHECK_THAT(with(kPendulum, {"support.stiffness_z_n_per_m=1"}),
              Contains("[support] says something of a track, and the scene has none"));
@@ -316,7 +316,7 @@ TEST_CASE("a scene without a track has nothing of one", "[scene]") {
   CHECK(std::holds_alternative<Scene>(read_any_scene(shipped("moving_load"))));
 }
 
-TEST_CASE("a system's [step]", "[scene]") {
+TEST_CASE("[step] of a system has its schemes, starts and limits", "[scene]") {
   CHECK(system_scene(kPendulum, {"step.scheme=\"energy-momentum\""}).step.scheme ==
         TimeScheme::energy_momentum);
   CHECK_THAT(with(kPendulum, {"step.scheme=\"rk4\""}),

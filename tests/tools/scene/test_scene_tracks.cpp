@@ -1,4 +1,4 @@
-// Shipped scenes of tracks that are struck, heated, or change their ballast.
+// Shipped scenes of tracks that are struck or heated, or whose ballast changes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,7 +18,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// Mean of a column while another is between two values.
+/// Mean of a column over the rows in which another column lies between two values.
 double mean(const Traced& run, const std::string& column, const std::string& of, double from,
             double to) {
   const std::vector<double> value = run[column], place = run[of];
@@ -58,9 +58,9 @@ std::complex<double> transformed(const std::vector<double>& value, double dt, do
 
 }  // namespace
 
-TEST_CASE("impact_hammer: blow and answer make the track's receptance", "[scenes]") {
-  // The band in which design.md's 1 % is asked, the step resolves and the blow has force; the
-  // complex solve of the same track is the independent answer.
+TEST_CASE("impact_hammer: blow and response give the track's receptance", "[scenes]") {
+  // Frequencies at which design.md requires 1 %, the step is fine enough and the blow has force.
+  // The complex solution of the same track is the independent reference.
   const Traced run("impact_hammer");
   CHECK(run.status == Status::ok);
   const Scene scene = read_scene(kScenes + "impact_hammer.toml");
@@ -81,8 +81,8 @@ TEST_CASE("impact_hammer: blow and answer make the track's receptance", "[scenes
   }
 }
 
-TEST_CASE("heated_track: compression softens the rails by the closed form", "[scenes]") {
-  const std::string step = "step.dt_s=1e-4";  // twice the scene's: the ratio does not see it
+TEST_CASE("heated_track: compression softens the rails as in closed form", "[scenes]") {
+  const std::string step = "step.dt_s=1e-4";  // twice the scene's: the ratio is the same
   const Traced hot("heated_track", {step}),
       even("heated_track", {step, "rail.temperature_rise_k=0.0"});
   CHECK(hot.status == Status::ok);
@@ -93,46 +93,45 @@ TEST_CASE("heated_track: compression softens the rails by the closed form", "[sc
   const double softer =
       on_foundation(bar, foundation, -bar.axial_force) / on_foundation(bar, foundation, 0.);
   REQUIRE(softer > 1.01);
-  // Seats every 0.6 m for an even foundation: the two deflections differ by a few percent, their
-  // ratio's distance from 1 by as much of itself; inertia at 30 m/s by (30 m/s over 700)^2.
+  // The closed form has an even foundation in place of seats every 0.6 m. The deflections differ by
+  // a few percent, and so does their ratio's distance from 1. Inertia at 30 m/s adds (30/700)^2.
   for (const char* const load : {"load_left", "load_right"}) {
     const std::string z = std::string(load) + ".deflection_z_m", x = std::string(load) + ".x_m";
     const double ratio = mean(hot, z, x, 9., 15.) / mean(even, z, x, 9., 15.);
     CHECK_THAT((ratio - 1.) / (softer - 1.), WithinAbs(1., .1));
   }
-  // Nothing moves aside: the track is straight and both rails are loaded alike.
+  // No lateral motion: the track is straight and both rails have the same load.
   CHECK_THAT(hot["pad.dy_m"].back(), WithinAbs(0., 1e-12));
 }
 
-TEST_CASE("transition_zone: uneven ballast is as even ballast far from where it changes",
-          "[scenes]") {
-  // The invariants: momentum of the wheelset, exact for the scheme's own sums; and uniform tracks
-  // with either ballast, 5 m and more from the zone, where waves have decayed to less than 1e-2 of
-  // what the zone makes.
-  const std::string step = "step.dt_s=1e-4";  // twice the scene's, of all three
+TEST_CASE("transition_zone: far from the change the track moves as on even ballast", "[scenes]") {
+  // Checked are the momentum of the wheelset, which is exact for the scheme's own sums, and uniform
+  // tracks with either ballast, 5 m and more from the zone. There waves have decayed to less than
+  // 1e-2 of those at the zone.
+  const std::string step = "step.dt_s=1e-4";  // twice the scene's, in all three
   const Traced zone("transition_zone", {step});
   CHECK(zone.status == Status::ok);
   const std::string even = "support_change=[]";
   const Traced soft("transition_zone", {step, even, "step.duration_s=0.1"}),
       stiff("transition_zone",
             {even, "ballast.stiffness_z_n_per_m=200.0e6", "ballast.damping_z_n_s_per_m=160.0e3"});
-  // Height of the rail under the left wheel, on the way between two places.
+  // Height of the rail under the left wheel, m, on the way between two places.
   const auto under = [](const Traced& run, double start, double from, double to) {
     return mean(run, "wheel_left.rail_z_m", "time_s", (from - start) / 60., (to - start) / 60.);
   };
   const double before = under(soft, 6.3, 7.8, 11.4), behind = under(stiff, 22.3, 25.2, 28.8);
   CHECK_THAT(under(zone, 6.3, 7.8, 11.4), WithinRel(before, 1e-2));
   CHECK_THAT(under(zone, 6.3, 25.2, 28.8), WithinRel(behind, 1e-2));
-  CHECK(before < 1.3 * behind);  // both below 0
+  CHECK(before < 1.3 * behind);  // both are below 0
 
   double impulse = 0.;
   for (const char* const wheel : {"wheel_left", "wheel_right"})
     for (const double part : zone[std::string(wheel) + ".impulse_z_n_s"]) impulse += part;
   const double weight = 10e3 * 9.81 * zone["time_s"].back();
-  // What the axle gains on the way is its mass times the speed that the rail's slope leaves it, at
+  // The axle's momentum changes by its mass times the speed that the rail's slope leaves it, at
   // most some 0.03 m/s.
   CHECK_THAT(impulse, WithinAbs(weight, 1200. * .03));
-  // The zone shakes the wheel; the even track with it does not half as much.
+  // The zone shakes the wheel more than the even track does.
   const auto shaken = [](const Traced& run) {
     const std::vector<double> force = run["wheel_left.force_z_peak_n"];
     return *std::max_element(force.begin() + 20, force.end()) / (10e3 * 9.81 / 2.);
@@ -140,7 +139,7 @@ TEST_CASE("transition_zone: uneven ballast is as even ballast far from where it 
   CHECK(shaken(zone) > shaken(soft) + .02);
 }
 
-TEST_CASE("struck, heated, changing and irregular tracks: energies balance below 1e-3",
+TEST_CASE("energies of struck, heated, changing and irregular tracks balance below 1e-3",
           "[scenes]") {
   const std::string name = GENERATE("impact_hammer", "heated_track", "transition_zone",
                                     "dipped_joint", "wheel_flat", "corrugation");

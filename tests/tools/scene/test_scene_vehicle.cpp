@@ -1,4 +1,4 @@
-// [[vehicle]], swinging loads and tables of speed in a scene, and what a wrong one is told.
+// [[vehicle]], swinging loads and tables of speed in a scene, and messages for wrong ones.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <string>
@@ -71,7 +71,7 @@ TEST_CASE("every type of vehicle is read with its defaults", "[scene][vehicle]")
   CHECK(whole.kind.vehicle.wheels[3].place == -6.5);
 }
 
-TEST_CASE("bogies that stand in each other are refused", "[scene][vehicle]") {
+TEST_CASE("bogies that overlap are refused", "[scene][vehicle]") {
   const std::string car =
       "name=\"c\", type=\"vehicle\", body_mass_kg=1e4, body_inertia_kg_m2=1e6, "
       "secondary_stiffness_n_per_m=4e5, frame_mass_kg=1e3, frame_inertia_kg_m2=700.0, "
@@ -82,7 +82,8 @@ TEST_CASE("bogies that stand in each other are refused", "[scene][vehicle]") {
              Contains("bogie_distance_m = 3 is out of range; accepted is above 3, at most 1000"));
 }
 
-TEST_CASE("shipped vehicles are read, and stand where they say", "[scene][vehicle]") {
+TEST_CASE("shipped vehicles are read and stand with their weight on their wheels",
+          "[scene][vehicle]") {
   for (const auto& [file, wheels, bodies] : {std::tuple{"manchester_passenger", 4u, 7u},
                                              {"manchester_bogie", 2u, 3u},
                                              {"freight_bogie", 2u, 3u},
@@ -100,7 +101,7 @@ TEST_CASE("shipped vehicles are read, and stand where they say", "[scene][vehicl
   }
 }
 
-TEST_CASE("the trace has a vehicle's wheels and bodies", "[scene][vehicle]") {
+TEST_CASE("the trace has the wheels and bodies of a vehicle", "[scene][vehicle]") {
   const Scene scene = read_scene(kScene, {"track.rails=2", "vehicle[0].rail=\"both\"", "sensor=[]",
                                           "sleeper.roll_inertia_kg_m2=169.0"});
   REQUIRE(scene.vehicles.size() == 2);
@@ -117,7 +118,7 @@ TEST_CASE("the trace has a vehicle's wheels and bodies", "[scene][vehicle]") {
   CHECK(names[29] == "bogie_right.frame.z_m");
 }
 
-TEST_CASE("a vehicle that is wrong is told so, with its file and key", "[scene][vehicle]") {
+TEST_CASE("invalid vehicles are refused with their file and key", "[scene][vehicle]") {
   const std::string named = "name=\"m\", ", mass = "type=\"mass\", mass_kg=100.0, ";
   const struct {
     std::string vehicle, told;
@@ -152,7 +153,7 @@ TEST_CASE("a vehicle that is wrong is told so, with its file and key", "[scene][
   }
 }
 
-TEST_CASE("a vehicle's own file is held to its keys", "[scene][vehicle]") {
+TEST_CASE("a vehicle's own file may have only known keys", "[scene][vehicle]") {
   const auto folder = fresh_folder("vehicle");
   std::ofstream(folder / "v.toml")
       << "schema = 1\n[vehicle]\ntype = \"mass\"\nmass_kg = 1.0\nmas_kg = 2.0\n";
@@ -181,7 +182,7 @@ TEST_CASE("a swinging load and a table of speeds are read", "[scene]") {
   CHECK_THAT(told({"load[0].speed_table=[[0, 1]]"}), Contains("one of them is accepted"));
 }
 
-TEST_CASE("a vehicle that falls starts free, above the track", "[scene][vehicle]") {
+TEST_CASE("a vehicle that falls starts freely above the track", "[scene][vehicle]") {
   const std::string mass =
       "vehicle=[{name=\"m\", type=\"mass\", mass_kg=600.0, drop_height_m=0.01, "
       "drop_speed_m_per_s=0.2, start_m=20.0, speed_m_per_s=0.0, contact=";

@@ -26,7 +26,7 @@ const std::string kShort = " --set step.duration_s=0.01";
 const std::string kSix =
     " --vary support.stiffness_z_n_per_m=2e7,3e7,5e7 --vary 'load[0].speed_m_per_s=20,30'";
 
-/// A line of CSV, its cells without the quotes of RFC 4180.
+/// Cells of a line of CSV, without the quotes of RFC 4180.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -43,7 +43,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// A table's rows, each by column.
+/// Rows of a table, each by its columns.
 std::vector<std::map<std::string, std::string>> table_of(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
@@ -72,7 +72,7 @@ std::vector<fs::path> row_files(const fs::path& out) {
 
 }  // namespace
 
-TEST_CASE("a sweep's rows are the runs made one by one", "[sweep]") {
+TEST_CASE("the rows of a sweep equal runs made one by one", "[sweep]") {
   const auto out = fresh_folder("sweep_rows");
   const Ran ran = sweep(kMovingLoad + kShort + kSix + " --json", out);
   CAPTURE(ran.err);
@@ -105,7 +105,7 @@ TEST_CASE("a sweep's rows are the runs made one by one", "[sweep]") {
   }
 }
 
-TEST_CASE("a sweep sums up the rows of a run's trace, from a time on", "[sweep]") {
+TEST_CASE("a sweep summarises the rows of a run's trace from a chosen time on", "[sweep]") {
   const auto out = fresh_folder("sweep_summary");
   const std::string file = (out / "t.csv").string();
   REQUIRE(railstep_program("run " + kMovingLoad + kShort + " --trace " + file).code == 0);
@@ -130,7 +130,7 @@ TEST_CASE("a sweep sums up the rows of a run's trace, from a time on", "[sweep]"
       CHECK(cell(".min") == *std::min_element(column.begin(), column.end()));
       CHECK(cell(".max") == *std::max_element(column.begin(), column.end()));
       CHECK(cell(".last") == column.back());
-      // some ten roundings of numbers no larger than the column's own
+      // Some ten roundings of numbers no larger than those of the column.
       const double scale = std::max(std::fabs(cell(".min")), std::fabs(cell(".max")));
       CHECK_THAT(cell(".mean"), Catch::WithinAbs(sum / count, 1e-14 * scale));
       CHECK_THAT(cell(".std"), Catch::WithinAbs(std::sqrt(squares / count), 1e-14 * scale));
@@ -147,10 +147,10 @@ TEST_CASE("a sweep's table has the same bytes for any number of jobs", "[sweep]"
   REQUIRE(files.size() == 6);
   for (const fs::path& file : files)
     CHECK(text_of(file) == text_of(four / "rows" / file.filename()));
-  CHECK(entries(one) == 2);  // the rows and the table, nothing beside them
+  CHECK(entries(one) == 2);  // the rows and the table, no other file
 }
 
-TEST_CASE("shards made apart and merged are the whole sweep", "[sweep]") {
+TEST_CASE("shards made separately and merged give the whole sweep", "[sweep]") {
   const auto whole = fresh_folder("sweep_whole"), merged = fresh_folder("sweep_merged");
   REQUIRE(sweep(kMovingLoad + kShort + kSix, whole).code == 0);
   for (const int shard : {1, 2})
@@ -164,7 +164,7 @@ TEST_CASE("shards made apart and merged are the whole sweep", "[sweep]") {
   CHECK_THAT(early.err, Contains("2 of 6 runs have no row") && Contains("the first is run 2"));
   CHECK_FALSE(fs::exists(merged / "table.csv"));
 
-  const auto elsewhere = fresh_folder("sweep_elsewhere");  // another machine, say
+  const auto elsewhere = fresh_folder("sweep_elsewhere");  // as on another machine
   const Ran third = sweep(kMovingLoad + kShort + kSix + " --shard 3/3 --json", elsewhere);
   REQUIRE(third.code == 0);
   CHECK(nlohmann::json::parse(third.out)["runs"] == 2);
@@ -173,7 +173,7 @@ TEST_CASE("shards made apart and merged are the whole sweep", "[sweep]") {
   CHECK(text_of(merged / "table.csv") == text_of(whole / "table.csv"));
 }
 
-TEST_CASE("a sweep begun anew makes what is missing, and that alone", "[sweep]") {
+TEST_CASE("a sweep that is started again makes only the missing runs", "[sweep]") {
   const auto out = fresh_folder("sweep_resumed");
   REQUIRE(sweep(kMovingLoad + kShort + kSix, out).code == 0);
   const std::string table = text_of(out / "table.csv");
@@ -192,7 +192,7 @@ TEST_CASE("a sweep begun anew makes what is missing, and that alone", "[sweep]")
   for (std::size_t i = 2; i < files.size(); ++i) CHECK(fs::last_write_time(files[i]) == long_ago);
 }
 
-TEST_CASE("a changed scene takes no rows of the old one", "[sweep]") {
+TEST_CASE("a changed scene uses no rows of the old one", "[sweep]") {
   const auto out = fresh_folder("sweep_changed");
   const fs::path scene = out / "scene.toml";
   fs::copy(kMovingLoad, scene);
@@ -208,7 +208,7 @@ TEST_CASE("a changed scene takes no rows of the old one", "[sweep]") {
   CHECK(text_of(out / "table.csv") != before);
 }
 
-TEST_CASE("a run that fails has its reason in the table, and the sweep goes on", "[sweep]") {
+TEST_CASE("a run that fails has its reason in the table and the sweep goes on", "[sweep]") {
   const auto out = fresh_folder("sweep_failed");
   const Ran ran =
       sweep(kMovingLoad + kShort +
@@ -222,11 +222,11 @@ TEST_CASE("a run that fails has its reason in the table, and the sweep goes on",
   CHECK_THAT(rows[2]["error"], Contains("buckle") && Catch::StartsWith("moving_load.toml"));
   CHECK(rows[2]["state_hash"].empty());
   CHECK(rows[1]["error"].empty());
-  // columns that only some runs have
+  // Only some runs have these columns.
   CHECK(rows[0]["support_0.force_z_n.max"].empty());
   CHECK_FALSE(rows[1]["support_0.force_z_n.max"].empty());
   CHECK_FALSE(rows[0]["load_left.deflection_z_m.min"].empty());
-  // a failure is a result: it is not made again
+  // A failure is a result: the run is not made again.
   const Ran again = sweep(
       kMovingLoad + kShort + " --vary rail.axial_force_n=0,-1e9 --vary output.supports=false,true",
       out);
@@ -234,7 +234,7 @@ TEST_CASE("a run that fails has its reason in the table, and the sweep goes on",
   CHECK_THAT(again.out, Contains("of which 0 were made now"));
 }
 
-TEST_CASE("values with commas stand in the table as written", "[sweep]") {
+TEST_CASE("values with commas stand in the table as they were written", "[sweep]") {
   const auto out = fresh_folder("sweep_quoted");
   const Ran ran =
       sweep(kMovingLoad + kShort + R"( --vary 'track.ends=["pinned", "free"],"free"')", out);
@@ -247,7 +247,7 @@ TEST_CASE("values with commas stand in the table as written", "[sweep]") {
   CHECK(rows[0]["state_hash"] != rows[1]["state_hash"]);
 }
 
-TEST_CASE("what a sweep does not take is exit 2, one sentence and nothing written", "[sweep]") {
+TEST_CASE("a sweep refuses bad options with exit code 2, one sentence and no files", "[sweep]") {
   struct Case {
     std::string words, said;
   };
@@ -285,10 +285,10 @@ TEST_CASE("what a sweep does not take is exit 2, one sentence and nothing writte
     CHECK_FALSE(fs::exists(out));
   }
   const auto out = fresh_folder("sweep_bad");
-  CHECK(sweep(kMovingLoad, out).code == 2);  // nothing to vary
+  CHECK(sweep(kMovingLoad, out).code == 2);  // there is nothing to vary
   CHECK(sweep(kMovingLoad + vary + " --merge --shard 1/2", out).code == 2);
   CHECK(sweep(kMovingLoad + vary + " --jobs 0", out).code == 2);
-  CHECK(railstep_program("sweep " + kMovingLoad + vary).code == 2);  // nowhere to write
+  CHECK(railstep_program("sweep " + kMovingLoad + vary).code == 2);  // there is no place to write
   const Ran none = sweep((out / "no_such.toml").string() + vary, out);
   CHECK(none.code == 2);
   CHECK_THAT(none.err, Contains("no_such.toml"));

@@ -33,11 +33,11 @@ TEST_CASE("every run is in one shard", "[sweep]") {
   for (const char* shard : {"1/4", "2/4", "3/4", "4/4"})
     for (const std::int64_t run : read_shard(shard).runs(10)) ++met[static_cast<std::size_t>(run)];
   CHECK(met == std::vector<int>(10, 1));
-  CHECK(read_shard("0/4").runs(10) == read_shard("4/4").runs(10));  // of numbers from 0
-  CHECK(read_shard("7/8").runs(3).empty());                         // more shards than runs
+  CHECK(read_shard("0/4").runs(10) == read_shard("4/4").runs(10));  // shards may be numbered from 0
+  CHECK(read_shard("7/8").runs(3).empty());  // there are more shards than runs
 }
 
-TEST_CASE("of several failures at once the first in order is thrown", "[sweep]") {
+TEST_CASE("the first of several failures is thrown", "[sweep]") {
   for (const int jobs : {1, 2, 8}) {
     std::vector<int> done(1000, 0);
     const auto work = [&](std::int64_t i) {
@@ -50,7 +50,7 @@ TEST_CASE("of several failures at once the first in order is thrown", "[sweep]")
   CHECK_NOTHROW(in_parallel(0, 4, [](std::int64_t) { throw std::runtime_error("none"); }));
 }
 
-TEST_CASE("a run's key is that of the program, the scene, what is set and all files", "[sweep]") {
+TEST_CASE("a run's key depends on the program, the scene, its overrides and all files", "[sweep]") {
   const auto folder = fresh_folder("sweep_key");
   const std::string source = std::string(RAILSTEP_SOURCE) + "/config/";
   std::filesystem::copy(source + "profiles/60e1.toml", folder / "rail.toml");
