@@ -29,14 +29,14 @@ inline std::int64_t word_of(const Block& block, std::size_t at) {
   return value;
 }
 
-/// Where the payload begins, of a block whose header is whole.
+/// Offset of the payload of a block with a whole header, bytes.
 inline std::size_t payload_of(const Block& block) { return header_of(block.data()).header_bytes; }
-/// Where a section begins.
+/// Offset of a section, bytes.
 inline std::size_t section_at(const Block& block, SectionName name) {
   return header_of(block.data()).section[name].at;
 }
 
-/// Makes size and sums those of the block as it stands.
+/// Sets size and checksums to those of the block's present content.
 inline void sign(Block& block) {
   put_word(block, offsetof(BlockHeader, bytes), static_cast<std::int64_t>(block.size()));
   const std::size_t from = payload_of(block);
@@ -46,7 +46,8 @@ inline void sign(Block& block) {
   put_word(block, kCrcAt, header_crc(reinterpret_cast<const unsigned char*>(block.data()), from));
 }
 
-/// A model of memory's own, from its start; what it published last, and all that a replay needs.
+/// A run of a model from its start in memory of its own, with its last outputs and all that a
+/// replay needs.
 struct LoadedRun {
   const Model& model;
   std::vector<double> memory, scratch, track_sensors;

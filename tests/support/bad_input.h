@@ -13,8 +13,7 @@
 
 namespace railstep {
 
-/// A folder with files that stood there before the program ran: inputs, and outputs of an earlier
-/// run.
+/// A folder with files from before the program ran: inputs, and outputs of an earlier run.
 class BadInput {
  public:
   explicit BadInput(const std::string& name) : folder_(fresh_folder("bad_" + name)) {}
@@ -22,18 +21,18 @@ class BadInput {
   BadInput& operator=(const BadInput&) = delete;
   ~BadInput() { std::filesystem::remove_all(folder_); }
 
-  /// Writes a file, byte for byte, and returns its whole name.
+  /// Writes a file byte for byte and returns its full name.
   std::string file(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return (folder_ / name).string();
   }
-  /// An option and an output of an earlier run in the way of what it would write.
+  /// An option and its output file, which an earlier run has already written.
   std::string old(const std::string& option, const std::string& name) const {
     return " " + option + " " + file(name, "of an earlier run\n");
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  /// What stands in the folder, and in which bytes.
+  /// Names and bytes of the files in the folder.
   std::map<std::string, std::string> content() const {
     std::map<std::string, std::string> all;
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
@@ -42,8 +41,8 @@ class BadInput {
     return all;
   }
 
-  /// The program ends with this code, one sentence on stderr with all these words and nothing on
-  /// stdout, and leaves every file in the folder as it was and none beside them.
+  /// Checks that the program ends with this code, one sentence on stderr with all these words and
+  /// nothing on stdout, and that it leaves the files in the folder as they were and adds none.
   void refused(const std::string& words, const std::vector<std::string>& said, int code = 2) const {
     const auto before = content();
     const Ran ran = railstep_program(words);

@@ -71,11 +71,11 @@ inline void hold(Structure& s, int node, std::initializer_list<int> unknowns) {
   }
 }
 
-/// All nine unknowns of a node.
+/// Holds all nine unknowns of a node.
 inline void clamp(Structure& s, int node) { hold(s, node, {0, 1, 2, 3, 4, 5, 6, 7, 8}); }
 
-/// Position and directions of the slopes of a straight beam, not their lengths: the section may
-/// swell and shrink, so that a uniform state is uniform up to the clamp.
+/// Holds position and directions of the slopes of a straight beam, not their lengths. The section
+/// may swell and shrink, so a uniform state stays uniform up to the clamp.
 inline void clamp_directions(Structure& s, int node) { hold(s, node, {0, 1, 2, 3, 5, 6, 7}); }
 
 inline int last_node(const Structure& s) { return s.nodes() - 1; }
@@ -90,7 +90,7 @@ inline StructureLoad end_moment(const Structure& s, const Vector3d& moment) {
   return {Eigen::VectorXd::Zero(s.unknowns()), {{last_node(s), moment}}};
 }
 
-/// Equilibrium that must be found.
+/// Equilibrium; the test fails if it is not found.
 inline Eigen::VectorXd solved(const Structure& s, const StructureLoad& load,
                               const Eigen::VectorXd* start = nullptr) {
   const Equilibrium found = equilibrium(s, load, {}, start);
@@ -102,7 +102,7 @@ inline Vector3d end_position(const Structure& s, const Eigen::VectorXd& q) {
   return q.segment<3>(9 * last_node(s));
 }
 
-/// Exponent p of errors e ~ h^p, of a mesh and the one of half its size.
+/// Exponent p of errors e ~ h^p of a mesh and of one with half its element size.
 inline double observed_order(double coarse, double fine) {
   return std::log2(std::abs(coarse / fine));
 }

@@ -7,13 +7,13 @@
 
 namespace railstep {
 
-/// Which side of a place an element is taken from: behind or ahead of it along x. They differ
-/// where a moment acts, and by the mesh's error at element borders.
+/// Whether the element behind or ahead of a place along x is taken. The two differ where a moment
+/// acts, and by the mesh's error at element borders.
 enum class From { behind, ahead };
 
 inline constexpr int kSlope = 6;  // b_x among a node's unknowns
 
-/// A border belongs to the element ahead of it; from behind, to the one before.
+/// A border belongs to the element ahead of it; From::behind takes the one before.
 inline ElementPlace place_from(const Track& track, double x, From from) {
   ElementPlace place = place_on(track, x);
   const bool at_border = place.xi < -1. + 1e-9;
@@ -22,8 +22,8 @@ inline ElementPlace place_from(const Track& track, double x, From from) {
 }
 
 /// Vertical bending moment of a rail about its axis, -E Iy d(b_x)/dx, N m; positive where the foot
-/// is in tension. Of a rail bent by forces at its element borders it is exact: the turn b_x then is
-/// quadratic in each element.
+/// is in tension. It is exact for a rail bent by forces at its element borders: the rotation b_x is
+/// then quadratic in each element.
 /// @param displacement  of each line's unknowns, as Statics::solve() gives them
 /// Throws std::out_of_range off the rail.
 inline double bending_moment(const Track& track, const std::vector<Line>& lines,

@@ -8,7 +8,7 @@
 
 namespace railstep {
 
-/// Any word of a block's content, or the next one behind it that may be a count.
+/// Offset of a random word of a block's content, or of the next word that may be a count.
 inline std::size_t some_word(const Block& block, std::mt19937_64& random) {
   const std::size_t from = payload_of(block), words = (block.size() - from) / 8;
   std::size_t at = from + 8 * static_cast<std::size_t>(random() % words);
@@ -48,7 +48,7 @@ inline std::int64_t some_value(std::int64_t old, std::mt19937_64& random) {
   }
 }
 
-/// One to four words of a block changed, its size and sum right.
+/// The block with one to four words changed, and right size and checksums.
 inline Block mutated(Block block, std::mt19937_64& random) {
   for (std::uint64_t i = 0, n = 1 + random() % 4; i < n; ++i) {
     const std::size_t at = some_word(block, random);
@@ -58,8 +58,8 @@ inline Block mutated(Block block, std::mt19937_64& random) {
   return block;
 }
 
-/// One integer of 4 bytes of a block changed to a small number or a neighbour, its size and sum
-/// right: what structures and index tables are made of.
+/// The block with one integer of 4 bytes changed to a small number or a neighbour, and right size
+/// and checksums. Structures and index tables are made of such integers.
 inline Block with_other_integer(Block block, std::mt19937_64& random) {
   const std::size_t from = payload_of(block), integers = (block.size() - from) / 4;
   const std::size_t at = from + 4 * static_cast<std::size_t>(random() % integers);

@@ -8,8 +8,8 @@
 namespace railstep {
 
 /// Bricard's mechanism, IFToMM benchmark A04: five square rods of 1 m and 1 kg along edges of a
-/// cube, the ground the sixth, six hinges each across both its rods. Counting says no motion; it
-/// has one. Gravity is -z.
+/// cube, the ground as the sixth, six hinges each normal to both its rods. A count of constraints
+/// allows no motion; it has one. Gravity is along -z.
 struct Bricard {
   static constexpr double kGravity = 9.81, kSide = .1;
   std::array<Eigen::Vector3d, 6> point = {
@@ -47,7 +47,8 @@ struct Bricard {
     std::array<Eigen::Matrix3d, 5> turn;
     std::array<Eigen::Vector3d, 6> point, axis;
     std::array<Eigen::Vector3d, 5> spin, spin_change;  // with hinge accelerations 0
-    std::array<Eigen::Vector3d, 6> velocity, change;   // of the points, likewise
+    std::array<Eigen::Vector3d, 6> velocity, change;   // of the points, also with hinge
+                                                       // accelerations 0
   };
   Chain5 chain(const Eigen::VectorXd& y) const {
     Chain5 c;
@@ -73,8 +74,8 @@ struct Bricard {
     return c;
   }
 
-  /// Five angles and their rates. Of the accelerations, those that close the loop (point and axis
-  /// at the last hinge; the least of them) and the one motion that it leaves, by virtual power.
+  /// y' of y = five angles and their rates. The accelerations are the least ones that close the
+  /// loop (point and axis at the last hinge), plus the one motion that it leaves, by virtual power.
   Eigen::VectorXd slope(const Eigen::VectorXd& y) const {
     using Vector5 = Eigen::Matrix<double, 5, 1>;
     const Chain5 c = chain(y);

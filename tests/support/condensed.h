@@ -21,7 +21,7 @@ inline Track peers_pair(int elements_per_bay) {
   return t;
 }
 
-/// 60E1 rails on pads, sleepers and ballast: parameter set S1 per rail, as the ballasted scene.
+/// 60E1 rails on pads, sleepers and ballast: parameter set S1 per rail, as in the ballasted scene.
 inline Track s1_track(int bays, int elements_per_bay) {
   Track t;
   t.section = {.area = 7670e-6,
@@ -41,7 +41,7 @@ inline Track s1_track(int bays, int elements_per_bay) {
   return t;
 }
 
-/// Modes per bay of every line, forces held over a step.
+/// Options for these modes per bay of every line, with forces held over a step.
 inline PackOptions condensed(const Track& track, double modes_per_bay, double dt,
                              double rho_inf = .6) {
   return {.scheme = held_force(dt, rho_inf),
@@ -55,7 +55,7 @@ inline PackOptions full_order(double dt, double rho_inf = .6) {
 
 inline const Railhead kHead{.1007375, .3, .038};  // of section F
 
-/// The paper's, on section F.
+/// The paper's wheelset, on section F.
 inline Wheelset paper_wheelset(double start) {
   Wheelset w;
   w.mass = 100.;

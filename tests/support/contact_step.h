@@ -11,8 +11,8 @@
 
 namespace railstep {
 
-/// A wheel of 600 kg that stands on one rail of section F over pads, on a contact that pulls too: a
-/// Hertz contact of hard-cases.md's 9.412508e10 N/m^1.5, linearised under 60 kN.
+/// A wheel of 600 kg that stands on one rail of section F over pads. Its contact also pulls: it is
+/// the Hertz contact of hard-cases.md, 9.412508e10 N/m^1.5, linearised under 60 kN.
 inline constexpr double kStandingWheel = 600.;                                             // kg
 inline const double kStandingContact = 1.5 * std::cbrt(9.412508e10 * 9.412508e10 * 60e3);  // N/m
 
@@ -33,9 +33,9 @@ inline Track pad_track(const PadCase& pad) {
   return t;
 }
 
-/// The coupled step is linear: its matrix, a column for every number of the state, each from one
-/// frame of the program's own step. Numbers are in units that make a state's size its energy's, or
-/// nearly: accelerations times dt^2, velocities times dt; of condensed lines, modes times their
+/// Matrix of the coupled step, which is linear: a column for every number of the state, each from
+/// one frame of the program's own step. The units of the numbers make a state's size nearly its
+/// energy: accelerations times dt^2, velocities times dt; in condensed lines modes times their
 /// rate.
 inline Eigen::MatrixXd contact_step(const PadCase& pad, const PackOptions& options) {
   RunningVehicle wheel;
@@ -58,11 +58,11 @@ inline Eigen::MatrixXd contact_step(const PadCase& pad, const PackOptions& optio
   for (Eigen::Index i = 0; i < all; ++i) {
     std::fill(run.memory.begin(), run.memory.end(), 0.);
     run.state.steps = 0;
-    run.state.u[i] = unit[i];  // the fields stand in one row from u on
+    run.state.u[i] = unit[i];  // the fields lie in one row from u on
     run.step();
     step.col(i) = Eigen::Map<const Eigen::VectorXd>(run.state.u, all).cwiseQuotient(unit);
   }
-  // Of condensed lines a and g hold the loads' last forces, of which there are none: they stay.
+  // In condensed lines a and g hold the loads' last forces. There are no loads, so they stay.
   const Eigen::Index lines = modal_unknowns(model);
   for (const Eigen::Index of : {2 * n, 3 * n}) {
     step.middleRows(of, lines).setZero();

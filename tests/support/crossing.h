@@ -23,8 +23,8 @@ inline Track pinned_beam(const BeamSection& section, const Material& material, d
   return t;
 }
 
-/// Vertical modes of the same beam in closed form, Timoshenko's: sin(n pi x/L), for each n a lower
-/// and an upper branch (test_fryba.cpp has their equations).
+/// Vertical modes of the same Timoshenko beam in closed form: sin(n pi x/L), for each n a lower and
+/// an upper branch (test_fryba.cpp has their equations).
 struct PinnedModes {
   double length;
   std::vector<double> wave, natural, height;  // 1/m, 1/s, kg^-1/2: phi = height sin(wave x)
@@ -69,8 +69,8 @@ struct PinnedModes {
   }
 };
 
-/// Newmark's constant mean acceleration for M a + C v + K u = f with matrices that change from step
-/// to step; second order, no damping of its own.
+/// Newmark's rule with constant mean acceleration for M a + C v + K u = f, whose matrices change
+/// from step to step. It is of second order and has no damping of its own.
 struct Newmark {
   Eigen::VectorXd u, v, a;
   void step(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen::MatrixXd& K,
@@ -83,8 +83,8 @@ struct Newmark {
   }
 };
 
-/// A vehicle on springs under its wheels that crosses a beam from the ground before it to the
-/// ground behind it: the beam's modes and the vehicle's coordinates in one system whose rows move.
+/// A vehicle with springs under its wheels crosses a beam, from the ground before it to the ground
+/// behind it. The beam's modes and the vehicle's coordinates are one system whose rows move.
 struct ModalCrossing {
   PinnedModes modes;
   Vehicle vehicle;
@@ -113,7 +113,7 @@ struct ModalCrossing {
   double place(Eigen::Index wheel) const {
     return start + speed * time + vehicle.wheels[static_cast<std::size_t>(wheel)].place;
   }
-  /// What the head's height makes of the contacts' forces, N.
+  /// Parts of the contacts' forces due to the head's height, N.
   Eigen::VectorXd rough_forces() const {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(m.wheels.rows());
     for (Eigen::Index i = 0; i < f.size(); ++i) {
@@ -123,7 +123,7 @@ struct ModalCrossing {
     }
     return f;
   }
-  /// Penetration rows of the wheels, [wheels][all], and by how much they change along x.
+  /// Penetration rows of the wheels, [wheels][all], or their derivative along x.
   Eigen::MatrixXd rows(int derivative) const {
     const Eigen::Index n = modes.count();
     Eigen::MatrixXd r(m.wheels.rows(), n + m.weight.size());

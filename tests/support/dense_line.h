@@ -7,7 +7,7 @@
 
 namespace railstep {
 
-/// A line of a track by dense matrices, M u'' + C u' + K u = b f(t), from rest.
+/// A line of a track with dense matrices, M u'' + C u' + K u = b f(t), from rest.
 struct DenseLine {
   Eigen::MatrixXd M, C, K;
   Eigen::VectorXd b;
@@ -16,9 +16,8 @@ struct DenseLine {
       : M(line.mass), C(line.damping), K(line.stiffness), b(point_row(track, line, at)) {}
 };
 
-/// What a textbook prints of generalised-alpha (Chung and Hulbert 1993, eqs. 1 to 5), of which
-/// Newmark (alpha_m = alpha_f = 0) and HHT (Hughes 2000, eqs. 9.3.1 to 9.3.3: alpha_m = 0) are
-/// members:
+/// Generalised-alpha as printed by Chung and Hulbert 1993, eqs. 1 to 5. Newmark (alpha_m = alpha_f =
+/// 0) and HHT (Hughes 2000, eqs. 9.3.1 to 9.3.3: alpha_m = 0) are members:
 ///   M a_m + C v_f + K d_f = F_f,  x_m = (1 - alpha_m) x1 + alpha_m x0,  x_f alike with alpha_f,
 ///   d1 = d0 + h v0 + h^2 [(1/2 - beta) a0 + beta a1],   v1 = v0 + h [(1 - gamma) a0 + gamma a1].
 struct Textbook {
@@ -29,7 +28,7 @@ struct DenseMotion {
   Eigen::VectorXd u, v, a;
 };
 
-/// Solved for a1, step by step. f(n) is the force at step n; f(0) = 0, so that a0 = 0.
+/// Solves these for a1, step by step. f(n) is the force at step n; f(0) = 0, so a0 = 0.
 template <typename Force>
 std::vector<DenseMotion> by_textbook(const DenseLine& line, const Textbook& t, double h, int steps,
                                      const Force& f) {
@@ -82,7 +81,7 @@ std::vector<DenseMotion> by_tr_bdf2(const DenseLine& line, double h, int steps, 
   return all;
 }
 
-/// e^A by its series of A / 2^n and n squarings.
+/// e^A by the series of A / 2^n and n squarings.
 inline Eigen::MatrixXd exponential(const Eigen::MatrixXd& A) {
   int squarings = 0;
   double size = A.cwiseAbs().rowwise().sum().maxCoeff();
@@ -94,9 +93,9 @@ inline Eigen::MatrixXd exponential(const Eigen::MatrixXd& A) {
   return sum;
 }
 
-/// u under f(t) = 1 - cos(omega t), exact, at every h: the equation of motion with the force's own
-/// three states beside it. In the energy's coordinates [L' u, R' v], K = L L', M = R R', it is a
-/// rotation and a decay, so that squaring does not lose digits.
+/// Exact u under f(t) = 1 - cos(omega t) at every h: the force's own three states are added to the
+/// equation of motion. In the energy's coordinates [L' u, R' v], K = L L', M = R R', it is a
+/// rotation and a decay, so squaring does not lose digits.
 inline std::vector<Eigen::VectorXd> exact_response(const DenseLine& line, double omega, double h,
                                                    int steps) {
   const Eigen::Index n = line.b.size();

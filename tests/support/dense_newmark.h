@@ -9,7 +9,7 @@
 #include "offline/track/track.h"
 #include "support/random_scene.h"
 
-// Doubles are wanted in long double arithmetic here.
+// Doubles enter long double arithmetic here on purpose.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 namespace railstep {
@@ -70,8 +70,8 @@ inline long double force_of(const RandomLoad& load, long double t) {
          load.amplitude * std::sin(2.L * std::numbers::pi_v<long double> * load.frequency * t);
 }
 
-/// One line of a track, dense: M a + C v + K u = f by the trapezoidal rule (Newmark 1959, 1/2 and
-/// 1/4).
+/// One line of a track with dense matrices: M a + C v + K u = f by the trapezoidal rule (Newmark
+/// 1959, gamma 1/2 and beta 1/4).
 class DenseNewmark {
  public:
   struct Motion {
@@ -90,7 +90,7 @@ class DenseNewmark {
   std::size_t unknowns() const { return n_; }
   Motion at_rest() const { return {Dense(n_, 0.L), Dense(n_, 0.L), Dense(n_, 0.L)}; }
 
-  /// Forces of the loads over the unknowns, each in the row of the point where it is.
+  /// Forces of the loads on the unknowns, each by the row of its point.
   Dense force(long double t) const {
     Dense f(n_, 0.L);
     for (const RandomLoad& load : loads_) {
@@ -102,7 +102,7 @@ class DenseNewmark {
     return f;
   }
 
-  /// Displacements after every step, each taken in `parts`, over which forces are linear.
+  /// Displacements after every step. Each step is taken in `parts`, over which forces are linear.
   std::vector<Dense> run(Motion m, double dt, int steps, int parts) const {
     const long double h = static_cast<long double>(dt) / parts;
     const Eliminated S(matrix(h), n_);
@@ -129,7 +129,7 @@ class DenseNewmark {
     return S;
   }
 
-  /// Condition of that matrix with its unknowns scaled to a diagonal of 1.
+  /// Condition of that matrix, scaled to a diagonal of 1.
   double condition(double h) const {
     const Dense S = matrix(h);
     const auto n = static_cast<Eigen::Index>(n_);

@@ -13,9 +13,10 @@
 
 namespace railstep {
 
-/// The paper's double pendulum (Fig. 6): two links let go from rest along +x, the first pinned at
-/// the origin A, the second hinged to its end B; C is the free end. The hinge shares the position
-/// of the axis and leaves the sections free. Shear factors are 1; J takes no part in the plane.
+/// The paper's double pendulum (Fig. 6): two links are released from rest along +x. The first is
+/// pinned at the origin A, the second is hinged to its end B; C is the free end. The hinge shares
+/// the position of the axis and leaves the sections free. Shear factors are 1; J has no effect in
+/// the plane.
 struct DoublePendulum {
   double link = .4, height = .02, width = .03;  // m
   Material material = {.young = 210e6, .poisson = .3, .density = 7900.};
@@ -31,7 +32,7 @@ struct DoublePendulum {
   double link_mass() const { return material.density * height * width * link; }  // kg
 };
 
-/// Where B and C are: x and z of B, x and z of C, m.
+/// Places of B and C: x and z of B, x and z of C, m.
 using HingeAndEnd = Eigen::Vector4d;
 
 /// The path of B and C at equal steps from time 0.
@@ -61,12 +62,12 @@ inline Eigen::Vector2d apart(const PendulumPath& a, const PendulumPath& b, doubl
 /// The first line of a file of paths.
 inline constexpr char kPathColumns[] = "time_s,B.x_m,B.z_m,C.x_m,C.z_m";
 
-/// How well tests/data/double_pendulum.csv is known, m: its own mesh and steps.
+/// Error of tests/data/double_pendulum.csv by its own mesh and steps, m.
 inline constexpr double kPendulumKnown = 1e-7;
 
-/// A path from such a file, with lines of remarks (#) before. The reference of the double pendulum,
-/// every 50 ms to 1 s, is RAILSTEP_SOURCE "/tests/data/double_pendulum.csv".
-/// @throws std::runtime_error where the file is not there or not as expected
+/// The path in such a file, which may begin with lines of remarks (#). The reference of the double
+/// pendulum, every 50 ms up to 1 s, is RAILSTEP_SOURCE "/tests/data/double_pendulum.csv".
+/// @throws std::runtime_error if the file is missing or not as expected
 inline PendulumPath read_pendulum_path(const std::string& file) {
   const auto refuse = [&file](const char* why, const std::string& text) {
     throw std::runtime_error(std::string(file).append(why).append(text));

@@ -15,19 +15,19 @@
 
 namespace railstep {
 
-inline constexpr double kDropGravity = 9.81;   // on the wheels alone
+inline constexpr double kDropGravity = 9.81;   // on the wheels only
 inline constexpr double kWheel = 600.;         // kg, on each rail
 inline constexpr double kFall = .1;            // m/s, down
 inline constexpr double kHertz = 9.412508e10;  // hard-cases.md: r .46 m on a crown of .3 m
 
-/// How the wheels come down.
+/// Conditions of the wheels' fall.
 struct Fall {
   double gravity = kDropGravity;  // m/s2
   double above = 0.;              // of the rails at the start, m
   double mass = kWheel;           // kg on each rail
 };
 
-/// Two wheels, one on each rail, that fall on them with kFall.
+/// Two wheels, one over each rail, that fall on the rails with kFall.
 struct Drop {
   Track track;
   std::vector<Line> lines;
@@ -66,7 +66,7 @@ struct Drop {
   double time() const { return static_cast<double>(state.steps) * model().scheme.dt; }
   double force() const { return outputs.wheel_force[0]; }
   double wheel(const double* of) const { return of[model().wheelset[0].first + 2]; }
-  /// Of the left rail's node under the wheel.
+  /// Vertical value of the left rail's node under the wheel.
   double rail(const double* of, int node) const {
     return of[model().line[0].first + model().line[0].unknown_of[0][table_place(node, 2)]];
   }
@@ -91,7 +91,7 @@ struct Drop {
     return sum;
   }
 
-  /// Kinetic and strain energy of the track, of the wheels, of contact and residual, J.
+  /// Energy of the track, the wheels, the contacts and their residual flexibility, J.
   double energy() const {
     const WheelsetModel& w = model().wheelset[0];
     double sum = .5 * w.mass[2] * wheel(state.v) * wheel(state.v) + w.weight * wheel(state.u);
@@ -110,10 +110,10 @@ struct Drop {
   }
 };
 
-/// Two rails that move as one mass each: one element on a seat at each end, struck in the middle.
-/// With A = 1e6 m2 and Iy = 1e6 m4 its middle gives way by L/(4 k G A) + L^3/(48 E Iy) = 2e-18 m/N
-/// more than its ends, against 7e-10 m/N of the contact at its stiffest: 3e-9, beyond all that is
-/// printed. The density makes it 150 kg; vertical unknowns alone, so no roll and no squeeze.
+/// Two rails that move as one mass each: one element on a seat at each end, hit in the middle. With
+/// A = 1e6 m2 and Iy = 1e6 m4 its middle yields by L/(4 k G A) + L^3/(48 E Iy) = 2e-18 m/N more
+/// than its ends. The stiffest contact yields by 7e-10 m/N: the part is 3e-9, below all printed
+/// digits. The density makes it 150 kg. Unknowns are vertical, so there is no roll and no squeeze.
 inline Track one_mass(double stiffness, double damping, double mass = 150.) {
   Track t;
   t.section = {.area = 1e6, .inertia_y = 1e6, .inertia_z = 1e6, .torsion = 1e6};
@@ -125,7 +125,7 @@ inline Track one_mass(double stiffness, double damping, double mass = 150.) {
   return t;
 }
 
-inline constexpr double kMiddle = .3;  // m, of the one mass
+inline constexpr double kMiddle = .3;  // m, middle of the one mass
 
 struct Impact {
   double peak = 0., peak_time = 0.;    // N, s; of the steps
@@ -133,7 +133,7 @@ struct Impact {
   double most_energy = 0., last = 0.;  // J, with what the dampers took; at a step's end
 };
 
-/// Steps until the wheel is free again, and `more` steps.
+/// Steps until the wheel is free again, then `more` steps.
 inline Impact impact(Drop& drop, int more = 0) {
   Impact found;
   bool met = false;
@@ -154,7 +154,7 @@ inline Impact impact(Drop& drop, int more = 0) {
   return found;
 }
 
-/// R3: 24 bays on springs, the rail's own weight left off.
+/// R3: 24 bays on springs, without the rail's weight.
 inline Track sprung_track(double damping) {
   Track t;
   t.section = section_f();

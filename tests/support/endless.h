@@ -8,7 +8,7 @@
 
 namespace railstep {
 
-/// A ballasted track with soft pads, vertical; its ends are free unless it is made a ring or a
+/// A vertical ballasted track with soft pads; its ends are free unless it is made a ring or a
 /// window.
 inline Track endless_track(int bays, int elements_per_bay, int rails = 1) {
   Track t;
@@ -28,7 +28,7 @@ inline Track ring_of(Track track) {
   return track;
 }
 
-/// -50 kN at 30 m/s: a bay of 0.6 m in 20 steps of 1 ms.
+/// -50 kN at 30 m/s: 20 steps of 1 ms per bay of 0.6 m.
 inline constexpr double kForce = -50e3, kSpeed = 30.;
 inline MovingLoad moving_load(double start, int rail = 0) {
   return {.rail = rail,

@@ -17,7 +17,7 @@ inline PackOptions framed(PackOptions options) {
   return options;
 }
 
-/// Means over frames of 1 ms of the left wheel's force, and the rail's height under it.
+/// Means of the left wheel's force and of the rail's height under it, over frames of 1 ms.
 struct Heard {
   std::vector<double> force, rail;
 };
@@ -50,8 +50,8 @@ inline ModelRun moving_run(const Track& track, const Traffic& traffic, const Pac
   return run;
 }
 
-/// A run of 100 frames and the one of its block end alike, and so does one that is taken back half
-/// way, to what was saved there.
+/// Checks that a run of 100 frames and the run of its block end alike, and so does a run that is
+/// restored half way from a snapshot.
 inline void check_goes_on(ModelRun& run) {
   const Block block = to_block(run.model(), "time_s");
   Model model;

@@ -11,8 +11,8 @@
 namespace railstep {
 
 inline constexpr int kPoints = 8;  // intervals per element, and how much finer the fine track is
-// The fine track and the tables are one discrete problem solved two ways: K has a condition of
-// about 1e8, so both are good to 1e-8 of the largest flexibility.
+// The fine track and the tables solve one discrete problem in two ways. K has a condition of about
+// 1e8, so both are exact to 1e-8 of the largest flexibility.
 inline constexpr double kRounding = 1e-7;
 inline constexpr double kHeadZ = .1, kFootZ = -.085;  // m over the axis
 
@@ -28,8 +28,8 @@ inline Track sleeper_track(int elements_per_bay, RailEnds ends = {}) {
   return t;
 }
 
-/// The same with pads and ballast that differ from side to side and from seat to seat; on the right
-/// one sleeper hangs, and one has lost its left pad.
+/// sleeper_track() with pads and ballast that differ from side to side and from seat to seat. One
+/// sleeper hangs on the right, and one has no left pad.
 inline Track lopsided_track(int elements_per_bay) {
   Track t = sleeper_track(elements_per_bay);
   t.support.half_spread = .05;
@@ -48,7 +48,7 @@ inline Track lopsided_track(int elements_per_bay) {
   return t;
 }
 
-/// Pads of 0.16 m on sleepers that pitch.
+/// A track with pads of 0.16 m on sleepers that pitch.
 inline Track long_pads(int elements_per_bay) {
   Track t = sleeper_track(elements_per_bay);
   t.support.length = .16;
@@ -68,7 +68,7 @@ inline Track peers_track(int elements_per_bay) {
   return t;
 }
 
-/// The lowest modes of each line; none if `per_bay` is 0.
+/// The lowest modes of each line; empty if `per_bay` is 0.
 inline std::vector<Basis> lowest_modes(const Track& track, const std::vector<Line>& lines,
                                        int per_bay) {
   std::vector<Basis> bases;
@@ -103,7 +103,7 @@ inline Eigen::VectorXd row_of(const Track& track, const Line& line, const Functi
   return row;
 }
 
-/// G_model by hand, from a functional to a vertical force at (rail, x, z).
+/// G_model computed directly, for a functional and a vertical force at (rail, x, z).
 class KeptFlexibility {
  public:
   KeptFlexibility(const Track& track, const std::vector<Basis>& bases)
@@ -136,7 +136,7 @@ class KeptFlexibility {
   std::vector<Basis> bases_;
 };
 
-/// Everything at a vertical force, on the fine track.
+/// Whole flexibility at a vertical force, on the fine track.
 inline double exact(const Statics& fine, const Functional& functional,
                     const std::vector<Eigen::VectorXd>& moved) {
   double sum = 0.;

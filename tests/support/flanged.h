@@ -18,9 +18,9 @@ inline Wheelset flanged_wheelset(double stiffness, double damping) {
   return w;
 }
 
-/// The same in a plane on rigid rails, by itself: y, z of the centre over its height on unloaded
-/// rails, and roll, with circles rolling on circles as treads and straight faces against a point as
-/// flanges. Runge and Kutta's fourth order.
+/// The same wheelset in a plane on rigid rails, without the program: y, z of the centre over its
+/// height on unloaded rails, and roll. Treads are circles that roll on circles, flanges straight
+/// faces against a point. Fourth-order Runge-Kutta.
 struct PlaneWheelset {
   double radius = .148, crown = .3, half_gauge = .5, mass = 100., inertia = 8.3;
   double weight = 981., push = 0.;                       // N
@@ -28,7 +28,8 @@ struct PlaneWheelset {
   double stiffness = 0., damping = 0., face_hertz = 0.;  // of flanges
   using State = std::array<double, 6>;                   // y, z, roll and their rates
 
-  /// Of the left (side 1) or right (-1) tread or flange: depth, its rate, and where its force goes.
+  /// Depth, its rate, and direction of the force of the left (side 1) or right (-1) tread or
+  /// flange.
   struct Contact {
     double depth, rate, y, z, moment;
   };

@@ -16,9 +16,9 @@ namespace railstep {
 /// A linear modal beam in a floating frame that moves in the x-z plane (Shabana, Dynamics of
 /// Multibody Systems, ch. 5). Unknowns: origin R (m), angle theta from x to z, modal eta:
 ///   r = R + A(theta) (x + Phi(x) eta - e_x eta' H(x) eta / 2),  H(x) = int_0^x w' w'^T ds,
-/// where w is the lateral part of Phi. H is the shortening that an inextensible line owes to its
-/// slope; kinetic energy keeps it to the second order in eta, and the centrifugal stiffening is
-/// what comes of it (Kane, Ryan and Banerjee 1987). H = 0 is the formulation without.
+/// where w is the lateral part of Phi. H is the shortening of an inextensible line by its slope.
+/// Kinetic energy keeps it to the second order in eta, which gives the centrifugal stiffening
+/// (Kane, Ryan and Banerjee 1987). H = 0 is the formulation without stiffening.
 ///
 /// All integrals over the body are constants, and the kinetic energy is
 ///   T = m R'^2/2 + R'.(th' A' S + A S_eta eta') + th'^2 I/2 + th' c.eta' + eta' Mf eta'/2,
@@ -50,8 +50,8 @@ struct FramePoint {
 inline Eigen::Matrix2d turned(double angle) { return Eigen::Rotation2Dd(angle).matrix(); }
 inline Eigen::Matrix2d turned_slope(double angle) { return turned(angle + 2. * std::atan(1.)); }
 
-/// S of one set of modal coordinates, and its derivative [2][modes]. Of a point: its place in the
-/// frame, with Phi and H for Sf and Ha.
+/// S at these modal coordinates, and its derivative [2][modes]. With Phi and H of a point for Sf
+/// and Ha it is the point's place in the frame.
 inline Eigen::Vector2d moved(const Eigen::Vector2d& at, const Eigen::Matrix2Xd& shape,
                              const Eigen::MatrixXd& shortening, const Eigen::VectorXd& eta) {
   return at + shape * eta - .5 * eta.dot(shortening * eta) * Eigen::Vector2d::UnitX();
@@ -105,7 +105,7 @@ inline double energy(const FloatingFrame& f, const Eigen::VectorXd& q, const Eig
          gravity.dot(f.mass * q.head<2>() + turned(q[2]) * S);
 }
 
-/// Where a point is, and how it moves with the unknowns, [2][3 + modes].
+/// Position of a point, and its derivative by the unknowns, [2][3 + modes].
 inline Eigen::Vector2d position(const FramePoint& p, const Eigen::VectorXd& q) {
   const Eigen::VectorXd eta = q.tail(p.shape.cols());
   return q.head<2>() + turned(q[2]) * moved(p.at, p.shape, p.shortening, eta);
@@ -131,7 +131,7 @@ inline Eigen::Vector2d convective(const FramePoint& p, const Eigen::VectorXd& q,
          rate.dot(p.shortening * rate) * A.col(0);
 }
 
-/// The in-plane part of nodal vectors, and the same turned by a right angle: (x, z) to (-z, x).
+/// The in-plane part of nodal vectors, and the same rotated by a right angle: (x, z) to (-z, x).
 inline Eigen::MatrixXd in_plane(Eigen::MatrixXd nodal) {
   for (int i = 1; i < nodal.rows(); i += 3) nodal.row(i).setZero();
   return nodal;
@@ -203,7 +203,7 @@ inline FloatingFrame floating_frame(const Structure& s, const Eigen::SparseMatri
   return f;
 }
 
-/// An element's end node as a point of the frame.
+/// A node at an element's end as a point of the frame.
 inline FramePoint frame_point(const Structure& s, const Eigen::MatrixXd& modes, int node,
                               bool stiffening) {
   const auto n = modes.cols();
@@ -231,7 +231,7 @@ class FloatingBody : public MovingBody {
   const FloatingFrame& frame() const { return frame_; }
   const std::vector<int>& free_unknowns() const override { return free_; }
   void prescribe(Motion& m) const override { drive_(m); }
-  /// With the frame's motion given the equations are linear in eta.
+  /// If the frame's motion is prescribed, the equations are linear in eta.
   bool linear() const override { return free_.front() == 3; }
 
   Eigen::VectorXd residual(const Motion& m) override {
@@ -239,7 +239,7 @@ class FloatingBody : public MovingBody {
     return picked(mass_ * m.a - frame_force(frame_, m.q, m.v, gravity_), free_);
   }
 
-  /// Exact in eta; of the frame's own motion the mass and the terms of the spin.
+  /// Exact in eta. For the frame's own motion it has the mass and the terms of the spin.
   Eigen::VectorXd solve(const Motion& m, double by_v, double by_q,
                         const Eigen::VectorXd& residual) override {
     const FloatingFrame& f = frame_;

@@ -8,8 +8,8 @@
 
 namespace railstep {
 
-/// Closed form of an endless Timoshenko beam on a foundation, bed newton per metre and metre, under
-/// a force at x = 0: two waves fall off on either side.
+/// Closed form of an endless Timoshenko beam on a foundation, `bed` in N/m per metre, under a force
+/// at x = 0: two waves decay on either side.
 class Foundation {
  public:
   using Value = std::complex<double>;
@@ -25,7 +25,7 @@ class Foundation {
       kappa[i] = std::sqrt(-sum / 2. + (i == 0 ? root : -root));
       if (kappa[i].real() > 0.) kappa[i] = -kappa[i];
     }
-    // No turn and half the force at x = 0.
+    // At x = 0 there is no rotation, and shear is half the force.
     Eigen::Matrix2cd at_zero;
     for (int i = 0; i < 2; ++i)
       at_zero.col(i) << kappa[static_cast<std::size_t>(i)] + b / kappa[static_cast<std::size_t>(i)],

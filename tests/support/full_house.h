@@ -12,8 +12,8 @@
 
 namespace railstep {
 
-/// Two upright rails of 20 bays under bogies, loads and sleepers that hang by a fifth of a
-/// millimetre: as many of each as are asked for. Wheels bounce: they come down on the rail.
+/// Two upright rails of 20 bays with given numbers of bogie wheels, loads and sleepers that hang
+/// 0.2 mm over the ballast. Wheels fall on the rail, so they bounce.
 struct House {
   Track track;
   Traffic traffic;
@@ -30,7 +30,7 @@ inline House full_house(int wheels, int hanging, int loads,
   bogie_data.wheelbase = .7;
   bogie_data.carried = 2000.;
   for (int i = 0; 2 * i < wheels; ++i) {
-    const bool whole = 2 * i + 1 < wheels;  // an odd wheel is a mass by itself
+    const bool whole = 2 * i + 1 < wheels;  // an odd wheel is a single mass
     RunningVehicle v = running(whole ? bogie(bogie_data) : point_mass(900.), 0., 20.);
     v.rail = i % 2;
     const int pair = i / 2;
@@ -51,11 +51,11 @@ inline House full_house(int wheels, int hanging, int loads,
   return house;
 }
 
-/// One step of all that stands in a house by the trapezoidal rule, dense and in long double:
+/// One step of a house's track and traffic by the trapezoidal rule, dense and in long double:
 ///   M y'' + C y' + K y = p - sum of c f(c y - gap)
-/// over the unknowns y of track and vehicles, c the row of a wheel or a hanging sleeper. The
-/// contacts' equations d + W f(d) = d_free are solved by Newton with halved steps. Of the program
-/// it takes the matrices of lines and vehicles and the rows of points.
+/// over the unknowns y of track and vehicles; c is the row of a wheel or a hanging sleeper. The
+/// contacts' equations d + W f(d) = d_free are solved by Newton with halved steps. The program
+/// provides only the matrices of lines and vehicles and the rows of points.
 class DenseHouse {
  public:
   struct Step {
@@ -85,10 +85,10 @@ class DenseHouse {
   }
 
   std::size_t unknowns() const { return n_; }
-  /// The unknown of the model's state that unknown i is.
+  /// Index of unknown i in the model's state.
   std::size_t in_state(std::size_t i) const { return place_[i]; }
 
-  /// From the state that the run has now.
+  /// Steps from the present state of the run.
   Step step() const {
     const long double h = run_.model().scheme.dt, t = h * (run_.state.steps + 1);
     Dense p = outer(t);
@@ -139,7 +139,7 @@ class DenseHouse {
     return contact < wheels() ? 0.L : ports_[contact - wheels()].gap;
   }
 
-  /// Of the rail's height at a place, over all unknowns.
+  /// Row of the rail's height at a place, over all unknowns.
   Dense rail_row(int rail, long double x) const {
     Dense row(n_, 0.L);
     std::size_t first = 0;
@@ -164,7 +164,7 @@ class DenseHouse {
     return p;
   }
 
-  /// How far each contact closes: the rail's height less the wheel's, and what a port says.
+  /// Rows of each contact's closing: the rail's height less the wheel's, then those of fixed ports.
   std::vector<Dense> contact_rows(long double t) const {
     std::vector<Dense> rows;
     for (std::size_t v = 0; v < house_.traffic.vehicles.size(); ++v) {
@@ -195,7 +195,8 @@ class DenseHouse {
     return sum;
   }
 
-  /// Force of a contact and its slope over d; of a port with the velocity that the rule gives d.
+  /// Force of a contact and its slope over d. A fixed port's damper has the velocity that the
+  /// trapezoidal rule gives for d.
   std::pair<long double, long double> law(std::size_t i, long double d, long double rate) const {
     if (!(d > 0.L)) return {0.L, 0.L};
     if (i < wheels()) {
@@ -212,7 +213,7 @@ class DenseHouse {
     return {force, rise < 1.L ? slope + jump / 1e-6L : slope};
   }
 
-  /// c y' - kv c y at the step's end, which the rule leaves to the step before.
+  /// c y' - kv c y at the step's end, which by the trapezoidal rule follows from the step's start.
   Dense rates() const {
     const long double kv = 2.L / run_.model().scheme.dt;
     Dense rate(wheels() + ports_.size(), 0.L);
@@ -228,7 +229,7 @@ class DenseHouse {
     return rate;
   }
 
-  /// d + W f(d) = d_free. @returns whether it is met to round-off
+  /// Solves d + W f(d) = d_free. @returns whether it is met to round-off
   bool solve(const Dense& W, const Dense& d_free, Dense& f) const {
     const std::size_t n = d_free.size();
     const Dense rate = rates();

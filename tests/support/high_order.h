@@ -38,7 +38,7 @@ inline Eigen::VectorXd extrapolated_step(const OdeSlope& f, double t, const Eige
   return T[0];
 }
 
-/// y at each of `times` (s, rising, the first is where y0 stands), with steps of at most `step`.
+/// y at each of `times` (s, rising; y0 is at the first), with steps of at most `step`.
 inline std::vector<Eigen::VectorXd> integrate(const OdeSlope& f, const Eigen::VectorXd& y0,
                                               const std::vector<double>& times, double step) {
   std::vector<Eigen::VectorXd> result = {y0};
@@ -53,7 +53,7 @@ inline std::vector<Eigen::VectorXd> integrate(const OdeSlope& f, const Eigen::Ve
   return result;
 }
 
-/// A solution and what halving its step changed of it: the error that it owns up to.
+/// A solution, and its change when the step is halved, which is its stated error.
 struct HighOrder {
   std::vector<Eigen::VectorXd> y;
   double own_error;

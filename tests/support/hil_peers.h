@@ -35,11 +35,11 @@ inline std::uint16_t free_port() {
   return ntohs(at.sin_port);
 }
 
-/// The vehicle's end of a packet's way.
+/// The vehicle's end of an exchange of packets.
 struct Peer {
   virtual ~Peer() = default;
   virtual void send(std::int64_t frame, const Values& values) = 0;
-  /// @returns the frame whose outputs came, -2 where none did
+  /// @returns the frame whose outputs came, -2 if none came
   virtual std::int64_t receive(Values& values) = 0;
 };
 

@@ -5,11 +5,12 @@
 
 namespace railstep {
 
-/// A track in mirror coordinates and the same by the general way, between points of both rails.
+/// Compares a track in mirror coordinates with the same track without them, between points of both
+/// rails.
 inline void check_alike(const Statics& mirror, const Statics& general, const RailPoint& left,
                         const RailPoint& right) {
   const double own = mirror.flexibility(left, left), bound = 1e-8 * own;
-  // Rounding of two factorisations of a condition of 1e7.
+  // Rounding of two factorisations with a condition of 1e7.
   const auto check = [&](const RailPoint& a, const RailPoint& b, double within) {
     CHECK_THAT(general.flexibility(a, b),
                Catch::Matchers::WithinAbs(mirror.flexibility(a, b), within));

@@ -10,8 +10,8 @@
 
 namespace railstep {
 
-/// A model with its state, stepped frame by frame; scratch holds NaN before every frame, so that
-/// nothing in it can matter from one to the next.
+/// A model with its state, stepped frame by frame. The workspace holds NaN before every frame, so
+/// no frame can depend on its old content.
 struct ModelRun {
   std::unique_ptr<PackedModel> packed;
   std::vector<double> memory, scratch;

@@ -11,7 +11,7 @@
 #include "support/random_scene.h"
 #include "support/sections.h"
 
-// Doubles are wanted in long double arithmetic here.
+// Doubles enter long double arithmetic here on purpose.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 namespace railstep {
@@ -33,9 +33,9 @@ inline Wide dot(const Vector3c& a, const Vector3c& b) {
 
 using Nodes = std::array<Wide, 27>;
 
-/// Energy of the straight element of section F as energy.h words it, point by point: strains from
-/// the lines of the axis, by Gauss points over each rectangle, no products and no moments but those
-/// that the split shear names.
+/// Energy of the straight element of section F as energy.h defines it, point by point: strains from
+/// the vectors of the axis, Gauss points over each rectangle. It uses no inner products, and no
+/// moments except those in the definition of the split shear.
 class NaiveElement {
  public:
   /// @param section_points  Gauss points in each rectangle and direction, 1 to 3; 3 are exact
@@ -53,7 +53,7 @@ class NaiveElement {
     return sum;
   }
 
-  /// dU/dq by the complex step: no difference is taken, so that it is exact to round-off.
+  /// dU/dq by the complex step: without a difference it is exact to round-off.
   std::array<Real, 27> force(const Nodes& q) const {
     std::array<Real, 27> found{};
     for (std::size_t i = 0; i < 27; ++i) {
@@ -92,7 +92,8 @@ class NaiveElement {
     return at;
   }
 
-  /// Green and Lagrange's, of the lines j = [r' + y a' + z b', a, b], which are 1 at rest.
+  /// Green-Lagrange strain of the vectors j = [r' + y a' + z b', a, b], which are the identity at
+  /// rest.
   static Strain strain(const Axis& at, Real y, Real z) {
     Vector3c along = at.r;
     along.add(at.a_slope, y).add(at.b_slope, z);
@@ -104,7 +105,7 @@ class NaiveElement {
             dot(along, at.a)};
   }
 
-  /// Integral over the section of what a function says of (y, z).
+  /// Integral of a function of (y, z) over the section.
   template <typename Function>
   Wide over_section(const Function& of) const {
     const Real far = points_ == 3 ? std::sqrt(.6L) : 1.L / std::sqrt(3.L);
@@ -174,8 +175,8 @@ class NaiveElement {
   int points_;
 };
 
-/// Nodes of a straight element that is turned by any angle, bent and twisted by up to half a radian
-/// from end to end, and whose unknowns are then off by `shake`: strains of up to some 10 %.
+/// Nodes of a straight element that is rotated by any angle, and bent and twisted by up to half a
+/// radian from end to end. Its unknowns are then changed by up to `shake`. Strains reach some 10 %.
 inline Vector27 random_state(Draw& draw, double length, double shake, bool planar) {
   const auto axis = [&]() -> Eigen::Vector3d {
     if (planar) return Eigen::Vector3d::UnitY();
@@ -198,7 +199,7 @@ inline Vector27 random_state(Draw& draw, double length, double shake, bool plana
     q.segment<3>(9 * i + 6) = R.col(2);
   }
   for (int i = 0; i < 27; ++i) {
-    const bool out = i % 3 == 1 ? i % 9 != 4 : i % 9 / 3 == 1;  // of the plane x-z
+    const bool out = i % 3 == 1 ? i % 9 != 4 : i % 9 / 3 == 1;  // out of the plane x-z
     if (!(planar && out)) q[i] += (i % 9 < 3 ? .25 * length : 1.) * shake * draw.between(-1., 1.);
   }
   return q;

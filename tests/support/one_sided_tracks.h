@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-/// Opens a gap between the sleeper of a seat, or its pad where there is none, and the ground.
+/// Opens a gap between the ground and the sleeper of a seat, or its pad if it has no sleeper.
 inline Track with_gap(Track track, int border, double gap, bool left = true, bool right = true) {
   Seat seat = track.seat(border);
   for (const std::size_t side : {0u, 1u}) {

@@ -16,23 +16,23 @@
 
 namespace railstep {
 
-/// Wheels where a step takes them: approach a of lines and vehicles, and the places for G.
+/// Wheels at the places of a step: approach a of lines and vehicles, and the places for G.
 struct StandingWheels {
   std::vector<double> approach;  // m; negative is a gap
   std::vector<RailForce> place;
 };
 
-/// What a step leaves of its energies, J: after - before <= bound.
+/// Energies before and after a step, J: after - before <= bound.
 struct StepEnergies {
   double before, after, bound;
 };
 
-/// A random scene's run under vehicles alone, with the energies of each step in the step's own
+/// A random scene's run with vehicles only, and the energies of each step in the step's own
 /// geometry: E = kinetic and strain energy of lines and vehicle, its weight's potential, one-sided
-/// springs, V(a - G f) and f' G f / 2. Between two steps whatever carries the wheels along moves
-/// them over a track that stands still; what that changes of E is its work, so that it is left out
-/// by taking both ends of a step with the wheels where that step has them. Places, rows and G are
-/// the step's own: that they are right is for other tests, here any that fit one another pass.
+/// springs, V(a - G f) and f' G f / 2. Between two steps the drive moves the wheels over a track
+/// that stands still. The change of E is its work; it is left out, as E before and after a step is
+/// taken at that step's wheel places. Places, rows and G are the step's own: other tests check
+/// them, this one accepts any that agree with each other.
 class PassiveRun {
  public:
   explicit PassiveRun(const RandomScene& scene)
@@ -41,7 +41,7 @@ class PassiveRun {
       const PackedLine& own = run_.packed()->lines()[l];
       lines_.emplace_back(own, model_, model_.line[l]);
       damping_.push_back(own.line.damping);
-      // What a step's matrix is made of, in size.
+      // Sizes of the parts of a step's matrix.
       sizes_.push_back(own.line.stiffness.cwiseAbs() + own.line.damping.cwiseAbs() * (2. / dt_) +
                        own.line.mass.cwiseAbs() * (4. / (dt_ * dt_)));
     }
@@ -58,12 +58,13 @@ class PassiveRun {
   double reference() const { return reference_; }
 
   void step() {
-    std::copy_n(run_.state.u, memory_.size(), memory_.data());  // fields stand in a row from u on
+    std::copy_n(run_.state.u, memory_.size(), memory_.data());  // fields lie in a row from u on
     old_.steps = run_.state.steps;
     seen_ = seen_ | advance_frame(model_, run_.state, run_.workspace, outputs_);
   }
 
-  /// Where the last step, or one later, has the wheels: forces held over a step act in its middle.
+  /// Wheels at the places of the last step or of a later one. Forces held over a step act in its
+  /// middle.
   StandingWheels wheels(const State& at, std::int64_t step) const {
     const double before = model_.form == Form::condensed ? .5 * dt_ : 0.;
     WheelContact contact[kMaxWheels];
@@ -78,7 +79,7 @@ class PassiveRun {
     return found;
   }
 
-  /// What forces move the rail under wheel i by the residual flexibility, down, m.
+  /// Displacement of the rail under wheel i by forces and the residual flexibility, down, m.
   double moved(const StandingWheels& at, const double* force, std::size_t i) const {
     double sum = 0.;
     for (std::size_t j = 0; j < at.place.size(); ++j)
@@ -87,7 +88,7 @@ class PassiveRun {
     return sum;
   }
 
-  /// Of the springs of contacts and of what they move at once.
+  /// Energy of the contacts' springs and of their residual flexibility, J.
   double of_contacts(const StandingWheels& at, const double* force) const {
     double sum = 0.;
     for (std::size_t i = 0; i < at.place.size(); ++i) {
@@ -99,7 +100,7 @@ class PassiveRun {
     return sum;
   }
 
-  /// Of lines, vehicle and one-sided springs.
+  /// Energy of lines, vehicle and one-sided springs, J.
   double of_bodies(const State& at) const {
     double sum = 0.;
     for (const LineEnergy& line : lines_) {
@@ -118,7 +119,7 @@ class PassiveRun {
     return sum;
   }
 
-  /// Of the vehicle's weight, over its place at the start.
+  /// Potential of the vehicle's weight, relative to the start, J.
   double of_weight(const State& at) const {
     double sum = 0.;
     for (std::int32_t i = 0; i < model_.vehicles; ++i)
@@ -127,13 +128,13 @@ class PassiveRun {
     return sum;
   }
 
-  /// Of all, with the wheels where a step has them.
+  /// Whole energy with the wheels at the places of a step, J.
   double of_all(const State& at, std::int64_t step) const {
     return of_bodies(at) + of_weight(at) + of_contacts(wheels(at, step), at.wheel_force);
   }
 
-  /// What dampers of lines and vehicles take in a step of the trapezoidal rule, whose way is that
-  /// of the mean velocity: h v' C v.
+  /// Energy that dampers of lines and vehicles take in a step of the trapezoidal rule, which moves
+  /// at the mean velocity v: h v' C v, J.
   double damped() const {
     double sum = 0.;
     for (std::size_t l = 0; l < damping_.size(); ++l) {
@@ -155,7 +156,7 @@ class PassiveRun {
     return dt_ * sum;
   }
 
-  /// Of the last step.
+  /// Energies of the last step.
   StepEnergies energies() {
     const std::int64_t step = run_.state.steps;
     StepEnergies e{of_all(old_, step), of_all(run_.state, step), 0.};
@@ -163,15 +164,15 @@ class PassiveRun {
     return e;
   }
 
-  /// What round-off may make of energy in the last step, J.
+  /// Bound of the energy that round-off makes in the last step, J.
   ///
-  /// Full order: a step solves S u1 = b, S = K + kv C + kg M, backward stably: what is left of its
-  /// equations is eps (|S| |u|) times the terms of a row, 27 and a few more, whose work is that
-  /// times |du|; the energies' own products err by less. A weight's potential is a difference of
-  /// places. Condensed: modes keep their energy to the eigen solver's 1e-10, with as much again
-  /// for shapes and rates that share it.
-  /// Contacts: f times what the solve leaves, 1e-12 of d_free; f d_free is at most four times the
-  /// energy that a step can bring to a contact.
+  /// Full order: a step solves S u1 = b, S = K + kv C + kg M, backward stably. Its residual is eps
+  /// (|S| |u|) times the number of terms of a row, 27 and a few more; the residual's work is that
+  /// times |du|. The energies' own products err by less. A weight's potential is a difference of
+  /// places. Condensed: modes keep their energy to the eigen solver's 1e-10, with as much again for
+  /// shapes and rates that share it.
+  /// Contacts: f times the residual of the solve, 1e-12 of d_free; f d_free is at most four times
+  /// the energy that a step can bring to a contact.
   double bound(const StepEnergies& e) {
     reference_ =
         std::max({reference_, e.before - of_weight(old_), e.after - of_weight(run_.state)});
@@ -207,7 +208,7 @@ class PassiveRun {
   State old_{};
   Outputs outputs_{};
   Status seen_ = Status::ok;
-  double reference_ = 0.;  // the largest energy so far, without the weight's, J
+  double reference_ = 0.;  // largest energy so far, without that of the weight, J
 };
 
 }  // namespace railstep

@@ -10,9 +10,8 @@
 namespace railstep {
 
 /// The double pendulum of ANCF beams as an ordinary differential equation, M q'' + f(q) = g with M
-/// constant; y = (q, q'). Unknowns are those of the plane, node after node along both links: r_x
-/// r_z a_y b_x b_z; A has no r, and both nodes of the hinge share theirs. What is out of the plane
-/// stays 0.
+/// constant; y = (q, q'). Unknowns are planar, node after node along both links: r_x r_z a_y b_x
+/// b_z. A has no r, and both nodes of the hinge share theirs. Unknowns out of the plane stay 0.
 class AncfPendulum {
  public:
   AncfPendulum(const DoublePendulum& scene, int elements) {
@@ -38,9 +37,10 @@ class AncfPendulum {
   }
 
   int unknowns() const { return unknowns_; }
-  /// The largest distance of two unknowns of one element.
+  /// Largest index difference of two unknowns of one element.
   int half_band() const { return half_band_; }
-  /// No oscillation about rest is faster, rad/s: that of one free element (Irons and Treharne).
+  /// Upper bound of the frequencies about rest, rad/s: the highest of one free element (Irons and
+  /// Treharne).
   double highest_frequency() const { return highest_; }
   const Eigen::SparseMatrix<double>& mass() const { return mass_; }
 
@@ -50,7 +50,7 @@ class AncfPendulum {
     return y;
   }
 
-  /// f(q) - g of the first half of y.
+  /// f(q) - g with q the first half of y.
   void residual_force(const Eigen::VectorXd& y, Eigen::VectorXd& force) const {
     force = -weight_;
     Local local, f;
@@ -83,7 +83,7 @@ class AncfPendulum {
     }
   }
 
-  /// Kinetic, strain and gravity's energy, J; gravity's is 0 at A's height.
+  /// Kinetic, strain and gravitational energy, J; the last is 0 at A's height.
   double energy(const Eigen::VectorXd& y) const {
     const Eigen::VectorXd v = y.tail(unknowns_);
     double sum = .5 * v.dot(mass_ * v) - weight_.dot(y.head(unknowns_));
@@ -119,7 +119,7 @@ class AncfPendulum {
   }
 
   void number_elements(int elements) {
-    constexpr int kPlanar[5] = {0, 2, 4, 6, 8};  // among the nine of a node in space
+    constexpr int kPlanar[5] = {0, 2, 4, 6, 8};  // among the nine unknowns of a node in space
     for (int e = 0; e < 2 * elements; ++e) {
       const int first = e < elements ? 2 * e : nodes_ + 2 * (e - elements);
       Places of;

@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-/// What a modal link keeps of a beam: its lowest modes, and whether a slope shortens it.
+/// Modes that a link keeps of a beam, and whether a slope shortens it.
 struct LinkModes {
   int bending = 3, axial = 1;
   bool stiffening = false;
@@ -16,7 +16,7 @@ struct LinkModes {
 /// rates of these. Modes are those of the free link, whose frame is its mean axes, or a
 /// cantilever's. A and the hinge hold the ends of the axis; their forces follow from accelerations:
 ///   [M J^T; J 0] (q'', lambda) = (Q, -dJ/dt q').
-/// What that lets drift in the positions is the time scheme's error: joint_gap().
+/// The drift of positions that this allows is the time scheme's error: joint_gap().
 class FramePendulum {
  public:
   FramePendulum(const DoublePendulum& scene, const LinkModes& kept, int elements = 8)
@@ -45,7 +45,8 @@ class FramePendulum {
     dy.tail(all) = jointed(y, J).partialPivLu().solve(b).head(all);
   }
 
-  /// Of the oscillations about rest, rad/s. Above that of the modes: joints and turns take part.
+  /// Highest frequency about rest, rad/s. It is above that of the modes, as joints and rotations
+  /// take part.
   double highest_frequency() const {
     const int n = own(), all = unknowns();
     Eigen::MatrixXd J, K = Eigen::MatrixXd::Zero(all, all);
@@ -56,7 +57,7 @@ class FramePendulum {
     return std::sqrt(Eigen::MatrixXd(soft * K).eigenvalues().real().maxCoeff());
   }
 
-  /// How far A is off the origin and the hinge's two ends are apart, m.
+  /// Distance of A from the origin and of the hinge's two ends from each other, m.
   double joint_gap(const Eigen::VectorXd& y) const {
     const int n = own();
     const Eigen::Vector2d hinge = position(first_, y.segment(n, n)) - position(last_, y.head(n));
@@ -69,7 +70,7 @@ class FramePendulum {
            railstep::energy(frame_, y.segment(n, n), y.segment(all + n, n), gravity_);
   }
 
-  /// B as the first link's frame sees it, m.
+  /// B in the first link's frame, m.
   Eigen::Vector2d hinge_in_frame(const Eigen::VectorXd& y) const {
     return turned(y[2]).transpose() * (position(last_, y.head(own())) - y.head<2>());
   }

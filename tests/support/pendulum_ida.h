@@ -11,7 +11,7 @@
 
 namespace railstep {
 
-/// What IDA did.
+/// Work that IDA did.
 struct IdaCount {
   long steps = 0, residuals = 0, jacobians = 0, failed_error_tests = 0;
 };
@@ -61,7 +61,7 @@ class IdaPendulum {
   IdaPendulum(const IdaPendulum&) = delete;
   IdaPendulum& operator=(const IdaPendulum&) = delete;
 
-  /// From rest, sampled every kPendulumSample. Once.
+  /// Runs from rest, sampled every kPendulumSample. It may be called once.
   PendulumRun run(double until) {
     PendulumRun run{{kPendulumSample, {}}};
     sample(run);
@@ -83,7 +83,7 @@ class IdaPendulum {
   }
 
  private:
-  // 1/s: the second bending frequency of the hanging links, below which most of the motion is.
+  // 1/s: the second bending frequency of the hanging links; most of the motion is slower.
   static constexpr double kRate = 100.;
 
   static void check(int code, const char* name) {

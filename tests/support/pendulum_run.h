@@ -12,8 +12,8 @@ struct PendulumRun {
   double energy_change = 0.;  // largest at the samples, J
 };
 
-/// From rest, by extrapolation of order 12, `parts` steps to every sample. A model has start(), y
-/// of the start; slope(y, dy); seen(y), B and C; energy(y). `watch` is called at every sample.
+/// Runs from rest by extrapolation of order 12, with `parts` steps per sample. A model has start(),
+/// the first y; slope(y, dy); seen(y), B and C; energy(y). `watch` is called at every sample.
 template <typename Model, typename Watch>
 PendulumRun swing(const Model& model, double until, int parts, Watch watch) {
   const auto slope = [&model](double, const Eigen::VectorXd& at) {
@@ -38,8 +38,8 @@ PendulumRun swing(const Model& model, double until, int parts) {
   return swing(model, until, parts, [](const Eigen::VectorXd&) {});
 }
 
-/// Steps to a sample that follow an undamped oscillation: the step is 2.2 over its frequency
-/// (rad/s), half of where order 12 loses it.
+/// Steps per sample that follow an undamped oscillation: the step is 2.2 over its frequency
+/// (rad/s), half the step at which order 12 loses it.
 inline int steps_for(double frequency) {
   return std::max(1, static_cast<int>(std::ceil(kPendulumSample * frequency / 2.2)));
 }

@@ -49,7 +49,7 @@ inline PlanarBeam planar_beam(const BeamSection& section, const Material& materi
   return b;
 }
 
-/// Holds the first node's position and, where clamped, its section.
+/// Holds the first node's position and, if clamped, its section.
 inline PlanarBeam hubbed(PlanarBeam b, bool clamped) {
   for (const int i : {0, 2}) b.structure.held[index_of(i)] = true;
   if (clamped)
@@ -57,10 +57,10 @@ inline PlanarBeam hubbed(PlanarBeam b, bool clamped) {
   return b;
 }
 
-/// Section of the spin-up beam, a rectangle 36.8 mm x 1.99 mm by its A and I, turned in its stiff
-/// plane, and its material: the standard scene of Wu and Haug (1988) after Kane, Ryan and Banerjee
-/// (1987). nu and the shear factor are not given; 0.3 and Cowper's .8497 here, the beam being 754
-/// radii of gyration long.
+/// Section and material of the spin-up beam: by its A and I a rectangle 36.8 mm x 1.99 mm that
+/// rotates in its stiff plane. It is the standard scene of Wu and Haug (1988) after Kane, Ryan and
+/// Banerjee (1987). nu and the shear factor are not given; here they are 0.3 and Cowper's .8497, as
+/// the beam is 754 radii of gyration long.
 inline constexpr double kSpinUpLength = 8.;  // m
 inline PlanarBeam spin_up_beam(int elements) {
   const BeamSection section = {.area = 7.299e-5,
@@ -91,13 +91,14 @@ inline Eigen::VectorXd gravity_load(const PlanarBeam& b, const Eigen::Vector2d& 
   return b.mass * uniform;
 }
 
-/// Modes of a planar beam as it is held, at rest, rigid ones left out: the lowest in bending, then
-/// the lowest along the axis. Nodal, [unknowns][bending + axial], of unit modal mass.
+/// Elastic modes of a planar beam at rest as it is held: the lowest in bending, then the lowest
+/// along the axis. Nodal, [unknowns][bending + axial], of unit modal mass.
 inline Eigen::MatrixXd planar_modes(const PlanarBeam& b, int bending, int axial) {
   const Structure& s = b.structure;
   const std::vector<int> free = free_list(s);
   const Eigen::MatrixXd M(free_part(s, b.mass)), K(free_part(s, tangent(s, s.rest)));
-  // Of M x = (K + shift M) x / (w^2 + shift) the largest: the lowest frequencies keep their digits.
+  // Largest eigenvalues of M x = (K + shift M) x / (w^2 + shift), so the lowest frequencies keep
+  // their digits.
   const double shift = b.material.young * b.section.inertia_y /
                        (b.material.density * b.section.area * std::pow(b.length, 4));
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> found(M, K + shift * M);
@@ -106,7 +107,7 @@ inline Eigen::MatrixXd planar_modes(const PlanarBeam& b, int bending, int axial)
   const int end[2] = {bending, bending + axial};
   for (Eigen::Index k = M.rows() - 1; k >= 0; --k) {
     const double inverse = found.eigenvalues()[k];
-    if (1. / inverse < 2. * shift) continue;  // rigid; the lowest bending has 12.4 and more
+    if (1. / inverse < 2. * shift) continue;  // rigid; the lowest bending mode has 12.4 and more
     Eigen::VectorXd mode = Eigen::VectorXd::Zero(s.unknowns());
     for (std::size_t i = 0; i < free.size(); ++i)
       mode[free[i]] = found.eigenvectors()(static_cast<int>(i), k) / std::sqrt(inverse);

@@ -16,7 +16,7 @@ inline std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// A folder of one test case's own, empty.
+/// An empty folder for one test case.
 inline std::filesystem::path fresh_folder(const std::string& name) {
   auto folder = std::filesystem::temp_directory_path() /
                 ("railstep_" + std::to_string(getpid()) + "_" + name);

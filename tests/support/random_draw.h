@@ -6,8 +6,8 @@
 
 namespace railstep {
 
-/// The same numbers on every machine: 53 bits of the generator's, without the library's
-/// distributions.
+/// Random numbers that are the same on every machine: 53 bits of the generator, without the
+/// library's distributions.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : generator_(seed) {}

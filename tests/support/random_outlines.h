@@ -9,7 +9,7 @@
 
 namespace railstep {
 
-/// Outlines of many kinds with sizes by chance, the same on every machine.
+/// Outlines of many kinds with random sizes, the same on every machine.
 class RandomOutlines {
  public:
   explicit RandomOutlines(std::uint64_t seed) : draw_(seed) {}
@@ -23,7 +23,7 @@ class RandomOutlines {
     return point_outline(rows);
   }
 
-  /// In whole millimetres, as drawings have them.
+  /// A rectangle in whole millimetres, as in drawings.
   Outline rectangle() {
     const double b = 1e-3 * std::round(between(20, 100)), h = 1e-3 * std::round(between(20, 140));
     return of_points({{0, 0}, {b, 0}, {b, h}, {0, h}});
@@ -72,7 +72,7 @@ class RandomOutlines {
     return of_points({{-b, 0}, {b, 0}, {t, h}, {-t, h}});
   }
 
-  /// Like rail 59R2, 180 mm high on a foot of 180 mm, its head `to_the_right` (m) of the web.
+  /// An outline like rail 59R2: 180 mm high, foot of 180 mm, head `to_the_right` (m) of the web.
   static Outline grooved(double to_the_right) {
     std::vector<Point> mm = {{-90, 0},  {90, 0},   {90, 10},  {30, 22},   {6, 32},
                              {6, 115},  {30, 125}, {75, 135}, {79, 168},  {64, 168},

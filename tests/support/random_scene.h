@@ -21,7 +21,7 @@ namespace railstep {
 
 inline constexpr double kRandomBay = .6;  // m
 
-/// A force on the rail, in time a constant, a table's or a sine's.
+/// A force on the rail: constant, by a table of time, or a sine.
 struct RandomLoad {
   double start = .3, speed = 0., force = -1e4;        // m, m/s, N
   std::vector<std::pair<double, double>> table = {};  // s, factor
@@ -37,10 +37,10 @@ struct RandomVehicle {
   double drop_speed = .1, drop_height = 0.;  // of a Hertz contact
   double linear = 0.;                        // N/m, of a linear contact; 0: Hertz
   bool gravity = true;
-  double reach() const { return .5 * wheelbase; }  // m, of its wheels before its middle
+  double reach() const { return .5 * wheelbase; }  // m, of its wheels ahead of its middle
 };
 
-/// A small track of one rail under what a seed draws, which writes itself as a scene.
+/// A small track of one rail under random traffic of a seed, which text_of() writes as a scene.
 struct RandomScene {
   std::uint64_t seed = 0;
   bool full = false;  // nine unknowns a node, else the two of vertical motion
@@ -48,7 +48,7 @@ struct RandomScene {
   double pad = 1e8, pad_damper = 0.;  // N/m, N s/m
   bool unilateral = false;            // the pads press and do not pull
   bool sleepers = false;
-  double sleeper_mass = 0., ballast = 1e8, ballast_damper = 0.;  // kg of both ends
+  double sleeper_mass = 0., ballast = 1e8, ballast_damper = 0.;  // kg for both ends
   std::array<std::string, 2> ends = {"free", "free"};
   double dt = 1e-4;
   int steps = 100;
@@ -132,7 +132,7 @@ inline std::string vehicle_text(const RandomVehicle& v) {
 
 }  // namespace random_scene
 
-/// The scene as a file has it.
+/// The text of the scene's file.
 inline std::string text_of(const RandomScene& s) {
   std::string text =
       fmt::format("# Seed {}.\nschema = 1\n\n", s.seed) + random_scene::track_text(s);
@@ -156,7 +156,7 @@ inline Scene read(const RandomScene& s) {
   return read_scene(file);
 }
 
-/// Track, step and steps of a seed; nothing runs on it yet.
+/// Track, step and steps of a seed, without traffic.
 inline RandomScene random_track(std::uint64_t seed, Draw& draw) {
   RandomScene s;
   s.seed = seed;
@@ -177,8 +177,8 @@ inline RandomScene random_track(std::uint64_t seed, Draw& draw) {
   return s;
 }
 
-/// A place and a speed for what reaches so far on either side: standing, or rolling as far as the
-/// rail goes or at 100 m/s.
+/// Draws a place and a speed for a runner that reaches `reach` on either side: it stands, or rolls
+/// so that it stays on the rail, at 100 m/s at most.
 inline void send(Draw& draw, const RandomScene& s, double reach, double& start, double& speed) {
   const double edge = reach + .01;
   start = draw.between(edge, s.length() - edge);
@@ -187,7 +187,7 @@ inline void send(Draw& draw, const RandomScene& s, double reach, double& start, 
     speed = std::min(100., draw.between(.2, .99) * (s.length() - edge - start) / s.duration());
 }
 
-/// What falls on the track.
+/// A vehicle that falls on the track.
 inline RandomVehicle random_vehicle(Draw& draw, const RandomScene& s, bool linear) {
   RandomVehicle v;
   const std::array<std::string, 3> types = {"mass", "sprung_mass", "bogie"};
@@ -209,14 +209,14 @@ inline RandomVehicle random_vehicle(Draw& draw, const RandomScene& s, bool linea
 
 namespace random_scene {
 
-/// One digit of a number.
+/// A number rounded to one digit.
 inline double rounded(double x) {
   if (x == 0.) return 0.;
   const double unit = std::pow(10., std::floor(std::log10(std::abs(x))));
   return std::round(x / unit) * unit;
 }
 
-/// Puts what runs on the rail where there is one, after a track was made shorter or a run longer.
+/// Whether all traffic stays on the rail, after a track was made shorter or a run longer.
 inline bool fits(const RandomScene& s) {
   const auto on = [&](double start, double speed, double reach) {
     const double end = start + speed * s.duration();
@@ -227,7 +227,7 @@ inline bool fits(const RandomScene& s) {
                      [&](const RandomLoad& load) { return on(load.start, load.speed, 0.); });
 }
 
-/// Variants that are simpler by one thing each, the largest simplification first.
+/// Variants that are each simpler by one thing, the largest simplification first.
 inline std::vector<RandomScene> simpler(const RandomScene& s) {
   std::vector<RandomScene> all;
   const auto with = [&](const auto& change) {
@@ -272,7 +272,7 @@ inline std::vector<RandomScene> simpler(const RandomScene& s) {
 
 }  // namespace random_scene
 
-/// The smallest scene found that still fails: simpler variants are taken as long as they do.
+/// The smallest scene found that still fails: simpler variants are taken as long as they fail.
 /// @param fails  whether the check fails; a scene that is refused does not
 inline RandomScene shrunk(RandomScene s, const std::function<bool(const RandomScene&)>& fails) {
   const auto still = [&](const RandomScene& other) {
@@ -294,7 +294,7 @@ inline RandomScene shrunk(RandomScene s, const std::function<bool(const RandomSc
   return s;
 }
 
-/// Fails a test case with a scene file that is as small as was found, and says where it is.
+/// Fails a test case, writes the smallest failing scene found, and says where it is.
 inline void report(const RandomScene& s, const std::string& what,
                    const std::function<bool(const RandomScene&)>& fails) {
   const auto file =

@@ -12,10 +12,10 @@
 namespace railstep {
 
 /// Another theory of the same beam, for reference: the planar geometrically exact beam of Reissner
-/// (1972) and Simo and Vu-Quoc (1986), 3-node elements at two Gauss points. Unknowns of a node: x,
-/// z, and the section's angle, so the mass matrix is constant too. Strains: stretch r'.t1 - 1,
-/// shear r'.t2, curvature; t1 = (cos, sin), t2 = (-sin, cos) of the angle. It shares no line with
-/// ANCF.
+/// (1972) and Simo and Vu-Quoc (1986), with 3-node elements and two Gauss points. Unknowns of a
+/// node: x, z, and the section's angle, so the mass matrix is constant too. Strains: stretch r'.t1
+/// - 1, shear r'.t2, curvature; t1 = (cos, sin), t2 = (-sin, cos) of the angle. It shares no code
+/// with ANCF.
 class ReissnerBody : public MovingBody {
  public:
   /// Clamped to a hub at its first node.
@@ -68,7 +68,7 @@ class ReissnerBody : public MovingBody {
   /// Force and stiffness of one Gauss point of the element whose unknowns begin at `first`.
   void add_point(const Eigen::VectorXd& q, int first, const GaussPoint& g, Eigen::VectorXd& force) {
     const auto n = shape(g.xi), dn = shape_slope(g.xi);
-    // Rows x', z', angle, angle' over the nine unknowns.
+    // Rows of x', z', angle, angle' over the nine unknowns.
     Eigen::Matrix<double, 4, 9> field = Eigen::Matrix<double, 4, 9>::Zero();
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) field(k == 2 ? 3 : k, 3 * i + k) = at(dn, i) / (part_ / 2.);

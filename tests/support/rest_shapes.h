@@ -6,7 +6,8 @@
 
 namespace railstep {
 
-/// Nodes on an arc of radius R in the plane of x and z (bent up) or x and y, sections normal to it.
+/// Nodes on an arc of radius R in the plane of x and z (bent up) or x and y; sections are normal to
+/// it.
 inline Vector27 arc_nodes(double length, double R, bool vertical) {
   Vector27 q;
   for (int i = 0; i < 3; ++i) {

@@ -3,7 +3,7 @@
 
 namespace railstep {
 
-/// Rails that do not give way: 800 t/m on seats a million times stiffer than a contact.
+/// Rails that hardly move: 800 t/m on seats a million times stiffer than a contact.
 inline Track rigid_track() {
   Track t = paper_track();
   t.section.area = 100.;

@@ -4,8 +4,8 @@
 namespace railstep {
 
 /// Shearable, extensible rod of Simo and Reissner: the geometrically exact beam, whose stress
-/// resultants are linear in its strains. A second route to the nonlinear element's equilibria, that
-/// shares no line with it. Simo, Comput. Meth. Appl. Mech. Eng. 49 (1985), 55-70.
+/// resultants are linear in its strains. A second way to the nonlinear element's equilibria, which
+/// shares no code with it. Simo, Comput. Meth. Appl. Mech. Eng. 49 (1985), 55-70.
 struct Rod {
   double length;
   Eigen::Vector3d force_stiffness;                           // EA, G A k_y, G A k_z; N
@@ -14,9 +14,9 @@ struct Rod {
   Eigen::Vector3d rest_curvature = Eigen::Vector3d::Zero();  // in the section's frame, 1/m
 };
 
-/// What is integrated along the rod.
+/// Quantities that are integrated along the rod.
 struct RodPoint {
-  Eigen::Vector3d r, moment;  // position; moment of what lies beyond, N m
+  Eigen::Vector3d r, moment;  // position; moment of the part beyond, N m
   Eigen::Matrix3d frame;
 };
 
@@ -38,7 +38,7 @@ inline RodPoint moved(const RodPoint& at, const RodPoint& slope, double by) {
   return {at.r + by * slope.r, at.moment + by * slope.moment, at.frame + by * slope.frame};
 }
 
-/// The rod's end when its root carries this moment: classical Runge-Kutta.
+/// The rod's end if its root carries this moment, by the classical Runge-Kutta method.
 inline RodPoint rod_end(const Rod& rod, const Eigen::Vector3d& force, const Eigen::Vector3d& moment,
                         int steps) {
   RodPoint at{Eigen::Vector3d::Zero(), moment, rod.root};
@@ -54,7 +54,8 @@ inline RodPoint rod_end(const Rod& rod, const Eigen::Vector3d& force, const Eige
 }
 
 /// End of a rod clamped at its root, under an end force and an end moment that keep their
-/// directions: shooting for the root's moment, the load in 20 steps, Newton with differences.
+/// directions. It shoots for the root's moment with the load in 20 steps, by Newton with
+/// differences.
 inline RodPoint clamped_rod_end(const Rod& rod, const Eigen::Vector3d& force,
                                 const Eigen::Vector3d& moment, int steps = 400) {
   Eigen::Vector3d root = Eigen::Vector3d::Zero();

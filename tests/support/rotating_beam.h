@@ -30,7 +30,7 @@ struct SpinUp {
   }
 };
 
-/// Drives the first node's section, and the held rest of a planar beam.
+/// Drives the first node's section, and the other held unknowns of a planar beam.
 inline std::function<void(Motion&)> drive_section(const SpinUp& hub) {
   return [hub](Motion& m) {
     const double angle = hub.angle(m.time), rate = hub.rate(m.time);
@@ -45,7 +45,7 @@ inline std::function<void(Motion&)> drive_section(const SpinUp& hub) {
   };
 }
 
-/// Drives a floating frame that sits on the hub.
+/// Drives a floating frame that is fixed to the hub.
 inline std::function<void(Motion&)> drive_frame(const SpinUp& hub) {
   return [hub](Motion& m) {
     m.q[2] = hub.angle(m.time);
@@ -54,14 +54,14 @@ inline std::function<void(Motion&)> drive_frame(const SpinUp& hub) {
   };
 }
 
-/// The tip in axes that turn with the hub, less the beam's length: [along, across], m.
+/// The tip in axes that rotate with the hub, less the beam's length: [along, across], m.
 inline Eigen::Vector2d in_hub(const Eigen::Vector2d& tip, double angle, double length) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * tip[0] + s * tip[1] - length, c * tip[1] - s * tip[0]};
 }
 
-/// ANCF: M a + f(q) = load, M constant. The sparsity is constant too, so a tangent is added into
-/// the places found at the start.
+/// ANCF: M a + f(q) = load, M constant. The sparsity is constant too, so tangents are added at
+/// places found once at the start.
 class AncfBody : public MovingBody {
  public:
   AncfBody(PlanarBeam beam, std::function<void(Motion&)> drive, Eigen::VectorXd load)

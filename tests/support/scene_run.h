@@ -15,7 +15,7 @@ namespace railstep {
 
 inline const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 
-/// A scene that a test writes, as the program reads it.
+/// A scene that a test writes and the program reads.
 inline Scene scene_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   static int count = 0;
   const auto file =
@@ -29,7 +29,7 @@ inline Scene scene_of(const std::string& text, const std::vector<std::string>& o
   return read_scene(file, overrides);
 }
 
-/// A run of a scene, shipped or not: each frame's value of a column.
+/// A run of a scene, shipped or not, with the values of each column frame by frame.
 struct Traced {
   std::vector<std::string> columns;
   std::vector<double> rows;

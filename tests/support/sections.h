@@ -15,11 +15,11 @@ inline BeamSection section_f() {
           .shear_centre_z = -.0391};
 }
 
-/// Its rectangles, m.
+/// Rectangles of section F, m.
 inline const Rectangles<double> kSectionF = {{.1380985536, .02522171327, .07720505094},
                                              {.020996636, .13308941227, .03165145173}};
 
-/// R60 as rail-data.md's benchmarks have it, section 3.
+/// R60 as in the benchmarks of rail-data.md, section 3.
 inline BeamSection r60_section() {
   return {.area = 7670e-6,
           .inertia_y = 3038.3e-8,
@@ -41,7 +41,8 @@ inline BeamSection peers_rectangle() {
           .shear_factor_z = .8497};
 }
 
-/// The paper's Table 3 with what reference.md adds: seats on the axis, free ends.
+/// The track of the paper's Table 3, with the additions of reference.md: seats on the axis, free
+/// ends.
 inline Track paper_track() {
   Track t;
   t.section = section_f();

@@ -40,7 +40,7 @@ inline std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
                        .primary_stiffness = 1e6,
                        .primary_damping = 1e4})
                     .vehicle;
-    v.start = .1;  // a wheel comes from the ground
+    v.start = .1;  // a wheel comes from before the rail
     v.speeds = {0., 10., .01, 20.};
     v.tread = {fit_signal({0., 1e-5, -1e-5}, 0., .3, true), {}};
     traffic.vehicles = {v, v};
@@ -71,7 +71,7 @@ inline Block small_block(bool modal, bool wheels) {
   return to_block(small_model(modal, wheels)->model(), kText);
 }
 
-/// Of one load on a bay: small enough for every one of its bits.
+/// Block of one load on a bay, so small that a test can try every bit.
 inline Block smallest_block() {
   Track track = peers_pair(1);
   track.rails = 1;

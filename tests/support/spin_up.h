@@ -19,7 +19,7 @@ inline constexpr double kSpinUpEnd = 20., kSample = .2;  // s
 struct SpinUpRun {
   std::vector<Eigen::Vector2d> tip;  // along and across less the beam's length, m, every kSample
   int steps = 0, solves = 0;
-  double seconds = 0.;  // of the processor: what others run does not show
+  double seconds = 0.;  // of processor time: other programs do not count
 
   double microseconds_per_step() const { return seconds / steps * 1e6; }
 };
@@ -32,13 +32,13 @@ inline double processor_seconds() {
 
 using Tip = std::function<Eigen::Vector2d(const Motion&)>;
 
-/// From rest at the hub to kSpinUpEnd. A sample is a whole number of steps.
+/// Runs from rest at the hub to kSpinUpEnd. A sample is a whole number of steps.
 inline SpinUpRun spin_up(MovingBody& body, Motion m, const SpinUp& hub, double step,
                          const Tip& tip) {
   const int each = static_cast<int>(std::lround(kSample / step));
   if (std::abs(each * step - kSample) > 1e-12)
     throw std::invalid_argument("a sample of the spin-up is no whole number of steps");
-  // rho_inf .8 damps what the step cannot follow: the thickness modes of ANCF.
+  // rho_inf .8 damps the thickness modes of ANCF, which the step cannot follow.
   const GeneralisedAlpha scheme(step, .8);
   SpinUpRun run;
   run.tip.push_back(in_hub(tip(m), 0., kSpinUpLength));
@@ -70,7 +70,7 @@ inline SpinUpRun spin_up_linear(const SpinUp& hub, int elements, double step) {
   return spin_up(body, at_rest(b.structure.rest), hub, step, tip_node(18 * elements));
 }
 
-/// Modes of eight elements, tangent frame at the hub.
+/// Spin-up by modes of eight elements, in a frame tangent at the hub.
 inline SpinUpRun spin_up_frame(const SpinUp& hub, int bending, int axial, bool stiffening,
                                double step) {
   const PlanarBeam b = hubbed(spin_up_beam(8), true);
@@ -90,14 +90,14 @@ inline SpinUpRun spin_up_reissner(const SpinUp& hub, int elements, double step) 
   });
 }
 
-/// Largest distance of two tips, m.
+/// Largest distance of two paths of the tip, m.
 inline double apart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
   double most = 0.;
   for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
   return most;
 }
 
-/// The geometrically exact beam, extrapolated to step 0, and what it does not know.
+/// The geometrically exact beam, extrapolated to step 0, and its error.
 struct SpinUpReference {
   std::vector<Eigen::Vector2d> tip;
   double largest_lag;  // m

@@ -13,10 +13,10 @@
 
 namespace railstep {
 
-/// What a test waits for at most, however busy the machine is.
+/// Longest time that a test waits, however busy the machine is.
 inline constexpr std::chrono::seconds kPatience{120};
 
-/// A program that runs beside the test, in a folder of its own. No wait for it is without an end.
+/// A program that runs beside the test, in a folder of its own. Every wait for it is bounded.
 class Started {
  public:
   explicit Started(const std::string& words, const std::string& program = RAILSTEP_PROGRAM)
@@ -43,7 +43,7 @@ class Started {
   bool runs() { return !ended_ && !(ended_ = waitpid(pid_, &status_, WNOHANG) != 0); }
   void signal(int number) const { kill(pid_, number); }
 
-  /// Waits for what the program does. Fails the test where it ends before or takes too long.
+  /// Waits until the program has done it. Fails the test if it ends before or takes too long.
   void await(const std::function<bool()>& done) {
     const bool was = waited([&] { return done() || !runs(); }) && done();
     if (was) return;
@@ -55,8 +55,8 @@ class Started {
   void await(const std::filesystem::path& file) {
     await([&] { return std::filesystem::exists(file); });
   }
-  /// Waits for its end.
-  /// @returns a code of -N where signal N ended it
+  /// Waits for the program's end.
+  /// @returns code -N if signal N ended it
   Ran end() {
     if (!waited([&] { return !runs(); })) FAIL("the program did not end");
     const int code = WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);

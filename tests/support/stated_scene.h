@@ -11,9 +11,9 @@
 
 namespace railstep {
 
-/// A linear track that is damped, under loads or wheels that run or stand: what errors are stated
-/// of. One rail or two, vertical or all unknowns, on seats, with or without sleepers, with ends or
-/// on a ring, in full order or condensed in any way.
+/// A random scene for which errors are stated: a damped linear track under loads or wheels that run
+/// or stand. One rail or two, vertical or all unknowns, on seats, with or without sleepers, with
+/// ends or on a ring, in full order or condensed in any way.
 inline std::string stated_scene(std::uint64_t seed) {
   Draw draw(seed);
   const bool ring = draw.chance(.2), full = !ring && draw.chance(.25);
@@ -69,7 +69,7 @@ inline std::string stated_scene(std::uint64_t seed) {
   return text;
 }
 
-/// A file of the scene, for as long as this lives.
+/// A file of the scene that exists as long as this object.
 class StatedScene {
  public:
   explicit StatedScene(std::uint64_t seed)

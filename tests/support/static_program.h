@@ -14,7 +14,7 @@ inline std::string shipped(const std::string& name) {
   return RAILSTEP_SOURCE "/config/scenes/" + name + ".toml ";
 }
 
-/// A scene of a test's own, in a folder of its own.
+/// A scene of a test, in a folder of its own.
 struct OwnScene {
   std::filesystem::path folder = fresh_folder("static");
   std::filesystem::path file = folder / "scene.toml";
@@ -25,7 +25,7 @@ struct OwnScene {
   std::string words() const { return file.string() + " "; }
 };
 
-/// What `railstep static` finds.
+/// Result of `railstep static`.
 inline nlohmann::json solved(const std::string& words) {
   const Ran ran = railstep_program("static " + words + " --json");
   INFO(words << "\n" << ran.err);
@@ -33,7 +33,7 @@ inline nlohmann::json solved(const std::string& words) {
   return nlohmann::json::parse(ran.out);
 }
 
-/// Displacement of a named point of it, m.
+/// Displacement of a named point of the result, m.
 inline std::array<double, 3> point(const nlohmann::json& result, const std::string& name = "tip") {
   for (const auto& p : result["points"])
     if (p["name"] == name) return p["displacement_m"];

@@ -14,8 +14,8 @@ namespace railstep {
 
 /// reference.md, "Integrators on a stiff linear track": a rail of section F on 12 bays of 0.6 m,
 /// lateral seats of 1.4e9 N/m and 29e6 N s/m, 10 kN down and 2 kN sideways on its axis at 30 m/s,
-/// ramped in 20 ms. What the row does not say is the paper's: 3e6 N/m and 3e4 N s/m along and down;
-/// two elements per bay. The sideways force is that of a rail that leans by 1:5 under a vertical
+/// ramped in 20 ms. Values that the row does not give are the paper's: 3e6 N/m and 3e4 N s/m along
+/// and down; two elements per bay. The sideways force is that of a rail canted 1:5 under a vertical
 /// one.
 inline Track stiff_track() {
   Track t = paper_track();
@@ -35,11 +35,11 @@ inline MovingLoad stiff_load() {
           .table = {0., 0., .02, 1.}};
 }
 
-inline constexpr double kStiffEnd = .2;      // s, where the load is 0.6 m before the far end
+inline constexpr double kStiffEnd = .2;      // s, when the load is 0.6 m before the far end
 inline constexpr double kStiffFrame = 1e-3;  // s, at which schemes are compared
 
-/// What is compared, at every millisecond: the height of the rail's axis in the middle of bay 6,
-/// along the rail's own z, and the lateral force of the seats before and behind it.
+/// Results compared at every millisecond: the height of the rail's axis in the middle of bay 6,
+/// along the rail's own z, and the lateral forces of the seats before and behind it.
 struct StiffTrace {
   std::vector<double> height, force[2];  // m, N
 };
@@ -89,7 +89,7 @@ inline StiffTrace stiff_trace(const Scheme& scheme) {
   return stiff_trace(PackOptions{.scheme = scheme, .residual_flexibility = false});
 }
 
-/// By the exact exponential step: all modes of all lines.
+/// Trace of the exact exponential step with all modes of all lines.
 inline StiffTrace stiff_exponential(double dt) {
   return stiff_trace(PackOptions{
       .scheme = held_force(dt, 1.),
@@ -97,8 +97,8 @@ inline StiffTrace stiff_exponential(double dt) {
       .reduction = Reduction{.limit = {1'000'000, std::numeric_limits<double>::infinity()}}});
 }
 
-/// Largest error of the height over its peak; of the seats' lateral forces the mean square's root,
-/// over their peak.
+/// Largest error of the height over its peak, and root mean square error of the seats' lateral
+/// forces over their peak.
 struct StiffError {
   double height, force;
 };

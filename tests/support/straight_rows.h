@@ -43,7 +43,7 @@ inline BeamSection full_section_f() {
   return f;
 }
 
-/// Constants of no section, without a step through any library; every one of them counts.
+/// Made-up constants that no library has computed; every one of them has an effect.
 inline StraightBeam made_up_beam() {
   Numbers numbers(5);
   StraightBeam beam{};
@@ -53,7 +53,7 @@ inline StraightBeam made_up_beam() {
   return beam;
 }
 
-/// Nodes of n elements of 0.6 m in a row along x, every unknown shaken; turned by R.
+/// Nodes of n elements of 0.6 m along x, with every unknown shaken, then rotated by R.
 inline std::vector<double> shaken_nodes(int n, std::uint64_t seed, double shake,
                                         const Eigen::Matrix3d& R = Eigen::Matrix3d::Identity()) {
   Numbers numbers(seed);

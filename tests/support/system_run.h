@@ -14,8 +14,8 @@
 
 namespace railstep {
 
-/// A system with its state, stepped frame by frame; scratch holds NaN before every frame. What is
-/// read here of the state is worked out again from the scene's own numbers.
+/// A system with its state, stepped frame by frame; the workspace holds NaN before every frame.
+/// Results read from the state are computed again from the scene's own numbers.
 struct SystemRun {
   System system;
   std::unique_ptr<PackedSystem> packed;
@@ -40,7 +40,7 @@ struct SystemRun {
 
   SystemRun(const System& scene, const SystemOptions& options)
       : SystemRun(scene, std::make_unique<PackedSystem>(scene, options)) {}
-  /// Beside a track.
+  /// A system beside a track.
   SystemRun(const System& scene, const SystemOptions& options, const Track& track,
             const PackOptions& track_options, const Traffic& traffic = {})
       : SystemRun(scene,
@@ -86,7 +86,7 @@ struct SystemRun {
     return rest;
   }
 
-  /// Of the body's material point that stands at `point` at rest.
+  /// Position of the body's material point that is at `point` at rest.
   Eigen::Vector3d point_of_body(int i, const Eigen::Vector3d& point) const {
     const RigidBody& b = system.bodies[at(i)];
     return body_position(i) + body_rotation(i) * (b.orientation.conjugate() * (point - b.position));
@@ -104,7 +104,7 @@ struct SystemRun {
     return sum / mass;
   }
 
-  /// What a joint does to its part b, N and N m about the joint's point, ground axes.
+  /// Force and moment of a joint on its part b, N and N m about the joint's point, ground axes.
   Eigen::Vector3d joint_force(int joint) const {
     return Eigen::Vector3d(railstep::joint_force(model(), state, joint).force);
   }
@@ -114,12 +114,12 @@ struct SystemRun {
 
   /// Linear momentum of all parts, kg m/s, then angular momentum about the origin, kg m2/s.
   Eigen::Matrix<double, 6, 1> momentum() const;
-  /// Kinetic energy, weight's and springs' potential, and strain energy, J.
+  /// Kinetic energy, potential of weights and springs, and strain energy, J.
   double energy() const;
 
  private:
-  /// An element of each beam, by itself. Its mass couples alike components only, so it is the same
-  /// in all axes.
+  /// One element of each beam. Its mass couples only equal components, so it is the same in all
+  /// axes.
   struct OwnBeam {
     Matrix27 mass;
     Beam element;
@@ -221,8 +221,8 @@ inline double SystemRun::energy() const {
 /// Largest of all entries.
 inline double largest(const Eigen::MatrixXd& a) { return a.cwiseAbs().maxCoeff(); }
 
-/// A uniform rod of square section from `start`, at an angle (rad) from x towards z, moving in that
-/// plane: its start at `velocity`, turning at `rate` from x towards z.
+/// A uniform rod of square section from `start`, at an angle (rad) from x towards z. It moves in
+/// that plane: its start at `velocity`, with the angle's rate `rate`.
 inline RigidBody rod_body(const Eigen::Vector3d& start, double length, double angle, double mass,
                           double side, const Eigen::Vector3d& velocity = Eigen::Vector3d::Zero(),
                           double rate = 0.) {
@@ -239,7 +239,7 @@ inline RigidBody rod_body(const Eigen::Vector3d& start, double length, double an
   return b;
 }
 
-/// Options for comparing with known answers: Newton's rest is far below any scheme's own error.
+/// Options for comparing with known answers: Newton's residual is far below any scheme's own error.
 inline SystemOptions sharp(const Scheme& scheme,
                            ConstraintMethod hold = ConstraintMethod::augmented_lagrangian) {
   SystemOptions options{.scheme = scheme};
@@ -248,7 +248,7 @@ inline SystemOptions sharp(const Scheme& scheme,
   options.constraint_method = hold;
   options.cap = 20;
   options.projections = 8;
-  options.tolerance = 1e-12;  // else the round-off of places, which ends the iterations too
+  options.tolerance = 1e-12;  // otherwise round-off of places would end the iterations
   options.joint_tolerance = 1e-12;
   return options;
 }

@@ -27,13 +27,13 @@ inline Eigen::MatrixXd picked_square(const Eigen::MatrixXd& A, const std::vector
   return result;
 }
 
-/// At rest in a place: v = a = 0 at time 0.
+/// Motion at rest at q: v = a = 0 at time 0.
 inline Motion at_rest(const Eigen::VectorXd& q) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
   return {q, zero, zero, zero};
 }
 
-/// Equations of motion R(q, v, a, t) = M a + forces = 0, as the time scheme asks for them.
+/// Equations of motion R(q, v, a, t) = M a + forces = 0, as the time scheme uses them.
 class MovingBody {
  public:
   MovingBody() = default;
@@ -48,11 +48,11 @@ class MovingBody {
   /// (dR/da + by_v dR/dv + by_q dR/dq)^-1 residual, [free].
   virtual Eigen::VectorXd solve(const Motion& motion, double by_v, double by_q,
                                 const Eigen::VectorXd& residual) = 0;
-  /// Where R is linear and its matrix exact, one solve ends the step.
+  /// Whether R is linear and its matrix exact: one solve then ends the step.
   virtual bool linear() const { return false; }
 };
 
-/// The acceleration that the equations ask for where the motion starts.
+/// Sets the acceleration that the equations give at the start.
 inline void start(MovingBody& body, Motion& m) {
   body.prescribe(m);
   const Eigen::VectorXd change = body.solve(m, 0., 0., body.residual(m));
@@ -76,10 +76,10 @@ class GeneralisedAlpha {
     beta_ = .25 * (gamma_ + .5) * (gamma_ + .5);
   }
 
-  /// One step. Newton ends where the last change of every unknown is below `tolerance` (the
-  /// units of q), or cannot be told from round-off.
-  /// @return solves that it took
-  /// @throws std::runtime_error after 40 of them
+  /// One step. Newton ends when the last change of every unknown is below `tolerance` (units of q)
+  /// or is only round-off.
+  /// @return number of solves
+  /// @throws std::runtime_error after 40 solves
   int advance(MovingBody& body, Motion& m, double tolerance) const {
     const Motion old = m;
     const double share = (1. - alpha_f_) / (1. - alpha_m_);

@@ -14,7 +14,7 @@ struct Rows {
   std::string header;
   std::vector<std::vector<double>> row;
 
-  /// Which column has that name.
+  /// Number of the column with that name.
   std::size_t column(const std::string& name) const {
     std::istringstream names(header);
     std::string own;

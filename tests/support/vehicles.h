@@ -8,7 +8,7 @@
 
 namespace railstep {
 
-/// The Manchester benchmark's, of one rail.
+/// The bogie of the Manchester benchmark, on one rail.
 inline const BogieData kBogie{.frame_mass = 1307.5,
                               .frame_inertia = 738.,
                               .wheel_mass = 906.5,
@@ -24,7 +24,7 @@ inline const CarData kCar{.bogie = {1307.5, 738., 906.5, 2.56, 2, 1.22e6, 4e3},
                           .secondary_stiffness = 4.3e5,
                           .secondary_damping = 2e4};
 
-/// One rail of 60E1-like stiffness on seats each .6 m.
+/// One rail with a stiffness like 60E1 on seats every .6 m.
 inline Track one_rail(int bays) {
   Track t;
   t.section = r60_section();
@@ -46,14 +46,14 @@ inline RunningVehicle running(const NamedVehicle& what, double start, double spe
   return v;
 }
 
-/// At rest under the vehicles; a track's own weight left off.
+/// A run that starts at rest under the vehicles, without the track's own weight.
 inline ModelRun from_rest(const Track& track, const Traffic& traffic, const PackOptions& options) {
   auto packed = std::make_unique<PackedModel>(track, traffic, options);
   packed->set_start(start_in_equilibrium(track, *packed, 0.));
   return ModelRun(std::move(packed));
 }
 
-/// Of both kinds of model.
+/// Options for a condensed model (`modal`) or one in full order.
 inline PackOptions options_of(bool modal, const Track& track, double dt, double rho_inf = .6) {
   return modal ? condensed(track, 2, dt, rho_inf) : full_order(dt, rho_inf);
 }
