@@ -16,8 +16,8 @@ struct DenseLine {
       : M(line.mass), C(line.damping), K(line.stiffness), b(point_row(track, line, at)) {}
 };
 
-/// Generalised-alpha as printed by Chung and Hulbert 1993, eqs. 1 to 5. Newmark (alpha_m = alpha_f =
-/// 0) and HHT (Hughes 2000, eqs. 9.3.1 to 9.3.3: alpha_m = 0) are members:
+/// Generalised-alpha as printed by Chung and Hulbert 1993, eqs. 1 to 5. Its members are Newmark
+/// (alpha_m = alpha_f = 0) and HHT (Hughes 2000, eqs. 9.3.1 to 9.3.3: alpha_m = 0):
 ///   M a_m + C v_f + K d_f = F_f,  x_m = (1 - alpha_m) x1 + alpha_m x0,  x_f alike with alpha_f,
 ///   d1 = d0 + h v0 + h^2 [(1/2 - beta) a0 + beta a1],   v1 = v0 + h [(1 - gamma) a0 + gamma a1].
 struct Textbook {
