@@ -19,8 +19,8 @@ namespace {
 constexpr double kInertiaY = 3038.3e-8, kInertiaZ = 512e-8, kArea = 7670e-6, kFactor = .4;
 constexpr double kLean = 1. / 20.;
 
-/// 16 m of R60 on a bed of `stiffness` per metre, the same along y and z, as seats `spacing` apart
-/// on the axis; its shear centre lies there too.
+/// 16 m of R60 on a bed of `stiffness` per metre, equal along y and z. The bed is seats `spacing`
+/// apart on the axis, where the shear centre is too.
 Track on_bed(double stiffness, double spacing) {
   Track t;
   t.rails = 1;
@@ -40,14 +40,14 @@ Track on_bed(double stiffness, double spacing) {
   return t;
 }
 
-/// Deflection of an endless Timoshenko beam on a bed under a newton on it, m.
+/// Deflection of an endless Timoshenko beam on a bed under a force of 1 N, m.
 double winkler(double k, double inertia) {
   const double EI = 210e9 * inertia, GA = 210e9 / 2.6 * kArea * kFactor;
   const double product = std::sqrt(k / (4. * EI)), half = k / (4. * GA);
   return (product / k + 1. / (2. * GA)) / (2. * std::sqrt(product + half));
 }
 
-/// Displacements of the axis along y and z under a force down at mid-length, m.
+/// Displacements of the axis along y and z under a downward force at mid-length, m.
 std::array<double, 2> axis_under(const Track& t, double force) {
   const Statics statics(t);
   const double x = .5 * t.length();
@@ -55,7 +55,7 @@ std::array<double, 2> axis_under(const Track& t, double force) {
   return {statics.at(u, {0, x, 0., 0., 1}), statics.at(u, {0, x, 0., 0., 2})};
 }
 
-/// A rail on feet that hold it along its own axes, each in its own way.
+/// A rail on feet that hold it along its own axes, with a stiffness for each axis.
 Track on_feet(double cant, int rails) {
   Track t;
   t.section = section_f();
@@ -68,7 +68,7 @@ Track on_feet(double cant, int rails) {
   return t;
 }
 
-/// A force of the section's point given along the rail's axes, as forces along the track's.
+/// A force on a point of the section, given in the rail's axes, as forces in the track's axes.
 std::vector<PointForce> own_force(const Track& t, int rail, double x, double y, double z,
                                   const std::array<double, 3>& own) {
   std::array<double, 3> along;
@@ -90,7 +90,7 @@ std::array<double, 3> own_displacement(const Track& t, const RailPoint& point, c
 
 constexpr std::array<double, 3> kOblique = {3e3, -20e3, -80e3};
 
-/// Two canted rails on sleepers whose ballast holds them along y too.
+/// Two canted rails on sleepers; the ballast holds them along y too.
 Track leaning_pair(Unknowns unknowns) {
   Track t = s1_track(12, 2);
   t.unknowns = unknowns;
@@ -102,26 +102,26 @@ Track leaning_pair(Unknowns unknowns) {
 
 }  // namespace
 
-TEST_CASE("a rail that leans on a bed bends about both of its axes", "[cant]") {
+TEST_CASE("a canted rail on a bed bends about both of its axes", "[cant]") {
   const double k = 5e7, force = 100e3, GA = 210e9 / 2.6 * kArea * kFactor;
   const double cosine = 1. / std::sqrt(1. + kLean * kLean), sine = kLean * cosine;
   const double upright = winkler(k, kInertiaY), aside = winkler(k, kInertiaZ);
   for (const double spacing : {.1, .05}) {
     const std::array<double, 2> found = axis_under(on_bed(k, spacing), force);
     CAPTURE(spacing, found[0], found[1]);
-    // Seats for a bed: the sum over them errs at the jump of the slope of w^2 under the force,
-    // 2 w0 P/GA, by h^2/12 of it: k h^2/6GA of the deflection, which is 3.3e-4 and 8.3e-5 here;
-    // what follows in h is a tenth of it.
+    // The sum over seats replaces the bed. At the jump of the slope of w^2 under the force, 2 w0
+    // P/GA, it errs by h^2/12 of the jump: k h^2/6GA of the deflection, which is 3.3e-4 and 8.3e-5
+    // here. The next term in h is a tenth of it.
     const double mesh = k * spacing * spacing / (6. * GA);
     const double down = force * (cosine * cosine * upright + sine * sine * aside);
     CHECK_THAT(-found[1], WithinRel(down, 1.1 * mesh));
-    // The difference of two deflections, each with its error.
+    // This is the difference of two deflections, each with its error.
     CHECK_THAT(-found[0], WithinAbs(force * sine * cosine * (aside - upright),
                                     1.1 * mesh * force * sine * (aside + upright)));
   }
 }
 
-TEST_CASE("a rail turned with its seats and loads does what it did upright", "[cant]") {
+TEST_CASE("a rail rotated with its seats and loads moves as it did upright", "[cant]") {
   const auto unknowns = GENERATE(Unknowns::full, Unknowns::rigid_section);
   Track upright = on_feet(0., 1), leaning = on_feet(kLean, 1);
   upright.unknowns = leaning.unknowns = unknowns;
@@ -133,13 +133,13 @@ TEST_CASE("a rail turned with its seats and loads does what it did upright", "[c
         own_displacement(upright, at, [&](const RailPoint& p) { return before.at(u, p); });
     const auto turned =
         own_displacement(leaning, at, [&](const RailPoint& p) { return after.at(v, p); });
-    // Rounding of two factorisations of a condition of 1e6, of the largest component.
+    // Two factorisations of condition 1e6 round, relative to the largest component.
     for (std::size_t d = 0; d < 3; ++d)
       CHECK_THAT(turned[d], WithinAbs(own[d], 1e-10 * std::abs(own[2])));
   }
 }
 
-TEST_CASE("a nonlinear rail turned with its seats and loads does what it did upright", "[cant]") {
+TEST_CASE("a nonlinear rail rotated with its seats and loads moves as it did upright", "[cant]") {
   std::vector<std::array<double, 3>> found;
   for (const double cant : {0., kLean}) {
     const Track t = on_feet(cant, 1);
@@ -158,14 +158,13 @@ TEST_CASE("a nonlinear rail turned with its seats and loads does what it did upr
     CHECK_THAT(found[1][d], WithinAbs(found[0][d], 1e-8 * std::abs(found[0][2])));
 }
 
-TEST_CASE("leaning rails and their seats at rest: the nonlinear track's tangent is the linear",
-          "[cant]") {
+TEST_CASE("at rest the nonlinear track of canted rails has the linear track's tangent", "[cant]") {
   Track t = on_feet(kLean, 2);
   t.sleeper = Sleeper{300., 169., {0., 30e6, 50e6}, {}};
   const Statics linear(t);
   const TrackStructure rails(t);
-  // Displacements of 1e-8 m: rounding of places of some metres leaves 4e-8 of them, the second
-  // order less.
+  // Displacements are 1e-8 m: rounding of positions of some metres leaves 4e-8 of them, the second
+  // order leaves less.
   const std::vector<PointForce> forces = {{{0, 1.7, .015, .1, 2}, -1.}, {{1, 2.2, 0., .1, 1}, .2}};
   Eigen::VectorXd load = Eigen::VectorXd::Zero(rails.structure().unknowns());
   for (const PointForce& f : forces) load += f.force * rails.row(f.at);
@@ -178,7 +177,7 @@ TEST_CASE("leaning rails and their seats at rest: the nonlinear track's tangent 
                WithinAbs(linear.at(u, point), 1e-6 * size));
 }
 
-TEST_CASE("leaning rails in mirror coordinates and the general way", "[cant]") {
+TEST_CASE("canted rails have the same solution in mirror coordinates and in one line", "[cant]") {
   const auto unknowns = GENERATE(Unknowns::full, Unknowns::rigid_section);
   Track t = leaning_pair(unknowns);
   const RailPoint left{0, 3.05, .015, .09, 2}, right{1, 3.4, -.02, .09, 1};
@@ -194,7 +193,7 @@ TEST_CASE("leaning rails in mirror coordinates and the general way", "[cant]") {
   }
 }
 
-TEST_CASE("the weight of leaning rails comes down to the ballast", "[cant]") {
+TEST_CASE("the ballast carries the weight of canted rails", "[cant]") {
   Track t = leaning_pair(Unknowns::rigid_section);
   const double g = 9.81;
   const Statics statics(t);
@@ -209,11 +208,11 @@ TEST_CASE("the weight of leaning rails comes down to the ballast", "[cant]") {
   const double weight =
       g * (2. * t.length() * t.material.density * t.section.area + 300. * (t.bays + 1));
   CHECK_THAT(borne, WithinRel(weight, 1e-9));  // rounding of the solution
-  // Rails that lean inwards move inwards as they sink.
+  // Rails with cant move inwards as they sink.
   CHECK(statics.at(u, {0, 3.6, 0., 0., 1}) < 0.);
 }
 
-TEST_CASE("pads that do not pull press along their normals as springs do", "[cant]") {
+TEST_CASE("one-sided pads press along their normals as springs do", "[cant]") {
   Track spring = on_feet(kLean, 2);
   spring.sleeper = Sleeper{300., 169., {0., 30e6, 50e6}, {}};
   Track pressing = spring;
@@ -223,20 +222,20 @@ TEST_CASE("pads that do not pull press along their normals as springs do", "[can
   const std::vector<PointForce> load = {{{0, 1.8, 0., .1, 2}, -80e3}, {{1, 1.8, 0., .1, 2}, -60e3}};
   const Statics one(spring), other(pressing);
   const auto u = one.solve(load), v = other.solve(load);
-  // All of it presses: the same equations, solved by Newton's method to 1e-9.
+  // All pads press: these are the same equations, solved by Newton's method to 1e-9.
   for (const RailPoint at : {RailPoint{0, 1.8, 0., .1, 1}, RailPoint{1, 1.9, 0., .1, 2}})
     CHECK_THAT(other.at(v, at), WithinRel(one.at(u, at), 1e-8));
   CHECK_THAT(other.support_force(v, 0, 3), WithinRel(one.support_force(u, 0, 3), 1e-7));
 }
 
-TEST_CASE("residual flexibility under wheels on leaning rails", "[cant]") {
+TEST_CASE("the residual flexibility under wheels is right on canted rails", "[cant]") {
   const Track t = leaning_pair(Unknowns::full);
   const Traffic traffic{.loads = {{.rail = 0, .start = 3., .force = -5e4, .z = .0907}},
                         .wheelsets = {paper_wheelset(2.9)},
                         .head = {.0907, .3, .035}};
   Track upright = t;
   upright.cant = 0.;
-  // Tables at 16 points, read by cubics: what they leave of an upright rail, on two elements a bay.
+  // Cubics read tables at 16 points: the bound is their error on an upright rail.
   for (const PackOptions& options : {full_order(1e-4), condensed(t, 3., 1e-4)}) {
     const double before = static_error(upright, PackedModel(upright, traffic, options));
     const double after = static_error(t, PackedModel(t, traffic, options));
@@ -246,7 +245,7 @@ TEST_CASE("residual flexibility under wheels on leaning rails", "[cant]") {
   }
 }
 
-TEST_CASE("a wheelset at rest on leaning rails stays in their middle", "[cant]") {
+TEST_CASE("a wheelset at rest on canted rails stays in their middle", "[cant]") {
   const auto unknowns = GENERATE(Unknowns::full, Unknowns::rigid_section);
   const Track t = leaning_pair(unknowns);
   const Traffic traffic{.wheelsets = {paper_wheelset(3.3)}, .head = {.0907, .3, .035}};
@@ -262,6 +261,6 @@ TEST_CASE("a wheelset at rest on leaning rails stays in their middle", "[cant]")
   CHECK(run.seen == Status::ok);
   CHECK(largest < 1e-9 * 981.);
   CHECK_THAT(run.outputs.wheel_force[1], WithinRel(run.outputs.wheel_force[0], 1e-9));
-  CHECK_THAT(run.body()[1], WithinAbs(0., 1e-12));  // y, m: rounding of the mirror's sums
+  CHECK_THAT(run.body()[1], WithinAbs(0., 1e-12));  // y, m: rounding of the sums over both sides
   CHECK_THAT(run.body()[3], WithinAbs(0., 1e-12));  // roll
 }

@@ -1,4 +1,4 @@
-// A force near the critical speed of a rail on seats so close that they are a bed.
+// A force near the critical speed of a rail on seats so close that they act as a bed.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
@@ -14,7 +14,7 @@ using namespace railstep;
 
 namespace {
 
-/// hard-cases.md R9 and H14: section F on 3e7 N/m each .6 m, as seats each .1 m.
+/// Section F on 3e7 N/m each .6 m (R9 and H14 of hard-cases.md), as seats each .1 m.
 Track bed(int bays) {
   Track t;
   t.section = section_f();
@@ -28,8 +28,8 @@ Track bed(int bays) {
   return t;
 }
 
-/// A table that grows from 0 to 1 by half a cosine over a time: what rings as a force appears
-/// leaves it slowly near critical speed.
+/// A table that grows from 0 to 1 by half a cosine over a time. Near the critical speed the
+/// oscillation from a sudden force leaves it slowly.
 std::vector<double> soft(double time) {
   std::vector<double> rows;
   for (int i = 0; i <= 40; ++i) {
@@ -39,7 +39,7 @@ std::vector<double> soft(double time) {
   return rows;
 }
 
-/// Mean deflection under the force over the last 5 m of its way, over the static one.
+/// Mean deflection under the force over its last 5 m, over the static deflection.
 double ratio_at(double speed, int bays) {
   const Track track = bed(bays);
   const double dt = .1 / speed / 3., way = track.length() - 20.;
@@ -64,7 +64,8 @@ double ratio_at(double speed, int bays) {
 
 }  // namespace
 
-TEST_CASE("deflections below critical speed have their ratios to the static one", "[load]") {
+TEST_CASE("deflections below the critical speed have the reference's ratios to the static one",
+          "[load]") {
   const double critical = 754.04;  // m/s, R9
   const double ratios[][2] = {{.25, 1.0329}, {.5, 1.1553}, {.75, 1.5138}, {.9, 2.2986}};
   for (const auto& [part, want] : ratios) {
@@ -77,8 +78,7 @@ TEST_CASE("deflections below critical speed have their ratios to the static one"
 
 namespace {
 
-/// The wave that goes at the least speed: m/s, 1/s, d2(omega)/dk2 in m2/s, and what of a force
-/// moves it.
+/// The wave of least speed: m/s, 1/s, d2(omega)/dk2 in m2/s, and its share of a force.
 struct CriticalWave {
   double speed, frequency, alpha, share;
 };
@@ -96,9 +96,9 @@ struct Bed {
         damping(t.support.damping[2] / t.bay_length) {}
 
   struct Wave {
-    double square[2], share[2];  // of both branches: omega^2, and what of a force moves it over m
+    double square[2], share[2];  // for both branches: omega^2, and the share of a force over m
   };
-  /// Of wave number k: m w'' + (S k^2 + stiffness) w + S k a = f, r a'' + (B k^2 + S) a + S k w =
+  /// For wave number k: m w'' + (S k^2 + stiffness) w + S k a = f, r a'' + (B k^2 + S) a + S k w =
   /// 0.
   Wave wave(double k) const {
     const double A = (shear * k * k + stiffness) / mass, D = (bending * k * k + shear) / rotary;
@@ -109,7 +109,7 @@ struct Bed {
     return {{low, high}, {1. / (1. + turn), turn / (1. + turn)}};
   }
   double frequency(double k) const { return std::sqrt(wave(k).square[0]); }
-  /// Where omega / k is least, by thirds; its waves carry energy at that speed.
+  /// Wave of least omega / k, found by thirds; its waves carry energy at that speed.
   CriticalWave critical() const {
     double low = .1, high = 10.;
     while (high - low > 1e-7) {
@@ -122,8 +122,8 @@ struct Bed {
     const double k = .5 * (low + high), h = 1e-3, w = frequency(k);
     return {w / k, w, (frequency(k + h) - 2. * w + frequency(k - h)) / (h * h), wave(k).share[0]};
   }
-  /// Deflection under a force that appears at x0 at t = 0 and runs along a beam on pinned ends:
-  /// each of its sines in closed form.
+  /// Deflection under a force that appears at x0 at t = 0 and runs along a beam on pinned ends,
+  /// from the closed form of each of its sines.
   double under(double force, double speed, double x0, double time, double length) const {
     double sum = 0.;
     for (int n = 1; n < 2000; ++n) {
@@ -155,9 +155,9 @@ struct Bed {
 
 }  // namespace
 
-TEST_CASE("at critical speed a deflection grows with the root of time", "[load]") {
-  // No damper: around the critical wave omega - v k = alpha (k - k0)^2 / 2, and the waves that the
-  // force feeds spread by sqrt(alpha t) only, so that
+TEST_CASE("at the critical speed a deflection grows with the root of time", "[load]") {
+  // There is no damper. Around the critical wave omega - v k = alpha (k - k0)^2 / 2, and the waves
+  // that the force feeds spread only by sqrt(alpha t), so that
   //   w = F / (m omega) sqrt(t / (pi alpha)) + a constant + O(1/sqrt(t)).
   const Track track = bed(1300);
   const Bed exact(track);
@@ -170,7 +170,7 @@ TEST_CASE("at critical speed a deflection grows with the root of time", "[load]"
   const double still = force * Statics(bed(600)).flexibility(middle, middle);
   const double rate = force * at.share / (exact.mass * at.frequency * std::sqrt(M_PI * at.alpha));
   double first = 0., first_time = 0.;
-  for (int i = 1; i <= 7; ++i) {  // before the ends are heard of
+  for (int i = 1; i <= 7; ++i) {  // before reflections from the ends arrive
     run.until(.01 * i);
     const double found = run.outputs.load_deflection[0];
     const double want = exact.under(force, at.speed, from, run.time(), track.length());
@@ -183,19 +183,19 @@ TEST_CASE("at critical speed a deflection grows with the root of time", "[load]"
   const double last = run.outputs.load_deflection[0];
   const double grown = (last - first) / (std::sqrt(run.time()) - std::sqrt(first_time));
   CAPTURE(grown / rate, last / still);
-  // What is left of the series over the time, 1/(omega sqrt(t0 t1)) = 3 %.
+  // The next term of the series over the time is 1/(omega sqrt(t0 t1)) = 3 %.
   CHECK(std::abs(grown / rate - 1.) < 1. / (at.frequency * std::sqrt(first_time * run.time())));
   CHECK(last / still > 5.);
   CHECK(run.seen == Status::ok);
 }
 
 TEST_CASE("the critical speed of a bed is that of its slowest wave", "[load]") {
-  // hard-cases.md R9, printed to 6 digits
+  // hard-cases.md prints R9 to 6 digits.
   Track track = bed(10);
   CHECK(critical_speed(track).value() == Approx(754.04).epsilon(1e-5));
   track.support.stiffness[2] = 1e8 / 6.;
   CHECK(critical_speed(track).value() == Approx(1001.73).epsilon(1e-5));
-  // Pads of twice the stiffness on ballast of twice the stiffness, and sleepers without mass.
+  // Pads of twice the stiffness, ballast of twice the stiffness and sleepers without mass.
   track.support.stiffness[2] = 2e8 / 6.;
   track.sleeper = Sleeper{0., 1., {0., 0., 2e8 / 6.}, {}};
   CHECK(critical_speed(track).value() == Approx(1001.73).epsilon(1e-5));
@@ -205,7 +205,7 @@ TEST_CASE("the critical speed of a bed is that of its slowest wave", "[load]") {
 
 namespace {
 
-/// The same bed with sleepers of half a mass of 25 kg each .1 m on ballast of 1/6 of 1e8 N/m each.
+/// The same bed with half sleepers of 25 kg each .1 m, each on ballast of 1/6 of 1e8 N/m.
 Track on_sleepers(int bays, double pad, double damping) {
   Track track = bed(bays);
   track.support.stiffness[2] = pad;
@@ -215,7 +215,7 @@ Track on_sleepers(int bays, double pad, double damping) {
   return track;
 }
 
-/// Deflection under a force that has always run along the rail, smeared: every wave number's.
+/// Deflection under a force that has always run, on a smeared bed: over all wave numbers.
 double steady_on_sleepers(const Track& track, double force, double speed) {
   const Bed rail(track);
   const double l = track.bay_length, mass = .5 * track.sleeper->mass / l;
@@ -236,8 +236,8 @@ double steady_on_sleepers(const Track& track, double force, double speed) {
 
 }  // namespace
 
-TEST_CASE("on sleepers a force is at critical speed where its deflection is largest", "[load]") {
-  // Pads of 5e6 N/m: the lower branch has no least omega / k. Of 1e9: it has one.
+TEST_CASE("on sleepers the deflection is largest at the critical speed", "[load]") {
+  // With pads of 5e6 N/m the lower branch has no least omega / k, with 1e9 it has one.
   for (const double pad : {5e6, 1e9}) {
     const Track track = on_sleepers(10, pad, 30.);
     const double critical = critical_speed(track).value();
@@ -248,17 +248,17 @@ TEST_CASE("on sleepers a force is at critical speed where its deflection is larg
       most = std::max(most, found);
     }
     CAPTURE(pad, critical, at);
-    CHECK(std::abs(at - 1.) < .015);  // a step of the scan; dampers draw it down by less
+    CHECK(std::abs(at - 1.) < .015);  // a step of the scan; dampers lower it by less
     CHECK(most > 2. * std::abs(steady_on_sleepers(track, 1., .1 * critical)));
   }
-  // What sleepers that move with the rail would have, 329 m/s, is far below.
+  // Sleepers that move with the rail would give 329 m/s, far below.
   CHECK(critical_speed(on_sleepers(10, 5e6, 0.)).value() == Approx(786.).epsilon(1e-3));
 }
 
 TEST_CASE("deflections on sleepers are those of the smeared bed", "[load]") {
   const Track track = on_sleepers(1000, 5e6, 1e3);
   const double critical = critical_speed(track).value(), still = steady_on_sleepers(track, 1., 1.);
-  for (const double part : {.42, .9}) {  // .42: where sleepers that move with the rail would be
+  for (const double part : {.42, .9}) {  // at .42 sleepers would move with the rail
     const double speed = part * critical, dt = .1 / speed / 3.;
     ModelRun run(track,
                  {.loads = {{.start = 10.05,
@@ -280,19 +280,19 @@ TEST_CASE("deflections on sleepers are those of the smeared bed", "[load]") {
   }
 }
 
-TEST_CASE("no critical speed where the axial force would buckle the rail", "[load]") {
+TEST_CASE("a rail whose axial force would buckle it has no critical speed", "[load]") {
   Track track = bed(10);
   const Bed rail(track);
-  const double buckles = 2. * std::sqrt(rail.stiffness * rail.bending);  // Euler-Bernoulli's
+  const double buckles = 2. * std::sqrt(rail.stiffness * rail.bending);  // by Euler and Bernoulli
   track.axial_force = -.5 * buckles;
   CHECK(critical_speed(track).value() < 754.);
   track.axial_force = -1.1 * buckles;
   CHECK_FALSE(critical_speed(track));
 }
 
-TEST_CASE("dampers hold the deflection at critical speed", "[load]") {
-  // Of a bed with damping c a length: F / (2 m omega sqrt(alpha delta)), delta = c / 2m, to the
-  // first order of delta / omega. The force has run for 8 time constants.
+TEST_CASE("dampers limit the deflection at the critical speed", "[load]") {
+  // On a bed with damping c per length it is F / (2 m omega sqrt(alpha delta)), delta = c / 2m, to
+  // the first order of delta / omega. The force has run for 8 time constants.
   Track track = bed(1300);
   track.support.damping = {0., 0., 1e3};
   const Bed exact(track);

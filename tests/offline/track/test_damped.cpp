@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Set S1 on a few bays, vertical, one rail.
+/// A few bays of set S1: vertical, one rail.
 Track sleepers(int bays) {
   Track t;
   t.section = section_f();
@@ -32,7 +32,7 @@ Track sleepers(int bays) {
   return t;
 }
 
-/// All swinging rates by a dense solution over all undamped modes, lowest first.
+/// All oscillating rates from a dense solution over all undamped modes, lowest first.
 std::vector<std::complex<double>> dense_rates(const Line& line) {
   const Modes all = modes(line);
   const Eigen::Index n = all.frequency.size();
@@ -48,7 +48,7 @@ std::vector<std::complex<double>> dense_rates(const Line& line) {
   return found;
 }
 
-/// Compares the lowest `count` swinging modes of every damped line with the dense ones.
+/// Compares the lowest `count` oscillating modes of every damped line with the dense ones.
 void check_against_dense(const Track& track, int count, double tolerance) {
   for (const Line& line : assemble(track)) {
     if (line.damping.norm() == 0.) continue;
@@ -67,8 +67,9 @@ void check_against_dense(const Track& track, int count, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("Rayleigh damping leaves frequencies and gives each mode its ratio", "[damped]") {
-  // C = a M + b K: |rate| = w and zeta = a/(2 w) + b w/2 for every mode.
+TEST_CASE("Rayleigh damping keeps the frequencies and gives each mode its damping ratio",
+          "[damped]") {
+  // With C = a M + b K every mode has |rate| = w and zeta = a/(2 w) + b w/2.
   Track track = sleepers(8);
   Line line = assemble(track)[0];
   const double a = 60., b = 2e-5;
@@ -79,15 +80,15 @@ TEST_CASE("Rayleigh damping leaves frequencies and gives each mode its ratio", "
   REQUIRE(found.rate.size() == 20);
   for (Eigen::Index i = 0; i < 20; ++i) {
     const double w = 2. * kPi * undamped.frequency[i], size = std::abs(found.rate[i]);
-    // Dense modes carry eps of the highest square (1e5 Hz)^2: 1e-16 (1e5/60)^2 = 3e-10.
+    // Dense modes carry eps of the highest square, (1e5 Hz)^2: 1e-16 (1e5/60)^2 = 3e-10.
     CHECK_THAT(size, WithinRel(w, 1e-9));
     CHECK_THAT(-found.rate[i].real() / size, WithinRel(a / (2. * w) + b * w / 2., 1e-9));
     CHECK(residual(line, found.rate[i], found.shape.col(i)) < 1e-10);
   }
 }
 
-TEST_CASE("sleepers alone on their ballast swing as one mass each", "[damped]") {
-  // Nothing couples them to the rail: w^2 = k/m, zeta = c/(2 sqrt(k m)) with half of a sleeper.
+TEST_CASE("sleepers alone on their ballast each oscillate as one mass", "[damped]") {
+  // They are not coupled to the rail: w^2 = k/m, zeta = c/(2 sqrt(k m)) with half of a sleeper.
   Track track = sleepers(2);
   track.support = {};
   const double m = 150., k = 50e6, c = 80e3;
@@ -98,16 +99,16 @@ TEST_CASE("sleepers alone on their ballast swing as one mass each", "[damped]") 
     CHECK_THAT(found.frequency[i], WithinRel(std::sqrt(k / m) / (2. * kPi), 1e-13));
     CHECK_THAT(found.damping_ratio[i], WithinRel(c / (2. * std::sqrt(k * m)), 1e-13));
   }
-  // Over critical damping they do not swing: the rail's first bending mode follows its rigid ones.
+  // Above critical damping they do not oscillate: the rail's first bending mode is the next one.
   track.sleeper->ballast_damping[2] = 1.01 * 2. * std::sqrt(k * m);
   const NaturalModes over = natural_modes(track, 3);
   CHECK(over.frequency[2] > 500.);
   CHECK(over.damping_ratio[2] == 0.);
 }
 
-TEST_CASE("the lowest damped modes are those of a dense solution", "[damped]") {
+TEST_CASE("the lowest damped modes agree with those of a dense solution", "[damped]") {
   // The dense rates err by eps of the largest: 1e-16 (2 pi 40 kHz or c/m = 1e7 1/s) over 5e2 1/s,
-  // times the condition of clustered modes, some 1e2: 1e-9 to 1e-8.
+  // times the condition of clustered modes, some 1e2. This is 1e-9 to 1e-8.
   check_against_dense(sleepers(12), 30, 1e-8);
   check_against_dense(paper_track(), 20, 1e-8);  // dampers of 29e6 N s/m
   Track two = sleepers(6);
@@ -141,7 +142,7 @@ TEST_CASE("sleepers without mass put pad and ballast in series", "[modes]") {
   REQUIRE(a.frequency.size() == 15);
   for (std::size_t i = 0; i < 15; ++i)
     CHECK_THAT(a.frequency[i], WithinRel(b.frequency[i], 1e-10));  // rounding of K, 1e-16 1e5
-  // hard-cases.md, H9: as a sleeper of 1e-6 kg, at 1e-6; with dampers too.
+  // H9 of hard-cases.md: they act as sleepers of 1e-6 kg to 1e-6, with dampers too.
   massless.support.damping = {0., 0., 20e3};
   massless.sleeper->ballast_damping = {0., 0., 80e3};
   Track light = massless;
@@ -154,7 +155,7 @@ TEST_CASE("sleepers without mass put pad and ballast in series", "[modes]") {
   }
 }
 
-TEST_CASE("the lowest modes of a long free rail are all there", "[modes]") {
+TEST_CASE("the lowest modes of a long free rail are complete", "[modes]") {
   Track track = sleepers(30);
   track.unknowns = Unknowns::full;
   track.sleeper.reset();

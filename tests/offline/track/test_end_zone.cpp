@@ -1,4 +1,4 @@
-// Ends that send nothing back: their reflection, and a short track that answers as an endless one.
+// Non-reflecting ends: their reflection, and a short track that responds as an endless one.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
@@ -46,11 +46,11 @@ Reflection reflection(const Track& track, double hz, int direction = 2) {
 
 }  // namespace
 
-TEST_CASE("an end's zone sends back what exact beams say", "[ends]") {
-  // The same zones, seats and waves with exact Timoshenko beams in place of elements, from a
-  // program of its own: S1, four steps of damping a bay. Four elements per bay leave 2e-4 of a
-  // receptance below 800 Hz and 3e-3 near the pinned-pinned 1067 Hz (docs/receptance.md); what is
-  // small to begin with is a difference of waves, hence 1e-4 beside 2 %.
+TEST_CASE("an end's zone reflects as much as exact beams say", "[ends]") {
+  // The zones, seats and waves are the same, but another program has exact Timoshenko beams in
+  // place of elements: S1, four steps of damping per bay. Four elements per bay leave 2e-4 of a
+  // receptance below 800 Hz and 3e-3 near the pinned-pinned 1067 Hz (docs/receptance.md). A small
+  // reflection is a difference of waves, so 1e-4 is added to 2 %.
   struct Row {
     int zone;
     double back[6];
@@ -67,11 +67,11 @@ TEST_CASE("an end's zone sends back what exact beams say", "[ends]") {
     }
 }
 
-TEST_CASE("what comes back is what a receptance near the end has too much", "[ends]") {
-  // Of a wave r comes back: at a seat n bays before the zone the receptance exceeds that of the
-  // endless track by r H(2n), H what the endless track has 2n bays from the force. Independent:
-  // exact beams without end for both. 5 %: what is left of the other wave after eight bays, and of
-  // 3e-5 by the mesh of the difference.
+TEST_CASE("the reflection explains the error of a receptance near the end", "[ends]") {
+  // A part r of a wave comes back. So at a seat n bays before the zone the receptance exceeds that
+  // of the endless track by r H(2n), where H is that of the endless track 2n bays from the force.
+  // Exact endless beams give both independently. 5 % covers the other wave, which is left after
+  // eight bays, and 3e-5 of the difference by the mesh.
   const int zone = 4, n = 8, bays = 60;
   Track track = s1(bays, {RailEnd::free, RailEnd::non_reflecting}, zone);
   track.elements_per_bay = 8;
@@ -87,8 +87,8 @@ TEST_CASE("what comes back is what a receptance near the end has too much", "[en
   }
 }
 
-TEST_CASE("40 bays between open ends have S1's receptance, with plain ends they do not", "[ends]") {
-  // rail-data.md, section 3; 2 % to 900 Hz as it says of other models.
+TEST_CASE("40 bays have S1's receptance with open ends, but not with plain ends", "[ends]") {
+  // rail-data.md, section 3, which states 2 % up to 900 Hz for other models.
   struct Row {
     double hz, mid, over;
   };
@@ -109,9 +109,9 @@ TEST_CASE("40 bays between open ends have S1's receptance, with plain ends they 
   CHECK(worst_plain > .1);
 }
 
-TEST_CASE("the check of the ends sees what a zone leaves", "[ends]") {
-  // Against the endless beam the effect is half to six times the error (end_effect.h), where the
-  // error is more than the mesh's 3e-3.
+TEST_CASE("the check of the ends sees the reflection of a zone", "[ends]") {
+  // Relative to the endless beam, the effect is half to six times the error (end_effect.h), where
+  // the error is more than the mesh's 3e-3.
   const Track track = s1(24, kOpen, 8);
   const Transfer transfer = between(7.5, 7.5);
   FullOrderReceptance receptance(track, transfer);
@@ -131,7 +131,7 @@ TEST_CASE("the check of the ends sees what a zone leaves", "[ends]") {
     CHECK(effect[i] < 6. * error);
   }
   CHECK(seen >= 2);
-  // A change of seats and a sleeper's place move along with the longer track.
+  // A change of seats and a sensor on a sleeper move along with the longer track.
   Track soft = track;
   soft.changed_seats[0] = soft.seat(0);
   soft.changed_seats[0].pad[0].stiffness[2] = 1e8;
@@ -143,28 +143,28 @@ TEST_CASE("the check of the ends sees what a zone leaves", "[ends]") {
   CHECK(longer.track.seat(25).pad[0].stiffness[2] == 200e6);
 }
 
-TEST_CASE("a zone takes momentum, and leaves statics as they are", "[ends]") {
+TEST_CASE("a zone takes momentum and leaves the statics unchanged", "[ends]") {
   const Track open = s1(40, kOpen, 16), plain = s1(40, {}, 16);
   const Line a = assemble(open)[0], b = assemble(plain)[0];
   CHECK((a.stiffness - b.stiffness).norm() == 0.);
   CHECK((a.mass - b.mass).norm() == 0.);
   CHECK((a.damping - a.end_damping - b.damping).norm() < 1e-12 * b.damping.norm());
   CHECK(b.end_damping.norm() == 0.);
-  // Force of the whole zone on a rail that moves as one: rho A int r dx = rho A P v.
+  // Force of the whole zone on a rail that moves as one body: rho A int r dx = rho A P v.
   const double v = std::sqrt(.4 * open.material.shear_modulus() / 7850.);
   Eigen::VectorXd up = Eigen::VectorXd::Zero(a.unknowns());
   for (const auto& node : a.unknown_of[0]) up[node[2]] = 1.;
   const double taken = up.dot(a.end_damping * up);
-  // Midpoint rule over 64 elements of a cube: (1/64)^2/4 x 6/... = 1.2e-4 of it.
+  // The midpoint rule over 64 elements errs for a cube by (1/64)^2/4 x 6/... = 1.2e-4.
   CHECK_THAT(taken, WithinRel(2. * 7850. * 7670e-6 * 1.5 * v, 2e-4));
   CHECK(end_damping_rate(open, 0, 64) == 0.);
   CHECK(end_damping_rate(open, 0, 0) == end_damping_rate(open, 0, 159));
   CHECK_THROWS_AS(assemble(s1(31, kOpen, 16)), std::invalid_argument);
 }
 
-TEST_CASE("lateral waves do not come back either", "[ends]") {
-  // Two rails in space on pads at the foot; their bending and torsion are coupled. Frequencies to
-  // which the beam is good sideways (300 Hz), and the vertical ones.
+TEST_CASE("open ends do not reflect lateral waves either", "[ends]") {
+  // Two rails in space have pads at the foot and coupled bending and torsion. Frequencies go up to
+  // the beam's sideways limit (300 Hz); the vertical ones follow.
   Track track;
   track.section = section_f();
   track.unknowns = GENERATE(Unknowns::full, Unknowns::rigid_section);
@@ -193,11 +193,11 @@ TEST_CASE("lateral waves do not come back either", "[ends]") {
   for (const double hz : {50., 200., 400., 600., 800.}) CHECK(reflection(track, hz, 2).back < .02);
 }
 
-TEST_CASE("a run counts what the zones take", "[ends]") {
-  // Full order: the balance of energy is missed by the scheme's own loss alone, of which it has a
-  // closed form; 1e-12 is rounding of sums over 300 steps. Condensed: the dampers' work by the
-  // trapezoidal rule, an error of the second order in a step that is a quarter as long; less than a
-  // half allows for the start, which is no smooth motion.
+TEST_CASE("a run counts the energy that the zones take", "[ends]") {
+  // In full order the balance errs only by the scheme's loss, which has a closed form; 1e-12 is
+  // rounding of sums over 300 steps. Condensed, the trapezoidal rule for the dampers' work errs by
+  // second order in a step that is a quarter as long. Less than a half allows for the start, whose
+  // motion is not smooth.
   const auto told = [](const std::string& words) {
     const Ran ran =
         railstep_program("run " RAILSTEP_SOURCE
@@ -220,7 +220,7 @@ TEST_CASE("a run counts what the zones take", "[ends]") {
   CHECK(fine < 1e-3);
 }
 
-TEST_CASE("a scene's open ends are checked", "[ends]") {
+TEST_CASE("the open ends of a scene are checked", "[ends]") {
   const std::string s1_file = std::string(RAILSTEP_SOURCE) +
                               "/config/scenes/receptance_s1.toml --set track.bays=40 "
                               "--set 'sensor[0].position_m=12.3' --set 'sensor[1].position_m=12' "

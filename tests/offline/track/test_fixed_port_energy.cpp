@@ -1,4 +1,4 @@
-// What does not pull, struck: against two masses by Runge and Kutta, and by its energy.
+// Impacts on one-sided supports: against two masses by Runge and Kutta, and by their energy.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -15,10 +15,10 @@ using namespace railstep;
 namespace {
 
 /// A rail that moves as one mass of 150 kg, with two half sleepers hung on its ends and ballast
-/// under each, falling by its weight; and the same two masses by Runge and Kutta.
+/// under each, falls by its weight; Runge and Kutta solve the same two masses.
 struct Bounce {
   static constexpr double kPad = 2e8, kPadDamper = 2e4, kBed = 5e7, kGap = 1e-3;
-  static constexpr double kRail = 150., kSleepers = 300.;  // kg: of the rail, of both halves
+  static constexpr double kRail = 150., kSleepers = 300.;  // kg: rail, both halves
   double bed_damper = 0.;
 
   Track track() const {
@@ -34,7 +34,7 @@ struct Bounce {
     t.sleeper->ballast_gap = kGap;
     return t;
   }
-  /// Heights of rail and sleepers, each step of dt.
+  /// Heights of rail and sleepers after each step dt.
   std::vector<std::array<double, 2>> reference(double dt, int steps, int parts) const {
     using S = std::array<double, 4>;  // rail, sleepers, their velocities
     const auto rate = [&](const S& s) {
@@ -65,10 +65,10 @@ struct Bounce {
 }  // namespace
 
 TEST_CASE("sleepers that fall on their ballast bounce as two masses do", "[ports]") {
-  // 1 mm of fall, 0.14 m/s, then bounces on a spring of 53 Hz. Generalised-alpha is of second
-  // order, but a step in which a port closes is of the first in what it misses of an impact: 1e-2
-  // of the depth at 0.1 ms, a hundredth of the contact's length, and it falls at least by half with
-  // half the step.
+  // The sleepers fall by 1 mm to 0.14 m/s, then bounce on a spring of 53 Hz. Generalised-alpha is
+  // of second order, but in a step where a port closes its error of the impact is of first order:
+  // 1e-2 of the depth at 0.1 ms, a hundredth of the contact's length. It falls at least by half
+  // with half the step.
   for (const double damper : {0., 8e4}) {
     Bounce bounce{damper};
     std::vector<double> errors;
@@ -102,10 +102,10 @@ TEST_CASE("sleepers that fall on their ballast bounce as two masses do", "[ports
   }
 }
 
-TEST_CASE("one-sided supports make no energy", "[ports]") {
-  // Undamped bounces of a 53 Hz spring, 190 steps a half wave: hard-cases.md has generalised-alpha
-  // at 1.0000 of the rebound speed from 27 steps a contact on, so 1e-4 of the energy; a damped bed
-  // only takes.
+TEST_CASE("one-sided supports add no energy", "[ports]") {
+  // Undamped bounces on a 53 Hz spring have 190 steps per half wave. hard-cases.md has a rebound
+  // speed of 1.0000 for generalised-alpha from 27 steps per contact on, so 1e-4 of the energy; a
+  // damped bed only takes energy.
   for (const double damper : {0., 8e4}) {
     Bounce bounce{damper};
     PackOptions options = full_order(5e-5);
@@ -145,14 +145,14 @@ TEST_CASE("the energy of a load that runs over a hanging sleeper balances", "[po
     }
     CAPTURE(condensed_too, errors);
     CHECK(errors[1] < 1e-3);
-    CHECK(errors[2] < .6 * errors[1]);  // the first order at least
+    CHECK(errors[2] < .6 * errors[1]);  // at least first order
     CHECK(errors[1] < .6 * errors[0]);
   }
 }
 
-TEST_CASE("a rail thrown against a stop", "[ports]") {
-  // Lateral and vertical motion of a rail with a stop at its head: the step's forces balance, the
-  // stop only pushes, and nothing gains energy.
+TEST_CASE("a rail thrown against a stop rebounds without gaining energy", "[ports]") {
+  // The rail moves laterally and vertically, with a stop at its head. The forces of a step balance,
+  // the stop only pushes and the energy does not grow.
   Track t = s1_track(4, 2);
   t.rails = 1;
   t.sleeper.reset();
@@ -169,7 +169,7 @@ TEST_CASE("a rail thrown against a stop", "[ports]") {
   ModelRun run(t, passing(1.2, 0., -1e3, 2.), {.scheme = generalised_alpha(2e-5, 1.)});
   for (std::int32_t l = 0; l < run.model().lines; ++l) {
     const LineModel& line = run.model().line[l];
-    for (int node = 0; node < run.model().elements * 3; ++node)  // of each element in turn
+    for (int node = 0; node < run.model().elements * 3; ++node)  // nodes of each element
       if (const auto y = line.unknown_of[0][9 * node + 1]; y >= 0) run.state.v[line.first + y] = .5;
   }
   EnergyAccount energy(*run.packed, run.model(), run.state);

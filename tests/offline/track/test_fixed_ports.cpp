@@ -1,4 +1,4 @@
-// Steps of a track with what does not pull: against statics, springs and other ways.
+// Steps of a track with one-sided supports: against statics, springs and other solutions.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -46,9 +46,9 @@ double difference(const std::vector<double>& a, const std::vector<double>& b, st
 
 }  // namespace
 
-TEST_CASE("a gap that never closes is a missing support under a running load", "[ports]") {
-  // R6: 50 kN at 30 m/s, dampers of 3e4 N s/m: 8.824e-4 m at most (2e-4, and (0.2/20)^2 of the
-  // step, as tests/offline/track/test_seats has the seat without a spring).
+TEST_CASE("a gap that never closes acts as a missing support under a running load", "[ports]") {
+  // R6: 50 kN at 30 m/s with dampers of 3e4 N s/m reach 8.824e-4 m (2e-4, and (0.2/20)^2 for the
+  // step, as for the seat without a spring in tests/offline/track/test_seats).
   ModelRun run = in_equilibrium(with_gap(r6_track(3e4), 20, 2e-3), passing(6., 30., -50e3, 20.),
                                 full_order(2e-4));
   double most = 0.;
@@ -61,9 +61,9 @@ TEST_CASE("a gap that never closes is a missing support under a running load", "
   CHECK_THAT(most, WithinRel(8.824e-4, 1e-3));
 }
 
-TEST_CASE("a load that runs over a gap which closes", "[ports]") {
-  // Against a mesh four and a step eight times finer. Its own error is a sixteenth of what is
-  // between them by the step, and H7's bound is 1e-3.
+TEST_CASE("a load that runs over a gap closes it and opens it again", "[ports]") {
+  // The reference has a mesh four times and a step eight times finer. By the step it errs by a
+  // sixteenth of the difference; H7's bound is 1e-3.
   const auto run_over = [](int elements, double dt, std::vector<double>& forces) {
     Track t = with_gap(r6_track(3e4), 20, .5e-3);
     t.elements_per_bay = elements;
@@ -80,17 +80,17 @@ TEST_CASE("a load that runs over a gap which closes", "[ports]") {
   std::vector<double> forces, fine_forces;
   const std::vector<double> z = run_over(2, 2e-4, forces), fine = run_over(8, 2.5e-5, fine_forces);
   CHECK(difference(z, fine, 8) < 1e-3);
-  // The load stands over the seat at .1 s; 30 m/s is a twenty-fifth of the critical speed (R9).
+  // The load is over the seat at .1 s; 30 m/s is a twenty-fifth of the critical speed (R9).
   CHECK(peak(forces) > 7e3);
   CHECK(forces.front() == 0.);
   CHECK(forces.back() == 0.);
   CHECK(difference(forces, fine_forces, 8) < 2e-2);
 }
 
-TEST_CASE("a support that presses all the time is a spring", "[ports]") {
-  // Weight keeps all ballast closed by more than the first micrometre, over which a port's damper
-  // sets in. Then ports are exact: what is left is the ports' residual of 1e-12 a step and rounding
-  // of K (condition 1e8).
+TEST_CASE("a support that presses all the time acts as a spring", "[ports]") {
+  // Weight closes all ballast by more than the first micrometre, over which a port's damper starts
+  // to act. Then ports are exact but for the ports' residual of 1e-12 per step and rounding of K
+  // (condition 1e8).
   Track springs = s1_rail(16), ports = springs;
   ports.sleeper->ballast_unilateral = true;
   PackOptions options = full_order(2e-4);
@@ -110,10 +110,10 @@ TEST_CASE("a support that presses all the time is a spring", "[ports]") {
   REQUIRE(least > 1e-6 * 50e6);
   CHECK(b.seen == Status::ok);
   CHECK(difference(v, u, 1) < 1e-8);
-  CHECK(b.outputs.iterations <= 1);  // the last step's active set is this one's
+  CHECK(b.outputs.iterations <= 1);  // the last step's active set is right again
 }
 
-TEST_CASE("mirror halves and both rails in one step over a hanging sleeper alike", "[ports]") {
+TEST_CASE("mirror coordinates and one line step over a hanging sleeper alike", "[ports]") {
   for (const bool condensed_too : {false, true}) {
     Track mirrored = with_gap(s1_track(8, 2), 4, .3e-3);
     Track general = mirrored;
@@ -138,7 +138,7 @@ TEST_CASE("mirror halves and both rails in one step over a hanging sleeper alike
   }
 }
 
-TEST_CASE("a condensed track with gaps comes to full order", "[ports]") {
+TEST_CASE("a condensed track with gaps converges to full order", "[ports]") {
   const Track track = with_gap(with_gap(s1_rail(24), 12, .4e-3), 13, .2e-3);
   const Traffic traffic = passing(5., 30., -80e3, 12.);
   const auto run = [&](const PackOptions& options, std::vector<double>& forces) {
@@ -157,29 +157,29 @@ TEST_CASE("a condensed track with gaps comes to full order", "[ports]") {
   const std::vector<double> z = run(condensed(track, 2., 1e-4), force);
   const double error = difference(z, want, 2), coarse_error = difference(coarse, want, 8);
   CAPTURE(error, coarse_error, difference(force, want_force, 2), peak(want_force));
-  // Modes at 2 per bay with residual flexibility reach 3.6e-4 (design), forces held over the step
-  // are of first order in it for theta above 1/2.
+  // 2 modes per bay with residual flexibility reach 3.6e-4 (design). Forces held over the step make
+  // it of first order for theta above 1/2.
   CHECK(peak(want_force) > 5e3);
   CHECK(error < 1e-3);
   CHECK(error < .5 * coarse_error);
 }
 
-TEST_CASE("the condensed start has the ports' own statics", "[ports]") {
+TEST_CASE("a condensed start has the statics of the ports", "[ports]") {
   const Track track = with_gap(s1_rail(24), 12, .4e-3);
   const Traffic traffic = passing(7.2, 0., -100e3, 20.);
   const Statics statics(track);
   const auto u = statics.solve({{at(7.2), -100e3}});
   ModelRun run = in_equilibrium(track, traffic, condensed(track, .5, 1e-3));
-  // The port's static shape is in the basis: whatever else it lacks, row u is that of the track.
+  // The basis has the port's static shape, so row u is the track's even without other shapes.
   const double want = statics.port_forces(u).at(0);
   REQUIRE(want > 10e3);
   CHECK_THAT(run.state.port_force[0], WithinRel(want, 1e-7));
   run.until(.05);
-  CHECK_THAT(run.state.port_force[0], WithinRel(want, 1e-7));  // and it stays
+  CHECK_THAT(run.state.port_force[0], WithinRel(want, 1e-7));  // it stays
   CHECK_THAT(run.outputs.load_deflection[0], WithinRel(statics.at(u, at(7.2)), 1e-3));
 }
 
-TEST_CASE("a wheelset over a hanging sleeper", "[ports]") {
+TEST_CASE("a wheelset over a hanging sleeper stands in equilibrium and rolls slowly", "[ports]") {
   Wheelset w;
   w.mass = 1200.;
   w.inertia_roll = w.inertia_yaw = 700.;
@@ -192,7 +192,7 @@ TEST_CASE("a wheelset over a hanging sleeper", "[ports]") {
     const PackOptions options = condensed_too ? condensed(track, 2., 1e-4) : full_order(1e-4);
     ModelRun run = in_equilibrium(track, standing, options);
     REQUIRE(run.model().fixed.count == 2);
-    // A condensed force acts on the axis (its squeeze of the section is residual).
+    // A condensed force acts on the axis (the residual holds its squeeze of the section).
     const double z = condensed_too ? 0. : .091;
     const Statics statics(track);
     const auto u = statics.solve({{{0, 2.4, 0., z, 2}, -80e3}, {{1, 2.4, 0., z, 2}, -80e3}});
@@ -201,17 +201,17 @@ TEST_CASE("a wheelset over a hanging sleeper", "[ports]") {
     REQUIRE(want > 1e4);
     CHECK_THAT(start, WithinRel(want, 1e-4));  // a condensed force acts on the axis
     run.until(.02);
-    // It stands. On condensed lines the wheel finds its contact beside the node, where the slopes
-    // of the elements make a V; a load that moves by s shifts s/bay of itself from seat to seat.
+    // It stands. On condensed lines the wheel locates its contact beside the node, where the slopes
+    // of the elements make a V. A load that moves by s shifts s/bay of it from seat to seat.
     const double shift = std::abs(run.outputs.wheel_x[0] - 2.4);
-    CHECK(shift < 1e-4);  // the V's slopes of 1e-4, half a metre below the axle
+    CHECK(shift < 1e-4);  // the V has slopes of 1e-4, half a metre below the axle
     const double moved = 80e3 * (shift / track.bay_length + 1e-10);
     CHECK_THAT(run.outputs.wheel_force[0], WithinAbs(80e3, moved));
     CHECK_THAT(run.state.port_force[0], WithinAbs(start, moved));
     CHECK(run.seen == Status::ok);
   }
-  // Rolling over it slowly is a row of equilibria: 0.5 m/s moves by 25 um in a period of the 400 Hz
-  // in which wheel, rail and sleepers swing.
+  // Slow rolling is a row of equilibria: at 0.5 m/s it moves by 25 um in a period of the 400 Hz at
+  // which wheel, rail and sleepers oscillate.
   w.start = 2.35;
   w.speed = .5;
   ModelRun run =
@@ -222,7 +222,7 @@ TEST_CASE("a wheelset over a hanging sleeper", "[ports]") {
   CHECK_THAT(run.state.port_force[1], WithinRel(statics.port_forces(u).at(1), 1e-2));
 }
 
-TEST_CASE("32 ports of a track keep within the iterations' cap", "[ports]") {
+TEST_CASE("32 ports of a track need no more iterations than the cap", "[ports]") {
   Track t = s1_rail(31);
   t.sleeper->ballast_unilateral = true;
   t.sleeper->ballast_gap = 0.;
@@ -245,7 +245,7 @@ TEST_CASE("32 ports of a track keep within the iterations' cap", "[ports]") {
                     Catch::Contains("33") && Catch::Contains("32"));
 }
 
-TEST_CASE("ports that make no sense leave a status and a finite state", "[ports]") {
+TEST_CASE("ports with bad numbers leave a status and a finite state", "[ports]") {
   ModelRun run =
       in_equilibrium(with_gap(s1_rail(8), 4, .1e-3), passing(2.4, 0., -80e3, 4.), full_order(2e-4));
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -254,14 +254,14 @@ TEST_CASE("ports that make no sense leave a status and a finite state", "[ports]
   Outputs outputs{};
   CHECK(has(advance_frame(broken, run.state, run.workspace, outputs), Status::contact_ill_posed));
   CHECK(outputs.first_bad_unknown == -1);
-  // And the next whole step recovers.
+  // The next whole step recovers.
   run.seen = Status::ok;
   run.until(.02);
   CHECK(run.seen == Status::ok);
   CHECK(run.state.port_force[0] > 0.);
 }
 
-TEST_CASE("a snapshot of open and closed ports goes on with the same bits", "[ports]") {
+TEST_CASE("a snapshot of open and closed ports continues with the same bits", "[ports]") {
   const Track track = with_gap(s1_rail(16), 8, .4e-3);
   const Traffic traffic = passing(2.4, 30., -80e3, 8.);
   for (const bool condensed_too : {false, true}) {
@@ -303,9 +303,9 @@ TEST_CASE("a model with fixed ports is written and read to the same bits", "[por
   }
 }
 
-TEST_CASE("a pad that does not pull under an end that is held bears nothing", "[ports]") {
-  // On what is held it has no compliance at all, which a block has to carry. The other pads see the
-  // same track either way: the same sums but for zeros.
+TEST_CASE("a one-sided pad under a held end bears nothing", "[ports]") {
+  // On an end that is held the port has zero compliance, which a block must carry. The other pads
+  // see the same track either way: the sums differ only by zeros.
   for (const std::string kind : {"full", "modal"}) {
     const auto deflection = [&](const std::vector<std::string>& more) {
       std::vector<std::string> changes = {"track.bays=4",
@@ -323,6 +323,6 @@ TEST_CASE("a pad that does not pull under an end that is held bears nothing", "[
     const auto without = deflection({"support_change=[{seats=[0, 4], missing=\"pad\"}]"});
     REQUIRE(held.size() == without.size());
     for (std::size_t i = 0; i < held.size(); ++i)
-      CHECK_THAT(held[i], WithinAbs(without[i], 1e-12 * 1e-3));  // of a deflection of 1 mm
+      CHECK_THAT(held[i], WithinAbs(without[i], 1e-12 * 1e-3));  // deflection: 1 mm
   }
 }

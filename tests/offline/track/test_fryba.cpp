@@ -24,7 +24,7 @@ namespace {
 
 const double kPi = 3.14159265358979323846;
 
-/// A beam on two seats so stiff that they give way by 1e-6 of the beam's own deflection.
+/// A beam on two seats, so stiff that they yield by 1e-6 of the beam's deflection.
 Track beam(const BeamSection& section, double density, double length, int elements) {
   Track t;
   t.section = section;
@@ -38,7 +38,7 @@ Track beam(const BeamSection& section, double density, double length, int elemen
   return t;
 }
 
-/// The force, P down, at v from the left end, where it enters at t = 0 over the seat.
+/// A downward force P runs at v from the left end, where it enters at t = 0 over the seat.
 struct Crossing {
   Track track;
   std::unique_ptr<PackedModel> packed;
@@ -65,7 +65,7 @@ struct Crossing {
     scratch.assign(scratch.size(), std::numeric_limits<double>::quiet_NaN());
     CHECK(advance_frame(model(), state, workspace, outputs) == Status::ok);
   }
-  /// Down positive, m; the middle is a node for every mesh.
+  /// Positive down, m; the middle is a node of every mesh.
   double midspan() const {
     const LineModel& line = model().line[0];
     return -state.u[line.first + line.unknown_of[0][table_place(track.elements(), 2)]];
@@ -73,11 +73,12 @@ struct Crossing {
   double under_load() const { return -outputs.load_deflection[0]; }
 };
 
-/// w(x, t) of the pinned beam at rest before t = 0, down positive. For each n, with k = n pi/L,
-/// sin(kx) of w and cos(kx) of the section's turn psi obey
+/// w(x, t) of the pinned beam at rest before t = 0, positive down. For each n, with k = n pi/L,
+/// sin(kx) of w and cos(kx) of the section's rotation psi obey
 ///   m w'' + S k (k w - psi) = 2P/L sin(k v t),   r psi'' + EI k^2 psi + S (psi - k w) = 0
-/// with S = kappa G A, r = rho I: two branches of mass-normalised modes phi, each of which gives
-///   phi_w^2 2P/L [sin(Wt) - W/w sin(wt)]/(w^2 - W^2),  W = k v. Euler and Bernoulli: one branch.
+/// with S = kappa G A, r = rho I. Each of the two branches of mass-normalised modes phi gives
+///   phi_w^2 2P/L [sin(Wt) - W/w sin(wt)]/(w^2 - W^2),  W = k v.
+/// Euler and Bernoulli's beam has one branch.
 struct Series {
   struct Term {
     double k, load, natural, weight;  // 1/m, 1/s, 1/s, phi_w^2 1/kg m
@@ -97,7 +98,7 @@ struct Series {
         terms.push_back({k, k * speed, k * k * std::sqrt(B / m), 1. / m});
         continue;
       }
-      // lambda^2 - (a + d) lambda + a d - b^2 = 0 of the matrix scaled by the masses
+      // lambda^2 - (a + d) lambda + a d - b^2 = 0 for the matrix scaled by the masses.
       const double a = S * k * k / m, d = (S + B * k * k) / r, b2 = S * S * k * k / (m * r);
       const double high = .5 * (a + d + std::sqrt((a - d) * (a - d) + 4. * b2));
       const double low = S * k * k * B * k * k / (m * r) / high;  // a d - b^2 without cancellation
@@ -119,15 +120,15 @@ struct Series {
   }
 };
 
-/// rail-data.md: L 25 m, EI 1.68e10 N m2, 12 t/m, 200 kN. A = 1e4 m2 leaves Euler and Bernoulli's
-/// beam: shear adds EI (pi/L)^2/(k G A) = 3e-7 and the section's turn I (pi/L)^2/A = 1e-7 to the
-/// first mode (times n^2 to the others, which carry less than 2 % of the deflection).
+/// rail-data.md: L 25 m, EI 1.68e10 N m2, 12 t/m, 200 kN. A = 1e4 m2 makes it Euler and Bernoulli's
+/// beam: shear adds EI (pi/L)^2/(k G A) = 3e-7 and the section's rotation I (pi/L)^2/A = 1e-7 to
+/// the first mode (times n^2 to the others, which have less than 2 % of the deflection).
 Track bridge(int elements) {
   return beam({.area = 1e4, .inertia_y = .08, .inertia_z = 1., .torsion = 1.}, 1.2, 25., elements);
 }
 constexpr double kBridgeForce = 200e3;  // N
 
-/// hard-cases.md R4: section F, 6 m, force of 204.885 kg.
+/// R4 of hard-cases.md: section F, 6 m, the weight of 204.885 kg.
 Track rail(int elements) {
   BeamSection f = section_f();
   f.shear_factor_z = .472;
@@ -138,7 +139,7 @@ constexpr double kRailForce = 204.885 * 9.81;  // N
 struct Case {
   bool timoshenko;
   double speed;        // m/s
-  double largest, at;  // midspan while the force is on: m, vt/L; as printed
+  double largest, at;  // at midspan while the force is on: m, vt/L; as printed
   double half_digit;   // of `largest`, m
   Track track(int elements) const { return timoshenko ? rail(elements) : bridge(elements); }
   double force() const { return timoshenko ? kRailForce : kBridgeForce; }
@@ -148,7 +149,7 @@ struct Case {
 /// Half the bridge's critical speed, printed as 74.344 m/s: W = w/2 for the first mode.
 const double kHalfCritical = .5 * kPi / 25. * std::sqrt(1.68e10 / 12e3);
 
-/// rail-data.md, Fryba, and hard-cases.md R4, force.
+/// rail-data.md, Fryba, and R4 of hard-cases.md, with the force.
 const std::array<Case, 5> kCases = {
     Case{false, 20., 4.45049e-3, .4761, 5e-9}, Case{false, 50., 5.80554e-3, .5030, 5e-9},
     Case{false, kHalfCritical, 6.60902e-3, .6667, 5e-9}, Case{true, 30., 1.29428e-3, .5704, 1e-7},
@@ -158,7 +159,7 @@ double order(double coarse, double fine, double ratio) {
   return std::log(coarse / fine) / std::log(ratio);
 }
 
-/// Root mean square error of the midspan deflection over a crossing, m, at 50 places of the force.
+/// Root mean square error of the midspan deflection in a crossing, m, at 50 places of the force.
 double midspan_error(const Case& c, int elements, int steps) {
   Crossing run(c.track(elements), c.speed, c.force(), c.step(steps));
   const double L = run.track.length();
@@ -171,7 +172,7 @@ double midspan_error(const Case& c, int elements, int steps) {
   return std::sqrt(sum / 50.);
 }
 
-/// The same under the force; the places run through all parts of the elements.
+/// The same under the force, whose places fall on all parts of the elements.
 double error_under_load(const Case& c, int elements, bool residual) {
   const int steps = 25600;
   Crossing run(c.track(elements), c.speed, c.force(), c.step(steps), residual);
@@ -193,7 +194,7 @@ TEST_CASE("the series has the printed maxima", "[fryba]") {
   for (const Case& c : kCases) {
     const Track t = c.track(1);
     const double L = t.length();
-    // 200 modes as printed; Timoshenko's shear converges as 1/n: 1e-9 m is left after 2000
+    // 200 modes as printed; Timoshenko's shear converges as 1/n: 1e-9 m is left after 2000.
     const Series series(t, c.speed, c.force(), c.timoshenko, c.timoshenko ? 2000 : 200);
     double largest = 0., at = 0.;
     for (int i = 1; i <= 10000; ++i) {
@@ -203,15 +204,15 @@ TEST_CASE("the series has the printed maxima", "[fryba]") {
       at = i * 1e-4;
     }
     CAPTURE(c.speed);
-    CHECK_THAT(largest, WithinAbs(c.largest, 1.1 * c.half_digit));  // and 1e-8 of it for the places
+    CHECK_THAT(largest, WithinAbs(c.largest, 1.1 * c.half_digit));  // 1e-8 of it is for the places
     CHECK_THAT(at, WithinAbs(c.at, 1.5e-4));                        // half a digit and a place
   }
 }
 
 TEST_CASE("the midspan deflection follows the series at every speed", "[fryba]") {
-  // hard-cases.md: a separate finite element run agrees with R4 to 2e-4; so does this one, over the
-  // largest deflection and at each of its steps. The worst is 20 m/s: there elements pass at 25.6
-  // Hz beside the third mode's 26.8 Hz, and what quadratic shapes miss of the force rings it.
+  // hard-cases.md: another finite element run agrees with R4 to 2e-4. This one does so too, over
+  // the largest deflection and at each of its steps. 20 m/s is the worst: elements pass at 25.6 Hz
+  // near the third mode's 26.8 Hz, which the error of quadratic shapes excites.
   for (const Case& c : kCases) {
     const int steps = 6400;
     Crossing run(c.track(32), c.speed, c.force(), c.step(steps));
@@ -229,9 +230,9 @@ TEST_CASE("the midspan deflection follows the series at every speed", "[fryba]")
 }
 
 TEST_CASE("each mode under the force converges with the second order of the step", "[fryba]") {
-  // The modes of a mesh run independently of one another in the step, so each shows its order
-  // alone. Asymptotic where the phase gathered over the crossing, w^3 dt^2 T/12, is small: w dt of
-  // .05 and .025 leave .035 rad at most. Next terms are of the order of that, a tenth is ample.
+  // The modes of a mesh are independent in the step, so each shows its own order. It is reached
+  // where the phase over the crossing, w^3 dt^2 T/12, is small: w dt of .05 and .025 give .035 rad
+  // at most. The next terms are of that order; a tenth is ample.
   for (const Case& c : {kCases[3], kCases[4]})
     for (const int n : {1, 3}) {
       const Track track = c.track(64);
@@ -260,9 +261,9 @@ TEST_CASE("each mode under the force converges with the second order of the step
 }
 
 TEST_CASE("the whole deflection converges as its spectrum allows", "[fryba]") {
-  // The force's entry leaves mode n swinging with n^-5, and after t its phase is wrong by
-  // w_n^3 dt^2 t/12 or so, as n^6 dt^2: modes above dt^(-1/3) are wrong outright and their sum is
-  // n^-4 = dt^(4/3), below the second order of each. A tenth for the modes' chance phases.
+  // The force's entry makes mode n oscillate with n^-5, and after t its phase errs by about w_n^3
+  // dt^2 t/12, as n^6 dt^2. So modes above dt^(-1/3) are wrong and their sum is n^-4 = dt^(4/3),
+  // below the second order of each. A tenth is for the modes' random phases.
   for (const Case& c : {kCases[0], kCases[1], kCases[3], kCases[4]}) {
     const double coarse = midspan_error(c, 32, 50), fine = midspan_error(c, 32, 800);
     CAPTURE(c.speed, coarse, fine);
@@ -270,9 +271,10 @@ TEST_CASE("the whole deflection converges as its spectrum allows", "[fryba]") {
   }
 }
 
-TEST_CASE("under the force the mesh converges with order 3 by the residual, 1 without", "[fryba]") {
-  // Quadratic shapes spread the force with an error of h^3. Without the residual flexibility the
-  // kink of the shear, P h/(k G A), is missing under it: h. Half an order for what else there is.
+TEST_CASE("under the force the mesh converges with order 3, or 1 without residual flexibility",
+          "[fryba]") {
+  // Quadratic shapes spread the force with an error of h^3. Without residual flexibility the kink
+  // of the shear, P h/(k G A), is missing under it: h. Half an order is for other errors.
   const Case& c = kCases[3];
   const auto error = [&](int elements, bool residual) {
     return error_under_load(c, elements, residual);

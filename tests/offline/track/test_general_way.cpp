@@ -1,5 +1,5 @@
-// A track that is alike left and right has one answer: in mirror coordinates and by the general
-// way, in which both rails and their sleepers make one line.
+// A symmetric track has one solution: in mirror coordinates and as one line of both rails and their
+// sleepers.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -16,8 +16,8 @@ using namespace railstep;
 
 namespace {
 
-/// Sleepers that move in every direction, pads of two halves off the axis, one seat without ballast
-/// and one with a pad ten times as soft, alike on both sides.
+/// Sleepers that move in every direction, pads of two halves off the axis, a seat without ballast
+/// and one with a pad ten times as soft, equal on both sides.
 Track uneven_sleepers(Unknowns unknowns) {
   Track t = sleeper_track(1);
   t.unknowns = unknowns;
@@ -48,7 +48,7 @@ Track generally(Track t) {
   return t;
 }
 
-/// Loads on both rails, on the head and on the axis, that differ, or a wheelset that leans.
+/// Different loads on both rails, on the head and on the axis; or a wheelset that leans.
 Traffic two_loads() {
   Traffic traffic;
   traffic.loads = {{.rail = 0, .start = .7, .speed = 30., .stop = 3.4, .force = -50e3, .z = kHeadZ},
@@ -67,7 +67,7 @@ Traffic one_wheelset() {
   return {.wheelsets = {w}, .head = {.1007375, .3, .038}};
 }
 
-/// A pad, sleepers' ends and rails' heads on both sides, at rest and in motion.
+/// Sensors on a pad, on sleepers' ends and on railheads of both sides, at rest and in motion.
 std::vector<TrackSensor> track_sensors(const Track& track) {
   std::vector<TrackSensor> found;
   for (const int rail : {0, 1}) {
@@ -80,10 +80,10 @@ std::vector<TrackSensor> track_sensors(const Track& track) {
   return found;
 }
 
-/// Everything that a frame publishes, by kind: forces of pads, displacements, velocities,
-/// deflections, forces of wheels, heights of rails.
+/// All outputs of the frames, by kind: pad forces, displacements, velocities, deflections, wheel
+/// forces, rail heights.
 struct Trace {
-  std::vector<std::size_t> kind;          // of each column
+  std::vector<std::size_t> kind;          // for each column
   std::vector<std::vector<double>> rows;  // frame by frame
 };
 
@@ -113,8 +113,8 @@ Trace trace(ModelRun run, int frames) {
   return found;
 }
 
-/// Largest difference of a column over the largest value of its kind: lateral motions that mirror
-/// images cancel are rounding of the vertical ones.
+/// Largest difference in a column, over the largest value of its kind: lateral motions that cancel
+/// in mirror images are the rounding of vertical ones.
 double largest_difference(const Trace& a, const Trace& b) {
   std::array<double, 6> peak{}, difference{};
   for (std::size_t i = 0; i < a.rows.size(); ++i)
@@ -132,7 +132,7 @@ double largest_difference(const Trace& a, const Trace& b) {
 
 }  // namespace
 
-TEST_CASE("both ways have the same static answer", "[supports]") {
+TEST_CASE("mirror coordinates and one line have the same static solution", "[supports]") {
   const Unknowns unknowns = GENERATE(Unknowns::full, Unknowns::vertical);
   Track track = uneven_sleepers(unknowns);
   if (GENERATE(false, true)) track = with_lengths(track);
@@ -144,13 +144,13 @@ TEST_CASE("both ways have the same static answer", "[supports]") {
       for (const int rail : {0, 1}) {
         const RailPoint a{0, 2.5, 0., kHeadZ, 2 - from}, b{rail, 3.1, .02, kFootZ, 2 - to};
         CAPTURE(from, to, rail);
-        // Entries of K from 1e5 to 1e11 N/m in one factor: 1e6 roundings of 1e-16 each.
+        // One factor has entries of K from 1e5 to 1e11 N/m: 1e6 roundings of 1e-16 each.
         CHECK(std::abs(mirror.flexibility(a, b) - general.flexibility(a, b)) <
               1e-9 * mirror.flexibility(a, a));
       }
 }
 
-TEST_CASE("both ways have the same natural frequencies", "[supports]") {
+TEST_CASE("mirror coordinates and one line have the same natural frequencies", "[supports]") {
   const Track track = uneven_sleepers(Unknowns::full);
   std::vector<double> mirrored, whole;
   for (const Line& line : assemble(track))
@@ -160,12 +160,12 @@ TEST_CASE("both ways have the same natural frequencies", "[supports]") {
   std::sort(mirrored.begin(), mirrored.end());
   std::sort(whole.begin(), whole.end());
   REQUIRE(mirrored.size() == whole.size());
-  // A dense solver is good to 1e-16 of the highest eigenvalue, (38 kHz)^2; over (30 Hz)^2: 2e-10.
+  // A dense solver is good to 1e-16 of the highest eigenvalue, (38 kHz)^2: 2e-10 of (30 Hz)^2.
   for (std::size_t i = 0; i < whole.size(); ++i)
     CHECK(std::abs(whole[i] - mirrored[i]) < 1e-8 * mirrored[i]);
 }
 
-TEST_CASE("both ways make the same trace", "[supports]") {
+TEST_CASE("mirror coordinates and one line give the same trace", "[supports]") {
   const Unknowns unknowns = GENERATE(Unknowns::full, Unknowns::vertical);
   const bool contact = GENERATE(false, true);
   const bool condensed_lines = GENERATE(false, true);
@@ -181,12 +181,13 @@ TEST_CASE("both ways make the same trace", "[supports]") {
   const Trace mirror = trace(in_equilibrium(track, traffic, options), 60);
   const Trace general = trace(in_equilibrium(generally(track), traffic, options), 60);
   CAPTURE(unknowns == Unknowns::full, contact, condensed_lines);
-  // The statics' 1e-9, and what a penetration of 1e-4 m makes of rounding in a deflection of 1e-3;
-  // damped modes are accepted complete to 1e-7, and a basis leaves out shapes of 1e-10 in square.
+  // The statics has 1e-9, and a penetration of 1e-4 m reacts to rounding in a deflection of 1e-3.
+  // Damped modes are complete to 1e-7, and a basis leaves out shapes whose square is 1e-10.
   CHECK(largest_difference(mirror, general) < (condensed_lines ? 1e-6 : 1e-8));
 }
 
-TEST_CASE("a wheelset that leans meets the same track both ways", "[supports]") {
+TEST_CASE("a wheelset that leans moves the same in mirror coordinates and in one line",
+          "[supports]") {
   const Track track = uneven_sleepers(Unknowns::full);
   Traffic traffic = one_wheelset();
   traffic.wheelsets[0].speed = 0.;

@@ -1,4 +1,4 @@
-// A wheelset on rails that share sleepers: left and right answer alike, and the guide's velocities.
+// A wheelset on rails that share sleepers: both sides respond equally; the guide's velocities.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,7 +16,7 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-/// Rails with all their unknowns on sleepers that roll and move sideways.
+/// Rails with all their unknowns, on sleepers that roll and move sideways.
 Track sleepers() {
   Track t;
   t.section = section_f();
@@ -46,7 +46,7 @@ struct Run {
     w.inertia_roll = w.inertia_yaw = 700.;
     w.inertia_spin = 100.;
     w.weight = 100e3;
-    w.start = 1.7;  // off the seats and off the element's middle
+    w.start = 1.7;  // neither on a seat nor in the element's middle
     w.speed = speed;
     w.guide = guide;
     w.alpha = w.beta = 200.;
@@ -67,7 +67,7 @@ struct Run {
     CHECK_FALSE(has(met, Status::cap_reached));
     CHECK_FALSE(has(met, Status::off_rail));
   }
-  /// Of the railhead's top under the wheelset, by the assembled track's own rows.
+  /// Displacement of the railhead's top under the wheelset, by the assembled track's own rows.
   double head(int rail, int direction) const {
     double sum = 0.;
     for (std::size_t l = 0; l < lines.size(); ++l) {
@@ -81,15 +81,15 @@ struct Run {
 
 }  // namespace
 
-TEST_CASE("a wheelset that rolls over meets the mirror image of one that rolls back", "[mirror]") {
-  // Released at +-2 mrad it stands on one wheel first, then rocks; its normals lean with it, so
-  // that the rails are pushed sideways and turned. What the left rail does in one run is what the
-  // right one does in the other. Rounding, gathered over 400 steps with contacts: 1e-9 of the
-  // largest.
+TEST_CASE("a wheelset that rolls one way is the mirror image of one that rolls the other way",
+          "[mirror]") {
+  // Released at +-2 mrad, it stands on one wheel first and then rocks. Its normals lean with it, so
+  // that they push and roll the rails sideways. The left rail of one run moves as the right rail of
+  // the other. Rounding over 400 steps with contacts is 1e-9 of the largest.
   Run one(0., Guide::augmented_lagrangian), other(0., Guide::augmented_lagrangian);
   one.state.u[one.body(3)] = 2e-3;
   other.state.u[other.body(3)] = -2e-3;
-  for (Run* run : {&one, &other}) run->state.u[run->body(2)] = 2e-3 * .75;  // the lower one touches
+  for (Run* run : {&one, &other}) run->state.u[run->body(2)] = 2e-3 * .75;  // the lower touches
   double largest_force = 0., largest_y = 0., force_miss = 0., y_miss = 0., z_miss = 0.;
   double low = 0.;
   for (int i = 0; i < 400; ++i) {
@@ -111,10 +111,9 @@ TEST_CASE("a wheelset that rolls over meets the mirror image of one that rolls b
   CHECK(z_miss < -1e-9 * low);
 }
 
-TEST_CASE("the guide's constraint holds for velocity and acceleration, not for place alone",
-          "[guide]") {
-  // Started at rest where it should run at 10 m/s: the place alone can be held only by velocities
-  // that swing about 10 m/s by as much, for as long as the scheme remembers.
+TEST_CASE("the guide's constraint holds velocity and acceleration as well as position", "[guide]") {
+  // The wheelset starts at rest where it should run at 10 m/s. Velocities that swing about 10 m/s
+  // by as much could hold the position alone, for as long as the scheme remembers.
   Run run(10., Guide::augmented_lagrangian);
   for (int i = 1; i <= 5; ++i) {
     run.step();
@@ -127,9 +126,9 @@ TEST_CASE("the guide's constraint holds for velocity and acceleration, not for p
   }
 }
 
-TEST_CASE("Baumgarte's guide takes up a wrong start with its own rate", "[guide]") {
-  // x'' + 2 a x' + b^2 x = 0 with a = b = 200 1/s from a velocity error of -10 m/s:
-  // x = -10 t exp(-200 t). The scheme errs by (200 dt)^2 = 1e-4 of it in shape.
+TEST_CASE("Baumgarte's guide corrects a wrong start at its own rate", "[guide]") {
+  // x'' + 2 a x' + b^2 x = 0 with a = b = 200 1/s and a velocity error of -10 m/s has x = -10 t
+  // exp(-200 t). The scheme errs by (200 dt)^2 = 1e-4 of it in shape.
   Run run(10., Guide::baumgarte);
   run.state.a[run.body(0)] = run.state.g[run.body(0)] = 2. * 200. * 10.;  // x'' at the start
   double largest = 0., miss = 0.;

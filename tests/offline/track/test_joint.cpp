@@ -1,5 +1,4 @@
-// Rails cut at bolted joints: closed forms, limits of stiffness, what runs and residuals make of
-// them.
+// Rails cut at bolted joints: closed forms, limits of stiffness, and joints in runs and residuals.
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -22,7 +21,7 @@ namespace {
 
 constexpr double kRigid = std::numeric_limits<double>::infinity();
 
-/// Vertical bending alone, one rail.
+/// One rail with vertical bending only.
 Track bare(int bays, double bay, int elements, RailEnds ends) {
   Track t;
   t.section = peers_rectangle();
@@ -63,7 +62,7 @@ Track ballasted(int bays, int elements) {
 
 RailPoint axis(double x, int direction = 2, int rail = 0) { return {rail, x, 0., 0., direction}; }
 
-/// b_x of one end of the joint's rail, of a track of one line.
+/// b_x at one end of the joint's rail, on a track of one line.
 double slope(const Statics& statics, const Eigen::VectorXd& u, int node, bool ahead) {
   const Line& line = statics.lines()[0];
   return u[ahead ? line.unknown_ahead(0, node, 6) : line.unknown(0, node, 6)];
@@ -71,9 +70,9 @@ double slope(const Statics& statics, const Eigen::VectorXd& u, int node, bool ah
 
 }  // namespace
 
-TEST_CASE("a beam with a hinge spring bends as the closed form", "[joint]") {
-  // Pinned, P over the hinge in the middle: M = PL/4 there, it turns by M/k, and
-  // w = PL^3/48EI + PL/4kGA + PL^2/16k. Elements are exact at nodes; 1e-9 is rounding.
+TEST_CASE("a beam with a hinge spring bends as in the closed form", "[joint]") {
+  // The beam is pinned, with P over the hinge in the middle: there M = PL/4 and the joint opens by
+  // M/k, so w = PL^3/48EI + PL/4kGA + PL^2/16k. Elements are exact at nodes; 1e-9 is rounding.
   const double P = 10e3, L = 3.;
   for (const int elements : {2, 8})
     for (const double k : {1e4, 1e6, 1e9}) {
@@ -95,13 +94,13 @@ TEST_CASE("a beam with a hinge spring bends as the closed form", "[joint]") {
 
 namespace {
 
-/// What the sag and the kink of a joint under a load miss of those of two beams on a foundation.
+/// Errors of a joint's sag and kink under a load, relative to two beams on a foundation.
 struct Missed {
   double sag, kink;
 };
 
-/// Timoshenko's beam on an elastic foundation, w = a1 e^(k1 x) + a2 e^(k2 x) on x > 0, under half
-/// the force, with M = EI theta' = 2 k theta at the hinge; springs each `step` for the foundation.
+/// Timoshenko's beam on a foundation, w = a1 e^(k1 x) + a2 e^(k2 x) on x > 0, carries half the
+/// force there, with M = EI theta' = 2 k theta at the hinge. The track has springs each `step`.
 Missed missed_on_foundation(double k, double step) {
   const double P = 50e3, bed = 50e6, x = 10.;
   const int seat = static_cast<int>(std::round(x / step));
@@ -128,10 +127,10 @@ Missed missed_on_foundation(double k, double step) {
 
 }  // namespace
 
-TEST_CASE("a joint on a foundation sags as two halves with a spring", "[joint]") {
-  // Springs for a foundation are the trapezoidal rule: an error of (lambda step)^2 = 3e-3 of it,
-  // with lambda = (bed/4EI)^(1/4) = 1.1 1/m, and a quarter of that at half the step; 10 % for the
-  // next order.
+TEST_CASE("a joint on a foundation sags as two half beams with a hinge spring", "[joint]") {
+  // Springs in place of a foundation are the trapezoidal rule. It errs by (lambda step)^2 = 3e-3,
+  // with lambda = (bed/4EI)^(1/4) = 1.1 1/m, and by a quarter of that at half the step; 10 % is for
+  // the next order.
   for (const double k : {0., 1e5, 1e6, 1e8}) {
     const Missed coarse = missed_on_foundation(k, .05), fine = missed_on_foundation(k, .025);
     CAPTURE(k, coarse.sag, coarse.kink, fine.sag, fine.kink);
@@ -141,7 +140,7 @@ TEST_CASE("a joint on a foundation sags as two halves with a spring", "[joint]")
   }
 }
 
-TEST_CASE("a stiff joint is no joint", "[joint]") {
+TEST_CASE("a stiff joint acts as a whole rail", "[joint]") {
   // Ends that share both unknowns are one node; with springs the difference falls as 1/k.
   Track whole = bare(8, .6, 2, {});
   whole.support.stiffness[2] = 30e6;
@@ -161,10 +160,10 @@ TEST_CASE("a stiff joint is no joint", "[joint]") {
     return sag(cut) / uncut - 1.;
   };
   CHECK(excess(1e7) > 0.);
-  // a/(k + b), b the stiffness of what the joint stands in: at 1e8 it is 4 % off 1/k, at 1e9 0.4 %.
+  // It is a/(k + b) with the stiffness b around the joint: 4 % off 1/k at 1e8, 0.4 % at 1e9.
   CHECK_THAT(excess(1e10) / excess(1e9), WithinRel(.1, .01));
   CHECK(std::fabs(excess(1e12)) < 1e-5);
-  // In space fishplates leave the ends' own strains free: 1e-3 of the axis' sag is what that makes.
+  // In space fishplates leave the ends' own strains free, which is 1e-3 of the sag of the axis.
   Track space = ballasted(8, 2);
   const double solid = Statics(space).flexibility(axis(2.4), axis(2.4));
   const double solid_y = Statics(space).flexibility(axis(2.4, 1), axis(2.4, 1));
@@ -177,8 +176,8 @@ TEST_CASE("a stiff joint is no joint", "[joint]") {
   CHECK_THAT(Statics(space).flexibility(axis(2.4, 1), axis(2.4, 1)), WithinRel(solid_y, 1e-2));
 }
 
-TEST_CASE("a joint of rails whose section does not strain", "[joint]") {
-  // On the axis the vertical motion is that of two unknowns a node; 1e-9 is rounding.
+TEST_CASE("a joint works on rails whose section does not strain", "[joint]") {
+  // On the axis the vertical motion is that of two unknowns per node; 1e-9 is rounding.
   Track plane = bare(8, .6, 2, {});
   plane.support.stiffness = {3e6, 20e6, 30e6};
   plane.support.roll_stiffness = 2e5;
@@ -189,7 +188,7 @@ TEST_CASE("a joint of rails whose section does not strain", "[joint]") {
   for (const double x : {2.4, 3.1})
     CHECK_THAT(turning.flexibility(axis(2.4), axis(x)),
                WithinRel(flat.flexibility(axis(2.4), axis(x)), 1e-9));
-  // Rigid plates share all six unknowns: no joint. Without them nothing passes.
+  // Rigid plates share all six unknowns, as without a joint. Without plates nothing passes.
   const auto sideways = [&](double plates) {
     space.joints[0].stiffness = {plates, plates, plates};
     space.joints[0].turn_stiffness = {plates, plates, plates};
@@ -202,8 +201,8 @@ TEST_CASE("a joint of rails whose section does not strain", "[joint]") {
   CHECK(std::fabs(sideways(0.)) < 1e-12 * std::fabs(uncut));
 }
 
-TEST_CASE("a joint without plates leaves two rails", "[joint]") {
-  // Cut over seat 4 of 8: the rail of the first four bays alone, on half of the pad at its end.
+TEST_CASE("a joint without plates leaves two separate rails", "[joint]") {
+  // The cut is over seat 4 of 8: the first four bays stand alone, on half of the pad at their end.
   Track cut = bare(8, .6, 2, {});
   cut.support.stiffness[2] = 30e6;
   Track half = cut;
@@ -218,10 +217,10 @@ TEST_CASE("a joint without plates leaves two rails", "[joint]") {
     CHECK_THAT(a.flexibility(axis(x), axis(1.8)),
                WithinRel(b.flexibility(axis(x), axis(1.8)), 1e-9));
   CHECK(std::fabs(a.flexibility(axis(3.), axis(1.8))) < 1e-20);
-  // The pad of both ends: its force is that of the half seat.
+  // Both ends share a pad, whose force is that of the half seat.
   CHECK_THAT(a.support_force(a.solve({{axis(1.8), -1e3}}), 0, 4),
              WithinRel(b.support_force(b.solve({{axis(1.8), -1e3}}), 0, 4), 1e-6));
-  // On a sleeper both halves share it, at mid-bay nothing is between them.
+  // On a sleeper both halves share it; at mid-bay nothing connects them.
   Track between = cut;
   between.joints[0].x = 2.7;
   CHECK(std::fabs(Statics(between).flexibility(axis(3.), axis(1.8))) < 1e-20);
@@ -245,11 +244,11 @@ TEST_CASE("a joint in both rails is the same in mirror coordinates", "[joint]") 
       for (const double x : {1.5, 1.8, 2.1}) {
         CAPTURE(rail, d, x);
         const double want = b.flexibility(axis(x, d, rail), axis(2., d, 0));
-        // 1e-9 as general and mirrored ways agree (docs/supports.md), of what stands under the load
+        // Both agree to 1e-9 (docs/supports.md), relative to the place under the load.
         CHECK_THAT(a.flexibility(axis(x, d, rail), axis(2., d, 0)),
                    WithinAbs(want, 1e-9 * b.flexibility(axis(2., d, 0), axis(2., d, 0))));
       }
-  // Cut on the left alone: the sides differ, and the right one is stiffer.
+  // With a cut only on the left the sides differ, and the right one is stiffer.
   mirror.joints[0].rails = {true, false};
   CHECK_FALSE(is_symmetric(mirror));
   const Statics one(mirror);
@@ -257,10 +256,10 @@ TEST_CASE("a joint in both rails is the same in mirror coordinates", "[joint]") 
         1.02 * one.flexibility(axis(1.8, 1, 1), axis(1.8, 1, 1)));
 }
 
-TEST_CASE("residual flexibility knows the cut", "[joint]") {
-  // Static receptance with what elements miss inside them, against eight times as many elements at
-  // whose nodes the points are: 1e-5 for quadratic elements under a long pad, which the division
-  // follows only where a point asks for four parts of an element or more (x = 1.725, 1.875).
+TEST_CASE("the residual flexibility includes the cut", "[joint]") {
+  // Static receptance with the residual, against eight times as many elements with the points at
+  // their nodes: 1e-5 for quadratic elements under a long pad. The division follows the pad only
+  // where a point needs four parts of an element or more (x = 1.725, 1.875).
   Track coarse = bare(6, .6, 2, {});
   coarse.support.stiffness[2] = 30e6;
   coarse.joints = {hinge(1.8, 1e5)};
@@ -280,7 +279,7 @@ TEST_CASE("residual flexibility knows the cut", "[joint]") {
   }
 }
 
-TEST_CASE("joints stand where elements meet", "[joint]") {
+TEST_CASE("joints must be where elements meet", "[joint]") {
   Track track = bare(4, .6, 2, {});
   track.support.stiffness[2] = 30e6;
   const auto refused = [&](double x) {
@@ -291,7 +290,7 @@ TEST_CASE("joints stand where elements meet", "[joint]") {
   track.joints = {hinge(.9, 1e5), hinge(.9, 1e6)};
   CHECK_THROWS_AS(assemble(track), std::invalid_argument);
   track.joints.pop_back();
-  CHECK(assemble(track)[0].unknowns() == 2 * 17 + 1);  // the heights are shared
+  CHECK(assemble(track)[0].unknowns() == 2 * 17 + 1);  // both sides share their heights
   track.joints[0].turn_stiffness[0] = kRigid;
   CHECK_THROWS_AS(assemble(track), std::invalid_argument);
 }
@@ -313,7 +312,7 @@ const std::string kJoint =
 }  // namespace
 
 TEST_CASE("loads and wheels run over a joint", "[joint]") {
-  // Full order: the balance of energy is missed by the scheme's own loss alone (rounding, 1e-12).
+  // In full order the balance of energy errs only by the scheme's loss (rounding is 1e-12).
   const auto run =
       told("run " + kScenes + "moving_load.toml --json --set track.elements_per_bay=2 " + kJoint);
   CHECK_THAT(run.at("energy_balance_error").get<double>(),
@@ -327,7 +326,7 @@ TEST_CASE("loads and wheels run over a joint", "[joint]") {
   CHECK(wheels.at("allocations") == 0);
 }
 
-TEST_CASE("a scene's joints are checked", "[joint]") {
+TEST_CASE("the joints of a scene are checked", "[joint]") {
   const auto said = [&](const std::string& words) {
     return railstep_program("static " + kScenes + "moving_load.toml " + words).err;
   };
@@ -349,7 +348,7 @@ TEST_CASE("a scene's joints are checked", "[joint]") {
   refused(kJoint + "--set rail.axial_force_n=1e5", "carry no force");
   refused(kJoint + "--set 'track.ends=\"pinned\"' --set rail.temperature_rise_k=20",
           "the joint has no gap_m");
-  // 1.15e-5 x 20 K x 9.6 m = 2.2 mm
+  // 1.15e-5 x 20 K x 9.6 m = 2.2 mm.
   const std::string gap =
       "--set 'rail_joint=[{x_m=4.8, gap_m=0.0023, "
       "bending_vertical_stiffness_n_m_per_rad=1e6}]' ";

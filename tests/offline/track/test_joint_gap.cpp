@@ -1,4 +1,4 @@
-// Ends of rails that press on each other: bars on springs, heat, a blow, a load that passes.
+// Rail ends that press on each other: bars on springs, heat, an impact, a passing load.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,9 +16,9 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 constexpr double kRigid = std::numeric_limits<double>::infinity();
-constexpr double kAlong = 2e8, kEnds = 5e9;  // N/m, of a seat and of ends that press
+constexpr double kAlong = 2e8, kEnds = 5e9;  // N/m, of a seat and of pressed ends
 
-/// A rail of 21 bays cut in the middle of the eleventh, on seats at its axis.
+/// A rail of 21 bays, cut in the middle of the eleventh, on seats at its axis.
 Track cut_rail(double gap, double along) {
   Track t;
   t.section = section_f();
@@ -36,11 +36,11 @@ Track cut_rail(double gap, double along) {
   return t;
 }
 
-/// N per strain; the stress of a rail that carries force stiffens it along x too.
+/// Force per strain, N; the axial force of a rail stiffens it along x too.
 double stretch(const Track& t) { return t.material.young * t.section.area + t.axial_force; }
 
-/// Stiffness of half the rail along x, as its first seat with what lies beyond has it, and as its
-/// cut end has it: bars of EA/h and seats in turns, Z = k + s Z/(s + Z), from the free end on.
+/// Stiffness of half the rail along x, at its first seat with all beyond, and at its cut end: bars
+/// of EA/h and seats alternate, Z = k + s Z/(s + Z), from the free end on.
 struct Half {
   double seat, end;
 };
@@ -51,7 +51,7 @@ Half half(const Track& t) {
   return {Z, 2. * s * Z / (2. * s + Z)};
 }
 
-/// How the ends press under forces along x, N.
+/// Force between the ends under forces along x, N.
 double pressing(const Statics& statics, const std::vector<PointForce>& forces) {
   return statics.port_forces(statics.solve(forces)).at(0);
 }
@@ -60,7 +60,7 @@ PointForce along(double x, double force) { return {{0, x, 0., 0., 0}, force}; }
 
 }  // namespace
 
-TEST_CASE("a rail braked towards a gap closes it and presses", "[joint]") {
+TEST_CASE("a rail that braking moves towards a gap closes it and presses", "[joint]") {
   const Track t = cut_rail(1e-4, kAlong);
   const Half each = half(t);
   const double seat = .5 * (t.length() - t.bay_length);
@@ -70,14 +70,14 @@ TEST_CASE("a rail braked towards a gap closes it and presses", "[joint]") {
   CHECK(pressing(statics, {along(seat, .99 * closing)}) == 0.);
   for (const double force : {1.5 * closing, 10. * closing}) {
     const double pressed = kEnds * (force / each.seat - 1e-4) / (1. + 2. * kEnds / each.end);
-    // Newton's method of the statics stops at 1e-9.
+    // Newton's method in the statics stops at 1e-9.
     CHECK_THAT(pressing(statics, {along(seat, force)}), WithinRel(pressed, 1e-8));
   }
   CHECK(pressing(statics, {along(seat, -10. * closing)}) == 0.);
 }
 
 TEST_CASE("heat closes a gap between held ends and presses the rails", "[joint]") {
-  // Heat as forces that stretch free bars by their growth, on ports with the cold gap.
+  // Heat acts as forces that stretch free bars by their growth, on ports with the cold gap.
   Track t = cut_rail(1e-3, 0.);
   t.ends = {RailEnd::clamped, RailEnd::clamped};
   const double EA = stretch(t), strain = 3e-4, x = t.joints[0].x, h = t.element_length();
@@ -85,12 +85,12 @@ TEST_CASE("heat closes a gap between held ends and presses the rails", "[joint]"
       pressing(Statics(t), {along(x - 1e-9 * h, EA * strain), along(x, -EA * strain)});
   const double found = compression_by_heat(strain * t.length(), t.length() / EA, {{1e-3, kEnds}});
   CHECK(found > 1e5);
-  CHECK_THAT(pressed, WithinRel(found, 1e-7));  // the force stands 1e-9 of an element off the end
+  CHECK_THAT(pressed, WithinRel(found, 1e-7));  // the force is 1e-9 of an element from the end
   CHECK(compression_by_heat(strain * t.length(), 1., {{.002, kEnds}, {.002, kEnds}}) == 0.);
   CHECK(compression_by_heat(strain * t.length(), 1., {{1e-3, kEnds}, {1e-3, 0.}}) == 0.);
 }
 
-TEST_CASE("ends that heat presses rest so, and open under a pull", "[joint]") {
+TEST_CASE("ends pressed by heat stay at rest and open under a pull", "[joint]") {
   const double P = 1e5;
   Track t = cut_rail(-P / kEnds, kAlong);
   t.axial_force = -P;
@@ -110,14 +110,14 @@ TEST_CASE("ends that heat presses rest so, and open under a pull", "[joint]") {
   CHECK(pressing(statics, pulled(1.01 * opens)) == 0.);
   const auto open = statics.solve(pulled(2. * P));
   CHECK_THAT(statics.at(open, {0, x, 0., 0., 0}), WithinRel(P / each.end, 1e-6));
-  // Where everything is taken for linear, the ends hang together.
+  // Where everything is linear, the ends stay connected.
   CHECK(critical_compression(linear_about_rest(t)) > P);
 }
 
-TEST_CASE("a rail that runs into another hands its momentum on", "[joint]") {
-  // Two bars alike: they press by rho A c v/2 while a wave runs to their ends and back, then the
-  // one rests and the other has the speed (Saint-Venant).
-  Track t = cut_rail(1e-5, 1.);  // 1 N/m a seat along x: as good as free for the 4 ms
+TEST_CASE("a rail that runs into another hands its momentum over", "[joint]") {
+  // Two equal bars press by rho A c v/2 while a wave runs to their far ends and back. Then one
+  // rests and the other has the speed (Saint-Venant).
+  Track t = cut_rail(1e-5, 1.);  // 1 N/m per seat along x: nearly free for the 4 ms
   t.joints[0].end_stiffness = 2e10;
   const double v = .1, c = std::sqrt(t.material.young / t.material.density);
   const double plateau = .5 * t.material.density * t.section.area * c * v;
@@ -142,7 +142,7 @@ TEST_CASE("a rail that runs into another hands its momentum on", "[joint]") {
     between += force;
     ++counted;
   }
-  // Fronts are smeared over a node at either side, .15 m of 12.6 m.
+  // A front is spread over a node on either side, .15 m of 12.6 m.
   const double smeared = 2. * .15 / 12.6;
   CHECK_THAT(between / counted, WithinRel(plateau, smeared));
   const double mass = .5 * t.length() * t.material.density * t.section.area;
@@ -150,7 +150,7 @@ TEST_CASE("a rail that runs into another hands its momentum on", "[joint]") {
   CHECK(run.state.port_force[0] == 0.);
 }
 
-TEST_CASE("a load passes a joint that heat presses: condensed as in full order", "[joint]") {
+TEST_CASE("a load passes a joint pressed by heat on condensed track as in full order", "[joint]") {
   const double P = 2e5;
   Track t = cut_rail(-P / kEnds, 5e7);
   t.support.damping = {2e4, 2e4, 2e4};
@@ -168,7 +168,7 @@ TEST_CASE("a load passes a joint that heat presses: condensed as in full order",
     change = std::max(change, std::abs(full.state.port_force[0] - P));
   }
   CAPTURE(largest, change);
-  CHECK(change > 1e3);  // bending over the foot draws the ends apart
-  // Forces held over a step of 0.1 ms, at 40 m/s over a kink: their first order, 1 % of the change.
+  CHECK(change > 1e3);  // bending over the foot opens the ends
+  // Forces held over steps of 0.1 ms, at 40 m/s over a kink, are of first order: 1 % of the change.
   CHECK(largest < .02 * change);
 }

@@ -15,7 +15,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// A slender pinned rail: 12 m of a 50 mm square bar, which sags by a good part of its height.
+/// A slender pinned rail: 12 m of a 50 mm square bar, which sags by a large part of its height.
 Track pinned_bar(int elements) {
   const double h = .05;
   Track t;
@@ -34,7 +34,7 @@ Track pinned_bar(int elements) {
   return t;
 }
 
-/// Undamped frequencies of one line that moves the rail up, lowest first.
+/// Undamped frequencies of the line that moves the rail up, lowest first.
 Modes vertical_modes(const Track& track) {
   for (const Line& line : assemble(track))
     if (line.unknown(0, 1, 2) >= 0) return modes(line);
@@ -57,23 +57,23 @@ TEST_CASE("a force near a configuration is f_s + K_r (q - q_s)", "[linearise]") 
     const Eigen::VectorXd force = internal_force(s, bent + size * step);
     return (force - at.force - size * (at.stiffness * step)).norm();
   };
-  // What is left is of second order: a tenth of the step leaves a hundredth, but for third order.
+  // The difference is of second order: a tenth of the step leaves a hundredth, but for third order.
   const double ratio = left_over(1e-3) / left_over(1e-4);
   CHECK(ratio > 98.);
   CHECK(ratio < 102.);
 }
 
-TEST_CASE("a rail that sags between pins is stiffer, by the closed form", "[linearise]") {
-  // One sine of amplitude a: V = E I pi^4 w^2/(4 L^3) + E A pi^4 w^4/(32 L^3), so at the sag
-  //   f1^2 = f10^2 (1 + 3/4 A a^2/I), and the tension E A pi^2 a^2/(4 L^2) gives the second mode
-  //   f2^2 = f20^2 (1 + A a^2/(16 I)).
-  // Uniform weight bends the rail into a shape that is not all one sine: its third harmonic is
-  // 1/243 of the first, which moves these shifts by less than 1 %, as it moves the peak by 0.4 %.
+TEST_CASE("a rail that sags between pins is stiffer by the closed form", "[linearise]") {
+  // One sine of amplitude a has V = E I pi^4 w^2/(4 L^3) + E A pi^4 w^4/(32 L^3). So at the sag
+  //   f1^2 = f10^2 (1 + 3/4 A a^2/I),
+  // and the tension E A pi^2 a^2/(4 L^2) gives the second mode f2^2 = f20^2 (1 + A a^2/(16 I)).
+  // Uniform weight bends the rail into a shape with other sines: the third harmonic is 1/243 of the
+  // first, which changes these shifts by less than 1 % and the peak by 0.4 %.
   const Track track = pinned_bar(16);
   const double gravity = 1.;
   const Track sagged = linearised_under_weight(track, gravity);
   const double a = -sagged.state->rail[0][9 * 16 + 2], h = .05;
-  CHECK(a > .5 * h);                             // or the effect is small
+  CHECK(a > .5 * h);                             // otherwise the effect is small
   const double slender = 12. * a * a / (h * h);  // A a^2/I
   const Modes flat = vertical_modes(track), curved = vertical_modes(sagged);
   const auto shift = [&](Eigen::Index n) {
@@ -84,11 +84,11 @@ TEST_CASE("a rail that sags between pins is stiffer, by the closed form", "[line
   CHECK_THAT(shift(1), WithinRel(slender / 16., .015));
 }
 
-TEST_CASE("the linear answer to the weight is the state it was linearised at", "[linearise]") {
+TEST_CASE("the linear response to the weight is the state of the linearisation", "[linearise]") {
   Track track = paper_track();
   track.section.moments = moments(kSectionF);
   track.sleeper = Sleeper{.mass = 300., .roll_inertia = 50., .ballast_stiffness = {0., 0., 5e7}};
-  if (GENERATE(false, true)) {  // sides that differ, one seat that hangs on the right
+  if (GENERATE(false, true)) {  // the sides differ, one right seat hangs
     track.right = track.bar(0);
     track.right->material.young *= .9;
     track.sleeper->ballast_stiffness = {2e7, 2e7, 5e7};
@@ -112,13 +112,13 @@ TEST_CASE("the linear answer to the weight is the state it was linearised at", "
   CHECK(statics.support_force(answer, 1, 2) > 0.);
 }
 
-TEST_CASE("a track that nothing holds is refused by what is loose", "[linearise]") {
+TEST_CASE("a track that nothing holds is refused with the loose motion", "[linearise]") {
   Track loose = pinned_bar(2);
   loose.ends = {RailEnd::free, RailEnd::free};
   CHECK_THROWS_WITH(linearised_under_weight(loose, 9.81), Catch::Contains("free rigid mode"));
 }
 
-TEST_CASE("a scene linearised at its weight answers with the nonlinear sag", "[linearise]") {
+TEST_CASE("a scene linearised under its weight has the nonlinear sag", "[linearise]") {
   const std::string scene = RAILSTEP_SOURCE "/config/scenes/cantilever_rail.toml";
   const std::string words = " --json --set track.gravity=true --set 'load[0].force_z_n=0'";
   const auto tip = [&](const std::string& more) {
@@ -130,7 +130,7 @@ TEST_CASE("a scene linearised at its weight answers with the nonlinear sag", "[l
   const auto nonlinear = tip("");
   const auto linear = tip(" --model linearised --set track.linearised_at='\"weight\"'");
   const auto at_rest = tip(" --model linearised");
-  // The nonlinear solution leaves 1e-10 of the load; the tip is short by less than 1e-8 of its sag.
+  // The nonlinear solution leaves 1e-10 of the load; the tip misses less than 1e-8 of its sag.
   CHECK_THAT(linear[2], WithinRel(nonlinear[2], 1e-9));
   CHECK_THAT(linear[0], WithinRel(nonlinear[0], 1e-8));
   CHECK(nonlinear[0] < 0.);
@@ -142,8 +142,8 @@ TEST_CASE("a scene linearised at its weight answers with the nonlinear sag", "[l
   CHECK_THAT(refused.err, Catch::Contains("linearised_at"));
 }
 
-TEST_CASE("a strip that its own weight buckles sideways is refused", "[linearise]") {
-  // A cantilever 0.2 m high and 2 mm thick falls sideways where its weight w reaches
+TEST_CASE("a strip that buckles sideways under its own weight is refused", "[linearise]") {
+  // A cantilever 0.2 m high and 2 mm thick falls sideways where its weight per length w reaches
   // 12.85 sqrt(E Iz G J)/L^3 (Timoshenko and Gere, Theory of Elastic Stability, 6.3): L = 2.44 m.
   const std::string words =
       "modes " RAILSTEP_SOURCE
@@ -158,7 +158,7 @@ TEST_CASE("a strip that its own weight buckles sideways is refused", "[linearise
   CHECK_THAT(falls.err, Catch::Contains("buckles under its own weight"));
 }
 
-TEST_CASE("an unloaded rail is in equilibrium as it lies", "[linearise]") {
+TEST_CASE("an unloaded rail is in equilibrium where it lies", "[linearise]") {
   const std::string unloaded =
       "static " RAILSTEP_SOURCE
       "/config/scenes/cantilever_rail.toml --json --set 'load[0].force_z_n=0' "
@@ -171,12 +171,12 @@ TEST_CASE("an unloaded rail is in equilibrium as it lies", "[linearise]") {
     REQUIRE(ran.code == 0);
     const auto result = nlohmann::json::parse(ran.out);
     CHECK(result["stable"] == true);
-    // Round-off of positions of 20 m through the bending of 0.8 m: 1e-15 of 20 m times (L/h)^2.
+    // Round-off of positions of 20 m, by the bending of 0.8 m, is 1e-15 of 20 m times (L/h)^2.
     CHECK(std::abs(result["points"][0]["displacement_m"][2].get<double>()) < 1e-11);
   }
 }
 
-TEST_CASE("scenes that would answer wrongly are refused", "[linearise]") {
+TEST_CASE("scenes that would give wrong results are refused", "[linearise]") {
   const std::string linear =
       "static " RAILSTEP_SOURCE "/config/scenes/cantilever_rail_linear.toml ";
   const Ran line = railstep_program(linear +

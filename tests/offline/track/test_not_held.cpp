@@ -1,5 +1,5 @@
-// What nothing holds, and what buckles, is refused whatever the start and whoever steps it, with
-// the motion, the place and the key.
+// Tracks that are not held, or that buckle, are refused in any start and by any caller. The message
+// names the motion, the place and the key.
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
@@ -23,7 +23,7 @@ using Catch::Contains;
 
 namespace {
 
-/// What a scene is refused with; "accepted" where it is not.
+/// The message with which a scene is refused; "accepted" if it is not refused.
 std::string refusal(const std::string& scene, const std::vector<std::string>& overrides) {
   try {
     simulation_of(read_any_scene(shipped(scene), overrides));
@@ -41,7 +41,7 @@ const std::string kReleased = "step.start=\"released\"";
 
 }  // namespace
 
-TEST_CASE("rails that traffic would push away are refused whatever the start", "[not_held]") {
+TEST_CASE("rails that traffic would push away are refused in any start", "[not_held]") {
   const std::string along_y = "the rails along y; accepted is support.stiffness_y_n_per_m above 0";
   CHECK_THAT(refusal("wheelset_flange",
                      {"support.stiffness_y_n_per_m=0", "support.damping_y_n_s_per_m=0"}),
@@ -73,7 +73,8 @@ TEST_CASE("a scene that cannot be condensed is bad input of its file", "[not_hel
               {"exciter_on_track.toml: the track has a free rigid mode", "along y"});
 }
 
-TEST_CASE("a free motion is named by its rail, its place and all the keys it wants", "[not_held]") {
+TEST_CASE("a free motion is named with its rail, its place and all keys that it needs",
+          "[not_held]") {
   Track t = paper_track();
   t.support.stiffness[0] = t.support.stiffness[1] = 0.;
   CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rails along"));
@@ -95,7 +96,7 @@ TEST_CASE("a free motion is named by its rail, its place and all the keys it wan
   t.support.stiffness[0] = 0.;
   t.changed_seats[1] = held;
   CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rails (x = ") && Contains("along x"));
-  // One seat under a vertical beam: no stiffness of a pad keeps it from tipping but one along x.
+  // A vertical beam has one seat: of its pad's stiffnesses only that along x keeps it from tipping.
   t = r6_track();
   t.support.stiffness[0] = 1e6;
   for (int seat = 0; seat <= t.bays; ++seat)
@@ -103,7 +104,8 @@ TEST_CASE("a free motion is named by its rail, its place and all the keys it wan
   CHECK_THROWS_WITH(Statics(t), Contains("free rigid mode") && Contains("[[support_change]]"));
 }
 
-TEST_CASE("what is held by one-sided supports alone is told so where they are open", "[not_held]") {
+TEST_CASE("a rail on one-sided supports alone is refused where the model has them open",
+          "[not_held]") {
   Track t = r6_track();
   t.bays = 8;
   t.support.unilateral = true;
@@ -115,7 +117,7 @@ TEST_CASE("what is held by one-sided supports alone is told so where they are op
                              "them open"));
 }
 
-TEST_CASE("a beam of Timoshenko's and a receptance of few modes name the motion too",
+TEST_CASE("Timoshenko's beam and a receptance of few modes name the free motion too",
           "[not_held]") {
   Track t = r6_track();
   t.support.stiffness[2] = 0.;
@@ -125,8 +127,8 @@ TEST_CASE("a beam of Timoshenko's and a receptance of few modes name the motion 
   CHECK_THROWS_WITH(CondensedReceptance(t, {middle, {middle}}, {}, false), Contains(along_z));
 }
 
-TEST_CASE("a rail on the softest of springs is not free", "[not_held]") {
-  // 0.5 N/m under a rail of 1e12 N/m, as of rounding (config/hard/h10_light_rail.toml).
+TEST_CASE("a rail on very soft springs is not free", "[not_held]") {
+  // 0.5 N/m under a rail of 1e12 N/m is as small as rounding (config/hard/h10_light_rail.toml).
   Track t = r6_track();
   t.bays = 1;
   t.bay_length = .05;
@@ -142,16 +144,16 @@ TEST_CASE("a rail on the softest of springs is not free", "[not_held]") {
   CHECK_THROWS_WITH(PackedModel(t, load, options), Contains("free rigid mode"));
 }
 
-TEST_CASE("what has no track that moves, or is held by its ends, needs no pads", "[not_held]") {
+TEST_CASE("scenes without a moving track, or with held ends, need no pads", "[not_held]") {
   CHECK(refusal("moving_load", {"support.stiffness_z_n_per_m=0", "track.ends=\"clamped\""}) ==
         "accepted");
   CHECK(refusal("double_pendulum", {kReleased}) == "accepted");
-  // Nothing moves the rails sideways there.
+  // Nothing moves the rails sideways here.
   CHECK(refusal("moving_load", {"track.unknowns=\"full\"", "support.stiffness_y_n_per_m=0"}) ==
         "accepted");
 }
 
-TEST_CASE("a track that buckles says where", "[not_held]") {
+TEST_CASE("a track that buckles is refused with the place", "[not_held]") {
   Track t = r6_track();
   t.bays = 30;
   for (int seat = 12; seat <= 17; ++seat) t.changed_seats[seat] = {};
@@ -164,7 +166,7 @@ TEST_CASE("a track that buckles says where", "[not_held]") {
     CAPTURE(said);
     const std::size_t at = said.find(" N, most at x = ");
     REQUIRE(at != std::string::npos);
-    // Seats 11 and 18 are the last that hold: the middle of the gap is 14.5 bays on.
+    // Seats 11 and 18 are the last that hold, so the middle of the gap is 14.5 bays on.
     CHECK(std::abs(std::stod(said.substr(at + 16)) - 14.5 * t.bay_length) < .5 * t.bay_length);
   }
 }

@@ -1,4 +1,4 @@
-// Statics of what does not pull: gaps, hanging sleepers, ballast under heavy loads, stops.
+// Statics of one-sided supports: gaps, hanging sleepers, ballast under heavy loads, stops.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,8 +16,8 @@ RailPoint at(double x, int rail = 0) { return {rail, x, 0., 0., 2}; }
 
 }  // namespace
 
-TEST_CASE("a gap under the loaded seat: when it closes, what it carries", "[supports]") {
-  // R6, a gap of 0.5 mm: printed to 7 digits; 1e-3 is the case's own bound (H7).
+TEST_CASE("a gap under the loaded seat closes and carries as the reference says", "[supports]") {
+  // R6 has a gap of 0.5 mm, printed to 7 digits; 1e-3 is the case's bound (H7).
   const Statics statics(with_gap(r6_track(), 20, .5e-3));
   REQUIRE(statics.ports().size() == 1);
   const double closes = 28372.82;
@@ -31,9 +31,9 @@ TEST_CASE("a gap under the loaded seat: when it closes, what it carries", "[supp
   CHECK_THAT(sum, WithinRel(50e3, 1e-9));
 }
 
-TEST_CASE("a sleeper that hangs over a gap of 0.5 mm", "[supports]") {
-  // rail-data.md, 100 kN over it: the gap carries 27.91 kN, rail 1.1977 mm, neighbours 29.44 and
-  // 9.77 kN; half a unit of the last digit.
+TEST_CASE("a sleeper that hangs over a gap of 0.5 mm carries as the reference says", "[supports]") {
+  // rail-data.md has 100 kN over it: the gap carries 27.91 kN, the rail sinks by 1.1977 mm, and the
+  // neighbours carry 29.44 and 9.77 kN; half a unit of the last digit.
   const Statics statics(with_gap(s1_rail(), 20, .5e-3));
   const auto u = statics.solve({{at(12.), -100e3}});
   CHECK_THAT(statics.port_forces(u).at(0), WithinAbs(27.91e3, 5.));
@@ -46,10 +46,11 @@ TEST_CASE("a sleeper that hangs over a gap of 0.5 mm", "[supports]") {
   CHECK_THAT(statics.support_force(u, 0, 20), WithinRel(statics.port_forces(u).at(0), 1e-8));
 }
 
-TEST_CASE("ballast that does not pull, under a heavy load", "[supports]") {
-  // Where springs would pull, s = k max(0, -d) takes that away from them: with d1 and W those of
-  // the track on springs, d = d1 - W s and so s = k max(0, W s - d1). As k W is below 1 (a spring
-  // is part of what it stands in), this iteration contracts; no active set, no Newton.
+TEST_CASE("ballast that does not pull opens under a heavy load as a separate iteration finds",
+          "[supports]") {
+  // Where springs would pull, s = k max(0, -d) cancels that. With d1 and W of the track on springs,
+  // d = d1 - W s and so s = k max(0, W s - d1). As k W is below 1 (a spring is part of its
+  // surroundings), this iteration contracts; it has no active set and no Newton.
   const double k = 50e6, gravity = 9.81, load = -400e3;
   Track springs = s1_rail(24);
   Track one_sided = springs;
@@ -84,13 +85,13 @@ TEST_CASE("ballast that does not pull, under a heavy load", "[supports]") {
     open += force == 0. ? 1 : 0;
     sum += force;
   }
-  // Rails of 60.2095 kg/m, 14.4 m of it, and 25 halves of 300 kg.
+  // 14.4 m of rail with 60.2095 kg/m, and 25 halves of 300 kg.
   CHECK_THAT(sum, WithinRel(400e3 + gravity * (7850. * 7670e-6 * 14.4 + 25 * 150.), 1e-8));
   CHECK(open >= 4);
   CHECK(s.maxCoeff() > 1e3);  // springs would have pulled
 }
 
-TEST_CASE("one side of a sleeper hangs, and the mirror halves find the same as both rails in one",
+TEST_CASE("one side of a sleeper can hang, and mirror coordinates find the same as one line",
           "[supports]") {
   Track t = with_gap(s1_track(8, 2), 4, .3e-3, true, false);
   Track alike = with_gap(s1_track(8, 2), 4, .3e-3);
@@ -101,7 +102,7 @@ TEST_CASE("one side of a sleeper hangs, and the mirror halves find the same as b
   const Statics mirrored(alike);
   alike.mirror_coordinates = false;
   const Statics general(alike);
-  // Loads that lean, so that both halves take part: good to rounding (as
+  // The loads are unequal, so that both halves take part; the results agree to rounding (as in
   // tests/offline/track/test_general_way).
   const std::vector<PointForce> loads = {{at(2.4), -80e3}, {at(2.5, 1), -50e3}};
   const auto a = mirrored.solve(loads), b = general.solve(loads);
@@ -112,8 +113,8 @@ TEST_CASE("one side of a sleeper hangs, and the mirror halves find the same as b
   CHECK_THAT(mirrored.at(a, at(2.6, 1)), WithinRel(general.at(b, at(2.6, 1)), 1e-8));
 }
 
-TEST_CASE("a pad of two halves that does not pull lifts on one side", "[supports]") {
-  // A moment about x on the railhead: with springs some halves would pull.
+TEST_CASE("a one-sided pad of two halves lifts on one side", "[supports]") {
+  // A moment about x acts on the railhead: with springs some halves would pull.
   Track t = s1_track(2, 2);
   t.rails = 1;
   t.sleeper.reset();
@@ -134,11 +135,11 @@ TEST_CASE("a pad of two halves that does not pull lifts on one side", "[supports
   }
   CHECK(open > 0);
   CHECK_THAT(sum, WithinRel(60e3, 1e-8));
-  // About the seats' height, 81 mm under the axis: the halves at +y take more.
+  // About the seats' height, 81 mm below the axis: the halves at +y bear more.
   CHECK_THAT(moment, WithinRel(15e3 * (.09 + .081), 1e-7));
 }
 
-TEST_CASE("a stop beside the railhead takes what the seats do not", "[supports]") {
+TEST_CASE("a stop beside the railhead takes its share of a lateral force", "[supports]") {
   Track t = s1_track(8, 2);
   t.rails = 1;
   t.sleeper.reset();
@@ -147,14 +148,14 @@ TEST_CASE("a stop beside the railhead takes what the seats do not", "[supports]"
   const Statics statics(t);
   const RailPoint head{0, 2.4, 0., .09, 1};
   const auto pushed = [&](double force) { return statics.solve({{head, force}}); };
-  // Away from it, and until it is met, the rail does not feel it.
+  // Away from the stop, and until it meets it, the rail moves as without it.
   t.stops.clear();
   const Statics without(t);
   const double flexibility = without.flexibility(head, head);
   CHECK_THAT(statics.at(pushed(-40e3), head), WithinRel(-40e3 * flexibility, 1e-8));
   const double meets = .2e-3 / flexibility;
   CHECK(statics.port_forces(pushed(.999 * meets)).at(0) == 0.);
-  // Beyond it the stop and the rail share: f = (F g - gap) / (1/k + g).
+  // Beyond that the stop and the rail share the force: f = (F g - gap) / (1/k + g).
   const auto u = pushed(40e3);
   const double want = (40e3 * flexibility - .2e-3) / (1. / 80e6 + flexibility);
   const double stop = statics.port_forces(u).at(0);
@@ -165,13 +166,13 @@ TEST_CASE("a stop beside the railhead takes what the seats do not", "[supports]"
   CHECK_THAT(seats + stop, WithinRel(40e3, 1e-8));
 }
 
-TEST_CASE("what has no equilibrium is refused in one sentence", "[supports]") {
+TEST_CASE("loads without an equilibrium are refused in one sentence", "[supports]") {
   Track t = r6_track();
   t.support.unilateral = true;
   t.bays = 20;
   const Statics statics(t);
   CHECK_THROWS_WITH(statics.solve({{at(6.), 10e3}}), Catch::StartsWith("no equilibrium"));
-  // Beyond the last seat that holds it down, a load tips the rail over.
+  // Beyond the last seat that holds the rail down, a load tips it over.
   Track tips = t;
   for (int seat = 0; seat <= 20; ++seat)
     if (seat != 10 && seat != 11) tips.changed_seats[seat] = {};
@@ -181,7 +182,7 @@ TEST_CASE("what has no equilibrium is refused in one sentence", "[supports]") {
   CHECK_THROWS_WITH(Statics(tips), Catch::Contains("free rigid mode"));
 }
 
-TEST_CASE("a sleeper of 0 kg over a gap is pad and gap in series", "[supports]") {
+TEST_CASE("a sleeper of 0 kg over a gap acts as pad and gap in series", "[supports]") {
   Track t = with_gap(s1_rail(), 20, .5e-3);
   for (auto& [border, seat] : t.changed_seats) seat.sleeper->mass = 0.;
   const Statics light(t), heavy(with_gap(s1_rail(), 20, .5e-3));

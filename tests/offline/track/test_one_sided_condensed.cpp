@@ -1,5 +1,5 @@
-// Condensed tracks with one-sided supports beside full order: the static start, and runs, with pads
-// that press and pads that are open.
+// Condensed tracks with one-sided supports against full order: the static start, and runs, with
+// pads that press and pads that are open.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 const std::string kRail =
     "schema = 1\n"
     "rail = {rectangle={height_m=0.172, width_m=0.07}, young_pa=60e9}\n";
-/// Short and stiff: under the load the pads at both sides of its neighbours lift.
+/// A short, stiff rail: under the load the pads at both sides of its neighbours lift.
 const std::string kStiff =
     kRail +
     "track = {unknowns=\"vertical\", rails=1, bays=5, bay_m=0.6, elements_per_bay=1, "
@@ -26,7 +26,7 @@ const std::string kStiff =
     "step = {dt_s=1e-3, duration_s=0.05, start=\"equilibrium\"}\n"
     "output = {supports=true}\n";
 
-/// Near where the rail would buckle between its ends; on its seats it is far from that.
+/// The compression would nearly buckle the rail between its ends; on its seats it is far from that.
 const std::string kPressed =
     "schema = 1\n"
     "rail = {rectangle={height_m=0.172, width_m=0.07}, young_pa=60e9, axial_force_n=-200e3}\n"
@@ -51,7 +51,7 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-/// Largest difference of a column over its largest value.
+/// Largest difference in a column, over its largest value.
 double apart(const Traced& a, const Traced& b, const std::string& column) {
   const std::vector<double> left = a[column], right = b[column];
   REQUIRE(left.size() == right.size());
@@ -62,7 +62,7 @@ double apart(const Traced& a, const Traced& b, const std::string& column) {
 
 }  // namespace
 
-TEST_CASE("one-sided pads: every condensed start is that of full order", "[supports]") {
+TEST_CASE("with one-sided pads every condensed start agrees with full order", "[supports]") {
   for (const char* elements : {"1", "2"}) {
     const std::vector<std::string> mesh = {std::string("track.elements_per_bay=") + elements};
     const Traced full(with_kind(kStiff, "full", mesh));
@@ -71,19 +71,19 @@ TEST_CASE("one-sided pads: every condensed start is that of full order", "[suppo
     for (const std::string& kind : kKinds) {
       CAPTURE(elements, kind);
       const Traced run(with_kind(kStiff, kind, mesh));
-      // Modes and seats have the mesh's statics, and pads only those: by the rounding of the basis.
+      // Modes and seats have the mesh's statics, and pads have only that: the basis rounds.
       for (int support = 0; support < 6; ++support)
         for (const double each : run["support_" + std::to_string(support) + ".force_z_n"])
           CHECK(std::abs(each - full["support_" + std::to_string(support) + ".force_z_n"][0]) <
                 1e-8 * 50e3);
-      // What the bases leave out is tabled, 16 places an element, and read by cubics: 2e-4 at the
-      // most beside a seat of 2e9 N/m (the static error of linear pads is that).
+      // Tables of 16 places per element hold what the bases leave out. Cubics read them to 2e-4 at
+      // most beside a seat of 2e9 N/m (the static error with linear pads is as large).
       CHECK(apart(run, full, "l.deflection_z_m") < 2e-4);
     }
   }
 }
 
-TEST_CASE("one-sided pads: the static error that is stated holds in the start", "[supports]") {
+TEST_CASE("with one-sided pads the start keeps to the stated static error", "[supports]") {
   for (const char* elements : {"1", "2", "4"}) {
     const std::string mesh = std::string("track.elements_per_bay=") + elements;
     const Traced fine(with_kind(kStiff, "full", {"track.elements_per_bay=32"}));
@@ -93,27 +93,29 @@ TEST_CASE("one-sided pads: the static error that is stated holds in the start", 
       const double stated = static_error(built.track, *built.packed);
       const double off = apart(Traced(scene), fine, "l.deflection_z_m");
       CAPTURE(elements, kind, off, stated);
-      // of the largest deflection of any place, which is 1.3 times that under this load
+      // This is over the largest deflection of any place, 1.3 times that under this load.
       CHECK(off < 1.5 * stated);
       CHECK(stated < 3. * off);
     }
   }
 }
 
-TEST_CASE("one-sided pads: a heavy wheel on a pressed rail stands as in full order", "[supports]") {
+TEST_CASE("with one-sided pads a heavy wheel on a compressed rail stands as in full order",
+          "[supports]") {
   const Traced full(with_kind(kPressed, "full"));
   CHECK(full["m.wheel_1.rail_z_m"][0] < -2e-3);
   for (const std::string& kind : kKinds) {
     CAPTURE(kind);
     const Traced run(with_kind(kPressed, kind));
-    // what is tabled, as above; and the wheel stays where it starts
+    // The tables have the error above, and the wheel stays where it starts.
     CHECK(apart(run, full, "m.wheel_1.rail_z_m") < 1e-4);
     CHECK(apart(run, full, "m.wheel_1.force_z_n") < 1e-8);
   }
 }
 
-TEST_CASE("one-sided pads: a passing load is that of full order on every basis", "[supports]") {
-  // Pads of 200 MN/m and 0.1 mm of gap under one of them, 50 kN at 30 m/s over ten bays.
+TEST_CASE("with one-sided pads a passing load moves as in full order on every basis",
+          "[supports]") {
+  // Pads have 200 MN/m, one with a gap of 0.1 mm; 50 kN pass ten bays at 30 m/s.
   const std::string scene =
       "schema = 1\n"
       "rail = {rectangle={height_m=0.172, width_m=0.07}}\n"

@@ -1,5 +1,5 @@
 // Random small tracks with one-sided supports: full order, condensed and a refined reference agree
-// within what `condense` states, at rest and in runs. More of them by hand:
+// within the errors that `condense` states, at rest and in runs. To run more of them by hand:
 //   RAILSTEP_SEEDS=1000:3000 build/release/tests/test_offline_track "-#" "[#test_one_sided_sweep]"
 #include <fmt/format.h>
 
@@ -22,13 +22,13 @@ using namespace railstep;
 
 namespace {
 
-constexpr int kFine = 64;  // elements a bay of the reference: loads stand on its elements' ends
+constexpr int kFine = 64;  // elements per bay of the reference: loads are at its nodes
 
-/// A track of one rail with a load, as a scene has it; what is one-sided, and how much, is drawn.
+/// A scene's track of one rail with a load; which supports are one-sided, and how, is random.
 struct OneSidedScene {
   std::uint64_t seed;
   std::string text;
-  double force = 0.;  // N, down
+  double force = 0.;  // N, downwards
 
   explicit OneSidedScene(std::uint64_t s) : seed(s) {
     Draw draw(s);
@@ -60,7 +60,7 @@ struct OneSidedScene {
                           draw.whole(1, bays - 1), pads ? "support" : "ballast",
                           draw.of_any_size(1e-6, 1e-3));
     force = draw.of_any_size(1e3, 2e5);
-    // An element of the reference ends there, and no place of the tables is there.
+    // An element of the reference ends there, but the tables have no place there.
     const double at = bay / kFine * (2 * draw.whole(1, bays * kFine / 2 - 10) + 1);
     text += fmt::format(
         "[[load]]\nname = \"load\"\nstart_m = {:.17g}\nforce_z_n = {:.17g}\n"
@@ -73,7 +73,7 @@ struct OneSidedScene {
   }
 };
 
-/// Largest of the static deflections under the force at many places, of the refined track, m.
+/// Largest static deflection under the force over many places of the refined track, m.
 double largest_deflection(const Statics& fine, double force) {
   double largest = 0.;
   const int places = 8 * fine.track().bays;
@@ -89,7 +89,7 @@ struct Found {
   double stated_full = 0., stated = 0.;                       // static errors
 };
 
-/// @param file  of the scene
+/// @param file  the scene's file
 Found start_of(const OneSidedScene& scene, const std::string& file) {
   Found found;
   const auto deflection = [&](const Scene& read, double& stated) {
@@ -109,10 +109,10 @@ Found start_of(const OneSidedScene& scene, const std::string& file) {
   return found;
 }
 
-/// A scene's run beside one on eight times the elements and steps.
+/// Run of a scene, and the same with eight times the elements and steps.
 struct Run {
-  double off;     // of the condensed run, over the peak
-  double stated;  // transient error; twice what is known of a reference, this one's too; rounding
+  double off;     // for the condensed run, over the peak
+  double stated;  // transient error, twice the error known of both references, and rounding
 };
 
 std::vector<double> deflections(const Scene& scene) {
@@ -143,7 +143,7 @@ Run run_of(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("random tracks with one-sided supports keep to what is stated", "[supports]") {
+TEST_CASE("random tracks with one-sided supports keep to the stated errors", "[supports]") {
   std::uint64_t first = 0, last = 200;
   if (const char* seeds = std::getenv("RAILSTEP_SEEDS")) {
     char* rest = nullptr;
@@ -159,10 +159,10 @@ TEST_CASE("random tracks with one-sided supports keep to what is stated", "[supp
     const Found found = start_of(scene, file);
     const auto apart = [&](double a, double b) { return std::abs(a - b) / found.largest; };
     CAPTURE(seed, scene.text, found.full, found.condensed, found.fine, found.largest);
-    // What a basis leaves out is tabled and read by cubics: 2e-5 is the most of 200.
+    // Cubics read tables of what a basis leaves out: 2e-5 is the largest error of 200.
     CHECK(apart(found.full, found.condensed) < 1e-4);
-    // Stated of 128 places, as few as eight an element: between two of them it may be a little
-    // more.
+    // The statement has 128 places, down to eight per element: between two of them the error may be
+    // a little larger.
     CHECK(apart(found.full, found.fine) < 1.05 * found.stated_full);
     CHECK(apart(found.condensed, found.fine) < 1.05 * found.stated);
     const Run run = run_of(file);

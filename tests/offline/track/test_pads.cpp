@@ -15,7 +15,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// Set S1 of rail-data.md on one rail R60, mid-span of the middle bay and over a sleeper.
+/// Set S1 of rail-data.md with one rail R60, at mid-bay of the middle bay and over a sleeper.
 Track s1(int bays, int elements_per_bay, double pad_length) {
   Track t;
   t.rails = 1;
@@ -32,8 +32,8 @@ Track s1(int bays, int elements_per_bay, double pad_length) {
 
 RailPoint at(double x) { return {0, x, 0., 0., 2}; }
 
-/// The same track by samples: `samples` springs along each pad, each on the element's own shape
-/// functions, on sleepers with a height and a pitch.
+/// The same track by samples: `samples` springs along each pad, each on the element's shape
+/// functions, on sleepers with height and pitch.
 class Sampled {
  public:
   Sampled(const Track& t, int samples) : track_(t) {
@@ -79,7 +79,7 @@ class Sampled {
   Eigen::MatrixXd K_;
 };
 
-/// |w/F| at a place at which the force acts, m/N.
+/// |w/F| at the place where the force acts, m/N.
 double receptance(const Track& track, double x, double hz) {
   using Complex = std::complex<double>;
   const Complex s(0., 2. * M_PI * hz);
@@ -98,8 +98,7 @@ double receptance(const Track& track, double x, double hz) {
 
 }  // namespace
 
-TEST_CASE("the points of a pad weigh it whole, and integrate what shape functions square to",
-          "[pads]") {
+TEST_CASE("the points of a pad sum to one and integrate the squares of shape functions", "[pads]") {
   const Track t = s1(4, 3, 0.);
   for (const double length : {.1, .16, .3, .6})
     for (const int border : {0, 2, 4}) {
@@ -112,7 +111,7 @@ TEST_CASE("the points of a pad weigh it whole, and integrate what shape function
         square += p.part * p.offset * p.offset;
         fourth += p.part * p.offset * p.offset * p.offset * p.offset;
       }
-      // Under the rail: -L/2 to L/2, or the half of it that an end leaves.
+      // Under the rail: from -L/2 to L/2, or only the half at an end of the rail.
       const double from = border == 0 ? 0. : -.5 * length, to = border == 4 ? 0. : .5 * length;
       const auto moment = [&](int n) {
         return (std::pow(to, n + 1) - std::pow(from, n + 1)) / ((n + 1) * (to - from));
@@ -124,9 +123,9 @@ TEST_CASE("the points of a pad weigh it whole, and integrate what shape function
     }
 }
 
-TEST_CASE("a pad spread along the rail, against one of many springs", "[pads]") {
-  // The midpoint rule of n samples misses h^2/24 f'' of each element's piece: with n = 400 some
-  // 1e-6 of what a pad as long as 0.16 m changes at all, 1e-2.
+TEST_CASE("a long pad agrees with many springs along the rail", "[pads]") {
+  // The midpoint rule of n samples misses h^2/24 f'' in each element's piece. With n = 400 this is
+  // some 1e-6 of the effect of a pad of 0.16 m, 1e-2.
   for (const int elements_per_bay : {1, 2, 5}) {
     const Track track = s1(4, elements_per_bay, .16);
     const Sampled sampled(track, 400);
@@ -136,26 +135,26 @@ TEST_CASE("a pad spread along the rail, against one of many springs", "[pads]") 
   }
 }
 
-TEST_CASE("a short pad is a point, a long one holds the rail's slope", "[pads]") {
-  // A load over a reaction that is spread over L bends no more but shears: by up to F L/(8 k G A),
-  // 5e-14 m per N of 1e-8 for L = 0.1 mm.
+TEST_CASE("a short pad acts at a point, a long one holds the rail's slope", "[pads]") {
+  // A load over a reaction that is spread over L bends no more, but shears by up to F L/(8 k G A):
+  // 5e-14 of 1e-8 m per N for L = 0.1 mm.
   const auto over_seat = [](double length, double ballast_length) {
     Track track = s1(10, 8, length);
     track.sleeper->ballast_length = ballast_length;
     return Statics(track).flexibility(at(3.), at(3.));
   };
   CHECK_THAT(over_seat(1e-4, .26), WithinRel(over_seat(0., .26), 1e-5));
-  // On a sleeper that does not pitch the pad turns with stiffness k L^2/12; on one that does the
-  // rail is freer, and its seat softer than a point.
+  // On a sleeper that does not pitch, the pad resists rotation with k L^2/12. On one that does, the
+  // rail is freer and its seat softer than a point.
   CHECK(over_seat(.16, 0.) < (1. - 2e-3) * over_seat(0., 0.));
   CHECK(over_seat(.16, .26) > over_seat(.16, 0.));
 }
 
 TEST_CASE("stiff pads of 0.16 m change the receptance over them by 2 to 18 % below 500 Hz",
           "[pads]") {
-  // The bounds are those that a seat as long as its pad was found to make; pads of 1.3e9 N/m
-  // (rail-data.md, Thompson-type, stiff) on sleepers that do not pitch. Between them, from 250 to
-  // 350 Hz, the change goes through 0.
+  // A seat as long as its pad was found to have these bounds, for pads of 1.3e9 N/m (rail-data.md,
+  // Thompson-type, stiff) on sleepers that do not pitch. From 250 to 350 Hz the change passes
+  // through 0.
   Track point = s1(60, 8, 0.), pad = s1(60, 8, .16), fine = s1(60, 16, .16);
   for (Track* track : {&point, &pad, &fine}) {
     track->support.stiffness[2] = 1.3e9;
@@ -167,17 +166,17 @@ TEST_CASE("stiff pads of 0.16 m change the receptance over them by 2 to 18 % bel
     CAPTURE(hz, change);
     CHECK(change > .02);
     CHECK(change < .18);
-    // Eight elements per bay resolve it to a twentieth of the least change.
+    // Eight elements per bay resolve it to a twentieth of the smallest change.
     CHECK_THAT(with_pad, WithinRel(receptance(fine, 18., hz), 1e-3));
   }
-  // rail-data.md: the receptance of point seats, printed to 4 digits; 1 % as its own text has it.
+  // rail-data.md prints the receptance of point seats to 4 digits and states 1 %.
   const Track printed = s1(60, 4, 0.);
   CHECK_THAT(receptance(printed, 18.3, 200.), WithinRel(2.405e-9, 1e-2));
   CHECK_THAT(receptance(printed, 18., 400.), WithinRel(5.264e-9, 1e-2));
 }
 
 TEST_CASE("a sleeper on long pads pitches with its rail", "[pads]") {
-  // A load beside a sleeper turns it; without a length of ballast it is held upright, and stiffer.
+  // A load beside a sleeper pitches it; ballast without length holds it upright and is stiffer.
   Track rocks = s1(10, 8, .16), upright = rocks;
   upright.sleeper->ballast_length = 0.;
   const Statics one(rocks), other(upright);

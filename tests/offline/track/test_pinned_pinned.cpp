@@ -1,4 +1,4 @@
-// The pinned-pinned frequency: half a bending wave between two seats.
+// The pinned-pinned frequency: half a bending wave fits between two seats.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 Track pinned(int bays, int elements_per_bay) {
   Track t;
   t.section = section_f();
-  t.section.shear_factor_z = .472;  // reference.md's row
+  t.section.shear_factor_z = .472;  // as in reference.md's row
   t.unknowns = Unknowns::vertical;
   t.rails = 1;
   t.bays = bays;
@@ -41,7 +41,7 @@ double timoshenko(const BeamSection& s, const Material& steel, double length, in
 
 double exact(const Track& t) { return timoshenko(t.section, t.material, t.bay_length, 1); }
 
-/// All frequencies, lowest first. @param struck  the end heights are struck out, not sprung
+/// All frequencies, lowest first. @param struck  the end heights are removed instead of sprung
 Eigen::VectorXd frequencies(const Track& track, bool struck = false) {
   Line line = assemble(track)[0];
   std::vector<int> kept;
@@ -63,13 +63,13 @@ double nearest(const Eigen::VectorXd& all, double wanted) {
 
 }  // namespace
 
-TEST_CASE("pinned-pinned: the closed form is the printed frequency", "[modes]") {
-  // reference.md, 1141.44 Hz for k_z = .472: five units of k_z's fourth digit are open
+TEST_CASE("the closed form is the printed pinned-pinned frequency", "[modes]") {
+  // reference.md has 1141.44 Hz for k_z = .472: five units of k_z's fourth digit are open.
   Track f = pinned(1, 1);
   const double found = exact(f);
   f.section.shear_factor_z += 5e-4;
   CHECK_THAT(found, WithinAbs(1141.44, exact(f) - found));
-  // rail-data.md, R60: 1067.27 Hz with a shear factor of .4 outright, half of the last digit
+  // rail-data.md has 1067.27 Hz for R60 with a shear factor of .4: half of the last digit.
   Track r60 = pinned(1, 1);
   r60.section = {.area = 7670e-6,
                  .inertia_y = 3038.3e-8,
@@ -79,9 +79,10 @@ TEST_CASE("pinned-pinned: the closed form is the printed frequency", "[modes]") 
   CHECK_THAT(exact(r60), WithinAbs(1067.27, 5e-3));
 }
 
-TEST_CASE("pinned-pinned: errors of 1, 2 and 4 elements per bay", "[modes]") {
-  // reference.md: +6.8 %, +0.82 %, +0.056 %, half of the last digit. The seats give way by
-  // 1.8e9 N/m of the bay's pi^4 EI/(2 l^3) over 1e15, both: 1e-6 of the frequency.
+TEST_CASE("1, 2 and 4 elements per bay have the printed errors of the pinned-pinned frequency",
+          "[modes]") {
+  // reference.md: +6.8 %, +0.82 %, +0.056 %, half of the last digit. The seats yield by the bay's
+  // pi^4 EI/(2 l^3) = 1.8e9 N/m over 1e15, both: 1e-6 of the frequency.
   const double printed[3] = {6.8, .82, .056}, half[3] = {.05, .005, .0005};
   const int elements[3] = {1, 2, 4};
   for (int i = 0; i < 3; ++i) {
@@ -92,9 +93,10 @@ TEST_CASE("pinned-pinned: errors of 1, 2 and 4 elements per bay", "[modes]") {
   }
 }
 
-TEST_CASE("pinned-pinned: the mesh converges with the fourth order to the closed form", "[modes]") {
-  // Quadratic shapes and two axial points: 2 p = 4. The next term is of order 6: with 4 elements
-  // (pi/8)^2 = .15 of the first or less, which moves the order by .2 at most.
+TEST_CASE("the mesh's pinned-pinned frequency converges with fourth order to the closed form",
+          "[modes]") {
+  // Quadratic shapes with two axial points have 2 p = 4. The next term is of order 6: with 4
+  // elements it is (pi/8)^2 = .15 of the first or less, which changes the order by .2 at most.
   const auto error = [](int elements) {
     const Track t = pinned(1, elements);
     return frequencies(t, true)[0] / exact(t) - 1.;
@@ -105,17 +107,18 @@ TEST_CASE("pinned-pinned: the mesh converges with the fourth order to the closed
   }
 }
 
-TEST_CASE("pinned-pinned: a rail of many bays has the frequency of one", "[modes]") {
-  // Alternating half waves ask nothing of the slopes over the seats; between two bays the seat
-  // carries twice the force of an end's. 2e-6 for the seats' spring, as above.
+TEST_CASE("a rail of many bays has the pinned-pinned frequency of one bay", "[modes]") {
+  // Alternating half waves need no moment over the seats. A seat between two bays carries twice the
+  // force of one at an end; 2e-6 is for the seats' springs, as above.
   for (const int elements : {1, 2, 4}) {
     const double one = frequencies(pinned(1, elements))[0];
     CHECK_THAT(nearest(frequencies(pinned(5, elements)), one), WithinRel(one, 2e-6));
   }
 }
 
-TEST_CASE("pinned-pinned: all nine unknowns bend as the vertical ones alone", "[modes]") {
-  // With the shear centre at the centroid nothing else couples to height and vertical slope.
+TEST_CASE("all nine unknowns have the pinned-pinned frequency of the vertical ones alone",
+          "[modes]") {
+  // With the shear centre at the centroid, only height and vertical slope are coupled.
   Track t = pinned(1, 4);
   const double vertical = frequencies(t)[0];
   t.unknowns = Unknowns::full;
@@ -124,8 +127,8 @@ TEST_CASE("pinned-pinned: all nine unknowns bend as the vertical ones alone", "[
   for (const Line& line : assemble(t)) {
     if (line.unknown(0, 0, 2) < 0) continue;
     ++found;
-    // one and the same matrices, perhaps in another order: rounding over the seats' 1e15 N/m,
-    // eps 1e15/(5 kg)/(2 pi 1141/s)^2 = 1e-9
+    // The matrices are the same, perhaps in another order: rounding over the seats' 1e15 N/m, eps
+    // 1e15/(5 kg)/(2 pi 1141/s)^2 = 1e-9.
     CHECK_THAT(nearest(modes(line).frequency, vertical), WithinRel(vertical, 1e-8));
   }
   CHECK(found == 1);

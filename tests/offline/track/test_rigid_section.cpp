@@ -1,4 +1,4 @@
-// Six unknowns per node: the section turns but does not strain.
+// Six unknowns per node: the section rotates but does not strain.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ Track with(Track track, Unknowns unknowns) {
   return track;
 }
 
-/// One rail of section F, held on springs at its foot.
+/// One rail of section F; springs hold it at its foot.
 Track one_rail(Unknowns unknowns) {
   Track t;
   t.section = section_f();
@@ -34,13 +34,13 @@ Track one_rail(Unknowns unknowns) {
   return t;
 }
 
-/// Deflection of a point of the track under a newton there, m.
+/// Deflection of a point of the track under a force of 1 N there, m.
 double own_flexibility(const Track& track, double y, double z, int direction) {
   const RailPoint at{0, 4.95, y, z, direction};
   return Statics(track).flexibility(at, at);
 }
 
-/// Elements of section F, 0.6 m each, with nothing under them.
+/// Unsupported elements of section F, 0.6 m each.
 Track free_rail(Unknowns unknowns) {
   Track t;
   t.section = section_f();
@@ -64,7 +64,7 @@ std::vector<double> frequencies(Unknowns unknowns) {
   return found;
 }
 
-/// A wheelset that runs over a track from rest in equilibrium: what a step publishes.
+/// Outputs of a wheelset that runs over a track from rest in equilibrium.
 class Ride {
  public:
   explicit Ride(const Track& track)
@@ -81,7 +81,7 @@ class Ride {
 
 }  // namespace
 
-TEST_CASE("six unknowns per node: a free rail has six rigid modes and bends as with nine",
+TEST_CASE("with six unknowns per node a free rail has six rigid modes and bends as with nine",
           "[unknowns]") {
   const std::vector<double> nine = frequencies(Unknowns::full),
                             six = frequencies(Unknowns::rigid_section);
@@ -90,25 +90,25 @@ TEST_CASE("six unknowns per node: a free rail has six rigid modes and bends as w
   // Rigid modes are zero to the square root of rounding of the highest.
   CHECK(six[5] < 1e-6 * six.back());
   CHECK(six[6] > 10.);
-  // Bending and torsion: the section's strain follows at once, so what is left is that the
-  // constraint stiffens: never below, and by less than design.md's 0.3 %.
+  // In bending and torsion the section's strain follows at once. So the constraint only stiffens:
+  // never below, and by less than design.md's 0.3 %.
   for (std::size_t i = 6; i < 14; ++i) {
     CAPTURE(i, nine[i], six[i]);
     CHECK(six[i] > nine[i] * (1. - 1e-9));
     CHECK_THAT(six[i], WithinRel(nine[i], 3e-3));
   }
-  // What is left out are the fast modes of the section: fewer steps are lost on nothing.
+  // It leaves out the fast modes of the section: fewer steps are lost on them.
   CHECK(six.back() < .7 * nine.back());
 }
 
-TEST_CASE("six unknowns per node: statics within what the section's strain gives", "[unknowns]") {
+TEST_CASE("with six unknowns per node statics differs only by the section's strain", "[unknowns]") {
   Track nine = one_rail(Unknowns::full), six = one_rail(Unknowns::rigid_section);
   const double head = .1007375;
   const auto differ = [&](double y, double z, int direction) {
     return own_flexibility(nine, y, z, direction) / own_flexibility(six, y, z, direction) - 1.;
   };
-  // On the axis the foot's squeeze is in series with the pads; that of the head is left to the
-  // residual flexibility.
+  // On the axis the foot's squeeze is in series with the pads; the residual flexibility holds that
+  // of the head.
   CHECK_THAT(differ(0., 0., 1), WithinAbs(0., 3e-3));
   CHECK_THAT(differ(0., 0., 0), WithinAbs(0., 3e-3));
   CHECK_THAT(differ(0., head, 1), WithinAbs(0., 3e-3));
@@ -116,15 +116,14 @@ TEST_CASE("six unknowns per node: statics within what the section's strain gives
   const double squeeze = differ(0., head, 2);
   CHECK(squeeze > 3e-3);
   CHECK(squeeze < 2e-2);
-  // Nothing squeezes a section between an axis and a seat on it.
+  // Nothing squeezes a section between its axis and a seat at the axis.
   nine.support.height_z = six.support.height_z = 0.;
   CHECK_THAT(differ(0., 0., 2), WithinAbs(0., 1e-9));
 }
 
-TEST_CASE("a section that does not strain has its squeeze in series with the pads", "[unknowns]") {
-  // Against nine unknowns on eight elements a bay. What is left is the shear of the section that
-  // widens, 4e-3 of the squeeze: 5e-5 of the deflection, where pads alone miss 4e-3 of it at 2e8
-  // N/m.
+TEST_CASE("a rigid section has its squeeze in series with the pads", "[unknowns]") {
+  // Against nine unknowns on eight elements per bay. The shear of the section that widens is left,
+  // 4e-3 of the squeeze: 5e-5 of the deflection. Pads alone miss 4e-3 of it at 2e8 N/m.
   const Unknowns fewer = GENERATE(Unknowns::rigid_section, Unknowns::vertical);
   const double length = GENERATE(0., .16);
   Track nine = one_rail(Unknowns::full), few = one_rail(fewer);
@@ -145,7 +144,7 @@ TEST_CASE("a section that does not strain has its squeeze in series with the pad
   }
 }
 
-TEST_CASE("pads that meet press a section evenly", "[unknowns]") {
+TEST_CASE("adjoining pads press a section evenly", "[unknowns]") {
   Track t = one_rail(Unknowns::vertical);
   t.support.length = t.bay_length;
   const RailBar bar = t.bar(0);
@@ -153,16 +152,16 @@ TEST_CASE("pads that meet press a section evenly", "[unknowns]") {
                evenly = t.support.stiffness[2] * z * z /
                         (bar.material.young * bar.section.area * t.bay_length);
   CHECK_THAT(1. / part_of_pad(t, 8, 0) - 1., WithinRel(evenly, 1e-12));
-  // Points that stand close do so too.
+  // Points that are close together do so too.
   t.support.length = 0.;
   t.bay_length = 1e-3;
   CHECK_THAT(1. / part_of_pad(t, 8, 0) - 1., WithinRel(evenly * .6 / t.bay_length, 1e-4));
 }
 
-TEST_CASE("what few unknowns miss of a force on the head is in the residual flexibility",
+TEST_CASE("the residual flexibility holds what few unknowns miss of a force on the head",
           "[unknowns]") {
-  // Nine unknowns on a mesh of 16 parts of every element, assembled whole: deflections at head and
-  // foot under the head's force, over a seat and beside it, and the force of a pad.
+  // Nine unknowns on a mesh of 16 parts of every element give deflections at head and foot under
+  // the head's force, over a seat and beside it, and the force of a pad.
   const Unknowns fewer = GENERATE(Unknowns::rigid_section, Unknowns::vertical);
   const double along = GENERATE(0., 2e7);
   constexpr double kHeadZ = .1007375;
@@ -179,7 +178,7 @@ TEST_CASE("what few unknowns miss of a force on the head is in the residual flex
   const std::vector<double> opens = residual.from({0, kHeadZ}, pad);
   const double k = few.support.stiffness[2];
   double largest = 0.;
-  for (int p = 0; p <= kPoints; ++p) {  // from seat 8 on, over an element
+  for (int p = 0; p <= kPoints; ++p) {  // over an element from seat 8
     const RailPoint at{0, 4.8 + few.element_length() * p / kPoints, 0., kHeadZ, 2};
     constexpr std::size_t kElement = 16, kPlaces = kPoints + 1;
     const std::size_t place = kElement * kPlaces + static_cast<std::size_t>(p);
@@ -195,10 +194,9 @@ TEST_CASE("what few unknowns miss of a force on the head is in the residual flex
   CHECK(largest > 5e-3);
 }
 
-TEST_CASE("a vertical track is measured against its own plane, under compression too",
-          "[unknowns]") {
-  // 400 kN, at which rails that pads do not hold sideways would buckle; two rails on sleepers that
-  // roll, one force on one rail: both mirror coordinates. The pads hold the rails' turn on them.
+TEST_CASE("a vertical track is compared in its own plane, also under compression", "[unknowns]") {
+  // At 400 kN rails that pads do not hold sideways would buckle. Two rails on sleepers that roll,
+  // with a force on one rail, use both mirror coordinates. The pads hold the rails' rotation.
   Track t = s1_track(12, 2);
   t.unknowns = Unknowns::vertical;
   t.axial_force = -4e5;
@@ -212,15 +210,15 @@ TEST_CASE("a vertical track is measured against its own plane, under compression
   const std::vector<double> under = residual.under({0, .09});
   const double found = model.flexibility(at, at) + under[12 * (kPoints + 1) + 3];
   CHECK_THAT(found, WithinRel(exact.flexibility(at, at), 1e-5));
-  // What is read across the track or along its axis stays where it is.
+  // Readings across the track or along its axis do not change.
   for (const int direction : {0, 1}) {
     const Functional read{.rail = {{{0, 4.8, 0., .0, direction}, 1.}}};
     for (const double value : residual.from({0, .09}, read)) CHECK(std::abs(value) < 1e-18);
   }
 }
 
-TEST_CASE("six unknowns per node: a vertical force sees two of them", "[unknowns]") {
-  // On the axis of a rail whose pads do not couple bending and stretching both carry r_z and b_x.
+TEST_CASE("with six unknowns per node a vertical force moves two of them", "[unknowns]") {
+  // On the axis both carry r_z and b_x, if the pads do not couple bending and stretching.
   Track six = one_rail(Unknowns::rigid_section);
   six.support.stiffness[0] = 0.;
   six.ends = {RailEnd::pinned, RailEnd::pinned};
@@ -228,7 +226,7 @@ TEST_CASE("six unknowns per node: a vertical force sees two of them", "[unknowns
              WithinRel(own_flexibility(with(six, Unknowns::vertical), 0., 0., 2), 1e-9));
 }
 
-TEST_CASE("six unknowns per node: a twisted rail turns by TL/GJ", "[unknowns]") {
+TEST_CASE("with six unknowns per node a twisted rail rotates by TL/GJ", "[unknowns]") {
   Track t = free_rail(Unknowns::rigid_section);
   t.ends = {RailEnd::clamped, RailEnd::free};
   const double lever = .05;
@@ -242,7 +240,7 @@ TEST_CASE("six unknowns per node: a twisted rail turns by TL/GJ", "[unknowns]") 
       WithinRel(2. * lever * t.length() / (t.material.shear_modulus() * t.section.torsion), 1e-9));
 }
 
-TEST_CASE("six unknowns per node: mirror coordinates and the general way agree", "[unknowns]") {
+TEST_CASE("with six unknowns per node mirror coordinates and one line agree", "[unknowns]") {
   Track t = with(s1_track(12, 2), Unknowns::rigid_section);
   const RailPoint left{0, 3.05, .01, .09, 2}, right{1, 3.4, -.02, .09, 1};
   const Statics mirror(t);
@@ -250,12 +248,12 @@ TEST_CASE("six unknowns per node: mirror coordinates and the general way agree",
   check_alike(mirror, Statics(t), left, right);
 }
 
-TEST_CASE("six unknowns per node: a wheelset rides as on nine", "[unknowns]") {
+TEST_CASE("with six unknowns per node a wheelset rides as with nine", "[unknowns]") {
   Ride nine(s1_track(12, 2)), six(with(s1_track(12, 2), Unknowns::rigid_section));
   const Outputs a = nine.advance(200), b = six.advance(200);
   REQUIRE(a.wheel_on_rail[0]);
   REQUIRE(b.wheel_on_rail[0]);
-  // The wheel's static force comes from its weight alone; the rail under it from the track: 0.3 %.
+  // The wheel's static force is its weight; the track gives the rail's height under it: 0.3 %.
   CHECK_THAT(b.wheel_force[0], WithinRel(a.wheel_force[0], 3e-3));
   CHECK_THAT(b.wheel_rail_z[0], WithinRel(a.wheel_rail_z[0], 3e-3));
 }

@@ -18,9 +18,9 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double kTop = .1007375;  // m, of section F's head over its axis
+constexpr double kTop = .1007375;  // m, head of section F above its axis
 
-/// Two rails of section F on their feet, whose pads resist roll as given.
+/// Two rails of section F on their feet; the pads resist roll as given.
 Track rolling_track(double roll_stiffness) {
   Track t;
   t.section = section_f();
@@ -31,7 +31,7 @@ Track rolling_track(double roll_stiffness) {
   return t;
 }
 
-/// Lateral displacement of the head of the left rail under forces on it, m, and its turn, rad.
+/// Lateral displacement of the left rail's head under forces on it, m, and its roll, rad.
 struct Lateral {
   double head, turn;
 };
@@ -41,7 +41,7 @@ RailPoint slope(double x, bool of_b, bool top) {
   return of_b ? RailPoint{0, x, 0., top ? 1. : 0., 1} : RailPoint{0, x, top ? 1. : 0., 0., 2};
 }
 
-/// By the nonlinear element.
+/// With the nonlinear element.
 Lateral nonlinear(const Track& track, double x, double down, double aside) {
   Track one = track;
   one.rails = 1;
@@ -56,8 +56,8 @@ Lateral nonlinear(const Track& track, double x, double down, double aside) {
   return {rail.row(head(x, 1)).dot(moved), .5 * (a_z - b_y)};
 }
 
-/// By the model that steps, in the balance of its own rows: K u = force * row(u), by repetition.
-/// Without the second order where `turned` is false.
+/// With the stepped model, by repeated balance in its own rows, K u = force * row(u). If `turned`
+/// is false, without second order.
 class Linear {
  public:
   explicit Linear(const Track& track)
@@ -93,7 +93,7 @@ class Linear {
   }
 
  private:
-  /// Unknown k of the left rail at a place; 5: the turn.
+  /// Unknown k of the left rail at a place; 5 is its roll.
   double of(const Configuration& at, std::int32_t element, const double* shape, int k) const {
     double sum = 0.;
     for (std::int32_t l = 0; l < run_.model().lines; ++l)
@@ -123,9 +123,9 @@ class Linear {
 
 }  // namespace
 
-TEST_CASE("a rail that rolls under 100 kN: within 2.5 % of the nonlinear element", "[turn]") {
-  // 10 to 40 kN aside make 2 to 23 mrad; the bound is the one asked for, for which design.md gives
-  // 2 % at 20 mrad. The plain linear rail is 1.5 to 8 % too stiff, whatever the turn.
+TEST_CASE("a rail that rolls under 100 kN is within 2.5 % of the nonlinear element", "[turn]") {
+  // 10 to 40 kN sideways give 2 to 23 mrad. The bound is the demand; design.md has 2 % for 20 mrad.
+  // The plain linear rail is 1.5 to 8 % too stiff at any roll.
   const double roll_stiffness = GENERATE(5e4, 1e5, 5e5);
   const Unknowns unknowns = GENERATE(Unknowns::full, Unknowns::rigid_section);
   const Track track = rolling_track(roll_stiffness);
@@ -146,28 +146,28 @@ TEST_CASE("a rail that rolls under 100 kN: within 2.5 % of the nonlinear element
     }
 }
 
-TEST_CASE("the seats' part of a vertical force and what it hangs on", "[turn]") {
+TEST_CASE("six seats bear a vertical force, at the height where pads hold the rail", "[turn]") {
   ModelRun run(rolling_track(1e5), {.wheelsets = {paper_wheelset(3.)}, .head = kHead},
                full_order(1e-3));
   const PDeltaModel& turn = run.model().p_delta;
   REQUIRE(turn.lever[0] != nullptr);
-  // Six seats bear what lies between the first zeros of the deflection or nearly: of Winkler's beam
-  // that is e^-pi = 4.3 % more than the force, as those beyond pull. Times the height of the foot.
+  // Six seats bear nearly all between the first zeros of the deflection: for Winkler's beam e^-pi =
+  // 4.3 % more than the force, as seats beyond pull. The foot's height is the lever.
   double sum = 0.;
   const int middle = run.model().elements / 2;
   for (int s = 0; s < kPDeltaSeats; ++s)
     sum += turn.lever[0][(middle * kPDeltaSeats + s) * (turn.points + 1) + 2];
   CHECK_THAT(sum / -.085 - 1., WithinAbs(std::exp(-M_PI), 1e-2));
-  // A rail that its pads hold at the axis does not turn over them.
+  // A rail whose pads hold it at the axis does not roll over them.
   Track level = rolling_track(1e5);
   level.support.height_z = 0.;
   ModelRun flat(level, {.wheelsets = {paper_wheelset(3.)}, .head = kHead}, full_order(1e-3));
   CHECK(flat.model().p_delta.lever[0] == nullptr);
 }
 
-TEST_CASE("the row of a turned rail is the slope of how it lies", "[turn]") {
-  // The height that add_p_delta() and keep_section() give, against differences: 1e-7 of its size,
-  // the square root of rounding.
+TEST_CASE("the row of a rolled rail is the derivative of its height", "[turn]") {
+  // The height from add_p_delta() and keep_section() is compared with differences: 1e-7 of its
+  // size, the square root of rounding.
   Track track = rolling_track(1e5);
   track.cant = GENERATE(0., .05);
   ModelRun run(track, {.wheelsets = {paper_wheelset(3.)}, .head = kHead}, full_order(1e-3));
@@ -220,8 +220,8 @@ TEST_CASE("the row of a turned rail is the slope of how it lies", "[turn]") {
   }
 }
 
-TEST_CASE("a rail rolled past its linear form says so, and not before", "[turn]") {
-  // A wheelset beside which the rail stands turned: the roll that the state starts with.
+TEST_CASE("a rail rolled beyond its linear form sets a status, and not before", "[turn]") {
+  // The rail beside the wheelset starts with this roll.
   const double roll = GENERATE(.05, .13, .16);
   ModelRun run(rolling_track(1e5), {.wheelsets = {paper_wheelset(3.)}, .head = kHead},
                full_order(1e-6));
@@ -238,7 +238,7 @@ TEST_CASE("a rail rolled past its linear form says so, and not before", "[turn]"
   CHECK(has(run.outputs.status, Status::large_turn) == (roll > .1414));
 }
 
-TEST_CASE("a rail rolls under a wheel outside as under one in the model, and says so alike",
+TEST_CASE("a rail rolls under an external wheel as in the nonlinear model, and sets its status",
           "[turn][external]") {
   const std::string scene = std::string(RAILSTEP_SOURCE) + "/config/hard/h23_rolling_rail.toml";
   const Track track = track_of(read_scene(scene, {"track.model=\"nonlinear\""}));
@@ -248,7 +248,7 @@ TEST_CASE("a rail rolls under a wheel outside as under one in the model, and say
     Outputs outputs{};
     publish_start(run.model(), run.state, outputs);
     Status met = Status::ok;
-    for (int n = 0; n < 100; ++n) {  // steps of 20 ms by backward Euler: to the static answer
+    for (int n = 0; n < 100; ++n) {  // steps of 20 ms by backward Euler: to the static solution
       const double part = std::min(1., .02 * n);
       const double given[5] = {3.6, 0., 0., part * aside, -part * 100e3};
       met = met | advance_frame(run.model(), given, run.state, run.workspace, outputs);
@@ -256,7 +256,7 @@ TEST_CASE("a rail rolls under a wheel outside as under one in the model, and say
     const Lateral exact = nonlinear(track, 3.6, 100e3, aside);
     CAPTURE(aside, exact.turn);
     CHECK(has(met, Status::large_turn) == (std::abs(exact.turn) > .1414));
-    if (aside < 50e3)  // without the seats' part 3.4 % off
+    if (aside < 50e3)  // without the seats' part: 3.4 % off
       CHECK_THAT(outputs.external_displacement[0][1], WithinRel(exact.head, .025));
   }
 }

@@ -21,8 +21,8 @@ RailPoint at(double x, int rail = 0) { return {rail, x, 0., 0., 2}; }
 
 }  // namespace
 
-TEST_CASE("missing supports: the deflection over the gap", "[supports]") {
-  // R6: printed to 7 digits; 1e-3 is the case's own bound (its beam is Timoshenko's, this the
+TEST_CASE("the deflection over missing supports is that of the reference", "[supports]") {
+  // R6 is printed to 7 digits; 1e-3 is the case's bound (its beam is Timoshenko's, this one is the
   // element).
   Track t = r6_track();
   const Statics healthy(t);
@@ -35,20 +35,21 @@ TEST_CASE("missing supports: the deflection over the gap", "[supports]") {
   const Statics two(t);
   CHECK_THAT(two.flexibility(at(12.3), at(12.3)) / healthy.flexibility(at(12.3), at(12.3)),
              WithinRel(2.299580, 1e-3));
-  // The seat beside one that is missing carries more: all forces sum to the load.
+  // The seat beside a missing one carries more: all forces sum to the load.
   const auto u = one.solve({{at(12.), -50e3}});
   double sum = 0.;
   for (int seat = 0; seat <= 40; ++seat) sum += one.support_force(u, 0, seat);
   CHECK(one.support_force(u, 0, 20) == 0.);
   CHECK_THAT(sum, WithinRel(50e3, 1e-9));
-  // All of them missing leave the rail free, and it is said where.
+  // If all are missing the rail is free, and the message says where.
   for (int seat = 0; seat <= 40; ++seat) t.changed_seats[seat] = {};
   CHECK_THROWS_WITH(Statics(t), Catch::Contains("free rigid mode"));
 }
 
-TEST_CASE("a load that runs over a missing support", "[supports]") {
-  // R6: 50 kN at 30 m/s, dampers of 3e4 N s/m: 8.824e-4 m at most, 1.5014 times what it is where
-  // none is missing (2e-4). A step of 0.2 ms misses the passage of the shape, 0.6 m / 30 m/s, by
+TEST_CASE("a load that runs over a missing support has the deflection of the reference",
+          "[supports]") {
+  // R6: 50 kN at 30 m/s with dampers of 3e4 N s/m reach 8.824e-4 m, 1.5014 times the value without
+  // a missing support (2e-4). A step of 0.2 ms misses the passage of the shape, 0.6 m / 30 m/s, by
   // (0.2/20)^2.
   const auto deepest = [](bool missing) {
     Track t = r6_track();
@@ -57,7 +58,7 @@ TEST_CASE("a load that runs over a missing support", "[supports]") {
     Traffic traffic{.loads = {{.start = 6., .speed = 30., .stop = 20., .force = -50e3}}};
     ModelRun run = in_equilibrium(t, traffic, full_order(2e-4));
     double most = 0.;
-    while (run.time() < .4) {  // 12 m; the first 3 m are start-up
+    while (run.time() < .4) {  // 12 m; the first 3 m are the start
       run.step();
       if (run.time() > .1) most = std::max(most, -run.outputs.load_deflection[0]);
     }
@@ -68,9 +69,9 @@ TEST_CASE("a load that runs over a missing support", "[supports]") {
   CHECK_THAT(missing / deepest(false), WithinRel(1.5014, 1e-3));
 }
 
-TEST_CASE("a sleeper that hangs on its rail", "[supports]") {
-  // rail-data.md: no ballast under the loaded sleeper, 100 kN: rail 1.6613 mm, neighbours 40.84,
-  // 13.55, 0.52, -2.52 kN; half a unit of the last digit.
+TEST_CASE("a sleeper that hangs on its rail has the reference's forces", "[supports]") {
+  // rail-data.md: without ballast under the loaded sleeper 100 kN move the rail by 1.6613 mm; the
+  // neighbours bear 40.84, 13.55, 0.52 and -2.52 kN; half a unit of the last digit.
   Track t = s1_rail();
   Seat hanging = t.seat(20);
   hanging.ballast = {};
@@ -85,13 +86,14 @@ TEST_CASE("a sleeper that hangs on its rail", "[supports]") {
   CHECK_THAT(statics.support_force(u, 0, 20), WithinAbs(0., 1e-6));
 }
 
-TEST_CASE("a sleeper of 1 kg between springs of 1e9 and 1e8 N/m", "[supports]") {
-  // hard-cases.md, H8: in series 9.090909e7 N/m, free 5278.6 Hz, and a step of 1 ms is stable.
+TEST_CASE("a sleeper of 1 kg between springs of 1e9 and 1e8 N/m is stable with long steps",
+          "[supports]") {
+  // H8 of hard-cases.md: 9.090909e7 N/m in series, 5278.6 Hz free, stable with a step of 1 ms.
   Track t = s1_rail();
   t.bays = 8;
   t.support.stiffness = {0., 0., 1e9};
   t.support.damping = {0., 0., 1e3};
-  t.sleeper = Sleeper{2., 1., {0., 0., 1e8}, {0., 0., 1e3}};  // a rail rests on half of it
+  t.sleeper = Sleeper{2., 1., {0., 0., 1e8}, {0., 0., 1e3}};  // a rail stands on half of it
   Track series = t;
   series.sleeper.reset();
   series.support.stiffness[2] = 1. / (1. / 1e9 + 1. / 1e8);
@@ -106,8 +108,8 @@ TEST_CASE("a sleeper of 1 kg between springs of 1e9 and 1e8 N/m", "[supports]") 
   CHECK_THAT(run.outputs.load_deflection[0], WithinRel(rest, 1e-6));
 }
 
-TEST_CASE("two rails that share nothing stand alone, each on its own springs", "[supports]") {
-  // hard-cases.md, H32: left 3e7, right 1e8 N/m.
+TEST_CASE("uncoupled rails each stand on their own springs", "[supports]") {
+  // H32 of hard-cases.md: left 3e7, right 1e8 N/m.
   Track t = r6_track();
   t.rails = 2;
   for (int seat = 0; seat <= t.bays; ++seat) {
@@ -127,15 +129,15 @@ TEST_CASE("two rails that share nothing stand alone, each on its own springs", "
     CHECK(both.support_force(u, 1, seat) == right.support_force(other, 0, seat));
     sum += both.support_force(u, 0, seat) + both.support_force(u, 1, seat);
   }
-  // The equation that all forces sum up to is solved to the rounding of K u: 1e9 N/m times 1e-3 m
-  // in 162 rows, 1e6 * 1e-16 * sqrt(162) = 1e-9 N of 7e4.
+  // The equation of the sum of all forces is solved to the rounding of K u: 1e9 N/m times 1e-3 m in
+  // 162 rows, 1e6 * 1e-16 * sqrt(162) = 1e-9 N of 7e4.
   CHECK_THAT(sum, WithinRel(70e3, 1e-12));
 }
 
 namespace {
 
-/// The same track by an assembly of its own: all nine unknowns of every node of both rails, from
-/// the matrices of a bare rail, then x, y, z, roll and yaw of every sleeper about its middle.
+/// The same track in a separate assembly: all nine unknowns of every node of both rails, from the
+/// matrices of a bare rail, then x, y, z, roll and yaw of every sleeper about its middle.
 struct Dense {
   Eigen::MatrixXd K, M;
   int nodes;
@@ -171,7 +173,7 @@ struct Dense {
           M(node_at(rail, 0, a), node_at(rail, 0, b)) += line.mass.coeff(i, j);
         }
   }
-  /// Displacement of the sleeper's point at y along d.
+  /// Displacement along d of the sleeper's point at y.
   Eigen::VectorXd sleeper(int seat, double at_y, int d) const {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(K.rows());
     row[sleeper_at(seat, d)] = 1.;
@@ -207,7 +209,7 @@ struct Dense {
       M(sleeper_at(seat, k), sleeper_at(seat, k)) =
           k < 3 ? there.sleeper->mass : there.sleeper->roll_inertia;
   }
-  /// On y = 0 of the section, at a node.
+  /// At y = 0 of the section, at a node.
   Eigen::VectorXd point(int rail, int node, double z, int d) const {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(K.rows());
     row[node_at(rail, node, d)] = 1.;
@@ -218,10 +220,10 @@ struct Dense {
 
 }  // namespace
 
-TEST_CASE("a lopsided track on rigid sleepers, against an assembly of its own", "[supports]") {
+TEST_CASE("an unsymmetric track on rigid sleepers agrees with a separate assembly", "[supports]") {
   Track track = lopsided_track(1);
-  SECTION("rails alike") {}
-  SECTION("rails that differ") {
+  SECTION("equal rails") {}
+  SECTION("different rails") {
     RailBar right = track.bar(1);
     right.section.area *= .9;
     right.section.inertia_y *= .8;
@@ -245,7 +247,7 @@ TEST_CASE("a lopsided track on rigid sleepers, against an assembly of its own", 
           const double want = dense.point(other, 6, kHeadZ, e).dot(moved);
           const double got = statics.flexibility({other, 3. * bay, 0., kHeadZ, e},
                                                  {rail, 2. * bay, 0., kHeadZ, d});
-          // Condition 1e8 of either matrix.
+          // Either matrix has a condition of 1e8.
           CHECK(std::abs(got - want) < 1e-8 * own);
         }
     }
@@ -262,10 +264,10 @@ TEST_CASE("a lopsided track on rigid sleepers, against an assembly of its own", 
   }
 }
 
-TEST_CASE("a lopsided track stands still in the equilibrium it starts from", "[supports]") {
-  // Loads at quarters of an element, where the table of G_res has points: full order and condensed,
-  // model and residual make the static deflection of 16 elements per bay, but for what the reach of
-  // the residual leaves out between loads, 1e-4 of the largest deflection.
+TEST_CASE("an unsymmetric track stays at rest in its start in equilibrium", "[supports]") {
+  // The loads are at quarters of an element, where the table of G_res has points. In full order and
+  // condensed, model and residual give the static deflection of 16 elements per bay, but for what
+  // the residual's reach leaves out between loads, 1e-4 of the largest deflection.
   const Track track = lopsided_track(1);
   Traffic traffic{.loads = {{.rail = 0, .start = 1.35, .stop = 9., .force = -50e3},
                             {.rail = 1, .start = 1.95, .stop = 9., .force = -20e3}}};
@@ -281,9 +283,9 @@ TEST_CASE("a lopsided track stands still in the equilibrium it starts from", "[s
   CHECK_THAT(run.outputs.load_deflection[1], WithinAbs(fine.at(u, right), left_out));
 }
 
-TEST_CASE("railheads are level, whatever stands under them", "[supports]") {
-  // Vertical rails do not feel where on the section a wheel acts: a right head 20 mm nearer to its
-  // axis changes nothing but rounding, gathered over 200 steps with contacts.
+TEST_CASE("railheads are level on any supports", "[supports]") {
+  // The height of the wheel's contact does not matter for rails that only move vertically. A right
+  // head 20 mm nearer to its axis changes only the rounding of 200 steps with contacts.
   Track track = peers_pair(1);
   Traffic traffic{.wheelsets = {paper_wheelset(1.3)}, .head = kHead};
   traffic.wheelsets[0].speed = 20.;
@@ -299,11 +301,10 @@ TEST_CASE("railheads are level, whatever stands under them", "[supports]") {
   }
 }
 
-TEST_CASE("a wheelset stands on rails and seats that differ, half on each", "[supports]") {
-  // Nothing turns the axle, so that both wheels carry half of the weight, on contacts of each
-  // rail's own stiffness: C goes with Young's modulus. The axle leans by 3e-4 rad, the difference
-  // of the rails' deflections over their spacing; that part of the load pushes sideways from the
-  // start on.
+TEST_CASE("a wheelset stands with half its weight on each of two different rails", "[supports]") {
+  // Nothing rolls the axle, so both wheels carry half of the weight, with the contact stiffness of
+  // each rail: C goes with Young's modulus. The axle leans by 3e-4 rad, the difference of the
+  // rails' deflections over their spacing. That part of the load pushes sideways from the start.
   Track track = lopsided_track(1);
   track.right = track.bar(0);
   track.right->material.young *= .5;

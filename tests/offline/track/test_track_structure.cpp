@@ -11,14 +11,13 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// With the moments that a nonlinear rail wants.
+/// Adds the moments that a nonlinear rail needs.
 Track shaped(Track track) {
   track.section.moments = moments(kSectionF);
   return track;
 }
 
-/// The sleeper track with pads of two halves that can rock, nodes off the centroid and ends
-/// that are held.
+/// The sleeper track with pads of two halves that can rock, nodes off the centroid and held ends.
 Track awkward_track() {
   Track t = sleeper_track(1, {RailEnd::pinned, RailEnd::clamped});
   t.support.half_spread = .05;
@@ -27,7 +26,7 @@ Track awkward_track() {
   return t;
 }
 
-/// The same with rails under pressure between clamps.
+/// The same with compressed rails between clamps.
 Track pressed_track() {
   Track t = awkward_track();
   t.ends = {RailEnd::clamped, RailEnd::clamped};
@@ -35,7 +34,7 @@ Track pressed_track() {
   return t;
 }
 
-/// Pads of any length under rails that differ.
+/// Pads of any length under different rails.
 Track rocking_track() {
   Track t = shaped(long_pads(1));
   Seat seat = t.seat(4);
@@ -53,7 +52,7 @@ Track single_rail_on_sleepers() {
   return t;
 }
 
-/// What each unknown of the lines moves in the plain coordinates of the structure: mirror
+/// Motion of each unknown of the lines in the plain coordinates of the structure: mirror
 /// coordinates are (left +- mirrored right)/sqrt 2, and a sleeper has one lateral motion.
 Eigen::MatrixXd plain_of_lines(const Track& track, const TrackStructure& rails,
                                const std::vector<Line>& lines) {
@@ -117,7 +116,7 @@ TEST_CASE("at rest a track's nonlinear tangent is the stiffness of its lines", "
   CHECK((T.transpose() * rails.weight() - weights).norm() < 1e-13 * weights.norm());
 }
 
-TEST_CASE("statics of structure and of lines agree, springs included", "[statics]") {
+TEST_CASE("the statics of structure and lines agree, with springs", "[statics]") {
   const Track track = GENERATE(shaped(paper_track()), shaped(sleeper_track(2)), awkward_track(),
                                shaped(lopsided_track(1)), rocking_track());
   const Statics statics(track);
@@ -133,7 +132,7 @@ TEST_CASE("statics of structure and of lines agree, springs included", "[statics
   for (const RailPoint& point : {RailPoint{0, x, 0., .1, 2}, RailPoint{1, x, 0., -.085, 1},
                                  RailPoint{1, x - .2, .03, 0., 2}}) {
     const double found = free_part(s, Eigen::VectorXd(rails.row(point))).dot(moved);
-    // Round-off: stiffness and slopes leave a condition of about 1e6.
+    // Round-off: stiffness and slopes have a condition of about 1e6.
     CHECK_THAT(found, WithinRel(statics.at(displacements, point), 1e-10));
   }
 }
@@ -151,13 +150,13 @@ TEST_CASE("a small load moves the nonlinear track as the linear one", "[statics]
   };
   const double flexibility = statics.flexibility(under, under);
   const double large = moved(-1e5) / -1e5 - flexibility, half = moved(-5e4) / -5e4 - flexibility;
-  // What is left is of first order in the load: halved with it, and opposite for a lift.
+  // The difference is of first order in the load: half for half the load, opposite for a lift.
   CHECK(std::abs(large) > 1e-5 * flexibility);
   CHECK_THAT(half / large, WithinRel(.5, .02));
   CHECK_THAT((moved(5e4) / 5e4 - flexibility) / half, WithinRel(-1., .04));
 }
 
-TEST_CASE("what is no nonlinear track is refused", "[statics]") {
+TEST_CASE("tracks that cannot be nonlinear are refused", "[statics]") {
   CHECK_THROWS_WITH(TrackStructure(paper_track()), Catch::Contains("moments to degree 4"));
   CHECK_THROWS_WITH(TrackStructure(peers_track(1)), Catch::Contains("all unknowns"));
   Track loose = shaped(sleeper_track(1, {RailEnd::clamped, RailEnd::free}));

@@ -1,4 +1,4 @@
-// A window of a track without end: passing it on and stepping it adds no energy (docs/endless.md).
+// A window of a track without end: shifting and stepping it adds no energy (docs/endless.md).
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace railstep;
 
 namespace {
 
-/// One rail on springs, as long as its traffic and a decay length on either side want it.
+/// One rail on springs, as long as its traffic needs with a decay length on either side.
 Track bare_window(double bay, int elements_per_bay, double stiffness, double damping) {
   Track t = endless_track(2, elements_per_bay);
   t.bay_length = bay;
@@ -32,7 +32,7 @@ ModelRun window_run(const Track& track, double speed, double force, const Scheme
   return ModelRun(track, traffic, options);
 }
 
-/// Numbers between -1 and 1 where lines have unknowns, not in what pads them.
+/// Sets numbers between -1 and 1 where lines have unknowns, but not in their padding.
 void disturb(const ModelRun& run, double* x, std::mt19937& random) {
   std::uniform_real_distribution<double> any(-1., 1.);
   for (std::size_t l = 0; l < run.packed->lines().size(); ++l)
@@ -52,8 +52,8 @@ double energy(const ModelRun& run) {
   return sum;
 }
 
-/// The program's steps from one passing-on to the next are linear: their matrix, a column for every
-/// number of the state. Numbers are in units of one size: v times dt, a and g times dt^2.
+/// The steps from one shift of the window to the next are linear: this is their matrix, with a
+/// column for every number of the state. Numbers have one unit: v times dt, a and g times dt^2.
 Eigen::MatrixXd bay_map(ModelRun& run) {
   const Model& model = run.model();
   const double dt = model.scheme.dt;
@@ -74,7 +74,7 @@ Eigen::MatrixXd bay_map(ModelRun& run) {
 
 }  // namespace
 
-TEST_CASE("passing a window on takes the rear bay's energy and adds none", "[window]") {
+TEST_CASE("shifting a window takes the energy of its rear bay and adds none", "[window]") {
   std::mt19937 random(1);
   Track full = endless_track(30, 2, 2);
   full.unknowns = Unknowns::full;
@@ -92,8 +92,8 @@ TEST_CASE("passing a window on takes the rear bay's energy and adds none", "[win
   }
 }
 
-TEST_CASE("no eigenvalue of the map from bay to bay is beyond 1", "[window]") {
-  // With a free front it is 1.018 at rho_inf = 1.
+TEST_CASE("the map from bay to bay has no eigenvalue beyond 1", "[window]") {
+  // With a free front the largest is 1.018 at rho_inf = 1.
   for (const double rho_inf : {.6, 1.}) {
     ModelRun run =
         window_run(bare_window(.1, 1, 1e10, 0.), 400., 0., generalised_alpha(62.5e-6, rho_inf));
@@ -104,7 +104,7 @@ TEST_CASE("no eigenvalue of the map from bay to bay is beyond 1", "[window]") {
   }
 }
 
-TEST_CASE("whatever is in a window dies away, at 1 to 500 m/s", "[window]") {
+TEST_CASE("any motion in a window decays at 1 to 500 m/s", "[window]") {
   std::mt19937 random(1);
   for (const double speed : {1., 30., 150., 400., 500.})
     for (const double part : {.0714, .25, .9})
@@ -155,7 +155,7 @@ TEST_CASE("a window at 400 m/s moves as a long track does", "[window]") {
 
 namespace {
 
-/// Seats 0.1 m apart, under 100 kN at 400 m/s, a quarter of a bay in a step; ends are free.
+/// Seats 0.1 m apart with free ends, for 100 kN at 400 m/s: a step is a quarter of a bay.
 constexpr double kFast = 62.5e-6;  // s
 Track fine_seats(int bays) {
   Track track;
@@ -178,13 +178,13 @@ MovingLoad fast_load(double start) {
 
 }  // namespace
 
-TEST_CASE("a run that is lost has not settled into a steady state", "[window]") {
+TEST_CASE("a run with a growing motion does not settle into a steady state", "[window]") {
   const Track grows = fine_seats(400);
   const PackedModel packed(grows, {.loads = {fast_load(.05)}}, window_options(grows, kFast));
   CHECK_THROWS_WITH(start_moving(grows, packed, 0.), Catch::Contains("does not settle"));
 }
 
-TEST_CASE("a track that a run leaves behind by a kilometre is lost", "[window]") {
+TEST_CASE("a deflection of a kilometre ends a run as lost", "[window]") {
   const Track grows = fine_seats(400);
   ModelRun run(grows, {.loads = {fast_load(.05)}}, window_options(grows, kFast));
   double most = 0.;

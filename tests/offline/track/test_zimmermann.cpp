@@ -8,7 +8,7 @@ using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
-// Zimmermann's rail on a continuous Winkler bed as the limit of seats that come closer, and the
+// Zimmermann's rail on a continuous Winkler bed as the limit of seats that get closer, and the
 // discretely supported rail of set S1 (rail-data.md).
 
 namespace {
@@ -28,7 +28,7 @@ Track r60(double shear_factor) {
   return t;
 }
 
-/// 24 m of R60 on a bed of `stiffness` per metre, as seats `spacing` apart, one element between.
+/// 24 m of R60 on a bed of `stiffness` per metre: seats `spacing` apart with one element between.
 Track on_bed(double stiffness, double spacing, double shear_factor) {
   Track t = r60(shear_factor);
   t.bay_length = spacing;
@@ -39,7 +39,7 @@ Track on_bed(double stiffness, double spacing, double shear_factor) {
 }
 
 struct UnderLoad {
-  double deflection, moment, aside, moment_aside;  // m, N m, and both 1.2 m off
+  double deflection, moment, aside, moment_aside;  // m, N m, and both 1.2 m away
 };
 
 UnderLoad under_load(const Track& t) {
@@ -52,8 +52,8 @@ UnderLoad under_load(const Track& t) {
 }
 
 /// Winkler's closed form of an infinite Timoshenko beam, E I w'''' - (E I k / G A_s) w'' + k w = 0,
-/// w down: w = w0 e^(-a x) (cos b x + c sin b x) with the bed carrying the load, 2 k int w = P, and
-/// no turn under it, w'(0+) = -P / (2 G A_s). Zimmermann's is that of an infinite shear stiffness.
+/// w down: w = w0 e^(-a x) (cos b x + c sin b x). The bed carries the load, 2 k int w = P, without
+/// rotation under it, w'(0+) = -P / (2 G A_s). Zimmermann's has an infinite shear stiffness.
 UnderLoad winkler(double k, double shear_factor) {
   const double EI = 210e9 * kInertia, GA = 210e9 / 2.6 * kArea * shear_factor;
   const double product = std::sqrt(k / (4. * EI)), half = k / (4. * GA);
@@ -75,7 +75,7 @@ UnderLoad winkler(double k, double shear_factor) {
 }  // namespace
 
 TEST_CASE("the closed form has the printed numbers", "[statics]") {
-  // rail-data.md, four digits: half a unit of the last.
+  // rail-data.md has four digits: half a unit of the last.
   const UnderLoad euler = winkler(60e6, 1e9), timoshenko = winkler(60e6, .4);
   CHECK_THAT(euler.deflection, WithinAbs(1.0319e-3, 5e-8));
   CHECK_THAT(euler.moment, WithinAbs(20.190e3, .5));
@@ -85,10 +85,10 @@ TEST_CASE("the closed form has the printed numbers", "[statics]") {
   CHECK_THAT(winkler(30e6, 1e9).moment, WithinAbs(24.010e3, .5));
 }
 
-TEST_CASE("seats that come closer make Zimmermann's bed with the second order", "[statics]") {
-  // Seats are the trapezoidal rule of the bed's forces, which errs by h2/12 of the jump that the
-  // integrand's slope makes under the load: of a moment's influence line always, of a deflection's
-  // by shear alone. Without shear the deflection converges faster.
+TEST_CASE("seats that get closer converge to Zimmermann's bed with second order", "[statics]") {
+  // Seats are the trapezoidal rule of the bed's forces. It errs by h2/12 of the jump in the
+  // integrand's slope under the load: always for a moment's influence line, only by shear for a
+  // deflection's. Without shear the deflection converges faster.
   const double shear_factor = GENERATE(.4, 40.);
   const UnderLoad exact = winkler(60e6, shear_factor);
   double before[4] = {};
@@ -108,8 +108,8 @@ TEST_CASE("seats that come closer make Zimmermann's bed with the second order", 
   CHECK(std::abs(before[2]) < 2e-4);
 }
 
-TEST_CASE("set S1: the rail's bending moments over a sleeper and at mid-bay", "[statics]") {
-  // rail-data.md: 17.07 and 20.51 kN m under 100 kN, four digits.
+TEST_CASE("set S1 has the reference's bending moments over a sleeper and at mid-bay", "[statics]") {
+  // rail-data.md has 17.07 and 20.51 kN m under 100 kN, with four digits.
   Track t = r60(.4);
   t.bays = 40;
   t.elements_per_bay = 2;
@@ -128,7 +128,7 @@ TEST_CASE("set S1: the rail's bending moments over a sleeper and at mid-bay", "[
   CHECK_THROWS_AS(at(24.1), std::out_of_range);
 }
 
-TEST_CASE("rails on common sleepers bend each for itself", "[statics]") {
+TEST_CASE("rails on common sleepers each have their own bending moment", "[statics]") {
   Track t = r60(.4);
   t.unknowns = Unknowns::full;
   t.rails = 2;
@@ -141,7 +141,7 @@ TEST_CASE("rails on common sleepers bend each for itself", "[statics]") {
   const auto u = statics.solve({{{0, x, 0., 0., 2}, -kLoad}});
   const double loaded = bending_moment(t, statics.lines(), u, 0, x);
   const double other = bending_moment(t, statics.lines(), u, 1, x);
-  // From the turns by differences: b_x is the x position of a point one metre above the axis.
+  // The rotations by differences: b_x is the x position of a point one metre above the axis.
   const double h = 1e-4;
   for (const auto& [rail, moment] : {std::pair{0, loaded}, {1, other}}) {
     const auto turn = [&, on = rail](double at) {
