@@ -126,7 +126,7 @@ class Run {
     published_.add(o.wheel_on_rail, wheel_count(model_));
     for (const double* of_flange :
          {o.flange_force, o.flange_force_peak, o.flange_impulse, o.flange_gap})
-      published_.add(of_flange, 2 * model_.flanges);
+      published_.add(of_flange, flange_count(model_));
     published_.add(o.external_force, model_.external_wheels);
     for (std::int32_t i = 0; i < model_.external_wheels; ++i) {
       published_.add(o.external_displacement[i], 3);

@@ -85,7 +85,7 @@ double hertz(double C, double gap) { return gap < 0. ? C * -gap * std::sqrt(-gap
 Laws laws_of(ModelRun& run, int steps) {
   const Model& m = run.model();
   Laws found{0., 0., std::vector<bool>(static_cast<std::size_t>(wheel_count(m))),
-             std::vector<bool>(static_cast<std::size_t>(2 * m.flanges)),
+             std::vector<bool>(static_cast<std::size_t>(flange_count(m))),
              std::vector<bool>(static_cast<std::size_t>(m.fixed.count))};
   const auto note = [&](double force, double want) {
     found.off = std::max(found.off, std::abs(force - want));
@@ -95,14 +95,15 @@ Laws laws_of(ModelRun& run, int steps) {
   for (int n = 0; n < steps; ++n) {
     run.step();
     for (int i = 0; i < wheel_count(m); ++i) {
-      const double C = i < 2 * m.wheelsets ? m.wheelset[i / 2].hertz[i % 2]
-                                           : m.vehicle_wheel[i - 2 * m.wheelsets].contact.hertz;
+      const double C = is_of_wheelset(m, i) ? m.wheelset[wheelset_of(m, i)].hertz[rail_of(m, i)]
+                                            : vehicle_wheel(m, i).contact.hertz;
       if (note(run.state.wheel_force[i], hertz(C, run.outputs.wheel_gap[i])))
         found.wheel_bore[static_cast<std::size_t>(i)] = true;
     }
-    for (int i = 0; i < 2 * m.flanges; ++i) {
+    for (int i = 0; i < flange_count(m); ++i) {
       const double depth = std::max(-run.outputs.flange_gap[i], 0.);
-      if (note(run.outputs.flange_force[i], m.flange[i / 2].contact.stiffness * depth))
+      if (note(run.outputs.flange_force[i],
+               flange_of(m, flange_contact(m, i)).contact.stiffness * depth))
         found.flange_bore[static_cast<std::size_t>(i)] = true;
     }
     for (std::int32_t j = 0; j < m.fixed.count; ++j)

@@ -61,8 +61,7 @@ inline double of_node(const ModelRun& run, int node, int k, bool rate) {
       re[j] = line.modal.rate.re[i] * u - line.modal.rate.im[i] * v;
       im[j] = line.modal.rate.re[i] * v + line.modal.rate.im[i] * u;
     }
-    const int element = std::max(0, (node - 1) / 2);
-    sum += weight_of(line, 0, k) * nodal_value(line, 0, element, node - 2 * element, k, at);
+    sum += weight_of(line, 0, k) * nodal_value(line, 0, element_node(node), k, at);
   }
   return sum;
 }

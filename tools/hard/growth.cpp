@@ -28,7 +28,7 @@ double small_change(const Model& model, const State& state) {
   double small = HUGE_VAL;
   for (int i = 0; i < model.vehicle_wheels; ++i) {
     const ContactModel& contact = model.vehicle_wheel[i].contact;
-    const double force = pressed(state, 2 * model.wheelsets + i);
+    const double force = pressed(state, vehicle_contact(model, i));
     if (contact.hertz > 0. && force > 0.)
       small = std::min(small, 5e-3 * contact_depth(contact, force));
   }
@@ -73,7 +73,7 @@ std::vector<Change> changes_of(const Model& model, const State& state) {
     add_motion(changes, model, small, vehicle.first, vehicle.first + vehicle.size);
   }
   for (int i = 0; i < model.vehicle_wheels; ++i) {
-    const int wheel = 2 * model.wheelsets + i;
+    const int wheel = vehicle_contact(model, i);
     const double stiffness = slope(model.vehicle_wheel[i].contact, pressed(state, wheel));
     if (stiffness > 0.)
       changes.push_back({Eigen::Index{4} * model.unknowns + wheel, stiffness * small});

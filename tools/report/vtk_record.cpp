@@ -104,9 +104,10 @@ void add_sleeper(const Track& track, const TrackMotion& motion, int seat, double
 }
 
 /// A disc about an axle, and the force on the rail under it.
-void add_wheel(const Simulation& run, const WheelsetModel& set, int wheel, VtkMesh& mesh) {
+void add_wheel(const Simulation& run, ContactId wheel, VtkMesh& mesh) {
+  const WheelsetModel& set = run.model().wheelset[wheelset_of(run.model(), wheel)];
   const double* p = run.state.u + set.first;
-  const int side = wheel % 2;
+  const int side = rail_of(run.model(), wheel);
   const double x = set.start + p[0], y = run.model().rail_y[side];
   mesh.add_disc({x, y, set.rest_z}, set.radius, [&](double ahead, double beside, double up) {
     return std::array<double, 3>{-p[5] * (y + beside), p[1] + p[5] * ahead - p[3] * up,
@@ -158,8 +159,7 @@ VtkMesh VtkRecord::mesh() const {
   const double foot_z = (*std::min_element(outline_[0].begin(), outline_[0].end(), lowest))[1];
   for (int seat = 0; seat <= track.bays; ++seat)
     if (track.seat(seat).sleeper) add_sleeper(track, motion, seat, foot_z, mesh);
-  for (int wheel = 0; wheel < 2 * model.wheelsets; ++wheel)
-    add_wheel(run_, model.wheelset[wheel / 2], wheel, mesh);
+  for (ContactId wheel = 0; wheel < tread_count(model); ++wheel) add_wheel(run_, wheel, mesh);
   for (std::size_t v = 0; v < vehicles_.size(); ++v)
     add_vehicle(run_, static_cast<int>(v), vehicles_[v], mesh);
   return mesh;

@@ -33,9 +33,8 @@ void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
     for (std::int32_t l = 0; l < model.lines; ++l)
       carried = carried || model.line[l].rail_factor[rail] != 0.;
     for (std::size_t node = 0; node < shape.z.size(); ++node) {
-      const auto element = static_cast<std::int32_t>(node == 0 ? 0 : (node - 1) / 2);
-      const double xi = static_cast<double>(node) - 2. * element - 1.;
-      shape.z[node] = axis_height(model, rail, element, xi, at);
+      const ElementNode own = element_node(static_cast<std::int32_t>(node));
+      shape.z[node] = axis_height(model, rail, own.element, own.node - 1., at);
     }
     if (carried) shapes.push_back(std::move(shape));
   }

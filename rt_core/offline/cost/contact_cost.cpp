@@ -1,5 +1,6 @@
 #include "offline/cost/line_cost.h"
 #include "online/contact/locate.h"
+#include "online/model/contact_id.h"
 
 namespace railstep {
 

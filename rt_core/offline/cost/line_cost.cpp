@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "online/model/contact_id.h"
+
 namespace railstep {
 
 namespace {
@@ -70,7 +72,7 @@ Cost loads_cost(const Model& model) {
 std::int64_t pressing(const Model& model, const LineModel& line) {
   std::int64_t count = 0;
   for (std::int32_t i = 0; i < contact_count(model); ++i)
-    if (line.rail_factor[wheel_rail(model, i)] != 0.) ++count;
+    if (line.rail_factor[rail_of(model, i)] != 0.) ++count;
   return count;
 }
 

@@ -1,4 +1,5 @@
 #include "offline/cost/line_cost.h"
+#include "online/model/contact_id.h"
 
 namespace railstep {
 

@@ -14,9 +14,9 @@ namespace {
 int ports_of(const Model& model, StandingContacts& c, RailForce* port) {
   for (int i = 0; i < c.loads; ++i)
     port[i] = {model.load[i].load_point, c.load[i].row.element, c.load[i].xi, c.load[i].force};
-  for (int i = 0; i < c.wheels; ++i)
-    port[c.loads + i] = {wheel_load_point(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
-  return c.loads + c.wheels;
+  for (int i = 0; i < c.contacts; ++i)
+    port[c.loads + i] = {load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+  return c.loads + c.contacts;
 }
 
 /// Turns after which a negative residual no longer matters: each leaves |G| dP/dd of it, 1e-2.
@@ -34,8 +34,9 @@ bool is_pressed(const Model& model, int wheel) {
 }
 double hertz_of(const Model& model, int wheel) {
   if (!is_pressed(model, wheel)) return 1.;  // of a port that is never met
-  return is_of_wheelset(model, wheel) ? model.wheelset[wheel / 2].hertz[wheel % 2]
-                                      : vehicle_wheel(model, wheel).contact.hertz;
+  return is_of_wheelset(model, wheel)
+             ? model.wheelset[wheelset_of(model, wheel)].hertz[rail_of(model, wheel)]
+             : vehicle_wheel(model, wheel).contact.hertz;
 }
 
 /// Energy in a linear contact; one without a damper has it by its force, which says it better than
@@ -51,30 +52,30 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
   double W[kMaxWheels * kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
   PortLaw law[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
-  for (int i = 0; i < c.wheels; ++i) {
+  for (int i = 0; i < c.contacts; ++i) {
     const bool on_rail = c.contact[i].on_rail && is_pressed(model, i);
     law[i] = {hertz_of(model, i), 0., 0.};
     force[i] = 0.;
     free[i] =
         on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;
     if (c.contact[i].on_ground && is_pressed(model, i)) free[i] = c.approach[i];
-    for (int j = 0; j < c.wheels; ++j) {
+    for (int j = 0; j < c.contacts; ++j) {
       const RailForce &at = port[c.loads + i], &other = port[c.loads + j];
       const bool coupled = on_rail && c.contact[j].on_rail && is_pressed(model, j);
-      W[i * c.wheels + j] = !coupled ? 0.
-                            : i == j ? residual_under(model, at)
-                                     : residual_between(model, other, at);
+      W[i * c.contacts + j] = !coupled ? 0.
+                              : i == j ? residual_under(model, at)
+                                       : residual_between(model, other, at);
     }
-    double& own = W[i * c.wheels + i];
+    double& own = W[i * c.contacts + i];
     negative[i] = std::min(own, 0.);
     own = std::max(own, 0.);
   }
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     double shifted[kMaxWheels];
-    for (int i = 0; i < c.wheels; ++i) shifted[i] = free[i] - negative[i] * force[i];
-    static_cast<void>(solve_ports(c.wheels, W, law, shifted, force, d));  // as good as it gets
+    for (int i = 0; i < c.contacts; ++i) shifted[i] = free[i] - negative[i] * force[i];
+    static_cast<void>(solve_ports(c.contacts, W, law, shifted, force, d));  // as good as it gets
   }
-  for (int i = 0; i < c.wheels; ++i) {
+  for (int i = 0; i < c.contacts; ++i) {
     if (!is_pressed(model, i)) continue;
     port[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
     const double depth = std::max(d[i], 0.);
@@ -90,7 +91,7 @@ double flange_energy(const ContactModel& contact, double depth) {
 
 /// Penetrations of all contacts, and the energy of those that are not pressed, under known forces.
 void press_others(const Model& model, const State& state, StandingContacts& c) {
-  for (int i = 0; i < c.wheels; ++i) {
+  for (int i = 0; i < c.contacts; ++i) {
     c.depth[i] = c.approach[i] + c.moved[c.loads + i];
     if (is_linear(model, i))
       c.hertz += linear_energy(vehicle_wheel(model, i).contact, state.wheel_force[i], c.depth[i]);
@@ -103,23 +104,24 @@ void press_others(const Model& model, const State& state, StandingContacts& c) {
 StandingContacts standing_contacts(const Model& model, const State& state) {
   StandingContacts c{};
   c.loads = model.loads;
-  c.wheels = contact_count(model);
+  c.contacts = contact_count(model);
   const Configuration at{state.u, {state.u, state.v}, passed(model, state.steps)};
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    find_contacts(model, model.wheelset[b], at, c.contact + 2 * b);
+    find_contacts(model, model.wheelset[b], at, c.contact + tread_of(b, 0));
   for (std::int32_t f = 0; f < model.flanges; ++f)
-    find_flanges(model, model.flange[f], at, c.contact + wheel_count(model) + 2 * f);
+    find_flanges(model, model.flange[f], at,
+                 c.contact + flange_contact(model, flange_number(f, 0)));
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., at, c.contact);
-  for (int i = 0; i < c.wheels; ++i)
+  for (int i = 0; i < c.contacts; ++i)
     c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
   RailForce port[kMaxRailForces];
   const int ports = ports_of(model, c, port);
-  for (int i = 0; i < c.wheels; ++i)
+  for (int i = 0; i < c.contacts; ++i)
     if (is_linear(model, i) && c.contact[i].on_rail)
       port[c.loads + i].force = -state.wheel_force[i];
-  if (c.wheels > 0) press(model, c, port, ports);
+  if (c.contacts > 0) press(model, c, port, ports);
   for (int i = 0; i < ports; ++i) {
     c.force[i] = port[i].force;
     const bool on_rail = i < c.loads ? c.load[i].on_rail : c.contact[i - c.loads].on_rail;
@@ -135,7 +137,7 @@ double contact_dissipation(const Model& model, const StandingContacts& before,
   const bool held = model.form == Form::condensed;
   const double late = held ? model.scheme.theta : .5;
   double sum = 0.;
-  for (int i = 2 * model.wheelsets; i < after.wheels; ++i) {
+  for (ContactId i = tread_count(model); i < after.contacts; ++i) {
     const bool presses = is_flange(model, i);
     const ContactModel& contact =
         presses ? flange_of(model, i).contact : vehicle_wheel(model, i).contact;
@@ -153,7 +155,7 @@ double contact_dissipation(const Model& model, const StandingContacts& before,
 
 double residual_work(const StandingContacts& before, const StandingContacts& after) {
   double sum = 0.;
-  for (int i = 0; i < before.loads + before.wheels; ++i) {
+  for (int i = 0; i < before.loads + before.contacts; ++i) {
     if (i < before.loads)
       sum += .5 * (before.force[i] + after.force[i]) * (after.moved[i] - before.moved[i]);
     sum -= .5 * (before.force[i] * after.moved[i] - after.force[i] * before.moved[i]);

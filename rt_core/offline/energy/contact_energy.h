@@ -8,14 +8,13 @@ namespace railstep {
 /// Contacts and residual flexibility in a state as it stands, whatever its step held frozen. With a
 /// the approach of wheels and rails by lines and bodies, G the residual flexibility between all
 /// ports and F their vertical forces (loads P, wheels -f): w = G F, and d = a + w, f = C d^1.5 on
-/// wheels of Hertz contacts; f of the state on those that pull too. Flanges are wheels without a
-/// part in G.
+/// wheels of Hertz contacts; f of the state on those that pull too. Flanges have no part in G.
 struct StandingContacts {
-  int loads, wheels;
+  int loads, contacts;
   PlacedLoad load[kMaxLoads];
   WheelContact contact[kMaxWheels];
   double approach[kMaxWheels];   // a, m; negative is a gap
-  double force[kMaxRailForces];  // F: of loads, then wheels, N
+  double force[kMaxRailForces];  // F: of loads, then contacts, N
   double moved[kMaxRailForces];  // w, m
   double depth[kMaxWheels];      // d, m
   double hertz;                  // sum 2/5 C d^2.5, and k d^2 / 2 of linear contacts, J

@@ -113,7 +113,7 @@ void EnergyAccount::pass_on(std::int64_t step) {
     last_.contacts.load[i].row.element -= e.bay_elements;
   for (ExternalContact& at : last_.external)
     for (RailRow& row : at.row) row.element -= e.bay_elements;
-  for (int i = 0; i < last_.contacts.wheels; ++i) {
+  for (int i = 0; i < last_.contacts.contacts; ++i) {
     RailRow& row = last_.contacts.contact[i].row;
     row.element -= e.bay_elements;
     for (std::int32_t s = 0; s < row.seats; ++s) row.seat[s] -= 2 * e.bay_elements;
@@ -151,7 +151,7 @@ void EnergyAccount::add_contacts(const Standing& now) {
   double sum = residual_work(before, after) - (after.hertz - before.hertz) -
                (after.residual - before.residual);
   double mean[kMaxWheels];
-  for (int i = 0; i < after.wheels; ++i) {
+  for (int i = 0; i < after.contacts; ++i) {
     mean[i] = wheel_force(now, i);
     const bool lost =
         is_of_wheelset(model_, i) && !(before.contact[i].on_rail && after.contact[i].on_rail);
@@ -195,12 +195,12 @@ double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
     std::vector<double> u(at.state.u, at.state.u + model_.unknowns);
     u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
     const Configuration seen{u.data(), {at.state.u, at.state.v}, passed(model_, now.state.steps)};
-    const OwnContacts own = contacts_of(model_, b);
+    const WheelsetContacts own = contacts_of(model_, b);
     WheelContact moved[4];
     find_contacts(model_, w, seen, moved);
     if (own.count > 2) find_flanges(model_, flange_of(model_, own.at[2]), seen, moved + 2);
     for (int n = 0; n < own.count; ++n) {
-      const int i = own.at[n];
+      const ContactId i = own.at[n];
       if (!moved[n].on_rail || !at.contacts.contact[i].on_rail) continue;
       const double change = moved[n].penetration - at.contacts.approach[i];
       sum += .5 * wheel_force(now, i) * (later ? -change : change);
@@ -219,7 +219,7 @@ double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const
     find_vehicle_contacts(model_, v, step, later ? model_.scheme.dt : 0.,
                           {at.state.u, {at.state.u, at.state.v}, passed(model_, step)}, moved);
     for (int k = 0; k < v.wheels; ++k) {
-      const int i = 2 * model_.wheelsets + v.first_wheel + k;
+      const ContactId i = vehicle_contact(model_, v.first_wheel + k);
       const double change = moved[i].penetration - at.contacts.approach[i];
       sum += .5 * wheel_force(now, i) * (later ? -change : change);
     }
@@ -293,7 +293,7 @@ void EnergyAccount::add_start(const Standing& now) {
     flow_.loss += .5 * vehicle_unbalanced(model_, model_.vehicle[b], s, now.state);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
     const WheelsetModel& w = model_.wheelset[b];
-    const OwnContacts own = contacts_of(model_, b);
+    const WheelsetContacts own = contacts_of(model_, b);
     for (int k = 1; k < 5; ++k) {  // x and yaw are guided
       const int at = w.first + k;
       double force = -w.mass[k] * s.g[at] - (k == 2 ? w.weight : 0.);

@@ -72,7 +72,8 @@ bool is_moved(const Track& track, const Line& line, const Traffic& traffic, doub
 
 }  // namespace
 
-std::int32_t PackedModel::load_point_of(const Port& port) {
+/// The number of a load point, a new one if no force has acted there yet.
+std::int32_t PackedModel::load_point_at(const Port& port) {
   for (std::size_t i = 0; i < load_points_.size(); ++i)
     if (load_points_[i].rail == port.rail && load_points_[i].z == port.z &&
         load_points_[i].y == port.y)
@@ -87,7 +88,7 @@ std::int32_t PackedModel::load_point_of(const Port& port) {
 /// Of a wheel on a rail at rest.
 std::int32_t PackedModel::load_point_of_wheel(int rail) {
   const CrownTop top = crown_top(model_.cant[rail], model_.head_z[rail], model_.crown_radius[rail]);
-  return load_point_of({rail, top.z, top.y});
+  return load_point_at({rail, top.z, top.y});
 }
 
 void PackedModel::add_load(const Track& track, const MovingLoad& load) {
@@ -107,7 +108,7 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   packed.phase = load.phase;
   packed.table_points = static_cast<std::int32_t>(load.table.size() / 2);
   packed.table = keep(load.table);
-  packed.load_point = load_point_of({load.rail, load.z});
+  packed.load_point = load_point_at({load.rail, load.z});
 }
 
 void PackedModel::add_irregularity(const Track& track, const RailIrregularity& irregularity) {

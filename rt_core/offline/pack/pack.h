@@ -238,7 +238,7 @@ class PackedModel {
                                const std::vector<TrackSensor>& track_sensors);
   void add_p_delta(const Track& track);
   void clip(int points, std::vector<double>& under);
-  std::int32_t load_point_of(const Port& port);
+  std::int32_t load_point_at(const Port& port);
   std::int32_t load_point_of_wheel(int rail);
 
   Model model_{};

@@ -12,15 +12,15 @@ namespace {
 
 constexpr int kPairPoints = 4;  // intervals per element of tables between ports
 
-/// Places at the start of all ports of each kind, m along the model's elements.
-std::vector<std::vector<double>> ports_of(const Model& model, std::size_t kinds) {
-  std::vector<std::vector<double>> places(kinds);
-  const auto add = [&](std::int32_t kind, double place) {
-    places[static_cast<std::size_t>(kind)].push_back(place);
+/// Places at the start of all forces at each load point, m along the model's elements.
+std::vector<std::vector<double>> places_of(const Model& model, std::size_t load_points) {
+  std::vector<std::vector<double>> places(load_points);
+  const auto add = [&](std::int32_t load_point, double place) {
+    places[static_cast<std::size_t>(load_point)].push_back(place);
   };
   for (std::int32_t i = 0; i < model.loads; ++i) add(model.load[i].load_point, model.load[i].start);
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i)
-    add(wheel_load_point(model, i), model.wheelset[i / 2].start);
+  for (ContactId i = 0; i < tread_count(model); ++i)
+    add(load_point_of(model, i), model.wheelset[wheelset_of(model, i)].start);
   for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
     const VehicleWheel& wheel = model.vehicle_wheel[i];
     add(wheel.load_point, model.vehicle[wheel.vehicle].start + wheel.place);
@@ -123,10 +123,10 @@ void PackedModel::clip(int points, std::vector<double>& under) {
   const StepCompliance compliance(model_, lines_);
   const std::size_t places = under.size() / load_points_.size();
   for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
-    const auto kind = static_cast<std::size_t>(wheel_load_point(model_, wheel));
-    const std::vector<double> lines = compliance.table(load_points_[kind], points);
+    const auto point = static_cast<std::size_t>(load_point_of(model_, wheel));
+    const std::vector<double> lines = compliance.table(load_points_[point], points);
     for (std::size_t i = 0; i < places; ++i) {
-      double& value = under[kind * places + i];
+      double& value = under[point * places + i];
       const double lowest = lines[i] > 0. ? -.5 * lines[i] : -1.5 * lines[i];
       clipped_ = larger(clipped_, lowest - value);
       value = std::max(value, lowest);
@@ -179,12 +179,12 @@ void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor
   model_.residual.points = points;
   model_.residual.under = keep(std::move(under));
   model_.residual.axis = keep(std::move(axis));
-  const std::vector<std::vector<double>> ports = ports_of(model_, load_points_.size());
+  const std::vector<std::vector<double>> places = places_of(model_, load_points_.size());
   for (std::size_t a = 0; a < load_points_.size(); ++a)
     for (std::size_t b = 0; b < load_points_.size(); ++b) {
-      if (a == b && ports[a].size() < 2) continue;
+      if (a == b && places[a].size() < 2) continue;
       PairTable pair = residual.between(load_points_[a], load_points_[b], kPairPoints,
-                                        farthest(model_, ports[a], ports[b]));
+                                        farthest(model_, places[a], places[b]));
       if (all_zero(pair.value)) continue;
       model_.residual.pair[a][b] = {pair.points, pair.reach, keep(std::move(pair.value))};
     }

@@ -138,11 +138,11 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
     return equilibrium(statics, packed, gravity, time);
   Acting acting = loads_at(statics, packed, time);
   const std::size_t loads = acting.forces.size();
-  for (std::int32_t i = 0; i < 2 * model.wheelsets; ++i) {
-    const WheelsetModel& w = model.wheelset[i / 2];
+  for (ContactId i = 0; i < tread_count(model); ++i) {
+    const WheelsetModel& w = model.wheelset[wheelset_of(model, i)];
     const double x = w.start + travelled(w.travel, 0.).speed * time;
-    acting.forces.push_back({point_of(packed, w.load_point[i % 2], x), -wheel_load(w)});
-    acting.ports.push_back(rail_force(model, w.load_point[i % 2], x, -wheel_load(w)));
+    acting.forces.push_back({point_of(packed, load_point_of(model, i), x), -wheel_load(w)});
+    acting.ports.push_back(rail_force(model, load_point_of(model, i), x, -wheel_load(w)));
   }
   Pose pose;
   if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
@@ -151,14 +151,13 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
     const WheelsetModel& w = model.wheelset[b];
     const double up[3] = {0., 0., 1.}, rolled = travelled(w.travel, 0.).speed * time;
     std::array<double, 2> height;
-    for (const std::size_t rail : {0u, 1u}) {
-      const std::size_t port = loads + 2 * static_cast<std::size_t>(b) + rail;
-      height[rail] =
+    for (const int rail : {0, 1}) {
+      const std::size_t port = loads + static_cast<std::size_t>(tread_of(b, rail));
+      height[static_cast<std::size_t>(rail)] =
           height_of(statics.track(), packed, pose.lines, acting.forces[port].at) +
           residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
                                 static_cast<int>(port)) +
-          irregularity(model, w.tread[rail], static_cast<int>(rail), up,
-                       w.start + rolled + passed(model, 0), rolled)
+          irregularity(model, w.tread[rail], rail, up, w.start + rolled + passed(model, 0), rolled)
               .depth;
     }
     pose.wheelsets.push_back(standing_wheelset(model, w, height));
@@ -271,7 +270,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
     std::copy(v.begin(), v.end(), state.v + model.vehicle[b].first);
   }
   for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
-    state.wheel_force[2 * model.wheelsets + i] = at.vehicles.force[i];
+    state.wheel_force[vehicle_contact(model, i)] = at.vehicles.force[i];
   put_port_forces(model, state);
   return memory;
 }

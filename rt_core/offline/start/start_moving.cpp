@@ -38,17 +38,18 @@ std::vector<double> static_forces(const Model& model) {
 
 /// A wheel as a force.
 LoadModel load_of(const Model& model, int wheel, double force) {
-  const std::int32_t rail = wheel_rail(model, wheel);
+  const std::int32_t rail = rail_of(model, wheel);
   LoadModel load{};
   const CrownTop top = crown_top(model.cant[rail], model.head_z[rail], model.crown_radius[rail]);
   height_row(model.cant[rail], top.y, top.z, load.row);
   load.rail = rail;
   load.stop = std::numeric_limits<double>::infinity();
   load.force = -force;
-  load.load_point = wheel_load_point(model, wheel);
+  load.load_point = load_point_of(model, wheel);
   if (is_of_wheelset(model, wheel)) {
-    load.start = model.wheelset[wheel / 2].start;
-    load.travel = model.wheelset[wheel / 2].travel;
+    const WheelsetModel& set = model.wheelset[wheelset_of(model, wheel)];
+    load.start = set.start;
+    load.travel = set.travel;
     return load;
   }
   const VehicleWheel& own = vehicle_wheel(model, wheel);
@@ -203,14 +204,13 @@ struct Stand {
 Stand stand_on(const Model& model, const double* height) {
   Stand found;
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    found.wheelsets.push_back(
-        standing_wheelset(model, model.wheelset[b], {height[2 * b], height[2 * b + 1]}));
+    found.wheelsets.push_back(standing_wheelset(model, model.wheelset[b],
+                                                {height[tread_of(b, 0)], height[tread_of(b, 1)]}));
   const Eigen::Index wheels = model.vehicle_wheels;
   if (wheels > 0)
     found.vehicles =
         settle_vehicles(model, Eigen::MatrixXd::Zero(wheels, wheels),
-                        Eigen::Map<const Eigen::VectorXd>(
-                            height + 2 * static_cast<std::ptrdiff_t>(model.wheelsets), wheels));
+                        Eigen::Map<const Eigen::VectorXd>(height + tread_count(model), wheels));
   return found;
 }
 
@@ -234,7 +234,7 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
       put(w.first + static_cast<int>(k), at[0].wheelsets[own][k], at[1].wheelsets[own][k],
           at[2].wheelsets[own][k]);
     state.v[w.first] += w.travel.speed;
-    for (int side = 0; side < 2; ++side) state.wheel_force[2 * b + side] = wheel_load(w);
+    for (int side = 0; side < 2; ++side) state.wheel_force[tread_of(b, side)] = wheel_load(w);
   }
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const auto own = static_cast<std::size_t>(b);
@@ -243,7 +243,7 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
           at[1].vehicles.displacement[own][k], at[2].vehicles.displacement[own][k]);
   }
   for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
-    state.wheel_force[2 * model.wheelsets + i] = at[0].vehicles.force[i];
+    state.wheel_force[vehicle_contact(model, i)] = at[0].vehicles.force[i];
 }
 
 /// Names speeds that are accepted, to the digits that this takes.

@@ -30,7 +30,7 @@ Eigen::MatrixXd rows_of(const Stance& stance) {
 
 ContactModel law_of(const Model& model, std::int32_t contact) {
   if (is_flange(model, contact)) return flange_of(model, contact).contact;
-  return {model.wheelset[contact / 2].hertz[contact % 2], 0., 0.};
+  return {model.wheelset[wheelset_of(model, contact)].hertz[rail_of(model, contact)], 0., 0.};
 }
 
 }  // namespace
@@ -53,14 +53,14 @@ void check_sides(const Model& model) {
 Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
   const WheelsetModel& w = model.wheelset[b];
   const double aside = side_force(w);
-  Stance stance{2, {2 * b, 2 * b + 1, -1}, {}, {}};
+  Stance stance{2, {tread_of(b, 0), tread_of(b, 1), -1}, {}, {}};
   find_contacts(model, w, at, stance.contact.data());
   if (aside != 0.) {
-    const std::size_t side = aside > 0. ? 0 : 1;
+    const int side = aside > 0. ? 0 : 1;
     WheelContact face[2];
     find_flanges(model, model.flange[0], at, face);
     stance.count = 3;
-    stance.number[2] = wheel_count(model) + static_cast<std::int32_t>(side);
+    stance.number[2] = flange_contact(model, flange_number(0, side));
     stance.contact[2] = face[side];
   }
   const Eigen::Vector3d applied(aside, force_along(w, 2) - w.weight, 0.);
@@ -75,7 +75,7 @@ Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
 }
 
 double way_off_flanges(const Model& model, std::int32_t b, const Configuration& at) {
-  const OwnContacts own = contacts_of(model, b);
+  const WheelsetContacts own = contacts_of(model, b);
   if (own.count == 2 || side_force(model.wheelset[b]) != 0.) return 0.;
   WheelContact face[2];
   find_flanges(model, flange_of(model, own.at[2]), at, face);
@@ -101,7 +101,7 @@ void add_forces(const Model& model, const Stance& stance, Acting& acting) {
   for (int i = 0; i < stance.count; ++i) {
     const auto c = static_cast<std::size_t>(i);
     acting.contacts.push_back({stance.contact[c].row, -stance.force[i]});
-    acting.ports.push_back(rail_force(model, wheel_load_point(model, stance.number[c]),
+    acting.ports.push_back(rail_force(model, load_point_of(model, stance.number[c]),
                                       stance.contact[c].x, -stance.force[i]));
   }
 }

@@ -27,9 +27,10 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
     w.scaled[i] = s.u[i] + ahead * s.v[i];
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
-    find_contacts(model, set, located_on(model, s, w), c.contact + 2 * b, later * s.v[set.first]);
+    find_contacts(model, set, located_on(model, s, w), c.contact + tread_of(b, 0),
+                  later * s.v[set.first]);
     for (int side = 0; side < 2; ++side) {
-      const int i = 2 * b + side;
+      const ContactId i = tread_of(b, side);
       c.law[i] = {set.hertz[side], 0., 0.};
       c.place[i] = {set.load_point[side], c.contact[i].row.element, c.contact[i].xi, 0.};
     }
@@ -38,8 +39,8 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     place_vehicle_wheels(model, model.vehicle[v], stage.step, stage.before + (stage.span - ahead),
                          c.contact, later);
-  for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i)
-    c.place[i] = {wheel_load_point(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
+    c.place[i] = {load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }
 
 /// Whether there is anything under a wheel.
@@ -47,18 +48,18 @@ bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground
 
 /// What the loads add to the rail under each wheel through the residual flexibility.
 void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c) noexcept {
-  for (int i = 0; i < c.wheels; ++i) c.by_loads[i] = 0.;
+  for (ContactId i = 0; i < c.contacts; ++i) c.by_loads[i] = 0.;
   for (std::int32_t l = 0; l < model.loads; ++l) {
     const PlacedLoad load = place(model, model.load[l], stage.step, stage.before);
     if (!load.on_rail) continue;
     const RailForce at{model.load[l].load_point, load.row.element, load.xi, load.force};
-    for (int i = 0; i < c.wheels; ++i)
+    for (ContactId i = 0; i < c.contacts; ++i)
       c.by_loads[i] += load.force * residual_between(model, at, c.place[i]);
   }
 }
 
 /// What a unit force at wheel j adds to the approach of wheel i through what bears them both.
-double body_compliance(const Model& model, const Coupling& c, int i, int j) noexcept {
+double body_compliance(const Model& model, const Coupling& c, ContactId i, ContactId j) noexcept {
   if (is_of_wheelset(model, i) != is_of_wheelset(model, j)) return 0.;
   return is_of_wheelset(model, i) ? wheelset_compliance(model, c, i, j)
                                   : vehicle_compliance(model, i, j);
@@ -66,7 +67,7 @@ double body_compliance(const Model& model, const Coupling& c, int i, int j) noex
 
 /// W between all wheels: through the lines, the bodies and the residual flexibility.
 void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
-  for (int i = 0; i < c.wheels; ++i)
+  for (ContactId i = 0; i < c.contacts; ++i)
     for (int j = 0; j <= i; ++j) {
       double sum = 0.;
       if (c.contact[i].on_rail && c.contact[j].on_rail)
@@ -83,7 +84,7 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
 /// Penetration that the track alone would leave: the located one, moved from where it was located.
 void track_penetration(const Model& model, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
-  for (int i = 0; i < c.wheels; ++i) {
+  for (ContactId i = 0; i < c.contacts; ++i) {
     // Off the rail: far away.
     c.track_free[i] = c.contact[i].inactive ? c.contact[i].penetration : -1.;
     if (c.contact[i].on_rail)
@@ -101,7 +102,7 @@ PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
   double d_free[kPorts];
   for (int i = 0; i < c.ports; ++i) {
     d_free[i] = c.track_free[i];
-    if (i >= c.wheels || !stands(c.contact[i])) continue;
+    if (i >= c.contacts || !stands(c.contact[i])) continue;
     d_free[i] -= model.scheme.theta *
                  (is_of_wheelset(model, i) ? free_lift(model, s, c, i) : vehicle_lift(model, c, i));
   }
@@ -129,7 +130,7 @@ void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& 
 }
 
 bool impact_is_unresolved_at(const Model& model, const Coupling& c, const State& s,
-                             int i) noexcept {
+                             ContactId i) noexcept {
   if (is_flange(model, i)) return flange_impact_is_unresolved(model, c, s, i);
   return is_of_wheelset(model, i) ? tread_impact_is_unresolved(model, c, s, i)
                                   : vehicle_impact_is_unresolved(model, c, s, i);
@@ -137,7 +138,7 @@ bool impact_is_unresolved_at(const Model& model, const Coupling& c, const State&
 
 void publish_wheels(const Model& model, const Coupling& c, State& state,
                     CoupleResult& result) noexcept {
-  for (int i = 0; i < c.wheels; ++i) {
+  for (ContactId i = 0; i < c.contacts; ++i) {
     const WheelContact& at = c.contact[i];
     if (state.wheel_force[i] <= 0. && c.force[i] > 0. &&
         impact_is_unresolved_at(model, c, state, i))
@@ -159,8 +160,8 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
 CoupleResult couple(const Model& model, const Stage& stage, State& state, Workspace& w) noexcept {
   CoupleResult result{};
   Coupling c;
-  c.wheels = contact_count(model);
-  c.ports = c.wheels + model.fixed.count;
+  c.contacts = contact_count(model);
+  c.ports = c.contacts + model.fixed.count;
   const double time = time_of(model.scheme, stage);
   locate_contacts(model, stage, state, w, c);
   respond(model, state, w, c);
@@ -173,7 +174,7 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   track_penetration(model, state, w, c);
   if (model.scheme.mean != 0) find_means(model, state, w, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
-  for (int i = 0; i < c.wheels; ++i) c.force[i] = state.wheel_force[i];
+  for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.wheel_force[i];
   solve_coupled(model, stage, state, w, c, result);
   move_track(model, w, c);
   move_vehicles(model, w, c);

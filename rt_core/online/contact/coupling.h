@@ -14,10 +14,9 @@ struct FreeWheelset {
 /// A step's coupled problem: where the track and what stands on it would be without contact, and
 /// how both give way under contact forces. Written where it is read: nothing of it is zeroed.
 struct Coupling {
-  int wheels,
-      ports;  // wheels: contacts, those of flanges behind; ports: these, then the fixed ones
+  int contacts, ports;  // ports: the contacts, then the fixed ones
   WheelContact contact[kMaxWheels];
-  RailForce place[kMaxWheels];  // of the contacts
+  RailForce place[kMaxWheels];
   double by_loads[kMaxWheels];  // residual displacement there by the loads, m
   double located[kMaxWheels];   // displacement of the lines there as contacts were located, m
   FreeWheelset wheelset[kMaxWheelsets];

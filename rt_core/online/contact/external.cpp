@@ -184,16 +184,18 @@ void publish_external_rates(const Model& model, const State& s, const ExternalCo
 
 void external_compliance(const Model& model, const ExternalContact* contact, Workspace& w,
                          double* compliance) noexcept {
-  const std::int32_t count = 3 * model.external_wheels;
+  const std::int32_t count = external_row(model.external_wheels, 0);
   for (std::int32_t j = 0; j < count; ++j) {
-    const ExternalContact& from = contact[j / 3];
-    if (from.on_rail) respond(model, from.row[j % 3], w);
+    const auto [source, along] = external_row_at(j);
+    const ExternalContact& from = contact[source];
+    if (from.on_rail) respond(model, from.row[along], w);
     for (std::int32_t i = 0; i <= j; ++i) {
-      const ExternalContact& at = contact[i / 3];
+      const auto [wheel, direction] = external_row_at(i);
+      const ExternalContact& at = contact[wheel];
       double sum = 0.;
       const bool both = from.on_rail && at.on_rail;
-      if (both) sum = moved(model, at.row[i % 3], {w.solved, {w.solved, w.imaginary}});
-      if (both && i % 3 == 2 && j % 3 == 2)
+      if (both) sum = moved(model, at.row[direction], {w.solved, {w.solved, w.imaginary}});
+      if (both && direction == 2 && along == 2)
         sum +=
             i == j ? residual_under(model, at.port) : residual_between(model, from.port, at.port);
       compliance[i * count + j] = compliance[j * count + i] = sum;

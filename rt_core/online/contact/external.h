@@ -16,6 +16,15 @@ struct ExternalContact {
   RailForce port;   // of the vertical force, for the residual flexibility
 };
 
+/// The directions of all external wheels are numbered: direction d of wheel n is row 3 n + d.
+struct ExternalRow {
+  std::int32_t wheel, direction;  // 0 x, 1 y, 2 z
+};
+constexpr std::int32_t external_row(std::int32_t wheel, std::int32_t direction) noexcept {
+  return 3 * wheel + direction;
+}
+constexpr ExternalRow external_row_at(std::int32_t row) noexcept { return {row / 3, row % 3}; }
+
 /// Places all external wheels by the inputs of a step. @param contact  [external_wheels]
 /// overwritten
 void place_external(const Model& model, std::int64_t step, const double* input,
@@ -40,8 +49,8 @@ void publish_external(const Model& model, const State& state, const ExternalCont
 void publish_external_rates(const Model& model, const State& state, const ExternalContact* contact,
                             Workspace& workspace, Outputs& outputs) noexcept;
 
-/// Displacement of one contact's point per newton at another, of all: with 3 n + d for direction d
-/// of wheel n, symmetric, m/N, residual flexibility included.
+/// Displacement of one contact's point per newton at another, of all by their rows: symmetric, m/N,
+/// residual flexibility included.
 /// @param compliance  [3 external_wheels][3 external_wheels] overwritten; 0 off the rail
 void external_compliance(const Model& model, const ExternalContact* contact, Workspace& workspace,
                          double* compliance) noexcept;

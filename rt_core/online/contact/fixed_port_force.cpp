@@ -26,8 +26,8 @@ void place_banded(const Model& model, std::int32_t j, const Workspace& w, Coupli
   DepthSpeed speed = speed_at_end(model.scheme, closing(model, j, w.u_star, nullptr),
                                   closing(model, j, w.v_star, nullptr));
   speed.before += speed.per_metre * fixed.gap[j];  // the depth is the closing less the gap
-  c.law[c.wheels + j] = law_of(fixed, j, speed);
-  c.track_free[c.wheels + j] = closing(model, j, w.solved, nullptr) - fixed.gap[j];
+  c.law[c.contacts + j] = law_of(fixed, j, speed);
+  c.track_free[c.contacts + j] = closing(model, j, w.solved, nullptr) - fixed.gap[j];
 }
 
 void place_condensed(const Model& model, std::int32_t j, const State& s, const Workspace& w,
@@ -36,16 +36,16 @@ void place_condensed(const Model& model, std::int32_t j, const State& s, const W
   const double theta = model.scheme.theta;
   const double d0 = closing(model, j, s.u, s.v) - fixed.gap[j];
   const double d1 = closing(model, j, w.solved, w.imaginary) - fixed.gap[j];
-  c.law[c.wheels + j] = law_of(fixed, j, mean_speed(model.scheme, d0));
-  c.track_free[c.wheels + j] = theta * d1 + (1. - theta) * d0;
+  c.law[c.contacts + j] = law_of(fixed, j, mean_speed(model.scheme, d0));
+  c.track_free[c.contacts + j] = theta * d1 + (1. - theta) * d0;
 }
 
 /// W between a fixed port and all before it.
 void fixed_compliance(const Model& model, std::int32_t j, const Workspace& w,
                       Coupling& c) noexcept {
   const Complex response = response_of(model, j);
-  const int row = c.wheels + j;
-  for (int i = 0; i < c.wheels; ++i) {
+  const int row = c.contacts + j;
+  for (ContactId i = 0; i < c.contacts; ++i) {
     const double sum =
         c.contact[i].on_rail
             ? model.scheme.theta * track_under(model, w, c, i, response.re, response.im)
@@ -53,7 +53,7 @@ void fixed_compliance(const Model& model, std::int32_t j, const Workspace& w,
     c.W[i * c.ports + row] = c.W[row * c.ports + i] = sum;
   }
   for (std::int32_t i = 0; i <= j; ++i)
-    c.W[(c.wheels + i) * c.ports + row] = c.W[row * c.ports + c.wheels + i] =
+    c.W[(c.contacts + i) * c.ports + row] = c.W[row * c.ports + c.contacts + i] =
         model.fixed.compliance[j * model.fixed.count + i];
 }
 
@@ -67,14 +67,14 @@ void couple_fixed_ports(const Model& model, const State& s, const Workspace& w,
     else
       place_banded(model, j, w, c);
     fixed_compliance(model, j, w, c);
-    c.force[c.wheels + j] = s.port_force[j];
+    c.force[c.contacts + j] = s.port_force[j];
   }
 }
 
 void press_fixed_ports(const Model& model, const Coupling& c, State& s, Workspace& w) noexcept {
   for (std::int32_t j = 0; j < model.fixed.count; ++j) {
     const Complex response = response_of(model, j);
-    const double force = c.force[c.wheels + j];
+    const double force = c.force[c.contacts + j];
     s.port_force[j] = force;
 #pragma omp simd
     for (std::int32_t k = 0; k < model.line_unknowns; ++k) w.solved[k] -= force * response.re[k];

@@ -44,10 +44,10 @@ void locate_flanges(const Model& model, const State& s, const Workspace& w, doub
   const Configuration seen = located_on(model, s, w);
   for (std::int32_t f = 0; f < model.flanges; ++f) {
     const FlangeModel& flange = model.flange[f];
-    const int first = wheel_count(model) + 2 * f;
-    find_flanges(model, flange, seen, c.contact + first,
+    const ContactId left = flange_contact(model, flange_number(f, 0));
+    find_flanges(model, flange, seen, c.contact + left,
                  later * s.v[model.wheelset[flange.wheelset].first]);
-    for (int i = first; i < first + 2; ++i) {
+    for (ContactId i = left; i <= flange_contact(model, flange_number(f, 1)); ++i) {
       WheelContact& at = c.contact[i];
       at.inactive = at.on_rail && at.penetration < -kInactiveGap;
       if (at.inactive) at.on_rail = false;
@@ -58,7 +58,7 @@ void locate_flanges(const Model& model, const State& s, const Workspace& w, doub
 
 void find_flange_laws(const Model& model, const State& s, const Workspace& w,
                       Coupling& c) noexcept {
-  for (int i = wheel_count(model); i < c.wheels; ++i) {
+  for (ContactId i = wheel_count(model); i < c.contacts; ++i) {
     const FlangeModel& flange = flange_of(model, i);
     c.law[i] = {flange.contact.hertz, flange.contact.stiffness, 0.};
     if (flange.contact.damping == 0. || !c.contact[i].on_rail) continue;
@@ -68,7 +68,7 @@ void find_flange_laws(const Model& model, const State& s, const Workspace& w,
 }
 
 bool flange_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
-                                 int contact) noexcept {
+                                 ContactId contact) noexcept {
   const FlangeModel& flange = flange_of(model, contact);
   const WheelsetModel& set = model.wheelset[flange.wheelset];
   const WheelContact& at = c.contact[contact];

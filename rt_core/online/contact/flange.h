@@ -17,6 +17,6 @@ void find_flange_laws(const Model& model, const State& s, const Workspace& w, Co
 
 /// As tread_impact_is_unresolved() of treads, for the mass that the flange has alone.
 bool flange_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
-                                 int contact) noexcept;
+                                 ContactId contact) noexcept;
 
 }  // namespace railstep

@@ -6,9 +6,10 @@
 
 namespace railstep {
 
-double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+double residual_before(const Model& model, const State& s, const Coupling& c,
+                       ContactId i) noexcept {
   double sum = c.by_loads[i];
-  for (int j = 0; j < c.wheels; ++j)
+  for (ContactId j = 0; j < c.contacts; ++j)
     if (c.contact[j].on_rail)
       sum -= s.wheel_force[j] * (i != j ? residual_between(model, c.place[j], c.place[i])
                                         : residual_under(model, c.place[i]));
@@ -16,7 +17,7 @@ double residual_before(const Model& model, const State& s, const Coupling& c, in
 }
 
 void find_means(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept {
-  for (int i = 0; i < c.wheels; ++i) {
+  for (ContactId i = 0; i < c.contacts; ++i) {
     const WheelContact& at = c.contact[i];
     if (!(c.law[i].hertz > 0.) || !(at.on_rail || at.on_ground)) continue;
     // track_free has the track and the loads at the step's end, and what bears the wheel at

@@ -5,20 +5,21 @@ namespace railstep {
 namespace {
 
 /// Of a wheel's row, the part of one line.
-Complex row_of(const Model& model, const Workspace& w, const LineModel& line, int wheel) noexcept {
+Complex row_of(const Model& model, const Workspace& w, const LineModel& line,
+               ContactId wheel) noexcept {
   const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(wheel) * model.unknowns + line.first;
   return {re, re + model.unknowns};
 }
 
 /// Whether a force at the wheel moves the line.
-bool presses(const Coupling& c, int wheel, const LineModel& line) noexcept {
+bool presses(const Coupling& c, ContactId wheel, const LineModel& line) noexcept {
   return c.contact[wheel].on_rail && line.rail_factor[c.contact[wheel].row.rail] != 0.;
 }
 
 /// Solves each banded line for itself and for the wheels that touch it, together where they can be.
 void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
-  for (int i = 0; i < c.wheels; ++i) {
+  for (ContactId i = 0; i < c.contacts; ++i) {
     double* rhs = w.unit + i * stride;
     for (std::int32_t k = 0; k < model.line_unknowns; ++k) rhs[k] = 0.;
     if (!c.contact[i].on_rail) continue;
@@ -28,12 +29,12 @@ void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
     double* x = w.solved + model.line[l].first;
     double* unit = w.unit + model.line[l].first;
     const bool both = model.line[l].rail_factor[0] != 0. && model.line[l].rail_factor[1] != 0.;
-    const int together = both && c.wheels >= 2 ? 2 : 0;
+    const int together = both && c.contacts >= 2 ? 2 : 0;
     if (together == 2)
       solve_band<3>(model.line[l].step, x, stride);
     else
       solve_band<1>(model.line[l].step, x, stride);
-    for (int i = together; i < c.wheels; ++i)
+    for (int i = together; i < c.contacts; ++i)
       if (c.contact[i].on_rail && model.line[l].rail_factor[c.contact[i].row.rail] != 0.)
         solve_band<1>(model.line[l].step, unit + i * stride, stride);
   }
@@ -42,7 +43,7 @@ void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
 /// What a unit force under each wheel, held over the step, makes of the condensed lines it presses.
 void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
-  for (int i = 0; i < c.wheels; ++i) {
+  for (ContactId i = 0; i < c.contacts; ++i) {
     double* re = w.row + 2 * i * stride;
     const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
@@ -73,7 +74,7 @@ void subtract(const double* const* unit, const double* force, int count, int siz
 
 /// What a line that wheel `i` presses adds to the displacement under it.
 double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
-                  int i, const double* re, const double* im) noexcept {
+                  ContactId i, const double* re, const double* im) noexcept {
   if (model.form == Form::banded) return motion(line, c.contact[i].row, {re, {}});
   return modes_dot(row_of(model, w, line, i), {re + line.first, im + line.first}, line.size);
 }
@@ -85,12 +86,12 @@ void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noex
     respond_modes(model, w, c);
   else
     solve_bands(model, w, c);
-  for (int i = 0; i < c.wheels; ++i)
+  for (ContactId i = 0; i < c.contacts; ++i)
     c.located[i] = model.form == Form::condensed ? track_under(model, w, c, i, s.u, s.v)
                                                  : track_under(model, w, c, i, w.scaled, nullptr);
 }
 
-double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
+double track_under(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
                    const double* re, const double* im) noexcept {
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
@@ -98,8 +99,8 @@ double track_under(const Model& model, const Workspace& w, const Coupling& c, in
   return sum;
 }
 
-double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
-                        int j) noexcept {
+double track_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
+                        ContactId j) noexcept {
   const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(j) * model.unknowns;
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
@@ -108,7 +109,8 @@ double track_compliance(const Model& model, const Workspace& w, const Coupling& 
   return sum;
 }
 
-double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept {
+double track_motion(const Model& model, const Workspace& w, const Coupling& c,
+                    ContactId i) noexcept {
   return track_under(model, w, c, i, w.solved, w.imaginary) - c.located[i];
 }
 
@@ -118,7 +120,7 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
     const double *re[kMaxWheels], *im[kMaxWheels];
     double force[kMaxWheels];
     int count = 0;
-    for (int i = 0; i < c.wheels; ++i) {
+    for (ContactId i = 0; i < c.contacts; ++i) {
       if (!presses(c, i, line)) continue;
       const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i) * model.unknowns + line.first;
       re[count] = w.unit + unit;

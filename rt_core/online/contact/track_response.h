@@ -15,16 +15,17 @@ inline Configuration located_on(const Model& model, const State& s, const Worksp
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
 
 /// Displacement under wheel `i` of the track moved by unit forces at wheel `j`, at the step's end.
-double track_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
-                        int j) noexcept;
+double track_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
+                        ContactId j) noexcept;
 
 /// Displacement under wheel `i` where the lines are moved by `re` and, condensed, `im`;
 /// [line_unknowns].
-double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
+double track_under(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
                    const double* re, const double* im) noexcept;
 
 /// Displacement under wheel `i`, without contact forces, from where the contact was located.
-double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept;
+double track_motion(const Model& model, const Workspace& w, const Coupling& c,
+                    ContactId i) noexcept;
 
 /// Displacements of the track under the wheel forces: free, and what each force adds.
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept;

@@ -39,7 +39,7 @@ void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::
   const double up[3] = {0., 0., 1.};
   for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
     const VehicleWheel& wheel = model.vehicle_wheel[vehicle.first_wheel + k];
-    WheelContact& found = contact[2 * model.wheelsets + vehicle.first_wheel + k];
+    WheelContact& found = contact[vehicle_contact(model, vehicle.first_wheel + k)];
     found = WheelContact{};
     found.x = vehicle.start + way + wheel.place;
     found.row.rail = wheel.rail;
@@ -74,7 +74,7 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std:
                            double before, const Configuration& at, WheelContact* contact) noexcept {
   place_vehicle_wheels(model, vehicle, step, before, contact);
   for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
-    WheelContact& found = contact[2 * model.wheelsets + vehicle.first_wheel + k];
+    WheelContact& found = contact[vehicle_contact(model, vehicle.first_wheel + k)];
     const double height = found.on_rail ? rail_height(model, found.row, at) : 0.;
     found.penetration = height + found.irregularity - wheel_height(vehicle, k, at.u);
   }

@@ -12,16 +12,16 @@ namespace railstep {
 
 namespace {
 
-const VehicleModel& vehicle_of(const Model& model, int wheel) noexcept {
+const VehicleModel& vehicle_of(const Model& model, ContactId wheel) noexcept {
   return model.vehicle[vehicle_wheel(model, wheel).vehicle];
 }
 
 /// Of a wheel, among its vehicle's.
-int among_own(const Model& model, int wheel) noexcept {
-  return wheel - 2 * model.wheelsets - vehicle_of(model, wheel).first_wheel;
+int among_own(const Model& model, ContactId wheel) noexcept {
+  return among_vehicle_wheels(model, wheel) - vehicle_of(model, wheel).first_wheel;
 }
 
-const double* row_of(const Model& model, int wheel) noexcept {
+const double* row_of(const Model& model, ContactId wheel) noexcept {
   const VehicleModel& v = vehicle_of(model, wheel);
   return v.row + among_own(model, wheel) * v.size;
 }
@@ -41,7 +41,7 @@ void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
 double held_at(const Model& model) noexcept { return model.form == Form::condensed ? .5 : 1.; }
 
 DepthSpeed speed_of(const Model& model, double time, const State& s, const Workspace& w,
-                    const Coupling& c, int i) noexcept {
+                    const Coupling& c, ContactId i) noexcept {
   const WheelContact& at = c.contact[i];
   const VehicleModel& v = vehicle_of(model, i);
   const double* row = row_of(model, i);
@@ -92,7 +92,7 @@ void free_vehicles(const Model& model, double time, const State& s, const Worksp
 
 void find_vehicle_laws(const Model& model, double time, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
-  for (int i = 2 * model.wheelsets; i < wheel_count(model); ++i) {
+  for (ContactId i = tread_count(model); i < wheel_count(model); ++i) {
     const ContactModel& contact = vehicle_wheel(model, i).contact;
     c.law[i] = {contact.hertz, contact.stiffness, 0., contact.hertz == 0.};
     if (contact.damping == 0.) continue;
@@ -100,24 +100,24 @@ void find_vehicle_laws(const Model& model, double time, const State& s, const Wo
   }
 }
 
-double vehicle_compliance(const Model& model, int i, int j) noexcept {
+double vehicle_compliance(const Model& model, ContactId i, ContactId j) noexcept {
   if (vehicle_wheel(model, i).vehicle != vehicle_wheel(model, j).vehicle) return 0.;
   const VehicleModel& v = vehicle_of(model, i);
   return v.compliance[among_own(model, i) * v.wheels + among_own(model, j)];
 }
 
-double vehicle_offset(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+double vehicle_offset(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept {
   const VehicleModel& v = vehicle_of(model, i);
   return (c.located[i] + c.contact[i].irregularity) -
          (1. - model.scheme.theta) * dot(row_of(model, i), s.u + v.first, v.size);
 }
 
-double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept {
+double vehicle_lift(const Model& model, const Coupling& c, ContactId i) noexcept {
   return dot(row_of(model, i), c.vehicle[vehicle_wheel(model, i).vehicle],
              vehicle_of(model, i).size);
 }
 
-double vehicle_lift_before(const Model& model, const State& s, int i) noexcept {
+double vehicle_lift_before(const Model& model, const State& s, ContactId i) noexcept {
   const VehicleModel& v = vehicle_of(model, i);
   return dot(row_of(model, i), s.u + v.first, v.size);
 }
@@ -128,14 +128,14 @@ void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept
     double* u = w.solved + v.first;
     for (int k = 0; k < v.size; ++k) u[k] = c.vehicle[b][k];
     for (int i = 0; i < v.wheels; ++i) {
-      const double force = c.force[2 * model.wheelsets + v.first_wheel + i];
+      const double force = c.force[vehicle_contact(model, v.first_wheel + i)];
       for (int k = 0; k < v.size; ++k) u[k] += v.give[i * v.size + k] * force;
     }
   }
 }
 
 bool vehicle_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
-                                  int wheel) noexcept {
+                                  ContactId wheel) noexcept {
   const VehicleModel& v = vehicle_of(model, wheel);
   const double* row = row_of(model, wheel);
   const double hertz = vehicle_wheel(model, wheel).contact.hertz;

@@ -17,23 +17,23 @@ void find_vehicle_laws(const Model& model, double time, const State& s, const Wo
                        Coupling& c) noexcept;
 
 /// What a unit force at wheel j adds to the approach of wheel i through a vehicle that bears both.
-double vehicle_compliance(const Model& model, int i, int j) noexcept;
+double vehicle_compliance(const Model& model, ContactId i, ContactId j) noexcept;
 
 /// Penetration that the rail as it was seen, irregularities and the vehicle's place at the step's
 /// start leave of wheel i: what the coordinates at the step's end take off is left out.
-double vehicle_offset(const Model& model, const State& s, const Coupling& c, int i) noexcept;
+double vehicle_offset(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
 
 /// Height of wheel i at the step's end without contact forces.
-double vehicle_lift(const Model& model, const Coupling& c, int i) noexcept;
+double vehicle_lift(const Model& model, const Coupling& c, ContactId i) noexcept;
 
 /// Height of wheel i at the step's start.
-double vehicle_lift_before(const Model& model, const State& s, int i) noexcept;
+double vehicle_lift_before(const Model& model, const State& s, ContactId i) noexcept;
 
 /// Moves the vehicles under the contact forces.
 void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept;
 
 /// As tread_impact_is_unresolved of wheelsets, for the mass that the wheel has alone.
 bool vehicle_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
-                                  int wheel) noexcept;
+                                  ContactId wheel) noexcept;
 
 }  // namespace railstep

@@ -11,7 +11,7 @@ namespace railstep {
 
 namespace {
 
-constexpr int kGuided[2] = {0, 5};  // x and yaw
+constexpr int kGuided[kGuideRows] = {0, 5};  // x and yaw
 
 /// The augmented Lagrangian's penalty over the coordinate's inertia term kg m: each iteration
 /// leaves 1/(1 + this) of the violation.
@@ -37,20 +37,27 @@ void applied_force(const WheelsetModel& w, double time, const double* input, con
   force[5] = -w.mass[4] * spin * v[3] + 2. * w.mass[3] * v[5] * v[3] * p[3];
 }
 
+bool is_guided(int k) noexcept { return k == kGuided[0] || k == kGuided[1]; }
+
 bool is_guided_by_force(const WheelsetModel& set, int k) noexcept {
-  return set.guide == Guide::augmented_lagrangian && (k == kGuided[0] || k == kGuided[1]);
+  return set.guide == Guide::augmented_lagrangian && is_guided(k);
+}
+
+/// The guide's multiplier of a guided coordinate. @param multiplier  [kGuideRows] of its wheelset
+double multiplier_of(const double* multiplier, int k) noexcept {
+  return multiplier[k == kGuided[1] ? 1 : 0];
 }
 
 /// Coordinates of a wheelset under its wheel forces and multipliers.
 void move_body(const Model& model, int b, const Coupling& c, const double* multiplier,
                double* p) noexcept {
   const WheelsetModel& set = model.wheelset[b];
-  const OwnContacts own = contacts_of(model, b);
+  const WheelsetContacts own = contacts_of(model, b);
   for (int k = 0; k < 6; ++k) {
     double force = 0.;
     for (int n = 0; n < own.count; ++n)
       force += c.contact[own.at[n]].body_row[k] * c.force[own.at[n]];
-    if (is_guided_by_force(set, k)) force -= multiplier[k == kGuided[1] ? 1 : 0];
+    if (is_guided_by_force(set, k)) force -= multiplier_of(multiplier, k);
     p[k] = c.wheelset[b].free[k] + c.wheelset[b].compliance[k] * force;
   }
 }
@@ -91,7 +98,8 @@ void free_wheelsets(const Model& model, const Stage& stage, const State& s, cons
   }
 }
 
-double wheelset_compliance(const Model& model, const Coupling& c, int i, int j) noexcept {
+double wheelset_compliance(const Model& model, const Coupling& c, ContactId i,
+                           ContactId j) noexcept {
   double sum = 0.;
   const std::int32_t b = wheelset_of(model, i);
   if (b != wheelset_of(model, j)) return sum;
@@ -101,7 +109,7 @@ double wheelset_compliance(const Model& model, const Coupling& c, int i, int j) 
 }
 
 double wheelset_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                       int i) noexcept {
+                       ContactId i) noexcept {
   const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
   double sum = c.contact[i].penetration;
   for (int k = 0; k < 6; ++k)
@@ -110,20 +118,21 @@ double wheelset_offset(const Model& model, const State& s, const Workspace& w, c
   return sum;
 }
 
-double free_lift(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+double free_lift(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept {
   const std::int32_t b = wheelset_of(model, i);
   const FreeWheelset& own = c.wheelset[b];
   double sum = 0.;
   for (int k = 0; k < 6; ++k) {
     double p = own.free[k];
     if (is_guided_by_force(model.wheelset[b], k))
-      p -= own.compliance[k] * s.multiplier[2 * b + (k == kGuided[1] ? 1 : 0)];
+      p -= own.compliance[k] * multiplier_of(guide_of(s, b), k);
     sum += c.contact[i].body_row[k] * p;
   }
   return sum;
 }
 
-double wheelset_lift_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
+double wheelset_lift_before(const Model& model, const State& s, const Coupling& c,
+                            ContactId i) noexcept {
   const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
   double sum = 0.;
   for (int k = 0; k < 6; ++k) sum += c.contact[i].body_row[k] * s.u[first + k];
@@ -144,13 +153,14 @@ bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace&
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
     double* p = w.solved + set.first;
-    move_body(model, b, c, s.multiplier + 2 * b, p);
-    for (int i = 0; i < 2; ++i) {
+    double* const multiplier = guide_of(s, b);
+    move_body(model, b, c, multiplier, p);
+    for (int i = 0; i < kGuideRows; ++i) {
       const int k = kGuided[i];
       const double miss = p[k] - target(model, set, k, stage).distance;
       if (std::fabs(miss) > violation) violation = std::fabs(miss);
       if (set.guide != Guide::augmented_lagrangian) continue;
-      s.multiplier[2 * b + i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
+      multiplier[i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
       if (!(std::fabs(miss) <= set.tolerance)) settled = false;
     }
   }
@@ -158,19 +168,20 @@ bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace&
 }
 
 bool tread_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
-                                int wheel) noexcept {
-  const WheelsetModel& set = model.wheelset[wheel / 2];
-  const double *row = c.contact[wheel].body_row, *other = c.contact[wheel ^ 1].body_row;
+                                ContactId wheel) noexcept {
+  const WheelsetModel& set = model.wheelset[wheelset_of(model, wheel)];
+  const double *row = c.contact[wheel].body_row, *other = c.contact[other_tread(wheel)].body_row;
   double speed = 0., alone = 0., together = 0.;
   for (int k = 0; k < 6; ++k) {
     speed -= row[k] * s.v[set.first + k];
-    if (k == kGuided[0] || k == kGuided[1]) continue;
+    if (is_guided(k)) continue;
     alone += row[k] * row[k] / set.mass[k];
     together += row[k] * (row[k] + other[k]) / set.mass[k];
   }
   speed += c.contact[wheel].rise * s.v[set.first];
   const double inverse_mass = alone > together ? alone : together;
-  return impact_is_unresolved(set.hertz[wheel % 2], inverse_mass, speed, model.scheme.dt);
+  return impact_is_unresolved(set.hertz[rail_of(model, wheel)], inverse_mass, speed,
+                              model.scheme.dt);
 }
 
 void project_guides(const Model& model, const Stage& stage, State& state) noexcept {

@@ -3,8 +3,7 @@
 
 namespace railstep {
 
-// Wheelsets in a step's coupled problem. The left and right tread of wheelset b are contacts 2 b
-// and 2 b + 1 of the model; its flanges, if it has them, stand behind all wheels.
+// Wheelsets in a step's coupled problem, on their treads and flanges (model/contact_id.h).
 
 /// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
 /// guide does not give way at all: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
@@ -13,18 +12,20 @@ void free_wheelsets(const Model& model, const Stage& stage, const State& s, cons
 
 /// What a unit force at contact j adds to the approach of contact i through a wheelset that bears
 /// both.
-double wheelset_compliance(const Model& model, const Coupling& c, int i, int j) noexcept;
+double wheelset_compliance(const Model& model, const Coupling& c, ContactId i,
+                           ContactId j) noexcept;
 
 /// Penetration that frozen geometry and the wheelset's place at the step's start leave of contact
 /// i: what the coordinates at the step's end take off is left out.
 double wheelset_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                       int i) noexcept;
+                       ContactId i) noexcept;
 
 /// How far contact i goes from its rail over the step without contact forces.
-double free_lift(const Model& model, const State& s, const Coupling& c, int i) noexcept;
+double free_lift(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
 
 /// How far contact i was from its rail at the step's start, in the step's geometry.
-double wheelset_lift_before(const Model& model, const State& s, const Coupling& c, int i) noexcept;
+double wheelset_lift_before(const Model& model, const State& s, const Coupling& c,
+                            ContactId i) noexcept;
 
 /// Most turns of the guides' augmented Lagrangian around the contacts.
 std::int32_t guide_iterations(const Model& model) noexcept;
@@ -39,6 +40,6 @@ bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace&
 /// the rail taken as rigid (one that gives way holds the wheel for longer)
 /// and the smaller of the masses that the wheel has alone and together with the set's other one.
 bool tread_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
-                                int wheel) noexcept;
+                                ContactId wheel) noexcept;
 
 }  // namespace railstep

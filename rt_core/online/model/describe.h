@@ -319,7 +319,7 @@ void describe(Archive& a, Model& m) {
   a.count(m.loads, kMaxLoads);
   a.count(m.wheelsets, kMaxWheelsets);
   a.count(m.vehicles, kMaxVehicles);
-  a.count(m.vehicle_wheels, kMaxWheels - 2 * m.wheelsets);
+  a.count(m.vehicle_wheels, kMaxWheels - tread_count(m));
   a.count(m.signals, kMaxSignals);
   a.count(m.elements, kMostElements);
   a.count(m.unknowns, kMostUnknowns);

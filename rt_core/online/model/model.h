@@ -136,6 +136,7 @@ struct RailSignal {
 };
 
 enum class Guide : std::int32_t { augmented_lagrangian, baumgarte };
+inline constexpr int kGuideRows = 2;  // coordinates that a wheelset's guide holds: x and yaw
 
 /// A rigid wheelset on both rails: coordinates x, y, z of its centre from its start, then roll,
 /// spin and yaw, the spin beyond speed / radius; cylinders of one radius roll on circular railhead
@@ -347,58 +348,6 @@ struct Model {
 /// How many unknowns of a state, from the first on, are modes: those of condensed lines.
 inline std::int32_t modal_unknowns(const Model& model) noexcept {
   return model.form == Form::condensed ? model.line_unknowns : 0;
-}
-/// Wheels on the rails: left and right of each wheelset in turn, then those of each vehicle.
-inline std::int32_t wheel_count(const Model& model) noexcept {
-  return 2 * model.wheelsets + model.vehicle_wheels;
-}
-/// Contacts with the rails: the treads of all wheels, then left and right flange of each wheelset
-/// that has them.
-inline std::int32_t contact_count(const Model& model) noexcept {
-  return wheel_count(model) + 2 * model.flanges;
-}
-inline bool is_flange(const Model& model, std::int32_t contact) noexcept {
-  return contact >= wheel_count(model);
-}
-/// Of a contact that is a flange's.
-inline const FlangeModel& flange_of(const Model& model, std::int32_t contact) noexcept {
-  return model.flange[(contact - wheel_count(model)) / 2];
-}
-inline bool is_of_wheelset(const Model& model, std::int32_t contact) noexcept {
-  return contact < 2 * model.wheelsets || is_flange(model, contact);
-}
-/// Of a contact that is a wheelset's.
-inline std::int32_t wheelset_of(const Model& model, std::int32_t contact) noexcept {
-  return is_flange(model, contact) ? flange_of(model, contact).wheelset : contact / 2;
-}
-/// Of a wheel that is no wheelset's.
-inline const VehicleWheel& vehicle_wheel(const Model& model, std::int32_t wheel) noexcept {
-  return model.vehicle_wheel[wheel - 2 * model.wheelsets];
-}
-/// Which rail a contact is on: 0 left, 1 right.
-inline std::int32_t wheel_rail(const Model& model, std::int32_t contact) noexcept {
-  if (is_flange(model, contact)) return (contact - wheel_count(model)) % 2;
-  return is_of_wheelset(model, contact) ? contact % 2 : vehicle_wheel(model, contact).rail;
-}
-/// Of port, for the residual flexibility.
-inline std::int32_t wheel_load_point(const Model& model, std::int32_t contact) noexcept {
-  if (is_flange(model, contact)) return kNoLoadPoint;
-  return is_of_wheelset(model, contact) ? model.wheelset[contact / 2].load_point[contact % 2]
-                                        : vehicle_wheel(model, contact).load_point;
-}
-
-/// What a wheelset stands on: contacts `at[0]` to `at[count - 1]`.
-struct OwnContacts {
-  int count;
-  std::int32_t at[4];
-};
-inline OwnContacts contacts_of(const Model& model, std::int32_t wheelset) noexcept {
-  OwnContacts own{2, {2 * wheelset, 2 * wheelset + 1}};
-  for (std::int32_t f = 0; f < model.flanges; ++f) {
-    if (model.flange[f].wheelset != wheelset) continue;
-    own = {4, {own.at[0], own.at[1], wheel_count(model) + 2 * f, wheel_count(model) + 2 * f + 1}};
-  }
-  return own;
 }
 
 }  // namespace railstep

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "online/model/model.h"
+#include "online/model/contact_id.h"
 #include "online/model/status.h"
 #include "online/model/system_workspace.h"
 
@@ -17,8 +17,8 @@ struct State {
   double* g;            // [unknowns] true acceleration
   double* wheel_force;  // [contacts] N, of the last step: where the contact solve starts
   double* port_force;   // [fixed ports] N, the same of what stands still; 0: open
-  double* multiplier;   // [2 wheelsets] of the guide along x, N, and about z, N m; the
-                        // force on the wheelset is its negative
+  double* multiplier;   // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
+                        // the force on the wheelset is its negative
   double* quaternion;   // [system.bodies][4] body axes to ground
   double* row_force;    // [rows] of the system's joints and springs, N; the force on its parts is
                         // -G' of it, so a joint's or spring's pull is positive
@@ -71,10 +71,10 @@ struct Outputs {
   double wheel_place[kMaxWheels];   // the same along the model's elements, m
   double wheel_rail_z[kMaxWheels];  // displacement of the rail's axis under it, m
   /// Left and right flange of each wheelset that has them.
-  double flange_force[2 * kMaxWheelsets];       // N along its normal, at the frame's end
-  double flange_force_peak[2 * kMaxWheelsets];  // N
-  double flange_impulse[2 * kMaxWheelsets];     // N s
-  double flange_gap[2 * kMaxWheelsets];         // m along its normal, negative in contact
+  double flange_force[kMaxFlanges];       // N along its normal, at the frame's end
+  double flange_force_peak[kMaxFlanges];  // N
+  double flange_impulse[kMaxFlanges];     // N s
+  double flange_gap[kMaxFlanges];         // m along its normal, negative in contact
   /// Of external wheels: the point of the rail under each at the frame's end.
   bool external_on_rail[kMaxExternalWheels];
   double external_place[kMaxExternalWheels];            // m along the model's elements
@@ -88,13 +88,22 @@ struct Outputs {
   std::int32_t redundant_row[kMostNamedRows];  // the first of them, among the system's rows
 };
 
+/// Coordinates that guides hold, of all wheelsets.
+inline std::int64_t guide_rows(const Model& model) noexcept {
+  return std::int64_t{kGuideRows} * model.wheelsets;
+}
+/// The multipliers of a wheelset's guide, [kGuideRows].
+inline double* guide_of(const State& state, std::int32_t wheelset) noexcept {
+  return state.multiplier + std::ptrdiff_t{kGuideRows} * wheelset;
+}
+
 inline std::int64_t state_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + 2LL * model.wheelsets +
+  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + guide_rows(model) +
          system_state_doubles(model.system) + model.inputs;
 }
 /// Of the model's start: all of a state but Newton's matrix, which is not made yet.
 inline std::int64_t start_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + 2LL * model.wheelsets +
+  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + guide_rows(model) +
          system_start_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
@@ -111,7 +120,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
   double* const wheels = memory + 4 * n;
   double* const ports = wheels + contact_count(model);
   double* const guides = ports + model.fixed.count;
-  double* const system = guides + 2LL * model.wheelsets;
+  double* const system = guides + guide_rows(model);
   double* const rows = system + 4LL * model.system.bodies;
   return {0,
           memory,

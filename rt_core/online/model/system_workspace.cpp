@@ -29,7 +29,7 @@ SystemTangent tangent_from(const SystemModel& s, Cursor& cursor) noexcept {
   for (std::int32_t i = 0; i < s.bodies; ++i) solved += 6LL * part_ends(s, i);
   for (std::int32_t i = 0; i < s.beams; ++i) {
     factor += beam_factor_doubles(s.beam[i]);
-    solved += 4LL * beam_groups(s, i) * s.beam[i].unknowns;
+    solved += beam_groups(s, i) * end_group_doubles(s.beam[i]);
   }
   solved += 9LL * s.ports * part_ends(s, s.bodies + s.beams);
   SystemTangent t{};

@@ -24,8 +24,8 @@ struct Pull {
 /// workspace.
 struct SystemTangent {
   double* factor;       // of every beam, one after another
-  double* solved;       // S^-1 g: per end of a body [6], per beam [groups][unknowns][4], per end of
-                        // the track [9 ports]
+  double* solved;       // S^-1 g: per end of a body [6], per beam
+                        // [groups][unknowns][kEndGroup], per end of the track [9 ports]
   double* compliance;   // [rows][rows] of the rows' own, factored
   double* scale;        // [rows]
   std::int32_t* order;  // [rows]
@@ -85,9 +85,20 @@ inline std::int32_t beam_width(const BeamChainModel& beam) noexcept {
 inline std::int32_t part_ends(const SystemModel& s, std::int32_t part) noexcept {
   return s.part_end[part + 1] - s.part_end[part];
 }
-/// Groups of four right-hand sides of a beam's ends.
+/// S^-1 g of a beam's ends stands in groups of kEndGroup ends, [groups][unknowns][kEndGroup], which
+/// one solve takes together.
+inline constexpr std::int32_t kEndGroup = 4;
 inline std::int32_t beam_groups(const SystemModel& s, std::int32_t beam) noexcept {
-  return (part_ends(s, s.bodies + beam) + 3) / 4;
+  return (part_ends(s, s.bodies + beam) + kEndGroup - 1) / kEndGroup;
+}
+inline std::int64_t end_group_doubles(const BeamChainModel& beam) noexcept {
+  return std::int64_t{kEndGroup} * beam.unknowns;
+}
+/// Where an unknown of the beam's end number `end` stands in its groups.
+inline std::int64_t end_group_place(const BeamChainModel& beam, std::int32_t end,
+                                    std::int32_t unknown) noexcept {
+  return end_group_doubles(beam) * (end / kEndGroup) + std::int64_t{kEndGroup} * unknown +
+         end % kEndGroup;
 }
 
 std::int64_t system_tangent_doubles(const SystemModel& system) noexcept;

@@ -14,7 +14,8 @@ void copy(const T (&from)[most], T (&to)[most], std::int32_t count) noexcept {
 }  // namespace
 
 void copy_published(const Model& model, const Outputs& from, Outputs& to) noexcept {
-  const std::int32_t loads = model.loads, wheels = wheel_count(model), flanges = 2 * model.flanges;
+  const std::int32_t loads = model.loads, wheels = wheel_count(model),
+                     flanges = flange_count(model);
   copy(from.load_x, to.load_x, loads);
   copy(from.load_place, to.load_place, loads);
   copy(from.load_deflection, to.load_deflection, loads);

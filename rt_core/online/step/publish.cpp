@@ -40,24 +40,25 @@ std::int32_t first_beyond(const State& s, std::int32_t first, std::int32_t last,
   return first;
 }
 
-/// Of whose wheel or flange a contact is.
-std::int32_t first_unknown_of(const Model& model, std::int32_t contact) noexcept {
-  if (is_flange(model, contact)) return model.wheelset[flange_of(model, contact).wheelset].first;
-  return contact < 2 * model.wheelsets ? model.wheelset[contact / 2].first
-                                       : model.vehicle[vehicle_wheel(model, contact).vehicle].first;
+/// First unknown of the wheelset or vehicle that has a contact.
+std::int32_t first_unknown_of(const Model& model, ContactId contact) noexcept {
+  return is_of_wheelset(model, contact)
+             ? model.wheelset[wheelset_of(model, contact)].first
+             : model.vehicle[vehicle_wheel(model, contact).vehicle].first;
 }
 
 /// First unknown of what has a contact, an orientation or a joint whose numbers are too large, or
 /// -1: they take high powers of unknowns, which overflow long before these do.
 std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) noexcept {
-  const std::int32_t wheels = wheel_count(model);
-  for (std::int32_t i = 0; i < contact_count(model); ++i) {
-    const double gap = i < wheels ? out.wheel_gap[i] : out.flange_gap[i - wheels];
+  for (ContactId i = 0; i < contact_count(model); ++i) {
+    const double gap =
+        is_flange(model, i) ? out.flange_gap[among_flanges(model, i)] : out.wheel_gap[i];
     if (!is_moderate(gap) || !is_moderate(s.wheel_force[i])) return first_unknown_of(model, i);
   }
   const SystemModel& system = model.system;
-  for (std::int32_t i = 0; i < 4 * system.bodies; ++i)
-    if (!is_moderate(s.quaternion[i])) return system.body[i / 4].first;
+  for (std::int32_t b = 0; b < system.bodies; ++b)
+    for (int k = 0; k < 4; ++k)
+      if (!is_moderate(s.quaternion[4 * b + k])) return system.body[b].first;
   for (std::int32_t i = 0; i < system_rows(system); ++i) {
     if (is_moderate(s.row_force[i])) continue;
     const Reach b = reach(system, system.marker[system.row[i].b]);
@@ -76,13 +77,15 @@ std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) n
   return other >= 0 ? other : first_lost(model, s, out);
 }
 
+/// @param gap  [contacts] m
 void collect_flanges(const Model& model, const State& s, const double* gap, Outputs& out) noexcept {
-  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) {
-    const double force = s.wheel_force[wheel_count(model) + i];
+  for (std::int32_t i = 0; i < flange_count(model); ++i) {
+    const ContactId contact = flange_contact(model, i);
+    const double force = s.wheel_force[contact];
     out.flange_force[i] = force;
     out.flange_impulse[i] += force * model.scheme.dt;
     if (force > out.flange_force_peak[i]) out.flange_force_peak[i] = force;
-    out.flange_gap[i] = gap[i];
+    out.flange_gap[i] = gap[contact];
   }
 }
 
@@ -96,7 +99,7 @@ void start_frame(const Model& model, const State& state, Outputs& out) noexcept 
   out.redundant_rows = 0;
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
     out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
-  for (std::int32_t i = 0; i < 2 * model.flanges; ++i)
+  for (std::int32_t i = 0; i < flange_count(model); ++i)
     out.flange_force_peak[i] = out.flange_impulse[i] = 0.;
 }
 
@@ -120,7 +123,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
     out.wheel_place[i] = met.x[i];
     out.wheel_on_rail[i] = met.on_rail[i];
   }
-  collect_flanges(model, s, met.gap + wheel_count(model), out);
+  collect_flanges(model, s, met.gap, out);
 }
 
 void collect(const SystemResult& met, Outputs& out) noexcept {
@@ -151,7 +154,7 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     outputs.wheel_rail_z[i] = 0.;
     if (!outputs.wheel_on_rail[i]) continue;
     outputs.wheel_rail_z[i] =
-        axis_height(model, wheel_rail(model, i), own.element, own.xi, standing(model, state)) +
+        axis_height(model, rail_of(model, i), own.element, own.xi, standing(model, state)) +
         residual_displacement(model, force, count, model.loads + i) +
         own.force * (residual_axis(model, own) - residual_under(model, own));
   }
@@ -167,7 +170,7 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
   start_frame(model, state, outputs);
   WheelContact contact[kMaxWheels];
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    find_contacts(model, model.wheelset[b], standing(model, state), contact + 2 * b);
+    find_contacts(model, model.wheelset[b], standing(model, state), contact + tread_of(b, 0));
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., standing(model, state),
                           contact);
@@ -180,10 +183,10 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
     outputs.wheel_x[i] = contact[i].x + passed(model, state.steps);
   }
   for (std::int32_t f = 0; f < model.flanges; ++f)
-    find_flanges(model, model.flange[f], standing(model, state), contact + 2 * f);
-  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) {
+    find_flanges(model, model.flange[f], standing(model, state), contact + flange_number(f, 0));
+  for (std::int32_t i = 0; i < flange_count(model); ++i) {
     outputs.flange_force[i] = outputs.flange_force_peak[i] =
-        state.wheel_force[wheel_count(model) + i];
+        state.wheel_force[flange_contact(model, i)];
     outputs.flange_gap[i] = -contact[i].penetration;
   }
   if (model.external_wheels > 0) {

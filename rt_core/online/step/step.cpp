@@ -232,7 +232,7 @@ namespace {
   publish_external(model, tried, external, outputs);
   publish(model, tried, outputs);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
-    for (int d = 0; d < 3; ++d) free[3 * n + d] = outputs.external_displacement[n][d];
+    for (int d = 0; d < 3; ++d) free[external_row(n, d)] = outputs.external_displacement[n][d];
   external_compliance(model, external, workspace, compliance);
   return met | outputs.status;
 }

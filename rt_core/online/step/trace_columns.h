@@ -81,7 +81,7 @@ template <typename Visit>
 void for_each_column(const Model& model, Visit& visit) {
   for (std::int32_t i = 0; i < model.loads; ++i) visit(Bearer::load, i, kLoadColumns);
   for (std::int32_t i = 0; i < wheel_count(model); ++i) visit(Bearer::wheel, i, kWheelColumns);
-  for (std::int32_t i = 0; i < 2 * model.flanges; ++i) visit(Bearer::flange, i, kFlangeColumns);
+  for (std::int32_t i = 0; i < flange_count(model); ++i) visit(Bearer::flange, i, kFlangeColumns);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     visit(Bearer::external_wheel, i, kExternalColumns);
   visit(model.track_sensor);

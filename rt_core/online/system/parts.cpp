@@ -145,24 +145,25 @@ void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor,
   const BeamChainModel& beam = s.beam[b];
   const std::int32_t first = s.part_end[s.bodies + b], ends = part_ends(s, s.bodies + b);
   const std::int32_t groups = beam_groups(s, b);
-  for (std::int32_t i = 0; i < groups * 4 * beam.unknowns; ++i) solved[i] = 0.;
+  for (std::int64_t i = 0; i < groups * end_group_doubles(beam); ++i) solved[i] = 0.;
   for (std::int32_t e = 0; e < ends; ++e) {
     const EndModel& end = s.end[first + e];
     const RowModel& row = s.row[end.row];
     const Reach at = reach(s, s.marker[end.side == 0 ? row.a : row.b]);
-    double* const lane = solved + 4LL * beam.unknowns * (e / 4) + e % 4;
     for (std::int32_t k = 0; k < at.count; ++k)
-      lane[4 * (at.first - beam.first + k)] =
+      solved[end_group_place(beam, e, at.first - beam.first + k)] =
           gradient[std::ptrdiff_t{kMostNodeUnknowns} * (first + e) + k];
   }
-  const bool along = other != nullptr && ends % 4 != 0;
-  double* const lane = along ? solved + 4LL * beam.unknowns * (groups - 1) + 3 : nullptr;
-  for (std::int32_t i = 0; along && i < beam.unknowns; ++i) lane[4LL * i] = other[i];
+  const bool along = other != nullptr && ends % kEndGroup != 0;
+  const std::int32_t last = kEndGroup * groups - 1;  // free where the last group is not full
+  for (std::int32_t i = 0; along && i < beam.unknowns; ++i)
+    solved[end_group_place(beam, last, i)] = other[i];
   for (std::int32_t g = 0; g < groups; ++g)
-    beam_solve(s, beam, factor, solved + 4LL * beam.unknowns * g);
+    beam_solve(s, beam, factor, solved + g * end_group_doubles(beam));
   for (std::int32_t i = 0; along && i < beam.unknowns; ++i) {
-    other[i] = lane[4LL * i];
-    lane[4LL * i] = 0.;
+    double& own = solved[end_group_place(beam, last, i)];
+    other[i] = own;
+    own = 0.;
   }
   if (other != nullptr && !along) beam_solve_one(s, beam, factor, other);
 }
@@ -336,7 +337,7 @@ void solve_ends(const Model& model, bool parts, SystemWorkspace& w) noexcept {
   for (std::int32_t b = 0; b < s.beams; ++b) {
     double* const change = parts ? w.change + s.beam[b].first : nullptr;
     solve_beam_ends(s, b, factor, solved, w.gradient, change);
-    solved += 4LL * beam_groups(s, b) * s.beam[b].unknowns;
+    solved += beam_groups(s, b) * end_group_doubles(s.beam[b]);
     factor += beam_factor_doubles(s.beam[b]);
   }
   const std::int32_t track = s.bodies + s.beams;

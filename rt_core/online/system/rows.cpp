@@ -162,12 +162,10 @@ void factor_yielding(const Model& model, bool yields, SystemWorkspace& w) noexce
   for (std::int32_t b = 0; b < s.beams; ++b) {
     const BeamChainModel& beam = s.beam[b];
     const std::int32_t part = s.bodies + b;
-    add_part(s, part, 4, w, [&](std::int32_t f, std::int32_t first) {
-      const std::int32_t own = f - s.part_end[part];
-      return solved + std::ptrdiff_t{4} * beam.unknowns * (own / 4) + own % 4 +
-             4 * (first - beam.first);
+    add_part(s, part, kEndGroup, w, [&](std::int32_t f, std::int32_t first) {
+      return solved + end_group_place(beam, f - s.part_end[part], first - beam.first);
     });
-    solved += std::ptrdiff_t{4} * beam_groups(s, b) * beam.unknowns;
+    solved += beam_groups(s, b) * end_group_doubles(beam);
   }
   const std::int32_t track = s.bodies + s.beams;
   add_part(s, track, 1, w, [&](std::int32_t f, std::int32_t first) {
@@ -279,12 +277,12 @@ void subtract_row_motion(const SystemModel& system, const SystemWorkspace& w, co
   for (std::int32_t b = 0; b < s.beams; ++b) {
     const BeamChainModel& beam = s.beam[b];
     const std::int32_t first = s.part_end[s.bodies + b], ends = part_ends(s, s.bodies + b);
-    for (std::int32_t g = 0; g < beam_groups(s, b); ++g, solved += 4LL * beam.unknowns) {
-      double f[4] = {};
-      for (std::int32_t l = 0; l < 4 && 4 * g + l < ends; ++l)
-        f[l] = force[s.end[first + 4 * g + l].row];
+    for (std::int32_t g = 0; g < beam_groups(s, b); ++g, solved += end_group_doubles(beam)) {
+      double f[kEndGroup] = {};
+      for (std::int32_t l = 0; l < kEndGroup && kEndGroup * g + l < ends; ++l)
+        f[l] = force[s.end[first + kEndGroup * g + l].row];
       for (std::int32_t k = 0; k < beam.unknowns; ++k) {
-        const double* x = solved + 4 * static_cast<std::ptrdiff_t>(k);
+        const double* x = solved + std::ptrdiff_t{kEndGroup} * k;
         change[beam.first + k] -= (f[0] * x[0] + f[1] * x[1]) + (f[2] * x[2] + f[3] * x[3]);
       }
     }

@@ -15,7 +15,7 @@ void read_ports(const Model& model, const double* u, double* out) noexcept {
       for (std::int32_t l = 0; l < model.lines; ++l)
         for (int i = 0; i < 3; ++i)
           sum += port.value[i] * weight_of(model.line[l], port.rail, k) *
-                 nodal_value(model.line[l], port.rail, port.element, i, k, at);
+                 nodal_value(model.line[l], port.rail, {port.element, i}, k, at);
       out[9 * p + k] = sum;
     }
   }

@@ -18,7 +18,7 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
   const std::int32_t* const table = line.unknown_of[row.rail];
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 9; ++k) {
-      const std::int32_t unknown = table[27 * row.element + 9 * i + k];
+      const std::int32_t unknown = table[table_place({row.element, i}, k)];
       if (unknown < 0 || row.coefficient[i][k] == 0.) continue;
       visit(unknown, weight_of(line, row.rail, k) * row.coefficient[i][k]);
     }
@@ -39,9 +39,9 @@ double unknown_value(const LineModel& line, std::int32_t unknown,
                    {at.modes.re + line.first, at.modes.im + line.first}, line.modal.count);
 }
 
-double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t element, int i, int k,
+double nodal_value(const LineModel& line, std::int32_t rail, ElementNode node, int k,
                    const Configuration& at) noexcept {
-  const std::int32_t unknown = line.unknown_of[rail][27 * element + 9 * i + k];
+  const std::int32_t unknown = line.unknown_of[rail][table_place(node, k)];
   return unknown < 0 ? 0. : unknown_value(line, unknown, at);
 }
 
@@ -53,10 +53,10 @@ double axis_height(const Model& model, std::int32_t rail, std::int32_t element, 
   for (std::int32_t l = 0; l < model.lines; ++l)
     for (int i = 0; i < 3; ++i) {
       sum += shape[i] * (cant.cosine * weight_of(model.line[l], rail, 2)) *
-             nodal_value(model.line[l], rail, element, i, 2, at);
+             nodal_value(model.line[l], rail, {element, i}, 2, at);
       if (cant.sine == 0.) continue;
       sum += shape[i] * (cant.sine * weight_of(model.line[l], rail, 1)) *
-             nodal_value(model.line[l], rail, element, i, 1, at);
+             nodal_value(model.line[l], rail, {element, i}, 1, at);
     }
   return sum;
 }

@@ -15,11 +15,22 @@ struct RailRow {
   double lever[kPDeltaSeats];  // m
 };
 
-/// Place in a rail's table of unknown k of a node, counted from 0 along the rail; of one that two
-/// elements have, as the end of the first.
-inline std::int32_t table_place(std::int32_t node, int k) noexcept {
+/// A node of a rail's element: its first, middle or last one.
+struct ElementNode {
+  std::int32_t element;
+  int node;  // 0 to 2
+};
+/// Of a node counted from 0 along the rail; one that two elements share is the last of the first.
+constexpr ElementNode element_node(std::int32_t node) noexcept {
   const std::int32_t element = node > 0 ? (node - 1) / 2 : 0;
-  return 27 * element + 9 * (node - 2 * element) + k;
+  return {element, node - 2 * element};
+}
+/// Place in a rail's table (LineModel::unknown_of) of a node's unknown k.
+constexpr std::int32_t table_place(ElementNode at, int k) noexcept {
+  return 27 * at.element + 9 * at.node + k;
+}
+constexpr std::int32_t table_place(std::int32_t node, int k) noexcept {
+  return table_place(element_node(node), k);
 }
 
 /// Displacements at which to look: u [unknowns] of banded lines and bodies, modes of condensed
@@ -33,9 +44,9 @@ struct Configuration {
 /// Displacement of an unknown, as the line's tables number it.
 double unknown_value(const LineModel& line, std::int32_t unknown, const Configuration& at) noexcept;
 
-/// What unknown k of node i = 0..2 of a rail's element is on a line, before its weight in the rail;
-/// 0 if not carried.
-double nodal_value(const LineModel& line, std::int32_t rail, std::int32_t element, int i, int k,
+/// The value of a node's unknown k on a line, before its weight in the rail; 0 if the line does not
+/// carry it.
+double nodal_value(const LineModel& line, std::int32_t rail, ElementNode node, int k,
                    const Configuration& at) noexcept;
 
 /// The weight of a line's unknown k in a rail: y components of the mirrored right rail (r_y, a_x,

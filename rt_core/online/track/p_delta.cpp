@@ -11,7 +11,7 @@ namespace {
 /// @param known  the other rail's have been seen
 double node_turn(const Model& model, std::int32_t rail, std::int32_t node, const Configuration& at,
                  std::int32_t s, bool known, SeatMotions& seen) noexcept {
-  const std::int32_t element = node > 0 ? (node - 1) / 2 : 0, i = node - 2 * element;
+  const ElementNode own = element_node(node);
   double roll = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
@@ -19,8 +19,8 @@ double node_turn(const Model& model, std::int32_t rail, std::int32_t node, const
     const bool alike = line.unknown_of[0] == line.unknown_of[1] && line.rail_factor[1 - rail] != 0.;
     double* const value = seen.value[l][s];
     if (!known || !alike) {
-      value[0] = nodal_value(line, rail, element, i, 5, at);
-      value[1] = nodal_value(line, rail, element, i, 7, at);
+      value[0] = nodal_value(line, rail, own, 5, at);
+      value[1] = nodal_value(line, rail, own, 7, at);
     }
     roll += .5 * weight_of(line, rail, 5) * value[0];
     roll -= .5 * weight_of(line, rail, 7) * value[1];

@@ -39,7 +39,7 @@ TEST_CASE("a model that was written and read steps to the same bits", "[artefact
       CHECK(written.track_sensors == found.track_sensors);
       CHECK(std::equal(written.outputs.load_deflection, written.outputs.load_deflection + kMaxLoads,
                        found.outputs.load_deflection));
-      for (int i = 0; i < 2 * model.wheelsets; ++i) {
+      for (int i = 0; i < tread_count(model); ++i) {
         CHECK(written.outputs.wheel_force_peak[i] == found.outputs.wheel_force_peak[i]);
         CHECK(written.outputs.wheel_gap[i] == found.outputs.wheel_gap[i]);
         CHECK(written.outputs.wheel_rail_z[i] == found.outputs.wheel_rail_z[i]);

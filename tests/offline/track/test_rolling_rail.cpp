@@ -102,7 +102,7 @@ class Linear {
         const auto value = [&](int which) {
           return line.rail_factor[0] == 0.
                      ? 0.
-                     : weight_of(line, 0, which) * nodal_value(line, 0, element, i, which, at);
+                     : weight_of(line, 0, which) * nodal_value(line, 0, {element, i}, which, at);
         };
         sum += shape[i] * (k == 5 ? .5 * (value(5) - value(7)) : value(k));
       }
@@ -186,7 +186,7 @@ TEST_CASE("the row of a rolled rail is the derivative of its height", "[turn]") 
       for (int k = 0; k < 9 && model.line[l].rail_factor[0] != 0.; ++k)
         for (int i = 0; i < 3; ++i)
           q[k] += shape[i] * weight_of(model.line[l], 0, k) *
-                  nodal_value(model.line[l], 0, element, i, k, at);
+                  nodal_value(model.line[l], 0, {element, i}, k, at);
     const double turn = .5 * (q[5] - q[7]);
     keep_section(q);
     row = {0, element, {}, 0, {}, {}};

@@ -1,0 +1,96 @@
+#pragma once
+#include "online/model/model.h"
+
+namespace railstep {
+
+// The contacts with the rails are numbered: left and right tread of each wheelset in turn, the
+// wheels of all vehicles, then left and right flange of each wheelset that has them. Treads and
+// vehicles' wheels together are the wheels. Only this header computes with these numbers. A side
+// is 0 left, 1 right; a wheelset's side is on the rail of the same number.
+using ContactId = std::int32_t;
+
+inline constexpr int kMaxFlanges = 2 * kMaxWheelsets;
+
+inline std::int32_t tread_count(const Model& model) noexcept { return 2 * model.wheelsets; }
+inline std::int32_t wheel_count(const Model& model) noexcept {
+  return tread_count(model) + model.vehicle_wheels;
+}
+inline std::int32_t flange_count(const Model& model) noexcept { return 2 * model.flanges; }
+inline std::int32_t contact_count(const Model& model) noexcept {
+  return wheel_count(model) + flange_count(model);
+}
+
+/// The tread of a wheelset on a side.
+constexpr ContactId tread_of(std::int32_t wheelset, std::int32_t side) noexcept {
+  return 2 * wheelset + side;
+}
+/// The tread on the other side of the same wheelset.
+constexpr ContactId other_tread(ContactId tread) noexcept { return tread ^ 1; }
+/// A wheel's contact, of its number among the wheels of all vehicles.
+inline ContactId vehicle_contact(const Model& model, std::int32_t vehicle_wheel) noexcept {
+  return tread_count(model) + vehicle_wheel;
+}
+/// The reverse: a wheel's number among the wheels of all vehicles.
+inline std::int32_t among_vehicle_wheels(const Model& model, ContactId contact) noexcept {
+  return contact - tread_count(model);
+}
+/// A flange's number among all flanges. @param pair  the model's FlangeModel
+constexpr std::int32_t flange_number(std::int32_t pair, std::int32_t side) noexcept {
+  return 2 * pair + side;
+}
+inline ContactId flange_contact(const Model& model, std::int32_t flange) noexcept {
+  return wheel_count(model) + flange;
+}
+/// The reverse: a flange's number among all flanges.
+inline std::int32_t among_flanges(const Model& model, ContactId contact) noexcept {
+  return contact - wheel_count(model);
+}
+
+inline bool is_flange(const Model& model, ContactId contact) noexcept {
+  return contact >= wheel_count(model);
+}
+/// Whether a contact is a tread or a flange of a wheelset; else it is a vehicle's wheel.
+inline bool is_of_wheelset(const Model& model, ContactId contact) noexcept {
+  return contact < tread_count(model) || is_flange(model, contact);
+}
+/// The flanges of which a contact is one.
+inline const FlangeModel& flange_of(const Model& model, ContactId contact) noexcept {
+  return model.flange[among_flanges(model, contact) / 2];
+}
+/// The vehicle's wheel that a contact is.
+inline const VehicleWheel& vehicle_wheel(const Model& model, ContactId contact) noexcept {
+  return model.vehicle_wheel[among_vehicle_wheels(model, contact)];
+}
+/// The number of the wheelset of which a contact is a tread or a flange.
+inline std::int32_t wheelset_of(const Model& model, ContactId contact) noexcept {
+  return is_flange(model, contact) ? flange_of(model, contact).wheelset : contact / 2;
+}
+/// The rail that a contact is on: 0 left, 1 right. Of a wheelset's it is the contact's side.
+inline std::int32_t rail_of(const Model& model, ContactId contact) noexcept {
+  if (is_flange(model, contact)) return among_flanges(model, contact) % 2;
+  return is_of_wheelset(model, contact) ? contact % 2 : vehicle_wheel(model, contact).rail;
+}
+/// Rail and height at which a contact's vertical force acts; kNoLoadPoint of a flange.
+inline std::int32_t load_point_of(const Model& model, ContactId contact) noexcept {
+  if (is_flange(model, contact)) return kNoLoadPoint;
+  return is_of_wheelset(model, contact)
+             ? model.wheelset[wheelset_of(model, contact)].load_point[rail_of(model, contact)]
+             : vehicle_wheel(model, contact).load_point;
+}
+
+/// The contacts of one wheelset: its treads and, if it has them, its flanges.
+struct WheelsetContacts {
+  int count;        // 2 or 4
+  ContactId at[4];  // left tread, right tread, left flange, right flange
+};
+inline WheelsetContacts contacts_of(const Model& model, std::int32_t wheelset) noexcept {
+  const ContactId left = tread_of(wheelset, 0), right = tread_of(wheelset, 1);
+  for (std::int32_t pair = 0; pair < model.flanges; ++pair)
+    if (model.flange[pair].wheelset == wheelset)
+      return {4,
+              {left, right, flange_contact(model, flange_number(pair, 0)),
+               flange_contact(model, flange_number(pair, 1))}};
+  return {2, {left, right, 0, 0}};
+}
+
+}  // namespace railstep
