@@ -1,7 +1,7 @@
-// The order of calls of the C interface: each byte chooses the next call, those behind it its
-// arguments. Pointers are always of the size that the header asks for; what they hold is the
-// input's: blocks that are none, memory that is too small or misaligned, indices of nothing, names
-// without end in sight, snapshots of other models, runs that have not begun.
+// Any order of calls of the C interface: a byte chooses the next call, the bytes after it its
+// arguments. Pointers have the sizes that the header requires. Their content comes from the input:
+// invalid blocks, memory that is too small or misaligned, indices out of range, names without an
+// end, snapshots of other models, runs that have not begun.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kSlots = 3;
 constexpr std::uint32_t kKnownBits = 2 * RAILSTEP_CONTACT_ILL_POSED - 1;
 
-/// A model and a run in memory of their own, each perhaps not there.
+/// A model and a run in their own memory; either may be missing.
 struct Slot {
   std::vector<std::byte> block;
   std::vector<double> model_memory, run_memory;
@@ -30,7 +30,7 @@ struct Slot {
   railstep_run* run = nullptr;
 };
 
-/// All that calls have made so far.
+/// Everything that calls have made so far.
 class Caller {
  public:
   explicit Caller(Bytes& input) : input_(input) {}
@@ -55,7 +55,7 @@ class Caller {
   std::vector<std::uint8_t> snapshot_;
 };
 
-/// A block that is good, cut, changed, signed or none, in memory that may lie between words.
+/// Loads a block that is good, cut, changed, signed or missing, in memory that may be misaligned.
 void Caller::load(Slot& to) {
   const std::uint8_t how = input_.byte();
   to = Slot{};
@@ -138,7 +138,7 @@ void Caller::restore(Slot& to) {
 std::vector<double> Caller::inputs(const railstep_model* model) {
   std::vector<double> values(static_cast<std::size_t>(railstep_inputs(model)));
   for (double& value : values) {
-    const std::uint64_t bits = input_.word(2) << 48;  // sign, exponent, the leading digits
+    const std::uint64_t bits = input_.word(2) << 48;  // sign, exponent and leading digits
     std::memcpy(&value, &bits, sizeof value);
   }
   return values;

@@ -1,4 +1,4 @@
-// A model file: patches to the block of a small scene, or a block itself, its sums made right so
+// A model file: patches to the block of a small scene, or a block itself. Its sums are corrected so
 // that all of the loader is reached.
 #include <cstring>
 #include <vector>
@@ -15,7 +15,7 @@ using namespace railstep::fuzz;
 
 namespace {
 
-/// The header, then the sections in their order, then all of it.
+/// The header, then the sections in their order, then the whole block.
 std::vector<Room> rooms_of(const std::vector<std::byte>& block) {
   const BlockHeader header = header_of(block.data());
   std::vector<Room> rooms = {{0, sizeof(BlockHeader)}};
@@ -27,14 +27,14 @@ std::vector<Room> rooms_of(const std::vector<std::byte>& block) {
 
 std::vector<std::byte> patched(Bytes& input) {
   std::vector<std::byte> block = base_block(input.byte());
-  const std::uint8_t ending = input.byte();  // how much is cut off or added, mostly nothing
+  const std::uint8_t ending = input.byte();  // bytes cut off or added, mostly none
   apply_patches(input, rooms_of(block), block);
   if (ending % 8 == 1) block.resize(block.size() - 8u * (ending / 8u));
   if (ending % 8 == 2) block.resize(block.size() + ending);
   return block;
 }
 
-/// What was loaded is written to the bytes that it came from, but for what no model holds.
+/// Checks that a loaded model is written to the same bytes, as far as a model holds them.
 void check_written(const std::vector<std::byte>& block) {
   Model model;
   const LoadResult loaded = load_model(block.data(), block.size(), model);
@@ -46,7 +46,7 @@ void check_written(const std::vector<std::byte>& block) {
       to_block(model, std::string(loaded.text, loaded.text_bytes),
                {std::string(about, header.about.bytes), header.static_error,
                 header.receptance_error, header.transient_error});
-  // The check in it is that of the model as it stands; all else is its own.
+  // The check in it is that of the model as it is now; all other bytes are the block's.
   const std::size_t from = header.section[kColumns].at, to = header.section[kCheck].at;
   check(again.size() >= to && std::memcmp(again.data() + from, block.data() + from, to - from) == 0,
         "a model is not written as it was read");
@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size >= 8 && std::memcmp(data, "railstep", 8) == 0) {
     const auto* const at = reinterpret_cast<const std::byte*>(data);
     block.assign(at, at + size);
-    static_cast<void>(step_block(block, false));  // as it came: its sums refuse nearly all
+    static_cast<void>(step_block(block, false));  // without correction: its sums refuse nearly all
   } else {
     block = patched(input);
   }

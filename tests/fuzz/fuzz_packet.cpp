@@ -1,5 +1,5 @@
-// Packets as they come from the network, one behind the other, to one receiver: raw ones, and ones
-// whose head and sum were made right. What is taken goes through the inputs that a run holds.
+// Packets from the network, one after the other, for one receiver: raw ones, and ones with a
+// corrected head and sum. Accepted packets go through the inputs that a run holds.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -27,7 +27,7 @@ void put(Packet& packet, std::size_t at, std::uint64_t value, std::size_t bytes)
     packet[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
-/// The parts of a packet made right that `how` has a bit for.
+/// Corrects the parts of a packet for which `how` has a bit.
 void mend(Packet& packet, std::uint8_t how, std::uint32_t count) {
   if ((how & 1) != 0) packet.resize(packet_bytes(count));
   if ((how & 2) != 0) put(packet, 0, 0x0001'0001'4c48'5352, 8);  // "RSHL", version 1, inputs
@@ -37,7 +37,7 @@ void mend(Packet& packet, std::uint8_t how, std::uint32_t count) {
   put(packet, body, crc32(packet.data(), body), 4);
 }
 
-/// Whoever decodes it, a packet that is taken is written with the same bytes.
+/// Checks that a packet that is accepted is written again with the same bytes.
 void check_decoded(const Packet& packet, std::uint32_t count) {
   std::vector<double> values(count);
   const auto head = decode(packet, PacketKind::inputs, kNames, count, values.data());
@@ -47,7 +47,7 @@ void check_decoded(const Packet& packet, std::uint32_t count) {
   check(again == packet, "a packet is not written as it was read");
 }
 
-/// Counts rise by one at every packet, and what is not taken leaves the values alone.
+/// Checks that counts rise by one with every packet and that a refused one leaves the values alone.
 void check_taken(Receiver& receiver, const Packet& packet, std::uint32_t count,
                  std::uint64_t sender, std::int64_t now, HeldInputs& held) {
   const PacketCounts before = receiver.counts();

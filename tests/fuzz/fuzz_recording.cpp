@@ -1,5 +1,5 @@
-// A recording: patches to one of a few frames, or a recording itself, its sum made right, and on
-// request those of the block in it.
+// A recording: patches to a recording of a few frames, or a recording itself. Its sum is corrected,
+// and on request the sums of the block in it too.
 #include <cstring>
 #include <map>
 #include <vector>
@@ -39,12 +39,12 @@ std::vector<std::byte> patched(Bytes& input) {
   std::vector<std::byte> bytes = base_recording(input.byte());
   const std::uint8_t how = input.byte();
   std::uint64_t block = 0;
-  std::memcpy(&block, bytes.data() + 48, 8);  // of the good one
+  std::memcpy(&block, bytes.data() + 48, 8);  // size in the good recording
   const std::size_t behind = kHead + static_cast<std::size_t>(block);
   apply_patches(
       input, {{0, kHead}, {24, 24}, {behind, bytes.size() - 32 - behind}, {kHead, behind - kHead}},
       bytes);
-  if (how % 2 == 1) {  // the model in it has right sums too
+  if (how % 2 == 1) {  // the sums of the model in it are corrected too
     std::vector<std::byte> own(bytes.begin() + kHead,
                                bytes.begin() + static_cast<std::ptrdiff_t>(behind));
     sign_block(own);
@@ -55,7 +55,7 @@ std::vector<std::byte> patched(Bytes& input) {
   return bytes;
 }
 
-/// Runs that a command would make in seconds.
+/// Whether a command would make the run within seconds.
 bool is_short(const Recording& recording) {
   if (recording.frames > 200 || recording.block.size() < sizeof(BlockHeader)) return false;
   BlockHeader header;

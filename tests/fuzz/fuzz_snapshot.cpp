@@ -1,5 +1,5 @@
-// A snapshot: patches to one of a run that has made some frames, or a snapshot itself, its sum made
-// right.
+// A snapshot: patches to a snapshot of a run that has made some frames, or a snapshot itself. Its
+// sum is corrected.
 #include <cstring>
 #include <vector>
 

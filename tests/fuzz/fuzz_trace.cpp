@@ -1,4 +1,4 @@
-// Two traces, apart by a byte 0 (or one that is compared with itself).
+// Two traces with a byte 0 between them, or one that is compared with itself.
 #include <cmath>
 #include <cstring>
 
@@ -20,7 +20,7 @@ void rewrite(const TraceTable& table, const std::filesystem::path& file) {
   out.finish();
 }
 
-/// What was read is written, and read again, with the same bits.
+/// Checks that a trace is written and read again with the same bits.
 void check_written(const TraceTable& table) {
   const auto file = folder() / "again.csv";
   rewrite(table, file);

@@ -27,7 +27,7 @@ bool is_of_number(char c) {
   return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+' || c == 'e';
 }
 
-/// Where a number begins in a line, and its length; 0 where there is none.
+/// Place and length of a number in a line; length 0 if there is none.
 struct Span {
   std::size_t at, length;
 };
@@ -67,14 +67,14 @@ std::string some_value(const std::string& old, Random& random) {
   }
 }
 
-/// "key = value" with the value of another line's.
+/// "key = value" with the value of another line.
 std::string with_other_value(const std::string& line, const std::string& other) {
   const std::size_t equals = line.find('='), theirs = other.find('=');
   if (equals == std::string::npos || theirs == std::string::npos) return line;
   return line.substr(0, equals) + other.substr(theirs);
 }
 
-/// Lines from a header on up to the next one: a table with its keys.
+/// Doubles the lines from a header up to the next one: a table with its keys.
 void double_table(std::vector<std::string>& lines, std::size_t at) {
   while (at > 0 && !lines[at].starts_with('[')) --at;
   std::size_t end = at + 1;

@@ -9,7 +9,7 @@
 namespace railstep::fuzz {
 namespace {
 
-/// Made once; removed with all in it.
+/// Made once; removed with all its files.
 struct Folder {
   std::filesystem::path root, scenes;
 

@@ -14,18 +14,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace railstep::fuzz {
 
-/// Says what did not hold and aborts, so that the fuzzer keeps the input.
+/// Prints the rule that was broken and aborts, so that the fuzzer keeps the input.
 [[noreturn]] void fail(const char* what);
 inline void check(bool holds, const char* what) {
   if (!holds) fail(what);
 }
 
-/// A refusal is one sentence on one line.
+/// Checks that a refusal is one sentence on one line.
 void check_sentence(const std::string& text);
 
-/// Whether f() ends; false where it refuses its input as documented: an InputError, or a
-/// std::runtime_error itself where a search ended without what was asked. All else passes through
-/// and ends the fuzzer: std::bad_alloc, std::out_of_range, std::invalid_argument ...
+/// Whether f() ends without refusing its input. Documented refusals are an InputError, or a plain
+/// std::runtime_error if a search ended without a result. All other exceptions pass through and end
+/// the fuzzer: std::bad_alloc, std::out_of_range, std::invalid_argument ...
 template <typename F>
 bool accepts(const F& f) {
   try {
@@ -44,8 +44,8 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// A folder of this process in memory or, without such, among temporary files; shipped profiles and
-/// vehicles stand beside it as they do beside config/scenes. Gone at the end of the process.
+/// A folder of this process in memory or, if there is none, among temporary files. Shipped profiles
+/// and vehicles stand beside it as they do beside config/scenes. The process removes it at its end.
 const std::filesystem::path& folder();
 
 /// Writes a file into folder(). @returns its path

@@ -10,8 +10,8 @@
 namespace railstep::fuzz {
 namespace {
 
-constexpr std::size_t kMostSegments = 60;  // of an outline that is fitted
-constexpr double kShortest = 1e-3;         // m, of them: slivers take seconds to be triangulated
+constexpr std::size_t kMostSegments = 60;  // of an outline to be fitted
+constexpr double kShortest = 1e-3;  // m, of its segments: slivers take seconds to triangulate
 
 bool is_coarse(const Outline& outline) {
   for (const Segment& s : outline.segments)
@@ -24,7 +24,7 @@ bool are_finite(const AreaProperties<double>& a) {
          std::isfinite(a.inertia_z);
 }
 
-/// As `railstep fit --out` writes it and a scene reads it: 17 digits hold every bit.
+/// The section as `railstep fit --out` writes it and a scene reads it; 17 digits hold every bit.
 void check_written(const FitResult& result) {
   const Section found = read_section(written("section.toml", to_toml(result)));
   const AreaProperties<double>&a = found.area, &b = result.section.area;

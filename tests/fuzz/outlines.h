@@ -3,8 +3,8 @@
 
 namespace railstep::fuzz {
 
-/// What holds of every outline that was accepted: finite properties, a polygon that has its area.
-/// A small one is fitted, and its section written and read again.
+/// Checks an accepted outline: its properties are finite and its polygon has its area. A small one
+/// is fitted, and its section is written and read again.
 void check_outline(const Profile& profile);
 
 }  // namespace railstep::fuzz

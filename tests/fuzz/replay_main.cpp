@@ -1,5 +1,5 @@
-// Runs a fuzzer without libFuzzer: every file that is named, then mutations of these from a fixed
-// seed for so many seconds. What ends it leaves its input in ./failed-<program>.
+// Runs a fuzzer without libFuzzer: every named file, then mutations of these from a fixed seed for
+// a number of seconds. An input that ends the program is kept in ./failed-<program>.
 // Usage: replay_<target> [SECONDS] FILE_OR_FOLDER...
 #include <fcntl.h>
 #include <unistd.h>
@@ -31,7 +31,7 @@ Input current;
 std::string failed;
 std::mt19937_64 bytes_random(1);
 
-/// Keeps the input, and lets the signal end the program.
+/// Keeps the input and lets the signal end the program.
 void keep_input(int signal) {
   const int file = open(failed.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644);
   if (file >= 0 && write(file, current.data(), current.size()) >= 0) close(file);
@@ -44,7 +44,7 @@ void add_file(const std::filesystem::path& file, std::vector<Input>& inputs) {
   inputs.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
 }
 
-/// In the order of their names, which is the same on every machine.
+/// Reads files in the order of their names, which is the same on every machine.
 std::vector<Input> read_corpus(int count, char** names) {
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < count; ++i)
@@ -74,7 +74,7 @@ Input mutated(Input input, unsigned seed) {
   return input;
 }
 
-/// Mutations of mutations: four on top of each other, of one input after the other.
+/// Runs mutations of mutations: four on top of each other, for one input after the other.
 long run_mutations(const std::vector<Input>& corpus, double seconds) {
   const auto begin = std::chrono::steady_clock::now();
   long runs = 0;
@@ -93,7 +93,7 @@ long run_mutations(const std::vector<Input>& corpus, double seconds) {
 
 }  // namespace
 
-/// One to four bytes changed, or some left out, doubled or added.
+/// Changes one to four bytes, or removes or adds some.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most) {
   std::mt19937_64& random = bytes_random;
   if (size == 0 || random() % 8 == 0) {

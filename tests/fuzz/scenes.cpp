@@ -34,21 +34,21 @@ bool is_small(const SystemScene& scene) {
          scene.system.bodies.size() <= 12 && (!scene.track || is_small(*scene.track));
 }
 
-/// The block of a scene; none where building it refuses it.
+/// The block of a scene, or nothing if its building is refused.
 std::optional<std::vector<std::byte>> block_of(const AnyScene& scene) {
   std::optional<std::vector<std::byte>> block;
   accepts([&] { block = simulation_of(scene)->block(); });
   return block;
 }
 
-/// What stands behind the header, which names the file.
+/// Bytes after the header, which holds the file's name.
 std::vector<std::byte> payload_of(const std::vector<std::byte>& block) {
   std::uint32_t from = 0;
   std::memcpy(&from, block.data() + 20, sizeof from);
   return {block.begin() + from, block.end()};
 }
 
-/// A scene that is written again is the same scene, and is then written with the same bytes.
+/// Checks that a scene written again is the same scene and is then written to the same bytes.
 void check_rewritten(const std::filesystem::path& file, const std::vector<std::byte>& block) {
   const std::filesystem::path place = folder() / "again.toml";
   const std::string text = rewritten(file, {}, place);

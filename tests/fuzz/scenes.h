@@ -6,11 +6,11 @@
 
 namespace railstep::fuzz {
 
-/// Whether a scene is so small that it can be built and stepped within a fuzzer's patience.
+/// Whether a scene is small enough to be built and stepped within a fuzzer's patience.
 bool is_small(const AnyScene& scene);
 
-/// Reads, builds and steps a scene, where it is accepted, as stepping.h has it; the model that
-/// comes of it is that of the scene read again from what `rewritten` makes of the file.
+/// Reads, builds and steps a scene as in stepping.h if it is accepted. The file that `rewritten`
+/// makes of it must give the same model.
 void run_scene(const std::filesystem::path& file);
 
 }  // namespace railstep::fuzz

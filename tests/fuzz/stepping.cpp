@@ -19,7 +19,7 @@ constexpr std::uint32_t kKnownBits = 2 * RAILSTEP_CONTACT_ILL_POSED - 1;
 constexpr std::uint64_t kMostState = std::uint64_t{1} << 16;  // bytes: some thousand unknowns
 constexpr double kMostWork = 5e6;                             // bytes of state times steps
 
-/// Inputs of the n-th frame: none, small, of every kind that a frame has to put right.
+/// Inputs of the n-th frame: none, small, and every kind that a frame has to correct.
 std::vector<double> inputs_of(std::size_t count, int n) {
   constexpr double kValues[] = {0., 1., -1e3, 2.5, 1e300, -kNan, 5e-324, -1e9};
   std::vector<double> inputs(count);
@@ -32,7 +32,7 @@ bool are_finite(const double* values, std::size_t count) {
   return std::all_of(values, values + count, [](double x) { return std::isfinite(x); });
 }
 
-/// The response under external wheels changes no state, and is symmetric where it is finite.
+/// Checks that the response under external wheels changes no state and is finite or says it is not.
 void check_response(Held& held) {
   const std::size_t n = 3 * static_cast<std::size_t>(railstep_external_wheels(held.model()));
   if (n == 0) return;
@@ -69,7 +69,7 @@ Ran run_on(Held& held, int from) {
   return ran;
 }
 
-/// Names are found where they say they are.
+/// Checks that names are found at their own index.
 void check_names(const railstep_model* model) {
   char name[64];
   check(railstep_input_name(model, -1, name, sizeof name) == 0, "an input before the first");
@@ -171,7 +171,7 @@ bool step_block(const std::vector<std::byte>& block, bool own) {
   check(other.saved() == half, "a snapshot comes back with other bytes");
   const Ran again = run_on(other, kFrames / 2);
   check(once.hash == again.hash && once.met == again.met, "a run made twice has other bits");
-  const bool lost = (once.met & RAILSTEP_NONFINITE_STATE) != 0;  // then a row may be an older one
+  const bool lost = (once.met & RAILSTEP_NONFINITE_STATE) != 0;  // then a row may be older
   check(lost || same_bits(once.rows, again.rows), "a run made twice has other outputs");
   check_response(first);
   return true;

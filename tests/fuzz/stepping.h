@@ -9,17 +9,17 @@ namespace railstep::fuzz {
 
 inline constexpr int kFrames = 10;
 
-/// A model and a run of it by the C interface, in memory of their own that is filled with NaN.
+/// A model and a run of it by the C interface, in their own memory, which is filled with NaN.
 class Held {
  public:
-  /// @param own  of this program, as it wrote it: all of its state stays finite, or it says so;
-  /// of others its unknowns and their rates, which is what a frame looks at
+  /// @param own  a block that this program wrote: all of its state stays finite or the status says
+  /// so. For other blocks only the unknowns and their rates are checked, as a frame does.
   explicit Held(const std::vector<std::byte>& block, bool own = false);
 
-  std::int32_t loaded() const { return loaded_; }  // what railstep_load() said
+  std::int32_t loaded() const { return loaded_; }  // result of railstep_load()
   bool small() const;  // enough to be stepped within a fuzzer's patience
   void start();
-  /// A frame by the n-th of a fixed list of inputs, with all that a frame promises.
+  /// Makes a frame by the n-th of a fixed list of inputs and checks all that a frame promises.
   std::uint32_t frame(int n);
   std::vector<double> row() const;
   std::vector<std::uint8_t> saved() const;
@@ -34,13 +34,14 @@ class Held {
   std::vector<double> model_memory_, run_memory_;
   const railstep_model* model_ = nullptr;
   railstep_run* run_ = nullptr;
-  std::size_t watched_ = 0;  // doubles of the state, from the first on
+  std::size_t watched_ = 0;  // doubles of the state that are checked, from the first on
   std::int32_t loaded_;
 };
 
-/// Loads a block, and steps it where it is accepted and small: ten frames without the heap, that
-/// are finite or say that they are not, with the same bits a second time and from a snapshot.
-/// @param own  of this program, as it wrote it: its self-check agrees
+/// Loads a block and, if it is accepted and small, steps it. Ten frames must not use the heap, must
+/// be finite or say that they are not, and must have the same bits a second time and from a
+/// snapshot.
+/// @param own  a block that this program wrote: its self-check agrees
 /// @returns whether it was accepted
 bool step_block(const std::vector<std::byte>& block, bool own);
 

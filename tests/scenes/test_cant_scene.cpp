@@ -44,7 +44,7 @@ TEST_CASE("the cant of the rails is a slope", "[cant]") {
   CHECK_THROWS_WITH(with("0.3"), Contains("[rail] cant"));
 }
 
-TEST_CASE("what does not know leaning rails says so", "[cant]") {
+TEST_CASE("features without leaning rails refuse them", "[cant]") {
   CHECK_THROWS_WITH(with("\"1:20\"", "vertical"), Contains("rigid-section"));
   CHECK_THROWS_WITH(read_scene(kBallasted, {"rail.cant=0.05", "track.gauge_m=1.435"}),
                     Contains("rail_spacing_m"));
@@ -73,7 +73,7 @@ TEST_CASE("a wheelset that runs on leaning rails keeps the balance of energy", "
     const auto upright = run_of(words + "--duration 0.05"), leaning = run_of(words + kLeaning);
     CAPTURE(unknowns, upright.at("energy_balance_error").get<double>());
     CHECK(leaning.at("status").empty());
-    // What an upright rail misses, of the same order.
+    // The bound is of the order of an upright rail's error.
     CHECK(leaning.at("energy_balance_error").get<double>() <
           3. * upright.at("energy_balance_error").get<double>());
   }

@@ -1,4 +1,4 @@
-// Scenes of a track without end, through the program's own parts.
+// Scenes of a track without end, run by the program's own functions.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -58,12 +58,12 @@ Ran ran(const std::vector<std::string>& changes) {
 
 }  // namespace
 
-TEST_CASE("sensors follow the traffic by bays, and places are distances along the track") {
+TEST_CASE("sensors follow the traffic by whole bays, and their x is the distance along the track") {
   const Ran got =
       ran(small({R"(sensor=[{name="sleeper", on="rail", rail="left", position_m=0.9}])"}));
   CHECK(status_names(got.record.status).empty());
-  // 30 m/s: at n ms 0.03 n m gone, the sensor's bay border the last one passed; exact but for sums
-  // of decimals
+  // At 30 m/s the traffic has gone 0.03 n m after n ms, and the sensor has moved to the last border
+  // passed. This is exact but for sums of decimals.
   for (const std::size_t ms : {0u, 10u, 21u, 299u}) {
     const double gone = .03 * static_cast<double>(ms);
     const double border = .6 * std::floor(gone / .6 + 1e-9);
@@ -71,19 +71,19 @@ TEST_CASE("sensors follow the traffic by bays, and places are distances along th
   }
 }
 
-TEST_CASE("a wheelset's sensor goes the true distance") {
+TEST_CASE("a wheelset's sensor moves the true distance") {
   const Ran got = ran(small({R"(sensor=[{name="centre", on="wheelset", wheelset="wheelset"}])",
                              "wheelset[0].start_m=1.2"}));
   for (const std::size_t ms : {0u, 10u, 21u, 299u}) {
-    // the guide's tolerance is 1e-10 m
+    // The guide's tolerance is 1e-10 m.
     CHECK_THAT(got.at(ms, "centre.x_m"), WithinAbs(1.2 + .03 * static_cast<double>(ms), 1e-9));
     CHECK_THAT(got.at(ms, "centre.dx_m"), WithinAbs(.03 * static_cast<double>(ms), 1e-9));
   }
 }
 
-TEST_CASE("a ring and a window meet a joint alike") {
-  // A joint strikes: in 0.1 ms steps the peak of either form is off by percents (design.md: less
-  // than 1 % at 50 us), at 25 us by a tenth of one.
+TEST_CASE("a ring and a window agree at a joint") {
+  // A joint strikes the wheels. The peak of either form is wrong by some percent in steps of 0.1
+  // ms, by less than 1 % at 50 us (design.md) and by 0.1 % at 25 us.
   const auto fine = [](const char* kind) {
     return small({std::string("condense.kind=\"") + kind + "\"", "step.dt_s=0.000025",
                   "step.duration_s=0.15", "defect[0].at_m=3.0"});
@@ -97,13 +97,13 @@ TEST_CASE("a ring and a window meet a joint alike") {
     worst = std::max(worst, std::abs(a - b));
   }
   CAPTURE(peak, worst);
-  CHECK(peak > 1.1 * 49050.);  // the joint is felt
-  // Waves up to what means of 1 ms hear; of some the ring makes 5e-3 (docs/endless.md, 24 bays).
+  CHECK(peak > 1.1 * 49050.);  // the joint has an effect
+  // The ring misses up to 5e-3 of the waves in means of 1 ms (docs/endless.md, 24 bays).
   CHECK(worst < 5e-3 * peak);
 }
 
-TEST_CASE("energy balances from bay to bay, on a ring and in a window") {
-  // test_energy's bound, 1e-3, of the same wheelset on an even track with ends
+TEST_CASE("energy balances from bay to bay on a ring and in a window") {
+  // The bound 1e-3 is that of test_energy for the same wheelset on an even track with ends.
   for (const char* kind : {"modal", "full"})
     for (const char* on : {"wheelset", "bogie"}) {
       const std::vector<std::string> changes = {std::string("condense.kind=\"") + kind + "\"",
@@ -116,10 +116,10 @@ TEST_CASE("energy balances from bay to bay, on a ring and in a window") {
     }
 }
 
-TEST_CASE("a bogie meets a joint where it lies") {
+TEST_CASE("a bogie meets a joint at the joint's place") {
   const Ran got = ran(on_bogies({})), even = ran(on_bogies({"defect[0].at_m=60.0"}));
   CHECK(status_names(got.record.status).empty());
-  double first = 0., last = 0.;  // place of the foremost wheel where the joint is heard, m
+  double first = 0., last = 0.;  // place of the leading wheel while the joint has an effect, m
   for (std::size_t ms = 0; ms <= 300; ++ms) {
     const std::string force = "bogie_left.wheel_1.force_z_mean_n";
     if (std::abs(got.at(ms, force) - even.at(ms, force)) < 5e3) continue;
@@ -129,10 +129,10 @@ TEST_CASE("a bogie meets a joint where it lies") {
   CAPTURE(first, last);
   CHECK(first > 5.5);  // the ramp begins half a metre before 6 m
   CHECK(first < 6.1);
-  CHECK(last < 6. + 2.56 + 1.);  // the wheel behind it has passed it too, and the track swung out
+  CHECK(last < 6. + 2.56 + 1.);  // the second wheel has passed it too and the track is at rest
 }
 
-TEST_CASE("a start on the move names speeds that it takes, on either side") {
+TEST_CASE("a moving start refuses a speed and names the next possible ones on either side") {
   std::string said;
   try {
     Built(read_scene(kScene, small({"wheelset[0].speed_m_per_s=31.4159265"})));
@@ -147,13 +147,13 @@ TEST_CASE("a start on the move names speeds that it takes, on either side") {
   REQUIRE(speeds.size() == 2);
   CHECK((speeds[0] - 31.4159265) * (speeds[1] - 31.4159265) < 0.);
   for (const double speed : speeds) {
-    // As fractions they lie 1/(q q') apart: q = 13 560, q' = 54 431 at 0.00524 bays a step
+    // As fractions they are 1/(q q') apart: q = 13 560, q' = 54 431 at 0.00524 bays a step.
     CHECK_THAT(speed, Catch::Matchers::WithinRel(31.4159265, 2.6e-7));
     CHECK(bay_progress(speed * 1e-4 / .6).bays > 0);
   }
 }
 
-TEST_CASE("what a track without end cannot have is refused by its sentence") {
+TEST_CASE("a track without end refuses keys that it cannot have, each with its message") {
   const auto refused = [](const std::vector<std::string>& changes, const char* why) {
     CHECK_THROWS_WITH(Built(read_scene(kScene, small(changes))), Contains(why));
   };

@@ -1,4 +1,4 @@
-// The shipped scene of the paper's wheelset between flanges, and what the program says of flanges.
+// The shipped scene of the paper's wheelset between flanges, and messages about flanges.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -43,7 +43,7 @@ struct Steps {
   }
 };
 
-/// Lateral part of the next step's normals of treads and flanges, with forces of the step itself.
+/// Lateral parts of the normals of treads and flanges in the next step, for that step's forces.
 struct Push {
   double lateral[4];
 
@@ -66,11 +66,11 @@ struct Push {
 
 }  // namespace
 
-TEST_CASE("wheelset_flange: met, thrown back and at rest as closed forms say", "[scenes]") {
+TEST_CASE("wheelset_flange: impact, rebound and rest agree with closed forms", "[scenes]") {
   Steps s;
   s.until(1.);
   const double y0 = s.y();
-  // Until the flange is met: v^2 = 2 F s / m, but for the 1e-4 by which the loaded rail lies lower.
+  // Until it meets the flange v^2 = 2 F s / m, but for 1e-4 since the loaded rail lies lower.
   while (s.out.flange_force[0] <= 0.) s.step();
   CHECK(s.out.flange_force[1] == 0.);
   Steps before;
@@ -80,7 +80,7 @@ TEST_CASE("wheelset_flange: met, thrown back and at rest as closed forms say", "
   CHECK_THAT(way, WithinAbs(kClearance, speed * s.model.scheme.dt + 1e-6));
   CHECK_THAT(speed, WithinRel(std::sqrt(2. * kPush * way / kMass), 1e-3));
   CHECK_THAT(met, WithinAbs(1. + std::sqrt(2. * kMass * kClearance / kPush), 1e-3));
-  // What comes back goes up the push by its energy.
+  // After the rebound the wheelset moves against the push as far as its energy allows.
   while (s.out.flange_force[0] > 0. || s.speed() > 0.) s.step();
   const double back = s.speed(), from = s.y();
   while (s.speed() < 0.) s.step();
@@ -89,8 +89,8 @@ TEST_CASE("wheelset_flange: met, thrown back and at rest as closed forms say", "
   const double e = std::exp(-(M_PI - 2. * std::asin(zeta)) * zeta / std::sqrt(1. - zeta * zeta));
   CHECK_THAT(-back / speed, WithinRel(e, .1));
   // At rest: f sin = F, N_left + N_right + f cos = Q, and the moments about the centre, with the
-  // roll of 2.5e-6 rad that the rails' give makes and that tilts all three normals. Means over 0.2
-  // s, since 1e-3 of the force still swings with the wheelset's roll, at 108 Hz.
+  // roll of 2.5e-6 rad that the rails' compliance causes and that tilts all three normals. Means
+  // over 0.2 s, since 1e-3 of the force still swings with the wheelset's roll at 108 Hz.
   s.until(2.8);
   double f = 0., left = 0., right = 0., roll = 0., depth = 0.;
   constexpr int kSteps = 4000;
@@ -114,10 +114,10 @@ TEST_CASE("wheelset_flange: met, thrown back and at rest as closed forms say", "
                         f * cosine * (.5 - half - s.y()) - f * sine * .162 -
                         (left + right) * (.3 + .148) * roll;
   CHECK_THAT(moment, WithinAbs(0., 1e-5 * kPush * .5));
-  CHECK_THAT(depth, WithinRel(f / 1e7, 1e-4));  // the law alone
+  CHECK_THAT(depth, WithinRel(f / 1e7, 1e-4));  // from the contact law
 }
 
-TEST_CASE("wheelset_flange: momentum is what push and normals give, step by step", "[scenes]") {
+TEST_CASE("wheelset_flange: momentum changes by push and normal forces in each step", "[scenes]") {
   Steps s({"step.duration_s=3.0"});
   s.until(.9);
   double given = 0., passed = 0., largest = 0., worst = 0.;
@@ -125,8 +125,8 @@ TEST_CASE("wheelset_flange: momentum is what push and normals give, step by step
   while (s.time() < 2.9 - 1e-9) {
     const Push push(s);
     s.step();
-    // m g = F, by the scheme's own acceleration: to rounding of the step's displacement, 1e-16 m
-    // over dt^2, of 100 kg.
+    // m g = F for the scheme's own acceleration, to rounding of the step's displacement: 1e-16 m
+    // over dt^2 for 100 kg.
     const double force = (s.time() > 1. - 1e-9 ? kPush : 0.) + push.on(s.run.state);
     const double miss = kMass * s.at(s.run.state.g, 1) - force;
     worst = std::max(worst, std::abs(miss));
@@ -136,14 +136,14 @@ TEST_CASE("wheelset_flange: momentum is what push and normals give, step by step
   }
   CHECK(worst < 1e-4);
   CHECK(largest > 500.);
-  // The scheme's velocity sums the accelerations but for those at the two ends.
+  // The scheme's velocity is the sum of the accelerations but for those at both ends.
   CHECK_THAT(kMass * s.speed() - start, WithinAbs(given, 1e-6 * passed));
 }
 
 namespace {
 
-/// What an account of a run found: what is left of the balance beyond the scheme's own loss, over
-/// the energy turned over, and the largest force of a flange.
+/// Energies of a run: the part of the imbalance beyond the scheme's own loss, the error over the
+/// energy turned over, and the largest force of a flange.
 struct Balance {
   double rest, error, turned, flange;
   ContactModel law;
@@ -169,7 +169,7 @@ Balance balance(const std::string& name, const std::vector<std::string>& changes
 
 }  // namespace
 
-TEST_CASE("wheelset_flange: energies balance, the flange's with them", "[scenes]") {
+TEST_CASE("wheelset_flange: energies balance, including the flange's", "[scenes]") {
   const std::string kind = GENERATE("full", "modal");
   const std::string contact =
       GENERATE("contact=\"linear\", stiffness_n_per_m=1.0e7, damping_n_s_per_m=1.35e4",
@@ -180,8 +180,8 @@ TEST_CASE("wheelset_flange: energies balance, the flange's with them", "[scenes]
                "wheelset[0].flange={clearance_m=1e-4, " + contact + "}",
                "wheelset[0].force[0].table=[[0.05, 0.0], [0.051, 40.0]]"});
   CAPTURE(kind, contact, found.rest, found.error, found.turned, found.flange);
-  // The closed form of the loss leaves the contacts' geometry, frozen for a step, and of condensed
-  // tracks the trapezoids of the dissipation. What the spring or Hertz contact kept is seen by it.
+  // The loss in closed form misses the contacts' geometry, which a step freezes, and on condensed
+  // tracks the dissipation's trapezoids. The energy in spring or Hertz contact is far larger.
   const double f = found.flange;
   const double kept = found.law.hertz > 0. ? .4 * f * std::pow(f / found.law.hertz, 2. / 3.)
                                            : .125 * f * f / found.law.stiffness;
@@ -191,7 +191,7 @@ TEST_CASE("wheelset_flange: energies balance, the flange's with them", "[scenes]
   CHECK(found.error < 1e-2);
 }
 
-TEST_CASE("a wheelset at 30 m/s along its flange balances, on a track with ends or without",
+TEST_CASE("a wheelset at 30 m/s along its flange balances energy on a track with or without ends",
           "[scenes]") {
   using Words = std::pair<const char*, const char*>;
   const auto [name, kind] =
@@ -203,12 +203,12 @@ TEST_CASE("a wheelset at 30 m/s along its flange balances, on a track with ends 
       name, {std::string("condense.kind=\"") + kind + "\"", "track.bays=24", "step.duration_s=0.05",
              flange, "wheelset[0].force=[{direction=\"y\", table=[[0.0, 0.0], [0.01, 10e3]]}]"});
   CHECK(found.flange > 10e3);
-  // test_energy's bounds of the same wheelset without flanges
+  // The bounds are those of test_energy for the same wheelset without flanges.
   CHECK(found.rest < 1e-4 * found.turned);
   CHECK(found.error < 1e-3);
 }
 
-TEST_CASE("wheelset_flange: pushed the other way it is the mirror image", "[scenes]") {
+TEST_CASE("wheelset_flange: a push to the other side gives the mirror image", "[scenes]") {
   const std::string soon = "wheelset[0].force[0].table=[[0.1, 0.0], [0.1001, ";
   const std::vector<std::string> near = {"wheelset[0].flange.clearance_m=1e-4",
                                          "step.duration_s=0.3"};
@@ -228,14 +228,14 @@ TEST_CASE("wheelset_flange: pushed the other way it is the mirror image", "[scen
         size = std::max(size, std::abs(a[i]));
       }
       CAPTURE(one, of, miss, size);
-      // Rounding of sums over two rails in one order, over steps of contact.
+      // Rounding: sums over the two rails have one order, over all steps of contact.
       CHECK(miss <= 1e-8 * (size + 1.));
     }
   const std::vector<double> touched = left["wheel_left.flange_force_n"];
   CHECK(*std::max_element(touched.begin(), touched.end()) > 50.);
 }
 
-TEST_CASE("wheelset_flange: condensed and on a finer step it is thrown back alike", "[scenes]") {
+TEST_CASE("wheelset_flange: condensation and a finer step give the same rebound", "[scenes]") {
   const auto thrown = [](const std::string& change) {
     Steps s({change, "wheelset[0].flange.clearance_m=1e-3",
              "wheelset[0].force[0].table=[[0.2, 0.0], [0.2001, 10.0]]"});
@@ -245,14 +245,14 @@ TEST_CASE("wheelset_flange: condensed and on a finer step it is thrown back alik
   const double fine = thrown("step.dt_s=1.25e-5");
   const double coarse = thrown("step.dt_s=1e-4"), half = thrown("step.dt_s=5e-5"),
                condensed = thrown("condense={kind=\"modal\", modes_per_bay=4}");
-  // Of 0.3 mm: the scheme's second order, 2.2 um at 1e-4 s (with the damper's jump met within a
-  // step it need not be), and what modes to 4 a bay leave of the rails' give.
+  // The rebound is 0.3 mm. The scheme is of second order, 2.2 um at 1e-4 s (less regular where the
+  // damper jumps within a step). Modes up to 4 a bay miss some of the rails' compliance.
   CHECK_THAT(coarse, WithinAbs(fine, 5e-6));
   CHECK_THAT(half, WithinAbs(fine, 1.5e-6));
   CHECK_THAT(condensed, WithinAbs(fine, 1e-5));
 }
 
-TEST_CASE("what is wrong with a flange is said in one sentence", "[scene]") {
+TEST_CASE("a wrong flange is refused in one sentence", "[scene]") {
   const auto said = [](const std::string& flange, const std::string& more = "step.dt_s=50e-6") {
     const Ran ran = railstep_program("run " + kScenes + "wheelset_flange.toml --set '" + more +
                                      "' --set 'wheelset[0].flange=" + flange + "'");
@@ -308,7 +308,7 @@ TEST_CASE("a push at the start leans the wheelset on its flange, where it stays"
   }
   CAPTURE(kind, push, moved, changed, f);
   CHECK(s.seen == Status::ok);
-  // The start is found with the step's own contacts: what is left is rounding.
+  // The start uses the step's own contacts, so only rounding remains.
   CHECK(moved < 1e-9 * f / 1e7);
   CHECK(changed < 1e-9 * f);
 }

@@ -1,4 +1,4 @@
-// Strain gauges on rails: bending stress against the moment that equilibrium asks for.
+// Strain gauges on rails: bending stress against the moment by equilibrium.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr double kModulus = kWidth * kHeight * kHeight / 6.;
 constexpr double kLoad = 50e3, kBay = .6;
 constexpr int kBays = 16;
 
-/// moving_load's left rail under a load that stands, at rest, with gauges under the foot.
+/// moving_load's left rail at rest under a standing load, with gauges under the foot.
 std::vector<std::string> standing(double load, const std::string& model, int mesh,
                                   const std::vector<double>& gauges, double length) {
   std::string sensors;
@@ -39,7 +39,7 @@ std::vector<std::string> standing(double load, const std::string& model, int mes
       model};
 }
 
-/// Of what the seats and the load press with, left of x: sagging is positive, N m.
+/// Bending moment at x of the forces of seats and load left of x, N m; sagging is positive.
 double moment(const Traced& run, double load, double x) {
   double sum = x > load ? -kLoad * (x - load) : 0.;
   for (int seat = 0; seat <= kBays && seat * kBay < x; ++seat)
@@ -47,7 +47,7 @@ double moment(const Traced& run, double load, double x) {
   return sum;
 }
 
-/// Its mean over a gauge: middles of parts, which loads and seats lie between.
+/// Its mean over a gauge by the middles of parts; loads and seats lie between these.
 double mean_moment(const Traced& run, double load, double x, double length) {
   constexpr int kParts = 100;
   double sum = 0.;
@@ -58,8 +58,8 @@ double mean_moment(const Traced& run, double load, double x, double length) {
 
 }  // namespace
 
-TEST_CASE("a gauge under the foot reads the moment over the modulus of section", "[gauge]") {
-  const double load = 4.37;  // no node of any of the meshes
+TEST_CASE("a gauge under the foot reads the moment over the section modulus", "[gauge]") {
+  const double load = 4.37;  // not a node of any mesh
   const std::vector<double> gauges = {1.5, 3.3, 3.9, 4.2, 4.4, 4.5, 5.1, 8.};
   const std::string model = GENERATE(std::string("condense.kind=\"full\""),
                                      std::string("condense={kind=\"modal\", modes_per_bay=2}"),
@@ -75,29 +75,30 @@ TEST_CASE("a gauge under the foot reads the moment over the modulus of section",
       most = std::max(most, std::abs(want));
     }
     CAPTURE(model, mesh, worst / most);
-    // Residual flexibility gives a coarse mesh the moment, too; what is left are its tables, cubics
-    // over a sixteenth of an element, at the kink that a moment has at its load: second order.
+    // Residual flexibility gives a coarse mesh the moment too. The error is that of its tables:
+    // cubics over a sixteenth of an element, at the moment's kink under the load: second order.
     CHECK(worst / most < 1e-2);
     if (before > 0.) CHECK(worst < .25 * before);
     before = worst;
   }
 }
 
-TEST_CASE("gauges tell head from foot, and a long one the mean", "[gauge]") {
+TEST_CASE("gauges at head and foot have opposite stress, and a long gauge reads the mean",
+          "[gauge]") {
   std::vector<std::string> changes =
       standing(4.5, "condense.kind=\"full\"", 8, {4.5, 4.5, 4.5}, .01);
   changes.insert(changes.end(), {"sensor[1].at=\"head\"", "sensor[2].gauge_length_m=0.3"});
   const Traced run("moving_load", changes);
   const double foot = run["g0.stress_x_pa"][0], head = run["g1.stress_x_pa"][0];
-  CHECK(foot > 0.);  // sags under the load: the foot is pulled
+  CHECK(foot > 0.);  // the rail sags under the load: the foot is in tension
   CHECK_THAT(head / foot, WithinAbs(-1., 1e-6));
-  // Under the load the moment is a roof of slopes P/2: 0.15 m aside it is lower by P/2 0.15 m, and
+  // The moment has a roof of slopes P/2 under the load: 0.15 m aside it is lower by P/2 0.15 m, and
   // the mean over both sides by half of that.
   const double lower = .5 * .5 * kLoad * .15 / kModulus;
   CHECK_THAT(run["g2.stress_x_pa"][0] / (foot - lower), WithinAbs(1., .05));
 }
 
-TEST_CASE("a gauge stands on the rail", "[gauge]") {
+TEST_CASE("the whole length of a gauge must lie on the rail", "[gauge]") {
   const auto refused = [](const std::string& gauge) {
     return std::vector<std::string>{
         "sensor=[{name=\"g\", on=\"rail\", rail=\"left\", position_m=0.1, gauge_length_m=" + gauge +
@@ -108,5 +109,5 @@ TEST_CASE("a gauge stands on the rail", "[gauge]") {
   CHECK_THROWS_WITH(read_scene(scene, refused("0.3")), Contains("is not on the rail"));
   CHECK_THROWS_WITH(read_scene(scene, refused("0")), Contains("at least 0.001, at most 1"));
   CHECK_THROWS_WITH(read_scene(kScenes + "ballasted_track.toml", {"sensor[0].gauge_length_m=0.01"}),
-                    Contains("gauge_length_m"));  // on a sleeper
+                    Contains("gauge_length_m"));  // this sensor is on a sleeper
 }

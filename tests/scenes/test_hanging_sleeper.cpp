@@ -1,4 +1,4 @@
-// The scene of hanging sleepers by the program: trace, statics, energy, and what is refused.
+// The scene of hanging sleepers run by the program: trace, statics, energy and refusals.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -25,7 +25,7 @@ const std::string kStop =
 
 }  // namespace
 
-TEST_CASE("loads that stand over hanging sleepers rest as `static` finds them", "[supports]") {
+TEST_CASE("loads that stand over hanging sleepers rest where `static` finds them", "[supports]") {
   std::string words = kScene + " --set step.duration_s=0.04 --set '" + kStop + "'";
   const char* const x[] = {"9.0", "9.0", "6.6", "6.6"};
   for (int i = 0; i < 4; ++i) {
@@ -42,9 +42,9 @@ TEST_CASE("loads that stand over hanging sleepers rest as `static` finds them", 
     for (const auto& point : found["points"]) {
       const std::string name = point["name"];
       const double want = point["displacement_m"][2];
-      // The run's sensors know the residual flexibility, which `static` has not: at nodes what the
-      // squeeze in series with the pads leaves out, 4e-3 of it (docs/unknowns.md), which is 8e-3 of
-      // the flexibility on the ground.
+      // The run's sensors include the residual flexibility, `static` does not. At nodes it is the
+      // part that the squeeze in series with the pads leaves out: 4e-3 of the squeeze
+      // (docs/unknowns.md), which is 8e-3 of the flexibility on the ground.
       CHECK_THAT(first_or_last[rows.column(name + ".dz_m")], WithinRel(want, 3.2e-5));
     }
     double sum = 0.;
@@ -64,16 +64,16 @@ TEST_CASE("two axles over hanging sleepers keep the balance of energy", "[suppor
   CHECK(found["allocations"] == 0);
 }
 
-TEST_CASE("pads that do not pull have their force in the trace", "[supports]") {
-  // The weight of 0.6 m of rail presses a pad with 350 N, and 2 kN lift it by 60 N at most
-  // (rail-data.md: 1.5 % of each of the axles): pads that do not pull are springs then.
+TEST_CASE("the trace has the force of pads that do not pull", "[supports]") {
+  // The weight of 0.6 m of rail presses a pad with 350 N, and 2 kN lift it by at most 60 N
+  // (rail-data.md: 1.5 % of each axle). Pads that do not pull therefore act as springs.
   std::string both = kScene + " --set track.gravity=true --set step.duration_s=0.05";
   for (int i = 0; i < 4; ++i) both += " --set load[" + std::to_string(i) + "].force_z_n=-2e3";
   const std::string pads =
       " --set 'support_change=[{from=14, to=16, ballast.gap_m=0.5e-3}, "
       "{from=8, to=12, support.unilateral=true}]'";
-  // Without the residual flexibility both are one discrete problem. With it a port's force misses
-  // what a load inside an element does beyond the mesh: 1e-3 of its flexibility on two elements per
+  // Without residual flexibility both are one discrete problem. With it a port's force misses the
+  // effect beyond the mesh of a load inside an element: 1e-3 of its flexibility on two elements per
   // bay (flexibility.h), 1.03e-8 m/N (rail-data.md), on a pad of 200e6 N/m 2.1e-3 of the load.
   for (const bool residual : {false, true}) {
     const std::string words =
@@ -93,9 +93,9 @@ TEST_CASE("pads that do not pull have their force in the trace", "[supports]") {
   }
 }
 
-TEST_CASE("six loose pads in a row are condensed as those that differ a little", "[supports]") {
-  // Without its pads each of these sleepers stands alone on its ballast: six shapes of one rate. A
-  // transition by 1e-5 tells them apart.
+TEST_CASE("six loose pads in a row give the same as pads that differ slightly", "[supports]") {
+  // Without its pads each of these sleepers stands alone on its ballast: six shapes of the same
+  // rate. A transition by 1e-5 separates the rates.
   const auto run = [](const std::string& kind, const std::string& transition) {
     return traced(std::string(RAILSTEP_SOURCE) +
                   "/config/scenes/ballasted_track.toml --set track.bays=24 --set "
@@ -118,13 +118,13 @@ TEST_CASE("six loose pads in a row are condensed as those that differ a little",
        {"sleeper.dz_m", "pad.dz_m", "wheel_left.force_z_n", "support_9.force_z_n"}) {
     CAPTURE(name, off(apart, name), off(full, name));
     CHECK(off(apart, name) < 1e-4);
-    CHECK(off(full, name) < 3e-2);  // what the mesh of two elements a bay leaves between the two
+    CHECK(off(full, name) < 3e-2);  // the mesh of two elements a bay causes this difference
   }
 }
 
-TEST_CASE("scenes say what does not pull, seat by seat", "[supports]") {
+TEST_CASE("a scene gives the supports that do not pull, seat by seat", "[supports]") {
   CHECK(fixed_ports(track_of(with({}))).size() == 6);
-  // One value, a transition, one side, and what a later change takes back.
+  // One value, a transition, one side, and a value that a later change removes.
   const auto ports = fixed_ports(track_of(
       with({"support_change=[{from=2, to=4, rail=\"left\", ballast.gap_m=[1e-3, 3e-3]}, "
             "{seats=[3], rail=\"left\", ballast.gap_m=0.0}, {seats=[7], support.unilateral=true, "
@@ -146,7 +146,7 @@ TEST_CASE("scenes say what does not pull, seat by seat", "[supports]") {
   CHECK(stops.back().closing.rail.at(0).factor == -1.);
 }
 
-TEST_CASE("what a track cannot do with springs that do not pull is said", "[supports]") {
+TEST_CASE("a track refuses springs that do not pull where it cannot have them", "[supports]") {
   const auto refused = [](const std::string& words, const std::string& sentence) {
     const Ran ran = railstep_program(words);
     CAPTURE(words, ran.err);
@@ -176,7 +176,7 @@ TEST_CASE("what a track cannot do with springs that do not pull is said", "[supp
           "no equilibrium");
 }
 
-TEST_CASE("modes and receptance take a gap for open and a pad without one for a spring",
+TEST_CASE("modes and receptance take a gap as open and a pad without gap as a spring",
           "[supports]") {
   const auto lowest = [](const std::string& set) {
     const Ran ran = railstep_program("modes " + kScene + " --count 2 --json " + set);

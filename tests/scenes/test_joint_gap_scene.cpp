@@ -1,4 +1,4 @@
-// Gaps of joints in scenes: what heat makes of them.
+// Gaps of joints in scenes and how heat changes them.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,7 +12,7 @@ using namespace railstep;
 using Catch::Matchers::Contains;
 using Catch::Matchers::WithinRel;
 
-TEST_CASE("a scene's heat closes the gaps of its joints", "[joint]") {
+TEST_CASE("heat closes the gaps of joints in a scene", "[joint]") {
   const std::string joint =
       "rail_joint=[{x_m=4.8, gap_m=0.0023, bending_vertical_stiffness_n_m_per_rad=1e6}]";
   const auto read = [&](const std::vector<std::string>& more) {
@@ -20,7 +20,7 @@ TEST_CASE("a scene's heat closes the gaps of its joints", "[joint]") {
     words.insert(words.end(), more.begin(), more.end());
     return read_scene(kScenes + "moving_load.toml", words);
   };
-  // 1.15e-5 x 20 K x 9.6 m = 2.2 mm of 2.3 mm
+  // 1.15e-5 x 20 K x 9.6 m = 2.2 mm of 2.3 mm.
   const Track open = track_of(read({"rail.temperature_rise_k=20"}));
   CHECK(open.axial_force == 0.);
   CHECK_THAT(open.joints[0].gap[1], WithinRel(.0023 - 1.15e-5 * 20. * 9.6, 1e-9));
@@ -47,7 +47,7 @@ TEST_CASE("a scene's heat closes the gaps of its joints", "[joint]") {
                     Contains("gap_m"));
 }
 
-TEST_CASE("loads over joints that heat presses keep the balance of energy", "[joint]") {
+TEST_CASE("loads over joints under pressure from heat keep the balance of energy", "[joint]") {
   const Ran ran = railstep_program(
       "run " + kScenes +
       "moving_load.toml --json --set track.elements_per_bay=2 --set 'track.ends=\"pinned\"' "

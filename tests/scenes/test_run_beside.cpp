@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// A scene of its own: a rail or two of 12 bays on springs, and what else is given.
+/// A separate scene: one or two rails of 12 bays on springs, and the given tables.
 class OwnScene {
  public:
   explicit OwnScene(const std::string& name, int rails, const std::string& rest)
@@ -61,8 +61,8 @@ struct Moved {
   std::vector<double> mass, load;  // m
 };
 
-/// A rail that carries the mass in its matrices, and the load, by dense matrices and the scheme's
-/// formulas (scheme.h). The shape at the start moves along with the load where it stands still.
+/// Motion of a rail with the mass in its matrices under the load, by dense matrices and the
+/// formulas of scheme.h. The shape of a start at rest moves along with the load.
 Moved by_matrices(const SystemScene& scene, bool at_rest) {
   const Track track = track_of(*scene.track);
   const std::vector<Line> lines = assemble(track);
@@ -83,7 +83,7 @@ Moved by_matrices(const SystemScene& scene, bool at_rest) {
     u = stiff.solve(force(0.));
     v = stiff.solve(force(1e-5) - force(-1e-5)) / 2e-5;
   } else {
-    // a track has no acceleration at the start, but for what its mass falls by on it
+    // A track has no acceleration at the start except from the fall of the mass on it.
     g = s.kg * S.solve(VectorXd(-kMass * 9.81 * b));
   }
   VectorXd a = g;
@@ -120,7 +120,8 @@ const std::string kTie =
 
 }  // namespace
 
-TEST_CASE("a mass clamped to a rail under a moving load is one that the rail carries", "[run]") {
+TEST_CASE("a mass clamped to a rail under a moving load moves as a mass in the rail's matrices",
+          "[run]") {
   for (const bool at_rest : {false, true}) {
     const OwnScene scene = carried_mass(at_rest ? "equilibrium" : "released");
     const Moved want = by_matrices(scene.read(), at_rest);
@@ -136,21 +137,21 @@ TEST_CASE("a mass clamped to a rail under a moving load is one that the rail car
       apart = std::max(apart, std::abs(trace.row[r][mass] - trace.row[r][rail]));
     }
     CAPTURE(at_rest);
-    // forces close to 1e-8 of 50 kN, over 3e7 N/m: 2e-11 m a step
+    // Forces converge to 1e-8 of 50 kN, over 3e7 N/m: 2e-11 m a step.
     CHECK(worst < 2e-10);
     CHECK(apart < 1e-10);  // joints.tolerance_m
     CHECK(std::abs(want.mass.back() - want.mass.front()) > 1e-5);
   }
 }
 
-TEST_CASE("a clamp's force is what its mass asks for", "[run]") {
+TEST_CASE("a clamp carries the weight and inertia of its mass", "[run]") {
   const Rows trace = traced(carried_mass("equilibrium").path() + " --set step.rho_inf=1.0");
   const std::size_t force = trace.column("clamp.force_z_n"),
                     speed = trace.column("mass_centre.vz_m_per_s");
   CHECK_THAT(trace.row[0][force], WithinAbs(kMass * 9.81, 1e-6));
   double worst = 0., most = 0.;
   for (std::size_t r = 1; r < trace.row.size(); ++r) {
-    // the trapezoidal rule: m (v1 - v0) / dt is the mean of both ends' forces less weight
+    // Trapezoidal rule: m (v1 - v0) / dt is the mean of both ends' forces less weight.
     const double mean = .5 * (trace.row[r][force] + trace.row[r - 1][force]);
     const double want = kMass * ((trace.row[r][speed] - trace.row[r - 1][speed]) / .5e-3 + 9.81);
     worst = std::max(worst, std::abs(mean - want));
@@ -169,13 +170,13 @@ TEST_CASE("a beam hinged on both rails hangs between them from the start", "[run
                      w * length * length / (8. * shear * G * h * h);
   const auto& start = trace.row[0];
   const double seat = start[trace.column("seat.dz_m")];
-  // Timoshenko's sag, which elements of two Gauss points meet at their nodes; what is left is the
-  // square of the slopes, 2e-4, and does not go away with elements
+  // Elements of two Gauss points have Timoshenko's sag at their nodes. The difference is the square
+  // of the slopes, 2e-4, and more elements do not reduce it.
   CHECK(start[trace.column("middle.dz_m")] - seat == Approx(-sag).epsilon(1e-6));
-  // the joints hold the tie against its weight, up on part B
+  // The joints hold the tie against its weight, upwards on part B.
   CHECK_THAT(start[trace.column("right_end.force_z_n")], WithinAbs(w * length / 2., 1e-5));
   CHECK_THAT(start[trace.column("left_end.force_z_n")], WithinAbs(w * length / 2., 1e-5));
-  // half of it deflects each rail as a load of it does
+  // Half the weight deflects each rail as a load of that size does.
   const Track track = track_of(*scene.read().track);
   double flexibility = 0.;
   for (const Line& line : assemble(track)) {
@@ -190,9 +191,9 @@ TEST_CASE("a beam hinged on both rails hangs between them from the start", "[run
   CHECK(moved < 1e-11);
 }
 
-TEST_CASE("beside a body of no weight a track's energies are those of a track alone", "[run]") {
-  // Two accounts, of the same flexibility: of the track alone, whose loss is in closed form, and of
-  // both, whose loss is what is missing.
+TEST_CASE("a track beside a body without weight has the energies of a track alone", "[run]") {
+  // Two accounts of the same flexibility: that of the track alone has its loss in closed form, that
+  // of both takes the rest of the balance as loss.
   const OwnScene both = carried_mass("equilibrium");
   const OwnScene alone("alone", 1,
                        "[condense]\nresidual_flexibility = false\n"
@@ -202,14 +203,14 @@ TEST_CASE("beside a body of no weight a track's energies are those of a track al
   const nlohmann::json light = told(
       both.path() + " --set 'body[0].mass_kg=1e-3' --set 'body[0].inertia_kg_m2=[1e-3,1e-3,1e-3]'");
   const nlohmann::json track = told(alone.path());
-  // 1 g of some 100 kg of rail that moves: 1e-5 of it
+  // 1 g of some 100 kg of moving rail: 1e-5 of it.
   CHECK(light["numerical_loss"].get<double>() ==
         Approx(track["numerical_loss"].get<double>()).epsilon(1e-4));
   CHECK(light["energy_balance_error"].get<double>() ==
         Approx(track["energy_balance_error"].get<double>()).epsilon(1e-4));
 }
 
-TEST_CASE("in the plane of a single rail is as in space", "[run]") {
+TEST_CASE("a single rail in the plane moves as in three dimensions", "[run]") {
   const OwnScene scene = carried_mass("equilibrium");
   const std::string tight = " --set joints.force_tolerance=1e-12 --set system.planar=";
   const Rows plane = traced(scene.path() + tight + "true"),
@@ -223,7 +224,7 @@ TEST_CASE("in the plane of a single rail is as in space", "[run]") {
   CHECK(worst < 1e-12);  // 1e-12 of 50 kN over 3e7 N/m, and the steps' round-off
 }
 
-TEST_CASE("a scene with both says what it met, and where", "[run]") {
+TEST_CASE("a scene with track and bodies reports its status with places", "[run]") {
   const OwnScene scene = carried_mass("equilibrium");
   const nlohmann::json full = told(scene.path() + " --model full");
   CHECK(full["status"].empty());
@@ -251,7 +252,7 @@ TEST_CASE("a scene with both says what it met, and where", "[run]") {
         "a place of the left rail that a joint or spring pulls at");
 }
 
-TEST_CASE("a ram drives what it carries, and says by what force", "[run]") {
+TEST_CASE("a ram moves its load as driven and the trace has its force", "[run]") {
   const auto file = fresh_folder("ram") / "ram.toml";
   std::ofstream(file) << "schema = 1\n[step]\ndt_s = 1e-3\nduration_s = 0.5\n"
                          "scheme = \"energy-momentum\"\n"
@@ -263,10 +264,10 @@ TEST_CASE("a ram drives what it carries, and says by what force", "[run]") {
                          "between = [\"ground\", \"table\"]\npoint_m = [0, 0, 0]\n"
                          "other_point_m = [0, 0, 0.8]\npolynomial_m = [0, 0, 0.5, -0.4]\n"
                          "[[sensor]]\nname = \"top\"\non = \"table\"\n";
-  // The acceleration of a cubic is exact but for joints.tolerance_m over dt^2, 1e-4 m/s2 of it. Of
+  // A cubic's acceleration is exact but for joints.tolerance_m over dt^2, 1e-4 m/s2. With
   // energy-momentum the force is that of the step's middle, along the line at its end: over 0.8 m
-  // and at 0.21 m/s that is 1.3e-4 more of up to 600 N, and the midpoint's velocities swing by
-  // dt^2 / 12 of the third derivative, accelerations by dt / 6.
+  // and at 0.21 m/s this adds 1.3e-4 of up to 600 N. The midpoint's velocities vary by dt^2 / 12 of
+  // the third derivative, its accelerations by dt / 6.
   const double exact = 50. * 1e-4, mean = 600. * .26 * .5e-3 + 50. * 2.4 * 1e-3 / 6.;
   for (const auto& [scheme, late, most] :
        {std::tuple{"generalised-alpha", 0., exact}, std::tuple{"energy-momentum", .5e-3, mean}}) {

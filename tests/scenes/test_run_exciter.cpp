@@ -20,16 +20,16 @@ namespace {
 const std::string kExciter = std::string(RAILSTEP_SOURCE) + "/config/scenes/exciter_on_track.toml";
 constexpr double kTurning = 188.49555921538759;  // rad/s, 30 Hz
 constexpr double kFeet[4][2] = {{11.7, .75}, {12.3, .75}, {11.7, -.75}, {12.3, -.75}};  // x, y, m
-constexpr double kHead = .091;                                                // where they stand, m
-constexpr double kStiffness = 20e6, kDamping = 40e3;                          // of a foot
+constexpr double kHead = .091;                        // height of the feet on the rails, m
+constexpr double kStiffness = 20e6, kDamping = 40e3;  // of a foot
 constexpr double kMass = 840., kPull = 2. * 20. * .02 * kTurning * kTurning;  // kg, N
 
-/// Amplitudes x of x e^(i w t) that answer a pull of kPull cos(w t) downwards on the frame.
+/// Amplitudes x of x e^(i w t) under a force of kPull cos(w t) downwards on the frame.
 struct Answer {
-  Phasor frame, rail, foot;  // m, m, N of a foot on the left rail
+  Phasor frame, rail, foot;  // m, m, N; foot: force of a foot on the left rail
 };
 
-/// From the matrices of the track in full order, without a step in time: D(w) u = B' f with
+/// By the matrices of the track in full order, without time steps: D(w) u = B' f with
 /// D = K + i w C - w^2 M, and the frame on its feet.
 /// @param w  rad/s; 0: D = K
 Answer answer(double w, double pull) {
@@ -54,7 +54,7 @@ Answer answer(double w, double pull) {
       at_centre[k] += centre.cast<Phasor>().dot(u);
     }
   }
-  // Unknowns: forces f of the feet on the rails, and the frame's z. Foot k: z - C f = f / s;
+  // Unknowns are the forces f of the feet on the rails and the frame's z. Foot k: z - C f = f / s;
   // frame: -w^2 m z = -sum f - pull.
   const Phasor s = kStiffness + i * w * kDamping;
   Eigen::Matrix<Phasor, 5, 5> A = Eigen::Matrix<Phasor, 5, 5>::Zero();
@@ -84,14 +84,14 @@ Phasor amplitude(const Rows& trace, const std::string& column) {
 
 }  // namespace
 
-TEST_CASE("the exciter's steady shaking is the track's response at its frequency", "[run]") {
+TEST_CASE("the exciter's steady motion is the track's response at its frequency", "[run]") {
   const Answer want = answer(kTurning, kPull);
   REQUIRE(std::abs(want.frame) > 1e-4);
-  // Transients of these motions are 40 % damped or more at 30 Hz and above: after 0.4 s e^(-0.4 *
-  // 188 * 0.4), 1e-13, is left of them.
+  // Transients of these motions have damping ratios of 40 % or more at 30 Hz and above: after 0.4 s
+  // e^(-0.4 * 188 * 0.4) = 1e-13 of them is left.
   const auto shaken = [&](const std::string& step) {
     const Rows trace = traced(kExciter + " --duration 0.5 --step " + step);
-    // a spring pulls where its force is positive, so it is the force on the rail upwards
+    // A positive force of a spring pulls, so it acts upwards on the rail.
     return std::array<Phasor, 3>{amplitude(trace, "frame_centre.dz_m") / want.frame - 1.,
                                  amplitude(trace, "rail_centre.dz_m") / want.rail - 1.,
                                  amplitude(trace, "foot_left_rear.force_n") / want.foot - 1.};
@@ -99,16 +99,16 @@ TEST_CASE("the exciter's steady shaking is the track's response at its frequency
   const auto coarse = shaken("1e-3"), fine = shaken("5e-4");
   for (std::size_t k = 0; k < 3; ++k) {
     CAPTURE(k, coarse[k], fine[k]);
-    // of second order: a quarter, but for the terms of third order and on, (w dt) = 0.19 of it
+    // The error has second order: a quarter, but for terms of third order and more, (w dt) = 0.19.
     CHECK(std::abs(coarse[k] / fine[k] - 4.) < .19 * 4.);
-    // without its part of second order, what is left is these terms of the coarse run's error
+    // Without the part of second order these terms of the coarse run's error remain.
     CHECK(std::abs((4. * fine[k] - coarse[k]) / 3.) < .19 * std::abs(coarse[k]));
     CHECK(std::abs(fine[k]) < 5e-3);
   }
 }
 
 TEST_CASE("the exciter starts at rest under its weight and the vehicle's force", "[run]") {
-  // Discs stand still: nothing shakes, and what is at the start stays.
+  // The discs stand still: nothing shakes, and the state of the start remains.
   const Rows trace = traced(kExciter +
                             " --duration 0.05 --set 'joint[3].polynomial_rad=[0]' --set "
                             "'joint[4].polynomial_rad=[0]' --set track.gravity=false");
@@ -120,8 +120,8 @@ TEST_CASE("the exciter starts at rest under its weight and the vehicle's force",
                          : column[0] == 'r'                   ? want.rail
                                                               : want.foot;
     CAPTURE(column);
-    // The matrices are those of upright feet. Heads turn by about the sag over 0.7 m, 4e-4, so the
-    // feet lean; what this does on them is T theta^2 h^2 / L, over T: 6e-9 m (h 0.091, L 0.25 m).
+    // The matrices have upright feet. The heads turn by about the sag over 0.7 m, 4e-4, so the feet
+    // lean. This makes T theta^2 h^2 / L on them, over T: 6e-9 m (h 0.091, L 0.25 m).
     const double margin = column[0] == 'r' || column[1] == 'r' ? 6e-9 : 1e-3;
     CHECK_THAT(trace.row[0][c], WithinAbs(still.real(), margin));
     double moved = 0.;
@@ -130,15 +130,14 @@ TEST_CASE("the exciter starts at rest under its weight and the vehicle's force",
   }
 }
 
-TEST_CASE("the exciter's energy balances, the better the shorter the step", "[run]") {
+TEST_CASE("the exciter's energy balances better with a shorter step", "[run]") {
   const auto error = [&](const std::string& step) {
     return told(kExciter + " --duration 0.2 --step " + step)["energy_balance_error"].get<double>();
   };
   const double coarse = error("1e-3"), fine = error("5e-4");
   CAPTURE(coarse, fine);
   CHECK(coarse < 1e-3);
-  // the account's means and the scheme are of second order; the loss of high frequencies is of
-  // third
+  // The account's means and the scheme have second order, the loss of high frequencies has third.
   CHECK(coarse / fine > 3.5);
   CHECK(coarse / fine < 8.);
 }

@@ -1,4 +1,4 @@
-// Forces of supports in the first row of a trace: those of the statics, however strongly damped.
+// Forces of supports in the first row of a trace are those of the statics, for any damping.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -9,8 +9,8 @@
 using namespace railstep;
 
 TEST_CASE("supports of strongly damped pads start with the forces of the statics", "[start]") {
-  // Modes of nearly real rates, 1e7 N s/m over pads of 2e10 N/m: a speed of 6e-8 m/s at the start
-  // is a force of half a newton, and of a coarse basis of hundreds.
+  // The modes have nearly real rates, 1e7 N s/m over pads of 2e10 N/m. A speed of 6e-8 m/s at the
+  // start is a force of half a newton, and with a coarse basis of hundreds of newtons.
   const std::string scene =
       "schema = 1\n"
       "track = {unknowns=\"vertical\", rails=1, bays=5, bay_m=0.6, elements_per_bay=1, "
@@ -28,8 +28,8 @@ TEST_CASE("supports of strongly damped pads start with the forces of the statics
       const std::string name = "support_" + std::to_string(support) + ".force_z_n";
       CAPTURE(kind, name);
       const std::vector<double> force = run[name], want = full[name];
-      // pads take the rounding of two displacements of 5 mm, 1e-18 m, times 2e10 N/m, and the basis
-      // has the seats' statics to 1e-12
+      // Rounding of the two displacements of 5 mm at a pad, 1e-18 m, times 2e10 N/m; the basis has
+      // the seats' statics to 1e-12.
       for (const double each : force) CHECK(std::abs(each - want[0]) < 1e-9 * 31.6e3);
     }
   }

@@ -1,4 +1,4 @@
-// Forces on vehicles' bodies, by tables and given frame by frame.
+// Forces on bodies of vehicles, by tables and given frame by frame.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 const std::string kTrack = std::string(RAILSTEP_SOURCE) + "/config/scenes/moving_load.toml";
 constexpr double kPress = 2e4;  // N
-enum { kRise = 0, kTurn = 1 };  // of a bogie's frame
+enum { kRise = 0, kTurn = 1 };  // coordinates of a bogie's frame
 
 /// A constant force along a coordinate.
 std::vector<OuterForce> constant(int coordinate, double force) {
@@ -37,7 +37,7 @@ ModelRun standing_bogie(bool modal, double carried, const std::vector<OuterForce
   return from_rest(track, {.vehicles = {v}, .input_limits = limits}, options_of(modal, track, dt));
 }
 
-/// Words for a bogie on one rail with a force on its frame.
+/// Overrides for a bogie on one rail with a force on its frame.
 std::vector<std::string> bogie_scene(const std::string& kind, const std::string& force,
                                      const std::string& rail = "left") {
   return {"load=[]",
@@ -53,7 +53,7 @@ std::vector<std::string> bogie_scene(const std::string& kind, const std::string&
               force + "}]}]"};
 }
 
-/// Pushed by 30 kN, or kN m, from frame 20 on.
+/// A push of 30 kN or kN m from frame 20 on.
 const double* from_frame_20(std::int64_t frame) {
   static const double none = 0., pushed = 3e4;
   return frame < 20 ? &none : &pushed;
@@ -67,7 +67,7 @@ std::vector<double> rows_of_run(const std::vector<std::string>& words, bool give
 
 }  // namespace
 
-TEST_CASE("a constant force on a frame is as much more weight", "[vehicle][inputs]") {
+TEST_CASE("a constant force on a frame acts as additional weight", "[vehicle][inputs]") {
   for (const bool modal : {false, true}) {
     ModelRun pressed = standing_bogie(modal, 8000., constant(kRise, -kPress));
     ModelRun heavier = standing_bogie(modal, 8000. + kPress / 9.81, {});
@@ -78,7 +78,7 @@ TEST_CASE("a constant force on a frame is as much more weight", "[vehicle][input
     }
     CHECK(pressed.seen == Status::ok);
     const VehicleModel& v = pressed.model().vehicle[0];
-    // Both equilibria to 1e-10 of a force, and rounding over 200 steps.
+    // Both equilibria are exact to 1e-10 of a force; rounding over 200 steps.
     for (int i = 0; i < 2; ++i)
       CHECK_THAT(pressed.outputs.wheel_force[i], WithinRel(heavier.outputs.wheel_force[i], 1e-8));
     for (int k = 0; k < v.size; ++k)
@@ -86,18 +86,19 @@ TEST_CASE("a constant force on a frame is as much more weight", "[vehicle][input
   }
 }
 
-TEST_CASE("a moment on a frame leans on the wheel ahead by the wheelbase", "[vehicle][inputs]") {
+TEST_CASE("a moment on a frame shifts force to the front wheel by moment over wheelbase",
+          "[vehicle][inputs]") {
   const double moment = 6e3;
   for (const bool modal : {false, true}) {
     const ModelRun level = standing_bogie(modal, 8000., {});
     const ModelRun leant = standing_bogie(modal, 8000., constant(kTurn, moment));
-    for (const int i : {0, 1})  // two wheels: what they bear is a matter of statics
+    for (const int i : {0, 1})  // the forces of two wheels follow from statics
       CHECK_THAT(leant.state.wheel_force[i] - level.state.wheel_force[i],
                  WithinRel((i == 0 ? 1. : -1.) * moment / kBogie.wheelbase, 1e-8));
   }
 }
 
-TEST_CASE("without weight a force alone presses a vehicle down, or finds no equilibrium",
+TEST_CASE("a vehicle without weight is pressed down by a force and has no equilibrium without one",
           "[vehicle][inputs]") {
   const Track track = one_rail(20);
   RunningVehicle v = running(bogie(kBogie), 5.3, 0.);
@@ -109,7 +110,7 @@ TEST_CASE("without weight a force alone presses a vehicle down, or finds no equi
   v.forces = constant(kRise, -kPress);
   const ModelRun run = from_rest(track, {.vehicles = {v}}, options);
   for (const int i : {0, 1}) CHECK_THAT(run.state.wheel_force[i], WithinRel(.5 * kPress, 1e-8));
-  // A moment is no weight, however many N m it has.
+  // A moment does not count as weight, whatever its size.
   v.forces = {{kRise, {0., -1e4}, -1}, {kTurn, {0., 1.2e4}, -1}};
   const ModelRun leant = from_rest(track, {.vehicles = {v}}, options);
   for (const int i : {0, 1})
@@ -117,13 +118,13 @@ TEST_CASE("without weight a force alone presses a vehicle down, or finds no equi
                WithinRel(5e3 + (i == 0 ? 1. : -1.) * 1.2e4 / kBogie.wheelbase, 1e-8));
 }
 
-TEST_CASE("under an input that stays a bogie comes to where as much weight has it",
+TEST_CASE("under a constant input a bogie settles where the same weight would hold it",
           "[vehicle][inputs]") {
   for (const bool modal : {false, true}) {
     ModelRun run = standing_bogie(modal, 8000., {{kRise, {}, 0}}, 1e-3, {1e6});
     const ModelRun heavier = standing_bogie(modal, 8000. + kPress / 9.81, {}, 1e-3);
     run.state.input[0] = -kPress;
-    // The frame's bounce loses its size by 3 each second: 1e-10 is left.
+    // The frame's bounce shrinks by e^3 each second: 1e-10 of it is left.
     for (int n = 0; n < 8000; ++n) run.step();
     CAPTURE(modal);
     for (int i = 0; i < 2; ++i)
@@ -134,7 +135,7 @@ TEST_CASE("under an input that stays a bogie comes to where as much weight has i
   }
 }
 
-TEST_CASE("an input on a vehicle pushes as a table of the same force does, to the bit",
+TEST_CASE("an input on a vehicle gives the same bits as a table of the same force",
           "[vehicle][inputs]") {
   for (const char* kind : {"full", "modal"})
     for (const std::string on :
@@ -172,7 +173,7 @@ TEST_CASE("a block keeps the forces on its vehicles", "[vehicle][inputs]") {
   }
 }
 
-TEST_CASE("forces on vehicles work along their bodies' way, and energies balance",
+TEST_CASE("forces on vehicles do work along their bodies' motion, and energies balance",
           "[vehicle][inputs][energy]") {
   for (const bool modal : {false, true})
     for (const int coordinate : {static_cast<int>(kRise), static_cast<int>(kTurn)}) {
@@ -190,15 +191,15 @@ TEST_CASE("forces on vehicles work along their bodies' way, and energies balance
       CAPTURE(modal, coordinate);
       CHECK(std::abs(work) > 10.);  // it swings near its own frequency
       CHECK_THAT(account.flow().forces, WithinRel(work, 1e-12));
-      // Forces held over a step lose omega dt / 2 of their work, 40 * 1e-4 / 2; condensed lines
-      // leave the quadrature of their dampers, of the second order in dt.
+      // Forces held over a step lose omega dt / 2 of their work, 40 * 1e-4 / 2. Condensed lines add
+      // the quadrature error of their dampers, which is of second order in dt.
       CHECK(account.balance_error() < (modal ? 2e-3 : 1e-4));
       CHECK(std::abs(account.imbalance() + account.flow().loss) <
             (modal ? 1e-4 : 1e-7) * account.turned_over());
     }
 }
 
-TEST_CASE("bad forces on vehicles get one sentence", "[vehicle][inputs][cli]") {
+TEST_CASE("bad forces on vehicles are refused in one sentence", "[vehicle][inputs][cli]") {
   const auto told = [](const std::string& force) {
     try {
       static_cast<void>(read_scene(kTrack, bogie_scene("full", force)));
@@ -239,7 +240,7 @@ TEST_CASE("bad forces on vehicles get one sentence", "[vehicle][inputs][cli]") {
   CHECK_THROWS_WITH(refused({{0, {}, 0}})(), Contains("has a table, or an input of its own"));
 }
 
-TEST_CASE("static takes a vehicle's forces at the start for weight", "[vehicle][inputs][cli]") {
+TEST_CASE("static counts a vehicle's forces at the start as weight", "[vehicle][inputs][cli]") {
   const auto sensor = [](double carried, double force) {
     std::string words = "static " + kTrack;
     for (const std::string& word : bogie_scene(

@@ -1,4 +1,4 @@
-// [[sensor]] on = "vehicle": what it says against Newton's law and the other columns.
+// [[sensor]] on = "vehicle" against Newton's law and the other columns.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 const std::string kScene = kScenes + "bogie_at_speed.toml";
 
-/// Over both axle boxes, in the frame's middle and on both wheels.
+/// Sensors over both axle boxes, in the frame's middle and on both wheels.
 const std::string kSensors =
     "sensor=[{name=\"front\", on=\"vehicle\", vehicle=\"bogie\", x_m=1.28},"
     "{name=\"rear\", on=\"vehicle\", vehicle=\"bogie\", body=\"frame\", x_m=-1.28},"
@@ -43,9 +43,10 @@ std::string told(const std::string& sensor) {
 
 }  // namespace
 
-TEST_CASE("sensors on a bogie's frame obey Newton: springs over the axles bear it", "[vehicle]") {
-  // m a = sum of k dz + c dv over both axle boxes - weight, at the end of every step: to rounding,
-  // 1e-9 of the weight, of stiffnesses times heights good to 1e-16 of .04 m.
+TEST_CASE("sensors on a bogie's frame agree with Newton's law and the springs over the axles",
+          "[vehicle]") {
+  // m a = sum of k dz + c dv over both axle boxes - weight at the end of every step. Rounding is
+  // 1e-9 of the weight, from stiffnesses times heights exact to 1e-16 of .04 m.
   const double k = 1.22e6, c = 4e3, mass = 1307.5, weight = (1307.5 + 8000.) * 9.81;
   const Traced run = bogie_run("full", .6);
   const std::vector<double> a = run["middle.az_m_per_s2"], z = run["middle.z_m"];
@@ -59,15 +60,15 @@ TEST_CASE("sensors on a bogie's frame obey Newton: springs over the axles bear i
     for (int axle = 0; axle < 2; ++axle)
       force += k * (wheel[axle][i] - box[axle][i]) + c * (wheel_v[axle][i] - box_v[axle][i]);
     CHECK_THAT(mass * a[i], WithinAbs(force, 1e-9 * weight));
-    CHECK_THAT(.5 * (box[0][i] + box[1][i]), WithinAbs(z[i], 1e-15));  // in between
+    CHECK_THAT(.5 * (box[0][i] + box[1][i]), WithinAbs(z[i], 1e-15));  // the middle lies between
     most = std::max(most, std::abs(mass * a[i]));
   }
-  CHECK(most > .01 * weight);  // the joint's blow
+  CHECK(most > .01 * weight);  // blow of the joint
 }
 
-TEST_CASE("sensors on a vehicle say what its bodies' columns say, and their rates", "[vehicle]") {
-  // Forces held over a step move bodies by parabolas: v1 - v0 = a1 dt and z1 - z0 = (v0 + v1) dt/2
-  // to rounding. The trapezoidal rule has a's mean in place of a1.
+TEST_CASE("sensors on a vehicle agree with its bodies' columns and their rates", "[vehicle]") {
+  // Forces held over a step move bodies along parabolas: v1 - v0 = a1 dt and z1 - z0 = (v0 + v1)
+  // dt/2 to rounding. The trapezoidal rule has the mean of a in place of a1.
   for (const bool modal : {false, true}) {
     const Traced run = bogie_run(modal ? "modal" : "full", 1.);
     const std::vector<double> t = run["time_s"], z = run["front.z_m"], v = run["front.vz_m_per_s"],
@@ -86,7 +87,7 @@ TEST_CASE("sensors on a vehicle say what its bodies' columns say, and their rate
   }
 }
 
-TEST_CASE("a sensor on a vehicle comes through a model file", "[vehicle]") {
+TEST_CASE("a model file keeps a sensor on a vehicle", "[vehicle]") {
   const auto folder = fresh_folder("vehicle_sensor");
   const std::string model = (folder / "bogie.model").string(), file = (folder / "a.csv").string();
   const std::string changes = " --set '" + kSensors +
@@ -100,7 +101,7 @@ TEST_CASE("a sensor on a vehicle comes through a model file", "[vehicle]") {
   CHECK(loaded == text_of(file));
 }
 
-TEST_CASE("a sensor on a vehicle that is not there is told so", "[scene][vehicle]") {
+TEST_CASE("a sensor on an unknown vehicle or body is refused", "[scene][vehicle]") {
   CHECK_THAT(told("vehicle=\"tram\""), Contains("\"tram\" is unknown; accepted are \"bogie\""));
   CHECK_THAT(told("vehicle=\"bogie\", body=\"boot\""),
              Contains("accepted are \"frame\", \"wheel_1\", \"wheel_2\""));
