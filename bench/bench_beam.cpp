@@ -1,7 +1,8 @@
-// Elastic force and tangent of one nonlinear element, fast and general kernel, each with its
-// largest difference from the general one. Blocks of calls take turns with blocks of a yardstick,
-// a chain of 512 additions: `ratio`, the median of their ratios, is free of a slow minute of the
-// machine; `best_us` is the quickest block. The batch is of the kernels that the processor has.
+// Elastic force and tangent of one nonlinear element by the fast and the general kernel, each with
+// its largest difference from the general one. Blocks of calls take turns with blocks of a
+// yardstick, a chain of 512 additions. `ratio` is the median of their ratios, on which a slow
+// minute of the machine has no effect; `best_us` is the quickest block. The batch uses the kernels
+// of this processor.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -45,7 +46,7 @@ BeamSection rectangle() {
           .moments = rectangle_moments(h, b)};
 }
 
-/// A row of elements bent and stretched by about 1e-2, and what both kernels make of them.
+/// A row of elements bent and stretched by about 1e-2, and the results of both kernels.
 struct Row {
   Beam general;
   StraightBeam straight;
@@ -96,7 +97,7 @@ Differences differences(Row& row) {
   return {force_gap / force_peak, tangent_gap / tangent_peak};
 }
 
-/// A number that counts what is done with it.
+/// A number that counts its operations.
 struct Counted {
   static inline long operations = 0;
   Counted& operator+=(const Counted&) { return count(); }
@@ -118,7 +119,7 @@ struct Counted {
 };
 
 /// Additions and multiplications of one element, as written in the kernel; the tangent's without
-/// its mirror image.
+/// the mirrored half.
 long flops(bool with_tangent) {
   using namespace straight;
   Counted q[27], even[15], odd[15], V[15], s[15], stress[15], F[15];
@@ -139,7 +140,7 @@ long flops(bool with_tangent) {
         benchmark::DoNotOptimize(
             node_pairs<pair>({}, K.data(), K.data(), [c](int matrix) { return 9 * matrix + c; }));
     });
-  // V, its forces and its tangent at the two points: a sum and a difference each.
+  // V, its forces and its tangent at the two points take a sum and a difference each.
   return Counted::operations + 2 * (15 + 15 + (with_tangent ? 9 * kProducts : 0));
 }
 

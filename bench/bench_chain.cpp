@@ -1,7 +1,7 @@
 // Forces, tangents, factor and solve of a beam chain in space and in the plane, per call, each with
-// its error beside it: forces and tangents their largest difference from the general element,
-// factor and solve that of the solution from a dense one in long double. Times as in measure.h,
-// with the kernels that the processor has.
+// its error. For forces and tangents this is the largest difference from the general element, for
+// factor and solve that of the solution from a dense one in long double. Times are as in measure.h,
+// with the kernels of this processor.
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace railstep {
 namespace {
 
 constexpr double kLength = .5;       // m
-constexpr double kMassFactor = 8e6;  // over the stiffness: 4 / dt2 for dt 1 ms, over 1/2
+constexpr double kMassFactor = 8e6;  // relative to the stiffness: 4 / dt2 for dt 1 ms, over 1/2
 
 template <int W>
 const RowKernels& row() {
@@ -32,7 +32,7 @@ BeamSection rectangle() {
           .moments = rectangle_moments(h, b)};
 }
 
-/// A chain clamped at its start, bent by about 1e-5, and all that its calls write.
+/// A chain clamped at its start and bent by about 1e-5, and the results of its calls.
 template <int W>
 struct Beams {
   BeamLaw law = beam_law(rectangle(), {});
@@ -71,7 +71,7 @@ struct Beams {
   void set_tangents(const double* half) {
     row<W>().tangents(chain.beam, chain.elements, q.data(), half, force.data(), tangents.data());
   }
-  /// The factor overwrites its tangents, so it gets a copy each time.
+  /// chain_factor() overwrites its tangents, so it gets a copy each time.
   int set_factor() {
     copy();
     return row<W>().factor(chain, kMassFactor, 1., scratch.data(), factor.data());
@@ -109,8 +109,8 @@ struct Beams {
     return {F_gap / F_peak, K_gap / K_peak};
   }
 
-  /// Largest difference of the four solutions from the dense one, over its largest entry; unknowns
-  /// in m and in m of half the height.
+  /// Largest difference of the four solutions from the dense one, over its largest entry. Slopes
+  /// are multiplied by half the height, so all unknowns are in m.
   double solution_error() {
     using Long = long double;
     const Eigen::Index size = static_cast<Eigen::Index>(force.size());
@@ -171,7 +171,7 @@ void tangents(benchmark::State& run) {
   if (!kHalf) run.counters["error"] = beams.element_errors().second;
 }
 
-/// The copy that factor needs each time and no step makes.
+/// Time of the copy that the benchmark of the factor needs and a step does not.
 template <int W>
 void copy(benchmark::State& run) {
   Beams<W> beams(static_cast<int>(run.range(0)));
@@ -191,7 +191,7 @@ void factor(benchmark::State& run) {
   run.counters["error"] = beams.solution_error();
 }
 
-/// With the copy of its right-hand sides: solutions of solutions would soon be denormal.
+/// Includes the copy of right-hand sides: solutions of solutions would soon be subnormal.
 template <int W, int kSides>
 void solve(benchmark::State& run) {
   Beams<W> beams(static_cast<int>(run.range(0)));

@@ -1,6 +1,5 @@
-// A frame of a track at rest, 1e6 steps after its load has gone, beside one under the load: numbers
-// that decay must not cost more than others. Both take turns, so that what slows the machine slows
-// both.
+// A frame of a track at rest, 1e6 steps after its load has gone, and a frame under the load:
+// numbers that decay must not cost more than others. Both take turns, so a slow machine slows both.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// The paper's double pendulum: time per step of 1 ms and error of C up to 1 s from one run, over
-// the schemes, in space and in its plane; and a single flexible pendulum from 4 to 64 elements.
+// The paper's double pendulum: time per step of 1 ms and error of C up to 1 s from one run, for
+// each scheme, in space and in the plane. Also a single flexible pendulum of 4 to 64 elements.
 #include <benchmark/benchmark.h>
 
 #include "pendulum_run.h"
@@ -25,7 +25,7 @@ void double_pendulum(benchmark::State& bench) {
   bench.counters["reference_error_m"] = kPendulumKnown;
 }
 
-/// The upper link alone; the cost of an element says whether it grows linearly.
+/// The upper link alone; the cost per element shows whether it grows linearly.
 void flexible_pendulum(benchmark::State& bench) {
   const int elements = static_cast<int>(bench.range(1));
   System system = pendulum_system({}, elements, bench.range(0) != 0);

@@ -1,4 +1,4 @@
-// Mass and stiffness of one element, with the error that a cantilever of two of them makes.
+// Mass and stiffness of one element, with the error of a cantilever of two elements.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace railstep {
 namespace {
 
-/// 60E1's constants, rounded; centroid on the axis, shear centre where the load acts.
+/// Rounded constants of 60E1; the centroid is on the axis, the shear centre where the load acts.
 BeamSection section() {
   return {.area = 76.7e-4,
           .inertia_y = 30.38e-6,
@@ -29,8 +29,8 @@ double tip_error(int axial_points) {
   track.elements_per_bay = 4;
   track.ends = {RailEnd::clamped, RailEnd::clamped};
   track.rule.axial_points = axial_points;
-  // Half of a clamped beam under a force in its middle: L = 2 m, half the force, no turn at the
-  // end.
+  // It is half of a clamped beam under a force in its middle: L = 2 m, half the force, no rotation
+  // at the end.
   const Statics statics(track);
   const double got = statics.flexibility({0, 2., 0., 0., 2}, {0, 2., 0., 0., 2});
   const BeamSection s = section();

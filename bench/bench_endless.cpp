@@ -13,16 +13,16 @@ namespace {
 
 constexpr double kStep = 50e-6;            // s
 constexpr int kFrame = 20, kFrames = 700;  // steps of a frame; frames compared, 0.7 s
-constexpr int kFirst = 400;                // frame from which on they are: starts have died away
+constexpr int kFirst = 400;                // first compared frame: the starts have decayed
 
-/// A rail of class 5 in waves of .3 m to 20 m: 1.5 to 100 Hz.
+/// A bogie over a rail of class 5 with waves of .3 m to 20 m: 1.5 to 100 Hz.
 Traffic traffic(double x) {
   return bogie_over(x, find_spectra("fra_5")->of[static_cast<int>(Geometry::vertical)],
                     {.shortest = .3, .longest = 20., .length = 100., .patch = .012});
 }
 
-/// Contact forces of both wheels at the middle of each step, as the ring holds them.
-/// @param finer  steps of the run in one of these, 1 or even
+/// Contact forces of both wheels at the middle of each step, where the ring's held forces count.
+/// @param finer  steps of the run per such step, 1 or even
 std::vector<double> forces(const PackedModel& packed, int finer) {
   Run run(packed);
   std::vector<double> found;
@@ -59,7 +59,7 @@ const Reference& reference() {
   return made;
 }
 
-/// Args are bays of the ring and modes a bay.
+/// Args are bays of the ring and modes per bay.
 void frame_of_bogie(benchmark::State& run) {
   const int bays = static_cast<int>(run.range(0)), modes = static_cast<int>(run.range(1));
   const Track ring = ring_of(bays, 1);

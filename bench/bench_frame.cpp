@@ -11,7 +11,7 @@
 namespace railstep {
 namespace {
 
-/// Over the track again and again, from rest under the wheelset each time.
+/// Runs over the track again and again, each time from rest under the wheelset.
 void frame(benchmark::State& run, const std::vector<std::string>& overrides) {
   const Scene scene =
       read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/ballasted_track.toml", overrides);

@@ -60,7 +60,7 @@ void geometrically_exact(benchmark::State& run) {
   report(run, last);
 }
 
-// One whole manoeuvre each: thousands of steps are enough to average over.
+// Each runs one whole manoeuvre: its thousands of steps are enough for an average.
 void arguments(benchmark::internal::Benchmark* b, int parts) {
   b->ArgNames({"speed_tenths", "step_ms", "parts"})->Iterations(1)->Unit(benchmark::kMillisecond);
   for (const int speed : {5, 10, 15, 20, 25, 28, 30, 40, 60}) b->Args({speed, 10, parts});

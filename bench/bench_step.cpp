@@ -37,8 +37,8 @@ void step_vertical(benchmark::State& run) { step(run, Unknowns::vertical); }
 void step_rigid_section(benchmark::State& run) { step(run, Unknowns::rigid_section); }
 void step_full(benchmark::State& run) { step(run, Unknowns::full); }
 
-/// Condensed from two elements per bay; args are bays and modes per hundred bays. Lines that the
-/// loads do not move are left out, so that the 9-unknown track gives the same model.
+/// A model condensed from two elements per bay; args are bays and modes per hundred bays. Lines
+/// that the loads do not move are left out, so the 9-unknown track gives the same model.
 void step_condensed(benchmark::State& run) {
   const int bays = static_cast<int>(run.range(0));
   const Reduction limit{.limit = {static_cast<int>(bays * run.range(1) / 100), 1e9}};
@@ -48,9 +48,9 @@ void step_condensed(benchmark::State& run) {
   compare(run, scene, fine_step, Unknowns::vertical);
 }
 
-/// Seats that do not pull, from a quarter of the track on; args are bays, seats and whether
-/// condensed. The rail has no weight here, so they lift before and behind the load: the difference
-/// from springs says how much, it is no error.
+/// Some seats from a quarter of the track on do not pull; args are bays, seats and whether
+/// condensed. The rail has no weight here, so it lifts before and behind the load: the difference
+/// from springs shows how much; it is not an error.
 void step_fixed_ports(benchmark::State& run) {
   const int bays = static_cast<int>(run.range(0)), seats = static_cast<int>(run.range(1));
   Track track = moving_load_track(bays, 2, 1, Unknowns::vertical);
@@ -69,8 +69,8 @@ void step_fixed_ports(benchmark::State& run) {
   run.counters["unknowns"] = scene.unknowns();
 }
 
-/// One step of 1 to 16 wheels, each a mass on a spring under its own, over 64 bays: what each adds
-/// is the slope over the wheels. No error of its own: test_moving_mass.cpp has it.
+/// One step of 1 to 16 wheels, each with its own sprung mass, over 64 bays: the cost of a wheel is
+/// the slope over the wheels. The error is in test_moving_mass.cpp.
 void step_wheels(benchmark::State& run, const std::optional<Reduction>& modal) {
   constexpr double dt = 50e-6;
   Track track = moving_load_track(64, 2, 1, Unknowns::vertical);

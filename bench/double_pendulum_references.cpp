@@ -26,7 +26,7 @@ class References {
                 "C to 1 s", "energy, J", "time, s");
   }
 
-  /// Runs, writes and compares with the first that was run.
+  /// Runs and writes a reference, and compares it with the first one.
   void add(const std::string& name, const std::function<PendulumRun()>& run) {
     const std::clock_t begin = std::clock();
     const PendulumRun found = run();
@@ -58,7 +58,7 @@ class References {
   PendulumPath finest_;
 };
 
-/// Where a link bends far its tangent frame has frequencies above those at rest.
+/// If a link bends far, its tangent frame has frequencies above those at rest.
 PendulumRun modal(const DoublePendulum& scene, const LinkModes& kept) {
   const FramePendulum model(scene, kept);
   return swing(model, kUntil, (kept.tangent ? 8 : 1) * steps_for(model.highest_frequency()));

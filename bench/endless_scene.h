@@ -15,7 +15,7 @@ namespace railstep {
 
 inline constexpr double kSpeed = 30.;  // m/s
 
-/// A ballasted track, 60E1, vertical; its ends are free unless it is made a ring.
+/// A vertical ballasted track of 60E1; its ends are free unless it is made a ring.
 inline Track track_of(int bays, int elements_per_bay, int rails) {
   Track t;
   t.section = {.area = 76.7e-4,
@@ -48,8 +48,8 @@ inline PackOptions ring_options(int bays, int modes, double dt) {
   return o;
 }
 
-/// Half a bogie of the Manchester benchmark's passenger vehicle over one rail, and half of the
-/// body on it, past an irregular rail.
+/// Half a bogie of the Manchester benchmark's passenger vehicle on one irregular rail, with half of
+/// the body that the bogie carries.
 /// @param x  on the track, of where x = 0 of the irregularity and the bogie's middle start, m
 inline Traffic bogie_over(double x, const Spectrum& spectrum, const GenerateOptions& waves) {
   RunningVehicle v;
@@ -69,7 +69,7 @@ inline Traffic bogie_over(double x, const Spectrum& spectrum, const GenerateOpti
   return {.vehicles = {v}, .head = {.081, .3, .035}, .irregularities = {{0, 2, std::move(rail)}}};
 }
 
-/// A model with its state, from its start.
+/// A model with its state, run from its start.
 class Run {
  public:
   explicit Run(const PackedModel& packed)
@@ -95,7 +95,7 @@ class Run {
   Outputs outputs_{};
 };
 
-/// Largest difference over the peak of what is wanted.
+/// Largest difference over the peak of `want`.
 inline double error_over_peak(const std::vector<double>& got, const std::vector<double>& want) {
   double worst = 0., peak = 0.;
   for (std::size_t i = 0; i < want.size(); ++i) {

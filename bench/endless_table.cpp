@@ -1,6 +1,6 @@
-// Rings of bays in Floquet modes against a long track of full order, as CSV on stdout for
-// docs/endless.md: error of the deflection under a load at 30 m/s that swings at a frequency, over
-// its peak, and the cost of a step under two constant loads.
+// Rings of bays in Floquet modes, compared with a long track of full order, as CSV on stdout for
+// docs/endless.md. Columns are the error of the deflection under a load at 30 m/s that oscillates
+// at a frequency, over its peak, and the cost of a step under two constant loads.
 #include <chrono>
 #include <cstdio>
 #include <vector>
@@ -11,7 +11,7 @@ namespace railstep {
 namespace {
 
 constexpr double kForce = -50e3;                          // N
-constexpr double kStep = 4e-5, kEnd = .4, kSettled = .3;  // s; errors are of what follows kSettled
+constexpr double kStep = 4e-5, kEnd = .4, kSettled = .3;  // s; errors count after kSettled
 constexpr double kFrequencies[] = {0., 20., 50., 100., 200., 500., 1000.};  // Hz
 
 MovingLoad load_at(double start, double hz, int rail = 0) {
@@ -46,7 +46,7 @@ std::vector<double> reference(double hz, int finer) {
   return deflections(packed);
 }
 
-/// Best of many blocks of a bay's steps, us a step, under a constant load on either rail.
+/// Best of many blocks of a bay's steps under a constant load on either rail, us per step.
 double step_us(int bays, int modes) {
   using Clock = std::chrono::steady_clock;
   const Track ring = ring_of(bays, 2);

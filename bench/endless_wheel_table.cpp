@@ -1,8 +1,8 @@
-// A wheel on rings of bays in Floquet modes against a long track of full order, as CSV on stdout
-// for docs/endless.md: errors of its contact force, of the rail under it, of a sleeper that it
-// passes and of that sleeper's pad force. Of an even rail over the peak; of a rail with waves that
-// pass at a frequency, of what these waves add, over the peak of that. Each of every step ("all"),
-// and of what of the difference lies below 500 Hz ("band").
+// A wheel on rings of bays in Floquet modes, compared with a long track of full order, as CSV on
+// stdout for docs/endless.md: errors of its contact force, of the rail under it, of a sleeper that
+// it passes and of that sleeper's pad force. For an even rail they are relative to the peak. For a
+// rail with waves that pass at a frequency, only the part that the waves add is compared, relative
+// to its peak. Each error is of every step ("all"), and of the difference below 500 Hz ("band").
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@
 namespace railstep {
 namespace {
 
-constexpr double kStep = 4e-5, kEnd = .4, kSettled = .3;  // s; errors are of what follows kSettled
+constexpr double kStep = 4e-5, kEnd = .4, kSettled = .3;  // s; errors count after kSettled
 constexpr double kFrequencies[] = {0., 20., 50., 100., 200., 500., 1000.};  // Hz; 0: an even rail
 constexpr double kBand = 500.;                                              // Hz
 constexpr int kFirstSeat = 91;  // of the long track: ahead of the wheel at the start, 54 m
@@ -35,7 +35,7 @@ Traffic wheel_over(double x, double hz) {
   v.speed = kSpeed;
   Traffic traffic{.vehicles = {v}, .head = {.081, .3, .035}};
   if (hz == 0.) return traffic;
-  constexpr int kSamples = 32;  // of a wave: the spline misses it by 4e-6
+  constexpr int kSamples = 32;  // per wave: the spline errs by 4e-6
   std::vector<double> wave(kSamples);
   for (std::size_t k = 0; k < wave.size(); ++k)
     wave[k] = 1e-2 / hz * std::sin(2. * M_PI * static_cast<double>(k) / kSamples);
@@ -43,7 +43,7 @@ Traffic wheel_over(double x, double hz) {
   return traffic;
 }
 
-/// Height of a sleeper, and the force that its pad bears.
+/// Adds sensors of a sleeper's height and of its pad's force.
 void add_seat(const Track& track, int seat, std::vector<TrackSensor>& track_sensors) {
   Functional sleeper;
   sleeper.sleeper.push_back({0, seat, 2, 1.});
@@ -53,8 +53,8 @@ void add_seat(const Track& track, int seat, std::vector<TrackSensor>& track_sens
                            .track = pad_gap(track, 0, seat)});
 }
 
-/// Steps of a run, `finer` of them in one of kStep; forces in the middle of such a step, as the
-/// ring holds them, all else at its end.
+/// Results of a run with `finer` steps per kStep: forces in the middle of each kStep, where the
+/// ring's held forces count, all else at its end.
 /// @param seat  index of the track sensors to read after n steps of kStep
 template <typename Seat>
 Quantities heard(const Track& track, PackedModel& packed, int finer, const Seat& seat) {
@@ -96,14 +96,14 @@ Quantities on_ring(double hz, int bays, int modes) {
   return heard(ring, packed, 1, [](int) { return std::size_t{0}; });
 }
 
-/// What the waves add to an even rail.
+/// Difference of a rail with waves from an even rail.
 Quantities added(Quantities with, const Quantities& even) {
   for (std::size_t q = 0; q < with.size(); ++q)
     for (std::size_t i = 0; i < with[q].size(); ++i) with[q][i] -= even[q][i];
   return with;
 }
 
-/// Of every frequency in turn, as `made` makes it.
+/// Results for all frequencies, each by made(hz).
 template <typename Made>
 std::vector<Quantities> all(const Made& made) {
   std::vector<Quantities> found;
@@ -112,8 +112,8 @@ std::vector<Quantities> all(const Made& made) {
   return found;
 }
 
-/// Largest difference over the peak, of what lies below kBand: differences under a Hann window of
-/// its period, which halves a wave of kBand.
+/// Largest difference below kBand over the peak. A Hann window as long as kBand's period averages
+/// the differences; it halves a wave of kBand.
 double error_in_band(const std::vector<double>& got, const std::vector<double>& want) {
   const auto width = static_cast<std::size_t>(std::lround(1. / (kBand * kStep)));
   double largest = 0., peak = 0.;

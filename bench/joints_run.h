@@ -16,7 +16,7 @@
 
 namespace railstep {
 
-/// A system on its way, with all its memory.
+/// A run of a system, with all its memory.
 class Rollout {
  public:
   Rollout(const System& system, const SystemOptions& options) : packed_(system, options) {
@@ -49,8 +49,8 @@ class Rollout {
   Outputs outputs_{};
 };
 
-/// Largest |Phi| and |Phi'| of the joint rows of a state, which no motion drives; by the state
-/// itself, not by what the step says of it.
+/// Largest |Phi| and |Phi'| of the joint rows, which no motion drives, computed from the state
+/// itself and not taken from the step's outputs.
 struct Violation {
   double position, velocity;  // m (or 1), m/s
 };
@@ -73,19 +73,19 @@ inline Violation violation(const Model& model, const State& state) {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// What one run showed.
+/// Results of one run.
 struct RunResult {
   double position = 0., velocity = 0.;  // largest violations, m and m/s
-  double drift = kUnknown;              // slope over time of the largest of each tenth, m/s
-  double energy = 0.;                   // largest change, J
-  double energy_end = 0.;               // change at the end, J
-  double error = kUnknown;              // of the sensor at 1 s, m
+  double drift = kUnknown;  // slope of the largest violations of each tenth of the time, m/s
+  double energy = 0.;       // largest change, J
+  double energy_end = 0.;   // change at the end, J
+  double error = kUnknown;  // of the sensor at 1 s, m
   double mean_iterations = 0.;
   int most_iterations = 0;
-  double capped = 0.;     // part of the steps that ran to the cap
-  double redundant = 0.;  // part of the steps in which rows hung on others
+  double capped = 0.;     // share of steps that reached the cap
+  double redundant = 0.;  // share of steps with redundant rows
   double step_us = 0.;    // processor time, best of several runs of the first second
-  double end = 0.;        // s; before the asked one where the state was lost
+  double end = 0.;        // s; earlier than asked if the state was lost
 };
 
 /// Slope of a least-squares line through values at the middles of equal parts of a time.
@@ -112,8 +112,8 @@ inline double best_step_time(Rollout& run, int times) {
   return best / CLOCKS_PER_SEC * 1e6 / steps;
 }
 
-/// Runs to `until` (s) and looks at every step; ends where the state is lost, which is where the
-/// step says so or a joint has come apart by a metre.
+/// Runs to `until` (s) and checks every step. Ends early if the state is lost: the step reports it,
+/// or a joint has come apart by a metre.
 inline RunResult measure(const System& system, const SystemOptions& options, double until,
                          const Eigen::Vector2d& at_one_second) {
   Rollout run(system, options);

@@ -6,7 +6,8 @@
 
 namespace railstep {
 
-/// What the ways to hold a joint are tried on. The first sensor is the point that is compared.
+/// A scene on which constraint methods are compared. The first sensor is the point that is
+/// compared.
 struct JointScene {
   std::string name;
   System system;
@@ -15,7 +16,7 @@ struct JointScene {
   double reference_error = 0.;  // m
 };
 
-/// y' = slope(y) by the classical method of order 4, in `steps` equal steps.
+/// Solves y' = slope(y) by the classical Runge-Kutta method of order 4, in `steps` equal steps.
 template <class Slope>
 Eigen::VectorXd runge_kutta(const Slope& slope, Eigen::VectorXd y, double until, int steps) {
   const double h = until / steps;
@@ -52,7 +53,7 @@ struct Links {
   Eigen::Vector3d joint(int link) const { return {link * length, 0., 0.}; }
 };
 
-/// Hinges of both links, and the free end C as the sensor.
+/// Adds the hinges of both links, and the free end C as the sensor.
 inline void hang(System& system, Part first, Part second) {
   const Links links;
   system.planar = true;
@@ -70,7 +71,7 @@ inline JointScene rigid_pendulum() {
                                    .inertia = own * Eigen::Matrix3d::Identity(),
                                    .position = .5 * (links.joint(i) + links.joint(i + 1))});
   hang(scene.system, body(0), body(1));
-  // Angles from x to z and their rates; J c couples both links, c the cosine between them.
+  // Angles from x to z and their rates; J c couples both links, with c the cosine between them.
   const double I2 = own + m * L * L / 4., I1 = I2 + m * L * L, J = .5 * m * L * L;
   const double w = .5 * m * 9.81 * L;
   const auto slope = [=](const Eigen::VectorXd& y) -> Eigen::VectorXd {
@@ -88,7 +89,7 @@ inline JointScene rigid_pendulum() {
   return scene;
 }
 
-/// Where the sensor is at 1 s; held directly, generalised-alpha.
+/// Place of the sensor at 1 s, by the direct method and generalised-alpha.
 inline Eigen::Vector2d place_at_one_second(const System& system, double dt) {
   SystemOptions options;
   options.scheme = generalised_alpha(dt, .9);
@@ -98,8 +99,8 @@ inline Eigen::Vector2d place_at_one_second(const System& system, double dt) {
   return run.place();
 }
 
-/// Its reference is the same mesh with steps of 10 us, extrapolated with 20 us; its error the
-/// distance of what 20 and 40 us give.
+/// The reference is the same mesh with steps of 10 us, extrapolated with 20 us. Its error is the
+/// distance of the result of 20 and 40 us.
 inline JointScene flexible_pendulum() {
   const Links links;
   JointScene scene{"flexible", {}, 1., {}, 0.};
@@ -125,7 +126,7 @@ inline JointScene flexible_pendulum() {
 }
 
 /// IFToMM's N-four-bar with two loops: three cranks and two couplers, rods of 1 m and 1 kg, from
-/// upright at 1 rad/s. Where the rods lie in one line the rows lose rank. `doubled`: its first
+/// upright at 1 rad/s. When the rods lie in one line, the rows lose rank. `doubled`: its first
 /// coupler has both hinges twice.
 inline JointScene four_bar(bool doubled) {
   JointScene scene{doubled ? "four_bar_doubled" : "four_bar", {}, 10., {}, 0.};

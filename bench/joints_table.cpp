@@ -1,4 +1,4 @@
-// Ways to hold a joint against each other, as CSV on stdout for docs/joints.md.
+// Comparison of constraint methods, as CSV on stdout for docs/joints.md.
 // Usage: joints_table ways|penalty|baumgarte|tangent|tolerance
 // rigid|flexible|four_bar|four_bar_doubled
 #include <cstdio>
@@ -26,7 +26,7 @@ struct Way {
   const char* name;
   ConstraintMethod constraint_method;
   double alpha_dt = 0.;  // Baumgarte's alpha = beta times the step; 0: the default
-  double alpha = 0.;     // the same in 1/s, where it does not follow the step
+  double alpha = 0.;     // the same in 1/s, if it does not depend on the step
 };
 constexpr Way kWays[] = {{"augmented_lagrangian", ConstraintMethod::augmented_lagrangian},
                          {"baumgarte", ConstraintMethod::baumgarte},
@@ -52,7 +52,7 @@ SystemOptions options_of(const Way& way, const NamedScheme& scheme, double dt, i
   o.constraint_method = way.constraint_method;
   o.alpha = o.beta = way.alpha > 0. ? way.alpha : way.alpha_dt / dt;
   o.cap = cap;
-  o.penalty = 1e9;  // the default, for the table to name
+  o.penalty = 1e9;  // the default, set so that the table shows it
   return o;
 }
 
@@ -108,7 +108,7 @@ void penalties(const Table& table) {
         }
 }
 
-/// beta = ratio alpha: below 1 aperiodic, 1 critical, above it swings.
+/// beta = ratio alpha: aperiodic below 1, critical at 1, oscillating above.
 void dampings(const Table& table) {
   for (const double dt : {4e-3, 1e-3, 2.5e-4})
     for (const double alpha_dt : {.002, .01, .02, .05, .1, .2, .3, .5, 1., 2., 5.})
@@ -132,7 +132,7 @@ void tangents(const Table& table) {
         }
 }
 
-/// Both tests of Newton's iterations.
+/// Varies the two tolerances of Newton's iterations.
 void tolerances(const Table& table) {
   for (const NamedScheme& scheme : {kSchemes[2], kSchemes[4]})
     for (const double dt : {4e-3, 1e-3, 2.5e-4})

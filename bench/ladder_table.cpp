@@ -1,7 +1,7 @@
-// Condensed models of one rail of 40 ballasted bays against full order refined in mesh and step, as
-// CSV on stdout for docs/condensation.md: a load of 50 kN at 30 m/s that is constant, or that
-// swings at 200 Hz or 1 kHz; error over the peak of the deflection under it, of the force of a pad
-// and of the displacement of its sleeper; and the cost of a step.
+// Condensed models of one rail of 40 ballasted bays, compared with full order refined in mesh and
+// step, as CSV on stdout for docs/condensation.md. A load of 50 kN at 30 m/s is constant or
+// oscillates at 200 Hz or 1 kHz. Columns are errors over the peak, of the deflection under the
+// load, of the force of a pad and of the displacement of its sleeper; and the cost of a step.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -17,11 +17,11 @@ namespace railstep {
 namespace {
 
 constexpr int kBays = 40, kSeat = 20;
-constexpr double kFrame = 1e-3, kStep = 1e-4, kForce = 50e3;  // s, N
-constexpr int kFrames = 500, kSettled = 200;                  // errors are of what follows kSettled
+constexpr double kFrame = 1e-3, kStep = 1e-4, kForce = 50e3;       // s, N
+constexpr int kFrames = 500, kSettled = 200;                       // errors count after kSettled
 constexpr std::array<double, 3> kFrequencies = {0., 200., 1000.};  // Hz
 
-/// Deflection under the load, force of the pad and displacement of the sleeper of kSeat, in turns.
+/// Deflection under the load, force of the pad and displacement of the sleeper of kSeat, by frame.
 using Rows = std::array<std::vector<double>, 3>;
 
 Traffic passing(double hz) {
@@ -72,7 +72,7 @@ PackOptions options_of(const Rung& rung, bool residual) {
   return options;
 }
 
-/// Best of many blocks of steps of 1 ms, us a step.
+/// Best of many blocks of steps of 1 ms, us per step.
 double step_us(const Track& track, PackOptions options) {
   using Clock = std::chrono::steady_clock;
   options.scheme = options.reduction ? held_force(1e-3, .6) : generalised_alpha(1e-3, .6);

@@ -7,8 +7,8 @@
 
 namespace railstep {
 
-/// Products of 512 numbers, 4 KiB, added one after the other: a chain that no vector shortens, of
-/// 512 times the processor's latency of an addition.
+/// Products of 512 numbers, 4 KiB, added one after the other: a chain that no vector shortens. It
+/// takes 512 times the processor's latency of an addition.
 class Yardstick {
  public:
   void once() {
@@ -21,7 +21,8 @@ class Yardstick {
   std::vector<double> x_ = std::vector<double>(512, 1.5);
 };
 
-/// Blocks of calls and of the yardstick in turns, together one iteration. One call does `elements`.
+/// Measures blocks of calls and of the yardstick in turns; a block of each is one iteration. One
+/// call computes `elements`.
 template <class Call>
 void measure(benchmark::State& run, int calls, int elements, const Call& call) {
   using Clock = std::chrono::steady_clock;

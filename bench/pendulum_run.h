@@ -47,7 +47,7 @@ inline SystemOptions pendulum_options(bool energy_momentum_scheme) {
   return o;
 }
 
-/// Largest distance of C from the refined path at its times up to 1 s, m.
+/// Largest distance of C from the refined path, at the path's times up to 1 s, m.
 inline double error_of_c(Pendulum& run) {
   static const PendulumPath known =
       read_pendulum_path(RAILSTEP_SOURCE "/tests/data/double_pendulum.csv");

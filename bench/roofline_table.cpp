@@ -1,5 +1,5 @@
-// A step against what the machine does, as CSV for docs/roofline.md: first the machine's own rates,
-// then models of the moving-load scene with 1 to 256 bays.
+// A step compared with the limits of the machine, as CSV for docs/roofline.md: first the machine's
+// own rates, then models of the moving-load scene with 1 to 256 bays.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -17,14 +17,14 @@ double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Keeps what a loop made, so that it is made.
+/// Keeps the compiler from removing a loop's result.
 template <class T>
 void keep(T& value) {
   asm volatile("" : "+m"(value) : : "memory");
 }
 
-/// Least time of a call over `blocks` blocks of 2 ms or more, s: what the machine does when left
-/// alone.
+/// Least time of a call over `blocks` blocks of 2 ms or more, s: the time on an undisturbed
+/// machine.
 template <class Call>
 double least_time(int blocks, const Call& call) {
   double best = 1e9;
@@ -43,7 +43,7 @@ double least_time(int blocks, const Call& call) {
   return best;
 }
 
-/// Multiplications and additions that wait for nothing, flops/s: seven chains of each in vectors.
+/// Rate of independent multiplications and additions, flops/s: seven chains of each in vectors.
 double peak_flops() {
   constexpr int kLanes = 14, kIterations = 4096;
   double product[kLanes], sum[kLanes];
@@ -67,8 +67,8 @@ double peak_flops() {
   return 2. * kLanes * kIterations / time;
 }
 
-/// Bytes read per second, of an array of this size: joined by what takes less time than to read
-/// them.
+/// Bytes per second read from an array of this size. Words are joined by OR, which takes less time
+/// than the reading.
 double read_rate(std::size_t bytes) {
   const std::vector<std::uint64_t> x(bytes / sizeof(std::uint64_t), 1);
   const double time = least_time(20, [&] {

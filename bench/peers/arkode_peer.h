@@ -9,10 +9,10 @@
 namespace railstep {
 
 /// The moving-load scene by SUNDIALS ARKODE: embedded Runge-Kutta methods of a fixed order and
-/// variable step, diagonally implicit, M in a banded mass matrix factored once. The problem is told
-/// to be linear with a constant Jacobian, so that a stage is one solve. No step goes past a time at
-/// which the loads pass an element's border, where their forces on the nodes have a kink; between
-/// them steps are free and results interpolated.
+/// variable step, diagonally implicit, M in a banded mass matrix factored once. ARKODE is told that
+/// the problem is linear with a constant Jacobian, so a stage is one solve. No step goes past a
+/// time at which the loads pass an element's border, where their forces on the nodes have a kink.
+/// Between such times ARKODE chooses the steps, and results are interpolated.
 class ArkodePeer {
  public:
   ArkodePeer(LinearTrack track, int passage_steps, const SundialsSettings& settings)

@@ -1,5 +1,5 @@
 // Project Chrono (9.0 and later) on the scenes of peers_table, in its columns:
-// ChElementBeamANCF_3333, nonlinear, HHT, Eigen's sparse LU. It links Chrono alone, which is often
+// ChElementBeamANCF_3333, nonlinear, HHT, Eigen's sparse LU. It links only Chrono, which is often
 // built for other vector instructions than railstep; references come from files.
 //
 // Usage: chrono_peer REFERENCES PENDULUM_CSV
@@ -40,20 +40,20 @@ constexpr double kStep = 1e-3, kBay = .6, kSpeed = 30., kForce = -50e3;  // s, m
 constexpr std::size_t kStartUp = 50;                                     // steps, moving_load.h
 constexpr int kRounds = 5;
 
-/// Newton stops when the accelerations change by less in the root mean square, in parts of them
-/// plus m/s2. The errors have the same three digits with 1e-4 (1e-5 m/s2) and 1e-6 (1e-7), for 1.1
-/// to 1.4 times the iterations.
+/// Newton stops when the root mean square change of the accelerations is below this part of them
+/// plus this in m/s2. With 1e-4 (1e-5 m/s2) and 1e-6 (1e-7) the errors have the same three digits
+/// at 1.1 to 1.4 times the iterations.
 constexpr double kTolerance = 1e-2;
 /// AssemblyLevel::FULL of 9.0, AssemblyAnalysis::Level::FULL since.
 constexpr int kFullAssembly = 0xFFFF;
 
-/// When Newton's matrix is made anew. Kept: where Newton fails with the old one, as later releases
-/// than 9 offer. Never, which they offer too, does not serve for the pendulum: 920 of 1000 steps
-/// end at 20 iterations without having converged. On the moving load both are one.
+/// When Newton's matrix is computed again. `kept`: only when Newton fails with the old one, which
+/// releases after 9 offer. They also offer "never", which fails on the pendulum: 920 of 1000 steps
+/// end at 20 iterations without convergence. On the moving load `kept` and "never" are the same.
 enum class Jacobian { every_step, kept };
 
-/// A spring and damper from a node to the ground in each direction. Its Jacobian is given, so that
-/// none is made by differences.
+/// A spring and damper from a node to the ground in each direction. It gives its Jacobian, so
+/// Chrono does not compute one by differences.
 class Seat : public ChLoadCustom {
  public:
   Seat(std::shared_ptr<ChNodeFEAxyzDD> node, const ChVector3d& stiffness, double damping)
@@ -81,7 +81,7 @@ class Seat : public ChLoadCustom {
   double c_;             // N s/m
 };
 
-/// A straight beam along x from a point on: its nodes in order, mid nodes between.
+/// A straight beam along x that begins at a point: its nodes in order, with mid nodes between.
 struct Beam {
   std::vector<std::shared_ptr<ChNodeFEAxyzDD>> node;
 
@@ -104,8 +104,8 @@ struct Beam {
   }
 };
 
-/// Newton's matrix as asked for, by the names of 9.0 and of later releases; those throw where
-/// Newton has not converged. @returns whether it can
+/// Sets when Newton's matrix is computed, by the names of 9.0 or of later releases, which throw if
+/// Newton has not converged. @returns whether the release can do it
 template <class Stepper>
 bool set_jacobian(Stepper& stepper, Jacobian jacobian) {
   if constexpr (requires { typename Stepper::JacobianUpdate; }) {
@@ -115,7 +115,7 @@ bool set_jacobian(Stepper& stepper, Jacobian jacobian) {
     stepper.AcceptTerminatedStep(false);
     return true;
   } else {
-    stepper.SetModifiedNewton(true);  // one matrix a step
+    stepper.SetModifiedNewton(true);  // one matrix per step
     return jacobian == Jacobian::every_step;
   }
 }
@@ -165,7 +165,7 @@ class MovingLoad : public Scene {
   int unknowns() const { return static_cast<int>(2 * 9 * rails_[0].node.size()); }
 
   /// One step; returns the deflection under the first load at its end, m. The load's force on the
-  /// nodes is exact: the axis is interpolated by the nodes' positions alone.
+  /// nodes is exact: only the nodes' positions interpolate the axis.
   double step() {
     const double scaled = .5 + kSpeed * kStep * ++done_ / kBay;
     const int element = std::min(static_cast<int>(scaled), bays_ - 1);
@@ -188,7 +188,7 @@ class MovingLoad : public Scene {
   std::vector<Beam> rails_;
 };
 
-/// Two links of 0.40 m let go from rest along +x; the hinge shares the axis' position.
+/// Two links of 0.40 m released from rest along +x; the hinge shares the axis' position.
 class DoublePendulum : public Scene {
  public:
   DoublePendulum(int elements, Jacobian jacobian) : Scene(9.81, -.05, jacobian) {
@@ -204,12 +204,12 @@ class DoublePendulum : public Scene {
     hinge->Initialize(links_[0].node.back(), links_[1].node.front());
     system.Add(pin);
     system.Add(hinge);
-    // HHT takes the first step from the accelerations that it finds: C errs by 1.5 mm from those
-    // that gravity gives, by 2.8 from none.
+    // HHT starts the first step from the accelerations that it finds. C errs by 1.5 mm with those
+    // that gravity gives, by 2.8 mm with none.
     system.DoAssembly(kFullAssembly);
   }
   int unknowns() const { return static_cast<int>(2 * 9 * links_[0].node.size()); }
-  /// One step; returns where C is, m.
+  /// One step; returns the place of C, m.
   ChVector3d step() {
     system.DoStepDynamics(kStep);
     return links_[1].node.back()->GetPos();
@@ -233,7 +233,7 @@ void print_row(const char* peer, const char* scene, int elements, double error,
   int unknowns = 0;
   for (int round = 0; round < kRounds; ++round) {
     const auto run = make();
-    run->step();  // what is set up once
+    run->step();  // sets up what is needed once
     const double start = computed_us();
     for (int i = 1; i < steps; ++i) run->step();
     us.push_back((computed_us() - start) / (steps - 1));

@@ -10,14 +10,14 @@ namespace railstep {
 
 namespace {
 
-/// What the thread has computed for, us: what another program takes of the core is left out.
+/// Processor time of the thread, us; time that other programs take is left out.
 double computed_us() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
-/// us a frame.
+/// us per frame.
 double timed(const std::function<double()>& frame, int frames) {
   volatile double seen = 0.;
   const double start = computed_us();
@@ -27,7 +27,7 @@ double timed(const std::function<double()>& frame, int frames) {
   return (end - start) / frames;
 }
 
-/// Sorted values' quantile. @param q  0..1
+/// Quantile of sorted values. @param q  0..1
 double quantile(const std::vector<double>& sorted, double q) {
   const double at = q * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);

@@ -11,7 +11,7 @@ namespace railstep {
 /// The moving-load scene written with Eigen alone: generalised-alpha (Chung and Hulbert 1993, with
 /// equilibrium at the step's end: Arnold and Bruls 2007), solved for the acceleration g at the end,
 ///   (M + dt gamma c D + dt^2 beta c K) g = f - D v* - K u*,   c = (1 - alpha_f)/(1 - alpha_m),
-/// by a sparse Cholesky factor made once. Nothing is allocated in a step: the unknowns are numbered
+/// by a sparse Cholesky factor made once. A step allocates nothing: the unknowns are numbered
 /// beforehand, so that the solver needs no permutation, and products go straight to their place.
 class EigenPeer {
  public:
@@ -74,7 +74,7 @@ class EigenPeer {
 
   LinearTrack::Place step() {
     const LinearTrack::Place at = track_.place(++done_ * dt_);
-    // a without this step's acceleration, then u* and v* in place of u and v
+    // Computes a without this step's acceleration, then u* and v* in place of u and v.
     u_ += dt_ * v_ + ua_old_ * a_;
     v_ += va_old_ * a_;
     a_ = a_old_ * a_ + g_old_ * g_;

@@ -18,10 +18,10 @@ inline void check_sundials(int code, const char* name) {
   if (code < 0) throw std::runtime_error(std::string(name) + ": " + std::to_string(code));
 }
 
-/// How SUNDIALS is asked to work.
+/// Settings of SUNDIALS.
 struct SundialsSettings {
-  double tolerance = 1e-6;  // relative; absolute of u: as much of 1 mm, of v: of 1 m/s
-  int order = 3;            // of IDA the largest
+  double tolerance = 1e-6;  // relative; absolute: this part of 1 mm for u, of 1 m/s for v
+  int order = 3;            // for IDA the largest
 };
 
 /// The moving-load scene as SUNDIALS takes it: y = (u_0, v_0, u_1, v_1 ...), numbered along x so
@@ -43,9 +43,9 @@ class FirstOrderTrack {
     return 2 * widest + 1;
   }
 
-  /// [2 unknowns] At rest.
+  /// Sets y [2 unknowns] to rest.
   static void rest(N_Vector y) { N_VConst(0., y); }
-  /// [2 unknowns] y' at rest under the loads where they start.
+  /// Sets y' [2 unknowns] at rest under the loads at their start.
   void start_rate(N_Vector rate) {
     u_.setZero();
     v_.setZero();
@@ -55,7 +55,7 @@ class FirstOrderTrack {
     N_VConst(0., rate);
     for (int i = 0; i < n_; ++i) at(rate, 2 * i + 1) = acceleration[i];
   }
-  /// [2 unknowns] What tolerance u and v have.
+  /// Sets the absolute tolerances of u and v, [2 unknowns].
   void allowed(double tolerance, N_Vector to) const {
     for (int i = 0; i < n_; ++i) {
       at(to, 2 * i) = 1e-3 * tolerance;
@@ -69,7 +69,7 @@ class FirstOrderTrack {
       v_[i] = at(y, 2 * i + 1);
     }
   }
-  /// f - D v - K u of what was taken, N.
+  /// f - D v - K u at the y of take(), N.
   const Eigen::VectorXd& pull(double time) {
     force_.setZero();
     track_.add_loads(track_.place(time), force_);
@@ -105,7 +105,7 @@ class FirstOrderTrack {
     add(track_.stiffness, sign, 0, J);
     for (int i = 0; i < n_; ++i) entry(J, 2 * i, 2 * i + 1) += 1.;
   }
-  /// Adds what y' is multiplied by: `of_u` in the rows of u', `of_v` M in those of v'.
+  /// Adds the factors of y': `of_u` in the rows of u', `of_v` M in those of v'.
   void add_mass(SUNMatrix to, double of_u, double of_v) const {
     add(track_.mass, of_v, 1, to);
     for (int i = 0; i < n_; ++i) entry(to, 2 * i, 2 * i) += of_u;
@@ -116,7 +116,7 @@ class FirstOrderTrack {
     const double passed = std::ceil(load_place(time) / track_.element_length - 1e-9);
     return (passed * track_.element_length - load_place(0.)) / kSpeed;
   }
-  /// Under the first load, of what was taken, m.
+  /// Deflection under the first load at the y of take(), m.
   double deflection(double time) const { return track_.deflection(track_.place(time), u_); }
 
  private:

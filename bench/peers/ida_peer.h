@@ -41,8 +41,8 @@ class IdaPeer {
   IdaPeer(const IdaPeer&) = delete;
   IdaPeer& operator=(const IdaPeer&) = delete;
 
-  /// One frame of 1 ms: as many steps as the tolerance asks for, then interpolation to its end.
-  /// Returns the deflection under the first load, m.
+  /// One frame of 1 ms: the steps that the tolerance needs, then interpolation to its end. Returns
+  /// the deflection under the first load, m.
   double frame() {
     if (done_ == frames_) restart();
     const double until = ++done_ * kStep;

@@ -12,12 +12,12 @@
 
 namespace railstep {
 
-/// What a peer carries of the track: every unknown, with whole blocks of 27 by 27 an element as one
-/// assembles them; every unknown, but of the blocks only what is not zero; or, as railstep does,
-/// those unknowns alone that a vertical load on the axis moves.
+/// Part of the track that a peer computes: every unknown, with whole assembled blocks of 27 by 27
+/// per element; every unknown, with only the nonzeros of the blocks; or, as railstep does, only the
+/// unknowns that a vertical load on the axis moves.
 enum class Carried { whole_elements, all, moved };
 
-/// How a peer numbers its unknowns: along x, as assembled, or for the least fill of its factor.
+/// Numbering of a peer's unknowns: along x, as assembled, or for the least fill of its factor.
 enum class Numbering { along_x, least_fill };
 
 /// The moving-load scene as plain sparse matrices, all rails in one system:
@@ -32,7 +32,7 @@ struct LinearTrack {
 
   int unknowns() const { return static_cast<int>(stiffness.rows()); }
 
-  /// Where a load stands at a time, with its quadratic shape functions.
+  /// Place of a load at a time, with its quadratic shape functions.
   struct Place {
     std::size_t node;  // first of its element's three
     std::array<double, 3> shape;
@@ -50,7 +50,7 @@ struct LinearTrack {
     for (const std::vector<int>& node : rz)
       for (std::size_t i = 0; i < 3; ++i) f[node[at.node + i]] += kLoad * at.shape[i];
   }
-  /// Of the first rail at a place, m. @param u  [unknowns] m
+  /// Deflection of the first rail at a place, m. @param u  [unknowns] m
   template <class Vector>
   double deflection(const Place& at, const Vector& u) const {
     double sum = 0.;
@@ -59,7 +59,7 @@ struct LinearTrack {
   }
 };
 
-/// Entries of 0 between all unknowns of an element.
+/// Adds entries of 0 between all unknowns of an element.
 /// @param number  [nodes][9] of a rail, -1 where not carried
 inline void tie_elements(const Line::RailUnknowns& number,
                          std::vector<Eigen::Triplet<double>>& entries) {
@@ -71,7 +71,7 @@ inline void tie_elements(const Line::RailUnknowns& number,
             if (row >= 0 && column >= 0) entries.emplace_back(row, column, 0.);
 }
 
-/// Numbers the unknowns anew for the least fill of a factor.
+/// Renumbers the unknowns for the least fill of a factor.
 inline void number_for_least_fill(LinearTrack& track) {
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
   Eigen::AMDOrdering<int>()(Eigen::SparseMatrix<double>(track.stiffness), inverse);
@@ -85,7 +85,7 @@ inline void number_for_least_fill(LinearTrack& track) {
 }
 
 /// Assembles the track as railstep does, element by element, and puts its lines one after another.
-/// Throws std::invalid_argument where rails are coupled, which this scene's are not.
+/// Throws std::invalid_argument if rails are coupled; in this scene they are not.
 inline LinearTrack linear_track(const Track& track, Carried carried, Numbering numbering) {
   std::vector<Eigen::Triplet<double>> entries[3];
   LinearTrack made{{}, {}, {}, {}, track.elements(), track.element_length()};

@@ -20,7 +20,7 @@ inline constexpr double kStep = 1e-3, kSpeed = 30., kBay = .6;  // s, m/s, m
 inline constexpr double kLoad = -50e3;                          // N on each rail, up positive
 inline constexpr double kRhoInf = .6;                           // of generalised-alpha
 inline constexpr int kCompared = 300;  // steps compared with the reference at most: 0.3 s, 15 bays
-inline constexpr int kStartUp = 50;    // steps; what a suddenly appearing load rings, docs/peers.md
+inline constexpr int kStartUp = 50;    // steps while a sudden load rings, docs/peers.md
 
 /// 0.2319 m by 0.0375 m rectangle on springs at every bay border, k = 0.8497.
 inline Track moving_load_track(int bays, int elements_per_bay, int rails, Unknowns unknowns) {
@@ -42,7 +42,7 @@ inline Track moving_load_track(int bays, int elements_per_bay, int rails, Unknow
   return t;
 }
 
-/// Where the loads are at a time, m.
+/// Place of the loads at a time, m.
 inline double load_place(double time) { return .5 * kBay + kSpeed * time; }
 
 /// Steps of 1 ms in a passage from the first mid-bay to the last.
@@ -50,7 +50,7 @@ inline int passage_steps(const Track& track) {
   return static_cast<int>(std::lround((track.length() - kBay) / (kSpeed * kStep)));
 }
 
-/// How railstep steps the scene.
+/// Options of railstep for the scene.
 struct MovingLoadOptions {
   double dt = kStep;        // s
   int steps_per_frame = 1;  // a frame is 1 ms
@@ -58,7 +58,7 @@ struct MovingLoadOptions {
   std::optional<Reduction> reduction = {};
 };
 
-/// 50 kN on every rail from the first mid-bay to the last, then again from rest.
+/// A run of 50 kN on every rail from the first mid-bay to the last, then again from rest.
 class MovingLoadRun {
  public:
   MovingLoadRun(const Track& track, const MovingLoadOptions& options)
@@ -84,8 +84,8 @@ class MovingLoadRun {
     restart();
   }
 
-  /// One frame, and the deflection under the first load at its end, m; the reset at the track's end
-  /// is part of the time, once in a whole passage.
+  /// Steps one frame and returns the deflection under the first load at its end, m. The reset at
+  /// the track's end is part of the time, once per passage.
   double frame() {
     if (done_ == frames_) restart();
     ++done_;
@@ -100,7 +100,7 @@ class MovingLoadRun {
 
   int frames() const { return frames_; }  // of a passage
   int unknowns() const { return packed_->model().unknowns; }
-  /// Most of a frame, as the model states it.
+  /// Flops of the worst frame, as the model states them.
   double flops() const { return static_cast<double>(packed_->model().cost.flops); }
   double bytes() const { return static_cast<double>(packed_->model().cost.bytes); }
 
@@ -140,9 +140,9 @@ struct PassageReference {
   double own_error;       // after start-up, from halving mesh and step once more
 };
 
-/// Eight elements per bay and 0.1 ms, and residual flexibility: without it the kink under a load
-/// inside an element is missed in proportion to the element's length, 4e-4 of the peak with eight
-/// per bay. The rails share nothing: one of them is enough.
+/// Reference with eight elements per bay, 0.1 ms, and residual flexibility. Without that, the
+/// missing kink under a load inside an element makes an error in proportion to the element's
+/// length, 4e-4 of the peak with eight per bay. The rails share nothing, so one is enough.
 inline const PassageReference& reference_for(int bays, Unknowns unknowns) {
   static std::map<std::pair<int, Unknowns>, PassageReference> made;
   auto [at, fresh] = made.try_emplace({bays, unknowns});

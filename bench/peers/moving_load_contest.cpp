@@ -10,7 +10,7 @@ namespace railstep {
 
 namespace {
 
-/// @param against  what the same model gave by railstep, or nothing
+/// @param against  deflections of the same model by railstep, or empty
 template <class Run>
 Contestant contestant(const std::string& name, const Track& track, const std::shared_ptr<Run>& run,
                       const std::vector<double>* against = nullptr) {

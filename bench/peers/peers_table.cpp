@@ -1,5 +1,5 @@
-// Peers on the same work, timed in turns in one process, each with its error (docs/peers.md). CSV
-// on stdout, remarks on stderr.
+// Times peers on the same work in turns in one process, each with its error (docs/peers.md). CSV on
+// stdout, remarks on stderr.
 //
 // Usage: peers_table [SCENE ...]   moving_load, moving_load_in_time, double_pendulum; default: all
 //        peers_table --references FOLDER   writes what other codes' programs compare with
@@ -27,7 +27,7 @@ bool hold(const std::string& scene) {
   if (scene == "moving_load")
     for (const int elements : kElements) hold(railstep::moving_load_contest(elements), kRounds);
   else if (scene == "moving_load_in_time")
-    hold(railstep::work_precision_contest(16), 7);  // a passage of some takes seconds
+    hold(railstep::work_precision_contest(16), 7);  // a passage of some peers takes seconds
   else if (scene == "double_pendulum")
     hold(railstep::double_pendulum_contest(), kRounds);
   else

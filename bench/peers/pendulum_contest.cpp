@@ -1,4 +1,4 @@
-// railstep's lines of the double pendulum, in the columns that Chrono's and Exudyn's print.
+// railstep's rows of the double pendulum, in the columns of Chrono's and Exudyn's programs.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -24,7 +24,7 @@ Contestant contestant(bool planar, bool energy_momentum_scheme, int elements) {
           .error_from_start = std::nan(""),
           .reference_error = kPendulumKnown,
           .unknowns = run->packed.model().system.unknowns,
-          .flops = std::nan(""),  // the model states those of the most iterations alone
+          .flops = std::nan(""),  // the model states only those of the most iterations
           .frame =
               [run] {
                 if (run->state.steps == kPendulumSteps) run->start();

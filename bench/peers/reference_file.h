@@ -9,12 +9,12 @@
 namespace railstep {
 
 /// A table that other codes' programs compare with: remarks (#), a title, rows of numbers. A remark
-/// `# own_error=...` says how well they are known.
+/// `# own_error=...` gives their error.
 struct ReferenceFile {
   double own_error = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::vector<double>> rows;
 
-  /// Throws std::runtime_error where there is no such file or no row in it.
+  /// Throws std::runtime_error if there is no such file or no row in it.
   explicit ReferenceFile(const std::string& path) {
     const std::string remark = "# own_error=";
     std::ifstream in(path);

@@ -1,5 +1,5 @@
-// The moving-load scene on one mesh, error of time alone: SUNDIALS by its tolerance, plain Eigen
-// and railstep by their step.
+// The moving-load scene on one mesh, so errors are only of the time integration: SUNDIALS over its
+// tolerance, plain Eigen and railstep over their step.
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
@@ -15,7 +15,7 @@ namespace railstep {
 
 namespace {
 
-/// What all are compared with: railstep at 1.25 us on the same mesh, and what halving changed.
+/// The common reference: railstep at 1.25 us on the same mesh, and the change by halving that step.
 struct FineStep {
   std::vector<double> z;
   double own_error;
