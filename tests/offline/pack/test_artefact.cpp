@@ -44,8 +44,8 @@ TEST_CASE("a model that was written and read steps to the same bits", "[artefact
         CHECK(written.outputs.wheel_gap[i] == found.outputs.wheel_gap[i]);
         CHECK(written.outputs.wheel_rail_z[i] == found.outputs.wheel_rail_z[i]);
       }
-      // What was read is written as it was, and the scene built anew gives the same bytes; in
-      // another heap, so that nothing is left unset.
+      // A model that was read is written as it was. The scene built again in another heap gives the
+      // same bytes, so nothing is left unset.
       const LoadResult back = read(block, model);
       const bool same =
           to_block(model, std::string(back.text, back.text_bytes), {.about = built.about}) == block;
@@ -55,7 +55,7 @@ TEST_CASE("a model that was written and read steps to the same bits", "[artefact
     }
 }
 
-TEST_CASE("a block's text comes back, and its sum is named", "[artefact]") {
+TEST_CASE("reading a block returns its text, and its sum can be named", "[artefact]") {
   const Block block = small_block(true, true);
   Model model;
   const LoadResult result = read(block, model);
@@ -69,7 +69,7 @@ TEST_CASE("a block's text comes back, and its sum is named", "[artefact]") {
   CHECK(std::stoi(sum.substr(62), nullptr, 16) == std::to_integer<int>(block[kSumAt + 31]));
 }
 
-TEST_CASE("a block that starts between words is not placed", "[artefact]") {
+TEST_CASE("a block that starts between words is refused", "[artefact]") {
   const Block block = small_block(true, false);
   std::vector<std::int64_t> room(block.size() / 8 + 1);
   Model model;
@@ -81,7 +81,7 @@ TEST_CASE("a block that starts between words is not placed", "[artefact]") {
   }
 }
 
-TEST_CASE("what fills a block up between its sections is zero", "[artefact]") {
+TEST_CASE("the padding between the sections of a block is zero", "[artefact]") {
   const Block good = small_block(true, true);
   const BlockHeader header = header_of(good.data());
   int gaps = 0;
@@ -97,14 +97,14 @@ TEST_CASE("what fills a block up between its sections is zero", "[artefact]") {
   CHECK(gaps > 0);
 }
 
-TEST_CASE("numbers out of range are refused though the sum is right", "[artefact]") {
+TEST_CASE("numbers out of range are refused even with the right sum", "[artefact]") {
   const Block good = small_block(true, true);
   const std::size_t counts = section_at(good, kWords);
   Model model;
   REQUIRE(read(good, model).status == LoadStatus::ok);
   REQUIRE(word_of(good, counts + 8) == model.lines);
-  // the scheme's mean, lines, loads, wheelsets, vehicles and their wheels, signals, elements,
-  // unknowns, condensed, bodies, steps_per_frame, inputs
+  // The scheme's mean, lines, loads, wheelsets, vehicles and their wheels, signals, elements,
+  // unknowns, condensed, bodies, steps_per_frame, inputs.
   for (std::size_t i = 0; i < 13; ++i)
     for (const std::int64_t value : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min(),
                                      word_of(good, counts + 8 * i) + 1}) {
@@ -116,7 +116,7 @@ TEST_CASE("numbers out of range are refused though the sum is right", "[artefact
     }
 }
 
-TEST_CASE("numbers that would make a solve unsafe are refused though the sum is right",
+TEST_CASE("numbers that would make a solve unsafe are refused even with the right sum",
           "[artefact]") {
   const std::unique_ptr<PackedModel> packed = small_model(false, true);
   const auto status = [&](const auto& change) {
@@ -145,7 +145,7 @@ TEST_CASE("numbers that would make a solve unsafe are refused though the sum is 
   CHECK(status([&](Model& m) { m.vehicle_wheel[0].contact = {0., 0., 0.}; }) == bad);
   CHECK(status([&](Model& m) { m.vehicle_wheel[0].contact = {0., 1e8, -1.}; }) == bad);
   const VehicleModel& own = packed->model().vehicle[0];
-  const auto turned = [](const double* from, std::int32_t n) {  // the last of a matrix's diagonal
+  const auto turned = [](const double* from, std::int32_t n) {  // last of a matrix's diagonal
     std::vector<double> copy(from, from + std::ptrdiff_t{n} * n);
     copy.back() = -copy.back();
     return copy;
@@ -159,7 +159,7 @@ TEST_CASE("numbers that would make a solve unsafe are refused though the sum is 
   CHECK(status([&](Model& m) { m.load[0].table = table.data(); }) == bad);
 }
 
-TEST_CASE("flanges that are of no wheelset, or have no law, are refused", "[artefact]") {
+TEST_CASE("flanges without a wheelset or without a law are refused", "[artefact]") {
   const std::unique_ptr<PackedModel> packed = small_model(false, true);
   const auto status = [&](const auto& change) {
     Model model = packed->model();
@@ -175,7 +175,7 @@ TEST_CASE("flanges that are of no wheelset, or have no law, are refused", "[arte
   CHECK(status([](Model& m) { m.flange[0].contact.hertz = 1e10; }) == LoadStatus::ok);
 }
 
-TEST_CASE("names that no scene could give are refused though the sum is right", "[artefact]") {
+TEST_CASE("names that a scene cannot give are refused even with the right sum", "[artefact]") {
   const std::unique_ptr<PackedModel> packed = small_model(false, false);
   const auto status = [&](const std::string& text) {
     return status_of(to_block(packed->model(), text));
@@ -188,22 +188,22 @@ TEST_CASE("names that no scene could give are refused though the sum is right", 
     CHECK(status(bad) == LoadStatus::bad_content);
   }
   CHECK(status(std::string("a\0b", 3)) == LoadStatus::bad_content);
-  std::string many = "first";  // more than one share of those that are compared at once
+  std::string many = "first";  // more than one batch of those that are compared at once
   for (int i = 0; i < 5000; ++i) many += "\nsensor_" + std::to_string(i) + ".z_m";
   CHECK(status(many) == LoadStatus::ok);
   CHECK(status(many + "\nsensor_1234.z_m") == LoadStatus::bad_content);
 }
 
-TEST_CASE("a run that is not of whole frames is refused though the sum is right", "[artefact]") {
+TEST_CASE("a run without whole frames is refused even with the right sum", "[artefact]") {
   const std::unique_ptr<PackedModel> packed = small_model(true, true);
   for (const std::int64_t steps : {0, 1, 39, 41, -40}) {
-    Model model = packed->model();  // of 2 steps a frame
+    Model model = packed->model();  // it has 2 steps per frame
     model.steps = steps;
     CHECK(status_of(to_block(model, kText)) == LoadStatus::bad_content);
   }
 }
 
-TEST_CASE("a model that states less than its steps take is refused though the sum is right",
+TEST_CASE("a model that states less work than its steps need is refused even with the right sum",
           "[artefact]") {
   for (const bool modal : {false, true})
     for (const bool wheels : {false, true}) {
@@ -219,7 +219,7 @@ TEST_CASE("a model that states less than its steps take is refused though the su
     }
 }
 
-TEST_CASE("a model that does not say what a frame takes is refused", "[artefact]") {
+TEST_CASE("a model that does not state the work of a frame is refused", "[artefact]") {
   const std::unique_ptr<PackedModel> packed = small_model(false, true);
   for (std::int64_t Cost::*const of : {&Cost::flops, &Cost::bytes, &Cost::instructions}) {
     Model model = packed->model();
@@ -231,7 +231,7 @@ TEST_CASE("a model that does not say what a frame takes is refused", "[artefact]
   }
 }
 
-TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact][fuzz]") {
+TEST_CASE("every model that loads can be stepped, whatever its numbers are", "[artefact][fuzz]") {
   std::mt19937_64 random(20240607);
   for (const bool modal : {false, true})
     for (const bool wheels : {false, true}) {
@@ -245,9 +245,9 @@ TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact]
           continue;
         }
         ++loaded;
-        model.steps_per_frame = std::min(model.steps_per_frame, 4);  // time alone
+        model.steps_per_frame = std::min(model.steps_per_frame, 4);  // only to save time
         LoadedRun run(model);
-        // A state that stops being finite is stepped no further.
+        // The test ends where a state is no longer finite.
         const bool lost = has(run.frames(3), Status::nonfinite_state);
         CHECK((run.state.steps == 3 * model.steps_per_frame || lost));
         CHECK(run.state.steps % model.steps_per_frame == 0);
@@ -257,7 +257,7 @@ TEST_CASE("whatever loads can be stepped, whatever its numbers are", "[artefact]
     }
 }
 
-TEST_CASE("the flops of a frame are no fewer than those counted by hand", "[artefact]") {
+TEST_CASE("the stated flops of a frame are not fewer than those counted by hand", "[artefact]") {
   const auto model_of = [](int loads, bool modal, bool residual) {
     Track track = peers_pair(1);
     track.rails = 1;
@@ -268,20 +268,20 @@ TEST_CASE("the flops of a frame are no fewer than those counted by hand", "[arte
     options.residual_flexibility = residual;
     return std::make_unique<PackedModel>(track, traffic, options);
   };
-  // Of a mode: a complex number times keep, old_force and new_force, and two sums: 3 6 + 4. A load
-  // adds 3 nodes of a complex row to the forces, and reads as many: 4 each.
+  // A mode has a complex number times keep, old_force and new_force, and two sums: 3 6 + 4. A load
+  // adds 3 nodes of a complex row to the forces and reads as many: 4 each.
   const auto one = model_of(1, true, false);
   const std::int64_t n = one->model().line[0].size;
   REQUIRE(n == 40);  // 33 modes, padded
   CHECK(one->model().cost.flops >= n * (22 + 3 * 4 + 3 * 4));
   CHECK(one->model().cost.flops <= 3 * n * (22 + 3 * 4 + 3 * 4));
   // Every pair of loads reads a table of 4 x 4 points: 4 + 1 cubics of 4 products and 3 sums, and
-  // the weights of 4 + 1 of them, each 4 products of three differences.
+  // the weights of 4 + 1 cubics, each with 4 products of three differences.
   const auto many = model_of(32, true, true);
   const std::int64_t pairs = 32 * 31 * (5 * 7 + 5 * 4 * 5);
   CHECK(many->model().cost.flops >= n * (22 + 32 * 24) + pairs);
-  // Banded: 22 of predicting and correcting an unknown, products with M and C by diagonals, and per
-  // panel of 8 rows a product with `left` columns forth and back, and one with an 8 x 8 block.
+  // Banded: 22 to predict and correct an unknown, products with M and C by diagonals, and for each
+  // panel of 8 rows a product with `left` columns back and forth and one with an 8 x 8 block.
   const auto band = model_of(1, false, false);
   const LineModel& line = band->model().line[0];
   const std::int64_t solve = line.step.panels * (2 * 2 * 8 * std::int64_t{line.step.left} + 2 * 64);

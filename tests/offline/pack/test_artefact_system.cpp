@@ -38,8 +38,8 @@ FlexibleBeam beam_from(double x, int elements) {
   return beam;
 }
 
-/// A bit of everything: two beams, one of them clamped, three bodies, joints of which one drives by
-/// a table, a spring, a force, a moment, sensors.
+/// A system with some of everything: two beams, one of them clamped, three bodies, joints of which
+/// one follows a table, a spring, a force, a moment, and sensors.
 System small_system(bool planar) {
   System s;
   s.planar = planar;
@@ -83,7 +83,7 @@ SystemOptions options_of(ConstraintMethod hold, Renew renew) {
   return o;
 }
 
-/// On two rails: a body joined to the left one, with a spring to the right one.
+/// A body joined to the left rail of two, with a spring to the right rail.
 std::unique_ptr<PackedSystem> on_rails() {
   Track track = peers_pair(1);
   track.bays = 4;
@@ -112,7 +112,8 @@ std::unique_ptr<PackedSystem> on_rails() {
 
 constexpr int kKinds = 8;
 
-/// Systems in the plane and in space, every hold, every way to renew, both kinds of scheme.
+/// Systems in the plane and in space, with every constraint method, every way to renew the matrix
+/// and both kinds of scheme.
 std::unique_ptr<PackedSystem> small_model(int kind) {
   const auto make = [](bool planar, const SystemOptions& options) {
     return std::make_unique<PackedSystem>(small_system(planar), options);
@@ -141,7 +142,7 @@ std::unique_ptr<PackedSystem> small_model(int kind) {
   }
 }
 
-/// What is read of a system as it stands.
+/// All readings of a system in its present state.
 std::vector<double> read_out(const Model& model, const State& state) {
   std::vector<double> all;
   for (std::int32_t i = 0; i < model.system.sensors; ++i) {
@@ -230,14 +231,14 @@ TEST_CASE("a system that was written and read steps to the same bits", "[artefac
   }
 }
 
-TEST_CASE("a matrix that is kept over steps is no part of a block", "[artefact][system]") {
+TEST_CASE("a block does not hold a matrix that is kept over steps", "[artefact][system]") {
   SystemOptions options = options_of(ConstraintMethod::augmented_lagrangian, Renew::every_step);
   const PackedSystem made_anew(small_system(false), options);
   options.renew = Renew::kept;
   const PackedSystem kept(small_system(false), options);
   CHECK(to_block(kept.model(), kText).size() == to_block(made_anew.model(), kText).size());
   CHECK(state_doubles(kept.model()) > start_doubles(kept.model()));
-  // A state with a matrix in it begins anew with none.
+  // Reset removes the matrix from a state.
   LoadedRun run(kept.model());
   const std::uint64_t at_start = state_hash(run.model, run.state);
   (void)run.frames(1);
@@ -245,7 +246,7 @@ TEST_CASE("a matrix that is kept over steps is no part of a block", "[artefact][
   CHECK(state_hash(run.model, run.state) == at_start);
 }
 
-TEST_CASE("a system's block cut short is refused, signed anew or not", "[artefact][system]") {
+TEST_CASE("a system's block cut short is refused, signed again or not", "[artefact][system]") {
   for (const int kind : {1, 7}) {
     const Block good = to_block(small_model(kind)->model(), kText);
     for (std::size_t size = payload_of(good); size < good.size(); size += 56) {
@@ -285,7 +286,7 @@ TEST_CASE("a system's indices and sizes out of range are refused", "[artefact][s
   CHECK(refused([](Open& o, SystemModel&) { o.marker[0].kind = static_cast<PartKind>(4); }));
   // rows and their ends
   CHECK(refused([](Open& o, SystemModel&) { o.row[0].a = static_cast<int>(o.marker.size()); }));
-  CHECK(refused([](Open& o, SystemModel& s) { o.row[0].a = s.sensor[0]; }));  // is not placed
+  CHECK(refused([](Open& o, SystemModel& s) { o.row[0].a = s.sensor[0]; }));  // it has no place
   CHECK(refused([](Open& o, SystemModel&) { o.row[0].i = 3; }));
   CHECK(refused([](Open& o, SystemModel&) { o.row[0].l = -1; }));
   CHECK(refused([](Open& o, SystemModel&) { o.row[0].kind = RowKind::spring; }));
@@ -297,7 +298,7 @@ TEST_CASE("a system's indices and sizes out of range are refused", "[artefact][s
   CHECK(refused([](Open& o, SystemModel&) { o.end[0].side = 2; }));
   CHECK(refused([](Open& o, SystemModel&) { o.part_end[1] += 1; }));
   CHECK(refused([](Open& o, SystemModel& s) { o.part_end[1] = s.ends + 1; }));
-  // what is driven, pressed and read
+  // motions, forces and readings
   CHECK(refused([](Open& o, SystemModel&) { o.motion[0].pieces = 0; }));
   CHECK(refused([](Open& o, SystemModel& s) { o.motion[0].first = s.pieces; }));
   CHECK(refused([](Open& o, SystemModel& s) { o.force[0].motion = s.motions; }));
@@ -306,17 +307,17 @@ TEST_CASE("a system's indices and sizes out of range are refused", "[artefact][s
   CHECK(refused([](Open& o, SystemModel& s) { o.sensor[0] = s.markers; }));
   CHECK(refused([](Open& o, SystemModel& s) { o.traced_joint[0] = system_rows(s); }));
   CHECK(refused([](Open& o, SystemModel& s) { o.traced_spring[0] = s.spring_rows; }));
-  // the whole
+  // the whole system
   CHECK(refused([](Open&, SystemModel& s) { s.first = 0; }, 7));
   CHECK(refused([](Open& o, SystemModel&) { o.model.lines = 0; }, 7));
-  CHECK(refused([](Open& o, SystemModel&) { o.model.loads = 1; }));  // of no track
+  CHECK(refused([](Open& o, SystemModel&) { o.model.loads = 1; }));  // without a track
   CHECK(refused([](Open&, SystemModel& s) { s.mean = 1; }, 3));
   CHECK(refused(
       [](Open&, SystemModel& s) { s.constraint_method = ConstraintMethod::gear_gupta_leimkuhler; },
       7));
 }
 
-TEST_CASE("a system that no physics has is refused", "[artefact][system]") {
+TEST_CASE("a system that is physically impossible is refused", "[artefact][system]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [](const auto& change) {
     return status_with(1, change) == LoadStatus::bad_content;
@@ -355,13 +356,13 @@ TEST_CASE("a system that no physics has is refused", "[artefact][system]") {
   }));
   CHECK(refused([](Open&, SystemModel& s) { s.cap = 0; }));
   CHECK(refused([](Open&, SystemModel& s) { s.keep_steps = 0; }));
-  // quaternions stand behind u, v, a, g
+  // Quaternions are after u, v, a, g.
   CHECK(refused([](Open& o, SystemModel&) {
     o.start[4 * static_cast<std::size_t>(o.model.unknowns)] = 1.1;
   }));
 }
 
-TEST_CASE("whatever system loads can be stepped and read, whatever its numbers are",
+TEST_CASE("every system that loads can be stepped and read, whatever its numbers are",
           "[artefact][system][fuzz]") {
   std::mt19937_64 random(20241103);
   for (int kind = 0; kind < kKinds; ++kind) {
@@ -375,11 +376,11 @@ TEST_CASE("whatever system loads can be stepped and read, whatever its numbers a
         continue;
       }
       ++loaded;
-      model.steps_per_frame = std::min(model.steps_per_frame, 4);  // time alone, as the caps
+      model.steps_per_frame = std::min(model.steps_per_frame, 4);  // only to save time, as the caps
       model.system.cap = std::min(model.system.cap, 5);
       model.system.projections = std::min(model.system.projections, 3);
       LoadedRun run(model);
-      // A state that stops being finite is stepped no further.
+      // The test ends where a state is no longer finite.
       const bool lost = has(run.frames(2), Status::nonfinite_state);
       (void)read_out(model, run.state);
       CHECK((run.state.steps == 2 * model.steps_per_frame || lost));

@@ -1,7 +1,7 @@
-// Random loads on random tracks: full order and every condensed form of full size against a dense
-// trapezoidal rule in long double, of this test alone. Mass, damping and stiffness are the
-// program's own, and of full order the start: what is tested is the integrator, its solve and the
-// condensation. test_differential_element has the element against one written anew.
+// Random loads on random tracks: full order and every condensed form of full size, against a dense
+// trapezoidal rule in long double that only this test has. Mass, damping and stiffness are the
+// program's own, and in full order the start too: the test is of the integrator, its solve and the
+// condensation. test_differential_element compares the element with a separate one.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,7 @@
 #include "run/simulation.h"
 #include "support/dense_newmark.h"
 
-// Doubles are wanted in long double arithmetic here.
+// This file converts doubles to long double on purpose.
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 using namespace railstep;
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// Up to three loads, that stand or roll, constant or by a table or with a sine beside them.
+/// Up to three loads that stand or roll, constant or by a table, some with a sine.
 /// @param from_zero  each begins at 0 N
 RandomScene loaded(std::uint64_t seed, double least_step, double most_step, int steps,
                    bool from_zero) {
@@ -52,8 +52,8 @@ RandomScene loaded(std::uint64_t seed, double least_step, double most_step, int 
   return s;
 }
 
-/// The same condensed to as many coordinates as there are. Krylov's shapes are all of them only if
-/// there are enough expansion points.
+/// The same scene, condensed to as many coordinates as there are. Krylov's shapes are complete only
+/// with enough expansion points.
 RandomScene all_kept(std::uint64_t seed, const std::string& kind) {
   RandomScene s = loaded(seed, 2e-6, 2e-5, 60, true);
   if (s.sleepers && s.sleeper_mass == 0.) s.pad_damper = s.ballast_damper = 0.;
@@ -65,7 +65,7 @@ RandomScene all_kept(std::uint64_t seed, const std::string& kind) {
   return s;
 }
 
-/// Where a line of a model has the heights of the rail's nodes: its unknown, and the table's.
+/// Heights of the rail's nodes in a line and its model: the unknown, and its place in the table.
 struct Heights {
   std::vector<std::size_t> unknown;
   std::vector<std::int32_t> place;
@@ -80,7 +80,7 @@ struct Heights {
   }
 };
 
-/// Largest difference over the peak, and what the comparison knows of itself, over the peak.
+/// Largest difference over the peak, and the error bound of the comparison itself, over the peak.
 struct Compared {
   double error = 0., bound = 0.;
   bool fails() const { return !(error <= bound); }
@@ -119,7 +119,7 @@ std::vector<Dense> picked(const std::vector<Dense>& u, const Heights& of) {
   return z;
 }
 
-/// (p b - a) / (p - 1): what is left of a where b's error is a p-th of its own.
+/// (p b - a) / (p - 1): the limit, if b's error is a p-th of a's.
 std::vector<Dense> extrapolated(const std::vector<Dense>& a, const std::vector<Dense>& b, int p) {
   std::vector<Dense> z = b;
   for (std::size_t n = 0; n < z.size(); ++n)
@@ -127,7 +127,7 @@ std::vector<Dense> extrapolated(const std::vector<Dense>& a, const std::vector<D
   return z;
 }
 
-/// The line of a run that has the rail's heights.
+/// The line of a run that contains the rail's heights.
 struct LoadedLine {
   const PackedLine* own = nullptr;
   const LineModel* model = nullptr;
@@ -142,7 +142,7 @@ struct LoadedLine {
   }
 };
 
-/// Full order, with the same step.
+/// Full order with the same step.
 Compared against_same_step(const RandomScene& scene) {
   Simulation run(read(scene));
   const LoadedLine loaded(run);
@@ -164,7 +164,7 @@ Compared against_same_step(const RandomScene& scene) {
           steps * steps * kEps * dense.condition(scene.dt)};
 }
 
-/// Condensed, with steps so small that they do not matter.
+/// Condensed, with such small steps that they do not matter.
 Compared against_small_steps(const RandomScene& scene) {
   Simulation run(read(scene));
   const LoadedLine loaded(run);
@@ -187,8 +187,8 @@ Compared against_small_steps(const RandomScene& scene) {
 }  // namespace
 
 TEST_CASE("full order is the dense trapezoidal rule, but for round-off", "[differential]") {
-  // A step's solve is off by eps times the condition of its scaled matrix; that is a velocity of
-  // twice as much a step, which may go on for as many steps as there are, and so may each step's.
+  // The solve of a step errs by eps times the condition of its scaled matrix. This is twice as
+  // large a velocity per step, which may persist over all steps, and so may that of each step.
   double worst = 0., most = 0., loosest = 0.;
   int failed = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -208,11 +208,10 @@ TEST_CASE("full order is the dense trapezoidal rule, but for round-off", "[diffe
   CHECK(loosest < 1e-6);
 }
 
-TEST_CASE("a condensed track that leaves nothing out is the dense one, stepped exactly",
-          "[differential]") {
-  // Forces are linear over a step on both sides. By steps of h/2, h/4 and h/8 Richardson's are R1
-  // and R2; R2 errs by a 15th of their difference where the step is small enough, and what takes
-  // both together by less. Modes keep what they are to the eigen solver's 1e-10.
+TEST_CASE("a complete condensed track is the dense one with exact steps", "[differential]") {
+  // Forces are linear over a step on both sides. R1 and R2 are Richardson's values from steps of
+  // h/2, h/4 and h/8. R2 errs by a 15th of their difference where the step is small enough, and the
+  // extrapolation of both by less. Modes are exact to the eigen solver's 1e-10.
   const std::string kind = GENERATE(as<std::string>(), "modal", "guyan", "irs", "craig-bampton",
                                     "krylov", "complex-modes");
   std::vector<double> bounds;
@@ -232,7 +231,7 @@ TEST_CASE("a condensed track that leaves nothing out is the dense one, stepped e
   }
   std::sort(bounds.begin(), bounds.end());
   CAPTURE(kind, worst, most, bounds[bounds.size() / 2], bounds.back());
-  // The reference is worth comparing with.
+  // The reference is good enough for a comparison.
   CHECK(bounds[bounds.size() / 2] < 1e-6);
   CHECK(bounds.back() < 1e-4);
 }

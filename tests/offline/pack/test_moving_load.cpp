@@ -16,7 +16,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// The peers' scene: two rails, 16 bays of 0.6 m, springs at each border.
+/// The scene of the peers: two rails, 16 bays of 0.6 m, springs at each border.
 Track peers_track(int elements_per_bay) {
   Track t;
   t.section = peers_rectangle();
@@ -45,8 +45,8 @@ const double kTimes[5] = {.05, .10, .15, .20, .25};
 
 }  // namespace
 
-TEST_CASE("moving load: one element per bay with residual flexibility meets the converged row") {
-  // reference.md, "Moving load": 1e-3 is the bound asked for, the row itself is good to 2e-8 m.
+TEST_CASE("a moving load on one element per bay with residual flexibility is as converged") {
+  // The row of reference.md, "Moving load", is good to 2e-8 m; the demand is 1e-3.
   const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
   ModelRun run = peers_run(peers_track(1), 1e-3, true);
   for (int i = 0; i < 5; ++i) {
@@ -56,15 +56,15 @@ TEST_CASE("moving load: one element per bay with residual flexibility meets the 
   }
 }
 
-TEST_CASE("moving load: eight elements per bay and a fine step are the converged row") {
+TEST_CASE("a moving load on eight elements per bay with a fine step has the converged row") {
   const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
   ModelRun run = peers_run(peers_track(8), 1e-4, false);
-  for (int i = 0; i < 5; ++i)  // the row's +-2e-8 m and as much for this step
+  for (int i = 0; i < 5; ++i)  // +-2e-8 m for the row and as much for this step
     CHECK_THAT(deflection_at(run, kTimes[i]), WithinAbs(converged[i], 4e-8));
 }
 
-TEST_CASE("moving load: without residual flexibility the element's own rows come out") {
-  // reference.md: 1 element per bay, 2 and 3 axial points; 3e-4 is asked of the second
+TEST_CASE("a moving load without residual flexibility has the element's own rows") {
+  // reference.md has 1 element per bay with 2 and 3 axial points; the demand on the second is 3e-4.
   const double two[5] = {-5.83608e-4, -5.64767e-4, -5.66946e-4, -5.64658e-4, -5.83236e-4};
   const double three[5] = {-5.76017e-4, -5.62059e-4, -5.58991e-4, -5.61946e-4, -5.75650e-4};
   Track locking = peers_track(1);
@@ -77,7 +77,7 @@ TEST_CASE("moving load: without residual flexibility the element's own rows come
   }
 }
 
-TEST_CASE("residual flexibility makes the static deflection that of a refined mesh everywhere") {
+TEST_CASE("with residual flexibility the static deflection is that of a refined mesh everywhere") {
   for (const bool full : {false, true}) {
     Track coarse = peers_track(1), fine = peers_track(16);
     if (full) {
@@ -100,13 +100,13 @@ TEST_CASE("residual flexibility makes the static deflection that of a refined me
         const double want = exact.flexibility(at, at);
         largest = std::max(largest, std::abs(sum / want - 1.));
       }
-    // both sides are one discrete problem solved two ways; condition of K about 1e8
+    // Both sides solve one discrete problem in two ways; the condition of K is about 1e8.
     CHECK(largest < 1e-7);
   }
 }
 
 TEST_CASE("the schemes converge with their order") {
-  // A load that stands still and grows from zero: the response rings at the track's frequencies.
+  // A load stands still and grows from zero: the response oscillates at the track's frequencies.
   const auto history = [](const Scheme& scheme) {
     Track t = peers_track(1);
     t.rails = 1;
@@ -124,8 +124,8 @@ TEST_CASE("the schemes converge with their order") {
       largest = std::max(largest, std::abs(z[i] - reference[i]));
     return largest;
   };
-  // orders 2 and 1; the next term of the series is as large as the step's ratio to the ringing's
-  // period: 0.2
+  // The orders are 2 and 1. The next term of the series is as large as the step over the period of
+  // the oscillation: 0.2.
   const auto order = [&](const Scheme& coarse, const Scheme& fine) {
     return std::log2(error(coarse) / error(fine));
   };
@@ -134,7 +134,7 @@ TEST_CASE("the schemes converge with their order") {
   CHECK_THAT(order(backward_euler(1e-4), backward_euler(5e-5)), WithinAbs(1., .2));
 }
 
-TEST_CASE("the same run gives the same bits, and a frame of ten steps those of ten frames") {
+TEST_CASE("a run gives the same bits again, and a frame of ten steps those of ten frames") {
   const auto hash_of = [](int steps_per_frame) {
     MovingLoad load{.rail = 1, .start = .3, .speed = 30., .stop = 9.3, .force = -50e3};
     ModelRun run(peers_track(1), {.loads = {load}},
@@ -156,10 +156,10 @@ TEST_CASE("a load that runs off the rail is reported and the track comes to rest
   double largest = 0.;
   for (std::int32_t i = 0; i < run.packed->model().unknowns; ++i)
     largest = std::max(largest, std::abs(run.state.u[i]));
-  CHECK(largest < 1e-9);  // m; 2 s after 574 um, slowest decay 500 1/s
+  CHECK(largest < 1e-9);  // m; 2 s after 574 um; the slowest decay is 500 1/s
 }
 
-TEST_CASE("a state that is not finite is named") {
+TEST_CASE("a state that is not finite is reported with its unknown") {
   MovingLoad load{.rail = 0, .start = .3, .speed = 30., .stop = 9.3, .force = -50e3};
   ModelRun run(peers_track(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1, true, 16});
   run.state.v[5] = std::numeric_limits<double>::infinity();
@@ -168,7 +168,7 @@ TEST_CASE("a state that is not finite is named") {
   CHECK(run.outputs.first_bad_unknown >= 0);
 }
 
-TEST_CASE("a rail that is a kilometre away counts as not finite") {
+TEST_CASE("a rail that is more than a kilometre away counts as not finite") {
   const MovingLoad load{.rail = 0, .start = .3, .speed = 30., .stop = 9.3, .force = -50e3};
   for (const double size : {-1e3, 1e3, -1.1e3, 1.1e3, 1e70}) {
     ModelRun run(peers_track(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1, true, 16});
@@ -179,7 +179,7 @@ TEST_CASE("a rail that is a kilometre away counts as not finite") {
   }
 }
 
-TEST_CASE("long after the load has gone no subnormal rests in the state") {
+TEST_CASE("long after the load has gone the state has no subnormal numbers") {
   MovingLoad load{.rail = 0, .start = 9., .speed = 30., .stop = 100., .force = -50e3};
   ModelRun run(peers_track(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1000, true, 16});
   for (int frame = 0; frame < 20; ++frame)

@@ -17,7 +17,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// hard-cases.md R4: section F, 6 m, half the beam's mass.
+/// R4 of hard-cases.md: section F, 6 m; the mass is half the beam's.
 Track rail(int elements) {
   BeamSection f = section_f();
   f.shear_factor_z = .472;
@@ -25,7 +25,7 @@ Track rail(int elements) {
 }
 constexpr double kMass = 204.885;  // kg
 
-/// Yang and Yau's bridge. A = 1e4 m2 leaves Euler and Bernoulli's beam (test_fryba.cpp).
+/// Yang and Yau's bridge. A = 1e4 m2 makes it Euler and Bernoulli's beam (test_fryba.cpp).
 Track bridge(int elements) {
   return pinned_beam({.area = 1e4, .inertia_y = 2.9, .inertia_z = 1., .torsion = 1.},
                      {2.87e9, .3, .2303}, 25., elements);
@@ -41,7 +41,7 @@ RunningVehicle one_mass(double mass, double start, double speed) {
   return v;
 }
 
-/// Deflection of the middle, down, m: a node where the elements are even.
+/// Deflection of the middle, positive down, m: a node for an even number of elements.
 double midspan(const ModelRun& run) {
   const LineModel& line = run.model().line[0];
   return -run.state.u[line.first + line.unknown_of[0][27 * (run.model().elements / 2) + 2]];
@@ -56,8 +56,8 @@ struct Largest {
 
 }  // namespace
 
-TEST_CASE("a mass bonded to the beam it runs over has the figures of the series", "[vehicle]") {
-  // hard-cases.md R4 and H15: 5e-4, of the largest deflection. It comes from the ground before it.
+TEST_CASE("a mass bonded to the beam under it has the figures of the series", "[vehicle]") {
+  // R4 and H15 of hard-cases.md: 5e-4 of the largest deflection. The mass comes from the ground.
   const int steps = 6000;
   const double speed = 30.;
   ModelRun run = from_rest(rail(32), {.vehicles = {one_mass(kMass, -.1 * 6., speed)}},
@@ -76,7 +76,7 @@ TEST_CASE("a mass bonded to the beam it runs over has the figures of the series"
 }
 
 TEST_CASE("Yang and Yau's sprung mass has its figure", "[vehicle]") {
-  // hard-cases.md R4: max 2.4073e-3 at .4123, printed to five and four digits
+  // R4 of hard-cases.md has a maximum of 2.4073e-3 at .4123, printed to five and four digits.
   RunningVehicle v = one_mass(5750., -1., 100. / 3.6);
   v.contact = WheelContactKind::linear;
   v.stiffness = 1595e3;
@@ -94,14 +94,13 @@ TEST_CASE("Yang and Yau's sprung mass has its figure", "[vehicle]") {
 
 namespace {
 
-/// Largest and last of the differences between a run and the modal solution that goes with it, over
-/// a crossing from the ground to the ground.
+/// Largest differences between a run and its modal solution, in a crossing from ground to ground.
 struct Compared {
   double midspan = 0., force = 0., body = 0.;  // largest difference: m, N, m
   double largest_midspan = 0., static_force = 0., largest_body = 0.;
 };
 
-/// @param rough  the head's height over the beam, m
+/// @param rough  height of the head above the beam, m
 Compared crossing(const Track& beam, const RunningVehicle& v, int modes, double dt, double until,
                   const Signal& rough = {}) {
   ModelRun run = from_rest(beam, {.vehicles = {v}, .irregularities = {{0, 2, rough}}},
@@ -140,7 +139,7 @@ RunningVehicle on_springs(const Vehicle& vehicle, double start, double speed, do
 
 }  // namespace
 
-TEST_CASE("vehicles cross a beam from ground to ground as the modal solution says", "[vehicle]") {
+TEST_CASE("vehicles cross a beam from ground to ground as in the modal solution", "[vehicle]") {
   const Vehicle frame = bogie(kBogie).vehicle, whole = car(kCar).vehicle;
   struct Case {
     RunningVehicle vehicle;
@@ -154,17 +153,17 @@ TEST_CASE("vehicles cross a beam from ground to ground as the modal solution say
   for (const Case& c : cases) {
     const Compared found = crossing(bridge(32), c.vehicle, 20, 2e-4, c.until);
     CAPTURE(c.vehicle.vehicle.wheels.size(), c.vehicle.damping);
-    // Both by the trapezoidal rule at the same steps. test_fryba.cpp's 2e-4 for the mesh, of the
-    // largest; of the forces, which feel its slopes, H15's 5e-4 of the static one.
+    // Both take the trapezoidal rule with the same steps. The mesh errs by 2e-4 of the largest
+    // (test_fryba.cpp); the forces, which depend on its slopes, by H15's 5e-4 of the static force.
     CHECK(found.midspan < 2e-4 * found.largest_midspan);
     CHECK(found.body < 2e-4 * found.largest_body);
     CHECK(found.force < 5e-4 * found.static_force);
   }
 }
 
-TEST_CASE("vehicles feel a beam's uneven head as the modal solution says", "[vehicle]") {
-  // Waves of 3 m and 2 mm under a bogie at 30 m/s: 10 Hz, between its bounce and its wheels, where
-  // they move the frame by a thousand times what is allowed here, as above.
+TEST_CASE("vehicles cross a beam with a rough head as in the modal solution", "[vehicle]") {
+  // Waves of 3 m and 2 mm under a bogie at 30 m/s have 10 Hz, between its bounce and its wheels.
+  // They move the frame by a thousand times the tolerance, which is that above.
   const Signal waves = corrugation(2., 23., 3., 2e-3, {.05});
   for (const double damping : {0., 1e5}) {
     const RunningVehicle v = on_springs(bogie(kBogie).vehicle, -2.003, 30., 1e8, damping);
@@ -214,15 +213,15 @@ double largest_of_run(double speed, int elements, int steps, double rho = .6) {
 
 }  // namespace
 
-TEST_CASE("a bonded mass is the series' at half the critical speed too", "[vehicle]") {
+TEST_CASE("a bonded mass agrees with the series at half the critical speed too", "[vehicle]") {
   for (const double speed : {30., 100.})
     CHECK_THAT(largest_of_run(speed, 32, 6000),
                WithinRel(largest_of_bonded(rail(2), kMass, speed, 15, 2000), 5e-4));  // H15
 }
 
-TEST_CASE("a bonded mass converges in the mesh as the kinks it meets do", "[vehicle]") {
-  // With the residual flexibility the deflection under it is right to h^3 (test_fryba.cpp); half an
-  // order for what else there is.
+TEST_CASE("a bonded mass converges with the mesh as the kinks in its way do", "[vehicle]") {
+  // With residual flexibility the deflection under the mass is right to h^3 (test_fryba.cpp); half
+  // an order is for other errors.
   const double fine = largest_of_run(30., 128, 24000);
   const double coarse = std::abs(largest_of_run(30., 4, 24000) - fine),
                finer = std::abs(largest_of_run(30., 8, 24000) - fine);
@@ -230,10 +229,10 @@ TEST_CASE("a bonded mass converges in the mesh as the kinks it meets do", "[vehi
 }
 
 TEST_CASE("a sprung mass converges with the second order of the step", "[vehicle]") {
-  // The middle at one time, on one mesh; the mass comes from the ground, so that no load appears at
-  // once but its kink of the slope. Where the step follows the mesh's fifth mode, which that kink
-  // and the elements' borders ring; a quarter for higher ones. Without residual flexibility, which
-  // on a section of 1e4 m2 is the rounding of its shear.
+  // This is the middle at one time, on one mesh. The mass comes from the ground, so that no load
+  // appears suddenly except its kink of the slope. The steps resolve the mesh's fifth mode, which
+  // that kink and the elements' borders excite; a quarter is for higher modes. There is no residual
+  // flexibility, which on a section of 1e4 m2 is the rounding of its shear.
   const auto at = [](int steps) {
     RunningVehicle v = one_mass(5750., -2.5, 25.);
     v.contact = WheelContactKind::linear;

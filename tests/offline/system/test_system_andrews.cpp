@@ -13,9 +13,9 @@ using Eigen::Vector3d;
 namespace {
 
 // Andrews' squeezing mechanism: Schiehlen, Multibody Systems Handbook (1990); Hairer and Wanner,
-// Solving Ordinary Differential Equations II, section VII.7; parameters and solution as in
-// Mazzia and Magherini, Test Set for Initial Value Problem Solvers, problem "andrews".
-// Its plane x, y is x, z here, so that its turns are about -y.
+// Solving Ordinary Differential Equations II, section VII.7. Parameters and solution are those of
+// Mazzia and Magherini, Test Set for Initial Value Problem Solvers, problem "andrews". Its plane x,
+// y is x, z here, so its rotations are about -y.
 
 constexpr double kA[2] = {-.06934, -.00227}, kB[2] = {-.03635, .03273}, kC[2] = {.014, .072};
 constexpr double kMass[7] = {.04325, .00365, .02373, .00706, .07050, .00706, .05498};
@@ -33,7 +33,7 @@ constexpr Angles kStart = {-0.0617138900142764496, 0.,
                            0.455279819163070380,   0.222668390165885884,
                            0.487364979543842550,   -0.222668390165885884,
                            1.23054744454982119};
-/// At .03 s, PSIDE at a tolerance of 1e-14, and rates there.
+/// Solution at .03 s by PSIDE at a tolerance of 1e-14, with the rates there.
 constexpr Angles kEnd = {0.1581077119629904e+2, -0.1575637105984298e+2, 0.4082224013073101e-1,
                          -0.5347301163226948,   0.5244099658805304,     0.5347301163226948,
                          0.1048080741042263e+1};
@@ -45,7 +45,7 @@ Vector2d rotated(double angle, double x, double y) {
   return {std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y};
 }
 
-/// Places of the seven centres and turns, and of the points where bodies meet.
+/// Positions of the seven centres with their rotations, and of the points where bodies meet.
 struct Places {
   std::array<Vector2d, 7> centre;
   std::array<double, 7> turn;
@@ -107,7 +107,7 @@ System squeezer() {
   return s;
 }
 
-/// Directions of the bodies, as (cos, sin) of their turns, and their centres, [7][4].
+/// Directions of the bodies, as (cos, sin) of their rotations, and their centres, [7][4].
 using Pose7 = Eigen::Matrix<double, 7, 4>;
 Pose7 pose(const Places& p) {
   Pose7 result;
@@ -139,16 +139,16 @@ TEST_CASE("the published start and end close the squeezer's loops", "[system]") 
   for (const Angles& q : {kStart, kEnd}) {
     const Places p = places(q);
     const Vector2d B(kB[0], kB[1]);
-    // The last digit of angles of 15 rad times arms of 3 cm.
+    // The last digit of angles of 15 rad, times arms of 3 cm.
     CHECK((B + rotated(p.turn[2], 0., -kSs) - p.meet).norm() < 1e-15 * 10.);
     CHECK((p.k4_end + rotated(p.turn[3], 0., -kE) - p.meet).norm() < 1e-15 * 10.);
     CHECK((p.k6_end + rotated(p.turn[5], kZf, 0.) - p.meet).norm() < 1e-15 * 10.);
   }
 }
 
-TEST_CASE("Andrews' squeezer ends where it is published to", "[system]") {
-  // An energy-momentum step is symmetric, so its error has even powers of h alone: two runs
-  // extrapolated leave h^4.
+TEST_CASE("Andrews' squeezer ends where the published solution does", "[system]") {
+  // An energy-momentum step is symmetric, so its error has only even powers of h: two runs,
+  // extrapolated, leave h^4.
   const Pose7 right = pose(places(kEnd));
   std::array<Pose7, 3> T;
   for (std::size_t i = 0; i < 3; ++i)
@@ -156,17 +156,17 @@ TEST_CASE("Andrews' squeezer ends where it is published to", "[system]") {
   double error[3];
   for (std::size_t i = 0; i < 3; ++i) error[i] = largest(T[i] - right);
   INFO("errors at 10, 5, 2.5 us: " << error[0] << " " << error[1] << " " << error[2]);
-  // The crank turns by w h, at most 20 mrad: w^3 T h^2/12 = 2e-3 of a direction.
+  // The crank rotates by w h, at most 20 mrad: w^3 T h^2/12 = 2e-3 of a direction.
   CHECK(error[0] < 2e-3);
   CHECK_THAT(order(error[1], error[2]), WithinAbs(2., .05));
   const Pose7 once = (4. * T[1] - T[0]) / 3., more = (4. * T[2] - T[1]) / 3.;
   INFO("extrapolated " << largest(once - right) << " " << largest(more - right));
-  // Next comes (w h)^4 / 80 over the crank's 16 rad: 3e-8, and a sixteenth of it.
+  // The next term is (w h)^4 / 80 over the crank's 16 rad: 3e-8, and a sixteenth of that.
   CHECK(largest(once - right) < 3e-8);
   CHECK(largest(more - right) < 3e-8 / 16.);
 }
 
-TEST_CASE("Andrews' squeezer by each way to hold its joints", "[system]") {
+TEST_CASE("Andrews' squeezer converges with each constraint method", "[system]") {
   const Pose7 right = pose(places(kEnd));
   for (const ConstraintMethod hold :
        {ConstraintMethod::augmented_lagrangian, ConstraintMethod::baumgarte,
@@ -174,17 +174,17 @@ TEST_CASE("Andrews' squeezer by each way to hold its joints", "[system]") {
     const double coarse = largest(at_end(generalised_alpha(1e-5, .9), hold) - right);
     const double fine = largest(at_end(generalised_alpha(5e-6, .9), hold) - right);
     INFO("hold " << static_cast<int>(hold) << ": " << coarse << " " << fine);
-    // Baumgarte's rate goes with the step and adds an error of higher order.
+    // Baumgarte's rate depends on the step and adds an error of higher order.
     CHECK(order(coarse, fine) > 1.8);
     CHECK(fine < 1e-4);  // a quarter of w^3 T h^2 / 12 (above), halved for its mean
   }
 }
 
-TEST_CASE("the squeezer's rates at the end are published too", "[system]") {
+TEST_CASE("the squeezer ends with the published rates", "[system]") {
   SystemRun r(squeezer(), sharp(energy_momentum(2.5e-6)));
   r.until(.03);
-  // Rates follow the phase: w' = 5e4 rad/s2 times its error of 1e-3 / 16 over 1100 rad/s, and as
-  // much again of their own: 1e-4 of them.
+  // Rates follow the phase: w' = 5e4 rad/s2 times its error of 1e-3 / 16, over 1100 rad/s, and as
+  // much again for their own error: 1e-4 of them.
   const double scale = std::abs(kEndRate[1]);
   CHECK_THAT(-r.body_spin(0).y(), WithinAbs(kEndRate[0], 1e-4 * scale));
   CHECK_THAT(-r.body_spin(1).y(), WithinAbs(kEndRate[0] + kEndRate[1], 1e-4 * scale));

@@ -12,7 +12,7 @@ RigidBody ball(const Vector3d& position = Vector3d::Zero()) {
   return {.mass = 2., .inertia = Vector3d(.1, .2, .25).asDiagonal(), .position = position};
 }
 
-/// Two rods hinged about y in space, the first one's hinge at the origin's shift.
+/// Two rods with hinges about y in space; the first hinge is at the shift `at` of the origin.
 System rods(const Vector3d& at) {
   System s;
   s.bodies = {ball(at + Vector3d(.5, 0., 0.)), ball(at + Vector3d(1.5, 0., 0.))};
@@ -32,9 +32,9 @@ Vector3d after(const System& scene, double dt, Renew renew) {
 
 }  // namespace
 
-TEST_CASE("a kept matrix changes the cost, not the motion", "[system]") {
-  // Second order with either: a quarter of the step's error when it is halved. Both projections
-  // stand on the joints' directions of their own step.
+TEST_CASE("a kept matrix changes the cost, but not the motion", "[system]") {
+  // Both are of second order: half the step has a quarter of the error. Both projections use the
+  // joints' directions of their own step.
   const Vector3d fine = after(rods(Vector3d::Zero()), 1e-4, Renew::every_step);
   const auto error = [&](double dt, Renew renew) {
     return (after(rods(Vector3d::Zero()), dt, renew) - fine).norm();
@@ -51,8 +51,8 @@ TEST_CASE("a kilometre along the track bodies move as at the origin", "[system]"
   const Vector3d far(1000., 0., 0.);
   for (const Renew renew : {Renew::every_step, Renew::kept}) {
     const Vector3d at = after(rods(far), 1e-3, renew) - far;
-    // Places are known to 1e-13 m there, accelerations to 4e-13 / dt^2 = 5e-7 m/s2; over .4 s and
-    // the pendulum's own growth (e^2) below 1e-6 m.
+    // Positions are known to 1e-13 m there, accelerations to 4e-13 / dt^2 = 5e-7 m/s2. Over .4 s,
+    // with the pendulum's own growth (e^2), this is below 1e-6 m.
     CHECK((at - after(rods(Vector3d::Zero()), 1e-3, renew)).norm() < 1e-6);
   }
 }
@@ -68,11 +68,11 @@ TEST_CASE("a moment gives a free body its angular impulse", "[system]") {
   SystemRun run(scene, {.scheme = energy_momentum(1e-2), .energy_momentum = true});
   const Vector3d before = run.momentum().tail<3>();
   run.until(.5);
-  // Iterations to 1e-8 of the inertia (100 N m): 1e-6 N m over .5 s.
+  // Iterations stop at 1e-8 of the inertia (100 N m): 1e-6 N m over .5 s.
   CHECK((run.momentum().tail<3>() - before - .5 * moment).norm() < 1e-6);
 }
 
-TEST_CASE("what no planar system or no start can be is refused", "[system]") {
+TEST_CASE("systems without a planar motion or a possible start are refused", "[system]") {
   const auto refused = [](const System& scene, const char* why) {
     CHECK_THROWS_WITH(SystemRun(scene, {.scheme = generalised_alpha(1e-3, .9)}),
                       Catch::Contains(why));
@@ -119,7 +119,7 @@ TEST_CASE("joints of index 3 are refused where nothing damps their forces", "[sy
                     why());
   CHECK_NOTHROW(SystemRun(scene, options(ConstraintMethod::direct, .99, 4)));
   CHECK_NOTHROW(SystemRun({.bodies = {ball()}},
-                          options(ConstraintMethod::direct, 1., 4)));  // nothing to hold
+                          options(ConstraintMethod::direct, 1., 4)));  // no joints to hold
   // The others hold velocities too, and are as stable as without joints: 1e-3 J of 15 J in 10 s
   // (docs/joints.md).
   for (const ConstraintMethod hold :

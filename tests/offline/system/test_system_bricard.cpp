@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// The four moving corners.
+/// Positions of the four moving corners.
 using Corners = Eigen::Matrix<double, 3, 4>;
 
 Corners corners(const SystemRun& r, const Bricard& m) {
@@ -34,7 +34,7 @@ Corners corners(const Bricard& m, const Eigen::VectorXd& y) {
 
 }  // namespace
 
-TEST_CASE("Bricard's loop stays closed as five hinges move", "[system]") {
+TEST_CASE("Bricard's loop stays closed while five hinges move", "[system]") {
   const Bricard m;
   const HighOrder solution = known(m, {0., .5, 1., 1.5});
   REQUIRE(solution.own_error < 1e-10);
@@ -47,7 +47,7 @@ TEST_CASE("Bricard's loop stays closed as five hinges move", "[system]") {
   CHECK(largest(corners(m, solution.y[2]) - corners(m, solution.y[0])) > .5);
 }
 
-TEST_CASE("Bricard's mechanism moves right with one row too many", "[system]") {
+TEST_CASE("Bricard's mechanism moves right with one redundant row", "[system]") {
   const Bricard m;
   const HighOrder solution = known(m, {0., 1.5});
   REQUIRE(solution.own_error < 1e-10);
@@ -67,7 +67,7 @@ TEST_CASE("Bricard's mechanism moves right with one row too many", "[system]") {
     };
     const double coarse = error(2e-3), fine = error(1e-3);
     INFO("errors " << coarse << " " << fine << " m");
-    CHECK(fine < 1e-3);  // a tenth of w h of a rod's length, w some 10 rad/s
+    CHECK(fine < 1e-3);  // a tenth of w h of a rod's length, w is some 10 rad/s
     CHECK_THAT(order(coarse, fine), WithinAbs(c.order, .15));
   }
 }
@@ -83,6 +83,6 @@ TEST_CASE("Bricard's mechanism keeps its energy for 10 s", "[system]") {
   }
   INFO("energy " << lost << " J, violation " << r.violation << ", iterations " << r.iterations);
   CHECK(r.seen == Status::ok);
-  CHECK(lost < 1e-3);  // H21's measure
+  CHECK(lost < 1e-3);  // bound of H21
   CHECK(r.violation < 1e-9);
 }

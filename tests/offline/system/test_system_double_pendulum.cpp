@@ -14,7 +14,7 @@ namespace {
 constexpr double kLength = 1., kMass = 1., kSide = .05;
 constexpr double kStart[2] = {0., .6};  // rad from x towards z
 
-/// Two rods on hinges, let go from rest.
+/// Two rods on hinges, released at rest.
 System double_pendulum(bool planar) {
   System s;
   s.planar = planar;
@@ -26,7 +26,7 @@ System double_pendulum(bool planar) {
   return s;
 }
 
-/// Angles and rates by Lagrange's equations; rods with the inertia of their section.
+/// Rates of angles and of their rates by Lagrange's equations, with the rods' section inertia.
 Eigen::VectorXd slope(double, const Eigen::VectorXd& y) {
   const double inertia = kMass * (kLength * kLength + kSide * kSide) / 12.;
   const double own = inertia + kMass * kLength * kLength / 4.;
@@ -59,7 +59,7 @@ Ends known() {
   return {B, B + kLength * Vector3d(std::cos(y[1]), 0., std::sin(y[1]))};
 }
 
-/// B and C at 1 s.
+/// Positions of B and C at 1 s.
 Ends run(bool planar, const SystemOptions& options) {
   SystemRun r(double_pendulum(planar), options);
   r.until(1.);
@@ -83,9 +83,9 @@ TEST_CASE("a rigid double pendulum converges with the order of its scheme", "[sy
     Scheme (*scheme)(double);
     double order, bound;
   };
-  // The fastest turn is w = 9 rad/s. Second order: w^3 t h^2/12 of a turn for an oscillation of
-  // that rate, at 1 ms 6e-5 rad, of an arm of 2 m, and 5 times for how far two pendulums part in
-  // 1 s. First order: w^2 t h/2, 4e-2 rad, the same way.
+  // The fastest rotation is w = 9 rad/s. Second order: an oscillation at that rate errs by w^3 t
+  // h^2/12, at 1 ms 6e-5 rad, on an arm of 2 m; times 5, as two pendulums diverge in 1 s. First
+  // order: w^2 t h/2, 4e-2 rad, in the same way.
   const Case cases[] = {
       {"generalised-alpha .9", [](double h) { return generalised_alpha(h, .9); }, 2., 6e-4},
       {"generalised-alpha .5", [](double h) { return generalised_alpha(h, .5); }, 2., 6e-4 * 4.},
@@ -98,24 +98,24 @@ TEST_CASE("a rigid double pendulum converges with the order of its scheme", "[sy
     INFO((planar ? "planar, " : "spatial, ")
          << c.name << ": " << coarse << " " << middle << " " << fine << " m at 1, .5, .25 ms");
     CHECK(coarse < c.bound);
-    // The next term is of relative order w h: 2e-3 at .25 ms for schemes of even powers, and with
-    // the coefficient of a first-order scheme 10 %.
+    // The next term is of relative order w h: 2e-3 at .25 ms for schemes of even powers, and 10 %
+    // with the coefficient of a first-order scheme.
     CHECK_THAT(order(middle, fine), WithinAbs(c.order, .1));
   }
 }
 
-TEST_CASE("in its plane and in space a double pendulum moves alike", "[system]") {
+TEST_CASE("a double pendulum moves alike in its plane and in space", "[system]") {
   for (const Scheme& scheme :
        {generalised_alpha(1e-3, .9), energy_momentum(1e-3), backward_euler(1e-3)}) {
     const Ends plane = run(true, sharp(scheme)), space = run(false, sharp(scheme));
-    // Turns about one axis add up, so the steps are the same; what is left is Newton's tolerance,
-    // 1e-11 of the force over 1 s^2, doubled 5 times (see above).
+    // Rotations about one axis add up, so the steps are the same. Newton's tolerance is left, 1e-11
+    // of the force over 1 s^2, doubled 5 times (see above).
     CHECK(largest(plane.B - space.B) < 1e-9);
     CHECK(largest(plane.C - space.C) < 1e-9);
   }
 }
 
-TEST_CASE("each way to hold joints leads to the same double pendulum", "[system]") {
+TEST_CASE("each constraint method gives the same double pendulum", "[system]") {
   const ConstraintMethod hold =
       GENERATE(ConstraintMethod::augmented_lagrangian, ConstraintMethod::baumgarte,
                ConstraintMethod::gear_gupta_leimkuhler, ConstraintMethod::direct);

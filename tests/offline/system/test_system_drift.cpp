@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A rod on a hinge at the origin in its plane, let go from the horizontal.
+/// A rod on a hinge at the origin in its plane, released from the horizontal.
 System pendulum() {
   System s;
   s.planar = true;
@@ -17,7 +17,7 @@ System pendulum() {
   return s;
 }
 
-/// How far the rod's end comes off its hinge, largest of the first and of the last tenth of `steps`
+/// Largest distance of the rod's end from its hinge in the first and in the last tenth of `steps`
 /// steps, m.
 struct Drift {
   double first = 0., last = 0.;
@@ -39,7 +39,7 @@ Drift drift(const SystemOptions& options, int steps) {
 }  // namespace
 
 TEST_CASE("a hinge stays closed over 1e6 steps of a pendulum", "[system]") {
-  // hard-cases.md, H22.
+  // This is H22 of hard-cases.md.
   const Drift d = drift(sharp(energy_momentum(1e-3)), 1000000);
   INFO("off by " << d.first << " m in the first 1e5 steps, " << d.last << " in the last");
   CHECK(!has(d.seen, Status::nonfinite_state));
@@ -47,13 +47,13 @@ TEST_CASE("a hinge stays closed over 1e6 steps of a pendulum", "[system]") {
   CHECK(d.last < 1e-12);
 }
 
-TEST_CASE("Baumgarte's hinge has no trend over 1e6 steps", "[system]") {
+TEST_CASE("Baumgarte's hinge does not drift over 1e6 steps", "[system]") {
   const Drift d = drift(sharp(generalised_alpha(1e-3, 1.), ConstraintMethod::baumgarte), 1000000);
   INFO("off by " << d.first << " m in the first 1e5 steps, " << d.last << " in the last");
   CHECK(!has(d.seen, Status::nonfinite_state));
-  // With no damping by the scheme each swing is the first again; a lost one could only be less.
+  // The scheme does not damp, so each swing repeats the first; it could only lose energy.
   CHECK(d.first > 0.);
   CHECK(d.last < 1.1 * d.first);
-  // The error of a step, w^4 h^4 / 12 of 1 m at w = 6 rad/s, gathered over 5 steps of its decay.
+  // A step errs by w^4 h^4 / 12 of 1 m at w = 6 rad/s, over the 5 steps of its decay.
   CHECK(d.first < 1e-6);
 }

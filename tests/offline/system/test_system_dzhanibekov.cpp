@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 namespace {
 
 /// Jacobi's sn, cn, dn at u for the modulus k, by descending Landen steps of the arithmetic and
-/// geometric mean (Abramowitz and Stegun 16.4); 1 - k^2 is given, where k itself has lost it.
+/// geometric mean (Abramowitz and Stegun 16.4); given is 1 - k^2, which k itself has lost.
 struct Jacobi {
   double sn, cn, dn;
 };
@@ -33,7 +33,7 @@ Jacobi jacobi(double u, double k2, double one_less_k2) {
   return {std::sin(phi), std::cos(phi), std::sqrt(1. - k2 * std::sin(phi) * std::sin(phi))};
 }
 
-/// A complete elliptic integral K(k), by the same mean.
+/// A complete elliptic integral K(k) by the same mean.
 double quarter_period(double one_less_k2) {
   double a = 1., b = std::sqrt(one_less_k2);
   for (int i = 0; i < 40; ++i) {
@@ -44,9 +44,9 @@ double quarter_period(double one_less_k2) {
   return std::acos(-1.) / (2. * a);
 }
 
-/// A free body with I1 < I2 < I3 that starts with its spin (a, 0, c): by Euler's equations
-/// w = (a cn, B sn, c dn)(p t). With 1 - k^2 small it stays near its second axis and turns over
-/// twice in each period.
+/// A free body with I1 < I2 < I3 that starts with the spin (a, 0, c). By Euler's equations w = (a
+/// cn, B sn, c dn)(p t). If 1 - k^2 is small, it stays near its second axis and flips twice in each
+/// period.
 struct FreeBody {
   Vector3d inertia{1., 2., 3.};
   double c = 2., one_less_k2 = 1e-4;
@@ -92,22 +92,22 @@ double spin_error(const FreeBody& body, double duration, const Scheme& scheme) {
 
 }  // namespace
 
-TEST_CASE("a book turns over as Jacobi's functions say", "[system]") {
+TEST_CASE("a book flips as Jacobi's functions say", "[system]") {
   const FreeBody book;
-  // The closed form against Euler's equations first.
+  // First the closed form is compared with Euler's equations.
   const auto euler = [&](double, const Eigen::VectorXd& w) -> Eigen::VectorXd {
     const Vector3d own = w, momentum = book.inertia.cwiseProduct(own);
     return momentum.cross(own).cwiseQuotient(book.inertia);
   };
   const double T = book.period();
-  // Beside the second axis an error grows by 4 / (1 - k^2)^.5 each quarter: 1e-15 of 7 rad/s
+  // Near the second axis an error grows by 4 / (1 - k^2)^.5 in each quarter: from 1e-15 of 7 rad/s
   // to 1e-9.
   const HighOrder solution = high_order(euler, book.spin(0.), {0., .25 * T, .45 * T}, .05);
   REQUIRE(solution.own_error < 1e-8);
   REQUIRE(largest(solution.y[1] - book.spin(.25 * T)) < 1e-8);
   REQUIRE(largest(solution.y[2] - book.spin(.45 * T)) < 1e-8);
 
-  CHECK(book.spin(.25 * T)[1] * book.spin(.75 * T)[1] < -5.);  // it does turn over
+  CHECK(book.spin(.25 * T)[1] * book.spin(.75 * T)[1] < -5.);  // it does flip
   struct Case {
     Scheme (*scheme)(double);
     double order;
@@ -115,7 +115,7 @@ TEST_CASE("a book turns over as Jacobi's functions say", "[system]") {
   const Case cases[] = {{[](double h) { return generalised_alpha(h, .9); }, 2.},
                         {[](double h) { return energy_momentum(h); }, 2.}};
   for (const Case& c : cases) {
-    // Half a period: one flight over, on which the error of a step grows as above.
+    // Half a period contains one flip, in which the error of a step grows as above.
     const double coarse = spin_error(book, .5 * T, c.scheme(1e-3));
     const double fine = spin_error(book, .5 * T, c.scheme(5e-4));
     INFO("spin errors " << coarse << " " << fine << " rad/s of " << book.spin(.25 * T)[1]);
@@ -140,7 +140,7 @@ TEST_CASE("energy-momentum keeps a book's momentum and energy over 1e5 steps", "
   CHECK(r.seen == Status::ok);
   INFO("linear " << drift << ", angular " << turned << " of " << before.tail<3>().norm()
                  << ", energy " << lost);
-  // A few roundings of 1e-16 a step, all to one side: 1e5 * 10 * 1e-16.
+  // Each step rounds a few times by 1e-16, all to one side: 1e5 * 10 * 1e-16.
   CHECK(drift < 1e-10);
   CHECK(turned < 1e-10 * before.tail<3>().norm());
   CHECK(lost < 1e-10);

@@ -10,8 +10,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A soft beam, .4 m by 20 mm by 30 mm as those of the double pendulum, thrown with a spin that
-/// bends and stretches it: w^2 L^2 rho / 12 E = 1 % at 30 rad/s.
+/// A soft beam of .4 m by 20 mm by 30 mm, as in the double pendulum, thrown with a spin that bends
+/// and stretches it: w^2 L^2 rho / 12 E = 1 % at 30 rad/s.
 System thrown(bool planar, const Vector3d& gravity = Vector3d::Zero()) {
   System s;
   s.planar = planar;
@@ -23,17 +23,17 @@ System thrown(bool planar, const Vector3d& gravity = Vector3d::Zero()) {
   b.length = .4;
   b.half_height = .01;
   b.angular_velocity = planar ? Vector3d(0., -30., 0.) : Vector3d(5., -30., 12.);
-  // The centre flies 4 m in 100 s: momentum about the origin is not that of a far flight.
+  // The centre flies only 4 m in 100 s: momentum about the origin is not that of a far flight.
   b.velocity =
       Vector3d(.03, planar ? 0. : .01, .02) - b.angular_velocity.cross(Vector3d(.2, 0., 0.));
   s.beams = {b};
   return s;
 }
 
-/// 1.9 kg, of which the ends go at 6 m/s.
+/// Mass of 1.9 kg; its ends move at 6 m/s.
 constexpr double kMass = 7900. * .02 * .03 * .4, kEndSpeed = 30. * .2;
 
-/// Largest changes: of momentum over kMass kEndSpeed, of the others over their start.
+/// Largest changes: of momentum over kMass kEndSpeed, of the others over their values at the start.
 struct Kept {
   double linear = 0., angular = 0., energy = 0.;
   Status seen = Status::ok;
@@ -68,7 +68,7 @@ TEST_CASE("a thrown beam starts as a rigid body does", "[system]") {
   const double x = mass * (.02 * .02 + .03 * .03) / 12.;
   const Vector3d inertia(x, mass * (.4 * .4 + .02 * .02) / 12., mass * (.4 * .4 + .03 * .03) / 12.);
   const Vector3d turning = arm.cross(mass * speed) + inertia.cwiseProduct(b.angular_velocity);
-  // Gauss's rules are exact here: round-off.
+  // Gauss's rules are exact here, to round-off.
   CHECK((r.momentum().head<3>() - mass * speed).norm() < 1e-13 * mass * kEndSpeed);
   CHECK((r.momentum().tail<3>() - turning).norm() < 1e-12 * turning.norm());
   const double energy = .5 * mass * speed.squaredNorm() +
@@ -83,14 +83,15 @@ TEST_CASE("energy-momentum keeps a thrown beam's momenta and energy over 1e5 ste
        << ": linear " << k.linear << ", angular " << k.angular << ", energy " << k.energy
        << ", iterations " << k.iterations);
   CHECK(k.seen == Status::ok);
-  // Some 10 roundings of 1e-16 a step, all to one side, and what Newton leaves: 1e-11 of forces of
-  // which momentum flows through a node within a step, either way.
+  // Each step rounds some 10 times by 1e-16, all to one side. Newton leaves 1e-11 of the forces by
+  // which momentum flows through a node in a step, in either direction.
   CHECK(k.linear < 1e-9);
   CHECK(k.angular < 1e-9);
   CHECK(k.energy < 1e-9);
 }
 
-TEST_CASE("generalised-alpha keeps a thrown beam's momentum, and spin by its order", "[system]") {
+TEST_CASE("generalised-alpha keeps a thrown beam's momentum, and its spin by its order",
+          "[system]") {
   const bool planar = GENERATE(true, false);
   const auto at = [&](double h, int steps) {
     return kept(thrown(planar), sharp(generalised_alpha(h, .9)), steps, 10);
@@ -104,13 +105,13 @@ TEST_CASE("generalised-alpha keeps a thrown beam's momentum, and spin by its ord
   CHECK(long_run.seen == Status::ok);
   // Forces within a body cancel in any sum of accelerations.
   CHECK(long_run.linear < 1e-9);
-  // The spin is damped as what bends is: it may not grow.
+  // The spin is damped like the bending: it may not grow.
   CHECK(long_run.energy < 1.);
   CHECK(long_run.angular < .1);
   CHECK_THAT(order(coarse.angular, fine.angular), WithinAbs(2., .3));
 }
 
-TEST_CASE("a thrown beam's centre flies along its parabola", "[system]") {
+TEST_CASE("the centre of a thrown beam flies along its parabola", "[system]") {
   const bool planar = GENERATE(true, false);
   const Vector3d g(0., 0., -9.81);
   for (const Scheme& scheme : {energy_momentum(1e-3), generalised_alpha(1e-3, .8)}) {
@@ -118,7 +119,7 @@ TEST_CASE("a thrown beam's centre flies along its parabola", "[system]") {
     const FlexibleBeam& b = r.system.beams[0];
     const Vector3d speed = b.velocity + b.angular_velocity.cross(Vector3d(.2, 0., 0.));
     r.until(1.);
-    // Both schemes are exact for a steady acceleration; the centre by linear momentum's row.
+    // Both schemes are exact for a steady acceleration; the centre follows from linear momentum.
     CHECK(largest(r.momentum().head<3>() / kMass - (speed + g)) < 1e-9);
     CHECK(largest(r.beam_centre(0) - (Vector3d(.2, 0., 0.) + speed + .5 * g)) < 1e-9);
   }

@@ -11,9 +11,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// N + 1 rods of 1 m and 1 kg stand on the ground 1 m apart, N more join their heads; all at
-/// `rate` rad/s from x towards z. The N-four-bar mechanism, IFToMM benchmark A02. Where all rods
-/// lie along x, N + 1 motions are possible.
+/// The N-four-bar mechanism, IFToMM benchmark A02: N + 1 rods of 1 m and 1 kg stand on the ground 1
+/// m apart, N more join their heads; all rotate at `rate` rad/s from x towards z. Where all rods
+/// are along x, N + 1 motions are possible.
 System four_bars(int count, double angle, double rate) {
   System s;
   s.planar = true;
@@ -30,17 +30,17 @@ System four_bars(int count, double angle, double rate) {
     s.joints.push_back(hinge(body(i), body(own), foot(i) + arm, true));
     s.joints.push_back(hinge(body(own), body(i + 1), foot(i + 1) + arm, true));
   }
-  // Rods without a width, as the benchmark has them.
+  // The benchmark's rods have no width.
   for (RigidBody& b : s.bodies) b.inertia = Vector3d(1e-3, 1. / 12., 1. / 12.).asDiagonal();
   return s;
 }
 
-/// angle'' = -k cos(angle): N + 1 swinging rods and N that move along.
+/// angle'' = -k cos(angle): N + 1 rods swing and N move along.
 double pull(int count) {
   return kGravity * (.5 * (count + 1) + count) / ((count + 1) / 3. + count);
 }
 
-/// First head B at the times.
+/// Positions of the first head B at the times.
 std::vector<Vector3d> known(int count, const std::vector<double>& times) {
   const double k = pull(count);
   Eigen::VectorXd y(2);
@@ -58,8 +58,8 @@ std::vector<Vector3d> known(int count, const std::vector<double>& times) {
 
 struct Passed {
   double error = 0.;   // of B at the end, m
-  double energy = 0.;  // largest loss or gain, J
-  double uneven = 0.;  // of the rods' directions, largest
+  double energy = 0.;  // largest change, J
+  double uneven = 0.;  // largest difference of the rods' directions
   double violation = 0.;
   int iterations = 0;
   int capped = 0;  // steps
@@ -90,8 +90,8 @@ Passed pass(int count, double t, const Vector3d& B, const SystemOptions& options
 
 }  // namespace
 
-TEST_CASE("two four-bars go through their singular position for 10 s", "[system]") {
-  // hard-cases.md, R8 to 1e-8: B at 1 s and 10 s, energy 35.835 J.
+TEST_CASE("two four-bars pass their singular position for 10 s", "[system]") {
+  // R8 of hard-cases.md to 1e-8: B at 1 s and 10 s, energy 35.835 J.
   const std::vector<Vector3d> own = known(2, {0., 1., 10.});
   REQUIRE((own[1] - Vector3d(-.19502030, 0., -.98079921)).norm() < 2e-8);
   REQUIRE((own[2] - Vector3d(.32845811, 0., .94451854)).norm() < 2e-8);
@@ -104,12 +104,12 @@ TEST_CASE("two four-bars go through their singular position for 10 s", "[system]
                     << " J, uneven " << ten.uneven << ", violation " << ten.violation
                     << ", iterations " << ten.iterations);
   CHECK(ten.seen == Status::ok);
-  // w^3 t h^2 / 12 at the fastest 6.9 rad/s and 1 s: 3e-5 rad; twice over the top each 1.3 s
-  // errors grow, by some (6.9 / 1)^2 of what is slow there: 1e-3 at 1 s, in 10 s by time again.
+  // w^3 t h^2 / 12 at the fastest 6.9 rad/s and 1 s is 3e-5 rad. Over the top, twice each 1.3 s,
+  // slow motion makes errors grow by some (6.9 / 1)^2: 1e-3 at 1 s, times 10 in 10 s.
   CHECK(one.error < 1e-3);
   CHECK(ten.energy < 1e-3);     // H21
   CHECK(ten.violation < 1e-6);  // a micron
-  // A flat loop that is open by phi lets its rods differ by d^2 / 2 = phi.
+  // The rods of a flat loop that is open by phi differ by d^2 / 2 = phi.
   CHECK(ten.uneven < std::sqrt(2. * ten.violation) + 1e-8);
 }
 
@@ -125,18 +125,18 @@ TEST_CASE("energy-momentum takes four-bars through their singular positions for 
                     << ", violation " << p.violation << ", iterations " << p.iterations);
   CHECK(!has(p.seen, Status::nonfinite_state));
   CHECK(!has(p.seen, Status::redundant_joint));
-  // Round-off of places, 1e-15 m, is 1e-15 / s where a step ends s from a singular position, and kg
-  // m of that in the forces: their tolerance is out of reach below 1e-6, one step in 1e4 and fewer.
+  // Round-off of positions, 1e-15 m, is 1e-15 / s where a step ends s from a singular position, and
+  // kg m of that in the forces. Below 1e-6 they miss their tolerance: in a step of 1e4 or less.
   CHECK(p.capped < 1e-4 * 10. / dt);
   CHECK(p.energy < 1e-3);  // H21
   CHECK(p.violation < options.joint_tolerance);
-  // Second order: the phase's error grows with time, .1 rad of 70 in 10 s at 1 ms and most.
+  // Second order: the phase errs in proportion to time, by at most .1 rad of 70 in 10 s at 1 ms.
   CHECK(p.error < .1 * (dt / 1e-3) * (dt / 1e-3) + 1e-3);
   CHECK(p.uneven < std::sqrt(2. * p.violation) + 1e-8);
 }
 
 TEST_CASE("Baumgarte takes four-bars through their singular positions for 10 s", "[system]") {
-  // Rates at which Newton's matrix without the gradient's change over a step was lost.
+  // At these rates Newton's method failed when its matrix lacked the gradient's change in a step.
   const double rate = GENERATE(-1., -1.1, -1.23, -1.51, -1.7);
   const int count = GENERATE(2, 3);
   SystemOptions options{.scheme = generalised_alpha(1e-3, .9),
@@ -145,27 +145,27 @@ TEST_CASE("Baumgarte takes four-bars through their singular positions for 10 s",
   INFO("energy " << p.energy << " J, uneven " << p.uneven << ", violation " << p.violation
                  << ", iterations " << p.iterations);
   CHECK(p.seen == Status::ok);
-  // Not H21: it holds accelerations, and joints stay open by the scheme's error of them, h^2 w^4 r
-  // / 12 over beta^2 = 1 / (5 h)^2: 25 h^4 w^4 / 12 at 7 rad/s.
+  // H21 does not apply: Baumgarte holds accelerations, so the scheme's error of them opens joints
+  // by h^2 w^4 r / 12 over beta^2 = 1 / (5 h)^2: 25 h^4 w^4 / 12 at 7 rad/s.
   const double open = 25. * 1e-12 * std::pow(7., 4) / 12.;
   CHECK(p.violation < 100. * open);
 }
 
-TEST_CASE("forty four-bars go through their singular position", "[system]") {
+TEST_CASE("forty four-bars pass their singular position", "[system]") {
   const int count = 40;
   const std::vector<Vector3d> own = known(count, {0., .8});
-  // Rods lie at .71 s and so hinges of all 41 are in line.
+  // At .71 s the rods lie flat and the hinges of all 41 are in line.
   const Passed p = pass(count, .8, own[1], sharp(generalised_alpha(1e-3, .95)));
   INFO("B errs by " << p.error << " m, energy " << p.energy << " J, uneven " << p.uneven
                     << ", violation " << p.violation << ", iterations " << p.iterations);
   CHECK(!has(p.seen, Status::nonfinite_state));
   CHECK(p.error < 1e-3);
-  CHECK(p.energy < 1e-3 * (2 * count + 1) / 5.);  // H21, for each of its five rods
+  CHECK(p.energy < 1e-3 * (2 * count + 1) / 5.);  // H21 for each of its five rods
   CHECK(p.violation < 1e-6);
   CHECK(p.uneven < std::sqrt(2. * p.violation) + 1e-8);
 }
 
-TEST_CASE("a kept matrix takes four-bars through their singular position", "[system]") {
+TEST_CASE("four-bars pass their singular position with a kept matrix", "[system]") {
   const std::vector<Vector3d> own = known(2, {0., 1.});
   SystemOptions options{.scheme = generalised_alpha(4e-3, .9)};
   options.constraint_method =
@@ -177,8 +177,8 @@ TEST_CASE("a kept matrix takes four-bars through their singular position", "[sys
                     << "; violation " << kept.violation << ", iterations " << kept.iterations);
   CHECK(!has(kept.seen, Status::nonfinite_state));
   CHECK(!has(kept.seen, Status::cap_reached));
-  // Newton's rest, 1e-8 of forces of 40 N on 1 kg, makes 2e-7 m in 1 s, and what is slow on top
-  // grows by (6.9 / 1)^2.
+  // Newton's residual, 1e-8 of forces of 40 N on 1 kg, makes 2e-7 m in 1 s; slow motion over the
+  // top multiplies it by (6.9 / 1)^2.
   CHECK_THAT(kept.error, WithinAbs(fresh.error, 1e-5));
   CHECK(kept.violation < 1e-10);
 }

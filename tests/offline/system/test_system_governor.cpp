@@ -12,18 +12,18 @@ using Eigen::Vector3d;
 namespace {
 
 // The stiff flyball governor, IFToMM benchmark A05, as Tagliapietra, Vivian, Ceseracciu and
-// Reggiani (MBS-BOS, 2015) model it: a shaft of 1 m with two rods of 1 m hinged 5 cm beside its
-// top, balls of 5 kg at their ends, a cube of .1 m sliding on it, springs and dampers between the
-// cube's sides and the rods' middles. Steel would be stiff; these are 8e5 N/m and 4e4 N s/m.
+// Reggiani (MBS-BOS, 2015) model it. A shaft of 1 m has two rods of 1 m hinged 5 cm beside its top,
+// with balls of 5 kg at their ends. A cube of .1 m slides on it; springs and dampers join its sides
+// to the rods' middles. Steel would be stiff; these have 8e5 N/m and 4e4 N s/m.
 constexpr double kDensity = 3000., kRodSide = .01, kCube = .1, kBall = 5.;
 constexpr double kStiffness = 8e5, kDamping = 4e4, kSpringLength = .5, kBeside = .05;
 constexpr double kRodMass = kDensity * kRodSide * kRodSide,
                  kCubeMass = kDensity * kCube * kCube * kCube;
 constexpr double kAcross = kRodMass * (1. + kRodSide * kRodSide) / 12.;
 constexpr double kAlong = kRodMass * kRodSide * kRodSide / 6.;
-const double kSpin = 8. * std::atan(1.), kRodAngle = kSpin / 6.;  // rad/s; rad from down
+const double kSpin = 8. * std::atan(1.), kRodAngle = kSpin / 6.;  // rad/s; rad from straight down
 
-/// A rod with its ball: the centre lies `arm` from the hinge.
+/// A rod with its ball: the centre is `arm` from the hinge.
 struct RodAndBall {
   double mass = kRodMass + kBall;
   double arm = (.5 * kRodMass + kBall) / mass;
@@ -77,7 +77,7 @@ System governor() {
   return s;
 }
 
-/// Inertia about the shaft, and its slope by the rods' angle.
+/// Inertia about the shaft, and its derivative by the rods' angle.
 struct About {
   double value, slope;
 };
@@ -90,7 +90,7 @@ About about_shaft(double angle) {
       2. * (kRodMass * middle * c + 2. * (kAcross - kAlong) * s * c + 2. * kBall * end * c)};
 }
 
-/// Rod angle, height of the cube, their rates; the spin follows from its momentum L.
+/// State: rod angle, height of the cube, their rates; the spin follows from the angular momentum L.
 Eigen::VectorXd slope(const Eigen::VectorXd& y, double L) {
   const double c = std::cos(y[0]), s = std::sin(y[0]);
   const About J = about_shaft(y[0]);
@@ -111,12 +111,12 @@ Eigen::VectorXd slope(const Eigen::VectorXd& y, double L) {
 
 }  // namespace
 
-TEST_CASE("a stiff flyball governor settles as its three equations say", "[system]") {
+TEST_CASE("a stiff flyball governor settles as its three equations do", "[system]") {
   const double L = about_shaft(kRodAngle).value * kSpin;
   Eigen::VectorXd y(4);
   y << kRodAngle, .5, 0., 0.;
-  // The dampers' fastest rate is 2 c / 3 kg = 2e4 1/s; the extrapolated step is stable to some 30
-  // of it and exact to 1e-12 at a third of that.
+  // The dampers' fastest rate is 2 c / 3 kg = 2e4 1/s. The extrapolated step is stable up to some
+  // 30 of it and exact to 1e-12 at a third of that.
   const HighOrder known = high_order(
       [L](double, const Eigen::VectorXd& at) { return slope(at, L); }, y, {0., .2, .5}, 4e-4);
   REQUIRE(known.own_error < 1e-10);

@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A slider along the skew line of `axis`, driven by `motion`.
+/// A slider driven by `motion` along the skew line of `axis`.
 System driven_slider(bool planar, const Vector3d& axis, const Motion& motion) {
   System s;
   s.planar = planar;
@@ -32,7 +32,7 @@ System driven_slider(bool planar, const Vector3d& axis, const Motion& motion) {
   return s;
 }
 
-/// Natural cubic spline through (0, 0), (1, 1), (2, 0): its middle second derivative is -3.
+/// Natural cubic spline through (0, 0), (1, 1), (2, 0): its second derivative in the middle is -3.
 double spline(double t) {
   if (t >= 2.) return 0.;
   const double u = t <= 1. ? t : 2. - t;
@@ -72,13 +72,13 @@ TEST_CASE("a slider follows a polynomial", "[system]") {
     INFO("hold " << static_cast<int>(hold) << ": " << place << " m, " << speed << " m/s");
     CHECK(r.seen == Status::ok);
     CHECK(place < 1e-11);  // the joints' tolerance is 1e-12
-    // And over the step 1e-9; the direct solve leaves rates to the scheme: h^2 s''', at most 2
+    // Over the step that is 1e-9; the direct solve leaves rates to the scheme: h^2 s''', at most 2
     // m/s3.
     CHECK(speed < (hold == ConstraintMethod::direct ? 2e-6 : 1e-8));
   }
 }
 
-TEST_CASE("Baumgarte's slider follows a polynomial by its order", "[system]") {
+TEST_CASE("Baumgarte's slider follows a polynomial with the order of its error", "[system]") {
   const Vector3d axis = Vector3d::UnitX();
   System s = driven_slider(true, axis, {.polynomial = {0., .2, -.1, .3}});
   s.bodies[0].velocity = .2 * axis;
@@ -89,15 +89,15 @@ TEST_CASE("Baumgarte's slider follows a polynomial by its order", "[system]") {
   };
   const double coarse = error(1e-3), fine = error(5e-4);
   INFO(coarse << " " << fine);
-  // It is pulled back within 5 steps, so the error is one of few steps: s''' h^3 = 1.8e-9 each.
+  // It returns within 5 steps, so the error is that of a few steps: s''' h^3 = 1.8e-9 each.
   CHECK(coarse < 1e-7);
   CHECK(fine < coarse / 3.);
 }
 
-TEST_CASE("a slider follows the natural spline of a table and rests behind it", "[system]") {
+TEST_CASE("a slider follows the natural spline of a table and rests after its end", "[system]") {
   const bool planar = GENERATE(true, false);
   const Vector3d axis(.8, 0., -.6);
-  // Let in from rest before the table starts: its first row stands at 0 s, where the rate jumps.
+  // The table's first row is at 0 s, so the slider starts with the spline's rate.
   System s = driven_slider(planar, axis, {.table = {{0., 0.}, {1., 1.}, {2., 0.}}});
   s.bodies[0].velocity = 1.5 * axis;
   SystemRun r(s, sharp(generalised_alpha(1e-3, .9)));
@@ -114,7 +114,7 @@ TEST_CASE("a slider follows the natural spline of a table and rests behind it", 
   CHECK(speed < 1e-8);
 }
 
-TEST_CASE("a driven hinge turns its body by its polynomial, over whole turns", "[system]") {
+TEST_CASE("a driven hinge rotates its body by its polynomial, over whole turns", "[system]") {
   const bool planar = GENERATE(true, false);
   System s;
   s.planar = planar;
@@ -144,8 +144,8 @@ TEST_CASE("a driven hinge turns its body by its polynomial, over whole turns", "
   }
 }
 
-TEST_CASE("a force by a table pushes a body by its integral", "[system]") {
-  // Through (0, 0), (1, 1), (2, 0): the spline's integral is 2 (1.5 / 2 - .5 / 4) = 1.25 s.
+TEST_CASE("a force by a table pushes a body by the integral of the table", "[system]") {
+  // Through (0, 0), (1, 1), (2, 0) the spline's integral is 2 (1.5 / 2 - .5 / 4) = 1.25 s.
   const bool planar = GENERATE(true, false);
   System s;
   s.planar = planar;
@@ -159,7 +159,7 @@ TEST_CASE("a force by a table pushes a body by its integral", "[system]") {
                .factor = {.table = {{0., 0.}, {1., 1.}, {2., 0.}}}}};
   SystemRun r(s, sharp(generalised_alpha(1e-3, .9)));
   r.until(3.);
-  // The scheme sums a force as the trapezoidal rule does, with an error of h^2/12 (s'(2) - s'(0))
-  // = 2.5e-7 and its own lag of the same order, twice h^2.
+  // The scheme sums a force as the trapezoidal rule does, with an error of h^2/12 (s'(2) - s'(0)) =
+  // 2.5e-7, and its own lag is of the same order, twice h^2.
   CHECK(largest(r.body_velocity(0) - 1.25 * Vector3d(3., 0., -4.) / 5.) < 3e-6);
 }

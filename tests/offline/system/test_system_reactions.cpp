@@ -16,7 +16,7 @@ const ConstraintMethod kConstraintMethods[] = {
 
 }  // namespace
 
-TEST_CASE("a hanging body hangs on its weight", "[system]") {
+TEST_CASE("the joint of a hanging body carries its weight", "[system]") {
   const bool planar = GENERATE(true, false);
   for (const ConstraintMethod hold : kConstraintMethods) {
     System s;
@@ -27,14 +27,15 @@ TEST_CASE("a hanging body hangs on its weight", "[system]") {
     for (int i = 0; i < 200; ++i) r.frame();
     INFO("hold " << static_cast<int>(hold));
     CHECK(r.seen == Status::ok);
-    // Places of 1 m are known to some ulp, 1e-15 m, forces to m kg = 1e7 N/m of that.
+    // Positions of 1 m are known to some ulp, 1e-15 m; forces to m kg = 1e7 N/m of that.
     CHECK(largest(r.joint_force(0) - Vector3d(0., 0., 3. * kGravity)) < 1e-7);
     CHECK(largest(r.joint_moment(0)) < 1e-7);
   }
 }
 
 TEST_CASE("a clamped lever carries its weight and its moment", "[system]") {
-  // A rod of 2 m and 3 kg fixed at its start along x, with 10 N upwards and 4 N along y at its end.
+  // A rod of 2 m and 3 kg along x is fixed at its start; its end bears 10 N upwards and 4 N along
+  // y.
   for (const ConstraintMethod hold : kConstraintMethods) {
     System s;
     s.bodies = {rod_body(Vector3d::Zero(), 2., 0., 3., .05)};
@@ -50,15 +51,15 @@ TEST_CASE("a clamped lever carries its weight and its moment", "[system]") {
     CHECK(largest(r.body_position(0) - Vector3d(1., 0., 0.)) < 1e-11);
     // As above.
     CHECK(largest(r.joint_force(0) - Vector3d(0., -4., 3. * kGravity - 10.)) < 1e-7);
-    // Balance about the clamp: M + r x F + r_g x W = 0; (2,0,0) x (0,4,10) = (0,-20,8), and
+    // Balance about the clamp is M + r x F + r_g x W = 0; (2,0,0) x (0,4,10) = (0,-20,8), and
     // (1,0,0) x (0,0,-3 g) = (0, 3 g, 0).
     CHECK(largest(r.joint_moment(0) - Vector3d(0., 20. - 3. * kGravity, -8.)) < 1e-7);
   }
 }
 
-TEST_CASE("a see-saw's pivot and a line under its end share the load", "[system]") {
-  // A rod of 3 m and 2 kg, hinged 1 m from its start, its end kept on the level: moments about the
-  // hinge give the end .5 m / 2 m of the weight.
+TEST_CASE("the pivot of a see-saw and a guide under its end share the load", "[system]") {
+  // A rod of 3 m and 2 kg is hinged 1 m from its start, and its end stays level: by moments about
+  // the hinge the end bears .5 m / 2 m of the weight.
   System s;
   s.planar = true;
   s.bodies = {rod_body(Vector3d(-1., 0., 0.), 3., 0., 2., .05)};
@@ -75,10 +76,10 @@ TEST_CASE("a see-saw's pivot and a line under its end share the load", "[system]
   CHECK(largest(r.joint_force(1) - Vector3d(0., 0., .25 * 2. * kGravity)) < 1e-7);
 }
 
-TEST_CASE("a swinging pendulum pulls m g cos + m l w^2 on its hinge", "[system]") {
-  // A rod of 1 m, its centre at l = .5 m, I = m (l^2 + (1 + .05^2) / 12) about the hinge. From the
-  // horizontal, below it by a: w^2 = 2 m g l sin(a) / I; along the rod g sin(a) + l w^2, across it
-  // g cos(a) (1 - m l^2 / I).
+TEST_CASE("a swinging pendulum pulls on its hinge with m g cos + m l w^2", "[system]") {
+  // A rod of 1 m has its centre at l = .5 m and I = m (l^2 + (1 + .05^2) / 12) about the hinge. At
+  // the angle a below the horizontal start w^2 = 2 m g l sin(a) / I. The force over m is g sin(a) +
+  // l w^2 along the rod and g cos(a) (1 - m l^2 / I) across it.
   const bool planar = GENERATE(true, false);
   const double m = 2., l = .5, inertia = m * (l * l + (1. + .05 * .05) / 12.);
   for (const ConstraintMethod hold : kConstraintMethods) {
@@ -91,7 +92,7 @@ TEST_CASE("a swinging pendulum pulls m g cos + m l w^2 on its hinge", "[system]"
       double most = 0.;
       while (r.time() < .8 - .5 * h) {
         r.frame();
-        if (r.time() < .1) continue;  // .6^100: what swings in from the start is over
+        if (r.time() < .1) continue;  // .6^100: the start's oscillation is over
         const Vector3d along = r.body_rotation(0).col(0), across(-along.z(), 0., along.x());
         const double sine = -along.z(), cosine = along.x();
         const double w2 = 2. * m * kGravity * l * sine / inertia;
@@ -109,7 +110,7 @@ TEST_CASE("a swinging pendulum pulls m g cos + m l w^2 on its hinge", "[system]"
   }
 }
 
-TEST_CASE("a spinning rod pulls m r w^2 on its hinge", "[system]") {
+TEST_CASE("a spinning rod pulls on its hinge with m r w^2", "[system]") {
   const bool planar = GENERATE(true, false);
   const double w = 20.;
   for (const ConstraintMethod hold : kConstraintMethods) {
@@ -124,14 +125,14 @@ TEST_CASE("a spinning rod pulls m r w^2 on its hinge", "[system]") {
     const Vector3d pull = -2. * .5 * w * w * r.body_rotation(0).col(0);
     INFO("hold " << static_cast<int>(hold) << ", force " << r.joint_force(0).norm());
     CHECK(r.seen == Status::ok);
-    // The scheme's acceleration on a circle is of relative error (w h)^2 = 4e-4, over 3 or less.
+    // On a circle the scheme's acceleration has a relative error of (w h)^2 = 4e-4, over 3 or less.
     CHECK(largest(r.joint_force(0) - pull) < w * w * h * h * pull.norm() / 3.);
     // The rate does not change.
     CHECK_THAT(-r.body_spin(0).y(), WithinRel(w, 1e-4));
   }
 }
 
-TEST_CASE("an accelerated slider pulls m a on its drive", "[system]") {
+TEST_CASE("an accelerated slider pulls on its drive with m a", "[system]") {
   const System s = [] {
     System scene;
     RigidBody b;
@@ -151,8 +152,8 @@ TEST_CASE("an accelerated slider pulls m a on its drive", "[system]") {
     r.until(1.);
     INFO("hold " << static_cast<int>(hold));
     CHECK(r.seen == Status::ok);
-    // 4 kg (2 - 1.8 t): the scheme's accelerations of a cubic motion lag by less than a step, 1.8
-    // h.
+    // The force is 4 kg (2 - 1.8 t): the scheme's accelerations of a cubic motion lag by less than
+    // a step, 1.8 h.
     CHECK(largest(r.joint_force(1) - Vector3d(4. * (2. - 1.8), 0., 0.)) < 4. * 1.8e-3);
     CHECK(largest(r.joint_force(0) - Vector3d(0., 0., 4. * kGravity)) < 1e-7);
   }

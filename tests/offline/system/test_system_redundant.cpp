@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A rod on a hinge at the origin, let go from the horizontal, whose hinge is said `times` times.
+/// A rod on a hinge at the origin, released from the horizontal; its hinge is given `times` times.
 System pendulum(bool planar, int times) {
   System s;
   s.planar = planar;
@@ -24,7 +24,7 @@ Vector3d end(const SystemRun& r) { return r.point_of_body(0, Vector3d::UnitX());
 }  // namespace
 
 TEST_CASE("a doubled hinge moves as a single one", "[system]") {
-  // hard-cases.md, H20.
+  // This is H20 of hard-cases.md.
   const bool planar = GENERATE(true, false);
   const Scheme scheme = GENERATE(generalised_alpha(1e-3, .9), energy_momentum(1e-3));
   SystemRun single(pendulum(planar, 1), sharp(scheme));
@@ -38,11 +38,11 @@ TEST_CASE("a doubled hinge moves as a single one", "[system]") {
   INFO("apart " << apart << " m");
   CHECK((single.seen | twice.seen | thrice.seen) == Status::ok);
   CHECK(apart < 1e-9);
-  // Together they carry what the one does, and alike.
+  // Together they carry the load of the single hinge, in equal shares.
   const Vector3d one = single.joint_force(0), first = twice.joint_force(0),
                  second = twice.joint_force(1);
-  // Joints are held to 1e-12 m, so forces to kg m = 4e6 N/m of that, in each of 2000 steps, which
-  // energy-momentum does not forget: as a random walk.
+  // Joints hold to 1e-12 m, so forces to kg m = 4e6 N/m of that in each of 2000 steps.
+  // Energy-momentum does not forget these errors, which add up as a random walk.
   const double known = std::sqrt(2000.) * 4e6 * 1e-12;
   CHECK((first + second - one).norm() < known);
   CHECK((first - second).norm() < known);
@@ -59,7 +59,7 @@ TEST_CASE("the direct solve names redundant joints", "[system]") {
   CHECK(single.seen == Status::ok);
   CHECK(single.outputs.redundant_rows == 0);
   CHECK(twice.outputs.redundant_rows == (planar ? 2 : 5));
-  // Which of two alike rows is taken is nobody's business, but each is one of the pair's.
+  // Either of two equal rows may be taken, but each must be one of a pair.
   for (int i = 0; i < twice.outputs.redundant_rows; ++i) {
     const int row = twice.outputs.redundant_row[i];
     CHECK((row >= 0 && row < 2 * twice.outputs.redundant_rows));
@@ -71,7 +71,7 @@ TEST_CASE("the direct solve names redundant joints", "[system]") {
   CHECK(largest(end(single) - end(twice)) < 1e-9);
 }
 
-TEST_CASE("the direct solve names Bricard's one row too many and goes on", "[system]") {
+TEST_CASE("the direct solve names Bricard's redundant row and goes on", "[system]") {
   const Bricard m;
   const HighOrder known = high_order([&](double, const Eigen::VectorXd& y) { return m.slope(y); },
                                      Eigen::VectorXd::Zero(10), {0., 1.}, .05);
@@ -93,6 +93,6 @@ TEST_CASE("the direct solve names Bricard's one row too many and goes on", "[sys
   };
   const double coarse = error(2e-3), fine = error(1e-3);
   INFO("errors " << coarse << " " << fine << " m");
-  CHECK(fine < 1e-3);  // a tenth of w h of a rod's length, w some 10 rad/s
+  CHECK(fine < 1e-3);  // a tenth of w h of a rod's length, w is some 10 rad/s
   CHECK_THAT(order(coarse, fine), Catch::WithinAbs(2., .15));
 }

@@ -18,7 +18,7 @@ RigidBody block(double mass, const Vector3d& position) {
           .position = position};
 }
 
-/// A guided block on a spring and a damper on the left rail.
+/// A block guided along z, on a spring and a damper on the left rail.
 System sprung_block(double x, double mass, double stiffness) {
   System s;
   s.bodies = {block(mass, {x, .75, .5})};
@@ -38,14 +38,14 @@ System sprung_block(double x, double mass, double stiffness) {
 
 }  // namespace
 
-TEST_CASE("a sprung block and its track start at rest, and stay", "[system][rest][track]") {
+TEST_CASE("a sprung block and its track start at rest and stay there", "[system][rest][track]") {
   Track track = peers_pair(2);
   track.rail_spacing = 1.5;
   const double x = 4.9, mass = 500., k = 2e6;
   PackOptions options = full_order(1e-3);
   options.gravity = kGravity;
   SystemRun run(sprung_block(x, mass, k), {.at_rest = true}, track, options);
-  // statics.h, by another route than the steps: weight of the rails, and the block's on the rail
+  // statics.h solves it independently: the rails' weight, and that of the block on the rail.
   const Statics statics(track);
   const std::vector<VectorXd> u = statics.solve({{{0, x, 0., 0., 2}, -mass * kGravity}}, kGravity);
   double rail = 0.;
@@ -54,7 +54,7 @@ TEST_CASE("a sprung block and its track start at rest, and stay", "[system][rest
     rail += VectorXd(point_row(track, lines[l], {0, x, 0., 0., 2})).dot(u[l]);
   const double want = rail - mass * kGravity / k;
   const double at_start = run.body_position(0).z() - .5;
-  // 1e-9 m/s2 of this block over its (2 pi 10)^2 /s2 is 3e-13 m
+  // 1e-9 m/s2 of this block, over its (2 pi 10)^2 /s2, is 3e-13 m.
   CHECK(at_start == Approx(want).margin(1e-12));
   CHECK(run.state.row_force[run.model().system.joint_rows] ==
         Approx(-mass * kGravity).epsilon(1e-9));
@@ -67,8 +67,8 @@ TEST_CASE("a sprung block and its track start at rest, and stay", "[system][rest
   CHECK(run.seen == Status::ok);
 }
 
-TEST_CASE("a body hinged to a rail comes to hang below it", "[system][rest][track]") {
-  // From 45 degrees beside it: a turn as large as any.
+TEST_CASE("a body hinged to a rail starts at rest below it", "[system][rest][track]") {
+  // It is given at 45 degrees beside the rail: the rotation is large.
   Track track = peers_pair(1);
   track.rail_spacing = 1.5;
   const double x = 3., length = .5;
@@ -89,7 +89,7 @@ TEST_CASE("a body hinged to a rail comes to hang below it", "[system][rest][trac
 }
 
 TEST_CASE("a start at rest under moving loads moves along with them", "[system][rest][track]") {
-  // A run in which the load came from far, slowly, against the start: quasi-static both.
+  // A run whose load came slowly from far is compared with the start: both are quasi-static.
   Track track = peers_pair(2);
   track.rail_spacing = 1.5;
   const double x = 4.9, speed = .2;
@@ -103,15 +103,15 @@ TEST_CASE("a start at rest under moving loads moves along with them", "[system][
   SystemRun run(sprung_block(x, 500., 2e6), {.at_rest = true}, track, options,
                 load_from(x - .3 - 2. * speed));
   run.until(2.);
-  // Of the quasi-static motion v the acceleration is v' v: 2 s of 40 % damped motions forget the
-  // start, and what is left is (v / l)^2 / w^2 of the displacement, l 0.7 m, w 60 /s: 2e-5 of it.
+  // A quasi-static motion v has the acceleration v' v. 2 s of motion with 40 % damping forget the
+  // start. The rest is (v / l)^2 / w^2 of the displacement, with l 0.7 m and w 60 /s: 2e-5 of it.
   CHECK(run.body_velocity(0).z() == Approx(start.body_velocity(0).z()).epsilon(1e-2));
   CHECK(std::abs(start.body_velocity(0).z()) > 1e-5);
   CHECK(run.body_position(0).z() - .5 == Approx(start.body_position(0).z() - .5).epsilon(1e-4));
 }
 
-TEST_CASE("a drive's speed comes on top of the start at rest", "[system][rest][track]") {
-  // A disc with its mass off its axle, turned at w: centripetal force on the axle from the start.
+TEST_CASE("a start at rest adds the speed of a drive", "[system][rest][track]") {
+  // A disc with its mass off its axle rotates at w: centripetal force acts from the start.
   Track track = peers_pair(1);
   track.rail_spacing = 1.5;
   const double x = 3., off = .02, w = 50., mass = 10.;
@@ -130,17 +130,17 @@ TEST_CASE("a drive's speed comes on top of the start at rest", "[system][rest][t
                .motion = {.polynomial = {0., w}}}};
   const SystemRun run(s, {.at_rest = true}, track, full_order(1e-4));
   CHECK(run.body_spin(0).x() == Approx(w).epsilon(1e-12));
-  // Newton's law for the disc, from accelerations and joint forces that were found apart: by the
-  // mobility of rail and disc, and by the rest's balance.
+  // Newton's law for the disc, with independent accelerations and joint forces: from the mobility
+  // of rail and disc, and from the balance of the state at rest.
   const int first = run.model().system.first + run.body(0).first;
   const Vector3d acceleration = Eigen::Map<const Vector3d>(run.state.g + first);
   const Vector3d force = run.joint_force(0) - Vector3d(0., 0., mass * kGravity);
   CHECK((force - mass * acceleration).norm() < 1e-9 * mass * off * w * w);
-  CHECK(force.y() == Approx(-mass * off * w * w).epsilon(1e-9));  // these rails move in z alone
+  CHECK(force.y() == Approx(-mass * off * w * w).epsilon(1e-9));  // these rails move only along z
   CHECK(run.body_position(0).z() < -1e-6);
 }
 
-TEST_CASE("where there is no rest the start says what moves", "[system][rest]") {
+TEST_CASE("the start names the body that does not come to rest", "[system][rest]") {
   System s;
   s.bodies = {block(3., {0., 0., 1.})};
   CHECK_THROWS_WITH(

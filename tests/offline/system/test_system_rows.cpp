@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Every kind of joint between two bodies, a body and a beam, two beams, and the ground.
+/// Every kind of joint between two bodies, a body and a beam, two beams, and a part and the ground.
 System all_joints(bool planar) {
   System s = pendulum_system({}, 2, planar);
   s.beams[0].ends[0] = BeamEnd::free;
@@ -53,7 +53,7 @@ System all_joints(bool planar) {
   return s;
 }
 
-/// Rows of a system anywhere, by the step's own functions.
+/// Rows of a system in any state, by the step's own functions.
 struct Rows {
   PackedSystem packed;
   Model model;
@@ -81,11 +81,11 @@ struct Rows {
   VectorXd values(const VectorXd& x, double time) {
     place(x, VectorXd::Zero(x.size()));
     Model plain = model;
-    plain.scheme.kv = 1.;  // a spring has a slope then
+    plain.scheme.kv = 1.;  // then a spring has a slope
     set_rows(plain, time, true, w);
     return Eigen::Map<const VectorXd>(w.value, count());
   }
-  /// A row of gradients or slopes over all unknowns.
+  /// A row of gradients or slopes as a vector over all unknowns.
   VectorXd over_unknowns(const double* ends, std::int32_t r) const {
     VectorXd unit = VectorXd::Zero(count()), g = VectorXd::Zero(model.unknowns);
     unit[r] = 1.;
@@ -99,7 +99,7 @@ struct Rows {
     return row_jet(row, marker_jet(s, s.marker[row.a], at), marker_jet(s, s.marker[row.b], at),
                    row.motion >= 0 ? motion_at(s, row.motion, time) : Jet{row.offset, 0., 0.});
   }
-  /// Displacements of the beams at random; of bodies too, but no turn.
+  /// Random displacements of beams and bodies; bodies rotate only if `turns` is true.
   VectorXd random(double size, bool turns, unsigned seed) const {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> any(-size, size);
@@ -115,7 +115,7 @@ struct Rows {
 
 constexpr double kTime = .7;  // s
 
-/// Column i of a derivative, by differences of fourth order of values at x + t e_i.
+/// Column i of a derivative, from differences of fourth order of the values at x + t e_i.
 template <class Values>
 VectorXd column(const VectorXd& x, Eigen::Index i, const Values& values) {
   const double h = 1e-3;
@@ -129,7 +129,7 @@ VectorXd column(const VectorXd& x, Eigen::Index i, const Values& values) {
 
 }  // namespace
 
-TEST_CASE("gradients of all rows are those of their values", "[system][rows]") {
+TEST_CASE("the gradients of all rows are those of their values", "[system][rows]") {
   Rows rows(all_joints(GENERATE(false, true)));
   const VectorXd x = rows.random(.1, false, 3);
   rows.values(x, kTime);
@@ -142,18 +142,18 @@ TEST_CASE("gradients of all rows are those of their values", "[system][rows]") {
     for (std::int32_t r = 0; r < rows.count(); ++r)
       worst = std::max(worst, std::abs(slope[r] - gradient[static_cast<std::size_t>(r)][i]));
   }
-  // Fourth order: h^4 / 30 of fifth derivatives of order 1 (turns; lengths of .1 m: 1e4 of them in
-  // the spring), 1e-12 to 1e-9; round-off 1e-16 / h.
+  // Fourth order: h^4 / 30 of fifth derivatives of order 1 (rotations; 1e4 of that in the spring
+  // with lengths of .1 m), 1e-12 to 1e-9; round-off is 1e-16 / h.
   CHECK(worst < 1e-8);
 }
 
-TEST_CASE("energy-momentum's slopes are those of rows' values at the end", "[system][rows]") {
+TEST_CASE("energy-momentum's slopes are those of the rows' values at the end", "[system][rows]") {
   Rows rows(all_joints(GENERATE(false, true)),
             {.scheme = energy_momentum(1e-3), .energy_momentum = true});
-  const VectorXd x = rows.random(.1, true, 3);  // bodies turn over the step too
+  const VectorXd x = rows.random(.1, true, 3);  // bodies rotate in the step too
   rows.values(x, kTime);
   std::vector<VectorXd> slope;
-  double mean = 0.;  // by how far the gradient at the mean, which pulls, is not it
+  double mean = 0.;  // difference from the gradient at the mean, which gives the force
   for (std::int32_t r = 0; r < rows.count(); ++r) {
     slope.push_back(rows.over_unknowns(rows.w.slope, r));
     mean = std::max(mean,
@@ -171,8 +171,8 @@ TEST_CASE("energy-momentum's slopes are those of rows' values at the end", "[sys
 
 namespace {
 
-/// How far slopes [0] and gradients [1] are from what Baumgarte's `wanted` changes by, in the
-/// plane.
+/// Errors of slopes [0] and gradients [1] relative to the derivative of Baumgarte's `wanted`, in
+/// the plane.
 Eigen::Vector2d baumgarte_errors(double dt) {
   Rows rows(all_joints(true), {.scheme = generalised_alpha(dt, .9),
                                .constraint_method = ConstraintMethod::baumgarte,
@@ -213,19 +213,19 @@ Eigen::Vector2d baumgarte_errors(double dt) {
 
 }  // namespace
 
-TEST_CASE("Baumgarte's slopes are those of what rows want, to second order", "[system][rows]") {
+TEST_CASE("Baumgarte's slopes are the derivatives of `wanted` to second order", "[system][rows]") {
   const Eigen::Vector2d coarse = baumgarte_errors(1e-3), fine = baumgarte_errors(5e-4);
   INFO(coarse.transpose() << " then " << fine.transpose());
-  // Left out are terms of the step's square; the gradient at the end leaves out those of the step.
+  // They leave out terms of the step's square; the gradient at the end leaves out the step's.
   CHECK(std::log2(coarse[0] / fine[0]) > 1.8);
   CHECK(std::log2(coarse[1] / fine[1]) < 1.2);
   CHECK(coarse[0] < 1e-2 * coarse[1]);
 }
 
-TEST_CASE("first and second derivatives of all rows along a motion", "[system][rows]") {
+TEST_CASE("first and second derivatives of all rows are right along a motion", "[system][rows]") {
   Rows rows(all_joints(GENERATE(false, true)));
   const VectorXd x = rows.random(.1, false, 5), v = rows.random(1., true, 7);
-  // Places after t at constant rates: turns about an axis of the body go on as exp(t v).
+  // Positions after t at constant rates: a rotation about a body's axis continues as exp(t v).
   const auto at = [&](double t) { return rows.values(x + t * v, kTime + t); };
   const double h = 1e-3;
   const VectorXd rate = (8. * (at(h) - at(-h)) - (at(2. * h) - at(-2. * h))) / (12. * h);
@@ -237,15 +237,16 @@ TEST_CASE("first and second derivatives of all rows along a motion", "[system][r
     CAPTURE(r);
     CHECK(phi.x == Approx(at(0.)[r]).margin(1e-14));
     rows.place(x, v);
-    // As above; round-off of the second difference is 1e-16 / h^2 = 1e-10 of values below 10.
+    // As above; the second difference rounds by 1e-16 / h^2 = 1e-10 of values below 10.
     CHECK(phi.v == Approx(rate[r]).margin(1e-8));
     if (r < rows.model.system.joint_rows) CHECK(phi.a == Approx(bend[r]).margin(1e-7));
   }
 }
 
-TEST_CASE("beams solved beside their rows' ends have the bits of each alone", "[system][rows]") {
+TEST_CASE("beams solved together with their rows' ends have the bits of separate solves",
+          "[system][rows]") {
   const bool planar = GENERATE(false, true);
-  const int ends = GENERATE(1, 3, 4, 6);  // four sides at a time: places left, and none
+  const int ends = GENERATE(1, 3, 4, 6);  // four sides at a time: with places left, and none
   CAPTURE(planar, ends);
   System system = pendulum_system({}, 5, planar);
   system.joints.clear();

@@ -12,12 +12,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A crank about the origin, a connecting rod and a slider on x.
+/// A crank about the origin, a connecting rod, and a slider along x.
 struct SliderCrank {
   double crank = .2, rod = .5;                              // m
   double crank_mass = 1., rod_mass = 2., slider_mass = 3.;  // kg
-  double side = .02;                                        // of the square sections, m
-  double start = .7, rate = 3.;                             // crank, rad from x towards z, rad/s
+  double side = .02;                                        // side of the square sections, m
+  double start = .7, rate = 3.;  // of the crank: rad from x towards z, rad/s
 
   double rod_angle(double angle) const { return std::asin(-crank / rod * std::sin(angle)); }
   /// d(rod angle)/d(angle)
@@ -57,7 +57,7 @@ System SliderCrank::scene(bool planar) const {
                       .b = body(2),
                       .point = block.position,
                       .axis = Vector3d::UnitX()};
-  // In space hinges about y say more than the loop needs; a ball and a universal joint do not.
+  // In space hinges about y would be redundant in the loop; a ball and a universal joint are not.
   s.joints = {hinge(ground(), body(0), Vector3d::Zero(), planar),
               {.kind = JointKind::spherical, .a = body(0), .b = body(1), .point = pin(start)},
               hinge(body(1), body(2), block.position, true),
@@ -72,8 +72,8 @@ System SliderCrank::scene(bool planar) const {
   return s;
 }
 
-/// Angle and rate of the crank: M(angle) angle'' + M' angle'^2 / 2 + V' = 0, from the places of
-/// the centres p(angle), their slopes p' and p''.
+/// Rates of the crank's angle and rate: M(angle) angle'' + M' angle'^2 / 2 + V' = 0, from the
+/// positions of the centres p(angle) and their derivatives p' and p''.
 Eigen::VectorXd SliderCrank::slope(const Eigen::VectorXd& y) const {
   const double c = std::cos(y[0]), s = std::sin(y[0]), b = rod_angle(y[0]), db = rod_ratio(y[0]);
   // sin b = -(crank / rod) sin a: cos b b'' - sin b b'^2 = (crank / rod) sin a
@@ -110,7 +110,7 @@ TEST_CASE("a driven crank puts its slider where geometry says", "[system]") {
   const bool planar = GENERATE(true, false);
   const SliderCrank m;
   System s = m.scene(planar);
-  // About y the body turns from z towards x: from x towards z by the negative.
+  // About y a body rotates from z towards x: from x towards z the sign is negative.
   s.joints.push_back({.kind = JointKind::rotation,
                       .a = ground(),
                       .b = body(0),
@@ -126,7 +126,7 @@ TEST_CASE("a driven crank puts its slider where geometry says", "[system]") {
   }
   CHECK(r.seen == Status::ok);
   INFO("slider " << place << " m, " << speed << " m/s");
-  // Joints hold to 1e-12 a row; the transmission dx/da stays under .25 m, its inverse is not asked.
+  // Joints hold to 1e-12 per row; the ratio dx/da stays below .25 m, and its inverse is not used.
   CHECK(place < 1e-11);
   CHECK(speed < 1e-9);  // a projection to the rows' rates of 1e-12 / h
 }
@@ -156,14 +156,14 @@ TEST_CASE("a free slider-crank runs as its one equation says", "[system]") {
     const double h = c.order > 1.5 ? 1e-3 : 2e-4;
     const double coarse = error(c.scheme(h)), fine = error(c.scheme(h / 2.));
     INFO(coarse << " and " << fine << " m at " << h << " s and its half");
-    // The next term is of relative order w h: .02 and, of the first order, .004, some 10 times.
+    // The next term is of relative order w h: .02, and .004 some 10 times for the first order.
     CHECK_THAT(order(coarse, fine), WithinAbs(c.order, .15));
   }
 }
 
 namespace {
 
-/// Rods of 1 m and 1 kg, the second's end on the x axis, from 45 degrees, its end at -4 m/s.
+/// Rods of 1 m and 1 kg at 45 degrees; the second rod's end is on the x axis and starts at -4 m/s.
 System equal_arms() {
   System s;
   s.planar = true;
@@ -186,9 +186,9 @@ System equal_arms() {
 
 }  // namespace
 
-TEST_CASE("an equal-arm slider-crank goes through its singular position", "[system]") {
-  // hard-cases.md, R8, to 1e-8. At 90 degrees both arms lie on each other and the slider could
-  // stay where it is while they turn as one.
+TEST_CASE("an equal-arm slider-crank passes its singular position", "[system]") {
+  // R8 of hard-cases.md, to 1e-8. At 90 degrees both arms lie on each other; there the slider could
+  // stay while they rotate as one.
   constexpr double kUpright = .391732135, kRate = 1.68672409, kAt1 = -1.95128839;
   constexpr double kAt10 = -1.06179862;
   const Vector3d end(std::sqrt(2.), 0., 0.);
@@ -213,13 +213,13 @@ TEST_CASE("an equal-arm slider-crank goes through its singular position", "[syst
   const double coarse = std::abs(run(1e-3, 1., lost) - kAt1);
   const double fine = std::abs(run(5e-4, 1., lost) - kAt1);
   INFO("errors at 1 s: " << coarse << " " << fine << ", energy " << lost);
-  // w^3 t h^2 / 12 at the fastest 4 rad/s, 5e-6 rad at 1 ms, times an arm of 2 m and 10 for how
-  // far neighbouring motions part while they slow down over the top.
+  // w^3 t h^2 / 12 at the fastest 4 rad/s is 5e-6 rad at 1 ms, times an arm of 2 m, times 10 as
+  // neighbouring motions diverge while they slow down over the top.
   CHECK(coarse < 1e-4);
   CHECK(fine < .3 * coarse + 1e-8);
   CHECK(lost < 1e-3);  // H21
 
-  // 10 s: H21's energy. The place at 10 s by order: at half the step a quarter of the error.
+  // 10 s: H21's energy. The position's order: half the step has a quarter of the error.
   lost = 0.;
   const double late = std::abs(run(1e-3, 10., lost) - kAt10);
   const double later = std::abs(run(5e-4, 10., lost) - kAt10);
@@ -227,13 +227,13 @@ TEST_CASE("an equal-arm slider-crank goes through its singular position", "[syst
   CHECK(lost < 1e-3);
   CHECK(later < .3 * late + 1e-8);
 
-  // Upright: the crank's angle and rate at the published time, between two steps by a parabola.
+  // Upright: angle and rate of the crank at the published time, by a parabola between steps.
   SystemRun r(equal_arms(), options(2.5e-4));
   r.until(kUpright - 1e-4);
   const double left = kUpright - r.time(), rate = -r.body_spin(0).y();
   const Vector3d along = r.body_rotation(0).col(0);
   const double angle = std::atan2(along.z(), along.x()) + rate * left;
-  // angle'' = -g cos / (...) is 0 upright.
+  // angle'' = -g cos / (...) is 0 when upright.
   CHECK_THAT(angle, WithinAbs(2. * std::atan(1.), 1e-5));
   CHECK_THAT(rate, WithinAbs(kRate, 1e-5));
 }

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A body that turns about a fixed point; r from there to its centre, in body axes.
+/// A body that rotates about a fixed point; r goes from there to its centre, in body axes.
 struct Top {
   double mass;
   Vector3d inertia;  // about the centre, in body axes
@@ -70,14 +70,14 @@ double error(const Top& top, const TopMotion& known, double t, const Scheme& sch
   return largest(r.body_rotation(0) - known.rotation());
 }
 
-/// A fast top of Geradin and Cardona (2001), as Bruls and Cardona (2010) and Arnold and Bruls use
-/// it: it nutates some 70 times a second.
+/// The fast top of Geradin and Cardona (2001), as used by Bruls and Cardona (2010) and Arnold and
+/// Bruls; it nutates some 70 times a second.
 Top fast_top() {
   return {
       15., {.234375, .46875, .234375}, {0., 1., 0.}, Matrix3d::Identity(), {0., 150., -4.61538}};
 }
 
-/// About its z axis, .1 m over its point; I3 = 2e-3, I1 = 1.25e-3 kg m2 about the centre.
+/// A top about its z axis, .1 m above its point; I3 = 2e-3, I1 = 1.25e-3 kg m2 about the centre.
 Top slow_top(double tilt, double spin) {
   return {1.,
           {1.25e-3, 1.25e-3, 2e-3},
@@ -86,7 +86,7 @@ Top slow_top(double tilt, double spin) {
           {0., 0., spin}};
 }
 
-/// From which a top sleeps: I3 w = 2 sqrt(I1 m g r), I1 about the point.
+/// Spin from which a top sleeps: I3 w = 2 sqrt(I1 m g r), with I1 about the point.
 double sleeping_spin() { return 2. * std::sqrt((1.25e-3 + .01) * kGravity * .1) / 2e-3; }
 
 }  // namespace
@@ -107,7 +107,7 @@ TEST_CASE("a fast heavy top precesses and nutates as its equations say", "[syste
     const double coarse = error(top, known, .2, c.scheme(h));
     const double fine = error(top, known, .2, c.scheme(h / 2.));
     INFO("errors " << coarse << " " << fine << " at " << h << " s");
-    // The turn of a step is w h: .03 rad, .003 for the first order.
+    // A step rotates by w h: .03 rad, and .003 for the first order.
     CHECK_THAT(order(coarse, fine), WithinAbs(c.order, .1));
   }
 }
@@ -125,7 +125,7 @@ TEST_CASE("a top sleeps above its critical spin and falls below", "[system]") {
   }
   INFO("spin " << factor * sleeping_spin() << " rad/s, tilt " << tilt);
   if (factor > 1.) {
-    // Linear theory: the tilt moves between its start and start / sqrt(1 - 1 / factor^2).
+    // In linear theory the tilt stays between its start and start / sqrt(1 - 1 / factor^2).
     CHECK_THAT(tilt, WithinRel(1e-3 / std::sqrt(1. - 1. / (factor * factor)), .02));
   } else {
     CHECK(tilt > .1);
@@ -137,7 +137,7 @@ TEST_CASE("a top sleeps above its critical spin and falls below", "[system]") {
 }
 
 TEST_CASE("a top keeps its energy and its momentum about the vertical", "[system]") {
-  // Nutating widely, 10 s in 1e4 steps.
+  // The top nutates widely for 10 s in 1e4 steps.
   const Top top = slow_top(.5, sleeping_spin());
   const SystemOptions options = sharp(energy_momentum(1e-3));
   SystemRun r(top.scene(), options);
@@ -150,8 +150,8 @@ TEST_CASE("a top keeps its energy and its momentum about the vertical", "[system
   }
   CHECK(r.seen == Status::ok);
   INFO("energy " << lost << " of " << energy << ", momentum " << turned << " of " << about_z);
-  // Newton leaves an ulp of places of .1 m, 1 kg and kg = 2e6 1/s2 in forces, so an arm of that in
-  // moments; all to one side, over 10 s and the turns in these.
+  // Newton leaves an ulp of positions of .1 m with 1 kg, so kg = 2e6 1/s2 of that in forces and an
+  // arm of that in moments. All are to one side, over 10 s with the rotations in these.
   const double left = 4. * 1e-16 * .1 * options.scheme.kg * .1;
   CHECK(lost < left * sleeping_spin() * 10.);
   CHECK(turned < left * 10.);

@@ -11,8 +11,8 @@ using Number = std::complex<double>;
 
 namespace {
 
-/// m x'' + c x' + k x = 0 from x0 at rest, by its two roots; and as a one-step scheme of
-/// amplification `grow`(h root) takes it.
+/// Solution of m x'' + c x' + k x = 0 from x0 at rest, by its two roots; and the same by a one-step
+/// scheme with the amplification `grow`(h root).
 struct Oscillator {
   double mass, stiffness, damping, x0;
 
@@ -45,7 +45,7 @@ RigidBody ball(double mass, const Vector3d& position) {
   return b;
 }
 
-/// A body on a spring of .5 m along a skew line to the ground, pulled out by x0.
+/// A body on a spring of .5 m to the ground along a skew line, pulled out by x0.
 System on_ground(const Oscillator& o, bool planar) {
   System s;
   s.planar = planar;
@@ -63,9 +63,8 @@ System on_ground(const Oscillator& o, bool planar) {
 
 }  // namespace
 
-TEST_CASE("a body on a spring and damper swings as its scheme takes a linear oscillator",
-          "[system]") {
-  // 8 Hz: free, lightly damped, critical to 1e-3, overdamped 6 times.
+TEST_CASE("a body on spring and damper moves as a linear oscillator in its scheme", "[system]") {
+  // The frequency is 8 Hz: free, lightly damped, critical to 1e-3, and overdamped 6 times.
   const double k = 4. * 2500., critical = 2. * std::sqrt(4. * k);
   const bool planar = GENERATE(true, false);
   const double share = GENERATE(0., .02, .999, 6.);
@@ -86,14 +85,14 @@ TEST_CASE("a body on a spring and damper swings as its scheme takes a linear osc
     const double x = r.body_position(0).norm() - .5;
     INFO(c.name << ", damping " << share << ": " << x << " m, " << c.right);
     CHECK(r.seen == Status::ok);
-    // Newton's 1e-11 of 500 N on 4 kg over 500 steps, either way.
+    // Newton leaves 1e-11 of 500 N on 4 kg over 500 steps, in either direction.
     CHECK_THAT(x, WithinAbs(c.right, 1e-10));
-    // And on its line.
+    // It stays on its line.
     CHECK(std::abs(r.body_position(0).dot(Vector3d(-.8, 0., .6))) < 1e-12);
   }
 }
 
-TEST_CASE("a damped oscillator comes to its closed form with the scheme's order", "[system]") {
+TEST_CASE("a damped oscillator converges to its closed form with the scheme's order", "[system]") {
   const Oscillator o{4., 1e4, 40., .05};
   const auto error = [&](double h) {
     SystemRun r(on_ground(o, true), sharp(generalised_alpha(h, .8)));
@@ -106,12 +105,12 @@ TEST_CASE("a damped oscillator comes to its closed form with the scheme's order"
   };
   const double coarse = error(1e-3), fine = error(5e-4);
   INFO(coarse << " " << fine);
-  // w^3 t h^2 / 12 with w = 50 rad/s, at 1 / (decay) = .2 s: 2e-3 of .05 m; twice for rho .8.
+  // w^3 t h^2 / 12 with w = 50 rad/s at 1 / (decay) = .2 s is 2e-3 of .05 m; twice that for rho .8.
   CHECK(coarse < 2. * 2e-3 * .05);
   CHECK_THAT(order(coarse, fine), WithinAbs(2., .1));
 }
 
-TEST_CASE("two bodies on a spring swing by their reduced mass about a centre that flies",
+TEST_CASE("two bodies on a spring oscillate by their reduced mass about a flying centre",
           "[system]") {
   const bool planar = GENERATE(true, false);
   const double m1 = 2., m2 = 6., h = 1e-3;
@@ -140,7 +139,7 @@ TEST_CASE("two bodies on a spring swing by their reduced mass about a centre tha
   CHECK_THAT(x, WithinAbs(o.trapezoidal(h, steps), 1e-10));
 }
 
-TEST_CASE("a spring without a length pulls nothing where it starts", "[system]") {
+TEST_CASE("a spring without a given length has no force at its start", "[system]") {
   System s;
   s.gravity.setZero();
   s.bodies = {ball(1., Vector3d(.2, .1, .3))};
@@ -155,8 +154,8 @@ TEST_CASE("a spring without a length pulls nothing where it starts", "[system]")
   CHECK(largest(r.body_position(0) - s.bodies[0].position) < 1e-14);
 }
 
-TEST_CASE("a spring beside the centre turns a body", "[system]") {
-  // A rod at rest, pulled across at its end by a spring of 10 N: a = F / m, w' = F l / I.
+TEST_CASE("a spring off the centre rotates a body", "[system]") {
+  // A spring of 10 N pulls a rod at rest across at its end: a = F / m, w' = F l / I.
   const bool planar = GENERATE(true, false);
   System s;
   s.planar = planar;
@@ -173,7 +172,7 @@ TEST_CASE("a spring beside the centre turns a body", "[system]") {
   const int steps = 100;
   for (int i = 0; i < steps; ++i) r.frame();
   const double t = h * steps, inertia = 2. * (1. + .05 * .05) / 12.;
-  // The force falls by k times the end's path of 20 t^2 in 10 N: 4e-5 of it at 1 ms.
+  // The force falls by k times the end's path of 20 t^2, over 10 N: 4e-5 of it at 1 ms.
   CHECK_THAT(r.body_velocity(0).z(), WithinAbs(10. / 2. * t, 4e-5 * 10. / 2. * t));
   CHECK_THAT(-r.body_spin(0).y(), WithinAbs(10. * .5 / inertia * t, 4e-5 * 10. * .5 / inertia * t));
 }

@@ -17,8 +17,8 @@ RigidBody block(double mass, const Vector3d& position) {
           .position = position};
 }
 
-/// Displacement of a rail point of the left line when it carries a mass itself: dense matrices, the
-/// scheme's formulas (scheme.h), from rest under the weight of the mass alone.
+/// Displacement of a point of the left rail's line when it carries a mass itself: dense matrices
+/// and the scheme's formulas (scheme.h), from rest under the weight of the mass alone.
 std::vector<double> carried_mass(const Track& track, double x, double mass, const Scheme& s,
                                  int steps) {
   const std::vector<Line> lines = assemble(track);
@@ -58,7 +58,7 @@ System weight_on_rail(double x, double mass) {
 
 }  // namespace
 
-TEST_CASE("a mass joined to a rail moves as one that the rail carries", "[system][track]") {
+TEST_CASE("a mass joined to a rail moves as one that the rail itself carries", "[system][track]") {
   Track track = peers_pair(1);
   track.rail_spacing = 1.5;
   const double x = .37 * track.element_length() + 5 * track.bay_length, mass = 80., dt = 1e-3;
@@ -67,21 +67,21 @@ TEST_CASE("a mass joined to a rail moves as one that the rail carries", "[system
        {ConstraintMethod::augmented_lagrangian, ConstraintMethod::direct}) {
     System scene = weight_on_rail(x, mass);
     scene.joints[0].kind = JointKind::spherical;
-    // The joint is at the centre of mass, so the body does not turn.
+    // The joint is at the centre of mass, so the body does not rotate.
     SystemRun run(scene, {.constraint_method = hold}, track, full_order(dt));
     double worst = 0.;
     for (const double z : want) {
       run.frame();
       worst = std::max(worst, std::abs(run.body_position(0).z() - z));
     }
-    // The force residual of 1e-8 of 785 N over the rail's 3e7 N/m leaves 3e-13 m a step, which the
-    // damped track forgets; the deflection is 1e-5 m.
+    // The force residual of 1e-8 of 785 N, over the rail's 3e7 N/m, leaves 3e-13 m per step, which
+    // the damped track forgets; the deflection is 1e-5 m.
     CHECK(worst < 1e-11);
     CHECK(run.seen == Status::ok);
   }
 }
 
-TEST_CASE("a sprung mass settles at what spring and track give", "[system][track]") {
+TEST_CASE("a sprung mass settles at the deflection of spring and track", "[system][track]") {
   Track track = peers_pair(2);
   track.rail_spacing = 1.5;
   const double x = 4.9, mass = 500., k = 2e6;
@@ -113,8 +113,7 @@ TEST_CASE("a sprung mass settles at what spring and track give", "[system][track
         Approx(-mass * kGravity).epsilon(1e-9));
 }
 
-TEST_CASE("left and right rails of a sleepered track carry mirrored bodies alike",
-          "[system][track]") {
+TEST_CASE("left and right rails on sleepers carry mirrored bodies alike", "[system][track]") {
   const Track track = s1_track(6, 1);
   const double half = track.rail_spacing / 2., x = 1.7;
   const auto run_on = [&](int side) {
@@ -136,12 +135,13 @@ TEST_CASE("left and right rails of a sleepered track carry mirrored bodies alike
   };
   const Vector3d left = run_on(0), right = run_on(1);
   REQUIRE(std::abs(left.y() - half - .2) > 1e-6);  // it moves sideways
-  // Mirror images differ by round-off that iterations to 1e-8 of 600 N may leave: 1e-5 N on a body
+  // Mirror images differ by the round-off that iterations to 1e-8 of 600 N leave: 1e-5 N on a body
   // of 60 kg within 20 ms.
   CHECK((left - Vector3d(right.x(), -right.y(), right.z())).norm() < 1e-11);
 }
 
-TEST_CASE("a rail does not carry what is not there", "[system][track]") {
+TEST_CASE("joints to a missing track, beyond the rail's ends or beside wheelsets are refused",
+          "[system][track]") {
   const Track track = peers_pair(1);
   System scene = weight_on_rail(1., 80.);
   CHECK_THROWS_WITH(PackedSystem(scene, {.scheme = generalised_alpha(1e-3, .6)}),
@@ -154,7 +154,7 @@ TEST_CASE("a rail does not carry what is not there", "[system][track]") {
                     Catch::Contains("no wheelsets"));
 }
 
-TEST_CASE("what a track beside bodies does not do is refused", "[system][track]") {
+TEST_CASE("features that a track beside bodies lacks are refused", "[system][track]") {
   const Track track = peers_pair(1);
   System scene = weight_on_rail(1., 80.);
   CHECK_THROWS_WITH(SystemRun(scene, {.constraint_method = ConstraintMethod::gear_gupta_leimkuhler},
