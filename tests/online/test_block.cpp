@@ -10,7 +10,7 @@
 
 using namespace railstep;
 
-TEST_CASE("every flipped bit of a block is refused; in the header the error names the field",
+TEST_CASE("every flipped bit of a block is refused, and in the header the error names the field",
           "[block]") {
   const Block good = smallest_block();
   const std::size_t payload = payload_of(good);

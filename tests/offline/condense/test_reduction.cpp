@@ -181,7 +181,7 @@ TEST_CASE("static condensation is exact for forces on the unknowns that it keeps
   CHECK(got < (1. - 1e-3) * statics.flexibility(at, at));  // others need G_res
 }
 
-TEST_CASE("Craig and Bampton's parts are bays with held ends; all of them are the line",
+TEST_CASE("Craig and Bampton's parts are bays with held ends, and all of them are the line",
           "[reduction]") {
   const Track track = rail(6, 0., false);
   const Line line = assemble(track)[0];

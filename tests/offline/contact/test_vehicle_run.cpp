@@ -43,7 +43,7 @@ TEST_CASE("a vehicle at rest on a track stays at rest to rounding", "[vehicle]")
   }
 }
 
-TEST_CASE("each wheel of a bogie bears half its weight; on three axles the springs share it",
+TEST_CASE("each wheel of a bogie bears half its weight, and on three axles the springs share it",
           "[vehicle]") {
   for (const bool modal : {false, true}) {
     const Track track = one_rail(20);

@@ -151,7 +151,7 @@ TEST_CASE("a body below its spring moves as a damped oscillator", "[run]") {
   CHECK(coarse / fine < 4.5);
 }
 
-TEST_CASE("--json of a system prints the contract's keys, and a second run gives the same bits",
+TEST_CASE("a system's --json prints the contract's keys, and a second run gives the same bits",
           "[run]") {
   const std::string brief = kPendulum + " --duration 0.2";
   const nlohmann::json first = told(brief);

@@ -193,7 +193,7 @@ TEST_CASE("the files show vehicles with the forces of their wheels and the pitch
   CHECK_THAT(of(moved, 2, 0) - of(moved, 0, 0), WithinAbs(.3 * pitch, 1e-8));
 }
 
-TEST_CASE("--vtk refuses a scene without rails and a path that is a file", "[vtk]") {
+TEST_CASE("the option --vtk refuses a scene without rails and a path that is a file", "[vtk]") {
   const auto folder = fresh_folder("vtk_bad");
   const Ran bodies =
       railstep_program("run " + kScenes + "double_pendulum.toml --vtk " + (folder / "a").string());

@@ -170,9 +170,8 @@ TEST_CASE("a text that is not one TOML document is refused with line and column"
   CHECK_NOTHROW(marked.finish());
 }
 
-TEST_CASE(
-    "deep nesting is refused without running out of stack; brackets in strings are not nesting",
-    "[read]") {
+TEST_CASE("deep nesting is refused without running out of stack, but not brackets in strings",
+          "[read]") {
   const std::string deep(100'000, '[');  // row 25
   CHECK_THAT(parse_sentence("a = " + deep), Contains("bay.toml:1:37: nested deeper than 32"));
   std::string dotted = "[a";

@@ -316,7 +316,7 @@ TEST_CASE("a scene without a track refuses a track's keys", "[scene]") {
   CHECK(std::holds_alternative<Scene>(read_any_scene(shipped("moving_load"))));
 }
 
-TEST_CASE("[step] of a system has its schemes, starts and limits", "[scene]") {
+TEST_CASE("the [step] of a system has its schemes, starts and limits", "[scene]") {
   CHECK(system_scene(kPendulum, {"step.scheme=\"energy-momentum\""}).step.scheme ==
         TimeScheme::energy_momentum);
   CHECK_THAT(with(kPendulum, {"step.scheme=\"rk4\""}),
