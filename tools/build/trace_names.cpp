@@ -1,0 +1,49 @@
+#include "build/trace_names.h"
+
+#include "online/step/trace_columns.h"
+
+namespace railstep {
+namespace {
+
+struct ColumnNames {
+  const TraceNames& names;
+  std::vector<std::string> columns;
+
+  const std::vector<std::string>& of(Bearer bearer) const {
+    switch (bearer) {
+      case Bearer::load:
+        return names.loads;
+      case Bearer::wheel:
+        return names.wheels;
+      case Bearer::flange:
+        return names.flanges;
+      case Bearer::external_wheel:
+        return names.external_wheels;
+      case Bearer::sensor:
+        return names.sensors;
+      case Bearer::joint:
+        return names.joints;
+      case Bearer::spring:
+        break;
+    }
+    return names.springs;
+  }
+  template <typename Column, std::size_t n>
+  void operator()(Bearer bearer, std::int32_t i, const Column (&own)[n]) {
+    const std::string& name = of(bearer).at(static_cast<std::size_t>(i));
+    for (const Column& column : own) columns.push_back(name + "." + column.name);
+  }
+  void operator()(const TrackSensorModel&) {
+    columns.insert(columns.end(), names.track_sensors.begin(), names.track_sensors.end());
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> columns_of(const Model& model, const TraceNames& names) {
+  ColumnNames all{names, {"time_s"}};
+  for_each_column(model, all);
+  return all.columns;
+}
+
+}  // namespace railstep
