@@ -1,5 +1,5 @@
 include("${CMAKE_CURRENT_LIST_DIR}/railstep-targets.cmake")
-# It is C++ inside and needs nothing of C++ at run time: a project in C alone may link it.
+# It is written in C++ and needs nothing of C++ at run time, so a project without C++ may link it.
 set_target_properties(railstep::railstep_online PROPERTIES
   IMPORTED_LINK_INTERFACE_LANGUAGES "C" IMPORTED_LINK_INTERFACE_LANGUAGES_NOCONFIG "C"
   IMPORTED_LINK_INTERFACE_LANGUAGES_RELEASE "C" IMPORTED_LINK_INTERFACE_LANGUAGES_DEBUG "C"

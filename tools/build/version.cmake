@@ -1,4 +1,4 @@
-# Writes OUT with the commit that SOURCE stands at, only where it changed: run at every build.
+# Writes OUT with the commit of SOURCE if it has changed. Every build runs this.
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --exclude=* --abbrev=12
   OUTPUT_VARIABLE id OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed ERROR_QUIET)
 if(failed)
