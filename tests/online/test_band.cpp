@@ -115,21 +115,6 @@ TEST_CASE("a matrix that is not positive definite is refused with the number of 
   CHECK_THROWS_WITH(factor_band(Eigen::SparseMatrix<double>(2, 3)), Catch::Contains("2 by 3"));
 }
 
-TEST_CASE("the dot product adds eight partial sums in the written order", "[dense]") {
-  std::mt19937 random(4);
-  std::normal_distribution<double> normal;
-  for (int n : {0, 1, 7, 8, 9, 30, 64}) {
-    std::vector<double> x(64), y(64);
-    double lane[8] = {};
-    for (int i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      x[k] = normal(random), y[k] = normal(random);
-      lane[i % 8] += x[k] * y[k];
-    }
-    CHECK(dot(x.data(), y.data(), n) == lane_sum(lane));
-  }
-}
-
 TEST_CASE("the small solve is exact to rounding and refuses a matrix that is not positive definite",
           "[dense]") {
   std::mt19937 random(5);

@@ -1,5 +1,7 @@
 #include "online/beam/beam.h"
 
+#include "online/math/vector3.h"
+
 namespace railstep {
 
 namespace {
@@ -15,10 +17,6 @@ void vectors(const BeamPoint& p, const double* q, double V[kVectors][3]) noexcep
       if (field > 0)
         V[field + 2][k] = (p.value[0] * node[0] + p.value[1] * node[9]) + p.value[2] * node[18];
     }
-}
-
-double dot(const double* a, const double* b) noexcept {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
 /// Change of the products from rest.

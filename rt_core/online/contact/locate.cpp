@@ -2,29 +2,18 @@
 
 #include <cmath>
 
+#include "online/math/vector3.h"
+
 namespace railstep {
 namespace {
 
-struct Vector {
-  double x, y, z;
-};
-
-Vector operator+(Vector a, Vector b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vector operator-(Vector a, Vector b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vector operator*(double s, Vector a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
-double dot(Vector a, Vector b) noexcept { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
-Vector cross(Vector a, Vector b) noexcept {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-Vector load(const double* v) noexcept { return {v[0], v[1], v[2]}; }
-
 /// r, a and b at a place, with derivatives by xi.
 struct Frame {
-  Vector r, a, b, r1, a1, b1, r2, b2;
+  Vector3 r, a, b, r1, a1, b1, r2, b2;
 };
 
-Vector blend(const double* node, const double* N) noexcept {
-  return N[0] * load(node) + N[1] * load(node + 9) + N[2] * load(node + 18);
+Vector3 blend(const double* node, const double* N) noexcept {
+  return N[0] * vector3(node) + N[1] * vector3(node + 9) + N[2] * vector3(node + 18);
 }
 
 Frame frame(const RailShape& rail, RailPlace at) noexcept {
@@ -133,38 +122,38 @@ double finite_or_zero(double x) noexcept { return std::isfinite(x) ? x : 0.0; }
 
 PointOnRail locate_point(const RailShape& rail, const double* point, RailPlace start,
                          int cap) noexcept {
-  const Vector X = load(point);
+  const Vector3 X = vector3(point);
   const Found found =
       search(rail.elements, clipped(start, rail.elements), cap, [&](RailPlace at) noexcept {
         const Frame f = frame(rail, at);
-        const Vector n = cross(f.a, f.b), n1 = cross(f.a1, f.b) + cross(f.a, f.b1);
+        const Vector3 n = cross(f.a, f.b), n1 = cross(f.a1, f.b) + cross(f.a, f.b1);
         const double straight = dot(f.r1, n);
         return sample(dot(X - f.r, n), straight - dot(X - f.r, n1), straight);
       });
   const Frame f = frame(rail, found.place);
-  const Vector n = cross(f.a, f.b), d = X - f.r;
+  const Vector3 n = cross(f.a, f.b), d = X - f.r;
   const double size = dot(n, n);
   const double y = finite_or_zero(dot(cross(d, f.b), n) / size);
   const double z = finite_or_zero(dot(cross(f.a, d), n) / size);
-  const Vector miss = d - (y * f.a + z * f.b);
+  const Vector3 miss = d - (y * f.a + z * f.b);
   return {found.status, found.steps, found.place, y, z, finite_or_zero(std::sqrt(dot(miss, miss)))};
 }
 
 WheelOnRail locate_wheel(const RailShape& rail, const double* p, const double* e, double z_crown,
                          RailPlace start, int cap) noexcept {
-  const Vector axle = load(p), direction = load(e);
-  const auto across = [&](Vector v) noexcept { return v - dot(direction, v) * direction; };
+  const Vector3 axle = vector3(p), direction = vector3(e);
+  const auto across = [&](Vector3 v) noexcept { return v - dot(direction, v) * direction; };
   const Found found =
       search(rail.elements, clipped(start, rail.elements), cap, [&](RailPlace at) noexcept {
         const Frame f = frame(rail, at);
-        const Vector w = across(f.r + z_crown * f.b - axle);
-        const Vector c1 = f.r1 + z_crown * f.b1, c2 = f.r2 + z_crown * f.b2;
-        const Vector across1 = across(c1);
+        const Vector3 w = across(f.r + z_crown * f.b - axle);
+        const Vector3 c1 = f.r1 + z_crown * f.b1, c2 = f.r2 + z_crown * f.b2;
+        const Vector3 across1 = across(c1);
         const double straight = dot(across1, across1);
         return sample(-dot(w, c1), straight + dot(w, c2), straight);
       });
   const Frame f = frame(rail, found.place);
-  const Vector c = f.r + z_crown * f.b - axle, w = across(c);
+  const Vector3 c = f.r + z_crown * f.b - axle, w = across(c);
   const double distance = finite_or_zero(std::sqrt(dot(w, w)));
   const double scale = distance > 0.0 ? -1.0 / distance : 0.0;
   return {found.status,

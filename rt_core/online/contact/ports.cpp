@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "online/math/dense.h"
+#include "online/math/scalar.h"
 
 namespace railstep {
 namespace {
@@ -28,8 +29,6 @@ double penetration(double force, double C) noexcept {
   const double root = cube_root(force / C);
   return root * root;
 }
-
-double larger(double a, double b) noexcept { return a > b ? a : b; }
 
 /// [V(d) - V(e)] / (d - e) and its slope over d, of V = 2/5 C max(d, 0)^2.5: without a difference
 /// of like numbers, by r = sqrt d, s = sqrt e,
@@ -59,7 +58,7 @@ double force_at(const PortLaw& law, double d) noexcept {
   if (!(d > 0.0)) return 0.0;
   if (law.hertz > 0.0) return law.hertz * d * std::sqrt(d);
   const double part = law.jump > 0.0 && d < kJumpDepth ? d / kJumpDepth : 1.0;
-  return larger(law.slope * d + law.jump * part, 0.0);
+  return larger(0.0, law.slope * d + law.jump * part);
 }
 
 /// df/dd where there is a force.

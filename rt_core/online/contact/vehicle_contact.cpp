@@ -1,5 +1,6 @@
 #include "online/contact/vehicle_contact.h"
 
+#include "online/math/dense.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -8,10 +9,7 @@ namespace {
 
 /// Height of a vehicle's wheel k, m.
 double wheel_height(const VehicleModel& vehicle, int k, const double* u) noexcept {
-  double sum = 0.;
-  for (int i = 0; i < vehicle.size; ++i)
-    sum += vehicle.row[k * vehicle.size + i] * u[vehicle.first + i];
-  return sum;
+  return dot(vehicle.row + k * vehicle.size, u + vehicle.first, vehicle.size);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "online/contact/mean_contact.h"
 #include "online/contact/track_response.h"
 #include "online/contact/vehicle_contact.h"
+#include "online/math/dense.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -24,12 +25,6 @@ int among_own(const Model& model, ContactId wheel) noexcept {
 const double* row_of(const Model& model, ContactId wheel) noexcept {
   const VehicleModel& v = vehicle_of(model, wheel);
   return v.row + among_own(model, wheel) * v.size;
-}
-
-double dot(const double* a, const double* b, int n) noexcept {
-  double sum = 0.;
-  for (int k = 0; k < n; ++k) sum += a[k] * b[k];
-  return sum;
 }
 
 /// y += A x, A [n][n].

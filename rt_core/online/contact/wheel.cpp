@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "online/math/sine.h"
+#include "online/math/vector3.h"
 #include "online/track/p_delta.h"
 
 namespace railstep {
@@ -70,26 +72,9 @@ void add_rest(const Model& model, int rail, Window& window) noexcept {
   }
 }
 
-/// Sine and cosine by their series, good to 1e-9 up to half a radian: the wheelset's roll and yaw
-/// stay far below. The C library's differ between machines.
-double sine(double x) noexcept {
-  const double s = x * x;
-  return x * (1. - s / 6. * (1. - s / 20. * (1. - s / 42. * (1. - s / 72.))));
-}
-double cosine(double x) noexcept {
-  const double s = x * x;
-  return 1. - s / 2. * (1. - s / 12. * (1. - s / 30. * (1. - s / 56.)));
-}
-
-void cross(const double* a, const double* b, double* c) noexcept {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-double dot3(const double* a, const double* b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+/// Good to 1e-9 up to half a radian: the wheelset's roll and yaw stay far below.
+double sine(double x) noexcept { return x * sinc_series(x * x, 8); }
+double cosine(double x) noexcept { return cosine_series(x * x, 8); }
 
 /// Where a wheelset is: its centre and its axes, of which the first does not roll.
 struct Pose {
@@ -176,7 +161,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   double q[9];
   interpolate_nodes(window, found.place, shape, q);
   // The crown's material point under the normal: a railhead that is squeezed carries it along.
-  const double n_a = dot3(at.normal, q + 3), n_b = dot3(at.normal, q + 6);
+  const double n_a = dot(at.normal, q + 3), n_b = dot(at.normal, q + 6);
   const double length = std::sqrt(n_a * n_a + n_b * n_b);
   at.y = model.crown_radius[side] * (n_a / length);
   at.z = z_crown + model.crown_radius[side] * (n_b / length);
@@ -212,7 +197,7 @@ double slope_along(const Model& model, const Window& window, RailPlace place,
   const double shape[3] = {(xi - .5) * per_metre, -2. * xi * per_metre, (xi + .5) * per_metre};
   double q[9];
   interpolate_nodes(window, place, shape, q);
-  return dot3(at.normal, q) + at.y * dot3(at.normal, q + 3) + at.z * dot3(at.normal, q + 6);
+  return dot(at.normal, q) + at.y * dot(at.normal, q + 3) + at.z * dot(at.normal, q + 6);
 }
 
 /// Finds the contact of flange `side`, as find_flanges() says.
@@ -259,7 +244,7 @@ WheelContact find_flange(const Model& model, const FlangeModel& flange, int side
   at.penetration = (off.depth + higher) - gap;
   at.irregularity = off.depth;
   at.rise = off.rise + slope_along(model, window, found.place, at);
-  if (at.penetration > 0. && dot3(arm, up) < flange.tip) at.on_rail = false;
+  if (at.penetration > 0. && dot(arm, up) < flange.tip) at.on_rail = false;
   fill_body_row(body, arm, at);
   return at;
 }

@@ -1,21 +1,12 @@
 #pragma once
 
-#include <cstddef>
-
-#include "online/math/lanes.h"
-
 namespace railstep {
 
-/// sum of x_i y_i: lane i mod 8 adds its products in order, then lane_sum().
+/// sum of x_i y_i, in order.
 inline double dot(const double* x, const double* y, int n) noexcept {
-  double sum[kLanes] = {};
-  int i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-#pragma omp simd
-    for (int l = 0; l < kLanes; ++l) sum[l] += x[i + l] * y[i + l];
-  }
-  for (int l = 0; i < n; ++i, ++l) sum[l] += x[i] * y[i];
-  return lane_sum(sum);
+  double sum = 0.;
+  for (int i = 0; i < n; ++i) sum += x[i] * y[i];
+  return sum;
 }
 
 enum class SmallSolve : unsigned char {

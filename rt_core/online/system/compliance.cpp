@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "online/math/scalar.h"
+
 namespace railstep {
 
 namespace {
@@ -9,8 +11,6 @@ namespace {
 double* row(const Pivoted& f, std::int32_t i) noexcept {
   return f.matrix + static_cast<std::ptrdiff_t>(f.n) * i;
 }
-
-double magnitude(double x) noexcept { return __builtin_fabs(x); }
 
 void swap(double& a, double& b) noexcept {
   const double t = a;

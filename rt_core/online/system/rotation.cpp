@@ -2,13 +2,14 @@
 
 #include <cstdint>
 
+#include "online/math/scalar.h"
+#include "online/math/sine.h"
+
 namespace railstep {
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-double square_root(double x) noexcept { return __builtin_sqrt(x); }
 
 /// q0 (w, v), put back to unit length.
 void product(const double* q0, double w, const double* v, double* q1) noexcept {
@@ -23,12 +24,7 @@ void product(const double* q0, double w, const double* v, double* q1) noexcept {
 }  // namespace
 
 CosSinc cos_sinc(double x_squared) noexcept {
-  double cos = 1., sinc = 1.;
-  for (int n = 24; n >= 2; n -= 2) {
-    cos = 1. - x_squared / (n * (n - 1.)) * cos;
-    sinc = 1. - x_squared / (n * (n + 1.)) * sinc;
-  }
-  return {cos, sinc};
+  return {cosine_series(x_squared, 24), sinc_series(x_squared, 24)};
 }
 
 CosSin cos_sin(double angle) noexcept {

@@ -1,20 +1,10 @@
 #pragma once
+#include "online/math/vector3.h"
 
 namespace railstep {
 
 // Rotations without the C library's functions, whose last bits differ between machines. Matrices
 // are [9], row after row; quaternions [w, x, y, z]; R turns body axes into the ground's.
-
-inline void cross(const double* a, const double* b, double* c) noexcept {
-  const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-  c[0] = x;
-  c[1] = y;
-}
-
-inline double dot(const double* a, const double* b) noexcept {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
 
 /// y = R x.
 inline void rotate(const double* R, const double* x, double* y) noexcept {

@@ -1,13 +1,12 @@
 #include "online/system/row.h"
 
+#include "online/math/scalar.h"
 #include "online/math/search.h"
 #include "online/system/rotation.h"
 
 namespace railstep {
 
 namespace {
-
-double square_root(double x) noexcept { return __builtin_sqrt(x); }
 
 /// cos s and sin s with their derivatives.
 void turning_jet(Jet s, Jet& cos, Jet& sin) noexcept {

@@ -1,13 +1,12 @@
 #include "online/system/rows.h"
 
+#include "online/math/scalar.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"
 
 namespace railstep {
 
 namespace {
-
-double magnitude(double x) noexcept { return x < 0. ? -x : x; }
 
 const MarkerModel& marker_of(const SystemModel& s, const EndModel& end) noexcept {
   const RowModel& row = s.row[end.row];

@@ -1,5 +1,6 @@
 #include "online/system/system_step.h"
 
+#include "online/math/scalar.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"
 #include "online/system/rows.h"
@@ -13,8 +14,6 @@ SystemStart start_of(const Model& model, const State& s, const Workspace& w) noe
   const std::int32_t at = model.system.first;
   return {s.u + at, s.v + at, w.u_star + at, w.v_star + at, s.quaternion};
 }
-
-double square_root(double x) noexcept { return __builtin_sqrt(x); }
 
 /// Squared norm of forces, moments of slopes and turns over lengths of their parts, N2.
 struct Square {
@@ -82,9 +81,6 @@ void newton_step(const Model& model, SystemWorkspace& w) noexcept {
   subtract_row_motion(s, w, w.wanted, w.change);
   for (std::int32_t i = 0; i < s.unknowns; ++i) w.x[i] += w.change[i];
 }
-
-double larger(double a, double b) noexcept { return b > a ? b : a; }
-double magnitude(double x) noexcept { return x < 0. ? -x : x; }
 
 /// Largest entry of a Newton step.
 double step_size(const SystemModel& s, const SystemWorkspace& w) noexcept {

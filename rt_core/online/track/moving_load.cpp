@@ -1,7 +1,7 @@
 #include "online/track/moving_load.h"
 
+#include "online/math/sine.h"
 #include "online/math/table.h"
-#include "online/math/wave.h"
 #include "online/track/travel.h"
 
 namespace railstep {

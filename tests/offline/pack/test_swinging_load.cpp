@@ -7,7 +7,7 @@
 
 #include "offline/pack/time_schemes.h"
 #include "offline/pack/travel_rows.h"
-#include "online/math/wave.h"
+#include "online/math/sine.h"
 #include "online/track/travel.h"
 #include "support/crossing.h"
 #include "support/model_run.h"
