@@ -43,7 +43,7 @@ TraceTable run_of(const Scene& scene, std::int64_t frames) {
 /// that spring, whose law is no contact's.
 bool stands_for_hertz(const VehicleScene& v) {
   return v.contact == WheelContactKind::bonded ||
-         (v.contact == WheelContactKind::linear && v.kind.vehicle.bodies.size() > 1);
+         (v.contact == WheelContactKind::linear && v.vehicle.bodies.size() > 1);
 }
 
 /// The scene with Hertz's law there; none where there is nothing of the kind.

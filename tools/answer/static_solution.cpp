@@ -9,6 +9,7 @@
 #include "build/build.h"
 #include "offline/analysis/timoshenko_statics.h"
 #include "offline/beam/track_structure.h"
+#include "online/math/table.h"
 
 namespace railstep {
 namespace {
@@ -49,26 +50,34 @@ void add_wheel(const Scene& scene, Problem& problem, int rail, double x, double 
   add_force(problem, rail, x, top.y, top.z, newton);
 }
 
+double value_at_start(const std::vector<double>& table) {
+  return table_value(table.data(), static_cast<std::int32_t>(table.size() / 2), 0.);
+}
+
+/// N, or N m; 0 of one that is given frame by frame.
+double force_at_start(const OuterForce& force) {
+  return force.input < 0 ? value_at_start(force.table) : 0.;
+}
+
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
-  for (const BodyForceScene& force : w.forces)
-    if (force.input < 0 && force.force.at(0.) != 0.)
+  for (const OuterForce& force : w.forces)
+    if (force_at_start(force) != 0.)
       throw InputError(
           fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
                       "forces that are 0 at t = 0",
                       scene.file.string(), w.name));
-  const double weight = w.gravity ? (w.mass + w.carried_mass) * kGravity : 0.;
-  for (const int rail : {0, 1}) add_wheel(scene, problem, rail, w.start, -.5 * weight);
+  for (const int rail : {0, 1}) add_wheel(scene, problem, rail, w.start, -.5 * w.weight);
 }
 
 /// The loads of a vehicle's wheels on a level rail that does not give way.
 void add_vehicle(const Scene& scene, const VehicleScene& v, Problem& problem) try {
-  VehicleMatrices matrices = vehicle_matrices(v.kind.vehicle, v.gravity ? kGravity : 0.);
-  for (const BodyForceScene& force : v.forces)
-    if (force.input < 0) matrices.weight[force.direction] -= force.force.at(0.);
+  VehicleMatrices matrices = vehicle_matrices(v.vehicle, v.gravity);
+  for (const OuterForce& force : v.forces)
+    matrices.weight[force.direction] -= force_at_start(force);
   const VehicleRest rest = vehicle_at_rest(matrices);
-  for (std::size_t i = 0; i < v.kind.vehicle.wheels.size(); ++i)
-    add_wheel(scene, problem, v.rail == Side::right ? 1 : 0,
-              v.start + v.kind.vehicle.wheels[i].place, -rest.force[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < v.vehicle.wheels.size(); ++i)
+    add_wheel(scene, problem, v.rail, v.start + v.vehicle.wheels[i].place,
+              -rest.force[static_cast<Eigen::Index>(i)]);
 } catch (const std::invalid_argument& error) {
   throw InputError(fmt::format("{}: vehicle {}: {}", scene.file.string(), v.name, error.what()));
 }
@@ -76,17 +85,15 @@ void add_vehicle(const Scene& scene, const VehicleScene& v, Problem& problem) tr
 Problem problem_of(const Scene& scene) {
   const RailSection rail = rail_section_of(scene);
   const Section right =
-      scene.right_rail ? rail_section_of(scene, Side::right).section : rail.section;
+      scene.right_rail ? rail_section_of(scene, kRightRail).section : rail.section;
   Problem problem{
       track_of(scene, rail),    {rail.section, right}, 0., {}, scene.track.gravity ? kGravity : 0.,
       .5 * rail.section.height, scene.statics};
-  problem.right_z = rail_z(scene, problem.section, problem.track, Side::right);
-  for (const LoadScene& load : scene.loads) {
-    const int side = load.rail == Side::right ? 1 : 0;
-    add_force(problem, side, load.start, 0., problem.z(side, load.at),
-              load.force_z * (load.factor ? load.factor->at(0.) : 1.) +
+  problem.right_z = rail_z(scene, problem.section, problem.track, kRightRail);
+  for (const LoadScene& load : scene.loads)
+    add_force(problem, load.rail, load.start, 0., problem.z(load.rail, load.at),
+              load.force * (load.table.empty() ? 1. : value_at_start(load.table)) +
                   load.amplitude * std::sin(2. * M_PI * load.phase));
-  }
   for (const VehicleScene& v : scene.vehicles) add_vehicle(scene, v, problem);
   for (const WheelsetScene& w : scene.wheelsets) add_wheelset(scene, w, problem);
   return problem;
@@ -116,7 +123,7 @@ Place sleeper_place(const std::string& name, const Problem& problem, const Sleep
   const int seat = static_cast<int>(sensor.sleeper);
   const double foot = height_z(Height::foot, problem.section[0]);
   Place place{name, {seat * track.bay_length, 0., foot}, {}};
-  const int only = sensor.rail ? (*sensor.rail == Side::right ? 1 : 0) : -1;
+  const int only = sensor.rail.value_or(-1);
   if (only >= 0) place.rest[1] = rail_y(track, only);
   for (int d = 0; d < 3; ++d)
     for (int rail = 0; rail < track.rails; ++rail)
@@ -130,8 +137,7 @@ std::vector<Place> sensor_places(const Scene& scene, const Problem& problem) {
   std::vector<Place> places;
   for (const SensorScene& sensor : scene.sensors) {
     if (const auto* rail = std::get_if<RailSensor>(&sensor.on))
-      places.push_back(rail_place(sensor.name, problem, rail->rail == Side::right ? 1 : 0,
-                                  rail->position, rail->at));
+      places.push_back(rail_place(sensor.name, problem, rail->rail, rail->position, rail->at));
     else if (const auto* sleeper = std::get_if<SleeperSensor>(&sensor.on))
       places.push_back(sleeper_place(sensor.name, problem, *sleeper));
   }

@@ -28,77 +28,23 @@
 namespace railstep {
 namespace {
 
-/// A scene's table is 0 before its first row; the model's keeps its first value. A row one bit
-/// earlier makes them the same function.
-std::vector<double> packed_table(const TimeTable& table) {
-  std::vector<double> rows = {
-      std::nextafter(table.time.front(), -std::numeric_limits<double>::infinity()), 0.};
-  for (std::size_t i = 0; i < table.time.size(); ++i) {
-    rows.push_back(table.time[i]);
-    rows.push_back(table.value[i]);
-  }
-  return rows;
-}
-
 std::vector<MovingLoad> loads_of(const Scene& scene, const RailSections& sections) {
   std::vector<MovingLoad> loads;
-  for (const LoadScene& l : scene.loads) {
-    const std::vector<double> speeds = l.speeds ? l.speeds->rows() : std::vector<double>{};
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    const double never = travel_table(l.speed, speeds).speed < 0. ? -kFar : kFar;
-    loads.push_back({.rail = l.rail == Side::right ? 1 : 0,
-                     .start = l.start,
-                     .speed = l.speed,
-                     .stop = l.stop.value_or(never),
-                     .force = l.force_z,
-                     .z = height_z(l.at, section_of(sections, l.rail)),
-                     .table = l.factor ? packed_table(*l.factor) : std::vector<double>{},
-                     .speeds = speeds,
-                     .amplitude = l.amplitude,
-                     .frequency = l.frequency,
-                     .phase = l.phase});
-  }
+  for (const LoadScene& own : scene.loads)
+    loads.emplace_back(own).z = height_z(own.at, section_of(sections, own.rail));
   return loads;
-}
-
-std::vector<OuterForce> outer_forces(const std::vector<BodyForceScene>& of) {
-  std::vector<OuterForce> forces;
-  forces.reserve(of.size());
-  for (const BodyForceScene& force : of)
-    forces.push_back({force.direction,
-                      force.input >= 0 ? std::vector<double>{} : packed_table(force.force),
-                      force.input});
-  return forces;
-}
-
-Wheelset wheelset_of(const WheelsetScene& w) {
-  Wheelset set;
-  set.mass = w.mass;
-  set.inertia_roll = w.inertia_roll;
-  set.inertia_spin = w.inertia_spin;
-  set.inertia_yaw = w.inertia_yaw;
-  set.weight = w.gravity ? (w.mass + w.carried_mass) * kGravity : 0.;
-  set.radius = w.radius;
-  set.tread_half_width = w.tread_half_width;
-  set.start = w.start;
-  set.speed = w.speed;
-  if (w.speeds) set.speeds = w.speeds->rows();
-  set.guide =
-      w.guide.method == GuideMethod::baumgarte ? Guide::baumgarte : Guide::augmented_lagrangian;
-  set.cap = w.guide.cap;
-  set.tolerance = w.guide.tolerance;
-  set.alpha = w.guide.alpha;
-  set.beta = w.guide.beta;
-  set.forces = outer_forces(w.forces);
-  set.tread = treads_of(w);
-  set.flange = w.flange;
-  return set;
 }
 
 std::vector<Wheelset> wheelsets_of(const Scene& scene) {
   std::vector<Wheelset> sets;
-  for (const WheelsetScene& w : scene.wheelsets) sets.push_back(wheelset_of(w));
+  for (const WheelsetScene& own : scene.wheelsets) sets.emplace_back(own).tread = treads_of(own);
   return sets;
+}
+
+std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
+  std::vector<RunningVehicle> vehicles;
+  for (const VehicleScene& own : scene.vehicles) vehicles.emplace_back(own).tread = treads_of(own);
+  return vehicles;
 }
 
 std::vector<double> limits_of(const std::vector<InputScene>& inputs) {
@@ -108,36 +54,10 @@ std::vector<double> limits_of(const std::vector<InputScene>& inputs) {
   return limits;
 }
 
-std::vector<ExternalWheel> external_wheels_of(const Scene& scene) {
-  std::vector<ExternalWheel> wheels;
-  wheels.reserve(scene.external_wheels.size());
-  for (const ExternalWheelScene& w : scene.external_wheels)
-    wheels.push_back({w.rail == Side::right ? 1 : 0, w.limit});
-  return wheels;
-}
-
-std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
-  std::vector<RunningVehicle> vehicles;
-  for (const VehicleScene& v : scene.vehicles)
-    vehicles.push_back({.vehicle = v.kind.vehicle,
-                        .rail = v.rail == Side::right ? 1 : 0,
-                        .start = v.start,
-                        .speed = v.speed,
-                        .speeds = v.speeds ? v.speeds->rows() : std::vector<double>{},
-                        .gravity = v.gravity ? kGravity : 0.,
-                        .contact = v.contact,
-                        .stiffness = v.stiffness,
-                        .damping = v.damping,
-                        .tread = treads_of(v),
-                        .forces = outer_forces(v.forces),
-                        .falling = v.falling});
-  return vehicles;
-}
-
 }  // namespace
 
-Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail) {
-  const bool right = rail == Side::right && scene.right_rail;
+Railhead railhead_of(const Scene& scene, const RailSections& sections, int rail) {
+  const bool right = rail == kRightRail && scene.right_rail;
   Railhead head;
   head.top_z = height_z(Height::head, section_of(sections, rail));
   const RailScene& own = right ? *scene.right_rail : scene.rail;
@@ -146,51 +66,15 @@ Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail
   return head;
 }
 
-double rail_z(const Scene& scene, const RailSections& sections, const Track& track, Side rail) {
-  const auto top = [&](Side side) {
+double rail_z(const Scene& scene, const RailSections& sections, const Track& track, int rail) {
+  const auto top = [&](int side) {
     const Railhead head = railhead_of(scene, sections, side);
-    return crown_top(track.lean(side == Side::right ? 1 : 0), head.top_z, head.crown_radius).height;
+    return crown_top(track.lean(side), head.top_z, head.crown_radius).height;
   };
-  return top(Side::left) - top(rail);
+  return top(kLeftRail) - top(rail);
 }
 
 namespace {
-
-Support support_of(const SupportScene& s, const Section& section, double axis_z) {
-  return {.stiffness = {s.x.stiffness, s.y.stiffness, s.z.stiffness},
-          .damping = {s.x.damping, s.y.damping, s.z.damping},
-          .roll_stiffness = s.roll.stiffness,
-          .roll_damping = s.roll.damping,
-          .height_z = height_z(s.at, section, axis_z),
-          .half_spread = s.half_spread,
-          .length = s.length,
-          .unilateral = s.unilateral,
-          .gap = s.gap};
-}
-
-Sleeper sleeper_of(const SleeperScene& s) {
-  const Spring held{};  // without stiffness the track holds that direction
-  const Spring x = s.ballast_x.value_or(held), y = s.ballast_y.value_or(held);
-  return {.mass = s.mass,
-          .roll_inertia = s.roll_inertia,
-          .ballast_stiffness = {x.stiffness, y.stiffness, s.ballast_z.stiffness},
-          .ballast_damping = {x.damping, y.damping, s.ballast_z.damping},
-          .pitch_inertia = s.pitch_inertia,
-          .ballast_length = s.ballast_length,
-          .ballast_unilateral = s.ballast_unilateral,
-          .ballast_gap = s.ballast_gap};
-}
-
-Stop stop_of(const StopScene& s, const Section& section, double axis_z) {
-  return {.rail = s.rail == Side::right ? 1 : 0,
-          .x = s.position,
-          .z = height_z(s.at, section, axis_z),
-          .direction = s.direction,
-          .side = s.side,
-          .gap = s.gap,
-          .stiffness = s.spring.stiffness,
-          .damping = s.spring.damping};
-}
 
 /// Force in a rail at rest: its own, and what heat makes between ends that hold it, N. Gaps of
 /// joints pass none until they are closed.
@@ -274,20 +158,21 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.ends = scene.track.ends;
   track.end_zone_bays = scene.track.end_zone_bays;
   track.ring = scene.track.endless;
-  if (scene.support) track.support = support_of(*scene.support, section, track.axis_z);
-  if (scene.sleeper) track.sleeper = sleeper_of(*scene.sleeper);
-  const RailSection right = scene.right_rail ? rail_section_of(scene, Side::right) : rail;
+  if (scene.support) {
+    track.support = *scene.support;
+    track.support.height_z = height_z(scene.support->at, section, track.axis_z);
+  }
+  track.sleeper = scene.sleeper;
+  const RailSection right = scene.right_rail ? rail_section_of(scene, kRightRail) : rail;
   const HeatedJoints heated = heated_joints(scene, {section.area.area, right.section.area.area},
                                             {section.height, right.section.height});
   track.axial_force = axial_force_of(scene.rail, track.section.area, 0, heated);
   track.joints = heated.joints;
   if (scene.right_rail) add_right_rail(scene, right, heated, keep_moments, track);
   change_seats(scene.seat_changes, track);
-  for (const StopScene& stop : scene.stops) {
-    const bool own = stop.rail == Side::right && scene.right_rail;
-    track.stops.push_back(
-        stop_of(stop, own ? rail_section_of(scene, Side::right).section : section, track.axis_z));
-  }
+  for (const StopScene& own : scene.stops)
+    track.stops.emplace_back(own).z =
+        height_z(own.at, own.rail == kRightRail ? right.section : section, track.axis_z);
   refuse_buckled(track);
   if (!scene.track.linearised_under_weight) return track;
   return linearised_under_weight(track, scene.track.gravity ? kGravity : 0.);
@@ -306,7 +191,7 @@ TraceNames names_of(const Scene& scene, std::vector<std::string> track_sensors) 
       if (wheelset.flange) names.flanges.push_back(wheel);
     }
   for (const VehicleScene& vehicle : scene.vehicles)
-    for (std::size_t i = 0; i < vehicle.kind.vehicle.wheels.size(); ++i)
+    for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i)
       names.wheels.push_back(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
   for (const ExternalWheelScene& wheel : scene.external_wheels)
     names.external_wheels.push_back(wheel.name);
@@ -318,7 +203,7 @@ TraceNames names_of(const Scene& scene, std::vector<std::string> track_sensors) 
 
 TracedTraffic traffic_of(const Scene& scene, const Track& track) {
   const RailSections sections = sections_of(scene);
-  const Railhead head = railhead_of(scene, sections, Side::left);
+  const Railhead head = railhead_of(scene, sections, kLeftRail);
   Sensors sensors = sensors_of(scene, track, sections, head);
   return {{.loads = loads_of(scene, sections),
            .wheelsets = wheelsets_of(scene),
@@ -327,8 +212,8 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
            .track_sensors = std::move(sensors.track_sensors),
            .irregularities = irregularities_of(scene),
            .input_limits = limits_of(scene.inputs),
-           .external_wheels = external_wheels_of(scene),
-           .right_head = railhead_of(scene, sections, Side::right)},
+           .external_wheels = {scene.external_wheels.begin(), scene.external_wheels.end()},
+           .right_head = railhead_of(scene, sections, kRightRail)},
           names_of(scene, std::move(sensors.columns))};
 }
 

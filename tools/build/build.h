@@ -32,7 +32,7 @@ BeamSection beam_section(const RailSection& bar);
 /// section's. Those of rectangles are at the scene's Poisson ratio, those of a profile or a section
 /// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
 /// Throws InputError too where the rail's model or rule wants moments and the scene gives none.
-RailSection rail_section_of(const Scene& scene, Side rail = Side::left);
+RailSection rail_section_of(const Scene& scene, int rail = kLeftRail);
 
 /// Height over the reference line, m, of a place on the section.
 /// @param axis_z  of that line above the centroid, m
@@ -43,14 +43,14 @@ Section section_of(const Scene& scene);
 /// Sections of left and right rail; each is found once.
 using RailSections = std::array<Section, 2>;
 RailSections sections_of(const Scene& scene);
-inline const Section& section_of(const RailSections& sections, Side rail) {
-  return sections[rail == Side::right ? 1 : 0];
+inline const Section& section_of(const RailSections& sections, int rail) {
+  return sections[static_cast<std::size_t>(rail)];
 }
 
 /// The head that wheels meet on a rail.
-Railhead railhead_of(const Scene& scene, const RailSections& sections, Side rail);
+Railhead railhead_of(const Scene& scene, const RailSections& sections, int rail);
 /// Height of a rail's axis over the left one's, m: railheads are level.
-double rail_z(const Scene& scene, const RailSections& sections, const Track& track, Side rail);
+double rail_z(const Scene& scene, const RailSections& sections, const Track& track, int rail);
 
 /// Height of a reference line above the centroid, m.
 double axis_z_of(ReferenceLine line, const Section& section);

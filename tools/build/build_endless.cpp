@@ -18,7 +18,7 @@ std::int64_t bays_taken(const Scene& scene) {
   for (const LoadScene& load : scene.loads) last = std::max(last, load.start);
   for (const WheelsetScene& w : scene.wheelsets) last = std::max(last, w.start);
   for (const VehicleScene& v : scene.vehicles)
-    for (const Vehicle::Wheel& wheel : v.kind.vehicle.wheels)
+    for (const Vehicle::Wheel& wheel : v.vehicle.wheels)
       last = std::max(last, v.start + wheel.place);
   return static_cast<std::int64_t>(last / scene.track.bay) + 1;
 }

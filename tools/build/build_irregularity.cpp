@@ -125,7 +125,7 @@ std::array<Signal, 2> treads_of(const WheelsetScene& wheelset) {
 
 std::vector<Signal> treads_of(const VehicleScene& vehicle) {
   if (vehicle.treads.empty()) return {};
-  std::vector<Signal> treads(vehicle.kind.vehicle.wheels.size());
+  std::vector<Signal> treads(vehicle.vehicle.wheels.size());
   for (const WheelTread& d : vehicle.treads) treads[d.wheel] = signal_of_wheel(d.shape, d.radius);
   return treads;
 }

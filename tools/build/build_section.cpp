@@ -94,10 +94,10 @@ BeamSection beam_section(const RailSection& bar) {
           .moments = bar.moments};
 }
 
-RailSection rail_section_of(const Scene& scene, Side rail) {
+RailSection rail_section_of(const Scene& scene, int rail) {
   const bool nonlinear =
       scene.track.model == RailModel::nonlinear || scene.track.linearised_under_weight;
-  const bool right = rail == Side::right && scene.right_rail;
+  const bool right = rail == kRightRail && scene.right_rail;
   return bar_section(right ? *scene.right_rail : scene.rail, nonlinear,
                      scene.file.string() + (right ? ": [rail.right]" : ": [rail]"));
 }
@@ -106,7 +106,7 @@ Section section_of(const Scene& scene) { return rail_section_of(scene).section; 
 
 RailSections sections_of(const Scene& scene) {
   const Section left = section_of(scene);
-  return {left, scene.right_rail ? rail_section_of(scene, Side::right).section : left};
+  return {left, scene.right_rail ? rail_section_of(scene, kRightRail).section : left};
 }
 
 double height_z(Height at, const Section& section, double axis_z) {

@@ -23,7 +23,7 @@ using Point = std::array<Direction, 3>;
 
 /// @param axis_z  of the sensor's rail over the left rail's axis, m
 Point point_of(const RailSensor& sensor, const Track& track, double z, double axis_z) {
-  const int rail = sensor.rail == Side::right ? 1 : 0;
+  const int rail = sensor.rail;
   const double y = track.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track.rail_spacing;
   const double in_section[3] = {sensor.position, 0., z};
   std::array<double, 3> rest;
@@ -41,13 +41,13 @@ Point point_of(const RailSensor& sensor, const Track& track, double z, double ax
 Point point_of(const SleeperSensor& sensor, const Track& track, double z) {
   const int seat = static_cast<int>(sensor.sleeper);
   std::array<double, 3> rest = {seat * track.bay_length, 0., z};
-  if (sensor.rail) rest[1] = (*sensor.rail == Side::right ? -.5 : .5) * track.rail_spacing;
+  if (sensor.rail) rest[1] = (*sensor.rail == kRightRail ? -.5 : .5) * track.rail_spacing;
   Point point;
   for (int d = 0; d < 3; ++d) {
     Direction& direction = point[static_cast<std::size_t>(d)];
     direction.rest = rest[static_cast<std::size_t>(d)];
     for (int rail = 0; rail < track.rails; ++rail) {
-      if (sensor.rail && rail != (*sensor.rail == Side::right ? 1 : 0)) continue;
+      if (sensor.rail && rail != *sensor.rail) continue;
       direction.track.sleeper.push_back({rail, seat, d, sensor.rail ? 1. : 1. / track.rails});
     }
   }
@@ -68,7 +68,7 @@ Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Track& tr
 /// What a point of a vehicle's body does: z as its body's columns have it, and its rates.
 void add_vehicle_point(const std::string& name, const VehicleSensor& sensor, const Scene& scene,
                        Sensors& sensors) {
-  const std::vector<int> first = first_coordinates(scene.vehicles[sensor.vehicle].kind.vehicle);
+  const std::vector<int> first = first_coordinates(scene.vehicles[sensor.vehicle].vehicle);
   const auto add = [&](const char* quantity, TrackSensor track_sensor) {
     track_sensor.vehicle = static_cast<int>(sensor.vehicle);
     track_sensor.coordinate = first[sensor.body];
@@ -110,7 +110,7 @@ void add_point(const std::string& name, const Point& point, Sensors& sensors) {
 /// length, of what the rail does from rest on.
 void add_gauge(const std::string& name, const RailSensor& sensor, double z, double young,
                Sensors& sensors) {
-  const int rail = sensor.rail == Side::right ? 1 : 0;
+  const int rail = sensor.rail;
   const double length = *sensor.gauge_length;
   TrackSensor track_sensor{.displacement = young};
   for (const double side : {-1., 1.})
@@ -168,10 +168,10 @@ void move_on(SensorScene& sensor, int behind, const Track& track) {
 
 /// Heights of a vehicle's bodies from where they stand on a level rail without weight, and pitches.
 void add_bodies(const VehicleScene& scene, int vehicle, Sensors& sensors) {
-  const std::vector<int> first = first_coordinates(scene.kind.vehicle);
+  const std::vector<int> first = first_coordinates(scene.vehicle);
   for (std::size_t b = 0; b + 1 < first.size(); ++b)
     for (int c = first[b]; c < first[b + 1]; ++c) {
-      sensors.columns.push_back(fmt::format("{}.{}.{}", scene.name, scene.kind.bodies[b],
+      sensors.columns.push_back(fmt::format("{}.{}.{}", scene.name, scene.bodies[b],
                                             c == first[b] ? "z_m" : "pitch_rad"));
       sensors.track_sensors.push_back({.displacement = 1., .coordinate = c, .vehicle = vehicle});
     }
@@ -182,7 +182,7 @@ void add_rail_sensor(const std::string& name, const RailSensor& sensor, const Sc
   const double z = height_z(sensor.at, section_of(sections, sensor.rail));
   add_point(name, point_of(sensor, track, z, rail_z(scene, sections, track, sensor.rail)), sensors);
   if (!sensor.gauge_length) return;
-  const bool right = sensor.rail == Side::right && scene.right_rail;
+  const bool right = sensor.rail == kRightRail && scene.right_rail;
   add_gauge(name, sensor, z, (right ? *scene.right_rail : scene.rail).young, sensors);
 }
 

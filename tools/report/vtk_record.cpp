@@ -45,8 +45,8 @@ Polygon shape_of(const RectangleSizes& r, const Section&) {
 Polygon shape_of(const RectangleSize& r, const Section&) { return box(r.width, r.height); }
 
 /// The outline of a rail about its axis.
-Polygon outline_of(const Scene& scene, Side rail) {
-  const bool right = rail == Side::right && scene.right_rail;
+Polygon outline_of(const Scene& scene, int rail) {
+  const bool right = rail == kRightRail && scene.right_rail;
   const BarScene& bar = right ? *scene.right_rail : scene.rail;
   const Section own = rail_section_of(scene, rail).section;
   Polygon shape = std::visit([&](const auto& source) { return shape_of(source, own); }, bar.shape);
@@ -143,7 +143,7 @@ VtkRecord::VtkRecord(const Scene& scene, const Simulation& run, std::filesystem:
   if (!std::filesystem::is_directory(folder_))
     throw InputError(fmt::format("--vtk {}: accepted is a folder, or a name for a new one ({})",
                                  folder_.string(), error ? error.message() : "it is a file"));
-  outline_ = {outline_of(scene, Side::left), outline_of(scene, Side::right)};
+  outline_ = {outline_of(scene, kLeftRail), outline_of(scene, kRightRail)};
   for (const VehicleScene& v : scene.vehicles) vehicles_.push_back(drawn_vehicle(v));
 }
 

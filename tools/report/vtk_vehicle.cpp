@@ -85,9 +85,8 @@ void add_wheel(const Standing& at, const Vehicle::Wheel& wheel, double force, Vt
 }  // namespace
 
 DrawnVehicle drawn_vehicle(const VehicleScene& scene) {
-  const Vehicle& what = scene.kind.vehicle;
-  return {what,
-          vehicle_at_rest(vehicle_matrices(what, scene.gravity ? kGravity : 0.)).displacement};
+  const Vehicle& what = scene.vehicle;
+  return {what, vehicle_at_rest(vehicle_matrices(what, scene.gravity)).displacement};
 }
 
 void add_vehicle(const Simulation& run, int vehicle, const DrawnVehicle& drawn, VtkMesh& mesh) {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "offline/analysis/critical_speed.h"
-#include "offline/pack/travel_rows.h"
 
 namespace railstep {
 namespace {
@@ -15,11 +14,7 @@ constexpr double kNear = .8;  // of critical speed: deflections are 1.7 times th
 
 double fastest_of(const Scene& scene) {
   double most = 0.;
-  for (const LoadScene& load : scene.loads) {
-    most = std::max(most, std::abs(load.speed));
-    if (load.speeds)
-      for (const double speed : load.speeds->value) most = std::max(most, std::abs(speed));
-  }
+  for (const LoadScene& load : scene.loads) most = std::max(most, std::abs(fastest(load)));
   for (const WheelsetScene& w : scene.wheelsets) most = std::max(most, std::abs(fastest(w)));
   for (const VehicleScene& v : scene.vehicles) most = std::max(most, std::abs(fastest(v)));
   return most;

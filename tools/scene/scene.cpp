@@ -98,12 +98,14 @@ void check_size(const Table& t, const TrackScene& track) {
                        track.bays, elements, 4.0 * 8.0 * unknowns * bandwidth, kMostElements));
 }
 
-Spring read_spring(const Table& t, const std::string& axis, bool required = false) {
-  const std::string stiffness = "stiffness_" + axis + "_n_per_m";
-  const std::string damping = "damping_" + axis + "_n_s_per_m";
-  const Range k = between(0.0, 1e13), c = between(0.0, 1e11);
-  if (required) return {t.number(stiffness, k), t.number(damping, c, 0.0)};
-  return {t.number(stiffness, k, 0.0), t.number(damping, c, 0.0)};
+/// Spring and damper along one axis.
+void read_spring(const Table& t, std::size_t axis, bool required, std::array<double, 3>& stiffness,
+                 std::array<double, 3>& damping) {
+  const std::string key = fmt::format("stiffness_{}_n_per_m", "xyz"[axis]);
+  const Range accepted = between(0.0, 1e13);
+  stiffness[axis] = required ? t.number(key, accepted) : t.number(key, accepted, 0.0);
+  damping[axis] =
+      t.number(fmt::format("damping_{}_n_s_per_m", "xyz"[axis]), between(0.0, 1e11), 0.0);
 }
 
 /// Heat makes force only in a rail that cannot grow.
@@ -145,12 +147,11 @@ std::optional<SupportScene> read_support(const Table& root, const Scene& scene) 
   const std::optional<Table> given = root.table_if("support");
   if (!given) return std::nullopt;
   const Table& t = *given;
-  SupportScene s;
-  s.x = read_spring(t, "x");
-  s.y = read_spring(t, "y");
-  s.z = read_spring(t, "z", true);
-  s.roll = {t.number("stiffness_roll_n_m_per_rad", between(0.0, 1e13), 0.0),
-            t.number("damping_roll_n_m_s_per_rad", between(0.0, 1e11), 0.0)};
+  SupportScene s{};
+  for (const std::size_t axis : {0u, 1u, 2u})
+    read_spring(t, axis, axis == 2, s.stiffness, s.damping);
+  s.roll_stiffness = t.number("stiffness_roll_n_m_per_rad", between(0.0, 1e13), 0.0);
+  s.roll_damping = t.number("damping_roll_n_m_s_per_rad", between(0.0, 1e11), 0.0);
   s.at = t.choice("at", {"foot", "axis"}, 0) == 0 ? Height::foot : Height::axis;
   s.half_spread = t.number("half_spread_m", between(0.0, 0.5), 0.0);
   s.length = t.number("length_m", between(0.0, scene.track.bay), 0.0);
@@ -159,18 +160,18 @@ std::optional<SupportScene> read_support(const Table& root, const Scene& scene) 
   return s;
 }
 
-std::optional<SleeperScene> read_sleeper(const Table& root, const Scene& scene) {
+std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   const std::optional<Table> t = root.table_if("sleeper");
   const std::optional<Table> ballast = root.table_if("ballast");
   if (!t && !ballast) return std::nullopt;
   if (!ballast) t->refuse("", "there is a sleeper but no [ballast] under it; both or none");
   if (!t) ballast->refuse("", "there is ballast but no [sleeper] on it; both or none");
   if (!scene.support) t->refuse("", "there is a sleeper but no [support] on it");
-  SleeperScene s;
+  Sleeper s;
   s.mass = t->number("mass_kg", between(0.0, 1e5));  // 0: pad and ballast in series
   s.roll_inertia = scene.track.rails == 2 ? t->number("roll_inertia_kg_m2", between(0.0, 1e6))
                                           : t->number("roll_inertia_kg_m2", between(0.0, 1e6), 0.0);
-  s.ballast_z = read_spring(*ballast, "z", true);
+  read_spring(*ballast, 2, true, s.ballast_stiffness, s.ballast_damping);
   s.pitch_inertia = t->number("pitch_inertia_kg_m2", between(0.0, 1e6), 0.0);
   s.ballast_length = ballast->number("length_m", between(0.0, 5.0), 0.0);
   s.ballast_unilateral = ballast->boolean("unilateral", false);
@@ -179,12 +180,12 @@ std::optional<SleeperScene> read_sleeper(const Table& root, const Scene& scene) 
     ballast->refuse("length_m",
                     "length_m makes the sleeper pitch, but pads that are points do not feel it; "
                     "accepted with a support.length_m above 0");
-  for (auto [axis, spring] : {std::pair("x", &s.ballast_x), std::pair("y", &s.ballast_y)})
-    if (ballast->has(fmt::format("stiffness_{}_n_per_m", axis)) ||
-        ballast->has(fmt::format("damping_{}_n_s_per_m", axis))) {
-      *spring = read_spring(*ballast, axis, true);
-      if ((*spring)->stiffness == 0.0)
-        ballast->refuse(fmt::format("stiffness_{}_n_per_m", axis),
+  for (const std::size_t axis : {0u, 1u})
+    if (ballast->has(fmt::format("stiffness_{}_n_per_m", "xyz"[axis])) ||
+        ballast->has(fmt::format("damping_{}_n_s_per_m", "xyz"[axis]))) {
+      read_spring(*ballast, axis, true, s.ballast_stiffness, s.ballast_damping);
+      if (s.ballast_stiffness[axis] == 0.0)
+        ballast->refuse(fmt::format("stiffness_{}_n_per_m", "xyz"[axis]),
                         "0 would leave the sleeper free; accepted is above 0, or neither stiffness "
                         "nor damping: then it is held");
     }
@@ -212,24 +213,6 @@ NewtonOptions read_statics(const Table& root) {
 }
 
 }  // namespace
-
-double TimeTable::at(double t) const {
-  if (time.empty() || t < time.front()) return 0.0;
-  const auto next = std::upper_bound(time.begin(), time.end(), t);
-  if (next == time.end()) return value.back();
-  const auto i = static_cast<std::size_t>(next - time.begin());
-  const double part = (t - time[i - 1]) / (time[i] - time[i - 1]);
-  return value[i - 1] + part * (value[i] - value[i - 1]);
-}
-
-std::vector<double> TimeTable::rows() const {
-  std::vector<double> all;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    all.push_back(time[i]);
-    all.push_back(value[i]);
-  }
-  return all;
-}
 
 ReferenceLine read_reference_line(const Table& t) {
   constexpr ReferenceLine kLines[] = {ReferenceLine::centroid, ReferenceLine::mid_height,

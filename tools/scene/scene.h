@@ -9,6 +9,7 @@
 
 #include "offline/beam/equilibrium.h"
 #include "offline/pack/pack.h"
+#include "offline/pack/travel_rows.h"
 #include "offline/section/section.h"
 #include "offline/track/track.h"
 #include "offline/vehicle/kinds.h"
@@ -18,12 +19,13 @@
 namespace railstep {
 
 enum class Height { axis, head, foot };  // where in the section a force acts or a sensor sits
-enum class Side { left, right };         // left is +y
 enum class TimeScheme { generalised_alpha, backward_euler, newmark, hht, tr_bdf2, energy_momentum };
 enum class Start { equilibrium, released, moving };
-enum class GuideMethod { augmented_lagrangian, baumgarte };
 enum class RailModel { linearised, nonlinear, timoshenko };
 enum class ReferenceLine { centroid, mid_height, foot, head };  // where the rails' nodes are
+
+inline constexpr int kLeftRail = 0;  // on +y
+inline constexpr int kRightRail = 1;
 
 /// Three stacked rectangles from the foot up, m.
 struct RectangleSizes {
@@ -78,32 +80,9 @@ struct RailScene : BarScene {
   double cant;              // by how much both rails lean inwards, tangent
 };
 
-/// A spring and a damper in parallel.
-struct Spring {
-  double stiffness = 0.0;  // N/m, or N m/rad
-  double damping = 0.0;    // N s/m, or N m s/rad
-};
-
-/// The pad at each bay border of each rail.
-struct SupportScene {
-  Spring x, y, z, roll;
-  Height at;           // foot or axis
-  double half_spread;  // m; over 0: half of each spring at y = -half_spread and +half_spread
-  double length;       // m along x, over which it is evenly spread; 0: a point
-  bool unilateral;     // z presses and does not pull
-  double gap;          // of z, m
-};
-
-struct SleeperScene {
-  double mass;           // both ends together, kg; one rail rests on half of it
-  double roll_inertia;   // about x, kg m2
-  double pitch_inertia;  // about y, kg m2
-  double
-      ballast_length;  // m along x, over which it is evenly spread; 0: the sleeper does not pitch
-  Spring ballast_z;    // under each end
-  std::optional<Spring> ballast_x, ballast_y;  // under each end; none: held in that direction
-  bool ballast_unilateral;                     // ballast_z presses and does not pull
-  double ballast_gap;                          // of ballast_z, m
+/// The pad at each bay border of each rail. Its height_z follows from `at` and the section.
+struct SupportScene : Support {
+  Height at;  // foot or axis
 };
 
 /// What a change takes away of a seat.
@@ -143,44 +122,17 @@ struct JointGap {
   std::array<double, 2> grown{};        // what heat takes of it at left and right rail, m
 };
 
-/// What a rail's point meets and does not pull at.
-struct StopScene {
+/// What a rail's point meets and does not pull at. Its z follows from `at` and the section.
+struct StopScene : Stop {
   std::string name;
-  Side rail;
-  double position;  // m
-  int direction;    // 1 y, 2 z
-  double side;      // 1 or -1: met on the way along + or - of it
   Height at;
-  double gap;  // m
-  Spring spring;
 };
 
-/// A function of time: 0 before the first row, linear between rows, the last value after.
-struct TimeTable {
-  std::vector<double> time;   // s, rising
-  std::vector<double> value;  // [time.size()]
-  [[nodiscard]] double at(double t) const;
-  [[nodiscard]] std::vector<double> rows() const;  // t, value, t, value, ...
-};
-
-/// A force on a rail at x = start + speed * t.
-struct LoadScene {
+/// A force on a rail. Its z follows from `at` and the section.
+struct LoadScene : MovingLoad {
   std::string name;
-  Side rail;
-  double start, speed, force_z;  // m, m/s, N (up positive)
-  Height at;                     // axis or head
-  std::optional<TimeTable> factor;
-  std::optional<double> stop;                            // m; the load is taken off there
-  bool may_leave_rail;                                   // then it is simply gone past the end
-  std::optional<TimeTable> speeds;                       // m/s, constant outside its rows
-  double amplitude = 0.0, frequency = 0.0, phase = 0.0;  // N, Hz, turns
-};
-
-struct GuideScene {
-  GuideMethod method;
-  int cap;             // iterations a step
-  double tolerance;    // of the constraint, m
-  double alpha, beta;  // Baumgarte, 1/s
+  Height at;            // axis or head
+  bool may_leave_rail;  // then it is simply gone past the end
 };
 
 /// A force from outside that is given frame by frame.
@@ -190,53 +142,32 @@ struct InputScene {
 };
 
 /// A wheel of a vehicle outside the scene.
-struct ExternalWheelScene {
+struct ExternalWheelScene : ExternalWheel {
   std::string name;
-  Side rail;
-  double limit;  // N
 };
 
-struct BodyForceScene {
-  int direction;    // 0 x, 1 y, 2 z; of a vehicle its coordinate
-  TimeTable force;  // N on the centre, or N m; empty of an input
-  int input = -1;   // among Scene::inputs
-};
-
-/// Two wheels on one axle; needs two rails.
-struct WheelsetScene {
+/// Two wheels on one axle; needs two rails. The signals of its treads follow from `treads`.
+struct WheelsetScene : Wheelset {
   std::string name;
-  std::array<std::string, 2> wheels;                     // names: left, right
-  double mass, inertia_roll, inertia_spin, inertia_yaw;  // kg, kg m2
-  double radius, tread_half_width;                       // m
-  double start, speed;                                   // m, m/s
-  std::optional<TimeTable> speeds;                       // m/s, constant outside its rows
-  double carried_mass;                                   // kg: weight without inertia
-  bool gravity, may_leave_rail;
-  GuideScene guide;
-  std::vector<BodyForceScene> forces;
+  std::array<std::string, 2> wheels;  // names: left, right
+  double carried_mass;                // kg: weight without inertia
+  bool may_leave_rail;
   std::vector<TreadScene> treads;
-  std::optional<Flange> flange;
 };
 
-/// The speed of the largest size that it has, m/s.
-double fastest(const WheelsetScene& wheelset);
-
-/// A vehicle over one rail.
-struct VehicleScene {
-  std::string name, table;  // in the trace, and that of its [[vehicle]]
-  NamedVehicle kind;
-  Side rail;
-  double start, speed;              // of its origin, m, m/s
-  std::optional<TimeTable> speeds;  // m/s, constant outside its rows
-  WheelContactKind contact;
-  double stiffness, damping;  // of a linear contact, N/m, N s/m
-  bool gravity, may_leave_rail;
-  std::optional<Falling> falling;  // on the unloaded track; none: it stands on it
+/// A vehicle over one rail. The signals of its treads follow from `treads`.
+struct VehicleScene : RunningVehicle {
+  std::string name, table;          // in the trace, and that of its [[vehicle]]
+  std::vector<std::string> bodies;  // names
+  bool may_leave_rail;
   std::vector<WheelTread> treads;
-  std::vector<BodyForceScene> forces;
 };
 
-double fastest(const VehicleScene& vehicle);
+/// The speed of the largest size that a load, a wheelset or a vehicle has, m/s.
+template <typename Runner>
+double fastest(const Runner& runner) {
+  return travel_table(runner.speed, runner.speeds).speed;
+}
 
 struct StepScene {
   double dt;  // s
@@ -260,14 +191,14 @@ struct CondenseScene {
 };
 
 struct RailSensor {
-  Side rail;
+  int rail;
   double position;  // m
   Height at;
   std::optional<double> gauge_length = {};  // of a strain gauge along the rail, m; none: no gauge
 };
 struct SleeperSensor {
-  std::int64_t sleeper;      // from 0 along x
-  std::optional<Side> rail;  // the end under that rail; none: its centre
+  std::int64_t sleeper;     // from 0 along x
+  std::optional<int> rail;  // the end under that rail; none: its centre
 };
 struct WheelsetSensor {
   std::size_t wheelset;  // index into Scene::wheelsets; its centre
@@ -290,7 +221,7 @@ struct Scene {
   RailScene rail;                       // of both rails
   std::optional<RailScene> right_rail;  // of the right one, where it differs
   std::optional<SupportScene> support;  // none: only the ends hold the rails, or nothing
-  std::optional<SleeperScene> sleeper;
+  std::optional<Sleeper> sleeper;
   std::vector<SeatChange> seat_changes;  // one after the other
   std::vector<StopScene> stops;
   std::vector<RailJoint> joints;     // without what their gaps do

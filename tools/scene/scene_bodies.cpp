@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "online/track/travel.h"
@@ -15,18 +16,20 @@ const Range kForce = between(-1e8, 1e8);
 
 }  // namespace
 
-Side read_side(const Table& t, const Scene& scene) {
+int read_side(const Table& t, const Scene& scene) {
   // One rail is the left one, so that a scene can leave the key out.
-  const std::size_t side = scene.track.rails == 1 ? t.choice("rail", {"left", "right"}, 0)
-                                                  : t.choice("rail", {"left", "right"});
-  if (side == 1 && scene.track.rails == 1)
+  const bool left = scene.track.rails == 1 ? t.choice("rail", {"left", "right"}, 0) == 0
+                                           : t.choice("rail", {"left", "right"}) == 0;
+  if (!left && scene.track.rails == 1)
     t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
-  return side == 0 ? Side::left : Side::right;
+  return left ? kLeftRail : kRightRail;
 }
 
-TimeTable read_time_table(const Table& t, std::string_view key, const Range& accepted) {
-  const std::vector<double> rows = t.rows(key, 2);
-  TimeTable table;
+namespace {
+
+/// [[t_s, value], ...] with rising times from 0 on: t (s), value, t, value, ...
+std::vector<double> read_time_table(const Table& t, std::string_view key, const Range& accepted) {
+  std::vector<double> rows = t.rows(key, 2);
   for (std::size_t i = 0; i < rows.size(); i += 2) {
     if (rows[i] < 0.0 || (i > 0 && rows[i] <= rows[i - 2]))
       t.refuse(key,
@@ -36,44 +39,54 @@ TimeTable read_time_table(const Table& t, std::string_view key, const Range& acc
     if (!accepted.holds(rows[i + 1]))
       t.refuse(key, fmt::format("{}: {:.15g} in row {} is out of range; accepted is {}", key,
                                 rows[i + 1], i / 2, accepted.text()));
-    table.time.push_back(rows[i]);
-    table.value.push_back(rows[i + 1]);
   }
-  return table;
+  return rows;
 }
+
+/// The same of a force, which is 0 before its first row, where table_value() keeps the first
+/// value. A row one bit earlier makes them the same function.
+std::vector<double> read_force_table(const Table& t, std::string_view key, const Range& accepted) {
+  std::vector<double> rows = read_time_table(t, key, accepted);
+  rows.insert(rows.begin(),
+              {std::nextafter(rows.front(), -std::numeric_limits<double>::infinity()), 0.});
+  return rows;
+}
+
+}  // namespace
 
 SpeedScene read_speed(const Table& t, std::optional<double> otherwise) {
   if (!t.has("speed_table"))
     return {otherwise ? t.number("speed_m_per_s", kSpeed, *otherwise)
                       : t.number("speed_m_per_s", kSpeed),
-            std::nullopt};
+            {}};
   if (t.has("speed_m_per_s"))
     t.refuse("speed_table", "speed_table is given beside speed_m_per_s; one of them is accepted");
-  TimeTable table = read_time_table(t, "speed_table", kSpeed);
-  const auto [least, most] = std::minmax_element(table.value.begin(), table.value.end());
-  if (*least < 0.0 && *most > 0.0)
+  std::vector<double> rows = read_time_table(t, "speed_table", kSpeed);
+  double least = rows[1], most = rows[1];
+  for (std::size_t i = 3; i < rows.size(); i += 2) {
+    least = std::min(least, rows[i]);
+    most = std::max(most, rows[i]);
+  }
+  if (least < 0.0 && most > 0.0)
     t.refuse("speed_table",
              fmt::format("speed_table goes from {:.15g} to {:.15g} m/s and turns around; accepted "
                          "are speeds of one sign",
-                         *least, *most));
-  const double first = table.value.front();
-  return {first, std::move(table)};
-}
-
-TravelTable travel_of(const SpeedScene& speed) {
-  return travel_table(speed.speed, speed.table ? speed.table->rows() : std::vector<double>{});
+                         least, most));
+  const double first = rows[1];
+  return {first, std::move(rows)};
 }
 
 void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
                 const std::optional<double>& stop) {
   if (scene.track.endless) return;
   const double length = scene.track.length();
-  const double way = travelled(travel_of(speed).model(), scene.duration()).distance;
+  const double way =
+      travelled(travel_table(speed.speed, speed.speeds).model(), scene.duration()).distance;
   double end = start + way;
   if (stop) end = way >= 0.0 ? std::min(end, *stop) : std::max(end, *stop);
   // A path may end exactly on the border; 1e-9 of the length forgives its rounding.
   if (end >= -1e-9 * length && end <= length * (1.0 + 1e-9)) return;
-  if (speed.table)
+  if (!speed.speeds.empty())
     t.refuse(
         "speed_table",
         fmt::format("speed_table leads from x = {:.15g} to {:.6g} m, off the rail; accepted is "
@@ -107,45 +120,45 @@ void read_swing(const Table& t, const Scene& scene, LoadScene& load) {
 
 LoadScene read_load(const Table& t, const Scene& scene) {
   const double length = scene.track.length();
-  LoadScene load;
+  LoadScene load{};
   load.name = checked_name(t, "name", t.string("name"));
   load.rail = read_side(t, scene);
   load.may_leave_rail = t.boolean("may_leave_rail", false);
   load.start = t.number("start_m", load.may_leave_rail ? between(-1e6, 1e6) : between(0.0, length));
   const SpeedScene speed = read_speed(t, 0.0);
   load.speed = speed.speed;
-  load.speeds = speed.table;
-  load.force_z = t.number("force_z_n", kForce);
+  load.speeds = speed.speeds;
+  load.force = t.number("force_z_n", kForce);
   load.at = t.choice("at", {"axis", "head"}, 0) == 0 ? Height::axis : Height::head;
-  if (t.has("table")) load.factor = read_time_table(t, "table", between(-1e6, 1e6));
+  if (t.has("table")) load.table = read_force_table(t, "table", between(-1e6, 1e6));
   read_swing(t, scene, load);
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  load.stop = fastest(load) < 0. ? -kFar : kFar;
   if (t.has("stop_m")) {
     load.stop = t.number("stop_m", between(0.0, scene.track.endless ? 1e12 : length));
-    if ((*load.stop - load.start) * travel_of(speed).speed <= 0.0)
+    if ((load.stop - load.start) * fastest(load) <= 0.0)
       t.refuse("stop_m", fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
                                      "is a place the load moves to",
-                                     *load.stop, load.start));
+                                     load.stop, load.start));
   }
   if (!load.may_leave_rail) check_path(t, scene, load.start, speed, load.stop);
   return load;
 }
 
-GuideScene read_guide(const Table& wheelset) {
-  GuideScene g{GuideMethod::augmented_lagrangian, 20, 1e-10, 0.0, 0.0};
+void read_guide(const Table& wheelset, WheelsetScene& w) {
   const std::optional<Table> t = wheelset.table_if("guide");
-  if (!t) return g;
+  if (!t) return;
   const bool baumgarte = t->choice("method", {"augmented_lagrangian", "baumgarte"}, 0) == 1;
-  g.method = baumgarte ? GuideMethod::baumgarte : GuideMethod::augmented_lagrangian;
-  g.cap = static_cast<int>(t->integer("cap", 1, 1000, g.cap));
-  g.tolerance = t->number("tolerance", between(1e-15, 1e-2), g.tolerance);
+  w.guide = baumgarte ? Guide::baumgarte : Guide::augmented_lagrangian;
+  w.cap = static_cast<int>(t->integer("cap", 1, 1000, w.cap));
+  w.tolerance = t->number("tolerance", between(1e-15, 1e-2), w.tolerance);
   if (!baumgarte && (t->has("alpha_per_s") || t->has("beta_per_s")))
     t->refuse(t->has("alpha_per_s") ? "alpha_per_s" : "beta_per_s",
               "alpha_per_s and beta_per_s are Baumgarte's; accepted with method = \"baumgarte\"");
   if (baumgarte) {
-    g.alpha = t->number("alpha_per_s", above_upto(0.0, 1e6));
-    g.beta = t->number("beta_per_s", above_upto(0.0, 1e6));
+    w.alpha = t->number("alpha_per_s", above_upto(0.0, 1e6));
+    w.beta = t->number("beta_per_s", above_upto(0.0, 1e6));
   }
-  return g;
 }
 
 /// Equilibrium is that of rails and wheels: one that nothing bears has none.
@@ -162,7 +175,7 @@ void check_start(const Table& t, const Scene& scene, const WheelsetScene& w) {
 WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<InputScene>& inputs) {
   if (scene.track.rails != 2) t.refuse("", "a wheelset needs two rails; accepted with rails = 2");
   const Range inertia = above_upto(0.0, 1e6);
-  WheelsetScene w;
+  WheelsetScene w{};
   w.name = checked_name(t, "name", t.string("name"));
   w.wheels = {w.name + "_left", w.name + "_right"};
   if (t.has("wheels")) {
@@ -180,17 +193,17 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<Inpu
                      w.may_leave_rail ? between(-1e6, 1e6) : between(0.0, scene.track.length()));
   const SpeedScene speed = read_speed(t, std::nullopt);
   w.speed = speed.speed;
-  w.speeds = speed.table;
+  w.speeds = speed.speeds;
   w.carried_mass = t.number("carried_mass_kg", between(0.0, 1e6), 0.0);
-  w.gravity = t.boolean("gravity", true);
-  w.guide = read_guide(t);
+  w.weight = t.boolean("gravity", true) ? (w.mass + w.carried_mass) * kGravity : 0.;
+  read_guide(t, w);
   for (const Table& force : t.tables("force"))
     w.forces.push_back(read_body_force(
         force, static_cast<int>(force.choice("direction", {"x", "y", "z"})), false, inputs));
   w.treads = read_treads(t, scene, w);
   if (const std::optional<Table> flange = t.table_if("flange"))
     w.flange = read_flange(*flange, scene);
-  if (!w.may_leave_rail) check_path(t, scene, w.start, speed, std::nullopt);
+  if (!w.may_leave_rail) check_path(t, scene, w.start, speed);
   check_start(t, scene, w);
   return w;
 }
@@ -219,10 +232,6 @@ std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {
   return loads;
 }
 
-double fastest(const WheelsetScene& wheelset) {
-  return travel_of({wheelset.speed, wheelset.speeds}).speed;
-}
-
 std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
                                           std::vector<InputScene>& inputs) {
   std::vector<WheelsetScene> wheelsets;
@@ -233,15 +242,17 @@ std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
 
 std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene) {
   std::vector<ExternalWheelScene> wheels;
-  for (const Table& t : root.tables("external_wheel"))
-    wheels.push_back({checked_name(t, "name", t.string("name")), read_side(t, scene),
-                      t.number("limit_n", above_upto(0.0, 1e12))});
+  for (const Table& t : root.tables("external_wheel")) {
+    const std::string name = checked_name(t, "name", t.string("name"));
+    const int rail = read_side(t, scene);
+    wheels.push_back({{rail, t.number("limit_n", above_upto(0.0, 1e12))}, name});
+  }
   return wheels;
 }
 
-BodyForceScene read_body_force(const Table& t, int direction, bool moment,
-                               std::vector<InputScene>& inputs) {
-  if (!t.has("input")) return {direction, read_time_table(t, "table", kForce)};
+OuterForce read_body_force(const Table& t, int direction, bool moment,
+                           std::vector<InputScene>& inputs) {
+  if (!t.has("input")) return {direction, read_force_table(t, "table", kForce)};
   if (t.has("table")) t.refuse("table", "table is given beside input; one of them is accepted");
   return {direction, {}, read_input(t, moment, inputs)};
 }

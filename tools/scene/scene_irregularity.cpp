@@ -198,7 +198,7 @@ TreadScene read_tread(const Table& t, const Scene& scene, double radius, double 
 std::vector<WheelTread> read_wheel_treads(const Table& vehicle, const Scene& scene,
                                           const VehicleScene& own) {
   std::vector<WheelTread> treads;
-  const std::vector<Vehicle::Wheel>& wheels = own.kind.vehicle.wheels;
+  const std::vector<Vehicle::Wheel>& wheels = own.vehicle.wheels;
   for (const Table& t : vehicle.tables("tread")) {
     const auto wheel = static_cast<std::size_t>(
         t.integer("wheel", 1, static_cast<std::int64_t>(wheels.size())) - 1);

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "offline/pack/travel_rows.h"
 #include "scene/scene.h"
 #include "text/read.h"
 
@@ -71,25 +70,23 @@ std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
 std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,
                                           const VehicleScene& own);
-Side read_side(const Table& t, const Scene& scene);
-/// [[t_s, value], ...] with rising times from 0 on.
-TimeTable read_time_table(const Table& t, std::string_view key, const Range& accepted);
+/// @returns kLeftRail or kRightRail
+int read_side(const Table& t, const Scene& scene);
 /// speed_m_per_s, or speed_table in its place: speeds that do not turn around.
 struct SpeedScene {
-  double speed;  // m/s; with a table its first
-  std::optional<TimeTable> table;
+  double speed;                // m/s; with a table its first
+  std::vector<double> speeds;  // t (s), m/s, t, m/s, ...; empty without a table
 };
 SpeedScene read_speed(const Table& t, std::optional<double> otherwise);
-TravelTable travel_of(const SpeedScene& speed);
 /// Refuses a path that runs off the rail before the end of the run, or before `stop`.
 void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
-                const std::optional<double>& stop);
+                const std::optional<double>& stop = std::nullopt);
 std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene);
 /// `input` and `limit_n`, or of a moment `limit_n_m`. @returns its index
 int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
 /// A force by `table`, [[t_s, N or N m], ...], or given frame by frame.
-BodyForceScene read_body_force(const Table& t, int direction, bool moment,
-                               std::vector<InputScene>& inputs);
+OuterForce read_body_force(const Table& t, int direction, bool moment,
+                           std::vector<InputScene>& inputs);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// On a rail, a sleeper, a wheelset or a vehicle.
 SensorScene read_sensor(const Table& t, const Scene& scene);

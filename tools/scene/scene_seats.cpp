@@ -136,7 +136,8 @@ void check_held(const Table& t, const Property& property, const Scene& scene) {
   const std::string_view key = property.key;
   const bool x = key.find("_x_") != std::string_view::npos;
   const bool y = key.find("_y_") != std::string_view::npos;
-  if ((x && !scene.sleeper->ballast_x) || (y && !scene.sleeper->ballast_y))
+  if ((x && scene.sleeper->ballast_stiffness[0] == 0.0) ||
+      (y && scene.sleeper->ballast_stiffness[1] == 0.0))
     t.refuse(key, fmt::format("{}, but [ballast] holds the sleeper along {}; accepted where "
                               "ballast.stiffness_{}_n_per_m is given",
                               key, x ? "x" : "y", x ? "x" : "y"));

@@ -31,12 +31,12 @@ VehicleSensor read_vehicle_sensor(const Table& t, const Scene& scene) {
   std::vector<std::string> vehicles;
   for (const VehicleScene& v : scene.vehicles) vehicles.push_back(v.name);
   const std::size_t vehicle = index_of(t, "vehicle", t.string("vehicle"), vehicles);
-  const NamedVehicle& kind = scene.vehicles[vehicle].kind;
-  const std::size_t body = t.has("body") ? index_of(t, "body", t.string("body"), kind.bodies) : 0;
+  const VehicleScene& own = scene.vehicles[vehicle];
+  const std::size_t body = t.has("body") ? index_of(t, "body", t.string("body"), own.bodies) : 0;
   VehicleSensor sensor{vehicle, body, t.number("x_m", between(-100.0, 100.0), 0.0)};
-  if (sensor.ahead != 0.0 && kind.vehicle.bodies[body].pitch_inertia == 0.0)
+  if (sensor.ahead != 0.0 && own.vehicle.bodies[body].pitch_inertia == 0.0)
     t.refuse("x_m", fmt::format("x_m = {:.15g}, but {} does not pitch; accepted is x_m = 0",
-                                sensor.ahead, kind.bodies[body]));
+                                sensor.ahead, own.bodies[body]));
   return sensor;
 }
 

@@ -4,15 +4,15 @@ namespace railstep {
 namespace {
 
 StopScene read_stop(const Table& t, const Scene& scene) {
-  StopScene s;
+  StopScene s{};
   s.name = checked_name(t, "name", t.string("name"));
   const bool left = t.choice("rail", {"left", "right"}, 0) == 0;
   if (scene.track.rails == 2 && !t.has("rail"))
     t.refuse("rail", "a stop of two rails says which; accepted are \"left\", \"right\"");
   if (scene.track.rails == 1 && !left)
     t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
-  s.rail = left ? Side::left : Side::right;
-  s.position = t.number("position_m", between(0.0, scene.track.length()));
+  s.rail = left ? kLeftRail : kRightRail;
+  s.x = t.number("position_m", between(0.0, scene.track.length()));
   s.direction = t.choice("direction", {"y", "z"}) == 0 ? 1 : 2;
   if (s.direction == 1 && scene.track.unknowns == Unknowns::vertical)
     t.refuse("direction",
@@ -25,8 +25,8 @@ StopScene read_stop(const Table& t, const Scene& scene) {
   constexpr Height kHeights[] = {Height::axis, Height::head, Height::foot};
   s.at = kHeights[t.choice("at", {"axis", "head", "foot"}, 0)];
   s.gap = t.number("gap_m", between(0.0, 0.1), 0.0);
-  s.spring = {t.number("stiffness_n_per_m", above_upto(0.0, 1e13)),
-              t.number("damping_n_s_per_m", between(0.0, 1e11), 0.0)};
+  s.stiffness = t.number("stiffness_n_per_m", above_upto(0.0, 1e13));
+  s.damping = t.number("damping_n_s_per_m", between(0.0, 1e11), 0.0);
   return s;
 }
 

@@ -52,31 +52,34 @@ NamedVehicle read_car(const Table& t) {
 
 /// Its bodies and springs, by type. A sprung mass without an unsprung one is a mass whose contact
 /// is its spring.
-void read_kind(const Table& t, VehicleScene& v) {
+NamedVehicle read_bodies(const Table& t, VehicleScene& v) {
   switch (t.choice("type", {"mass", "sprung_mass", "bogie", "vehicle"})) {
     case 0:
-      v.kind = point_mass(t.number("mass_kg", kMass), t.number("radius_m", kRadius, kWheelRadius));
       v.contact = WheelContactKind::bonded;
-      return;
+      return point_mass(t.number("mass_kg", kMass), t.number("radius_m", kRadius, kWheelRadius));
     case 1:
-      if (t.has("unsprung_mass_kg")) {
-        v.kind = read_sprung(t);
-        return;
+      if (t.has("unsprung_mass_kg")) return read_sprung(t);
+      {
+        const double mass = t.number("mass_kg", kMass);
+        v.contact = WheelContactKind::linear;
+        v.stiffness = t.number("stiffness_n_per_m", kStiffness);
+        v.damping = t.number("damping_n_s_per_m", kDamping, 0.0);
+        return point_mass(mass);
       }
-      v.kind = point_mass(t.number("mass_kg", kMass));
-      v.contact = WheelContactKind::linear;
-      v.stiffness = t.number("stiffness_n_per_m", kStiffness);
-      v.damping = t.number("damping_n_s_per_m", kDamping, 0.0);
-      return;
     case 2: {
       BogieData b = read_bogie(t);
       b.carried = t.number("carried_mass_kg", between(0.0, 1e7), 0.0);
-      v.kind = bogie(b);
-      return;
+      return bogie(b);
     }
     default:
-      v.kind = read_car(t);
+      return read_car(t);
   }
+}
+
+void read_kind(const Table& t, VehicleScene& v) {
+  NamedVehicle kind = read_bodies(t, v);
+  v.vehicle = std::move(kind.vehicle);
+  v.bodies = std::move(kind.bodies);
 }
 
 /// What is known of the vehicle itself, here or in a file of its own.
@@ -119,30 +122,29 @@ void read_contact(const Table& t, VehicleScene& v) {
 /// Refuses a vehicle of which a wheel leaves the rail before the end of the run.
 void check_wheels(const Table& t, const Scene& scene, const VehicleScene& v,
                   const SpeedScene& speed) {
-  for (const Vehicle::Wheel& wheel : v.kind.vehicle.wheels) {
+  for (const Vehicle::Wheel& wheel : v.vehicle.wheels) {
     const double start = v.start + wheel.place;
     if (start < 0.0 || start > scene.track.length())
       t.refuse("start_m", fmt::format("start_m = {:.15g} puts a wheel at x = {:.6g} m, off the "
                                       "rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
                                       v.start, start, scene.track.length()));
-    check_path(t, scene, start, speed, std::nullopt);
+    check_path(t, scene, start, speed);
   }
 }
 
 /// [[vehicle.force]] along the height or the pitch of a body.
-BodyForceScene read_force(const Table& t, const NamedVehicle& kind,
-                          std::vector<InputScene>& inputs) {
+OuterForce read_force(const Table& t, const VehicleScene& v, std::vector<InputScene>& inputs) {
   const std::string name = t.string("body");
-  const auto found = std::find(kind.bodies.begin(), kind.bodies.end(), name);
-  if (found == kind.bodies.end())
+  const auto found = std::find(v.bodies.begin(), v.bodies.end(), name);
+  if (found == v.bodies.end())
     t.refuse("body", fmt::format("body = \"{}\" is no body of this vehicle; accepted are {}", name,
-                                 fmt::join(kind.bodies, ", ")));
-  const auto body = static_cast<std::size_t>(found - kind.bodies.begin());
+                                 fmt::join(v.bodies, ", ")));
+  const auto body = static_cast<std::size_t>(found - v.bodies.begin());
   const int pitch = static_cast<int>(t.choice("direction", {"z", "pitch"}));
-  if (pitch == 1 && kind.vehicle.bodies[body].pitch_inertia == 0.)
+  if (pitch == 1 && v.vehicle.bodies[body].pitch_inertia == 0.)
     t.refuse("direction",
              fmt::format("direction = \"pitch\", but {} does not pitch; accepted is \"z\"", name));
-  return read_body_force(t, first_coordinates(kind.vehicle)[body] + pitch, pitch == 1, inputs);
+  return read_body_force(t, first_coordinates(v.vehicle)[body] + pitch, pitch == 1, inputs);
 }
 
 /// How it comes down on the track, where it does.
@@ -172,33 +174,28 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
   const bool both = t.has("rail") && t.string("rail") == "both";
   if (both && scene.track.rails == 1)
     t.refuse("rail", "rail = \"both\", but the track has one rail; accepted is \"left\"");
-  v.rail = both ? Side::left : read_side(t, scene);
+  v.rail = both ? kLeftRail : read_side(t, scene);
   read_what(t, v);
   read_contact(t, v);
   v.may_leave_rail = t.boolean("may_leave_rail", false);
   v.start = t.number("start_m", between(-1e6, 1e6));
   const SpeedScene speed = read_speed(t, std::nullopt);
   v.speed = speed.speed;
-  v.speeds = speed.table;
-  v.gravity = t.boolean("gravity", true);
+  v.speeds = speed.speeds;
+  v.gravity = t.boolean("gravity", true) ? kGravity : 0.;
   v.falling = read_falling(t, scene, v);
   v.treads = read_wheel_treads(t, scene, v);
-  for (const Table& force : t.tables("force"))
-    v.forces.push_back(read_force(force, v.kind, inputs));
+  for (const Table& force : t.tables("force")) v.forces.push_back(read_force(force, v, inputs));
   if (!v.may_leave_rail) check_wheels(t, scene, v, speed);
   if (!both) return vehicles.push_back(std::move(v));
-  for (const Side side : {Side::left, Side::right}) {
+  for (const int rail : {kLeftRail, kRightRail}) {
     vehicles.push_back(v);
-    vehicles.back().rail = side;
-    vehicles.back().name += side == Side::left ? "_left" : "_right";
+    vehicles.back().rail = rail;
+    vehicles.back().name += rail == kLeftRail ? "_left" : "_right";
   }
 }
 
 }  // namespace
-
-double fastest(const VehicleScene& vehicle) {
-  return travel_of({vehicle.speed, vehicle.speeds}).speed;
-}
 
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
                                         std::vector<InputScene>& inputs) {

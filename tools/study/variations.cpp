@@ -36,13 +36,13 @@ std::size_t table_of(const Scene& scene, std::size_t vehicle) {
 std::vector<std::string> slower(const Scene& scene) {
   Changes changes;
   for (std::size_t i = 0; i < scene.loads.size(); ++i)
-    if (!scene.loads[i].speeds && scene.loads[i].speed != 0.)
+    if (scene.loads[i].speeds.empty() && scene.loads[i].speed != 0.)
       changes.add("load", i, "speed_m_per_s", kSlower * scene.loads[i].speed);
   for (std::size_t i = 0; i < scene.wheelsets.size(); ++i)
-    if (!scene.wheelsets[i].speeds && scene.wheelsets[i].speed != 0.)
+    if (scene.wheelsets[i].speeds.empty() && scene.wheelsets[i].speed != 0.)
       changes.add("wheelset", i, "speed_m_per_s", kSlower * scene.wheelsets[i].speed);
   for (std::size_t i = 0; i < scene.vehicles.size(); ++i)
-    if (!scene.vehicles[i].speeds && scene.vehicles[i].speed != 0.)
+    if (scene.vehicles[i].speeds.empty() && scene.vehicles[i].speed != 0.)
       changes.add("vehicle", table_of(scene, i), "speed_m_per_s",
                   kSlower * scene.vehicles[i].speed);
   return changes.take();
@@ -51,7 +51,7 @@ std::vector<std::string> slower(const Scene& scene) {
 std::vector<std::string> heavier(const Scene& scene) {
   Changes changes;
   for (std::size_t i = 0; i < scene.loads.size(); ++i)
-    changes.add("load", i, "force_z_n", kHeavier * scene.loads[i].force_z);
+    changes.add("load", i, "force_z_n", kHeavier * scene.loads[i].force);
   for (std::size_t i = 0; i < scene.wheelsets.size(); ++i)
     changes.add("wheelset", i, "carried_mass_kg",
                 scene.wheelsets[i].carried_mass +

@@ -173,7 +173,7 @@ TEST_CASE("a wheelset's table of speeds is read and checked", "[scene][wheelset]
     return std::string("accepted");
   };
   const Scene scene = with("speed_table=[[0, 8.0], [0.1, 18.0]]");
-  REQUIRE(scene.wheelsets[0].speeds);
+  REQUIRE_FALSE(scene.wheelsets[0].speeds.empty());
   CHECK(scene.wheelsets[0].speed == 8.);
   CHECK(fastest(scene.wheelsets[0]) == 18.);
   CHECK_THAT(told("speed_m_per_s=8.0, speed_table=[[0, 8.0]]"),

@@ -170,8 +170,8 @@ TEST_CASE("the right rail may differ", "[seats]") {
                                               "right={rectangle={height_m=0.15, width_m=0.045}}}"});
   const RailSections sections = sections_of(low);
   const Track uneven = track_of(low);
-  CHECK_THAT(rail_z(low, sections, uneven, Side::right), WithinAbs(.01, 1e-15));
-  CHECK(rail_z(low, sections, uneven, Side::left) == 0.);
+  CHECK_THAT(rail_z(low, sections, uneven, kRightRail), WithinAbs(.01, 1e-15));
+  CHECK(rail_z(low, sections, uneven, kLeftRail) == 0.);
   CHECK_THROWS_WITH(track("pinned_bay", {"rail.right={young_pa=200e9}"}), Contains("one rail"));
 }
 

@@ -37,8 +37,9 @@ TEST_CASE("every type of vehicle is read with its defaults", "[scene][vehicle]")
   const VehicleScene mass =
       with("name=\"m\", type=\"mass\", mass_kg=100.0, " + kSpeed).vehicles.at(0);
   CHECK(mass.contact == WheelContactKind::bonded);
-  CHECK(mass.kind.vehicle.bodies.at(0).mass == 100.);
-  CHECK((mass.gravity && !mass.may_leave_rail && mass.start == 20. && mass.speed == 10.));
+  CHECK(mass.vehicle.bodies.at(0).mass == 100.);
+  CHECK(
+      (mass.gravity == kGravity && !mass.may_leave_rail && mass.start == 20. && mass.speed == 10.));
   const VehicleScene on_spring =
       with("name=\"m\", type=\"sprung_mass\", mass_kg=100.0, stiffness_n_per_m=1e6, " + kSpeed)
           .vehicles.at(0);
@@ -51,24 +52,24 @@ TEST_CASE("every type of vehicle is read with its defaults", "[scene][vehicle]")
           kSpeed)
           .vehicles.at(0);
   CHECK(sprung.contact == WheelContactKind::hertz);
-  CHECK(sprung.kind.bodies == std::vector<std::string>{"body", "wheel_1"});
+  CHECK(sprung.bodies == std::vector<std::string>{"body", "wheel_1"});
   const std::string frame =
       "frame_mass_kg=1e3, frame_inertia_kg_m2=700.0, wheel_mass_kg=600.0, wheelbase_m=3.0, "
       "primary_stiffness_n_per_m=1e6, ";
   const VehicleScene three =
       with("name=\"b\", type=\"bogie\", axles=3, " + frame + kSpeed).vehicles.at(0);
-  REQUIRE(three.kind.vehicle.wheels.size() == 3);
-  CHECK(three.kind.vehicle.wheels[0].place == 1.5);
-  CHECK(three.kind.vehicle.wheels[1].place == 0.);
+  REQUIRE(three.vehicle.wheels.size() == 3);
+  CHECK(three.vehicle.wheels[0].place == 1.5);
+  CHECK(three.vehicle.wheels[1].place == 0.);
   const VehicleScene whole =
       with(
           "name=\"c\", type=\"vehicle\", body_mass_kg=1e4, body_inertia_kg_m2=1e6, "
           "bogie_distance_m=10.0, secondary_stiffness_n_per_m=4e5, " +
           frame + kSpeed)
           .vehicles.at(0);
-  CHECK(whole.kind.bodies == std::vector<std::string>{"body", "frame_1", "frame_2", "wheel_1",
-                                                      "wheel_2", "wheel_3", "wheel_4"});
-  CHECK(whole.kind.vehicle.wheels[3].place == -6.5);
+  CHECK(whole.bodies == std::vector<std::string>{"body", "frame_1", "frame_2", "wheel_1", "wheel_2",
+                                                 "wheel_3", "wheel_4"});
+  CHECK(whole.vehicle.wheels[3].place == -6.5);
 }
 
 TEST_CASE("bogies that overlap are refused", "[scene][vehicle]") {
@@ -90,12 +91,12 @@ TEST_CASE("shipped vehicles are read and stand with their weight on their wheels
                                              {"locomotive_bogie", 3u, 4u}}) {
     const Scene scene =
         with(std::string("name=\"v\", file=\"../vehicles/") + file + ".toml\", " + kSpeed);
-    CHECK(scene.vehicles.at(0).kind.vehicle.wheels.size() == wheels);
-    CHECK(scene.vehicles.at(0).kind.bodies.size() == bodies);
+    CHECK(scene.vehicles.at(0).vehicle.wheels.size() == wheels);
+    CHECK(scene.vehicles.at(0).bodies.size() == bodies);
     const Simulation run(scene);
     double sum = 0., weight = 0.;
     for (std::size_t i = 0; i < wheels; ++i) sum += run.state.wheel_force[i];
-    for (const Vehicle::Body& body : scene.vehicles[0].kind.vehicle.bodies)
+    for (const Vehicle::Body& body : scene.vehicles[0].vehicle.bodies)
       weight += (body.mass + body.carried) * kGravity;
     CHECK(sum == Approx(weight).epsilon(1e-10));
   }
@@ -105,7 +106,7 @@ TEST_CASE("the trace has the wheels and bodies of a vehicle", "[scene][vehicle]"
   const Scene scene = read_scene(kScene, {"track.rails=2", "vehicle[0].rail=\"both\"", "sensor=[]",
                                           "sleeper.roll_inertia_kg_m2=169.0"});
   REQUIRE(scene.vehicles.size() == 2);
-  CHECK(scene.vehicles[1].rail == Side::right);
+  CHECK(scene.vehicles[1].rail == kRightRail);
   const Simulation run(scene);
   const std::vector<std::string>& names = run.columns();
   REQUIRE(names.size() == 1 + 4 * 6 + 2 * 4);
