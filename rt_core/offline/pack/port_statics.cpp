@@ -3,13 +3,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "offline/analysis/statics.h"
-#include "online/contact/ports.h"
+#include "offline/pack/static_ports.h"
 
 namespace railstep {
 
@@ -171,29 +168,19 @@ void open(const std::vector<FixedPort>& ports, PortStatics& statics, Eigen::Vect
 
 Eigen::VectorXd pressed_under(const std::vector<FixedPort>& ports, const PortStatics& statics,
                               const Eigen::VectorXd& under) {
-  constexpr double kForce = 1e5;   // N
-  constexpr int kMostSolves = 20;  // of 8 iterations each, where a step's solve takes one
+  constexpr double kForce = 1e5;  // N
   PortStatics opened = statics;
   Eigen::VectorXd result = under;
   open(ports, opened, result);
-  const auto n = static_cast<int>(ports.size());
-  std::array<PortLaw, kMaxFixedPorts> law;
-  for (std::size_t j = 0; j < ports.size(); ++j) {
-    const double part = presses_at_rest(ports[j]) ? 1. - kStays : 1.;
-    law[j] = {0., std::max(part * ports[j].stiffness, 1e-9), 0.};  // a damper carries nothing
-  }
+  Eigen::VectorXd stiffness(opened.ports.rows());
+  for (std::size_t j = 0; j < ports.size(); ++j)
+    stiffness[static_cast<Eigen::Index>(j)] =
+        (presses_at_rest(ports[j]) ? 1. - kStays : 1.) * ports[j].stiffness;
   for (Eigen::Index i = 0; i < under.size(); ++i) {
-    const Eigen::VectorXd closing = opened.points.col(i), free = -kForce * closing;
-    std::array<double, kMaxFixedPorts> force{}, depth{};
-    PortStatus met = PortStatus::cap_reached;
-    for (int iteration = 0; iteration < kMostSolves && met != PortStatus::converged; ++iteration)
-      met = solve_ports(n, opened.ports.data(), law.data(), free.data(), force.data(), depth.data())
-                .status;
-    if (met != PortStatus::converged)
-      throw std::invalid_argument(
-          "no equilibrium was found: the one-sided supports open and close without end");
+    const Eigen::VectorXd closing = opened.points.col(i);
+    const Eigen::VectorXd force = static_port_forces(opened.ports, stiffness, -kForce * closing);
     // Down under a force down: G F, and ports that press lift by their share.
-    result[i] += closing.dot(Eigen::Map<const Eigen::VectorXd>(force.data(), n)) / kForce;
+    result[i] += closing.dot(force) / kForce;
   }
   return result;
 }

@@ -17,6 +17,11 @@ namespace railstep {
 
 namespace {
 
+constexpr int kIterations = 50;      // Newton's steps; a handful is enough where there is an answer
+constexpr double kSettled = 1e-10;   // of the largest force: Newton leaves its square
+constexpr double kLiftedOff = 1e-9;  // of what all wheels bear
+constexpr double kSoftest = 1e6;     // N/m, of springs whose stiffness scales the equations
+
 using Rows =
     Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
@@ -54,7 +59,7 @@ Together together(const Model& model) {
     add_forces(v, 0., nullptr, lift.data() + n);
     n += v.size;
   }
-  all.stiff = std::max(all.stiffness.diagonal().maxCoeff(), 1e6);
+  all.stiff = std::max(all.stiffness.diagonal().maxCoeff(), kSoftest);
   all.borne = all.weight.sum();
   if (lift.isZero(0.)) return all;
   all.weight -= lift;
@@ -70,8 +75,6 @@ Depth depth_of(const ContactModel& contact, double force) {
   const double value = contact_depth(contact, force);
   return {value, contact.hertz > 0. ? 2. / 3. * value / force : 1. / contact.stiffness};
 }
-
-constexpr int kIterations = 50;  // Newton's steps; a handful is enough where there is an answer
 
 }  // namespace
 
@@ -113,11 +116,10 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       // A wheel that presses less than nothing gets a tenth of what it had, and another turn.
       const bool lifted = model.vehicle_wheel[i].contact.hertz > 0. && !(next > 0.);
       const double taken = lifted ? .1 * force[i] : next;
-      // Newton's error is the square of its last step: 1e-10 leaves rounding.
-      if (lifted || std::abs(taken - force[i]) > 1e-10 * force.cwiseAbs().maxCoeff())
+      if (lifted || std::abs(taken - force[i]) > kSettled * force.cwiseAbs().maxCoeff())
         settled = false;
       force[i] = taken;
-      if (taken < 1e-9 * std::abs(all.borne) && lifted) lifted_off = true;
+      if (taken < kLiftedOff * std::abs(all.borne) && lifted) lifted_off = true;
     }
   }
   if (!settled)

@@ -1,11 +1,8 @@
 #include "offline/start/static_lines.h"
 
-#include <algorithm>
-#include <array>
-#include <stdexcept>
 #include <utility>
 
-#include "online/contact/ports.h"
+#include "offline/pack/static_ports.h"
 
 namespace railstep {
 
@@ -52,21 +49,9 @@ void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines)
     W += rows.back().transpose() * own.basis.give(rows.back());
     free += rows.back().transpose() * own.basis.shown(lines[l]);
   }
-  std::array<PortLaw, kMaxFixedPorts> law;
-  std::array<double, kMaxFixedPorts> force{}, depth{};
-  for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j)
-    law[j] = {0., std::max(fixed.stiffness[j], 1e-9), 0.};  // a damper alone carries nothing
-  constexpr int kMostSolves = 20;  // of 8 iterations each, where a step's solve takes one
-  PortStatus met = PortStatus::cap_reached;
-  for (int iteration = 0; iteration < kMostSolves && met != PortStatus::converged; ++iteration)
-    met = solve_ports(static_cast<int>(n), W.data(), law.data(), free.data(), force.data(),
-                      depth.data())
-              .status;
-  if (met != PortStatus::converged)
-    throw std::invalid_argument(
-        "no equilibrium was found: the one-sided supports open and close without end");
-  for (std::size_t l = 0; l < lines.size(); ++l)
-    lines[l] -= moved[l] * Eigen::Map<const Eigen::VectorXd>(force.data(), n);
+  const Eigen::VectorXd force =
+      static_port_forces(W, Eigen::Map<const Eigen::VectorXd>(fixed.stiffness, n), free);
+  for (std::size_t l = 0; l < lines.size(); ++l) lines[l] -= moved[l] * force;
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+#include "offline/pack/static_ports.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "online/contact/ports.h"
+
+namespace railstep {
+
+Eigen::VectorXd static_port_forces(const Eigen::MatrixXd& compliance,
+                                   const Eigen::VectorXd& stiffness, const Eigen::VectorXd& free) {
+  constexpr double kNothing = 1e-9;  // N/m of a damper alone: a law has a slope above 0
+  constexpr int kMostSolves = 20;    // of 8 iterations each, where a step's solve takes one
+  const auto n = static_cast<int>(free.size());
+  std::array<PortLaw, kMaxFixedPorts> law;
+  std::array<double, kMaxFixedPorts> force{}, depth{};
+  for (int j = 0; j < n; ++j)
+    law[static_cast<std::size_t>(j)] = {0., std::max(stiffness[j], kNothing), 0.};
+  PortStatus met = PortStatus::cap_reached;
+  for (int iteration = 0; iteration < kMostSolves && met != PortStatus::converged; ++iteration)
+    met = solve_ports(n, compliance.data(), law.data(), free.data(), force.data(), depth.data())
+              .status;
+  if (met != PortStatus::converged)
+    throw std::invalid_argument(
+        "no equilibrium was found: the one-sided supports open and close without end");
+  return Eigen::Map<const Eigen::VectorXd>(force.data(), n);
+}
+
+}  // namespace railstep
