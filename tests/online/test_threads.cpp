@@ -19,10 +19,7 @@ constexpr int kFrames = 50;
 std::uint64_t hash_after(const Model& model, const State& start) {
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)));
   std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(model)));
-  State state = state_on(model, memory.data());
-  std::copy_n(start.u, memory.size(),
-              memory.data());  // a state's arrays stand in one row from u on
-  state.steps = start.steps;
+  State state = copied_state(model, start, memory.data());
   Workspace workspace = workspace_on(model, scratch.data());
   Outputs outputs{};
   for (int frame = 0; frame < kFrames; ++frame)

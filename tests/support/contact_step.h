@@ -58,9 +58,9 @@ inline Eigen::MatrixXd contact_step(const PadCase& pad, const PackOptions& optio
   for (Eigen::Index i = 0; i < all; ++i) {
     std::fill(run.memory.begin(), run.memory.end(), 0.);
     run.state.steps = 0;
-    run.state.u[i] = unit[i];  // the fields lie in one row from u on
+    run.state.numbers[i] = unit[i];
     run.step();
-    step.col(i) = Eigen::Map<const Eigen::VectorXd>(run.state.u, all).cwiseQuotient(unit);
+    step.col(i) = Eigen::Map<const Eigen::VectorXd>(run.state.numbers, all).cwiseQuotient(unit);
   }
   // In condensed lines a and g hold the loads' last forces. There are no loads, so they stay.
   const Eigen::Index lines = modal_unknowns(model);

@@ -58,8 +58,7 @@ class PassiveRun {
   double reference() const { return reference_; }
 
   void step() {
-    std::copy_n(run_.state.u, memory_.size(), memory_.data());  // fields lie in a row from u on
-    old_.steps = run_.state.steps;
+    old_ = copied_state(model_, run_.state, memory_.data());
     seen_ = seen_ | advance_frame(model_, run_.state, run_.workspace, outputs_);
   }
 

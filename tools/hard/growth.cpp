@@ -96,7 +96,7 @@ double growth_of(Simulation& run) {
   const Model& model = run.model();
   const std::int64_t steps = run.state.steps;
   const Eigen::VectorXd start =
-      Eigen::Map<const Eigen::VectorXd>(run.state.u, state_doubles(model));
+      Eigen::Map<const Eigen::VectorXd>(run.state.numbers, state_doubles(model));
   const std::vector<Change> changes = changes_of(model, run.state);
   const auto n = static_cast<Eigen::Index>(changes.size());
   Eigen::MatrixXd map(n, n);

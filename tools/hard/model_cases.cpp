@@ -84,7 +84,7 @@ Bytes saved(const Simulation& run) {
 
 /// Overwrites the state and all scratch by what is no number: nothing may be left in them.
 void foul(Simulation& run) {
-  std::fill_n(run.state.u, state_doubles(run.model()), kNan);
+  std::fill_n(run.state.numbers, state_doubles(run.model()), kNan);
   std::fill_n(run.workspace.u_star, workspace_doubles(run.model()), kNan);
 }
 

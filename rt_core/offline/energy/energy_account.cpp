@@ -44,10 +44,8 @@ EnergyAccount::EnergyAccount(const PackedModel& packed, const Model& model, cons
 
 EnergyAccount::Standing EnergyAccount::stand(const State& state) const {
   Standing at;
-  const auto doubles = static_cast<std::size_t>(state_doubles(model_));
-  at.memory.assign(state.u, state.u + doubles);  // the fields stand in one row from u on
-  at.state = state_on(model_, at.memory.data());
-  at.state.steps = state.steps;
+  at.memory.resize(static_cast<std::size_t>(state_doubles(model_)));
+  at.state = copied_state(model_, state, at.memory.data());
   for (const LineEnergy& line : lines_) at.lines.push_back(line.motion(at.state));
   at.contacts = standing_contacts(model_, at.state);
   for (std::int32_t j = 0; j < model_.fixed.count; ++j) {

@@ -35,7 +35,8 @@ bool kept_is_valid(const Model& model, const State& state, const unsigned char* 
   if (system.unknowns == 0 || system.renew != Renew::kept) return true;
   const SystemTangent kept = system_tangent_on(system, state.kept);
   const auto at = [&](const void* place) {
-    return numbers + (static_cast<const char*>(place) - reinterpret_cast<const char*>(state.u));
+    return numbers +
+           (static_cast<const char*>(place) - reinterpret_cast<const char*>(state.numbers));
   };
   if (!(get_double(at(kept.age)) > 0.)) return true;
   const double rank = get_double(at(kept.rank));
@@ -54,7 +55,7 @@ void save_snapshot(const Model& model, const State& state, unsigned char* bytes)
   put_word(bytes + kLatchedAt, static_cast<std::uint64_t>(state.latched));
   put_word(bytes + kCountAt, count);
   unsigned char* at = bytes + kSnapshotHead;
-  for (std::size_t i = 0; i < count; ++i, at += 8) put_double(at, state.u[i]);  // one row from u on
+  for (std::size_t i = 0; i < count; ++i, at += 8) put_double(at, state.numbers[i]);
   sha256(bytes, static_cast<std::size_t>(at - bytes), at);
 }
 
@@ -79,7 +80,8 @@ SnapshotStatus restore_snapshot(const Model& model, const void* bytes, std::size
   if (!kept_is_valid(model, state, at + kSnapshotHead)) return SnapshotStatus::bad_content;
   state.steps = steps;
   state.latched = static_cast<Status>(latched);
-  for (std::size_t i = 0; i < doubles; ++i) state.u[i] = get_double(at + kSnapshotHead + 8 * i);
+  for (std::size_t i = 0; i < doubles; ++i)
+    state.numbers[i] = get_double(at + kSnapshotHead + 8 * i);
   return SnapshotStatus::ok;
 }
 

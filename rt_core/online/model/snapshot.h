@@ -18,7 +18,7 @@ enum class SnapshotStatus : std::uint8_t {
 
 /// A state in bytes, the same on every machine; numbers are little-endian, from the first byte:
 ///   8 bytes "railsnap", int64 format, int64 bytes of the whole, 32 bytes Model::sum, int64 steps,
-///   uint64 latched status, int64 count, `count` doubles of the state from u on, 32 bytes SHA-256
+///   uint64 latched status, int64 count, `count` doubles of the state, 32 bytes SHA-256
 ///   of all before.
 inline constexpr std::int64_t kSnapshotFormat = 1;
 inline constexpr std::size_t kSnapshotHead = 8 + 8 + 8 + 32 + 8 + 8 + 8;

@@ -18,21 +18,29 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
 
 }  // namespace
 
+State copied_state(const Model& model, const State& from, double* memory) noexcept {
+  State to = state_on(model, memory);
+  std::memcpy(to.numbers, from.numbers,
+              sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
+  to.steps = from.steps;
+  return to;
+}
+
 void reset(const Model& model, State& state) noexcept {
   state.steps = 0;
   state.latched = Status::ok;
-  const std::int64_t given = start_doubles(model), all = state_doubles(model);  // one row from u on
-  for (std::int64_t i = 0; i < given; ++i) state.u[i] = without_tiny(model.start[i]);
-  for (std::int64_t i = given; i < all; ++i) state.u[i] = 0.;
+  const std::int64_t given = start_doubles(model), all = state_doubles(model);
+  for (std::int64_t i = 0; i < given; ++i) state.numbers[i] = without_tiny(model.start[i]);
+  for (std::int64_t i = given; i < all; ++i) state.numbers[i] = 0.;
 }
 
 std::uint64_t state_hash(const Model& model, const State& state) noexcept {
   std::uint64_t hash = mix(0xcbf29ce484222325u, static_cast<std::uint64_t>(state.steps));
   hash = mix(hash, static_cast<std::uint64_t>(state.latched));
-  const std::int64_t count = state_doubles(model);  // one block, from u on
+  const std::int64_t count = state_doubles(model);
   for (std::int64_t i = 0; i < count; ++i) {
     std::uint64_t word = 0;
-    std::memcpy(&word, state.u + i, sizeof word);
+    std::memcpy(&word, state.numbers + i, sizeof word);
     hash = mix(hash, word);
   }
   return hash;

@@ -11,6 +11,7 @@ namespace railstep {
 /// a and g hold of a condensed line stands at LineModel.
 struct State {
   std::int64_t steps;   // time = steps * dt, so it never drifts
+  double* numbers;      // [state_doubles] all of these arrays in one row
   double* u;            // [unknowns] displacement: m; slopes 1
   double* v;            // [unknowns] velocity
   double* a;            // [unknowns] the scheme's acceleration
@@ -124,6 +125,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
   double* const rows = system + 4LL * model.system.bodies;
   return {0,
           memory,
+          memory,
           memory + n,
           memory + 2 * n,
           memory + 3 * n,
@@ -155,6 +157,9 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           memory + 4 * n,
           imaginary + (condensed ? n : 0)};
 }
+
+/// A state on other memory, equal but for what is latched.
+State copied_state(const Model& model, const State& from, double* memory) noexcept;
 
 /// Puts the model's start into a state: step 0, with no matrix kept yet.
 void reset(const Model& model, State& state) noexcept;

@@ -1,7 +1,5 @@
 #include "online/step/step.h"
 
-#include <cstring>
-
 #include "online/contact/couple.h"
 #include "online/contact/external.h"
 #include "online/math/float_mode.h"
@@ -218,9 +216,7 @@ namespace {
 
 [[gnu::noinline]] Status respond(const Model& model, const double* inputs, const State& state,
                                  Workspace& workspace, double* free, double* compliance) noexcept {
-  State tried = state_on(model, workspace.external);
-  std::memcpy(tried.u, state.u, sizeof(double) * static_cast<std::size_t>(state_doubles(model)));
-  tried.steps = state.steps;
+  State tried = copied_state(model, state, workspace.external);
   const Status met = take_inputs(model, inputs, tried);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
     for (int d = 0; d < 3; ++d)
