@@ -25,9 +25,6 @@ int read_side(const Table& t, const Scene& scene) {
   return left ? kLeftRail : kRightRail;
 }
 
-namespace {
-
-/// [[t_s, value], ...] with rising times from 0 on: t (s), value, t, value, ...
 std::vector<double> read_time_table(const Table& t, std::string_view key, const Range& accepted) {
   std::vector<double> rows = t.rows(key, 2);
   for (std::size_t i = 0; i < rows.size(); i += 2) {
@@ -42,6 +39,8 @@ std::vector<double> read_time_table(const Table& t, std::string_view key, const 
   }
   return rows;
 }
+
+namespace {
 
 /// The same of a force, which is 0 before its first row, where table_value() keeps the first
 /// value. A row one bit earlier makes them the same function.

@@ -52,19 +52,9 @@ std::array<Part, 2> read_between(const Table& t, const SystemScene& scene) {
 /// Rows [time, value] with rising times from 0 on.
 std::vector<std::array<double, 2>> read_motion_table(const Table& t, const std::string& key,
                                                      const Range& accepted) {
-  const std::vector<double> rows = t.rows(key, 2);
+  const std::vector<double> rows = read_time_table(t, key, accepted);
   std::vector<std::array<double, 2>> table;
-  for (std::size_t i = 0; i < rows.size(); i += 2) {
-    if (rows[i] < 0. || (i > 0 && rows[i] <= rows[i - 2]))
-      t.refuse(key,
-               fmt::format("{}: the time {:.15g} s of row {} does not rise; accepted are times "
-                           "from 0 on, each above the one before",
-                           key, rows[i], i / 2));
-    if (!accepted.holds(rows[i + 1]))
-      t.refuse(key, fmt::format("{}: {:.15g} in row {} is out of range; accepted is {}", key,
-                                rows[i + 1], i / 2, accepted.text()));
-    table.push_back({rows[i], rows[i + 1]});
-  }
+  for (std::size_t i = 0; i < rows.size(); i += 2) table.push_back({rows[i], rows[i + 1]});
   if (table.size() < 2) t.refuse(key, fmt::format("{} has 1 row; accepted are 2 and more", key));
   return table;
 }

@@ -72,6 +72,8 @@ std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,
                                           const VehicleScene& own);
 /// @returns kLeftRail or kRightRail
 int read_side(const Table& t, const Scene& scene);
+/// [[t_s, value], ...] with rising times from 0 on: t (s), value, t, value, ...
+std::vector<double> read_time_table(const Table& t, std::string_view key, const Range& accepted);
 /// speed_m_per_s, or speed_table in its place: speeds that do not turn around.
 struct SpeedScene {
   double speed;                // m/s; with a table its first

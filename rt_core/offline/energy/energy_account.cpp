@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "offline/energy/single_steps.h"
 #include "offline/energy/vehicle_energy.h"
 #include "offline/math/larger.h"
 #include "online/contact/body_force.h"
@@ -332,24 +333,10 @@ double EnergyAccount::numerical_loss() const {
 EnergyBalance balance_of(const PackedModel& packed, const Model& model, std::int64_t frames,
                          const std::function<void(std::int64_t)>& after,
                          const FrameInputs& inputs) {
-  Model single = model;
-  single.steps_per_frame = 1;
-  std::vector<double> memory(static_cast<std::size_t>(state_doubles(single)));
-  std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(single)));
-  State state = state_on(single, memory.data());
-  Workspace workspace = workspace_on(single, scratch.data());
-  Outputs outputs{};
-  reset(single, state);
-  EnergyAccount account(packed, single, state);
-  for (std::int64_t frame = 0; frame < frames; ++frame) {
-    for (std::int32_t n = 0; n < model.steps_per_frame; ++n) {  // the run told of the status
-      static_cast<void>(
-          make_frame(single, n == 0 ? inputs : FrameInputs{}, frame, state, workspace, outputs));
-      account.follow(state);
-    }
-    if (after) after(frame + 1);
-  }
-  return {account.balance_error(), account.numerical_loss(), state_hash(single, state)};
+  SingleSteps run(model);
+  EnergyAccount account(packed, run.model(), run.state());
+  run.make(frames, account, after, inputs);
+  return {account.balance_error(), account.numerical_loss(), state_hash(run.model(), run.state())};
 }
 
 }  // namespace railstep

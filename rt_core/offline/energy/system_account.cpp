@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "online/step/step.h"
+#include "offline/energy/single_steps.h"
 #include "online/system/rotation.h"
 #include "online/system/row.h"
 
@@ -157,26 +157,11 @@ class JoinedAccount {
 EnergyBalance balance_of(const PackedSystem& packed, std::int64_t frames,
                          const std::function<void(std::int64_t)>& after,
                          const FrameInputs& inputs) {
-  Model single = packed.model();
-  const std::int32_t steps_per_frame = single.steps_per_frame;
-  single.steps_per_frame = 1;
-  std::vector<double> memory(static_cast<std::size_t>(state_doubles(single)));
-  std::vector<double> scratch(static_cast<std::size_t>(workspace_doubles(single)));
-  State state = state_on(single, memory.data());
-  Workspace workspace = workspace_on(single, scratch.data());
-  Outputs outputs{};
-  reset(single, state);
-  JoinedAccount account(packed, single, state);
-  for (std::int64_t frame = 0; frame < frames; ++frame) {
-    for (std::int32_t n = 0; n < steps_per_frame; ++n) {  // the run told of the status
-      static_cast<void>(
-          make_frame(single, n == 0 ? inputs : FrameInputs{}, frame, state, workspace, outputs));
-      account.follow(state);
-    }
-    if (after) after(frame + 1);
-  }
+  SingleSteps run(packed.model());
+  JoinedAccount account(packed, run.model(), run.state());
+  run.make(frames, account, after, inputs);
   const double missing = account.imbalance();
-  return {std::abs(missing), -missing, state_hash(single, state)};
+  return {std::abs(missing), -missing, state_hash(run.model(), run.state())};
 }
 
 }  // namespace railstep
