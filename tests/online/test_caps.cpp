@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "offline/irregularity/spline.h"
+#include "online/model/external_input.h"
 #include "support/flanged.h"
 #include "support/system_run.h"
 #include "support/vehicles.h"
@@ -177,7 +178,7 @@ TEST_CASE("external wheels and inputs up to their caps act as the sum of each al
   const auto displacement = [&](int pressing) {
     Traffic traffic;
     traffic.head = kHead;
-    traffic.input_limits.assign(kMaxInputs - 5 * kMaxExternalWheels, 1e6);
+    traffic.input_limits.assign(kMaxInputs - kExternalInputs * kMaxExternalWheels, 1e6);
     for (int i = 0; i < kMaxExternalWheels; ++i) traffic.external_wheels.push_back({i % 2, 1e6});
     ModelRun run(track, traffic, full_order(1e-3));
     REQUIRE(run.model().inputs == kMaxInputs);
@@ -185,8 +186,8 @@ TEST_CASE("external wheels and inputs up to their caps act as the sum of each al
     for (int n = 0; n < 10; ++n) {
       for (int i = 0; i < kMaxExternalWheels; ++i) {
         double* const own = input.data() + run.model().external_wheel[i].input;
-        own[0] = 2. + .5 * i + .02 * n;
-        own[4] = pressing < 0 || pressing == i ? -2e4 - 1e3 * i : 0.;
+        own[kExternalX] = 2. + .5 * i + .02 * n;
+        own[kExternalForce + 2] = pressing < 0 || pressing == i ? -2e4 - 1e3 * i : 0.;
       }
       CHECK(advance_frame(run.model(), input.data(), run.state, run.workspace, run.outputs) ==
             Status::ok);
@@ -205,7 +206,7 @@ TEST_CASE("external wheels and inputs up to their caps act as the sum of each al
   more.external_wheels.assign(kMaxExternalWheels + 1, {0, 1e6});
   refused(track, more, "more than 16 external wheels");
   more.external_wheels.assign(kMaxExternalWheels, {0, 1e6});
-  more.input_limits.assign(kMaxInputs - 5 * kMaxExternalWheels + 1, 1e6);
+  more.input_limits.assign(kMaxInputs - kExternalInputs * kMaxExternalWheels + 1, 1e6);
   refused(track, more, "more than 96 inputs");
 }
 

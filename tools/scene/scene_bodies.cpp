@@ -42,8 +42,8 @@ std::vector<double> read_time_table(const Table& t, std::string_view key, const 
 
 namespace {
 
-/// The same of a force, which is 0 before its first row, where table_value() keeps the first
-/// value. A row one bit earlier makes them the same function.
+/// A force is 0 before its first row, where table_value() keeps the first value. A row one bit
+/// earlier makes them the same function.
 std::vector<double> read_force_table(const Table& t, std::string_view key, const Range& accepted) {
   std::vector<double> rows = read_time_table(t, key, accepted);
   rows.insert(rows.begin(),

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "online/model/external_input.h"
 #include "online/step/step.h"
 #include "run/simulation.h"
 #include "support/program.h"
@@ -84,7 +85,7 @@ TEST_CASE("free motion and compliance give the frame's displacements for any for
         for (int i = 0; i < 6; ++i) {
           double want = free[i], size = std::abs(free[i]);
           for (int j = 0; j < 6; ++j) {
-            const int input = 5 * (j / 3) + 2 + j % 3;
+            const int input = kExternalInputs * (j / 3) + kExternalForce + j % 3;
             const double force = in[static_cast<std::size_t>(input)];
             want += compliance[6 * i + j] * force;
             size += std::abs(compliance[6 * i + j] * force);
