@@ -28,16 +28,18 @@ constexpr int kMostFrequencies = 100'000;
 
 std::vector<double> frequencies(const ReceptanceRequest& r) {
   if (!(r.from_hz <= r.to_hz))
-    throw InputError(fmt::format("--from {:g} is above --to-hz {:g}", r.from_hz, r.to_hz));
+    throw InputError("E-RECEPTANCE-14",
+                     fmt::format("--from {:g} is above --to-hz {:g}", r.from_hz, r.to_hz));
   if (r.from_hz == r.to_hz) return {r.from_hz};
   if (r.points == 1)
-    throw InputError(
-        fmt::format("--points 1 is one frequency, and --from {:g} to --to-hz {:g} has "
-                    "two ends; accepted is --from alone",
-                    r.from_hz, r.to_hz));
+    throw InputError("E-RECEPTANCE-15",
+                     fmt::format("--points 1 is one frequency, and --from {:g} to --to-hz {:g} has "
+                                 "two ends; accepted is --from alone",
+                                 r.from_hz, r.to_hz));
   const double span = r.to_hz - r.from_hz;
   if (r.step_hz && !(span / *r.step_hz < kMostFrequencies))
-    throw InputError(fmt::format("--step-hz {:g} makes {:.3g} frequencies; accepted are {}",
+    throw InputError("E-RECEPTANCE-16",
+                     fmt::format("--step-hz {:g} makes {:.3g} frequencies; accepted are {}",
                                  *r.step_hz, span / *r.step_hz, kMostFrequencies));
   const int last =
       r.step_hz ? static_cast<int>(std::ceil(span / *r.step_hz * (1. - 1e-9))) : r.points - 1;
@@ -70,7 +72,7 @@ std::string listed(const Scene& scene) {
 Sensed sensed(const Scene& scene, const Track& track, const std::string& name,
               const std::string& direction) {
   const auto refuse = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: {}", scene.file.string(), what));
+    throw InputError("E-RECEPTANCE-17", fmt::format("{}: {}", scene.file.string(), what));
   };
   const int d = direction == "y" ? 1 : 2;
   for (const SensorScene& sensor : scene.sensors) {
@@ -136,15 +138,16 @@ std::string end_warning(const std::vector<double>& hz, const std::vector<double>
 void warn(const std::vector<const Sensed*>& points, bool zones, ReceptanceAnswer& answer) {
   if (!answer.end_effect.empty()) {
     const std::string ends = end_warning(answer.hz, answer.end_effect, zones);
-    if (!ends.empty()) answer.warnings.push_back(ends);
+    if (!ends.empty()) answer.warnings.push_back({"W-RECEPTANCE-01", ends});
   }
   for (const Sensed* point : points) {
     const bool lateral = point->direction == 1;
     const double most = lateral ? kValidLateral : kValidVertical;
     if (answer.hz.back() <= most) continue;
-    answer.warnings.push_back(fmt::format(
-        "the beam has no warping and no bending of the web: {} motion is good to about {:g} Hz",
-        lateral ? "lateral" : "vertical", most));
+    answer.warnings.push_back(
+        {"W-RECEPTANCE-02", fmt::format("the beam has no warping and no bending of the web: {} "
+                                        "motion is good to about {:g} Hz",
+                                        lateral ? "lateral" : "vertical", most)});
     return;
   }
 }
@@ -158,20 +161,22 @@ void add_decay(const ReceptanceRequest& request, const Scene& scene, const Track
                const Sensed& force, ReceptanceAnswer& answer) {
   const RailPoint* at = rail_of(force);
   if (at == nullptr)
-    throw InputError(
-        fmt::format("{}: a decay rate is taken along a rail; accepted for --at is a "
-                    "sensor on a rail",
-                    scene.file.string()));
+    throw InputError("E-RECEPTANCE-18",
+                     fmt::format("{}: a decay rate is taken along a rail; accepted for --at is a "
+                                 "sensor on a rail",
+                                 scene.file.string()));
   const std::vector<ThirdOctave> bands = third_octaves(request.from_hz, request.to_hz);
   if (bands.empty())
     throw InputError(
+        "E-RECEPTANCE-19",
         "no one-third octave band from 100 to 5000 Hz lies within --from and --to-hz, of which a "
         "decay rate could be given");
   const bool back = at->x > track.length() - at->x;
   Transfer along{force.on, {}};
   answer.decay_distance = decay_distances(track, at->x);
   if (answer.decay_distance.size() < 2)
-    throw InputError("a decay rate needs a quarter of a bay of rail beside --at");
+    throw InputError("E-RECEPTANCE-20",
+                     "a decay rate needs a quarter of a bay of rail beside --at");
   for (const double away : answer.decay_distance) {
     RailPoint there = *at;
     there.x = std::clamp(at->x + (back ? -away : away), 0., track.length());
@@ -184,10 +189,11 @@ void add_decay(const ReceptanceRequest& request, const Scene& scene, const Track
   for (const DecayRate& rate : answer.decay)
     if (!rate.suitable) short_of.push_back(rate.band.nominal_hz);
   if (!short_of.empty())
-    answer.warnings.push_back(fmt::format(
-        "decay rates of the bands {} Hz are upper bounds: {:.3g} m of rail are too short for them "
-        "(EN 15461, 6.7 and 7)",
-        fmt::join(short_of, ", "), answer.decay_distance.back()));
+    answer.warnings.push_back(
+        {"W-RECEPTANCE-03", fmt::format("decay rates of the bands {} Hz are upper bounds: {:.3g} m "
+                                        "of rail are too short for them "
+                                        "(EN 15461, 6.7 and 7)",
+                                        fmt::join(short_of, ", "), answer.decay_distance.back())});
 }
 
 /// Of the line that the force moves most.
@@ -248,8 +254,7 @@ ReceptanceAnswer solve(const ReceptanceRequest& request, const Scene& scene) {
     add_resonances(track, *at, *model, answer);
   if (request.reflection) add_reflection(track, force, answer);
   warn({&force, &read}, end_zones(track) > 0, answer);
-  if (std::string note = lopsided_note(scene); !note.empty())
-    answer.warnings.push_back(std::move(note));
+  if (const auto note = lopsided_note(scene)) answer.warnings.push_back(*note);
   if (request.decay) add_decay(request, scene, track, force, answer);
   return answer;
 }
@@ -261,8 +266,8 @@ ReceptanceAnswer solve_receptance(const ReceptanceRequest& request) {
   const Scene scene = read_scene(request.scene, request.overrides);
   try {
     return solve(request, scene);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", request.scene, error.what()));
+  } catch (const Refused& error) {
+    throw InputError(request.scene, error);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "offline/receptance/decay_rate.h"
 #include "offline/receptance/end_reflection.h"
 #include "offline/receptance/resonances.h"
+#include "text/message.h"
 
 namespace railstep {
 
@@ -41,7 +42,7 @@ struct ReceptanceAnswer {
   std::vector<double> decay_distance;  // m; empty where no rates are asked for
   std::vector<DecayRate> decay;
   std::vector<Reflection> reflection;  // of the far end, at the frequencies; empty: not asked for
-  std::vector<std::string> warnings;   // sentences
+  std::vector<Message> warnings;
 };
 
 /// An end effect above this is a warning.

@@ -62,10 +62,10 @@ double force_at_start(const OuterForce& force) {
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
   for (const OuterForce& force : w.forces)
     if (force_at_start(force) != 0.)
-      throw InputError(
-          fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
-                      "forces that are 0 at t = 0",
-                      scene.file.string(), w.name));
+      throw InputError("E-STATIC-01",
+                       fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
+                                   "forces that are 0 at t = 0",
+                                   scene.file.string(), w.name));
   for (const int rail : {0, 1}) add_wheel(scene, problem, rail, w.start, -.5 * w.weight);
 }
 
@@ -78,8 +78,8 @@ void add_vehicle(const Scene& scene, const VehicleScene& v, Problem& problem) tr
   for (std::size_t i = 0; i < v.vehicle.wheels.size(); ++i)
     add_wheel(scene, problem, v.rail, v.start + v.vehicle.wheels[i].place,
               -rest.force[static_cast<Eigen::Index>(i)]);
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: vehicle {}: {}", scene.file.string(), v.name, error.what()));
+} catch (const Refused& error) {
+  throw InputError(fmt::format("{}: vehicle {}", scene.file.string(), v.name), error);
 }
 
 Problem problem_of(const Scene& scene) {
@@ -269,8 +269,8 @@ StaticSolution solve_static(const Scene& scene) try {
       break;
   }
   return solve_linearised(problem, asked);
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+} catch (const Refused& error) {
+  throw InputError(scene.file.string(), error);
 }
 
 }  // namespace railstep

@@ -19,6 +19,7 @@
 #include "build/step_scheme.h"
 #include "offline/analysis/buckling.h"
 #include "offline/beam/linearise.h"
+#include "offline/math/refuse.h"
 #include "offline/pack/artefact.h"
 #include "offline/pack/travel_rows.h"
 #include "offline/start/start.h"
@@ -93,7 +94,8 @@ void add_right_rail(const Scene& scene, const RailSection& found, const HeatedJo
   if (!keep_moments) bar.section.moments.reset();
   bar.axial_force = axial_force_of(right, bar.section.area, 1, heated);
   if (scene.track.reference_line != ReferenceLine::centroid)
-    throw std::invalid_argument(
+    refuse(
+        "E-BUILD-01",
         "rails that differ have their nodes on their centroids; accepted is track.reference_line = "
         "\"centroid\"");
   track.right = bar;
@@ -111,9 +113,10 @@ void add_right_rail(const Scene& scene, const RailSection& found, const HeatedJo
 PackOptions pack_options_of(const Scene& scene) {
   const StepScene& step = *scene.step;
   if (step.steps_per_frame > std::numeric_limits<int>::max())
-    throw InputError(fmt::format("{}: a frame of {} steps is too long; accepted are {}",
-                                 scene.file.string(), step.steps_per_frame,
-                                 std::numeric_limits<int>::max()));
+    throw InputError(
+        "E-BUILD-02",
+        fmt::format("{}: a frame of {} steps is too long; accepted are {}", scene.file.string(),
+                    step.steps_per_frame, std::numeric_limits<int>::max()));
   PackOptions options{.scheme = scene.condense.kind ? held_scheme_of(step) : scheme_of(step),
                       .steps_per_frame = static_cast<int>(step.steps_per_frame),
                       .residual_flexibility = scene.condense.residual_flexibility,
@@ -176,8 +179,8 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   refuse_buckled(track);
   if (!scene.track.linearised_under_weight) return track;
   return linearised_under_weight(track, scene.track.gravity ? kGravity : 0.);
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+} catch (const Refused& error) {
+  throw InputError(scene.file.string(), error);
 }
 
 namespace {
@@ -235,8 +238,8 @@ Built::Built(const Scene& scene) try {
   if (scene.step->start == Start::released)
     packed->set_start(start_under_impact(track, *packed, gravity));
   if (scene.step->start == Start::moving) packed->set_start(start_moving(track, *packed, gravity));
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+} catch (const Refused& error) {
+  throw InputError(scene.file.string(), error);
 }
 
 std::string block_text(const std::vector<std::string>& columns,

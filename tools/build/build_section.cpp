@@ -1,8 +1,7 @@
 #include <fmt/core.h>
 
-#include <stdexcept>
-
 #include "build/build.h"
+#include "offline/math/refuse.h"
 #include "offline/section/rectangles.h"
 #include "offline/section/saint_venant.h"
 #include "section/profile.h"
@@ -51,7 +50,7 @@ RailSection from(const SectionFile& file, const BarScene& bar) {
 
 SaintVenant shear_of(const Outline& outline) {
   const OutlineShear found = outline_shear(outline, 0.);
-  if (!found.missing.empty()) throw std::invalid_argument(found.missing);
+  if (!found.missing.empty()) refuse("E-BUILD-05", found.missing);
   return found.constants;
 }
 
@@ -71,15 +70,17 @@ RailSection bar_section(const BarScene& bar, bool nonlinear, const std::string& 
   shear.shear_factor_y = bar.shear_factor_y.value_or(shear.shear_factor_y);
   shear.shear_factor_z = bar.shear_factor_z.value_or(shear.shear_factor_z);
   if ((nonlinear || bar.section_points > 0) && !found.moments)
-    throw InputError(fmt::format(
-        "{} gives a section's constants, but {} wants its shape, of which moments of third "
-        "and fourth degree are taken; accepted are profile, rectangles and rectangle",
-        place, bar.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
+    throw InputError(
+        "E-BUILD-06",
+        fmt::format(
+            "{} gives a section's constants, but {} wants its shape, of which moments of third "
+            "and fourth degree are taken; accepted are profile, rectangles and rectangle",
+            place, bar.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
   return found;
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{} {}", place, error.what()));
+} catch (const Refused& error) {
+  throw InputError(place, error);
 } catch (const NoSection& error) {
-  throw InputError(fmt::format("{} {}", place, error.what()));
+  throw InputError(place, error);
 }
 
 BeamSection beam_section(const RailSection& bar) {

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <stdexcept>
 
 #include "build/build.h"
 #include "build/build_endless.h"
+#include "offline/math/refuse.h"
 #include "online/step/trace_columns.h"
 
 namespace railstep {
@@ -151,7 +151,8 @@ void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
 /// From a scene's places to those of a ring or window, whose x = 0 lies some bays on.
 void move_on(SensorScene& sensor, int behind, const Track& track) {
   const auto refuse = [&](const std::string& place) {
-    throw std::invalid_argument(
+    railstep::refuse(
+        "E-BUILD-07",
         fmt::format("sensor \"{}\" is at {}, beyond the {} bays of the ring or window that lie "
                     "ahead of x = 0",
                     sensor.name, place, track.bays - behind));

@@ -2,12 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <stdexcept>
-
 #include "build/about.h"
 #include "build/build.h"
 #include "build/cache_sizes.h"
 #include "build/step_scheme.h"
+#include "offline/math/refuse.h"
 #include "offline/pack/artefact.h"
 
 namespace railstep {
@@ -52,9 +51,9 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
   if (!scene.track) return std::make_unique<PackedSystem>(system, options_of(scene));
   const Track track = track_of(*scene.track);
   if (!fixed_ports(track).empty())
-    throw std::invalid_argument(
-        "supports that do not pull, or have a gap, are not stepped beside bodies and beams; "
-        "accepted are a scene without gap_m and unilateral, or a track alone");
+    refuse("E-BUILD-08",
+           "supports that do not pull, or have a gap, are not stepped beside bodies and beams; "
+           "accepted are a scene without gap_m and unilateral, or a track alone");
   const TracedTraffic traced = traffic_of(*scene.track, track);
   names = traced.names;
   return std::make_unique<PackedSystem>(system, options_of(scene), track, traced.traffic,
@@ -75,8 +74,8 @@ BuiltSystem::BuiltSystem(const SystemScene& scene) try
   for (const int spring : scene.traced.springs)
     traced.springs.push_back(names.springs[static_cast<std::size_t>(spring)]);
   columns = columns_of(packed->model(), traced);
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: {}", scene.file.string(), error.what()));
+} catch (const Refused& error) {
+  throw InputError(scene.file.string(), error);
 }
 
 std::vector<std::byte> block_of(const BuiltSystem& built, BlockNotes notes) {

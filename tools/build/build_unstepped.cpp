@@ -8,7 +8,8 @@ namespace railstep {
 
 void refuse_unstepped(const Scene& scene) {
   const auto refuse = [&](bool wanted, const char* what) {
-    if (wanted) throw InputError(fmt::format("{}: run {}", scene.file.string(), what));
+    if (wanted)
+      throw InputError("E-BUILD-09", fmt::format("{}: run {}", scene.file.string(), what));
   };
   refuse(scene.loads.empty() && scene.wheelsets.empty() && scene.vehicles.empty() &&
              scene.external_wheels.empty(),

@@ -94,11 +94,12 @@ void refuse_empty_words(int argc, const char* const* argv) {
     const std::string_view word = argv[i];
     const bool no_value = word.starts_with("--") && word.find('=') == word.size() - 1;
     if (word.empty())
-      throw InputError(fmt::format("the word after '{}' is empty; accepted is a value or a name",
+      throw InputError("E-CLI-01",
+                       fmt::format("the word after '{}' is empty; accepted is a value or a name",
                                    std::string_view(argv[i - 1]).substr(0, 60)));
     if (no_value)
       throw InputError(
-          fmt::format("{} has nothing behind it; accepted is a value or a name", word));
+          "E-CLI-02", fmt::format("{} has nothing behind it; accepted is a value or a name", word));
   }
 }
 
@@ -112,21 +113,27 @@ void want_finite_numbers(CLI::App& app) {
     }
 }
 
-std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error) {
+Message usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::string word = unread_word(app), shown = word.substr(0, 60);
   const std::string name = chosen.empty() ? "" : chosen.front()->get_name() + " ";
   std::string said = error.what();
-  if (chosen.empty() && !word.empty())
+  MessageId id = "E-CLI-10";
+  if (chosen.empty() && !word.empty()) {
+    id = "E-CLI-11";
     said = fmt::format("'{}' is no command; did you mean '{}'?", shown,
                        nearest(word, command_names(app)));
-  else if (!chosen.empty() && word.starts_with("-"))
+  } else if (!chosen.empty() && word.starts_with("-")) {
+    id = "E-CLI-12";
     said = fmt::format("unknown option '{}'; did you mean '{}'?", shown,
                        nearest(word, option_names(*chosen.front())));
-  else if (!chosen.empty() && !word.empty())
+  } else if (!chosen.empty() && !word.empty()) {
+    id = "E-CLI-13";
     said = fmt::format("'{}' is one word too many", shown);
+  }
   std::replace(said.begin(), said.end(), '\n', ' ');
-  return fmt::format("{}{} see `railstep {}--help`", said, said.ends_with('?') ? "" : ";", name);
+  return {id,
+          fmt::format("{}{} see `railstep {}--help`", said, said.ends_with('?') ? "" : ";", name)};
 }
 
 void refuse_impossible_places(const CLI::App& command) {
@@ -136,18 +143,19 @@ void refuse_impossible_places(const CLI::App& command) {
     const std::filesystem::path file = option->results().front(), folder = file.parent_path();
     if (makes_folders(command, *option)) continue;
     if (std::filesystem::is_directory(file, ignored))
-      throw InputError(fmt::format("{} {}: cannot be written: it is a folder; accepted is a file",
+      throw InputError("E-CLI-03",
+                       fmt::format("{} {}: cannot be written: it is a folder; accepted is a file",
                                    option->get_name(), file.string()));
     // To rename over /dev/stdout would take it from the whole machine, where the user may.
     if (folder == "/dev" && std::filesystem::is_regular_file(file, ignored))
-      throw InputError(fmt::format(
-          "{} {}: cannot be written: it stands for an open file; accepted is that file's own name",
-          option->get_name(), file.string()));
+      throw InputError("E-CLI-04", fmt::format("{} {}: cannot be written: it stands for an open "
+                                               "file; accepted is that file's own name",
+                                               option->get_name(), file.string()));
     if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-      throw InputError(
-          fmt::format("{} {}: cannot be written: there is no folder {}; accepted is a "
-                      "file in a folder that is there",
-                      option->get_name(), file.string(), folder.string()));
+      throw InputError("E-CLI-05",
+                       fmt::format("{} {}: cannot be written: there is no folder {}; accepted is a "
+                                   "file in a folder that is there",
+                                   option->get_name(), file.string(), folder.string()));
   }
 }
 
@@ -161,7 +169,8 @@ void refuse_same_files(const CLI::App& command) {
       const std::string name = (*other)->get_name();
       const bool taken = is_read(name) || (other < to && is_written(name));
       if (taken && !(*other)->empty() && same_file(file, (*other)->results().front()))
-        throw InputError(fmt::format("{} and {} both name {}; accepted is a file of its own", name,
+        throw InputError("E-CLI-06",
+                         fmt::format("{} and {} both name {}; accepted is a file of its own", name,
                                      (*to)->get_name(), file));
     }
   }

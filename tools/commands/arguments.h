@@ -1,6 +1,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
-#include <string>
+
+#include "text/message.h"
 
 namespace railstep {
 
@@ -12,8 +13,8 @@ void refuse_empty_words(int argc, const char* const* argv);
 /// called once all options are there.
 void want_finite_numbers(CLI::App& app);
 
-/// What is wrong with a command line that was not understood, in one sentence.
-std::string usage_sentence(const CLI::App& app, const CLI::ParseError& error);
+/// What is wrong with a command line that was not understood, with the page of --help to read.
+Message usage_message(const CLI::App& app, const CLI::ParseError& error);
 
 /// Refuses, before anything is done, a file to be written that is a folder, or in none that is
 /// there. Throws InputError.

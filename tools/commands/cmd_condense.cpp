@@ -196,8 +196,8 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
 nlohmann::ordered_json condense(const CondenseOptions& o) try {
   return std::visit([&o](const auto& scene) { return condense(scene, o); },
                     read_any_scene(o.scene, o.overrides));
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: {}", o.scene, error.what()));
+} catch (const Refused& error) {
+  throw InputError(o.scene, error);
 }
 
 std::string error_text(const nlohmann::ordered_json& error) {

@@ -26,7 +26,8 @@ double target_value(const std::string& key, const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !std::isfinite(value) || value <= 0.0)
-    throw InputError(fmt::format("--target: {} = '{}' is not a finite number above 0", key, text));
+    throw InputError("E-FIT-01",
+                     fmt::format("--target: {} = '{}' is not a finite number above 0", key, text));
   return value;
 }
 
@@ -45,24 +46,30 @@ FitTargets parse_targets(const std::string& text) {
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::size_t equals = part.find('=');
     if (equals == part.npos)
-      throw InputError(fmt::format("--target: '{}' is not of the form key=value", part));
+      throw InputError("E-FIT-02",
+                       fmt::format("--target: '{}' is not of the form key=value", part));
     const std::string key = part.substr(0, equals);
     double* place = nullptr;
     for (const auto& [name, value] : keys)
       if (name == key) place = value;
     if (!place)
-      throw InputError(
-          fmt::format("--target: unknown key '{}'; did you mean '{}'?", key, nearest(key, names)));
-    if (!std::isnan(*place)) throw InputError(fmt::format("--target: '{}' is given twice", key));
+      throw InputError("E-FIT-03", fmt::format("--target: unknown key '{}'; did you mean '{}'?",
+                                               key, nearest(key, names)));
+    if (!std::isnan(*place))
+      throw InputError("E-FIT-04", fmt::format("--target: '{}' is given twice", key));
     *place = target_value(key, part.substr(equals + 1));
   }
   for (const auto& [name, value] : keys)
-    if (std::isnan(*value)) throw InputError(fmt::format("--target: '{}' is missing", name));
+    if (std::isnan(*value))
+      throw InputError("E-FIT-05", fmt::format("--target: '{}' is missing", name));
   if (t.height > 1.0)
-    throw InputError(fmt::format(
-        "--target: height_m = {:.6g} is over the limit of 1 m: are these millimetres?", t.height));
+    throw InputError(
+        "E-FIT-06",
+        fmt::format("--target: height_m = {:.6g} is over the limit of 1 m: are these millimetres?",
+                    t.height));
   if (t.area.centroid_height >= t.height)
     throw InputError(
+        "E-FIT-07",
         fmt::format("--target: centroid_height_m = {:.6g} is not below height_m = {:.6g}",
                     t.area.centroid_height, t.height));
   return t;
@@ -81,19 +88,23 @@ bool is_toml(const std::string& file) { return std::filesystem::path(file).exten
 
 void check(const FitOptions& o) {
   if (o.profile.empty() == o.target.empty())
-    throw InputError("fit wants either a profile or --target; see railstep fit --help");
+    throw InputError("E-FIT-08", "fit wants either a profile or --target; see railstep fit --help");
   if (!o.target.empty() && std::isnan(o.head_width))
-    throw InputError("--target wants --head-width-m, since four properties leave one width free");
+    throw InputError("E-FIT-09",
+                     "--target wants --head-width-m, since four properties leave one width free");
   if (o.target.empty() && !std::isnan(o.head_width))
-    throw InputError("--head-width-m goes with --target; an outline decides its own head width");
+    throw InputError("E-FIT-10",
+                     "--head-width-m goes with --target; an outline decides its own head width");
   const bool points = !o.profile.empty() && !is_toml(o.profile);
   if (points && o.unit.empty())
-    throw InputError(fmt::format("{}: a list of points wants --unit mm or --unit m", o.profile));
+    throw InputError("E-FIT-11",
+                     fmt::format("{}: a list of points wants --unit mm or --unit m", o.profile));
   if (!points && !o.unit.empty())
-    throw InputError("--unit goes with a list of points; a profile has its unit in its keys");
+    throw InputError("E-FIT-12",
+                     "--unit goes with a list of points; a profile has its unit in its keys");
   if (!std::isnan(o.head_width) && !(o.head_width > 0.0 && std::isfinite(o.head_width)))
-    throw InputError(
-        fmt::format("--head-width-m = {} is not a finite number above 0", o.head_width));
+    throw InputError("E-FIT-13", fmt::format("--head-width-m = {} is not a finite number above 0",
+                                             o.head_width));
 }
 
 Exit run_fit(const FitOptions& o) {
@@ -103,12 +114,13 @@ Exit run_fit(const FitOptions& o) {
       : is_toml(o.profile)
           ? fit_profile(read_profile(o.profile), o.profile)
           : fit_profile(read_points(o.profile, o.unit == "mm" ? 1e-3 : 1.0), o.profile);
-  const bool fits = result.refusal.empty();
+  const bool fits = !result.refusal;
   if (fits && !o.out.empty()) write_file(o.out, to_toml(result));
   if (fits && !o.report.empty()) write_file(o.report, to_html(result));
   fmt::print("{}\n", o.json ? to_json(result).dump(2) : to_table(result));
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  if (!fits) fmt::print(stderr, "error: {}: {}\n", o.profile, result.refusal);
+  for (const Message& warning : result.warnings)
+    fmt::print(stderr, "warning: {}\n", warning.line());
+  if (!fits) fmt::print(stderr, "error: {}: {}\n", o.profile, result.refusal->line());
   return fits ? Exit::done : Exit::not_reached;
 }
 

@@ -27,7 +27,8 @@ std::vector<HardCase> chosen(const std::vector<std::string>& ids) {
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const HardCase& own) { return id == own.id; });
     if (found == all.end())
-      throw InputError(fmt::format("--case {}: there is no such case; accepted are {} to {}", id,
+      throw InputError("E-HARD-01",
+                       fmt::format("--case {}: there is no such case; accepted are {} to {}", id,
                                    all.front().id, all.back().id));
     some.push_back(*found);
   }

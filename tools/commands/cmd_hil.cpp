@@ -9,7 +9,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "hil/hil_run.h"
 #include "hil/hil_shm.h"
 #include "hil/hil_udp.h"
+#include "offline/math/refuse.h"
 #include "report/hil_report.h"
 #include "run/memory.h"
 #include "run/recording.h"
@@ -69,6 +69,7 @@ std::int64_t slots_of(const HilOptions& o) {
   const double slots = std::round(o.rate * o.duration);
   if (!(slots >= 1.) || !(slots <= 1e12))
     throw InputError(
+        "E-HIL-01",
         fmt::format("--duration {:g}: at --rate {:g} these are {:g} frames; accepted are 1 to 1e12",
                     o.duration, o.rate, slots));
   return static_cast<std::int64_t>(slots);
@@ -93,8 +94,8 @@ HilPlan plan_of(const HilOptions& o) {
   plan.schedule = {1e9 / o.rate, slots_of(o), 0, policy_of(o.policy)};
   const double grace = o.grace.value_or(std::min(.1, .1 * o.duration));
   if (grace > o.duration)
-    throw InputError(
-        fmt::format("--grace {:g}: accepted is up to --duration, {:g}", grace, o.duration));
+    throw InputError("E-HIL-02", fmt::format("--grace {:g}: accepted is up to --duration, {:g}",
+                                             grace, o.duration));
   plan.schedule.grace = std::min<std::int64_t>(std::llround(grace * o.rate), plan.schedule.slots);
   plan.empty = empty_schedule(o, plan.schedule);
   // alone on its CPU and never asleep, it would shut out what runs there
@@ -110,13 +111,15 @@ HilPlan plan_of(const HilOptions& o) {
   if (o.cpu) {
     const std::vector<int> allowed = allowed_cpus();
     if (std::find(allowed.begin(), allowed.end(), *o.cpu) == allowed.end())
-      throw InputError(fmt::format(
-          "--cpu {}: this process may run on CPUs {} to {} alone, not all "
-          "of which need be there",
-          *o.cpu, allowed.empty() ? 0 : allowed.front(), allowed.empty() ? 0 : allowed.back()));
+      throw InputError("E-HIL-03",
+                       fmt::format("--cpu {}: this process may run on CPUs {} to {} alone, not all "
+                                   "of which need be there",
+                                   *o.cpu, allowed.empty() ? 0 : allowed.front(),
+                                   allowed.empty() ? 0 : allowed.back()));
   }
   if ((o.silence > 0. || o.wait > 0. || o.respond) && o.udp.empty() && o.shm.empty())
     throw InputError(
+        "E-HIL-04",
         "--silence, --wait and --response are about an exchange: they want --udp or --shm");
   return plan;
 }
@@ -125,6 +128,7 @@ std::unique_ptr<Simulation> simulation_of(const HilOptions& o) {
   if (!is_artefact(o.input)) return railstep::simulation_of(read_any_scene(o.input, o.overrides));
   if (!o.overrides.empty())
     throw InputError(
+        "E-HIL-05",
         fmt::format("--set changes a scene, and {} is a model; condense the scene anew", o.input));
   return std::make_unique<Simulation>(std::filesystem::path(o.input));
 }
@@ -135,6 +139,7 @@ ExchangeLayout layout_of(const HilOptions& o, const HilPlan& plan, const Simulat
   if (!o.respond) return layout;
   if (run.model().external_wheels == 0)
     throw InputError(
+        "E-HIL-06",
         fmt::format("--response: {} has no [[external_wheel]], of which it tells", o.input));
   Response::add_names(run, layout.inputs, layout.outputs);
   return layout;
@@ -156,10 +161,10 @@ std::string names_text(const ExchangeLayout& layout) {
 struct Exchanges {
   Exchanges(const HilOptions& o, const ExchangeLayout& layout) {
     if (!o.udp.empty() && std::max(layout.inputs.size(), layout.outputs.size()) > kMostInPacket)
-      throw InputError(
-          fmt::format("--udp: {} outputs do not fit into a packet, which has {}; take "
-                      "--shm, or fewer sensors",
-                      layout.outputs.size(), kMostInPacket));
+      throw InputError("E-HIL-07",
+                       fmt::format("--udp: {} outputs do not fit into a packet, which has {}; take "
+                                   "--shm, or fewer sensors",
+                                   layout.outputs.size(), kMostInPacket));
     if (!o.udp.empty()) udp.emplace(o.udp, layout);
     if (!o.shm.empty()) shm.emplace(o.shm, layout);
     if (udp) all.push_back(&*udp);
@@ -309,7 +314,8 @@ std::optional<Recording> begun_recording(const HilOptions& o, const HilPlan& pla
   if (o.record.empty()) return std::nullopt;
   constexpr double kMostInputs = 1e9;  // 8 GB
   if (static_cast<double>(plan.schedule.slots) * run.model().inputs > kMostInputs)
-    throw InputError(fmt::format("--record keeps {} inputs of {} frames, and at most {:g} numbers",
+    throw InputError("E-HIL-08",
+                     fmt::format("--record keeps {} inputs of {} frames, and at most {:g} numbers",
                                  run.model().inputs, plan.schedule.slots, kMostInputs));
   const std::int64_t numbers = plan.schedule.slots * run.model().inputs;
   want_recording_memory(numbers);
@@ -341,9 +347,9 @@ Exit run(const HilOptions& o) {
   warn_of_refusals(record.settings);
   if (record.unheard) {
     const std::string ended = ended_by_others(record);
-    if (!ended.empty()) throw std::runtime_error(ended);
-    throw std::runtime_error(
-        fmt::format("no inputs came within the {:g} s of --wait, and nothing was run", o.wait));
+    if (!ended.empty()) fail("E-HIL-09", ended);
+    fail("E-HIL-10",
+         fmt::format("no inputs came within the {:g} s of --wait, and nothing was run", o.wait));
   }
   nlohmann::ordered_json told = to_json(o, plan, record, *simulation);
   add_exchanges(exchanges, told);

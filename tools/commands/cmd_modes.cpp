@@ -29,8 +29,8 @@ NaturalModes solve(const ModesOptions& o) try {
   const Scene scene = read_scene(o.scene, o.overrides);
   print_note(lopsided_note(scene));
   return natural_modes(linear_about_rest(track_of(scene)), o.count);
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: {}", o.scene, error.what()));
+} catch (const Refused& error) {
+  throw InputError(o.scene, error);
 }
 
 void print_table(const NaturalModes& modes) {

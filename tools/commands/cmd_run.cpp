@@ -23,6 +23,7 @@
 #include "run/speed_note.h"
 #include "run/trace.h"
 #include "run/unit_note.h"
+#include "text/message_json.h"
 #include "text/progress_bar.h"
 #include "text/write.h"
 
@@ -55,7 +56,8 @@ AnyScene scene_of(const RunOptions& o) {
 void refuse_changes(const RunOptions& o) {
   const auto refuse = [&](bool given, const char* option) {
     if (given)
-      throw InputError(fmt::format("{} changes a scene, and {} is a model; condense the scene anew",
+      throw InputError("E-RUN-03",
+                       fmt::format("{} changes a scene, and {} is a model; condense the scene anew",
                                    option, o.input));
   };
   refuse(!o.overrides.empty(), "--set");
@@ -70,6 +72,7 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
   const double frames = *o.duration / frame;
   if (!(frames >= .5) || !(frames < 1e15) || std::abs(frames - std::round(frames)) > 1e-6)
     throw InputError(
+        "E-RUN-04",
         fmt::format("--duration {:g}: accepted is a whole number of the model's frames of {:g} s",
                     *o.duration, frame));
   return std::llround(frames);
@@ -115,28 +118,28 @@ void print_table(const nlohmann::ordered_json& result) {
 }
 
 /// Says so where the scheme made energy, more than a step that follows the motion, or where the
-/// balance is off by as much for another reason; else empty.
-std::string energy_note(const std::optional<EnergyBalance>& energy) {
+/// balance is off by as much for another reason; else nothing.
+std::optional<Message> energy_note(const std::optional<EnergyBalance>& energy) {
   constexpr double kMuch = .05;
-  if (!energy) return {};
+  if (!energy) return std::nullopt;
   if (energy->numerical_loss < -kMuch)
-    return fmt::format(
-        "the scheme made energy, {:.2g} of all that was turned over: the step is too long for this "
-        "motion; halve it, or take a scheme that keeps energy",
-        -energy->numerical_loss);
-  if (!(energy->error >= kMuch)) return {};
-  return fmt::format(
-      "the energy balance is off by {:.2g} of all that was turned over, of which the scheme took "
-      "{:.2g}: the step is too long for this motion, or on a condensed track for the sums of work "
-      "and heat; halve it",
-      energy->error, energy->numerical_loss);
+    return Message("W-RUN-04", fmt::format("the scheme made energy, {:.2g} of all that was turned "
+                                           "over: the step is too long for this "
+                                           "motion; halve it, or take a scheme that keeps energy",
+                                           -energy->numerical_loss));
+  if (!(energy->error >= kMuch)) return std::nullopt;
+  return Message("W-RUN-05", fmt::format("the energy balance is off by {:.2g} of all that was "
+                                         "turned over, of which the scheme took "
+                                         "{:.2g}: the step is too long for this motion, or on a "
+                                         "condensed track for the sums of work "
+                                         "and heat; halve it",
+                                         energy->error, energy->numerical_loss));
 }
 
 /// Says in words what the run met.
 /// @param notes  what is to be said of speed, energy and depth
-Exit verdict(const Simulation& run, const RunRecord& record,
-             const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+Exit verdict(const Simulation& run, const RunRecord& record, const std::vector<Message>& notes) {
+  for (const Message& note : notes) fmt::print(stderr, "note: {}\n", note.line());
   for (const std::string& name : status_names(record.status)) {
     if (name != "nonfinite_state")
       fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, record));
@@ -152,10 +155,10 @@ std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
   if (o.vtk.empty()) return std::nullopt;
   const Scene* const track = scene == nullptr ? nullptr : std::get_if<Scene>(scene);
   if (track == nullptr)
-    throw InputError(fmt::format(
-        "--vtk draws rails, sleepers and wheels; accepted is a scene of a track without bodies, "
-        "and {} is none",
-        o.input));
+    throw InputError("E-RUN-05", fmt::format("--vtk draws rails, sleepers and wheels; accepted is "
+                                             "a scene of a track without bodies, "
+                                             "and {} is none",
+                                             o.input));
   return std::make_optional<VtkRecord>(*track, run, o.vtk, frames);
 }
 
@@ -188,10 +191,15 @@ Exit run(const RunOptions& o) {
                                    : simulation_of(*scene);
   const std::int64_t frames = frames_of(o, artefact, simulation->model());
   const Scene* const track = scene ? std::get_if<Scene>(&*scene) : nullptr;
-  std::vector<std::string> notes;
-  if (track != nullptr)
-    notes = {speed_note(*track, simulation->track()), constants_note(*track),
-             lopsided_note(*track)};
+  std::vector<Message> notes;
+  const auto note = [&notes](const std::optional<Message>& said) {
+    if (said) notes.push_back(*said);
+  };
+  if (track != nullptr) {
+    note(speed_note(*track, simulation->track()));
+    note(constants_note(*track));
+    note(lopsided_note(*track));
+  }
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
@@ -227,9 +235,9 @@ Exit run(const RunOptions& o) {
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
   nlohmann::ordered_json result = to_json(*simulation, record, energy);
-  notes.insert(notes.end(), {energy_note(energy), depth_note(record)});
-  std::erase(notes, "");
-  result["warnings"] = notes;
+  note(energy_note(energy));
+  note(depth_note(record));
+  result["warnings"] = to_json(notes);
   if (o.json)
     fmt::print("{}\n", result.dump(2));
   else

@@ -33,6 +33,7 @@ CLI::Validator within(T low, T high) {
 }
 
 Command add_fit(CLI::App& app);
+Command add_explain(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_condense(CLI::App& app);
 Command add_hard(CLI::App& app);

@@ -64,6 +64,7 @@ std::string path_of(const std::string& name) {
       std::string::npos;
   if (name.empty() || name.size() > kLongestName || !plain || name.front() == '.')
     throw InputError(
+        "E-HIL-11",
         fmt::format("--shm {}: accepted are up to 200 letters, digits, '.', '_' and '-'", name));
   return "/" + name;
 }
@@ -72,7 +73,8 @@ std::string path_of(const std::string& name) {
 void* mapped(const std::string& name, std::size_t bytes) {
   const std::string path = path_of(name);
   const auto refuse = [&](int reason) {
-    throw InputError(fmt::format("--shm {}: cannot be made: {}{}", name, std::strerror(reason),
+    throw InputError("E-HIL-12",
+                     fmt::format("--shm {}: cannot be made: {}{}", name, std::strerror(reason),
                                  reason == EEXIST ? "; another run has it, or one that was killed "
                                                     "left it in /dev/shm"
                                                   : ""));

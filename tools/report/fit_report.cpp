@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "text/message_json.h"
+
 namespace railstep {
 namespace {
 
@@ -162,10 +164,10 @@ nlohmann::ordered_json to_json(const FitResult& r) {
   nlohmann::ordered_json json;
   for (const Row& row : rows_of(r)) json["outline"][row.key] = row.outline;
   for (const Row& row : lopsided_rows(r)) json["asymmetry"][row.key] = row.outline;
-  json["warnings"] = r.warnings;
-  if (!r.refusal.empty()) {
+  json["warnings"] = to_json(r.warnings);
+  if (r.refusal) {
     json["section"] = nullptr;
-    json["refusal"] = r.refusal;
+    json["refusal"] = to_json(*r.refusal);
     return json;
   }
   for (const Row& row : rows_of(r)) json["section"][row.key] = row.section;
@@ -185,7 +187,7 @@ nlohmann::ordered_json to_json(const FitResult& r) {
 }
 
 std::string to_table(const FitResult& r) {
-  if (!r.refusal.empty()) {
+  if (r.refusal) {
     std::string text = fmt::format("{}\n{:<26}{:>14}\n", r.name, "", "outline");
     for (const Row& row : all_rows(r))
       text += fmt::format("{:<26}{:>14}\n", row.label, number(row, row.outline));
@@ -236,8 +238,8 @@ std::string to_html(const FitResult& r) {
   for (const Dimension& d : dimensions_of(r.fit.section))
     table += fmt::format("<tr><td>{}</td><td>{:.4f}</td></tr>\n", d.label, 1e3 * d.metres);
   std::string warnings;
-  for (const std::string& warning : r.warnings)
-    warnings += fmt::format("<p>Warning: {}.</p>\n", escaped(warning));
+  for (const Message& warning : r.warnings)
+    warnings += fmt::format("<p>Warning: {}.</p>\n", escaped(warning.line()));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}: three "
       "rectangles</title>\n<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n<p>{2}</p>\n{3}<p>Area "

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/drawing.h"
+#include "text/message_json.h"
 
 namespace railstep {
 namespace {
@@ -145,7 +146,7 @@ nlohmann::ordered_json to_json(const ReceptanceAnswer& answer) {
     json["reflection"].push_back(end.back);
     json["wave_decay_per_bay"].push_back(end.decay);
   }
-  json["warnings"] = answer.warnings;
+  json["warnings"] = to_json(answer.warnings);
   return json;
 }
 
@@ -168,7 +169,8 @@ std::string to_table(const ReceptanceAnswer& answer) {
   for (const Resonance& one : answer.resonances) text += resonance_line(one) + '\n';
   if (!answer.decay.empty()) text += " band, Hz   decay, dB/m  drop, dB\n";
   for (const DecayRate& rate : answer.decay) text += decay_line(rate) + '\n';
-  for (const std::string& warning : answer.warnings) text += fmt::format("warning: {}\n", warning);
+  for (const Message& warning : answer.warnings)
+    text += fmt::format("warning: {}\n", warning.line());
   return text;
 }
 
@@ -194,8 +196,8 @@ std::string to_csv(const ReceptanceAnswer& answer) {
 
 std::string to_html(const ReceptanceAnswer& answer, const std::string& title) {
   std::string warnings, resonances, decay;
-  for (const std::string& warning : answer.warnings)
-    warnings += fmt::format("<p>Warning: {}.</p>\n", escaped(warning));
+  for (const Message& warning : answer.warnings)
+    warnings += fmt::format("<p>Warning: {}.</p>\n", escaped(warning.line()));
   for (const Resonance& one : answer.resonances)
     resonances += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.4g}</td></tr>\n", one.name,

@@ -22,17 +22,19 @@ std::vector<std::size_t> columns_of(const CsvLine& header, const std::vector<std
   for (const std::string_view field : header.fields) {
     const auto found = std::find(names.begin(), names.end(), field);
     if (field != "time_s" && found == names.end())
-      throw InputError(fmt::format("{}: column '{}' is no input; accepted are time_s and {}",
+      throw InputError("E-INPUTS-01",
+                       fmt::format("{}: column '{}' is no input; accepted are time_s and {}",
                                    header.place, field.substr(0, 64), fmt::join(names, ", ")));
     const std::size_t column =
         field == "time_s" ? kTime : static_cast<std::size_t>(found - names.begin());
     if (std::find(columns.begin(), columns.end(), column) != columns.end())
-      throw InputError(
-          fmt::format("{}: column '{}' is given twice", header.place, field.substr(0, 64)));
+      throw InputError("E-INPUTS-02", fmt::format("{}: column '{}' is given twice", header.place,
+                                                  field.substr(0, 64)));
     columns.push_back(column);
   }
   if (columns.size() < 2 || columns.front() != kTime)
-    throw InputError(fmt::format("{}: '{}'; accepted is time_s, then one input or more of {}",
+    throw InputError("E-INPUTS-03",
+                     fmt::format("{}: '{}'; accepted is time_s, then one input or more of {}",
                                  header.place, header.text.substr(0, 64), fmt::join(names, ", ")));
   return columns;
 }
@@ -42,10 +44,11 @@ std::int64_t frame_from(const CsvLine& line, double time, double frame_s) {
   constexpr double kMostFrames = 1e15;
   const double frames = std::ceil(time / frame_s - 1e-6);
   if (!(time >= 0.))
-    throw InputError(
-        fmt::format("{}: time_s = {:g}; accepted are times from 0 on", line.place, time));
+    throw InputError("E-INPUTS-04", fmt::format("{}: time_s = {:g}; accepted are times from 0 on",
+                                                line.place, time));
   if (!(frames < kMostFrames))
-    throw InputError(fmt::format("{}: time_s = {:g}; accepted are times below {:g}, {:g} frames",
+    throw InputError("E-INPUTS-05",
+                     fmt::format("{}: time_s = {:g}; accepted are times below {:g}, {:g} frames",
                                  line.place, time, kMostFrames * frame_s, kMostFrames));
   return static_cast<std::int64_t>(std::max(frames, 0.));
 }
@@ -57,23 +60,28 @@ InputTable::InputTable(const std::filesystem::path& file, const std::vector<std:
     : width_(names.size()), first_{0}, value_(names.size(), 0.) {
   if (names.empty())
     throw InputError(
+        "E-INPUTS-06",
         fmt::format("{}: the scene has no inputs; accepted is one with an input key in a force",
                     file.string()));
   const std::string text = read_text(file, kLargestTable);
   const std::vector<CsvLine> lines = csv_lines(text, file.string());
   if (lines.size() < 2)
-    throw InputError(fmt::format(
-        "{}: holds no rows; accepted are a line of names and rows under it", file.string()));
+    throw InputError(
+        "E-INPUTS-07",
+        fmt::format("{}: holds no rows; accepted are a line of names and rows under it",
+                    file.string()));
   const std::vector<std::size_t> columns = columns_of(lines.front(), names);
   double last = -std::numeric_limits<double>::infinity();
   for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
     refuse_decimal_comma(*line, columns.size());
     if (line->fields.size() != columns.size())
-      throw InputError(fmt::format("{}: {} values where the first line names {} columns",
+      throw InputError("E-INPUTS-08",
+                       fmt::format("{}: {} values where the first line names {} columns",
                                    line->place, line->fields.size(), columns.size()));
     const double time = csv_number(line->fields.front(), line->place);
     if (!(time > last))
-      throw InputError(fmt::format("{}: time_s = {:g} after {:g}; accepted are rising times",
+      throw InputError("E-INPUTS-09",
+                       fmt::format("{}: time_s = {:g} after {:g}; accepted are rising times",
                                    line->place, time, last));
     last = time;
     first_.push_back(frame_from(*line, time, frame_s));

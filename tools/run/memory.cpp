@@ -43,6 +43,7 @@ void want_recording_memory(std::int64_t numbers) {
   const double wanted = 2. * 8. * static_cast<double>(numbers), found = available_memory();
   if (wanted > found)
     throw InputError(
+        "E-RUN-06",
         fmt::format("--record keeps {} numbers, which take {:.0f} bytes of memory, and {:.0f} are "
                     "available; accepted is a shorter --duration",
                     numbers, wanted, found));

@@ -67,18 +67,23 @@ void check_frame(const std::vector<std::byte>& bytes, const std::string& name) {
   const auto* const at = reinterpret_cast<const unsigned char*>(bytes.data());
   if (bytes.size() < kHead + kSum || !same_bytes(at, kMagic, 8))
     throw InputError(
+        "E-RECORDING-01",
         fmt::format("{} is not a recording; accepted is what `railstep run --record` wrote", name));
   if (get_word(at + 8) != static_cast<std::uint64_t>(kFormat))
-    throw InputError(fmt::format("{} is a recording of format {}; accepted is {}", name,
+    throw InputError("E-RECORDING-02",
+                     fmt::format("{} is a recording of format {}; accepted is {}", name,
                                  static_cast<std::int64_t>(get_word(at + 8)), kFormat));
   if (get_word(at + 16) != bytes.size())
-    throw InputError(fmt::format("{} is a recording of {} bytes and holds {}; record it anew", name,
+    throw InputError("E-RECORDING-03",
+                     fmt::format("{} is a recording of {} bytes and holds {}; record it anew", name,
                                  static_cast<std::int64_t>(get_word(at + 16)), bytes.size()));
   unsigned char sum[kSum];
   sha256(at, bytes.size() - kSum, sum);
   if (!same_bytes(at + (bytes.size() - kSum), sum, kSum))
-    throw InputError(fmt::format(
-        "{} is a recording whose content does not match its SHA-256; record it anew", name));
+    throw InputError(
+        "E-RECORDING-04",
+        fmt::format("{} is a recording whose content does not match its SHA-256; record it anew",
+                    name));
 }
 
 }  // namespace
@@ -147,6 +152,7 @@ Recording Recording::read(const std::filesystem::path& file) {
   }
   if (!counted || !reader.good())
     throw InputError(
+        "E-RECORDING-05",
         fmt::format("{} is a recording with a number out of range; record it anew", file.string()));
   return found;
 }
@@ -158,10 +164,12 @@ Replay replay(const Recording& recording, const std::string& name) {
   const bool fits = recording.inputs.size() == static_cast<std::size_t>(recording.frames) * width;
   if (!fits || restore_snapshot(model, recording.snapshot.data(), recording.snapshot.size(),
                                 run.state) != SnapshotStatus::ok)
-    throw InputError(fmt::format(
-        "{} is a recording whose model, state and inputs do not belong together; record "
-        "it anew",
-        name));
+    throw InputError(
+        "E-RECORDING-06",
+        fmt::format(
+            "{} is a recording whose model, state and inputs do not belong together; record "
+            "it anew",
+            name));
   Outputs outputs{};
   publish_start(model, run.state, outputs);
   std::int64_t frame = 0;

@@ -1,10 +1,10 @@
 #include "run/run_energy.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <vector>
 
 #include "offline/energy/system_account.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -23,7 +23,7 @@ std::optional<EnergyBalance> balance_of_run(const Simulation& run, const RunReco
                                   ? balance_of(*run.system()->packed, frames, after, inputs)
                                   : balance_of(*run.packed(), run.model(), frames, after, inputs);
   if (found.hash != state_hash(run.model(), run.state))
-    throw std::runtime_error("a second run of the same model ended in another state");
+    fail("E-RUN-07", "a second run of the same model ended in another state");
   return found;
 }
 

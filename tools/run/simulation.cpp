@@ -69,11 +69,12 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored) ||
       std::filesystem::is_character_file(file, ignored))  // which might never end
-    throw InputError(fmt::format("{}: is a folder or a device; a file is accepted", file.string()));
+    throw InputError("E-MODEL-01",
+                     fmt::format("{}: is a folder or a device; a file is accepted", file.string()));
   std::ifstream in(file, std::ios::binary);
   if (!in)
-    throw InputError(
-        fmt::format("{}: cannot be opened; a readable file is accepted", file.string()));
+    throw InputError("E-MODEL-02", fmt::format("{}: cannot be opened; a readable file is accepted",
+                                               file.string()));
   note_read_file(file);
   std::vector<std::byte> bytes;
   constexpr std::size_t kPiece = 1u << 20;
@@ -84,7 +85,7 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
     got = static_cast<std::size_t>(in.gcount());
     bytes.resize(before + got);
   }
-  if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  if (in.bad()) throw InputError("E-MODEL-03", fmt::format("{}: cannot be read", file.string()));
   return bytes;
 }
 
@@ -107,23 +108,24 @@ Simulation::Simulation(std::vector<std::byte> block, const std::string& name)
   Outputs outputs{};
   std::vector<double> row(columns_.size());
   if (!self_check(model_, state, workspace, outputs, row.data()))
-    throw InputError(
-        fmt::format("{} is a model that steps to other bits here than where it was "
-                    "written; write it anew with `railstep condense`",
-                    name));
+    throw InputError("E-MODEL-04",
+                     fmt::format("{} is a model that steps to other bits here than where it was "
+                                 "written; write it anew with `railstep condense`",
+                                 name));
 }
 
 void Simulation::load(const std::string& name) {
   const LoadResult result = load_model(block_.data(), block_.size(), model_);
   if (result.status != LoadStatus::ok)
-    throw InputError(fmt::format("{} {}", name, sentence(result.status, block_)));
+    throw InputError("E-MODEL-05", fmt::format("{} {}", name, sentence(result.status, block_)));
   columns_ = lines_of(result.text, result.text_bytes);
   const auto end = std::find(columns_.begin(), columns_.end(), "");
   if (end != columns_.end()) inputs_.assign(end + 1, columns_.end());
   columns_.erase(end, columns_.end());
   if (columns_.size() != static_cast<std::size_t>(trace_columns(model_)) ||
       inputs_.size() != static_cast<std::size_t>(model_.inputs))
-    throw InputError(fmt::format("{} {}", name, sentence(LoadStatus::bad_content, block_)));
+    throw InputError("E-MODEL-06",
+                     fmt::format("{} {}", name, sentence(LoadStatus::bad_content, block_)));
   place();
 }
 
@@ -148,10 +150,10 @@ bool is_artefact(const std::filesystem::path& file) {
   const std::string_view text(start, static_cast<std::size_t>(in.gcount()));
   if (text.starts_with("railstep")) return true;
   if (text.find('\0') != std::string_view::npos)
-    throw InputError(fmt::format(
-        "{}: begins neither as a model does nor as text; accepted is a scene (TOML), or a model as "
-        "`railstep condense` wrote it",
-        file.string()));
+    throw InputError("E-MODEL-07", fmt::format("{}: begins neither as a model does nor as text; "
+                                               "accepted is a scene (TOML), or a model as "
+                                               "`railstep condense` wrote it",
+                                               file.string()));
   return false;
 }
 

@@ -9,40 +9,45 @@
 
 namespace railstep {
 
-std::string depth_note(const RunRecord& record) {
+std::optional<Message> depth_note(const RunRecord& record) {
   constexpr double kDeep = -.02;  // m
   if (!(record.deepest < kDeep)) return {};
-  return fmt::format(
-      "a rail sank by {:.3g} mm under its traffic, and tracks sink by a few: are stiffnesses given "
-      "in N/m, young_pa in Pa, second moments in m4?",
-      -1e3 * record.deepest);
+  return Message(
+      "W-RUN-01",
+      fmt::format("a rail sank by {:.3g} mm under its traffic, and tracks sink by a few: "
+                  "are stiffnesses given in N/m, young_pa in Pa, second moments in m4?",
+                  -1e3 * record.deepest));
 }
 
-std::string constants_note(const Scene& scene) {
+std::optional<Message> constants_note(const Scene& scene) {
   for (const RailScene* rail : {&scene.rail, scene.right_rail ? &*scene.right_rail : nullptr}) {
     const auto* const section = rail != nullptr ? std::get_if<Section>(&rail->shape) : nullptr;
     if (section == nullptr || section->area.inertia_y <= most_inertia(*section)) continue;
-    return fmt::format(
-        "inertia_y_m4 = {:g} of [rail.constants] is that of no shape of this area, height and "
-        "centroid, which has at most A c (h - c) = {:.4g}: is it given in m4?",
-        section->area.inertia_y, most_inertia(*section));
+    return Message(
+        "W-RUN-02",
+        fmt::format("inertia_y_m4 = {:g} of [rail.constants] is that of no shape of this area, "
+                    "height and centroid, which has at most A c (h - c) = {:.4g}: is it given in "
+                    "m4?",
+                    section->area.inertia_y, most_inertia(*section)));
   }
-  return {};
+  return std::nullopt;
 }
 
-std::string lopsided_note(const Scene& scene) {
+std::optional<Message> lopsided_note(const Scene& scene) {
   for (const RailScene* rail : {&scene.rail, scene.right_rail ? &*scene.right_rail : nullptr}) {
     const auto* const section = rail != nullptr ? std::get_if<SectionFile>(&rail->shape) : nullptr;
     const auto lopsided = section != nullptr ? read_lopsided(section->path) : std::nullopt;
     if (!lopsided) continue;
-    const std::string warning = lopsided_warning(*lopsided, read_section(section->path));
-    if (!warning.empty()) return fmt::format("{}: {}", section->path.string(), warning);
+    if (auto warning = lopsided_warning(*lopsided, read_section(section->path))) {
+      warning->text = fmt::format("{}: {}", section->path.string(), warning->text);
+      return warning;
+    }
   }
-  return {};
+  return std::nullopt;
 }
 
-void print_note(const std::string& note) {
-  if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
+void print_note(const std::optional<Message>& note) {
+  if (note) fmt::print(stderr, "note: {}\n", note->line());
 }
 
 }  // namespace railstep

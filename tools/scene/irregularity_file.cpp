@@ -38,8 +38,8 @@ Column column_of(std::string_view field, const CsvLine& line) {
       if (name != std::end(kNames))
         return {static_cast<std::size_t>(name - std::begin(kNames)), metres};
     }
-  throw InputError(fmt::format("{}: column '{}' is not known; accepted are {}", line.place,
-                               field.substr(0, 40), kAccepted));
+  throw InputError("E-IRREGULARITY-12", fmt::format("{}: column '{}' is not known; accepted are {}",
+                                                    line.place, field.substr(0, 40), kAccepted));
 }
 
 std::vector<Column> columns_of(const CsvLine& header) {
@@ -50,7 +50,8 @@ std::vector<Column> columns_of(const CsvLine& header) {
     const Column column = column_of(field, header);
     for (const Column& other : columns)
       if (other.name == column.name)
-        throw InputError(fmt::format("{}: column '{}' is given twice", header.place, field));
+        throw InputError("E-IRREGULARITY-13",
+                         fmt::format("{}: column '{}' is given twice", header.place, field));
     columns.push_back(column);
     if (column.name == std::size(kNames))
       ++distances;
@@ -59,13 +60,14 @@ std::vector<Column> columns_of(const CsvLine& header) {
   }
   if (distances == 0 || of_track + of_rails == 0)
     throw InputError(
+        "E-IRREGULARITY-14",
         fmt::format("{}: '{}' lacks {}; accepted are {}", header.place, header.text.substr(0, 40),
                     distances == 0 ? "the column distance_m" : "a geometry", kAccepted));
   if (of_track > 0 && of_rails > 0)
-    throw InputError(
-        fmt::format("{}: columns of the track and of its rails stand together; one "
-                    "kind is accepted",
-                    header.place));
+    throw InputError("E-IRREGULARITY-15",
+                     fmt::format("{}: columns of the track and of its rails stand together; one "
+                                 "kind is accepted",
+                                 header.place));
   return columns;
 }
 
@@ -74,7 +76,8 @@ double metres_of(std::string_view field, const Column& column, const CsvLine& li
   const double value = column.metres * csv_number(field, line.place);
   const Range& accepted = column.name == std::size(kNames) ? kPlace : kHeight;
   if (accepted.holds(value)) return value;
-  throw InputError(fmt::format("{}: {} = {:.9g} m is out of range; accepted is {} m", line.place,
+  throw InputError("E-IRREGULARITY-16",
+                   fmt::format("{}: {} = {:.9g} m is out of range; accepted is {} m", line.place,
                                column.name == std::size(kNames) ? "distance" : kNames[column.name],
                                value, accepted.text()));
 }
@@ -86,7 +89,8 @@ std::vector<std::vector<double>> values_of(const std::vector<CsvLine>& lines,
   for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
     refuse_decimal_comma(*line, columns.size());
     if (line->fields.size() != columns.size())
-      throw InputError(fmt::format("{}: {} values where the first line names {} columns",
+      throw InputError("E-IRREGULARITY-17",
+                       fmt::format("{}: {} values where the first line names {} columns",
                                    line->place, line->fields.size(), columns.size()));
     for (std::size_t c = 0; c < columns.size(); ++c)
       values[c].push_back(metres_of(line->fields[c], columns[c], *line));
@@ -111,7 +115,8 @@ std::size_t first_off(const std::vector<double>& distance, double much) {
 /// Checks that rows stand at equal distances. @returns the step
 double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& lines) {
   if (distance.size() < 4)
-    throw InputError(fmt::format("{}: {} rows of numbers; at least 4 are accepted",
+    throw InputError("E-IRREGULARITY-18",
+                     fmt::format("{}: {} rows of numbers; at least 4 are accepted",
                                  lines.front().place, distance.size()));
   const double step =
       (distance.back() - distance.front()) / static_cast<double>(distance.size() - 1);
@@ -121,13 +126,15 @@ double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& 
     if (step > 0. && std::fabs(distance[k] - wanted) <= kMuch * step) continue;
     const std::size_t one = first_off(distance, kMuch), off = one > 0 ? one : k;
     throw InputError(
+        "E-IRREGULARITY-19",
         fmt::format("{}: distance {:.9g} m behind one of {:.9g} m, where all rows want equal "
                     "steps, of {:.6g} m on the average; rows at equal, rising distances are "
                     "accepted",
                     lines[off + 1].place, distance[off], distance[off - 1], step));
   }
   if (step < kLeastStep)
-    throw InputError(fmt::format("{}: rows {:.6g} m apart; at least {:g} m are accepted",
+    throw InputError("E-IRREGULARITY-20",
+                     fmt::format("{}: rows {:.6g} m apart; at least {:g} m are accepted",
                                  lines[1].place, step, kLeastStep));
   return step;
 }
@@ -139,6 +146,7 @@ RailSignals read_irregularities(const std::filesystem::path& file) {
   const std::vector<CsvLine> lines = csv_lines(text, file.string());
   if (lines.empty())
     throw InputError(
+        "E-IRREGULARITY-21",
         fmt::format("{}: the file is empty; accepted are columns {}", file.string(), kAccepted));
   const std::vector<Column> columns = columns_of(lines.front());
   const std::vector<std::vector<double>> values = values_of(lines, columns);

@@ -25,13 +25,13 @@ int read_end_zone(const Table& t, const TrackScene& track) {
       std::count(track.ends.begin(), track.ends.end(), RailEnd::non_reflecting);
   if (zones == 0) {
     if (t.has("end_zone_bays"))
-      t.refuse("end_zone_bays",
+      t.refuse("end_zone_bays", "E-SCENE-03",
                "end_zone_bays, but no end is \"non-reflecting\"; accepted beside one that is");
     return kEndZoneBays;
   }
   const auto bays = static_cast<int>(t.integer("end_zone_bays", 1, 10'000, kEndZoneBays));
   if (zones * bays > track.bays)
-    t.refuse("end_zone_bays",
+    t.refuse("end_zone_bays", "E-SCENE-04",
              fmt::format("{} zone{} of {} bays before non-reflecting ends, but bays = {}; accepted "
                          "is end_zone_bays = {} or less, or more bays",
                          zones, zones > 1 ? "s" : "", bays, track.bays, track.bays / zones));
@@ -41,11 +41,12 @@ int read_end_zone(const Table& t, const TrackScene& track) {
 /// A track without end is taken at rest, and has no ends.
 void check_endless(const Table& t, const TrackScene& track) {
   if (track.ends != RailEnds{})
-    t.refuse("ends", "a track without end has no ends to hold; accepted is \"free\"");
+    t.refuse("ends", "E-SCENE-05", "a track without end has no ends to hold; accepted is \"free\"");
   if (track.model != RailModel::linearised)
-    t.refuse("model", "accepted with length = \"endless\" is model = \"linearised\"");
+    t.refuse("model", "E-SCENE-06", "accepted with length = \"endless\" is model = \"linearised\"");
   if (track.linearised_under_weight)
-    t.refuse("linearised_at", "accepted with length = \"endless\" is linearised_at = \"rest\"");
+    t.refuse("linearised_at", "E-SCENE-07",
+             "accepted with length = \"endless\" is linearised_at = \"rest\"");
 }
 
 TrackScene read_track(const Table& t) {
@@ -53,7 +54,7 @@ TrackScene read_track(const Table& t) {
   constexpr Unknowns kUnknowns[] = {Unknowns::full, Unknowns::rigid_section, Unknowns::vertical};
   track.unknowns = kUnknowns[t.choice("unknowns", {"full", "rigid-section", "vertical"})];
   track.rails = static_cast<int>(t.integer("rails", 1, 2, 2));
-  track.bays = t.integer("bays", 1, std::int64_t{1} << 53);
+  track.bays = t.integer("bays", 1, kMostElements);
   track.bay = t.number("bay_m", between(0.05, 5.0));
   track.elements_per_bay = static_cast<int>(t.integer("elements_per_bay", 1, 1000, 2));
   track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
@@ -65,17 +66,17 @@ TrackScene read_track(const Table& t) {
                                    RailModel::timoshenko};
   track.model = kModels[t.choice("model", {"linearised", "nonlinear", "timoshenko"}, 0)];
   if (track.model == RailModel::nonlinear && track.unknowns != Unknowns::full)
-    t.refuse("model",
+    t.refuse("model", "E-SCENE-08",
              "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
              "unknowns = \"full\"");
   track.linearised_under_weight = t.choice("linearised_at", {"rest", "weight"}, 0) == 1;
   if (track.linearised_under_weight && track.unknowns != Unknowns::full)
-    t.refuse("linearised_at",
+    t.refuse("linearised_at", "E-SCENE-09",
              "linearised_at = \"weight\" couples sag and stretch; accepted with "
              "unknowns = \"full\"");
   track.reference_line = read_reference_line(t);
   if (track.reference_line != ReferenceLine::centroid && track.unknowns != Unknowns::full)
-    t.refuse("reference_line",
+    t.refuse("reference_line", "E-SCENE-10",
              "off the centroid nodes move along x as the rail bends; accepted is reference_line = "
              "\"centroid\", or unknowns = \"full\"");
   if (track.endless) check_endless(t, track);
@@ -92,7 +93,7 @@ void check_size(const Table& t, const TrackScene& track) {
   const double per_node = kPerNode[static_cast<int>(track.unknowns)];
   const double unknowns = elements * 2.0 * per_node;  // two nodes an element
   const double bandwidth = 6.0 * per_node;
-  t.refuse("bays",
+  t.refuse("bays", "E-SCENE-11",
            fmt::format("bays = {} makes {:.0f} elements, about {:.3g} bytes; accepted are "
                        "at most {} elements",
                        track.bays, elements, 4.0 * 8.0 * unknowns * bandwidth, kMostElements));
@@ -112,7 +113,7 @@ void read_spring(const Table& t, std::size_t axis, bool required, std::array<dou
 void check_held(const Table& rail, const Scene& scene) {
   const auto& ends = scene.track.ends;
   if (scene.rail.temperature_rise != 0.0 && (ends[0] == RailEnd::free || ends[1] == RailEnd::free))
-    rail.refuse("temperature_rise_k",
+    rail.refuse("temperature_rise_k", "E-SCENE-12",
                 fmt::format("temperature_rise_k = {:.15g}, but a free end lets the rail grow; "
                             "accepted is 0, or track.ends that are pinned, clamped or "
                             "non-reflecting",
@@ -124,12 +125,13 @@ void read_gauge(const Table& track, Scene& scene) {
   if (!track.has("gauge_m")) return;
   const double gauge = track.number("gauge_m", between(0.3, 3.0));
   if (track.has("rail_spacing_m"))
-    track.refuse("gauge_m", "gauge_m beside rail_spacing_m; one of them is accepted");
+    track.refuse("gauge_m", "E-SCENE-13", "gauge_m beside rail_spacing_m; one of them is accepted");
   if (scene.track.rails == 1)
-    track.refuse("gauge_m", "gauge_m, but the track has one rail; accepted with rails = 2");
+    track.refuse("gauge_m", "E-SCENE-14",
+                 "gauge_m, but the track has one rail; accepted with rails = 2");
   if (scene.rail.cant != 0.0)
     track.refuse(
-        "gauge_m",
+        "gauge_m", "E-SCENE-15",
         "gauge_m is measured between the heads of upright rails; accepted beside rail.cant "
         "is rail_spacing_m, between the rails' axes");
   scene.track.rail_spacing = spacing_of_gauge(track, scene, gauge);
@@ -138,7 +140,7 @@ void read_gauge(const Table& track, Scene& scene) {
 /// A vertical force moves a rail that leans sideways too.
 void check_cant(const Table& rail, const Scene& scene) {
   if (scene.rail.cant != 0.0 && scene.track.unknowns == Unknowns::vertical)
-    rail.refuse("cant",
+    rail.refuse("cant", "E-SCENE-16",
                 "cant makes a vertical force move the rail sideways too; accepted with "
                 "track.unknowns = \"rigid-section\" or \"full\"");
 }
@@ -164,9 +166,11 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   const std::optional<Table> t = root.table_if("sleeper");
   const std::optional<Table> ballast = root.table_if("ballast");
   if (!t && !ballast) return std::nullopt;
-  if (!ballast) t->refuse("", "there is a sleeper but no [ballast] under it; both or none");
-  if (!t) ballast->refuse("", "there is ballast but no [sleeper] on it; both or none");
-  if (!scene.support) t->refuse("", "there is a sleeper but no [support] on it");
+  if (!ballast)
+    t->refuse("", "E-SCENE-32", "there is a sleeper but no [ballast] under it; both or none");
+  if (!t)
+    ballast->refuse("", "E-SCENE-33", "there is ballast but no [sleeper] on it; both or none");
+  if (!scene.support) t->refuse("", "E-SCENE-34", "there is a sleeper but no [support] on it");
   Sleeper s;
   s.mass = t->number("mass_kg", between(0.0, 1e5));  // 0: pad and ballast in series
   s.roll_inertia = scene.track.rails == 2 ? t->number("roll_inertia_kg_m2", between(0.0, 1e6))
@@ -177,7 +181,7 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   s.ballast_unilateral = ballast->boolean("unilateral", false);
   s.ballast_gap = ballast->number("gap_m", between(0.0, 0.1), 0.0);
   if (s.ballast_length > 0.0 && scene.support->length == 0.0)
-    ballast->refuse("length_m",
+    ballast->refuse("length_m", "E-SCENE-20",
                     "length_m makes the sleeper pitch, but pads that are points do not feel it; "
                     "accepted with a support.length_m above 0");
   for (const std::size_t axis : {0u, 1u})
@@ -185,7 +189,7 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
         ballast->has(fmt::format("damping_{}_n_s_per_m", "xyz"[axis]))) {
       read_spring(*ballast, axis, true, s.ballast_stiffness, s.ballast_damping);
       if (s.ballast_stiffness[axis] == 0.0)
-        ballast->refuse(fmt::format("stiffness_{}_n_per_m", "xyz"[axis]),
+        ballast->refuse(fmt::format("stiffness_{}_n_per_m", "xyz"[axis]), "E-SCENE-35",
                         "0 would leave the sleeper free; accepted is above 0, or neither stiffness "
                         "nor damping: then it is held");
     }
@@ -195,10 +199,11 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
 /// The whole number of `dt` in `time`; 1e-9 forgives the rounding of decimal numbers, no more.
 std::int64_t whole_steps(const Table& t, std::string_view key, double time, double dt) {
   const double steps = std::round(time / dt);
-  if (steps < 1.0 || std::fabs(time / dt - steps) > 1e-9 * steps)
-    t.refuse(key, fmt::format("{} = {:.15g} is not a whole number of steps of dt_s = {:.15g}; "
-                              "accepted is a multiple of dt_s",
-                              key, time, dt));
+  if (!(steps >= 1.0) || std::fabs(time / dt - steps) > 1e-9 * steps)
+    t.refuse(key, "E-SCENE-22",
+             fmt::format("{} = {:.15g} is not a whole number of steps of dt_s = {:.15g}; "
+                         "accepted is a multiple of dt_s",
+                         key, time, dt));
   return static_cast<std::int64_t>(steps);
 }
 
@@ -225,38 +230,44 @@ StepScene read_times(const Table& t) {
   s.dt = t.number("dt_s", between(1e-7, 0.1));
   const double duration = t.number("duration_s", above_upto(0.0, 1e7));
   if (s.dt > duration)
-    t.refuse("dt_s", fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; accepted is "
-                                 "at most the duration",
-                                 s.dt, duration));
+    t.refuse("dt_s", "E-SCENE-23",
+             fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; accepted is "
+                         "at most the duration",
+                         s.dt, duration));
   const double frame = t.number("frame_s", above_upto(0.0, duration), s.dt);
   s.steps_per_frame = whole_steps(t, "frame_s", frame, s.dt);
   s.steps = whole_steps(t, "duration_s", duration, s.dt);
   return s;
 }
 
-StepScene read_track_step(const Table& t) {
+StepScene read_track_step(const Table& t, const TrackScene& track) {
   StepScene s = read_times(t);
   read_scheme(t, 0.6, false, s);
   constexpr Start kStarts[] = {Start::equilibrium, Start::released, Start::moving};
   s.start = kStarts[t.choice("start", {"equilibrium", "released", "moving"}, 0)];
+  if (s.start == Start::moving && !track.endless)
+    t.refuse("start", "E-SCENE-24",
+             "start = \"moving\" wants a track that goes on as it is; accepted with "
+             "track.length = \"endless\"");
   return s;
 }
 
 void check_frames(const Table& t, const StepScene& s) {
   if (s.steps % s.steps_per_frame != 0)
-    t.refuse("duration_s",
+    t.refuse("duration_s", "E-SCENE-25",
              "the run is written in whole frames; accepted is a duration_s that is a "
              "multiple of frame_s");
   if (s.steps_per_frame > std::numeric_limits<int>::max())
-    t.refuse("frame_s", fmt::format("a frame of {} steps is too long; accepted are {}",
-                                    s.steps_per_frame, std::numeric_limits<int>::max()));
+    t.refuse("frame_s", "E-SCENE-26",
+             fmt::format("a frame of {} steps is too long; accepted are {}", s.steps_per_frame,
+                         std::numeric_limits<int>::max()));
 }
 
 Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Table root = read_toml(file, overrides);
   const std::int64_t schema = root.integer("schema", 1, std::numeric_limits<std::int64_t>::max());
   if (schema > 1)
-    root.refuse("schema",
+    root.refuse("schema", "E-SCENE-27",
                 fmt::format("schema = {} is newer than this program; accepted is 1", schema));
   return root;
 }
@@ -265,60 +276,60 @@ void read_rails(const Table& root, Scene& scene) {
   scene.file = root.file();
   scene.sum = root.sum();
   scene.track = read_track(root.table("track"));
-  check_size(root.table("track"), scene.track);
+  root.attempt([&] { check_size(root.table("track"), scene.track); });
+  root.stop_if_refused();
   const Table rail = root.table("rail");
   scene.rail = read_rail(rail);
   if (const std::optional<Table> right = rail.table_if("right")) {
     if (scene.track.rails == 1)
-      right->refuse("", "the track has one rail, the left one; accepted with track.rails = 2");
+      right->refuse("", "E-SCENE-28",
+                    "the track has one rail, the left one; accepted with track.rails = 2");
     scene.right_rail = read_right_rail(*right, scene.rail);
   }
-  read_gauge(root.table("track"), scene);
-  check_cant(rail, scene);
-  check_held(rail, scene);
-  read_joints(root, rail, scene);
+  root.attempt([&] { read_gauge(root.table("track"), scene); });
+  root.attempt([&] { check_cant(rail, scene); });
+  root.attempt([&] { check_held(rail, scene); });
+  root.attempt([&] { read_joints(root, rail, scene); });
   scene.support = read_support(root, scene);
-  scene.sleeper = read_sleeper(root, scene);
-  scene.seat_changes = read_seat_changes(root, scene);
+  root.attempt([&] { scene.sleeper = read_sleeper(root, scene); });
+  root.attempt([&] { scene.seat_changes = read_seat_changes(root, scene); });
   if (!scene.track.endless) return;
   if (scene.support && scene.support->length > 0.)
     root.table("support").refuse(
-        "length_m", "the pads of a track without end are points; accepted is length_m = 0");
+        "length_m", "E-SCENE-29",
+        "the pads of a track without end are points; accepted is length_m = 0");
   if (!scene.seat_changes.empty())
     root.table("track").refuse(
-        "length",
+        "length", "E-SCENE-30",
         "the seats of a track without end are alike; accepted without [[support_change]]");
 }
 
 Scene read_track_scene(const Table& root) {
   Scene scene;
   read_rails(root, scene);
-  if (const std::optional<Table> step = root.table_if("step")) {
-    scene.step = read_track_step(*step);
-    if (scene.step->start == Start::moving && !scene.track.endless)
-      step->refuse("start",
-                   "start = \"moving\" wants a track that goes on as it is; accepted with "
-                   "track.length = \"endless\"");
-  }
+  root.attempt([&] {
+    if (const std::optional<Table> step = root.table_if("step"))
+      scene.step = read_track_step(*step, scene.track);
+  });
   scene.condense = read_condense(root, scene.track);
   if (scene.step) read_contact(root, scene);
   scene.statics = read_statics(root);
-  scene.stops = read_stops(root, scene);
-  scene.loads = read_loads(root, scene);
-  scene.wheelsets = read_wheelsets(root, scene, scene.inputs);
-  scene.vehicles = read_vehicles(root, scene, scene.inputs);
-  scene.external_wheels = read_external_wheels(root, scene);
+  root.attempt([&] { scene.stops = read_stops(root, scene); });
+  root.attempt([&] { scene.loads = read_loads(root, scene); });
+  root.attempt([&] { scene.wheelsets = read_wheelsets(root, scene, scene.inputs); });
+  root.attempt([&] { scene.vehicles = read_vehicles(root, scene, scene.inputs); });
+  root.attempt([&] { scene.external_wheels = read_external_wheels(root, scene); });
+  root.attempt([&] { scene.irregularity = read_irregularity(root, scene); });
+  root.stop_if_refused();  // what follows asks what runs
   check_external_wheels(root, scene);
-  scene.irregularity = read_irregularity(root, scene);
-  scene.defects = read_defects(root, scene);
-  scene.sensors = read_sensors(root, scene);
+  root.attempt([&] { scene.defects = read_defects(root, scene); });
+  root.attempt([&] { scene.sensors = read_sensors(root, scene); });
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);
   if (scene.trace_supports && scene.track.endless)
-    output->refuse("supports",
+    output->refuse("supports", "E-SCENE-31",
                    "the supports of a track without end pass under its traffic; accepted are "
                    "sensors, which follow it bay by bay");
-  root.finish();
   check_names(root, scene);
   return scene;
 }
@@ -326,10 +337,11 @@ Scene read_track_scene(const Table& root) {
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const Table root = open_scene(file, overrides);
   if (const char* key = key_of_system(root))
-    root.refuse(key, fmt::format("the key {} makes this a scene of bodies and beams, which run and "
-                                 "condense take; accepted here is the scene of a track",
-                                 key));
-  return read_track_scene(root);
+    root.refuse(key, "E-SCENE-02",
+                fmt::format("the key {} makes this a scene of bodies and beams, which run and "
+                            "condense take; accepted here is the scene of a track",
+                            key));
+  return root.whole(read_track_scene);
 }
 
 }  // namespace railstep

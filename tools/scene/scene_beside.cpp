@@ -9,53 +9,55 @@ namespace {
 /// What a track alone has.
 void refuse_foreign(const Table& root) {
   if (root.has("wheelset"))
-    root.refuse("wheelset",
+    root.refuse("wheelset", "E-BODY-01",
                 "[[wheelset]] is not stepped beside bodies and beams; accepted is a [[body]] with "
                 "[[spring]] or [[joint]] to the rails, and [[load]]");
   if (root.has("stop"))
-    root.refuse("stop",
+    root.refuse("stop", "E-BODY-02",
                 "[[stop]] is not stepped beside bodies and beams; accepted is a [[spring]] between "
                 "the rail and the ground");
   if (root.has("vehicle"))
-    root.refuse("vehicle",
+    root.refuse("vehicle", "E-BODY-03",
                 "[[vehicle]] is not stepped beside bodies and beams; accepted is a [[body]] with "
                 "[[spring]] or [[joint]] to the rails, and [[load]]");
   for (const char* key : {"irregularity", "defect"})
     if (root.has(key))
-      root.refuse(key, fmt::format("{} is felt by wheels, which are not stepped beside bodies and "
-                                   "beams; accepted is a scene without it",
-                                   key));
+      root.refuse(key, "E-BODY-04",
+                  fmt::format("{} is felt by wheels, which are not stepped beside bodies and "
+                              "beams; accepted is a scene without it",
+                              key));
   if (root.has("static"))
-    root.refuse("static",
+    root.refuse("static", "E-BODY-05",
                 "[static] is of `railstep static`, which takes a track alone; accepted is "
                 "a scene of a track and bodies without it");
 }
 
-StepScene read_step(const Table& t) {
+StepScene read_step(const Table& t, const TrackScene& track) {
   if (t.has("scheme") && t.string("scheme") == "energy-momentum")
-    t.refuse("scheme",
+    t.refuse("scheme", "E-BODY-06",
              "scheme = \"energy-momentum\" is of bodies and beams without a track; "
              "accepted are \"generalised-alpha\", \"backward-euler\", \"newmark\", \"hht\"");
   if (t.has("scheme") && t.string("scheme") == "tr-bdf2")
-    t.refuse("scheme",
+    t.refuse("scheme", "E-BODY-07",
              "scheme = \"tr-bdf2\" has two stages, by which bodies and beams are not stepped; "
              "accepted are \"generalised-alpha\", \"backward-euler\", \"newmark\", \"hht\"");
-  const StepScene step = read_track_step(t);
+  const StepScene step = read_track_step(t, track);
   check_frames(t, step);
   return step;
 }
 
 void check_model(const Table& t, const TrackScene& track) {
   if (track.endless)
-    t.refuse("length",
+    t.refuse("length", "E-BODY-08",
              "bodies and beams stand still, and a track without end goes on under its "
              "traffic; accepted beside them is a track with ends");
   if (track.model != RailModel::linearised)
-    t.refuse("model", fmt::format("model = \"{}\" is not stepped; accepted beside bodies and beams "
-                                  "is \"linearised\"",
-                                  t.string("model")));
+    t.refuse("model", "E-BODY-09",
+             fmt::format("model = \"{}\" is not stepped; accepted beside bodies and beams "
+                         "is \"linearised\"",
+                         t.string("model")));
   if (track.reference_line != ReferenceLine::centroid)
-    t.refuse("reference_line",
+    t.refuse("reference_line", "E-BODY-10",
              fmt::format("reference_line = \"{}\" is not stepped; accepted beside bodies and beams "
                          "is \"centroid\"",
                          t.string("reference_line")));
@@ -64,12 +66,12 @@ void check_model(const Table& t, const TrackScene& track) {
 void check_system(const Table& root, const SystemScene& scene, const TrackScene& track) {
   if (scene.options.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
     root.table("joints").refuse(
-        "hold",
+        "hold", "E-BODY-11",
         "hold = \"gear-gupta-leimkuhler\" does not hold joints on a track; accepted are "
         "\"augmented-lagrangian\", \"baumgarte\", \"direct\"");
   if (scene.system.planar && track.rails != 1)
     root.table("system").refuse(
-        "planar",
+        "planar", "E-BODY-12",
         "planar = true is the plane y = 0, in which two rails have no part; accepted "
         "is planar = false, or track.rails = 1");
 }
@@ -82,7 +84,7 @@ Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& n
   read_rails(root, track);
   check_model(root.table("track"), track.track);
   check_system(root, scene, track.track);
-  track.step = read_step(root.table("step"));
+  track.step = read_step(root.table("step"), track.track);
   track.condense = read_full_order(root);
   for (const Table& load : root.tables("load")) static_cast<void>(names.claim(load));
   track.loads = read_loads(root, track);

@@ -21,7 +21,8 @@ int read_side(const Table& t, const Scene& scene) {
   const bool left = scene.track.rails == 1 ? t.choice("rail", {"left", "right"}, 0) == 0
                                            : t.choice("rail", {"left", "right"}) == 0;
   if (!left && scene.track.rails == 1)
-    t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-RUNNER-20",
+             "rail = \"right\", but the track has one rail; accepted is \"left\"");
   return left ? kLeftRail : kRightRail;
 }
 
@@ -29,13 +30,14 @@ std::vector<double> read_time_table(const Table& t, std::string_view key, const 
   std::vector<double> rows = t.rows(key, 2);
   for (std::size_t i = 0; i < rows.size(); i += 2) {
     if (rows[i] < 0.0 || (i > 0 && rows[i] <= rows[i - 2]))
-      t.refuse(key,
+      t.refuse(key, "E-RUNNER-02",
                fmt::format("{}: the time {:.15g} s of row {} does not rise; accepted are times "
                            "from 0 on, each above the one before",
                            key, rows[i], i / 2));
     if (!accepted.holds(rows[i + 1]))
-      t.refuse(key, fmt::format("{}: {:.15g} in row {} is out of range; accepted is {}", key,
-                                rows[i + 1], i / 2, accepted.text()));
+      t.refuse(key, "E-RUNNER-21",
+               fmt::format("{}: {:.15g} in row {} is out of range; accepted is {}", key,
+                           rows[i + 1], i / 2, accepted.text()));
   }
   return rows;
 }
@@ -59,7 +61,8 @@ SpeedScene read_speed(const Table& t, std::optional<double> otherwise) {
                       : t.number("speed_m_per_s", kSpeed),
             {}};
   if (t.has("speed_m_per_s"))
-    t.refuse("speed_table", "speed_table is given beside speed_m_per_s; one of them is accepted");
+    t.refuse("speed_table", "E-RUNNER-22",
+             "speed_table is given beside speed_m_per_s; one of them is accepted");
   std::vector<double> rows = read_time_table(t, "speed_table", kSpeed);
   double least = rows[1], most = rows[1];
   for (std::size_t i = 3; i < rows.size(); i += 2) {
@@ -67,7 +70,7 @@ SpeedScene read_speed(const Table& t, std::optional<double> otherwise) {
     most = std::max(most, rows[i]);
   }
   if (least < 0.0 && most > 0.0)
-    t.refuse("speed_table",
+    t.refuse("speed_table", "E-RUNNER-23",
              fmt::format("speed_table goes from {:.15g} to {:.15g} m/s and turns around; accepted "
                          "are speeds of one sign",
                          least, most));
@@ -87,11 +90,11 @@ void check_path(const Table& t, const Scene& scene, double start, const SpeedSce
   if (end >= -1e-9 * length && end <= length * (1.0 + 1e-9)) return;
   if (!speed.speeds.empty())
     t.refuse(
-        "speed_table",
+        "speed_table", "E-RUNNER-06",
         fmt::format("speed_table leads from x = {:.15g} to {:.6g} m, off the rail; accepted is "
                     "0 to {:.6g} (or may_leave_rail = true)",
                     start, end, length));
-  t.refuse("speed_m_per_s",
+  t.refuse("speed_m_per_s", "E-RUNNER-07",
            fmt::format("speed_m_per_s = {:.15g} from start_m = {:.15g} leads to x = {:.6g} m, off "
                        "the rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
                        speed.speed, start, end, length));
@@ -104,14 +107,15 @@ void read_swing(const Table& t, const Scene& scene, LoadScene& load) {
   if (!t.has("amplitude_n")) {
     for (const char* key : {"frequency_hz", "phase_deg"})
       if (t.has(key))
-        t.refuse(key, fmt::format("{} is of a force that swings; accepted with amplitude_n", key));
+        t.refuse(key, "E-RUNNER-08",
+                 fmt::format("{} is of a force that swings; accepted with amplitude_n", key));
     return;
   }
   load.amplitude = t.number("amplitude_n", kForce);
   load.frequency = t.number("frequency_hz", between(0.0, 1e6));
   load.phase = t.number("phase_deg", between(-360.0, 360.0), 0.0) / 360.0;
   if (scene.step && load.frequency * scene.step->dt > .125 * (1.0 + 1e-12))
-    t.refuse("frequency_hz",
+    t.refuse("frequency_hz", "E-RUNNER-09",
              fmt::format("frequency_hz = {:.15g} has {:.3g} steps of dt_s = {:.6g} a period; "
                          "accepted are 8 or more: a shorter step.dt_s",
                          load.frequency, 1.0 / (load.frequency * scene.step->dt), scene.step->dt));
@@ -136,9 +140,10 @@ LoadScene read_load(const Table& t, const Scene& scene) {
   if (t.has("stop_m")) {
     load.stop = t.number("stop_m", between(0.0, scene.track.endless ? 1e12 : length));
     if ((load.stop - load.start) * fastest(load) <= 0.0)
-      t.refuse("stop_m", fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
-                                     "is a place the load moves to",
-                                     load.stop, load.start));
+      t.refuse("stop_m", "E-RUNNER-24",
+               fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
+                           "is a place the load moves to",
+                           load.stop, load.start));
   }
   if (!load.may_leave_rail) check_path(t, scene, load.start, speed, load.stop);
   return load;
@@ -152,7 +157,7 @@ void read_guide(const Table& wheelset, WheelsetScene& w) {
   w.cap = static_cast<int>(t->integer("cap", 1, 1000, w.cap));
   w.tolerance = t->number("tolerance", between(1e-15, 1e-2), w.tolerance);
   if (!baumgarte && (t->has("alpha_per_s") || t->has("beta_per_s")))
-    t->refuse(t->has("alpha_per_s") ? "alpha_per_s" : "beta_per_s",
+    t->refuse(t->has("alpha_per_s") ? "alpha_per_s" : "beta_per_s", "E-RUNNER-11",
               "alpha_per_s and beta_per_s are Baumgarte's; accepted with method = \"baumgarte\"");
   if (baumgarte) {
     w.alpha = t->number("alpha_per_s", above_upto(0.0, 1e6));
@@ -165,14 +170,16 @@ void check_start(const Table& t, const Scene& scene, const WheelsetScene& w) {
   const double length = scene.track.length();
   const bool on_rail = w.start >= 0.0 && w.start <= length;
   if (on_rail || scene.track.endless || !scene.step || scene.step->start == Start::released) return;
-  t.refuse("start_m", fmt::format("start_m = {:.15g} is off the rail, where the wheelset has no "
-                                  "equilibrium; accepted is 0 to {:.6g}, or step.start = "
-                                  "\"released\"",
-                                  w.start, length));
+  t.refuse("start_m", "E-RUNNER-12",
+           fmt::format("start_m = {:.15g} is off the rail, where the wheelset has no "
+                       "equilibrium; accepted is 0 to {:.6g}, or step.start = "
+                       "\"released\"",
+                       w.start, length));
 }
 
 WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<InputScene>& inputs) {
-  if (scene.track.rails != 2) t.refuse("", "a wheelset needs two rails; accepted with rails = 2");
+  if (scene.track.rails != 2)
+    t.refuse("", "E-RUNNER-13", "a wheelset needs two rails; accepted with rails = 2");
   const Range inertia = above_upto(0.0, 1e6);
   WheelsetScene w{};
   w.name = checked_name(t, "name", t.string("name"));
@@ -215,44 +222,47 @@ std::string checked_name(const Table& t, std::string_view key, const std::string
            c == '-';
   };
   if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
-    t.refuse(key, fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
-                              "and -",
-                              key, name.substr(0, 64)));
+    t.refuse(key, "E-RUNNER-14",
+             fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
+                         "and -",
+                         key, name.substr(0, 64)));
   if (name.starts_with("support_"))
-    t.refuse(key, fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
-                              "does not start with support_",
-                              key, name));
+    t.refuse(key, "E-RUNNER-15",
+             fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
+                         "does not start with support_",
+                         key, name));
   return name;
 }
 
 std::vector<LoadScene> read_loads(const Table& root, const Scene& scene) {
   std::vector<LoadScene> loads;
-  for (const Table& t : root.tables("load")) loads.push_back(read_load(t, scene));
+  root.each("load", [&](const Table& t) { loads.push_back(read_load(t, scene)); });
   return loads;
 }
 
 std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
                                           std::vector<InputScene>& inputs) {
   std::vector<WheelsetScene> wheelsets;
-  for (const Table& t : root.tables("wheelset"))
-    wheelsets.push_back(read_wheelset(t, scene, inputs));
+  root.each("wheelset",
+            [&](const Table& t) { wheelsets.push_back(read_wheelset(t, scene, inputs)); });
   return wheelsets;
 }
 
 std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene) {
   std::vector<ExternalWheelScene> wheels;
-  for (const Table& t : root.tables("external_wheel")) {
+  root.each("external_wheel", [&](const Table& t) {
     const std::string name = checked_name(t, "name", t.string("name"));
     const int rail = read_side(t, scene);
     wheels.push_back({{rail, t.number("limit_n", above_upto(0.0, 1e12))}, name});
-  }
+  });
   return wheels;
 }
 
 OuterForce read_body_force(const Table& t, int direction, bool moment,
                            std::vector<InputScene>& inputs) {
   if (!t.has("input")) return {direction, read_force_table(t, "table", kForce)};
-  if (t.has("table")) t.refuse("table", "table is given beside input; one of them is accepted");
+  if (t.has("table"))
+    t.refuse("table", "E-RUNNER-25", "table is given beside input; one of them is accepted");
   return {direction, {}, read_input(t, moment, inputs)};
 }
 
@@ -261,10 +271,10 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
       checked_name(t, "input", t.string("input")) + (moment ? ".moment_n_m" : ".force_n");
   for (const InputScene& other : inputs)
     if (other.name == name)
-      t.refuse("input",
+      t.refuse("input", "E-RUNNER-17",
                fmt::format("{} is taken by another force; accepted is a name used once", name));
   if (inputs.size() == static_cast<std::size_t>(kMaxInputs))
-    t.refuse("input", fmt::format("more than {} inputs", kMaxInputs));
+    t.refuse("input", "E-RUNNER-18", fmt::format("more than {} inputs", kMaxInputs));
   inputs.push_back({name, t.number(moment ? "limit_n_m" : "limit_n", above_upto(0.0, 1e12))});
   return static_cast<int>(inputs.size()) - 1;
 }
@@ -276,8 +286,9 @@ void check_names(const Table& root, const Scene& scene) {
                         const std::string& name) {
     const auto [first, is_new] = taken.emplace(name, t.name());
     if (!is_new)
-      t.refuse(key, fmt::format("{} = \"{}\" is taken by [{}]; accepted is a name used once", key,
-                                name, first->second));
+      t.refuse(key, "E-RUNNER-19",
+               fmt::format("{} = \"{}\" is taken by [{}]; accepted is a name used once", key, name,
+                           first->second));
   };
   const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
              sensors = root.tables("sensor"), stops = root.tables("stop");

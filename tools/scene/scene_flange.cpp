@@ -10,9 +10,10 @@ void read_law(const Table& t, Flange& flange) {
   const bool hertz = t.choice("contact", {"hertz", "linear"}, 0) == 0;
   for (const char* key : {"stiffness_n_per_m", "damping_n_s_per_m"})
     if (hertz && t.has(key))
-      t.refuse(key, "a spring beside contact = \"hertz\"; accepted with contact = \"linear\"");
+      t.refuse(key, "E-FLANGE-01",
+               "a spring beside contact = \"hertz\"; accepted with contact = \"linear\"");
   if (!hertz && t.has("corner_radius_m"))
-    t.refuse("corner_radius_m",
+    t.refuse("corner_radius_m", "E-FLANGE-02",
              "a corner's radius beside contact = \"linear\"; accepted with contact = \"hertz\"");
   if (hertz) {
     flange.corner_radius = t.number("corner_radius_m", between(1e-3, 0.1), 0.013);
@@ -26,13 +27,13 @@ void read_law(const Table& t, Flange& flange) {
 
 Flange read_flange(const Table& t, const Scene& scene) {
   if (scene.track.unknowns == Unknowns::vertical)
-    t.refuse("",
+    t.refuse("", "E-FLANGE-03",
              "flanges push rails sideways, and the track does not move there; accepted with "
              "track.unknowns = \"full\" or \"rigid-section\"");
   const RailScene& right = scene.right_rail ? *scene.right_rail : scene.rail;
   if (!head_width(scene.rail) || !head_width(right))
     t.refuse(
-        "",
+        "", "E-FLANGE-04",
         "flanges meet the railheads 14 mm below their tops, of which the section says nothing; "
         "accepted with a rail that has a shape");
   Flange flange;

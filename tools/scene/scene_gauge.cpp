@@ -47,7 +47,7 @@ struct HeadWidth {
 double width_for_gauge(const Table& track, const BarScene& bar) {
   const std::optional<double> width = head_width(bar);
   if (!width)
-    track.refuse("gauge_m",
+    track.refuse("gauge_m", "E-RAIL-01",
                  "gauge_m is measured between the heads, 14 mm below their tops, of which the "
                  "section says nothing; accepted is rail_spacing_m, or a rail with a shape");
   return *width;

@@ -29,7 +29,8 @@ std::array<bool, 2> read_sides(const Table& t, std::string_view key, const Scene
   if (scene.track.rails == 1 && !t.has(key)) return {true, false};
   const std::size_t side = t.choice(key, {"both", "left", "right"}, 0);
   if (scene.track.rails == 1 && side != 1)
-    t.refuse(key, fmt::format("the track has one rail; accepted is {} = \"left\"", key));
+    t.refuse(key, "E-IRREGULARITY-22",
+             fmt::format("the track has one rail; accepted is {} = \"left\"", key));
   return {side != 2, side != 1};
 }
 
@@ -44,7 +45,7 @@ double fastest(const Scene& scene) {
 void check_wave(const Table& t, std::string_view key, double wavelength, double speed,
                 const Scene& scene) {
   if (!scene.step || wavelength >= 8. * speed * scene.step->dt * (1. - 1e-12)) return;
-  t.refuse(key,
+  t.refuse(key, "E-IRREGULARITY-23",
            fmt::format("a wave of {:.6g} m is passed at {:.6g} m/s in {:.3g} steps of dt_s = "
                        "{:.6g}; accepted are 8 steps or more: a shorter step.dt_s, a longer "
                        "wave",
@@ -59,7 +60,7 @@ void check_samples(const Table& t, std::string_view key, double half, double pat
   const double step = defect_grid(patch, shape).step;
   if (std::max(half, patch) < kMostDefectSteps * step) return;
   const bool of_patch = patch > 0. && step < shape / 50.;
-  t.refuse(of_patch ? "contact_patch_m" : key,
+  t.refuse(of_patch ? "contact_patch_m" : key, "E-IRREGULARITY-24",
            fmt::format("{}: {:.6g} m in samples {:.3g} m apart, which a contact patch of {:.6g} m "
                        "and a shape of {:.6g} m want, are too many; accepted are {:g}",
                        of_patch ? "contact_patch_m" : key, 2. * half, step, patch, shape,
@@ -87,12 +88,14 @@ std::vector<Geometry> read_geometries(const Table& t, const Scene& scene,
   for (const std::string& name : wanted) {
     const auto* const known = std::find(std::begin(kGeometryNames), std::end(kGeometryNames), name);
     if (known == std::end(kGeometryNames) || std::count(given.begin(), given.end(), name) == 0)
-      t.refuse("geometries", fmt::format("geometries: \"{}\" is none that {} has; accepted are "
-                                         "\"{}\"",
-                                         name, spectra.name, fmt::join(given, "\", \"")));
+      t.refuse("geometries", "E-IRREGULARITY-25",
+               fmt::format("geometries: \"{}\" is none that {} has; accepted are "
+                           "\"{}\"",
+                           name, spectra.name, fmt::join(given, "\", \"")));
     const auto geometry = static_cast<Geometry>(known - std::begin(kGeometryNames));
     if (std::count(found.begin(), found.end(), geometry) > 0)
-      t.refuse("geometries", fmt::format("geometries: \"{}\" is given twice", name));
+      t.refuse("geometries", "E-IRREGULARITY-26",
+               fmt::format("geometries: \"{}\" is given twice", name));
     found.push_back(geometry);
   }
   return found;
@@ -104,8 +107,9 @@ void read_generated(const Table& t, const Scene& scene, IrregularityScene& own) 
   if (spectra == nullptr) {
     std::vector<std::string> names;
     for (const TrackSpectra& known : track_spectra()) names.push_back(known.name);
-    t.refuse("spectrum", fmt::format("spectrum = \"{}\" is unknown; accepted are \"{}\"",
-                                     own.spectrum, fmt::join(names, "\", \"")));
+    t.refuse("spectrum", "E-IRREGULARITY-27",
+             fmt::format("spectrum = \"{}\" is unknown; accepted are \"{}\"", own.spectrum,
+                         fmt::join(names, "\", \"")));
   }
   own.geometries = read_geometries(t, scene, *spectra);
   GenerateOptions& o = own.options;
@@ -126,9 +130,10 @@ std::optional<IrregularityScene> read_irregularity(const Table& root, const Scen
   const std::optional<Table> t = root.table_if("irregularity");
   if (!t) return std::nullopt;
   if (scene.wheelsets.empty() && scene.vehicles.empty())
-    t->refuse("", "no wheel feels the irregularity; accepted with a [[wheelset]] or a [[vehicle]]");
+    t->refuse("", "E-IRREGULARITY-28",
+              "no wheel feels the irregularity; accepted with a [[wheelset]] or a [[vehicle]]");
   if (t->has("file") == t->has("spectrum"))
-    t->refuse("", "exactly one of file and spectrum is accepted");
+    t->refuse("", "E-IRREGULARITY-29", "exactly one of file and spectrum is accepted");
   IrregularityScene own;
   if (t->has("file"))
     own.file = t->path("file");
@@ -140,9 +145,10 @@ std::optional<IrregularityScene> read_irregularity(const Table& root, const Scen
 
 std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
   std::vector<DefectScene> defects;
-  for (const Table& t : root.tables("defect")) {
+  root.each("defect", [&](const Table& t) {
     if (scene.wheelsets.empty() && scene.vehicles.empty())
-      t.refuse("", "no wheel feels the defect; accepted with a [[wheelset]] or a [[vehicle]]");
+      t.refuse("", "E-IRREGULARITY-30",
+               "no wheel feels the defect; accepted with a [[wheelset]] or a [[vehicle]]");
     DefectScene d{};
     d.kind = t.choice("kind", {"dipped_joint", "corrugation"}) == 0 ? DefectKind::dipped_joint
                                                                     : DefectKind::corrugation;
@@ -163,7 +169,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
       check_wave(t, "wavelength_m", d.length, fastest(scene), scene);
     }
     defects.push_back(d);
-  }
+  });
   return defects;
 }
 
@@ -204,9 +210,10 @@ std::vector<WheelTread> read_wheel_treads(const Table& vehicle, const Scene& sce
         t.integer("wheel", 1, static_cast<std::int64_t>(wheels.size())) - 1);
     for (const WheelTread& other : treads)
       if (other.wheel == wheel)
-        t.refuse("wheel", fmt::format("wheel {} has a [[vehicle.tread]] already; one of each wheel "
-                                      "is accepted",
-                                      wheel + 1));
+        t.refuse("wheel", "E-IRREGULARITY-31",
+                 fmt::format("wheel {} has a [[vehicle.tread]] already; one of each wheel "
+                             "is accepted",
+                             wheel + 1));
     const double radius = wheels[wheel].radius;
     treads.push_back({wheel, read_tread(t, scene, radius, fastest(own)), radius});
   }
@@ -222,9 +229,10 @@ std::vector<TreadScene> read_treads(const Table& wheelset, const Scene& scene,
     d.on = read_sides(t, "wheel", scene);
     for (std::size_t side = 0; side < 2; ++side) {
       if (d.on[side] && taken[side])
-        t.refuse("wheel", fmt::format("the {} wheel has a [[wheelset.tread]] already; one of each "
-                                      "wheel is accepted",
-                                      side == 0 ? "left" : "right"));
+        t.refuse("wheel", "E-IRREGULARITY-32",
+                 fmt::format("the {} wheel has a [[wheelset.tread]] already; one of each "
+                             "wheel is accepted",
+                             side == 0 ? "left" : "right"));
       taken[side] = taken[side] || d.on[side];
     }
     treads.push_back(d);

@@ -45,7 +45,8 @@ std::array<Part, 2> read_between(const Table& t, const SystemScene& scene) {
   const Part a = read_part(t, "between", names[0], scene, Naming::held);
   const Part b = read_part(t, "between", names[1], scene, Naming::held);
   if (names[0] == names[1])
-    t.refuse("between", fmt::format("between has \"{}\" twice; accepted are two parts", names[0]));
+    t.refuse("between", "E-JOINT-01",
+             fmt::format("between has \"{}\" twice; accepted are two parts", names[0]));
   return {a, b};
 }
 
@@ -55,7 +56,8 @@ std::vector<std::array<double, 2>> read_motion_table(const Table& t, const std::
   const std::vector<double> rows = read_time_table(t, key, accepted);
   std::vector<std::array<double, 2>> table;
   for (std::size_t i = 0; i < rows.size(); i += 2) table.push_back({rows[i], rows[i + 1]});
-  if (table.size() < 2) t.refuse(key, fmt::format("{} has 1 row; accepted are 2 and more", key));
+  if (table.size() < 2)
+    t.refuse(key, "E-JOINT-04", fmt::format("{} has 1 row; accepted are 2 and more", key));
   return table;
 }
 
@@ -63,7 +65,7 @@ std::vector<std::array<double, 2>> read_motion_table(const Table& t, const std::
 Motion read_motion(const Table& t, const std::string& unit, const Range& accepted) {
   const std::string polynomial = "polynomial_" + unit, table = "table_" + unit;
   if (t.has(polynomial) && t.has(table))
-    t.refuse(table,
+    t.refuse(table, "E-JOINT-05",
              fmt::format("{} is given beside {}; one of them is accepted", table, polynomial));
   Motion motion;
   if (t.has(table))
@@ -79,7 +81,7 @@ Motion read_drive(const Table& t, const std::string& unit) {
   const bool tabled = !motion.table.empty();
   const double start = tabled ? motion.table[0][1] : motion.polynomial[0];
   if (start != 0.)
-    t.refuse((tabled ? "table_" : "polynomial_") + unit,
+    t.refuse((tabled ? "table_" : "polynomial_") + unit, "E-JOINT-06",
              fmt::format("the motion begins at {:.15g} {}, and the parts stand where it is 0; "
                          "accepted is a motion that begins at 0",
                          start, unit));
@@ -98,7 +100,7 @@ Motion around_length(const Table& t, Motion change, double length) {
   if (change.table.empty()) change.polynomial[0] = length;
   for (std::array<double, 2>& row : change.table)
     if ((row[1] += length) <= 0.)
-      t.refuse("table_m",
+      t.refuse("table_m", "E-JOINT-07",
                fmt::format("table_m shortens a distance of {:.6g} m by {:.6g} m; accepted "
                            "is what leaves some of it",
                            length, length - row[1]));
@@ -109,7 +111,7 @@ Motion around_length(const Table& t, Motion change, double length) {
 void refuse_foreign(const Table& t, const JointForm& form) {
   const auto refuse = [&](const char* key, bool wanted) {
     if (!wanted && t.has(key))
-      t.refuse(key,
+      t.refuse(key, "E-JOINT-08",
                fmt::format("a {} joint has no {}; accepted is one without it", form.name, key));
   };
   refuse("axis", form.axis != Axis::none);
@@ -126,9 +128,10 @@ Joint read_joint(const Table& t, const SystemScene& scene) {
   const bool planar = scene.system.planar;
   const JointForm& form = read_form(t);
   if (planar && form.axis == Axis::both)
-    t.refuse("kind", fmt::format("a {} joint leaves the plane of x and z; accepted are the others, "
-                                 "or system.planar = false",
-                                 form.name));
+    t.refuse("kind", "E-JOINT-09",
+             fmt::format("a {} joint leaves the plane of x and z; accepted are the others, "
+                         "or system.planar = false",
+                         form.name));
   refuse_foreign(t, form);
   Joint j;
   j.kind = form.kind;
@@ -139,7 +142,7 @@ Joint read_joint(const Table& t, const SystemScene& scene) {
   if (form.kind == JointKind::distance) {
     j.other_point = read_point(t, "other_point_m", b, scene);
     if (j.other_point == j.point)
-      t.refuse("other_point_m",
+      t.refuse("other_point_m", "E-JOINT-10",
                "other_point_m is point_m, and no distance is held at 0; accepted "
                "is another point, or a spherical joint");
   } else {
@@ -167,13 +170,13 @@ SpringDamper read_spring_damper(const Table& t, const SystemScene& scene) {
   s.point_a = read_point(t, "point_m", a, scene);
   s.point_b = read_point(t, "other_point_m", b, scene);
   if (s.point_a == s.point_b)
-    t.refuse("other_point_m",
+    t.refuse("other_point_m", "E-JOINT-11",
              "other_point_m is point_m, and a spring of no length has no "
              "direction; accepted is another point");
   s.stiffness = t.number("stiffness_n_per_m", between(0.0, 1e13), 0.0);
   s.damping = t.number("damping_n_s_per_m", between(0.0, 1e11), 0.0);
   if (s.stiffness == 0. && s.damping == 0.)
-    t.refuse("stiffness_n_per_m",
+    t.refuse("stiffness_n_per_m", "E-JOINT-12",
              "the spring has neither stiffness_n_per_m nor damping_n_s_per_m "
              "above 0; accepted is one with either");
   if (t.has("length_m")) s.length = t.number("length_m", above_upto(0.0, 1e4));
@@ -186,8 +189,9 @@ Motion read_force_over_time(const Table& t, const std::string& constant, const s
   if (!t.has(constant)) return read_motion(t, unit, accepted);
   for (const char* way : {"polynomial_", "table_"})
     if (t.has(way + unit))
-      t.refuse(way + unit, fmt::format("{}{} is given beside {}; one of them is accepted", way,
-                                       unit, constant));
+      t.refuse(
+          way + unit, "E-JOINT-13",
+          fmt::format("{}{} is given beside {}; one of them is accepted", way, unit, constant));
   Motion motion;
   motion.polynomial = {t.number(constant, accepted)};
   return motion;
@@ -204,7 +208,8 @@ void set_size(const Table& t, SystemScene& scene, SystemForce& force) {
   for (const std::string& key :
        {std::string(constant), fmt::format("polynomial_{}", unit), fmt::format("table_{}", unit)})
     if (t.has(key))
-      t.refuse(key, fmt::format("{} is given beside input; one of them is accepted", key));
+      t.refuse(key, "E-JOINT-14",
+               fmt::format("{} is given beside input; one of them is accepted", key));
   force.input = read_input(t, force.moment, scene.inputs);
 }
 
@@ -217,10 +222,10 @@ void read_force(const Table& t, SystemScene& scene) {
   if (force.moment) {
     for (const char* key : {"force_n", "polynomial_n", "table_n", "limit_n", "point_m"})
       if (t.has(key))
-        t.refuse(key,
+        t.refuse(key, "E-JOINT-15",
                  fmt::format("{} is given beside a moment; accepted is a force or a moment", key));
     if (force.on.kind != Part::Kind::body)
-      t.refuse("on", "a moment acts on a beam; accepted is a body");
+      t.refuse("on", "E-JOINT-16", "a moment acts on a beam; accepted is a body");
     force.direction = read_turn_axis(t, "direction", planar);
     set_size(t, scene, force);
     return;
@@ -246,7 +251,7 @@ void read_springs(const Table& root, SystemScene& scene, NameBook& names) {
     scene.names.springs.push_back(t.has("name") ? names.claim(t) : "");
     if (t.boolean("trace", false)) {
       if (!t.has("name"))
-        t.refuse("trace",
+        t.refuse("trace", "E-JOINT-17",
                  "trace = true wants a name for the spring's column, and key 'name' is "
                  "missing");
       scene.traced.springs.push_back(static_cast<int>(scene.system.springs.size()));
@@ -256,7 +261,7 @@ void read_springs(const Table& root, SystemScene& scene, NameBook& names) {
 }
 
 void read_forces(const Table& root, SystemScene& scene) {
-  for (const Table& t : root.tables("force")) read_force(t, scene);
+  root.each("force", [&](const Table& t) { read_force(t, scene); });
 }
 
 void read_system_sensors(const Table& root, SystemScene& scene, NameBook& names) {

@@ -16,28 +16,31 @@ Eigen::Matrix3d read_inertia(const Table& t, bool planar) {
   const char* const key = "inertia_kg_m2";
   const std::vector<double> i = t.numbers(key, between(-1e12, 1e12), 3, 6);
   if (i.size() != 3 && i.size() != 6)
-    t.refuse(key, fmt::format("{} has {} entries; accepted are 3, Ixx Iyy Izz, or 6, with Ixy Ixz "
-                              "Iyz behind",
-                              key, i.size()));
+    t.refuse(key, "E-BODY-13",
+             fmt::format("{} has {} entries; accepted are 3, Ixx Iyy Izz, or 6, with Ixy Ixz "
+                         "Iyz behind",
+                         key, i.size()));
   Eigen::Matrix3d inertia = Eigen::Vector3d(i[0], i[1], i[2]).asDiagonal();
   if (i.size() == 6) {
     inertia(0, 1) = inertia(1, 0) = i[3];
     inertia(0, 2) = inertia(2, 0) = i[4];
     inertia(1, 2) = inertia(2, 1) = i[5];
     if (planar && (i[3] != 0. || i[5] != 0.))
-      t.refuse(key,
+      t.refuse(key, "E-BODY-14",
                "Ixy and Iyz turn a body out of the plane of x and z; accepted is 0 for both, "
                "or system.planar = false");
   }
   const Eigen::Vector3d p =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(p[0] > 0.))
-    t.refuse(key, fmt::format("the least principal inertia is {:.6g}; accepted is above 0", p[0]));
+    t.refuse(key, "E-BODY-15",
+             fmt::format("the least principal inertia is {:.6g}; accepted is above 0", p[0]));
   // A flat body has equality, which decimals miss by their rounding.
   if (p[2] > (p[0] + p[1]) * (1. + 1e-9))
-    t.refuse(key, fmt::format("principal inertias {:.6g}, {:.6g} and {:.6g} are those of no mass; "
-                              "accepted are three of which none is above the sum of the others",
-                              p[0], p[1], p[2]));
+    t.refuse(key, "E-BODY-16",
+             fmt::format("principal inertias {:.6g}, {:.6g} and {:.6g} are those of no mass; "
+                         "accepted are three of which none is above the sum of the others",
+                         p[0], p[1], p[2]));
   return inertia;
 }
 
@@ -60,7 +63,7 @@ Eigen::Matrix3d read_axes(const Table& t, bool planar) {
   const Eigen::Vector3d along =
       t.has("direction") ? read_direction(t, "direction", planar) : Eigen::Vector3d::UnitX();
   if (!t.has("up") && along.y() != 0.)
-    t.refuse("direction",
+    t.refuse("direction", "E-BODY-17",
              "the beam leaves the plane of x and z, and key 'up' is missing; it has a "
              "default in that plane alone");
   const Eigen::Vector3d up = t.has("up") ? read_direction(t, "up", planar)
@@ -68,7 +71,7 @@ Eigen::Matrix3d read_axes(const Table& t, bool planar) {
   check_square(t, "up", up, "the beam's direction", along);
   const Eigen::Vector3d lateral = up.cross(along).normalized();
   if (planar && lateral.y() < 0.)
-    t.refuse("up",
+    t.refuse("up", "E-BODY-18",
              "up puts the section's left on the ground's right; in the plane the opposite "
              "direction is accepted");
   Eigen::Matrix3d axes;
@@ -110,11 +113,13 @@ double extent(const SectionSource& shape) {
 std::string NameBook::claim(const Table& t) {
   std::string name = checked_name(t, "name", t.string("name"));
   if (name == "ground")
-    t.refuse("name", "name = \"ground\" is that of what does not move; accepted is another");
+    t.refuse("name", "E-BODY-19",
+             "name = \"ground\" is that of what does not move; accepted is another");
   const auto [first, is_new] = owner_.emplace(name, t.name());
   if (!is_new)
-    t.refuse("name", fmt::format("name = \"{}\" is taken by [{}]; accepted is a name used once",
-                                 name, first->second));
+    t.refuse("name", "E-BODY-20",
+             fmt::format("name = \"{}\" is taken by [{}]; accepted is a name used once", name,
+                         first->second));
   return name;
 }
 
@@ -125,9 +130,10 @@ std::string claim_part(const Table& t, const SystemScene& scene, NameBook& names
   std::string name = names.claim(t);
   for (const char* kept : {"rail", "sleeper", "wheelset"})
     if (scene.track && name == kept)
-      t.refuse("name", fmt::format("name = \"{}\" is what a sensor of a track is on; accepted is "
-                                   "another",
-                                   name));
+      t.refuse("name", "E-BODY-21",
+               fmt::format("name = \"{}\" is what a sensor of a track is on; accepted is "
+                           "another",
+                           name));
   return name;
 }
 
@@ -146,7 +152,7 @@ void read_beams(const Table& root, SystemScene& scene, NameBook& names) {
     scene.system.beams.push_back(read_beam(t, scene.system.planar));
     scene.bars.push_back({read_bar(t), read_reference_line(t)});
     if (std::holds_alternative<Section>(scene.bars.back().bar.shape))
-      t.refuse("constants",
+      t.refuse("constants", "E-BODY-22",
                "a beam that turns wants its section's shape, of which moments of third "
                "and fourth degree are taken; accepted are profile, section, "
                "rectangles and rectangle");
@@ -180,8 +186,9 @@ Part read_part(const Table& t, std::string_view key, const std::string& name,
            : held                     ? "a rail that the track has not"
            : naming == Naming::driven ? "a rail, on which a force is a [[load]]"
                                       : "a rail, on which a sensor has on = \"rail\" and rail";
-  t.refuse(key, fmt::format("{} has \"{}\", which is {}; accepted are {}", key, name.substr(0, 64),
-                            what, known));
+  t.refuse(key, "E-BODY-23",
+           fmt::format("{} has \"{}\", which is {}; accepted are {}", key, name.substr(0, 64), what,
+                       known));
 }
 
 namespace {
@@ -191,14 +198,16 @@ void check_reach(const Table& t, std::string_view key, const std::string& bar,
                  const Eigen::Vector3d& local, double length, const SectionSource& shape) {
   // 1e-9 of the length forgives the rounding of decimals.
   if (local.x() < -1e-9 * length || local.x() > length * (1. + 1e-9))
-    t.refuse(key, fmt::format("{} is at {:.6g} m along {}; accepted is 0 to {:.6g} m", key,
-                              local.x(), bar, length));
+    t.refuse(key, "E-BODY-24",
+             fmt::format("{} is at {:.6g} m along {}; accepted is 0 to {:.6g} m", key, local.x(),
+                         bar, length));
   const double across = std::hypot(local.y(), local.z());
   const double most = extent(shape);
   if (across > most)
-    t.refuse(key, fmt::format("{} is {:.6g} m beside {}; accepted is at most {:.6g} m, what its "
-                              "section measures",
-                              key, across, bar, most));
+    t.refuse(key, "E-BODY-25",
+             fmt::format("{} is {:.6g} m beside {}; accepted is at most {:.6g} m, what its "
+                         "section measures",
+                         key, across, bar, most));
 }
 
 }  // namespace

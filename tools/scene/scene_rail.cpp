@@ -18,9 +18,10 @@ RectangleSizes read_rectangles(const Table& t) {
                          t.number("head_width_m", kSize), t.number("head_height_m", kSize)};
   const double height = r.foot_height + r.web_height + r.head_height;
   if (!kSize.holds(height))
-    t.refuse("foot_height_m", fmt::format("foot, web and head are {:.6g} m high together; accepted "
-                                          "is {}",
-                                          height, kSize.text()));
+    t.refuse("foot_height_m", "E-RAIL-02",
+             fmt::format("foot, web and head are {:.6g} m high together; accepted "
+                         "is {}",
+                         height, kSize.text()));
   return r;
 }
 
@@ -32,13 +33,15 @@ SectionSource read_shape(const Table& rail) {
   for (const char* way : kWays) {
     if (!rail.has(way)) continue;
     if (!found.empty())
-      rail.refuse(way, fmt::format("{} is given beside {}; exactly one of profile, section, "
-                                   "constants, rectangles, rectangle is accepted",
-                                   way, found));
+      rail.refuse(way, "E-RAIL-03",
+                  fmt::format("{} is given beside {}; exactly one of profile, section, "
+                              "constants, rectangles, rectangle is accepted",
+                              way, found));
     found = way;
   }
   if (found != "profile" && rail.has("outline"))
-    rail.refuse("outline", "outline says how a profile is taken; accepted beside profile");
+    rail.refuse("outline", "E-RAIL-04",
+                "outline says how a profile is taken; accepted beside profile");
   if (found == "profile")
     return ProfileFile{rail.path("profile"), rail.choice("outline", {"fitted", "exact"}, 0) == 1};
   if (found == "section") return SectionFile{rail.path("section")};
@@ -48,7 +51,7 @@ SectionSource read_shape(const Table& rail) {
     const Table t = rail.table("rectangle");
     return RectangleSize{t.number("height_m", kSize), t.number("width_m", kSize)};
   }
-  rail.refuse("",
+  rail.refuse("", "E-RAIL-05",
               "no section is given; exactly one of profile, section, constants, rectangles, "
               "rectangle is accepted");
 }
@@ -58,8 +61,9 @@ std::optional<double> read_override(const Table& rail, std::string_view key) {
   const std::optional<Table> rectangle = rail.table_if("rectangle");
   const bool inside = rectangle && rectangle->has(key);
   if (inside && rail.has(key))
-    rail.refuse(key, fmt::format("{} is given in [{}] and in [{}]; one of them is accepted", key,
-                                 rail.name(), rectangle->name()));
+    rail.refuse(key, "E-RAIL-06",
+                fmt::format("{} is given in [{}] and in [{}]; one of them is accepted", key,
+                            rail.name(), rectangle->name()));
   if (inside) return rectangle->number(key, kShearFactor);
   if (rail.has(key)) return rail.number(key, kShearFactor);
   return std::nullopt;
@@ -82,9 +86,10 @@ int read_section_points(const Table& t, const SectionSource& shape) {
   const int points = static_cast<int>(t.integer("section_points", 0, 3, 0));
   const auto* profile = std::get_if<ProfileFile>(&shape);
   if (points > 0 && (std::holds_alternative<Section>(shape) || (profile && profile->exact)))
-    t.refuse("section_points", fmt::format("section_points = {}, but the section is not given by "
-                                           "rectangles; accepted is 0",
-                                           points));
+    t.refuse("section_points", "E-RAIL-07",
+             fmt::format("section_points = {}, but the section is not given by "
+                         "rectangles; accepted is 0",
+                         points));
   return points;
 }
 

@@ -20,9 +20,10 @@ void read_plates(const Table& t, const std::string& motion, bool turns, double o
   const std::string key = fmt::format("{}_damping_{}", motion, c);
   damping = t.number(key, between(0.0, 1e11), 0.0);
   if (damping > 0.0 && std::isinf(stiffness))
-    t.refuse(key, fmt::format("{}, but the rail's ends share that motion; accepted beside "
-                              "{}_stiffness_{}",
-                              key, motion, k));
+    t.refuse(key, "E-RAILJOINT-01",
+             fmt::format("{}, but the rail's ends share that motion; accepted beside "
+                         "{}_stiffness_{}",
+                         key, motion, k));
 }
 
 /// On a border of two elements.
@@ -31,11 +32,12 @@ double read_place(const Table& t, const TrackScene& track) {
   const double element = track.bay / track.elements_per_bay;
   const double border = std::round(x / element), last = std::round(track.length() / element);
   if (border < 1.0 || border > last - 1.0)
-    t.refuse("x_m", fmt::format("x_m = {:.15g} is at an end of the rail; accepted are joints "
-                                "between its ends",
-                                x));
+    t.refuse("x_m", "E-RAILJOINT-02",
+             fmt::format("x_m = {:.15g} is at an end of the rail; accepted are joints "
+                         "between its ends",
+                         x));
   if (std::fabs(x / element - border) > 1e-9)
-    t.refuse("x_m",
+    t.refuse("x_m", "E-RAILJOINT-03",
              fmt::format("x_m = {:.15g} is inside an element; a joint stands where two meet: the "
                          "nearest are {:.15g} and {:.15g}, with other elements_per_bay others",
                          x, std::floor(x / element) * element, std::ceil(x / element) * element));
@@ -52,7 +54,8 @@ JointGap read_gap(const Table& t) {
   if (t.has("gap_m")) gap.cold = t.number("gap_m", between(0.0, 0.1));
   for (const char* key : {"end_stiffness_n_per_m", "end_damping_n_s_per_m"})
     if (t.has(key) && !gap.cold)
-      t.refuse(key, fmt::format("{} is of ends that meet; accepted beside gap_m", key));
+      t.refuse(key, "E-RAILJOINT-04",
+               fmt::format("{} is of ends that meet; accepted beside gap_m", key));
   if (t.has("end_stiffness_n_per_m"))
     gap.end_stiffness = t.number("end_stiffness_n_per_m", above_upto(0.0, 1e13));
   gap.end_damping = t.number("end_damping_n_s_per_m", between(0.0, 1e11), 0.0);
@@ -65,7 +68,8 @@ Jointed read_joint(const Table& t, const Scene& scene) {
   joint.x = read_place(t, scene.track);
   const std::size_t side = t.choice("rail", {"both", "left", "right"}, 0);
   if (scene.track.rails == 1 && side == 2)
-    t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-RAILJOINT-05",
+             "rail = \"right\", but the track has one rail; accepted is \"left\"");
   joint.rails = {side != 2, side != 1};
   (void)t.number("bending_vertical_stiffness_n_m_per_rad", between(0.0, 1e13));  // required
   read_plates(t, "along", false, 0.0, joint.stiffness[0], joint.damping[0]);
@@ -93,7 +97,7 @@ bool closes_all(const std::vector<std::pair<double, std::size_t>>& cuts,
 void check_plates(const Table& t, const RailJoint& joint) {
   if (joint.stiffness[0] > 0.0)
     t.refuse(
-        "along_stiffness_n_per_m",
+        "along_stiffness_n_per_m", "E-RAILJOINT-06",
         "along_stiffness_n_per_m beside a gap that heat closes: plates that do not slip bear a "
         "part of its force; accepted are wider gaps, colder rails, or 0");
 }
@@ -120,7 +124,7 @@ void check_gaps(const Table& root, const Scene& scene, int rail, std::vector<Joi
     const Table t = root.tables("rail_joint")[cuts[i].second];
     if (closed) check_plates(t, joints[cuts[i].second].joint);
     if (!closed && grown > gap.cold.value_or(0.0))
-      t.refuse("gap_m",
+      t.refuse("gap_m", "E-RAILJOINT-07",
                fmt::format(
                    "{}, but at temperature_rise_k = {:.15g} the rails grow by {:.3g} m into "
                    "it, which not all of the rail's gaps do; accepted are gaps in all "
@@ -132,7 +136,7 @@ void check_gaps(const Table& root, const Scene& scene, int rail, std::vector<Joi
 
 void check_force(const Table& rail, const Scene& scene) {
   const auto refuse = [](const Table& t) {
-    t.refuse("axial_force_n",
+    t.refuse("axial_force_n", "E-RAILJOINT-08",
              "axial_force_n, but the rails have joints, whose gaps carry no force; accepted is 0");
   };
   if (scene.rail.axial_force != 0.0) refuse(rail);
@@ -146,7 +150,7 @@ void check_heat(const Table& rail, const Scene& scene, const std::vector<Jointed
   for (const Jointed& one : joints)
     for (const std::size_t side : {0u, 1u}) cut[side] = cut[side] || one.joint.rails[side];
   if (cut[0] != cut[1])
-    rail.refuse("temperature_rise_k",
+    rail.refuse("temperature_rise_k", "E-RAILJOINT-09",
                 "temperature_rise_k presses the rail without joints alone; accepted with joints in "
                 "both rails, or with a [rail.right]");
 }
@@ -161,7 +165,8 @@ void read_joints(const Table& root, const Table& rail, Scene& scene) {
       for (const std::size_t side : {0u, 1u})
         if (std::fabs(read[i].joint.x - read.back().joint.x) < 1e-6 && read[i].joint.rails[side] &&
             read.back().joint.rails[side])
-          t.refuse("x_m", "x_m: the rail is cut there already; accepted is one joint at a place");
+          t.refuse("x_m", "E-RAILJOINT-10",
+                   "x_m: the rail is cut there already; accepted is one joint at a place");
   }
   if (read.empty()) return;
   check_force(rail, scene);

@@ -38,7 +38,7 @@ CondenseScene read_full_order(const Table& root);
 /// dt, frame and duration of [step]; the scheme and the start are its reader's.
 StepScene read_times(const Table& step);
 /// [step] of a scene with a track.
-StepScene read_track_step(const Table& step);
+StepScene read_track_step(const Table& step, const TrackScene& track);
 /// The scheme of [step] and its numbers.
 /// @param rho_inf    where the scene does not say it
 /// @param of_bodies  whether they are those of bodies and beams

@@ -9,7 +9,8 @@ namespace {
 double number_of(const Table& t, const char* key, bool in_use, const char* scheme,
                  const Range& accepted, double otherwise) {
   if (t.has(key) && !in_use)
-    t.refuse(key, fmt::format("{} is not used here; accepted with scheme = \"{}\"", key, scheme));
+    t.refuse(key, "E-STEP-01",
+             fmt::format("{} is not used here; accepted with scheme = \"{}\"", key, scheme));
   return t.number(key, accepted, otherwise);
 }
 
@@ -43,7 +44,7 @@ void read_contact(const Table& root, Scene& scene) {
   if (!scene.step->mean_contact) return;
   if (!scene.condense.kind || *scene.condense.kind == ReductionKind::complex_modes)
     t.refuse(
-        "contact",
+        "contact", "E-STEP-02",
         "contact = \"discrete-gradient\" keeps energy where forces are held over a step; accepted "
         "with condense.kind = \"modal\", \"guyan\", \"irs\", \"craig-bampton\", \"krylov\"");
 }
@@ -70,20 +71,22 @@ void check_external_wheels(const Table& root, const Scene& scene) {
   if (const char* const other = contact_beside(scene))
     root.tables("external_wheel")
         .front()
-        .refuse("", fmt::format("an external wheel runs on a track that is linear, and the scene "
-                                "has a {}; accepted is one of the two",
-                                other));
+        .refuse("", "E-STEP-03",
+                fmt::format("an external wheel runs on a track that is linear, and the scene "
+                            "has a {}; accepted is one of the two",
+                            other));
   if (!scene.step) return;
   const Table step = root.table("step");
   if (scene.step->scheme == TimeScheme::tr_bdf2 && !scene.condense.kind)
-    step.refuse("scheme",
+    step.refuse("scheme", "E-STEP-04",
                 "scheme = \"tr-bdf2\" has two stages, and an [[external_wheel]] presses at the "
                 "ends of steps; accepted are \"generalised-alpha\", \"backward-euler\", "
                 "\"newmark\", \"hht\"");
   if (scene.step->steps_per_frame != 1)
-    step.refuse("frame_s", fmt::format("an [[external_wheel]] wants a frame of one step, and this "
-                                       "one has {}; accepted is frame_s = dt_s",
-                                       scene.step->steps_per_frame));
+    step.refuse("frame_s", "E-STEP-05",
+                fmt::format("an [[external_wheel]] wants a frame of one step, and this "
+                            "one has {}; accepted is frame_s = dt_s",
+                            scene.step->steps_per_frame));
 }
 
 }  // namespace railstep

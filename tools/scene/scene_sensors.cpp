@@ -15,9 +15,10 @@ std::size_t index_of(const Table& t, std::string_view key, const std::string& na
     if (names[i] == name) return i;
     known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", names[i]);
   }
-  t.refuse(key, fmt::format("{} = \"{}\" is unknown; {}", key, name,
-                            known.empty() ? fmt::format("the scene has no {}", key)
-                                          : "accepted are " + known));
+  t.refuse(key, "E-SENSOR-01",
+           fmt::format(
+               "{} = \"{}\" is unknown; {}", key, name,
+               known.empty() ? fmt::format("the scene has no {}", key) : "accepted are " + known));
 }
 
 WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
@@ -35,8 +36,9 @@ VehicleSensor read_vehicle_sensor(const Table& t, const Scene& scene) {
   const std::size_t body = t.has("body") ? index_of(t, "body", t.string("body"), own.bodies) : 0;
   VehicleSensor sensor{vehicle, body, t.number("x_m", between(-100.0, 100.0), 0.0)};
   if (sensor.ahead != 0.0 && own.vehicle.bodies[body].pitch_inertia == 0.0)
-    t.refuse("x_m", fmt::format("x_m = {:.15g}, but {} does not pitch; accepted is x_m = 0",
-                                sensor.ahead, own.bodies[body]));
+    t.refuse("x_m", "E-SENSOR-06",
+             fmt::format("x_m = {:.15g}, but {} does not pitch; accepted is x_m = 0", sensor.ahead,
+                         own.bodies[body]));
   return sensor;
 }
 
@@ -49,7 +51,7 @@ RailSensor read_rail_sensor(const Table& t, const Scene& scene) {
   rail.gauge_length = t.number("gauge_length_m", between(1e-3, 1.0));
   const double half = 0.5 * *rail.gauge_length;
   if (!scene.track.endless && (rail.position < half || rail.position > scene.track.length() - half))
-    t.refuse("gauge_length_m",
+    t.refuse("gauge_length_m", "E-SENSOR-03",
              fmt::format("gauge_length_m = {:.15g} at position_m = {:.15g} is not on the rail; "
                          "accepted is up to twice the distance to its end",
                          *rail.gauge_length, rail.position));
@@ -58,15 +60,16 @@ RailSensor read_rail_sensor(const Table& t, const Scene& scene) {
 
 SleeperSensor read_sleeper_sensor(const Table& t, const Scene& scene) {
   if (!scene.sleeper)
-    t.refuse("on",
+    t.refuse("on", "E-SENSOR-04",
              "on = \"sleeper\", but the scene has no [sleeper]; accepted are \"rail\", "
              "\"wheelset\", \"vehicle\"");
   SleeperSensor sleeper{t.integer("sleeper", 0, scene.track.bays), std::nullopt};
   for (const SeatChange& change : scene.seat_changes)
     if (change.missing == Missing::sleeper &&
         std::find(change.seats.begin(), change.seats.end(), sleeper.sleeper) != change.seats.end())
-      t.refuse("sleeper", fmt::format("sleeper = {} is missing; accepted is one that is there",
-                                      sleeper.sleeper));
+      t.refuse(
+          "sleeper", "E-SENSOR-05",
+          fmt::format("sleeper = {} is missing; accepted is one that is there", sleeper.sleeper));
   if (t.has("rail")) sleeper.rail = read_side(t, scene);
   return sleeper;
 }
@@ -94,7 +97,7 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
 
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene) {
   std::vector<SensorScene> sensors;
-  for (const Table& t : root.tables("sensor")) sensors.push_back(read_sensor(t, scene));
+  root.each("sensor", [&](const Table& t) { sensors.push_back(read_sensor(t, scene)); });
   return sensors;
 }
 

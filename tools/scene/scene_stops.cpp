@@ -8,14 +8,16 @@ StopScene read_stop(const Table& t, const Scene& scene) {
   s.name = checked_name(t, "name", t.string("name"));
   const bool left = t.choice("rail", {"left", "right"}, 0) == 0;
   if (scene.track.rails == 2 && !t.has("rail"))
-    t.refuse("rail", "a stop of two rails says which; accepted are \"left\", \"right\"");
+    t.refuse("rail", "E-STOP-01",
+             "a stop of two rails says which; accepted are \"left\", \"right\"");
   if (scene.track.rails == 1 && !left)
-    t.refuse("rail", "rail = \"right\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-STOP-04",
+             "rail = \"right\", but the track has one rail; accepted is \"left\"");
   s.rail = left ? kLeftRail : kRightRail;
   s.x = t.number("position_m", between(0.0, scene.track.length()));
   s.direction = t.choice("direction", {"y", "z"}) == 0 ? 1 : 2;
   if (s.direction == 1 && scene.track.unknowns == Unknowns::vertical)
-    t.refuse("direction",
+    t.refuse("direction", "E-STOP-03",
              "direction = \"y\", but the track does not move sideways; accepted with "
              "track.unknowns = \"full\"");
   // +y is left, +z up.
@@ -34,7 +36,7 @@ StopScene read_stop(const Table& t, const Scene& scene) {
 
 std::vector<StopScene> read_stops(const Table& root, const Scene& scene) {
   std::vector<StopScene> stops;
-  for (const Table& t : root.tables("stop")) stops.push_back(read_stop(t, scene));
+  root.each("stop", [&](const Table& t) { stops.push_back(read_stop(t, scene)); });
   return stops;
 }
 

@@ -19,9 +19,10 @@ void refuse_track_keys(const Table& root) {
   for (const char* key : {"rail", "support", "sleeper", "ballast", "load", "wheelset", "vehicle",
                           "condense", "static", "output"})
     if (root.has(key))
-      root.refuse(key, fmt::format("[{}] says something of a track, and the scene has none; "
-                                   "accepted is a scene of bodies and beams without it",
-                                   key));
+      root.refuse(key, "E-BODY-26",
+                  fmt::format("[{}] says something of a track, and the scene has none; "
+                              "accepted is a scene of bodies and beams without it",
+                              key));
 }
 
 void read_whole(const Table& root, System& system) {
@@ -44,7 +45,7 @@ StepScene read_step(const Table& t) {
 /// A key of one choice alone, so that it is not believed to act where it does not.
 void belongs(const Table& t, const char* key, bool in_use, const char* choice) {
   if (t.has(key) && !in_use)
-    t.refuse(key, fmt::format("{} is not used here; accepted with {}", key, choice));
+    t.refuse(key, "E-BODY-27", fmt::format("{} is not used here; accepted with {}", key, choice));
 }
 
 SystemOptions read_hold(const Table& root) {
@@ -77,9 +78,10 @@ SystemOptions read_hold(const Table& root) {
 void check_count(const Table& root, const System& system) {
   const std::size_t parts = system.bodies.size() + system.beams.size();
   if (parts == 0)
-    root.refuse("", "there is neither a [[body]] nor a [[beam]]; accepted is a scene with one");
+    root.refuse("", "E-BODY-28",
+                "there is neither a [[body]] nor a [[beam]]; accepted is a scene with one");
   if (parts > kMaxSystemParts)
-    root.refuse(system.beams.empty() ? "body" : "beam",
+    root.refuse(system.beams.empty() ? "body" : "beam", "E-BODY-29",
                 fmt::format("there are {} bodies and beams; accepted are up to {}", parts,
                             kMaxSystemParts));
 }
@@ -105,7 +107,6 @@ SystemScene read_system_scene(const Table& root) {
   read_springs(root, scene, names);
   read_forces(root, scene);
   read_system_sensors(root, scene, names);
-  root.finish();
   return scene;
 }
 
@@ -120,8 +121,8 @@ const char* key_of_system(const Table& root) {
 AnyScene read_any_scene(const std::filesystem::path& file,
                         const std::vector<std::string>& overrides) {
   const Table root = open_scene(file, overrides);
-  if (key_of_system(root)) return read_system_scene(root);
-  return read_track_scene(root);
+  if (key_of_system(root)) return root.whole(read_system_scene);
+  return root.whole(read_track_scene);
 }
 
 }  // namespace railstep

@@ -9,15 +9,17 @@ namespace {
 
 void check_plane(const Table& t, std::string_view key, const Eigen::Vector3d& v, bool planar) {
   if (planar && v.y() != 0.)
-    t.refuse(key, fmt::format("{} has y = {:.15g}, which leaves the plane of x and z; accepted is "
-                              "y = 0, or system.planar = false",
-                              key, v.y()));
+    t.refuse(key, "E-BODY-30",
+             fmt::format("{} has y = {:.15g}, which leaves the plane of x and z; accepted is "
+                         "y = 0, or system.planar = false",
+                         key, v.y()));
 }
 
 Eigen::Vector3d unit(const Table& t, std::string_view key, const Eigen::Vector3d& v) {
   const double length = v.norm();
   if (!(length > 0.))
-    t.refuse(key, fmt::format("{} = [0, 0, 0] has no direction; accepted is any other", key));
+    t.refuse(key, "E-BODY-31",
+             fmt::format("{} = [0, 0, 0] has no direction; accepted is any other", key));
   return v / length;
 }
 
@@ -45,9 +47,10 @@ Eigen::Vector3d read_turn(const Table& t, std::string_view key, const Range& acc
   if (!t.has(key)) return otherwise;
   Eigen::Vector3d v = read_vector(t, key, accepted);
   if (planar && (v.x() != 0. || v.z() != 0.))
-    t.refuse(key, fmt::format("{} = [{:.15g}, {:.15g}, {:.15g}] turns out of the plane of x and z; "
-                              "accepted is one about y alone, or system.planar = false",
-                              key, v.x(), v.y(), v.z()));
+    t.refuse(key, "E-BODY-32",
+             fmt::format("{} = [{:.15g}, {:.15g}, {:.15g}] turns out of the plane of x and z; "
+                         "accepted is one about y alone, or system.planar = false",
+                         key, v.x(), v.y(), v.z()));
   return v;
 }
 
@@ -59,16 +62,17 @@ Eigen::Vector3d read_turn_axis(const Table& t, std::string_view key, bool planar
   if (!planar) return read_direction(t, key, false);
   const Eigen::Vector3d axis = read_turn(t, key, any_number(), true, Eigen::Vector3d::UnitY());
   if (!(axis.y() > 0.))
-    t.refuse(key, fmt::format("{} has y = {:.15g}; in the plane turns are about +y, accepted is "
-                              "[0, 1, 0]",
-                              key, axis.y()));
+    t.refuse(key, "E-BODY-33",
+             fmt::format("{} has y = {:.15g}; in the plane turns are about +y, accepted is "
+                         "[0, 1, 0]",
+                         key, axis.y()));
   return Eigen::Vector3d::UnitY();
 }
 
 void check_square(const Table& t, std::string_view key, const Eigen::Vector3d& a,
                   std::string_view other, const Eigen::Vector3d& b) {
   if (std::fabs(a.dot(b)) <= 1e-9) return;
-  t.refuse(key,
+  t.refuse(key, "E-BODY-34",
            fmt::format("{} stands at {:.6g} degrees to {}; accepted is 90 degrees", key,
                        std::acos(std::fmax(-1., std::fmin(1., a.dot(b)))) * 180. / M_PI, other));
 }

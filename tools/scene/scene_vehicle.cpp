@@ -86,19 +86,22 @@ void read_kind(const Table& t, VehicleScene& v) {
 void read_what(const Table& t, VehicleScene& v) {
   if (!t.has("file")) return read_kind(t, v);
   if (t.has("type"))
-    t.refuse("type", "type is given beside file, which has its own; one of them is accepted");
-  const Table root = read_toml(t.path("file"));
-  if (root.integer("schema", 1, 1) == 1) read_kind(root.table("vehicle"), v);
-  for (const char* text : {"name", "source"})
-    if (root.has(text)) static_cast<void>(root.string(text));
-  root.finish();
+    t.refuse("type", "E-VEHICLE-03",
+             "type is given beside file, which has its own; one of them is accepted");
+  read_toml(t.path("file")).whole([&](const Table& root) {
+    static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
+    read_kind(root.table("vehicle"), v);
+    for (const char* text : {"name", "source"})
+      if (root.has(text)) static_cast<void>(root.string(text));
+    return 0;
+  });
 }
 
 /// How its wheels hold on to the rail, unless its type says so.
 void read_contact(const Table& t, VehicleScene& v) {
   if (v.contact == WheelContactKind::linear) {
     if (t.has("contact"))
-      t.refuse("contact",
+      t.refuse("contact", "E-VEHICLE-04",
                "a sprung mass without unsprung_mass_kg stands on its spring; accepted is no "
                "contact, or an unsprung mass");
     return;
@@ -115,7 +118,7 @@ void read_contact(const Table& t, VehicleScene& v) {
   }
   for (const char* key : keys)
     if (t.has(key))
-      t.refuse(key,
+      t.refuse(key, "E-VEHICLE-05",
                fmt::format("{} is of a linear contact; accepted with contact = \"linear\"", key));
 }
 
@@ -125,9 +128,10 @@ void check_wheels(const Table& t, const Scene& scene, const VehicleScene& v,
   for (const Vehicle::Wheel& wheel : v.vehicle.wheels) {
     const double start = v.start + wheel.place;
     if (start < 0.0 || start > scene.track.length())
-      t.refuse("start_m", fmt::format("start_m = {:.15g} puts a wheel at x = {:.6g} m, off the "
-                                      "rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
-                                      v.start, start, scene.track.length()));
+      t.refuse("start_m", "E-VEHICLE-11",
+               fmt::format("start_m = {:.15g} puts a wheel at x = {:.6g} m, off the "
+                           "rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
+                           v.start, start, scene.track.length()));
     check_path(t, scene, start, speed);
   }
 }
@@ -137,12 +141,13 @@ OuterForce read_force(const Table& t, const VehicleScene& v, std::vector<InputSc
   const std::string name = t.string("body");
   const auto found = std::find(v.bodies.begin(), v.bodies.end(), name);
   if (found == v.bodies.end())
-    t.refuse("body", fmt::format("body = \"{}\" is no body of this vehicle; accepted are {}", name,
-                                 fmt::join(v.bodies, ", ")));
+    t.refuse("body", "E-VEHICLE-12",
+             fmt::format("body = \"{}\" is no body of this vehicle; accepted are {}", name,
+                         fmt::join(v.bodies, ", ")));
   const auto body = static_cast<std::size_t>(found - v.bodies.begin());
   const int pitch = static_cast<int>(t.choice("direction", {"z", "pitch"}));
   if (pitch == 1 && v.vehicle.bodies[body].pitch_inertia == 0.)
-    t.refuse("direction",
+    t.refuse("direction", "E-VEHICLE-13",
              fmt::format("direction = \"pitch\", but {} does not pitch; accepted is \"z\"", name));
   return read_body_force(t, first_coordinates(v.vehicle)[body] + pitch, pitch == 1, inputs);
 }
@@ -152,11 +157,12 @@ std::optional<Falling> read_falling(const Table& t, const Scene& scene, const Ve
   const char* const keys[] = {"drop_height_m", "drop_speed_m_per_s"};
   for (const char* key : keys) {
     if (t.has(key) && v.contact != WheelContactKind::hertz)
-      t.refuse(key, fmt::format("{} is of a wheel that can leave the rail; accepted with contact = "
-                                "\"hertz\"",
-                                key));
+      t.refuse(key, "E-VEHICLE-09",
+               fmt::format("{} is of a wheel that can leave the rail; accepted with contact = "
+                           "\"hertz\"",
+                           key));
     if (t.has(key) && scene.step && scene.step->start != Start::released)
-      t.refuse(key,
+      t.refuse(key, "E-VEHICLE-10",
                fmt::format("{} is of a vehicle that does not stand on the track; accepted with "
                            "step.start = \"released\"",
                            key));
@@ -173,7 +179,8 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
   v.table = v.name = checked_name(t, "name", t.string("name"));
   const bool both = t.has("rail") && t.string("rail") == "both";
   if (both && scene.track.rails == 1)
-    t.refuse("rail", "rail = \"both\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-VEHICLE-14",
+             "rail = \"both\", but the track has one rail; accepted is \"left\"");
   v.rail = both ? kLeftRail : read_side(t, scene);
   read_what(t, v);
   read_contact(t, v);
@@ -200,7 +207,7 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
                                         std::vector<InputScene>& inputs) {
   std::vector<VehicleScene> vehicles;
-  for (const Table& t : root.tables("vehicle")) read_vehicle(t, scene, vehicles, inputs);
+  root.each("vehicle", [&](const Table& t) { read_vehicle(t, scene, vehicles, inputs); });
   return vehicles;
 }
 

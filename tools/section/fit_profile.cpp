@@ -29,24 +29,27 @@ void describe_outline(FitResult& r, const std::vector<Point>& points) {
   r.outline = {properties(outline), shear.constants, outline.height};
   r.lopsided = {share, product_of_inertia(outline), -foot, shear.shear_centre_y - foot};
   if (!shear.missing.empty())
-    r.warnings.push_back(fmt::format("the outline has no shear factors: {}", shear.missing));
+    r.warnings.push_back(
+        {"W-FIT-01", fmt::format("the outline has no shear factors: {}", shear.missing)});
 }
 
 /// Says where the rectangles have the outline's four properties and little else of it.
 void compare(FitResult& r, const std::vector<Point>& points) {
-  r.warnings.push_back(lopsided_warning(r.lopsided, r.section));
+  if (auto warning = lopsided_warning(r.lopsided, r.section)) r.warnings.push_back(*warning);
   const double widest = *std::max_element(r.fit.section.width.begin(), r.fit.section.width.end());
   if (widest > kWider * width_of(points))
     r.warnings.push_back(
-        fmt::format("the widest of the three rectangles has {:.1f} mm, the outline {:.1f} mm",
-                    1e3 * widest, 1e3 * width_of(points)));
+        {"W-FIT-02",
+         fmt::format("the widest of the three rectangles has {:.1f} mm, the outline {:.1f} mm",
+                     1e3 * widest, 1e3 * width_of(points))});
   const double apart = r.fit.symmetric_difference / r.outline.area.area;
   if (apart > kMuchApart)
-    r.warnings.push_back(fmt::format(
-        "the symmetric difference is {:.2g} of the area: J, shear factors, shear centre and all "
-        "that is made of the rectangles' shape are those of another shape",
-        apart));
-  std::erase(r.warnings, "");
+    r.warnings.push_back(
+        {"W-FIT-03",
+         fmt::format("the symmetric difference is {:.2g} of the area: J, shear factors, "
+                     "shear centre and all "
+                     "that is made of the rectangles' shape are those of another shape",
+                     apart)});
 }
 
 }  // namespace
@@ -62,11 +65,11 @@ FitResult fit_profile(Profile profile, const std::string& file) try {
     r.section = fitted_section(r.fit, outline.height);
     compare(r, points);
   } catch (const NoSection& none) {
-    r.refusal = none.what();
+    r.refusal = Message(none.id(), none.sentence());
   }
   return r;
-} catch (const std::invalid_argument& error) {
-  throw InputError(fmt::format("{}: {}", file, error.what()));
+} catch (const Refused& error) {
+  throw InputError(file, error);
 }
 
 }  // namespace railstep

@@ -6,6 +6,7 @@
 #include "section/lopsided.h"
 #include "section/profile.h"
 #include "section/section_fit.h"
+#include "text/message.h"
 
 namespace railstep {
 
@@ -18,8 +19,8 @@ struct FitResult {
   Section outline = {}, section = {};
   SectionFit fit = {};
   Lopsided lopsided = {};  // of the outline
-  std::string refusal = {};
-  std::vector<std::string> warnings = {};  // sentences
+  std::optional<Message> refusal = {};
+  std::vector<Message> warnings = {};
 };
 
 /// Finds what there is to say of a profile's outline, and fits it. Where no rectangles fit, the

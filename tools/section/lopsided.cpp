@@ -15,12 +15,12 @@ double principal_angle(const AreaProperties<double>& area, double product_of_ine
          std::atan2(std::copysign(2.0, -difference) * product_of_inertia, std::abs(difference));
 }
 
-std::string lopsided_warning(const Lopsided& l, const Section& section) {
+std::optional<Message> lopsided_warning(const Lopsided& l, const Section& section) {
   constexpr double kFelt = 0.1;
   const double sideways = std::abs(l.product_of_inertia) / section.area.inertia_z;
   const double arm = section.height - section.shear.shear_centre_height;
   const double twisting = std::abs(l.shear_centre_offset) / arm;
-  if (!(sideways > kFelt) && !(twisting > kFelt)) return {};
+  if (!(sideways > kFelt) && !(twisting > kFelt)) return std::nullopt;
   std::string sentence = fmt::format(
       "the outline is lopsided, and its section of three rectangles is not: a vertical force bends "
       "it sideways by Iyz/Iz = {:.2g} of its deflection",
@@ -30,8 +30,9 @@ std::string lopsided_warning(const Lopsided& l, const Section& section) {
         ", and at the middle of the foot, {:.1f} mm beside the shear centre, twists it like a "
         "lateral force of {:.2g} of it at the crown",
         1e3 * std::abs(l.shear_centre_offset), twisting);
-  return sentence + fmt::format("; the centroid lies {:.1f} mm beside that middle",
-                                1e3 * std::abs(l.centroid_offset));
+  return Message("W-SECTION-01",
+                 sentence + fmt::format("; the centroid lies {:.1f} mm beside that middle",
+                                        1e3 * std::abs(l.centroid_offset)));
 }
 
 std::optional<Lopsided> read_lopsided(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "offline/section/outline.h"
+#include "text/message.h"
 
 namespace railstep {
 
@@ -24,7 +25,7 @@ double principal_angle(const AreaProperties<double>& area, double product_of_ine
 /// it about the shear centre as a lateral force at the crown does that is smaller by the offset
 /// over the crown's height above it. Both are told from a tenth on: a rail whose head is rolled
 /// 1.2 mm off its axis, as far as standards let it, bends sideways by 0.05 of its deflection.
-std::string lopsided_warning(const Lopsided& lopsided, const Section& section);
+std::optional<Message> lopsided_warning(const Lopsided& lopsided, const Section& section);
 
 /// [asymmetry] of a section file, where it has one. Throws InputError.
 std::optional<Lopsided> read_lopsided(const std::filesystem::path& file);

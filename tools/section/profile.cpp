@@ -51,8 +51,8 @@ std::vector<OutlineRow> rows_of(const std::string& text, const std::string& file
     if (header) continue;
     refuse_decimal_comma(line, 2);
     if (line.fields.size() != 2)
-      throw InputError(fmt::format("{}: {} values where two are wanted, y and z", line.place,
-                                   line.fields.size()));
+      throw InputError("E-PROFILE-01", fmt::format("{}: {} values where two are wanted, y and z",
+                                                   line.place, line.fields.size()));
     rows.push_back({{metres * csv_number(line.fields[0], line.place),
                      metres * csv_number(line.fields[1], line.place)},
                     0.0,
@@ -77,6 +77,7 @@ Table read_shape_file(const std::filesystem::path& file) {
   const std::string text = read_text(file);
   if (is_points(text, file.string()))
     throw InputError(
+        "E-PROFILE-02",
         fmt::format("{0}: is a list of points, of which `railstep fit {0} --unit mm --out FILE` "
                     "makes a section; "
                     "accepted are that FILE as section, and a profile (TOML) as profile",
@@ -88,7 +89,7 @@ Profile read_profile(const std::filesystem::path& file) {
   const Table root = read_shape_file(file);
   static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
   if (!root.has("half_outline_mm") && root.has("section"))
-    root.refuse("section",
+    root.refuse("section", "E-PROFILE-03",
                 "the file is a section, as `railstep fit --out` writes it; accepted as "
                 "section in the place of profile");
   Profile profile{root.string("name"), root.string("source"), {}, nothing_published()};
@@ -103,8 +104,8 @@ Profile read_profile(const std::filesystem::path& file) {
                     static_cast<int>(i / 3 + 1)});
   try {
     profile.outline = mirrored_outline(rows);
-  } catch (const std::invalid_argument& error) {
-    root.refuse("half_outline_mm", error.what());
+  } catch (const Refused& error) {
+    root.refuse("half_outline_mm", error.id(), error.sentence());
   }
   return profile;
 }
@@ -114,8 +115,8 @@ Profile read_points(const std::filesystem::path& file, double metres) {
   try {
     return {file.stem().string(), file.filename().string(), point_outline(rows),
             nothing_published()};
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  } catch (const Refused& error) {
+    throw InputError(file.string(), error);
   }
 }
 

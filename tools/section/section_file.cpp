@@ -32,7 +32,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void check_shape(const Table& t, const Section& s) {
   const double most = most_inertia(s);
   if (!(s.area.inertia_y <= most))
-    t.refuse("inertia_y_m4",
+    t.refuse("inertia_y_m4", "E-SECTION-28",
              fmt::format("inertia_y_m4 = {:g} is that of no shape of this area, height and "
                          "centroid; accepted is at most A c (h - c) = {:.4g}",
                          s.area.inertia_y, most));
@@ -60,7 +60,7 @@ OutlineShear outline_shear(const Outline& outline, double uneven) {
       factor_y = 0.5 * (right.shear_factor_y + left.shear_factor_y);
       factor_z = 0.5 * (right.shear_factor_z + left.shear_factor_z);
     } catch (const NoShearFactor& error) {
-      missing = error.what();
+      missing = error.sentence();
     }
   }
   const Twist whole = twist(simplified(points, 0.5 * kChordTolerance));
@@ -71,8 +71,8 @@ OutlineShear outline_shear(const Outline& outline, double uneven) {
 
 Section fitted_section(const SectionFit& fit, double height) try {
   return {properties(fit.section), saint_venant(polygon(fit.section), kFitPoisson), height};
-} catch (const std::invalid_argument& error) {
-  throw NoSection(fmt::format("three rectangles fit, but not as a section: {}", error.what()));
+} catch (const Refused& error) {
+  throw NoSection(error.id(), "three rectangles fit, but not as a section: " + error.sentence());
 }
 
 double most_inertia(const Section& section) {
@@ -100,7 +100,7 @@ Section read_section(const std::filesystem::path& file) {
   const Table root = read_shape_file(file);
   static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
   if (!root.has("section") && root.has("half_outline_mm"))
-    root.refuse("half_outline_mm",
+    root.refuse("half_outline_mm", "E-SECTION-29",
                 "the file is a profile; accepted as profile in the place of "
                 "section");
   static_cast<void>(root.string("name", "-"));

@@ -29,6 +29,7 @@ void refuse_empty(const std::vector<Rectangles<double>>& family, const FitTarget
   if (!family.empty()) return;
   const RelativeErrors e = relative_errors(t, closest(t));
   throw NoSection(
+      "E-FIT-14",
       fmt::format("no three rectangles {:.6g} m high have the area {:.6g} m2, inertias {:.6g} and "
                   "{:.6g} m4 and "
                   "centroid height {:.6g} m; the closest found err by {:+.2e}, {:+.2e}, {:+.2e} "
@@ -112,7 +113,7 @@ SectionFit fit_section(const Outline& outline, const std::optional<Rectangles<do
   int iterations = 0;
   bool from_start = false;
   if (!solve_exact(targets, true, best, iterations))
-    throw NoSection("Ceres did not bring the section's four errors to round-off");
+    throw NoSection("E-FIT-15", "Ceres did not bring the section's four errors to round-off");
   // Downhill may lead past the end of a valley, or along a family that is all but a plain
   // rectangle's: then what it started from stands.
   Rectangles<double> lower = best;
@@ -162,6 +163,7 @@ SectionFit fit_targets(const FitTargets& targets, double head_width) {
   }
   if (!best)
     throw NoSection(
+        "E-FIT-16",
         fmt::format("no three rectangles have these properties with a head {:.6g} m wide; head "
                     "widths of {:.6g} to {:.6g} m can be had",
                     head_width, least, most));

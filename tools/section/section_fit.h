@@ -1,8 +1,8 @@
 #pragma once
 #include <array>
 #include <optional>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "offline/section/outline.h"
 #include "offline/section/rectangles.h"
 
@@ -15,8 +15,8 @@ struct FitTargets {
 };
 
 /// No three rectangles can be had, said in one sentence.
-struct NoSection : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct NoSection : Failed {
+  using Failed::Failed;
 };
 
 /// Signed, got / wanted - 1.

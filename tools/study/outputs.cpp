@@ -36,7 +36,7 @@ std::optional<OutputKind> kind_of(const std::string& column) {
 std::size_t column_of(const TraceTable& table, const std::string& name) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), name);
   if (found == table.columns.end())
-    throw InputError(fmt::format("the reference has no column {}", name));
+    throw InputError("E-STUDY-01", fmt::format("the reference has no column {}", name));
   return static_cast<std::size_t>(found - table.columns.begin());
 }
 
@@ -87,10 +87,12 @@ void check_outputs(const TraceTable& got, const Judged& judged) {
       if (const auto kind = kind_of(column))
         found = found || own == column || own == name_of(*kind);
     if (!found)
-      throw InputError(fmt::format(
-          "output \"{}\" is not there; accepted are deflection, contact_force, support_force, "
-          "sensor, stress, or one of their columns, where the trace has them",
-          own));
+      throw InputError(
+          "E-STUDY-02",
+          fmt::format(
+              "output \"{}\" is not there; accepted are deflection, contact_force, support_force, "
+              "sensor, stress, or one of their columns, where the trace has them",
+              own));
   }
 }
 
@@ -130,7 +132,8 @@ TraceErrors errors_of(const TraceTable& got, const TraceTable& reference, const 
   const double from = judged.from * (1. - 1e-9) - 1e-12;  // rounding of the rows' times
   const std::size_t row = row_at(got, from), reference_row = row_at(reference, from);
   if (reference_row >= reference.rows())
-    throw InputError(fmt::format("the reference has no rows from {:g} s on", judged.from));
+    throw InputError("E-STUDY-03",
+                     fmt::format("the reference has no rows from {:g} s on", judged.from));
   if (got.rows() - row < reference.rows() - reference_row) return lost(reference);
   TraceErrors errors;
   for (const KindNames& own : kNames) {
@@ -152,6 +155,7 @@ TraceErrors errors_of(const TraceTable& got, const TraceTable& reference, const 
   }
   if (errors.kinds.empty())
     throw InputError(
+        "E-STUDY-04",
         "the trace has nothing to compare; accepted is a scene with a load, a wheel, a sensor or "
         "output.supports = true");
   return errors;

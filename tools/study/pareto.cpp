@@ -17,12 +17,13 @@ namespace {
 void check(const Studied& study, const std::vector<Setting>& settings) {
   if (settings.empty())
     throw InputError(
+        "E-STUDY-05",
         "no model goes with any of the schemes; accepted are held:RHO_INF and discrete-gradient "
         "with condensed models, all others with full order");
   for (const Setting& setting : settings) try {
       static_cast<void>(scene_with(study, setting));
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{} ({})", error.what(), words_of(setting)));
+      throw error.met(words_of(setting));
     }
 }
 

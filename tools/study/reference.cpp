@@ -31,20 +31,25 @@ Studied study_of(const std::filesystem::path& file, const std::vector<std::strin
   const AnyScene any = read_any_scene(file, overrides);
   const Scene* const scene = std::get_if<Scene>(&any);
   if (scene == nullptr)
-    throw InputError(fmt::format(
-        "{}: is a system of bodies and beams; accepted is a scene of a track", file.string()));
+    throw InputError(
+        "E-STUDY-06",
+        fmt::format("{}: is a system of bodies and beams; accepted is a scene of a track",
+                    file.string()));
   refuse_unstepped(*scene);
   if (!scene->external_wheels.empty())
-    throw InputError(fmt::format(
-        "{}: has an [[external_wheel]], whose forces are made elsewhere; accepted is a scene "
-        "without",
-        file.string()));
+    throw InputError(
+        "E-STUDY-07",
+        fmt::format(
+            "{}: has an [[external_wheel]], whose forces are made elsewhere; accepted is a scene "
+            "without",
+            file.string()));
   const StepScene& step = *scene->step;
   Studied study{file, overrides, step.dt * static_cast<double>(step.steps_per_frame), judged};
   if (judged.from == 0. && step.start == Start::released)
     study.judged.from = .2 * scene->duration();
   if (study.judged.from >= scene->duration())
-    throw InputError(fmt::format("{}: nothing is left from {:g} s on; the run lasts {:g} s",
+    throw InputError("E-STUDY-08",
+                     fmt::format("{}: nothing is left from {:g} s on; the run lasts {:g} s",
                                  file.string(), judged.from, scene->duration()));
   return study;
 }

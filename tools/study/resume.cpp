@@ -5,9 +5,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <stdexcept>
 #include <utility>
 
+#include "offline/math/refuse.h"
 #include "text/read.h"
 #include "text/write.h"
 
@@ -44,12 +44,14 @@ ResumeFile::ResumeFile(std::filesystem::path file, const std::string& key)
   std::getline(in, text);
   const Json first = Json::parse(text, nullptr, false);
   if (first.is_discarded() || !first.is_object() || !first.contains("study"))
-    throw InputError(fmt::format(
-        "{}: is not what a study leaves; accepted is such a file, or a new name", file_.string()));
+    throw InputError(
+        "E-STUDY-09",
+        fmt::format("{}: is not what a study leaves; accepted is such a file, or a new name",
+                    file_.string()));
   if (first.at("study") != key)
-    throw InputError(fmt::format(
-        "{}: is of another scene, question or program; accepted is one of the same, or a new name",
-        file_.string()));
+    throw InputError("E-STUDY-10", fmt::format("{}: is of another scene, question or program; "
+                                               "accepted is one of the same, or a new name",
+                                               file_.string()));
   whole = text + "\n";
   while (std::getline(in, text)) {
     const Json line = Json::parse(text, nullptr, false);
@@ -72,7 +74,7 @@ void ResumeFile::append(const Json& line) const {
   if (file_.empty()) return;
   std::ofstream out(file_, std::ios::app);
   out << line.dump() << std::endl;
-  if (!out) throw std::runtime_error(fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+  if (!out) fail("E-STUDY-11", fmt::format("{}: {}", file_.string(), std::strerror(errno)));
 }
 
 void ResumeFile::keep(const Reference& reference) { append({{"reference", to_json(reference)}}); }

@@ -35,11 +35,14 @@ bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
 }
 
 [[noreturn]] void refuse_model(const std::string& model) {
-  throw InputError(fmt::format(
-      "model \"{}\": accepted is KIND[:AMOUNT][:bare][:UNKNOWNS], KIND one of full, modal, guyan, "
-      "irs, craig-bampton, krylov, complex-modes, AMOUNT modes (of guyan and irs nodes) a bay, "
-      "bare without residual flexibility, UNKNOWNS one of vertical, rigid-section",
-      model));
+  throw InputError(
+      "E-STUDY-12",
+      fmt::format(
+          "model \"{}\": accepted is KIND[:AMOUNT][:bare][:UNKNOWNS], KIND one of full, modal, "
+          "guyan, "
+          "irs, craig-bampton, krylov, complex-modes, AMOUNT modes (of guyan and irs nodes) a bay, "
+          "bare without residual flexibility, UNKNOWNS one of vertical, rigid-section",
+          model));
 }
 
 void add_model(const std::string& model, std::vector<std::string>& overrides) {
@@ -82,11 +85,13 @@ void add_scheme(const std::string& scheme, std::vector<std::string>& overrides) 
   } else if (alone("discrete-gradient")) {
     add("step.contact=\"discrete-gradient\"");
   } else {
-    throw InputError(fmt::format(
-        "scheme \"{}\": accepted are own, generalised-alpha:RHO_INF, newmark, hht:ALPHA, "
-        "backward-euler, tr-bdf2 of full order, held:RHO_INF, discrete-gradient of condensed "
-        "models",
-        scheme));
+    throw InputError(
+        "E-STUDY-13",
+        fmt::format(
+            "scheme \"{}\": accepted are own, generalised-alpha:RHO_INF, newmark, hht:ALPHA, "
+            "backward-euler, tr-bdf2 of full order, held:RHO_INF, discrete-gradient of condensed "
+            "models",
+            scheme));
   }
 }
 

@@ -4,9 +4,9 @@
 
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
+#include "offline/math/refuse.h"
 #include "run/in_parallel.h"
 #include "run/simulation.h"
 #include "sweep/sweep_run.h"
@@ -37,12 +37,15 @@ class SharedProgress {
 };
 
 /// An error of a scene calls a varied key what it was given as, and says which run met it.
-[[noreturn]] void refuse_run(std::string error, const Grid& grid, std::int64_t run) {
+[[noreturn]] void refuse_run(const InputError& error, const Grid& grid, std::int64_t run) {
   const std::vector<std::string> values = grid.values(run);
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (error.starts_with(fmt::format("--set {}={}:", grid.varied()[k].key, values[k])))
-      error.replace(0, 5, "--vary");
-  throw InputError(fmt::format("{} (run {}: {})", error, run, grid.words(run)));
+  std::vector<Message> messages = error.messages();
+  for (Message& message : messages)
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (message.text.starts_with(fmt::format("--set {}={}:", grid.varied()[k].key, values[k])))
+        message.text.replace(0, 5, "--vary");
+  throw InputError("E-SWEEP-15", std::move(messages))
+      .met(fmt::format("run {}: {}", run, grid.words(run)));
 }
 
 }  // namespace
@@ -51,6 +54,7 @@ Sweep::Sweep(SweepPlan plan)
     : plan_(std::move(plan)), keys_(program_identity(), plan_.from), rows_(plan_.out) {
   if (is_artefact(plan_.scene))
     throw InputError(
+        "E-SWEEP-02",
         fmt::format("{}: is a model, of which no key can be varied; accepted is a scene",
                     plan_.scene.string()));
   key_.resize(static_cast<std::size_t>(plan_.grid.runs()));
@@ -66,11 +70,12 @@ std::string Sweep::key_of(std::int64_t run) try {
   const StepScene& step = stepped(scene);
   const double duration = static_cast<double>(step.steps) * step.dt;
   if (plan_.from > duration + 1e-6 * step.dt)  // rounding
-    throw InputError(fmt::format("--from {:g}: the run lasts {:g} s; accepted is up to that",
+    throw InputError("E-SWEEP-03",
+                     fmt::format("--from {:g}: the run lasts {:g} s; accepted is up to that",
                                  plan_.from, duration));
   return keys_.of(plan_.scene, plan_.grid.overrides(run));
 } catch (const InputError& error) {
-  refuse_run(error.what(), plan_.grid, run);
+  refuse_run(error, plan_.grid, run);
 }
 
 void Sweep::make(std::int64_t run) {
@@ -78,6 +83,7 @@ void Sweep::make(std::int64_t run) {
   const AnyScene scene = read_any_scene(plan_.scene, plan_.grid.overrides(run));
   if (keys_.of(plan_.scene, plan_.grid.overrides(run)) != key)
     throw InputError(
+        "E-SWEEP-04",
         fmt::format("{}: was changed while its runs were made; begin again", plan_.scene.string()));
   rows_.write(key,
               fmt::format("{} with {}, by railstep {}", plan_.scene.filename().string(),
@@ -97,8 +103,8 @@ SweepResult Sweep::finish(const std::vector<std::int64_t>& runs, const std::stri
   const auto row = [&](std::int64_t run) {
     std::optional<SweepRow> found = rows_.find(key_[static_cast<std::size_t>(run)]);
     if (!found)
-      throw std::runtime_error(
-          fmt::format("{}: the row of run {} was taken away", plan_.out.string(), run));
+      fail("E-SWEEP-05",
+           fmt::format("{}: the row of run {} was taken away", plan_.out.string(), run));
     return std::move(*found);
   };
   for (const std::int64_t run : runs) {
@@ -134,11 +140,13 @@ SweepResult Sweep::merge() {
   const std::vector<std::int64_t> runs = all_of(plan_.grid);
   const std::vector<std::int64_t> missing = without_row(runs);
   if (!missing.empty())
-    throw InputError(fmt::format(
-        "--merge: {} of {} runs have no row of this scene and program in {}, the first is run {} "
-        "({}); make them with --shard, or all that are missing without --merge",
-        missing.size(), runs.size(), plan_.out.string(), missing.front(),
-        plan_.grid.words(missing.front())));
+    throw InputError(
+        "E-SWEEP-06",
+        fmt::format("--merge: {} of {} runs have no row of this scene and program in {}, the first "
+                    "is run {} "
+                    "({}); make them with --shard, or all that are missing without --merge",
+                    missing.size(), runs.size(), plan_.out.string(), missing.front(),
+                    plan_.grid.words(missing.front())));
   return finish(runs, "table.csv");
 }
 

@@ -6,9 +6,9 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <system_error>
 
+#include "offline/math/refuse.h"
 #include "text/read.h"
 #include "text/write.h"
 
@@ -67,11 +67,11 @@ void RowStore::create() const {
   for (const std::filesystem::path& folder : {rows_.parent_path(), rows_}) {
     std::error_code failed;
     if (std::filesystem::exists(folder, failed) && !std::filesystem::is_directory(folder, failed))
-      throw InputError(fmt::format("--out {}: is a file; a folder is accepted", folder.string()));
+      throw InputError("E-SWEEP-13",
+                       fmt::format("--out {}: is a file; a folder is accepted", folder.string()));
     std::filesystem::create_directories(folder, failed);
     if (failed)
-      throw std::runtime_error(
-          fmt::format("{}: cannot be made: {}", folder.string(), failed.message()));
+      fail("E-SWEEP-14", fmt::format("{}: cannot be made: {}", folder.string(), failed.message()));
   }
 }
 

@@ -30,6 +30,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 
 [[noreturn]] void refuse(const std::string& written, const std::filesystem::path& read) {
   throw InputError(
+      "E-FILE-01",
       fmt::format("{}: would take the place of {}, which is read; accepted is a file of its own",
                   written, read.string()));
 }

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <sstream>
 
 #include "online/math/sha256.h"
@@ -14,13 +15,11 @@
 
 namespace railstep {
 
-struct Table::View {
-  std::shared_ptr<Document> document;
-  const toml::table* table;
-  std::string name;
-};
-
 namespace {
+
+constexpr MessageId kMissing = "E-KEY-01";
+/// Stands for a number that could not be read: it bounds nothing and is neither less nor more.
+constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 
 /// A value as the file writes it, short enough for a sentence.
 std::string shown(const toml::node& node) {
@@ -45,7 +44,7 @@ std::string hex_digest(Sha256& sum) {
   return text;
 }
 
-std::string kind(const toml::node& node) {
+std::string type_of(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::string:
       return "a string";
@@ -81,24 +80,9 @@ const char* likely_slip(std::string_view key, double value, const Range& accepte
 
 }  // namespace
 
-bool Range::holds(double value) const {
-  return (value > least || (least_itself && value == least)) &&
-         (value < most || (most_itself && value == most));
-}
-
-std::string Range::text() const {
-  std::string low, high;
-  if (least > -std::numeric_limits<double>::infinity())
-    low = fmt::format("{} {:.15g}", least_itself ? "at least" : "above", least);
-  if (most < std::numeric_limits<double>::infinity())
-    high = fmt::format("{} {:.15g}", most_itself ? "at most" : "below", most);
-  if (low.empty() && high.empty()) return "any finite number";
-  return low + (low.empty() || high.empty() ? "" : ", ") + high;
-}
-
-void Table::refuse(std::string_view key, std::string_view sentence) const {
+void Table::refuse(std::string_view key, MessageId id, std::string_view sentence) const {
   const toml::node* node = view_->table->get(key);
-  refuse_at(node ? node->source() : view_->table->source(), *view_->document, view_->name,
+  refuse_at(node ? node->source() : view_->table->source(), *view_->document, view_->name, id,
             sentence);
 }
 
@@ -107,39 +91,46 @@ struct Table::Entry {
   std::string_view key;
   const toml::node* node;  // null where the key is absent
 
-  [[noreturn]] void refuse(const toml::node& at, std::string_view sentence) const {
-    refuse_at(at.source(), *view.document, view.name, sentence);
+  [[noreturn]] void refuse(const toml::node& at, MessageId id, std::string_view sentence) const {
+    refuse_at(at.source(), *view.document, view.name, id, sentence);
   }
-  [[noreturn]] void refuse_kind(std::string_view accepted) const {
-    refuse(*node,
-           fmt::format("{} = {} is {}; {} is accepted", key, shown(*node), kind(*node), accepted));
+  [[noreturn]] void refuse_type(const toml::node& at, std::string_view expected) const {
+    refuse(at, "E-KEY-03",
+           fmt::format("{} = {} is {}; expected {}", key, shown(at), type_of(at), expected));
   }
   [[nodiscard]] double number(const toml::node& at, const Range& accepted) const {
     const std::string found = fmt::format("{} = {}", key, shown(at));
-    if (!at.is_number()) refuse(at, fmt::format("{} is {}; a number is accepted", found, kind(at)));
+    if (!at.is_number()) refuse_type(at, "a number");
     const double value = *at.value<double>();
     if (!std::isfinite(value))
-      refuse(at, fmt::format("{} is not finite; accepted is {}", found, accepted.text()));
+      refuse(at, "E-KEY-04", fmt::format("{} is not finite; expected {}", found, accepted.text()));
     if (accepted.holds(value)) return value + 0.;  // -0.0 is 0.0: no sign without a size
-    refuse(at, fmt::format("{} is out of range; accepted is {}{}", found, accepted.text(),
-                           likely_slip(key, value, accepted)));
+    refuse(at, "E-KEY-05",
+           fmt::format("{} is out of range; expected {}{}", found, accepted.text(),
+                       likely_slip(key, value, accepted)));
   }
   [[nodiscard]] std::size_t choice(const toml::node& at, Names names) const {
-    const std::string found = fmt::format("{} = {}", key, shown(at));
     const auto* value = at.as_string();
-    if (!value)
-      refuse(at, fmt::format("{} is {}; one of {} is accepted", found, kind(at), listed(names)));
+    if (!value) refuse_type(at, fmt::format("one of {}", listed(names)));
     const auto* name = std::find(names.begin(), names.end(), value->get());
     if (name == names.end())
-      refuse(at, fmt::format("{} is unknown; accepted are {}", found, listed(names)));
+      refuse(at, "E-KEY-06",
+             fmt::format("{} = {} is unknown; expected one of {}", key, shown(at), listed(names)));
     return static_cast<std::size_t>(name - names.begin());
+  }
+  /// The table at or in this key. It counts as opened: its keys are checked even if none is read.
+  [[nodiscard]] Table opened(const toml::table& table, std::string_view index = "") const {
+    view.document->known[&table];
+    const std::string prefix = view.name.empty() ? "" : view.name + ".";
+    return Table(std::make_shared<const View>(
+        View{view.document, &table, fmt::format("{}{}{}", prefix, key, index)}));
   }
   [[nodiscard]] const toml::array& array(std::size_t least, std::size_t most) const {
     const toml::array* found = node->as_array();
-    if (!found) refuse_kind("an array");
+    if (!found) refuse_type(*node, "an array");
     if (found->size() < least || found->size() > most)
-      refuse(*node, fmt::format("{} has {} entries; accepted are {} to {}", key, found->size(),
-                                least, most));
+      refuse(*node, "E-KEY-07",
+             fmt::format("{} has {} entries; expected {} to {}", key, found->size(), least, most));
     return *found;
   }
 };
@@ -158,16 +149,34 @@ Table::Entry Table::need(std::string_view key) const {
   for (const auto& [other, value] : *view_->table)
     if (!known.contains(other.str())) unread.emplace_back(other.str());
   const std::string near = misspelt(key, unread);
-  if (near.empty()) refuse(key, fmt::format("key '{}' is missing; it has no default", key));
-  refuse_at(view_->table->find(near)->first.source(), *view_->document, view_->name,
+  if (near.empty())
+    refuse(key, kMissing, fmt::format("key '{}' is missing; it has no default", key));
+  refuse_at(view_->table->find(near)->first.source(), *view_->document, view_->name, kMissing,
             fmt::format("key '{}' is missing; did you mean it by '{}'?", key, near));
 }
 
-bool Table::has(std::string_view key) const { return look_up(key).node != nullptr; }
+template <typename Read, typename Value>
+Value Table::kept(Read read, Value otherwise) const {
+  Document& document = *view_->document;
+  if (view_->table == &document.absent) return otherwise;
+  try {
+    return read();
+  } catch (const PlacedError& error) {
+    if (!document.collects) throw;
+    const bool is_missing = error.messages().front().id == kMissing.name();
+    if (!is_missing || !document.doubtful.contains(view_->table))
+      document.bad_values.push_back({error.source, error.messages()});
+    return otherwise;
+  }
+}
 
 double Table::number(std::string_view key, const Range& accepted) const {
-  const Entry entry = need(key);
-  return entry.number(*entry.node, accepted);
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        return entry.number(*entry.node, accepted);
+      },
+      kUnread);
 }
 
 double Table::number(std::string_view key, const Range& accepted, double otherwise) const {
@@ -178,28 +187,36 @@ double Table::slope(std::string_view key, const Range& accepted, double otherwis
   if (!has(key)) return otherwise;
   const Entry entry = need(key);
   const auto* text = entry.node->as_string();
-  if (!text) return entry.number(*entry.node, accepted);
+  if (!text) return number(key, accepted);
   const std::string& slope = text->get();
   double n = 0.0;
   const char* const end = slope.data() + slope.size();
   const bool is_slope = slope.starts_with("1:") &&
                         std::from_chars(slope.data() + 2, end, n).ptr == end && n > 0.0 &&
                         accepted.holds(1.0 / n);
-  if (!is_slope)
-    entry.refuse(*entry.node,
-                 fmt::format("{} = \"{}\"; accepted is \"1:n\", or a number that is {}", key, slope,
-                             accepted.text()));
-  return 1.0 / n;
+  if (is_slope) return 1.0 / n;
+  return kept(
+      [&]() -> double {
+        entry.refuse(*entry.node, "E-KEY-08",
+                     fmt::format("{} = \"{}\"; expected \"1:n\", or a number {}", key, slope,
+                                 accepted.text()));
+      },
+      otherwise);
 }
 
 std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64_t most) const {
-  const Entry entry = need(key);
-  const auto* value = entry.node->as_integer();
-  if (!value) entry.refuse_kind("an integer");
-  if (value->get() < least || value->get() > most)
-    entry.refuse(*entry.node, fmt::format("{} = {} is out of range; accepted is {} to {}", key,
-                                          value->get(), least, most));
-  return value->get();
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        const auto* value = entry.node->as_integer();
+        if (!value) entry.refuse_type(*entry.node, "an integer");
+        if (value->get() < least || value->get() > most)
+          entry.refuse(*entry.node, "E-KEY-05",
+                       fmt::format("{} = {} is out of range; expected {} to {}", key, value->get(),
+                                   least, most));
+        return value->get();
+      },
+      most);
 }
 
 std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64_t most,
@@ -208,10 +225,14 @@ std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64
 }
 
 bool Table::boolean(std::string_view key) const {
-  const Entry entry = need(key);
-  const auto* value = entry.node->as_boolean();
-  if (!value) entry.refuse_kind("true or false");
-  return value->get();
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        const auto* value = entry.node->as_boolean();
+        if (!value) entry.refuse_type(*entry.node, "true or false");
+        return value->get();
+      },
+      false);
 }
 
 bool Table::boolean(std::string_view key, bool otherwise) const {
@@ -219,12 +240,17 @@ bool Table::boolean(std::string_view key, bool otherwise) const {
 }
 
 std::string Table::string(std::string_view key) const {
-  const Entry entry = need(key);
-  const auto* value = entry.node->as_string();
-  if (!value) entry.refuse_kind("a string");
-  if (value->get().empty())
-    entry.refuse(*entry.node, fmt::format("{} is an empty string; a name is accepted", key));
-  return value->get();
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        const auto* value = entry.node->as_string();
+        if (!value) entry.refuse_type(*entry.node, "a string");
+        if (value->get().empty())
+          entry.refuse(*entry.node, "E-KEY-09",
+                       fmt::format("{} is an empty string; expected a name", key));
+        return value->get();
+      },
+      std::string());
 }
 
 std::string Table::string(std::string_view key, std::string_view otherwise) const {
@@ -232,8 +258,15 @@ std::string Table::string(std::string_view key, std::string_view otherwise) cons
 }
 
 std::size_t Table::choice(std::string_view key, Names names) const {
-  const Entry entry = need(key);
-  return entry.choice(*entry.node, names);
+  const std::size_t chosen = kept(
+      [&] {
+        const Entry entry = need(key);
+        return entry.choice(*entry.node, names);
+      },
+      names.size());
+  if (chosen < names.size()) return chosen;
+  view_->document->doubtful.insert(view_->table);
+  return 0;
 }
 
 std::size_t Table::choice(std::string_view key, Names names, std::size_t otherwise) const {
@@ -243,75 +276,90 @@ std::size_t Table::choice(std::string_view key, Names names, std::size_t otherwi
 std::vector<std::size_t> Table::choices(std::string_view key, Names names, std::size_t count,
                                         std::size_t otherwise) const {
   if (!has(key)) return std::vector<std::size_t>(count, otherwise);
-  const Entry entry = need(key);
-  if (!entry.node->is_array())
-    return std::vector<std::size_t>(count, entry.choice(*entry.node, names));
-  std::vector<std::size_t> chosen;
-  for (const toml::node& node : entry.array(count, count))
-    chosen.push_back(entry.choice(node, names));
-  return chosen;
+  if (!need(key).node->is_array()) return std::vector<std::size_t>(count, choice(key, names));
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        std::vector<std::size_t> chosen;
+        for (const toml::node& node : entry.array(count, count))
+          chosen.push_back(entry.choice(node, names));
+        return chosen;
+      },
+      std::vector<std::size_t>(count, otherwise));
 }
 
 std::filesystem::path Table::path(std::string_view key) const {
   const std::string text = string(key);
-  if (text.find('\0') != std::string::npos) refuse(key, "a path with NUL; a file name is accepted");
+  if (text.find('\0') != std::string::npos)
+    refuse(key, "E-KEY-10", "a path with a NUL byte; expected the name of a file");
   return (file().parent_path() / text).lexically_normal();
 }
 
 std::array<double, 2> Table::number_or_pair(std::string_view key, const Range& accepted) const {
-  const Entry entry = need(key);
-  if (!entry.node->is_array()) {
-    const double value = entry.number(*entry.node, accepted);
-    return {value, value};
+  if (const Entry entry = look_up(key); entry.node && entry.node->is_array()) {
+    const std::vector<double> values = numbers(key, accepted, 2, 2);
+    return {values[0], values[1]};
   }
-  const std::vector<double> values = numbers(key, accepted, 2, 2);
-  return {values[0], values[1]};
+  const double value = number(key, accepted);
+  return {value, value};
 }
 
 std::vector<double> Table::numbers(std::string_view key, const Range& accepted, std::size_t least,
                                    std::size_t most) const {
-  const Entry entry = need(key);
-  std::vector<double> values;
-  for (const toml::node& node : entry.array(least, most))
-    values.push_back(entry.number(node, accepted));
-  return values;
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        std::vector<double> values;
+        for (const toml::node& node : entry.array(least, most))
+          values.push_back(entry.number(node, accepted));
+        return values;
+      },
+      std::vector<double>(least, kUnread));
 }
 
 std::vector<std::string> Table::strings(std::string_view key, std::size_t least,
                                         std::size_t most) const {
-  const Entry entry = need(key);
-  std::vector<std::string> values;
-  for (const toml::node& node : entry.array(least, most)) {
-    const auto* value = node.as_string();
-    if (!value)
-      entry.refuse(
-          node, fmt::format("{} = {} is {}; a string is accepted", key, shown(node), kind(node)));
-    values.push_back(value->get());
-  }
-  return values;
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        std::vector<std::string> values;
+        for (const toml::node& node : entry.array(least, most)) {
+          const auto* value = node.as_string();
+          if (!value) entry.refuse_type(node, "a string");
+          values.push_back(value->get());
+        }
+        return values;
+      },
+      std::vector<std::string>(least));
 }
 
 std::vector<double> Table::rows(std::string_view key, std::size_t columns) const {
-  const Entry entry = need(key);
-  std::vector<double> values;
-  for (const toml::node& row : entry.array(1, 100'000)) {
-    const toml::array* array = row.as_array();
-    if (!array || array->size() != columns)
-      entry.refuse(row, fmt::format("{}: {} of {} entries; accepted are rows of {} numbers", key,
-                                    kind(row), array ? array->size() : 0, columns));
-    for (const toml::node& node : *array) values.push_back(entry.number(node, any_number()));
-  }
-  return values;
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        std::vector<double> values;
+        for (const toml::node& row : entry.array(1, 100'000)) {
+          const toml::array* array = row.as_array();
+          if (!array || array->size() != columns)
+            entry.refuse(row, "E-KEY-11",
+                         fmt::format("{}: {} of {} entries; expected rows of {} numbers", key,
+                                     type_of(row), array ? array->size() : 0, columns));
+          for (const toml::node& node : *array) values.push_back(entry.number(node, any_number()));
+        }
+        return values;
+      },
+      std::vector<double>(columns, kUnread));
 }
 
 Table Table::table(std::string_view key) const {
-  const Entry entry = need(key);
-  const toml::table* found = entry.node->as_table();
-  if (!found) entry.refuse_kind("a table");
-  view_->document->known[found];  // opened, so its keys are checked even if none is asked for
-  return Table(std::make_shared<const View>(
-      View{view_->document, found,
-           name().empty() ? std::string(key) : fmt::format("{}.{}", name(), key)}));
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        const toml::table* found = entry.node->as_table();
+        if (!found) entry.refuse_type(*entry.node, "a table");
+        return entry.opened(*found);
+      },
+      look_up(key).opened(view_->document->absent));
 }
 
 std::optional<Table> Table::table_if(std::string_view key) const {
@@ -320,23 +368,23 @@ std::optional<Table> Table::table_if(std::string_view key) const {
 }
 
 std::vector<Table> Table::tables(std::string_view key) const {
-  const Entry entry = look_up(key);
-  if (!entry.node) return {};
-  std::vector<Table> found;
-  const std::string prefix = name().empty() ? "" : name() + ".";
-  for (const toml::node& node : entry.array(0, 100'000)) {
-    const toml::table* table = node.as_table();
-    if (!table)
-      entry.refuse(node, fmt::format("{} holds {}; [[{}]] tables are accepted", key, kind(node),
-                                     prefix + std::string(key)));
-    view_->document->known[table];
-    found.push_back(Table(std::make_shared<const View>(
-        View{view_->document, table, fmt::format("{}{}[{}]", prefix, key, found.size())})));
-  }
-  return found;
+  if (!has(key)) return {};
+  return kept(
+      [&] {
+        const Entry entry = need(key);
+        std::vector<Table> found;
+        for (const toml::node& node : entry.array(0, 100'000)) {
+          const toml::table* table = node.as_table();
+          if (!table)
+            entry.refuse(node, "E-KEY-12",
+                         fmt::format("{} holds {}; expected [[{}{}]] tables", key, type_of(node),
+                                     name().empty() ? "" : name() + ".", key));
+          found.push_back(entry.opened(*table, fmt::format("[{}]", found.size())));
+        }
+        return found;
+      },
+      std::vector<Table>());
 }
-
-void Table::finish() const { check_keys(*view_->document, *view_->table, view_->name); }
 
 std::string Table::name() const { return view_->name; }
 

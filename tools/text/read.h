@@ -3,42 +3,22 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "text/message.h"
+#include "text/range.h"
+
 namespace railstep {
-
-/// Bad input, in one sentence that names file, line or key, what was found and what is accepted.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// An interval of accepted numbers. Infinite ends are never reached: no value read is infinite.
-struct Range {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-  bool least_itself = true;  // is `least` accepted, or only what is above it?
-  bool most_itself = true;
-  [[nodiscard]] bool holds(double value) const;  // false for NaN
-  [[nodiscard]] std::string text() const;        // "above 0, at most 10"
-};
-inline Range any_number() { return {}; }
-inline Range at_least(double least) { return {.least = least}; }
-inline Range above(double least) { return {.least = least, .least_itself = false}; }
-inline Range between(double least, double most) { return {.least = least, .most = most}; }
-inline Range above_upto(double least, double most) {
-  return {.least = least, .most = most, .least_itself = false};
-}
 
 /// One table of a TOML file. Every getter records its key as known, so that `finish` can refuse the
 /// rest. Copies are views of the same file. All getters throw InputError,
-/// "file:line:col: [table] what was found; what is accepted". A getter with `otherwise` returns it
-/// where the key is absent; one without requires the key.
+/// "file:line:col: [table] what was found; what is expected". A getter with `otherwise` returns it
+/// where the key is absent; one without requires the key. Within `whole` a getter keeps its error
+/// and reading goes on with NaN, the largest integer, the first choice, an empty string or table.
 class Table {
  public:
   [[nodiscard]] bool has(std::string_view key) const;  // also marks the key as known
@@ -85,10 +65,45 @@ class Table {
 
   /// Throws InputError at `key` (at the table where the key is absent):
   /// "place: [table] `sentence`".
-  [[noreturn]] void refuse(std::string_view key, std::string_view sentence) const;
-  /// Refuses, here and in all tables below that were opened, any key no getter asked for, naming
-  /// the nearest known one. Call once, on the root, after everything was read.
+  [[noreturn]] void refuse(std::string_view key, MessageId id, std::string_view sentence) const;
+  /// Refuses, here and in all tables below that were opened, each key that no getter asked for and
+  /// names the nearest known one. Call once, on the root, after everything was read.
   void finish() const;
+
+  /// Calls `read` on this root, then finish(), and throws all errors of values together, in the
+  /// file's order; where there are none, all refusals kept by `attempt`, and the one that ended
+  /// `read`. A refusal may follow from what stands for a bad value: so values come first.
+  template <typename Read>
+  auto whole(Read read) const {
+    collect();
+    auto result = [&] {
+      try {
+        return read(*this);
+      } catch (const InputError& last) {
+        throw_kept(&last);
+        throw;
+      }
+    }();
+    throw_kept(nullptr);
+    return result;
+  }
+  /// Within `whole` keeps the refusal that ends `part`, so that reading goes on behind it.
+  template <typename Part>
+  void attempt(Part part) const {
+    try {
+      part();
+    } catch (const InputError& error) {
+      if (!keep(error)) throw;
+    }
+  }
+  /// Calls `read` on each table of [[key]], in the file's order, each one an `attempt`.
+  template <typename Read>
+  void each(std::string_view key, Read read) const {
+    for (const Table& entry : tables(key)) attempt([&] { read(entry); });
+  }
+  /// Ends `whole` here where only refusals were kept: what follows needs what they refuse.
+  void stop_if_refused() const;
+
   [[nodiscard]] std::string name() const;  // "rail.constants", "load[1]"; root: ""
   [[nodiscard]] const std::filesystem::path& file() const;
   /// SHA-256 in hexadecimal of the file's text with, a line each, what was set over it.
@@ -102,6 +117,12 @@ class Table {
   struct Entry;  // one key of it, with the checks the getters share
   [[nodiscard]] Entry look_up(std::string_view key) const;  // marks the key as known
   [[nodiscard]] Entry need(std::string_view key) const;     // and throws where it is absent
+  template <typename Read, typename Value>
+  Value kept(Read read,
+             Value otherwise) const;  // what read() returns, or `otherwise` after an error
+  void collect() const;
+  [[nodiscard]] bool keep(const InputError& refusal) const;  // false outside of `whole`
+  void throw_kept(const InputError* last) const;             // if there are any
   explicit Table(std::shared_ptr<const View> view) : view_(std::move(view)) {}
   std::shared_ptr<const View> view_;
 };

@@ -14,59 +14,51 @@ std::vector<std::string> to_vector(const std::set<std::string, std::less<>>& key
   return {keys.begin(), keys.end()};
 }
 
-struct UnknownKey {
-  toml::source_region source;
-  std::string table, word, near;
-};
+PlacedError placed(const toml::source_region& source, const Document& document,
+                   const std::string& table, MessageId id, std::string_view sentence) {
+  const std::string text =
+      fmt::format("{}: {}{}", place(source, document.file), bracketed(table), sentence);
+  return {source, id, one_line(text)};
+}
 
-/// Unknown keys of `table` and of all opened tables in it.
+std::string unknown(const std::string& word, const std::string& near) {
+  if (near.empty()) return fmt::format("unknown key '{}'; expected no key here", word);
+  return fmt::format("unknown key '{}'; did you mean '{}'?", word, near);
+}
+
 void find_unknown(const Document& document, const toml::table& table, const std::string& name,
-                  std::vector<UnknownKey>& unknown) {
-  const auto found = document.known.find(&table);
-  if (found == document.known.end()) return;  // never opened: its reader did not want it
+                  std::vector<Kept>& found) {
+  const auto known = document.known.find(&table);
+  if (known == document.known.end()) return;  // never opened: its reader did not ask for it
+  if (document.doubtful.contains(&table)) return;
   for (const auto& [key, value] : table) {
     const std::string word(key.str());
-    if (!found->second.contains(word))
-      unknown.push_back({key.source(), name, word, nearest(word, to_vector(found->second))});
+    if (!known->second.contains(word))
+      found.push_back({key.source(),
+                       placed(key.source(), document, name, "E-KEY-02",
+                              unknown(word.substr(0, 60), nearest(word, to_vector(known->second))))
+                           .messages()});
     const std::string below = name.empty() ? word : fmt::format("{}.{}", name, word);
-    if (const toml::table* sub = value.as_table()) find_unknown(document, *sub, below, unknown);
+    if (const toml::table* sub = value.as_table()) find_unknown(document, *sub, below, found);
     if (const toml::array* array = value.as_array())
       for (std::size_t i = 0; i < array->size(); ++i)
         if (const toml::table* sub = array->get(i)->as_table())
-          find_unknown(document, *sub, fmt::format("{}[{}]", below, i), unknown);
+          find_unknown(document, *sub, fmt::format("{}[{}]", below, i), found);
   }
 }
 
 }  // namespace
 
 void refuse_at(const toml::source_region& source, const Document& document,
-               const std::string& table, std::string_view sentence) {
-  throw InputError(
-      one_line(fmt::format("{}: {}{}", place(source, document.file), bracketed(table), sentence)));
+               const std::string& table, MessageId id, std::string_view sentence) {
+  throw placed(source, document, table, id, sentence);
 }
 
-void check_keys(const Document& document, const toml::table& table, const std::string& name) {
-  constexpr std::size_t kMostNamed = 5;
-  std::vector<UnknownKey> unknown;
-  find_unknown(document, table, name, unknown);
-  if (unknown.empty()) return;
-  const UnknownKey& first = unknown.front();
-  const std::string word = first.word.substr(0, 60);
-  std::string sentence =
-      first.near.empty() ? fmt::format("unknown key '{}'; no key is accepted here", word)
-                         : fmt::format("unknown key '{}'; did you mean '{}'?", word, first.near);
-  for (std::size_t i = 1; i < std::min(unknown.size(), kMostNamed); ++i) {
-    const UnknownKey& key = unknown[i];
-    sentence += fmt::format("{}{}'{}'",
-                            i > 1                ? ", "
-                            : first.near.empty() ? ". Unknown too: "
-                                                 : " Unknown too: ",
-                            bracketed(key.table), key.word.substr(0, 60));
-    if (!key.near.empty()) sentence += fmt::format(" ('{}'?)", key.near);
-  }
-  if (unknown.size() > kMostNamed)
-    sentence += fmt::format(" and {} more", unknown.size() - kMostNamed);
-  refuse_at(first.source, document, first.table, sentence);
+std::vector<Kept> unknown_keys(const Document& document, const toml::table& table,
+                               const std::string& name) {
+  std::vector<Kept> found;
+  find_unknown(document, table, name, found);
+  return found;
 }
 
 }  // namespace railstep

@@ -6,10 +6,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "offline/math/refuse.h"
 #include "text/files.h"
 
 namespace railstep {
@@ -71,8 +71,8 @@ void OutputFile::drop() noexcept {
 
 void OutputFile::fail(int reason) {
   drop();
-  throw std::runtime_error(
-      fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(reason)));
+  fail("E-FILE-10",
+       fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(reason)));
 }
 
 void write_file(const std::filesystem::path& file, std::string_view content) {

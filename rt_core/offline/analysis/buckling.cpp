@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "offline/analysis/rigid.h"
+#include "offline/math/refuse.h"
 #include "offline/track/fixed_port.h"
 
 namespace railstep {
@@ -123,7 +123,7 @@ void refuse_buckled(const Track& given) {
              << " N (right), and the track buckles at " << most << " times these";
   sentence << place_of_buckling(track, most)
            << "; accepted are rail.axial_force_n and heat that press less";
-  throw std::invalid_argument(sentence.str());
+  refuse("E-MODES-01", sentence.str());
 }
 
 }  // namespace railstep

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "offline/analysis/modes.h"
 #include "offline/analysis/rigid.h"
 #include "offline/analysis/statics.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -64,8 +64,8 @@ void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
     rate = improved(line, rate, shape);
   }
   if (!(residual(line, rate, shape) <= std::max(kAccepted, rounding(line, shape))))
-    throw std::runtime_error("a damped mode near " + std::to_string(std::abs(rate) / (2. * kPi)) +
-                             " Hz does not converge");
+    fail("E-MODES-02", "a damped mode near " + std::to_string(std::abs(rate) / (2. * kPi)) +
+                           " Hz does not converge");
 }
 
 /// The swinging Ritz pairs with |rate| <= radius, none where some are not yet sharp.
@@ -111,9 +111,9 @@ Search search(const Line& line, double radius) {
       return {std::move(*found), space.complete()};
     before = found ? std::optional(found->size()) : std::nullopt;
   }
-  throw std::runtime_error(
-      "the damped modes up to " + std::to_string(radius / (2. * kPi)) +
-      " Hz lie too close to be told apart; ask for fewer of them or shorten the track");
+  fail("E-MODES-03",
+       "the damped modes up to " + std::to_string(radius / (2. * kPi)) +
+           " Hz lie too close to be told apart; ask for fewer of them or shorten the track");
 }
 
 }  // namespace
@@ -127,8 +127,8 @@ double residual(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
 
 Oscillations oscillations(const Line& line, double radius) {
   if (line.unknowns() > kMostUnknowns)
-    throw std::runtime_error("damped modes of a line of " + std::to_string(line.unknowns()) +
-                             " unknowns; accepted are " + std::to_string(kMostUnknowns));
+    fail("E-MODES-04", "damped modes of a line of " + std::to_string(line.unknowns()) +
+                           " unknowns; accepted are " + std::to_string(kMostUnknowns));
   Search result = search(line, radius);
   Oscillations modes;
   modes.all = result.complete && radius > kBeyond * highest_rate(line);

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "offline/analysis/rigid.h"
+#include "offline/math/refuse.h"
 #include "offline/track/functional.h"
 
 namespace railstep {
@@ -293,12 +293,13 @@ void refuse_free_modes(const Track& track, const std::vector<Line>& lines,
     for (const FixedPort& port : fixed_ports(track)) open.push_back(port.closing);
   const Eigen::MatrixXd alone = parted(track, lines, joined, open, shapes).first;
   if (alone.cols() > 0)
-    throw std::invalid_argument(
+    refuse(
+        "E-MODES-05",
         "the track has a free rigid mode: one-sided supports alone hold " +
-        moving_rails(track, lines, joined, alone) +
-        ", and a condensed track has them open; accepted is full order, or supports that pull");
+            moving_rails(track, lines, joined, alone) +
+            ", and a condensed track has them open; accepted is full order, or supports that pull");
   const std::string found = motion_and_remedy(track, lines, joined, shapes);
-  throw std::invalid_argument(found.empty() ? loosest(lines, joined, stiffness, factor) : found);
+  refuse("E-MODES-06", found.empty() ? loosest(lines, joined, stiffness, factor) : found);
 }
 
 }  // namespace railstep

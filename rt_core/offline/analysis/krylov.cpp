@@ -1,9 +1,9 @@
 #include "offline/analysis/krylov.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "offline/analysis/rigid.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -27,7 +27,7 @@ Krylov::Krylov(const Line& line, Complex shift)
     : line_(line), shift_(shift), scale_(std::abs(shift)) {
   factor_.compute(dynamic_stiffness(line, shift));
   if (factor_.info() != Eigen::Success)
-    throw std::runtime_error("a line's dynamic stiffness cannot be factored");
+    fail("E-MODES-07", "a line's dynamic stiffness cannot be factored");
   basis_ = start_block(2 * line.unknowns(), 1).cast<Complex>();
   basis_ /= basis_.norm();
   projection_.resize(1, 0);

@@ -1,7 +1,8 @@
 #include "offline/analysis/massless.h"
 
 #include <Eigen/SparseCholesky>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -24,7 +25,7 @@ MassiveLine without_massless(const Line& line) {
   const Sparse held = left.transpose() * line.stiffness * left;
   const Eigen::SimplicialLDLT<Sparse> factor(held);
   if (factor.info() != Eigen::Success || !(factor.vectorD().array() > 0.).all())
-    throw std::invalid_argument("a sleeper without mass needs stiffness in its pad or ballast");
+    refuse("E-MODES-08", "a sleeper without mass needs stiffness in its pad or ballast");
   const Sparse coupled = left.transpose() * line.stiffness * kept;
   const Sparse following = factor.solve(coupled);
   MassiveLine result;

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -23,7 +24,7 @@ OneSided::OneSided(const Track& track, const std::vector<Line>& lines, std::vect
   all_closed_.compute(all);
   if (is_held(all_closed_, all)) return;
   refuse_free_modes(track, lines, ports_);  // by its name
-  throw std::invalid_argument("the track's stiffness cannot be factored");
+  refuse("E-MODES-13", "the track's stiffness cannot be factored");
 }
 
 OneSided::Sparse OneSided::stiffness(const Closed& closed, double open_part) const {
@@ -97,7 +98,8 @@ double OneSided::minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& 
   for (std::size_t p = 0; p < ports_.size(); ++p)
     all += ports_[p].stiffness * std::pow(s[static_cast<Eigen::Index>(p)], 2);
   if (!(more > 1e-12 * all))
-    throw std::invalid_argument(
+    refuse(
+        "E-MODES-14",
         "no equilibrium: the loads lift the track off the one-sided supports that would hold it");
   return from - low / more;
 }
@@ -128,8 +130,8 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
     closed = now;
   }
   if (!done)
-    throw std::invalid_argument(
-        "no equilibrium was found: the one-sided supports open and close without end");
+    refuse("E-MODES-15",
+           "no equilibrium was found: the one-sided supports open and close without end");
   std::vector<Eigen::VectorXd> result;
   for (std::size_t l = 0; l < load.size(); ++l)
     result.emplace_back(u.segment(joined_.first[l], load[l].size()));

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -24,7 +25,7 @@ Eigen::MatrixXd ritz(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMa
                                 Eigen::MatrixXd::Identity(found.rows(), found.cols());
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
       block.transpose() * (K * block), block.transpose() * (M * block));
-  if (solver.info() != Eigen::Success) throw std::invalid_argument("a line's mass is not positive");
+  if (solver.info() != Eigen::Success) refuse("E-MODES-16", "a line's mass is not positive");
   return block * solver.eigenvectors();
 }
 
@@ -58,7 +59,7 @@ Eigen::MatrixXd rigid_modes(const Eigen::SparseMatrix<double>& stiffness,
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(
       Eigen::SparseMatrix<double>(stiffness + shift * mass));
   if (factor.info() != Eigen::Success)
-    throw std::invalid_argument("a line's stiffness cannot be factored");
+    refuse("E-MODES-10", "a line's stiffness cannot be factored");
   Eigen::MatrixXd block = start_block(n, std::min(kBlock, n));
   for (int iteration = 0; iteration < kIterations; ++iteration)
     block = ritz(stiffness, mass, factor.solve(mass * block));

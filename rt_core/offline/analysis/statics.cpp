@@ -1,8 +1,7 @@
 #include "offline/analysis/statics.h"
 
-#include <stdexcept>
-
 #include "offline/analysis/free_motion.h"
+#include "offline/math/refuse.h"
 #include "offline/track/functional.h"
 
 namespace railstep {
@@ -15,7 +14,7 @@ Statics::Statics(const Track& track)
     factors_[i].compute(lines_[i].stiffness);
     if (is_held(factors_[i], lines_[i].stiffness)) continue;
     refuse_free_modes(track_, lines_, {});  // by its name
-    throw std::invalid_argument("the track's stiffness cannot be factored");
+    refuse("E-MODES-13", "the track's stiffness cannot be factored");
   }
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "offline/analysis/free_motion.h"
 #include "offline/element/timoshenko.h"
+#include "offline/math/refuse.h"
 #include "offline/track/fixed_port.h"
 #include "offline/track/pad.h"
 
@@ -19,7 +19,7 @@ constexpr double kSamePlace = 1e-9;  // of the rail's length
 
 void check(const Track& track) {
   const auto refuse = [](bool wrong, const char* what) {
-    if (wrong) throw std::invalid_argument(std::string("a Timoshenko beam stands for ") + what);
+    if (wrong) railstep::refuse("E-MODES-17", std::string("a Timoshenko beam stands for ") + what);
   };
   refuse(track.rails != 1, "one rail; accepted is track.rails = 1");
   refuse(track.cant != 0., "a rail that stands upright; accepted is no cant");
@@ -45,7 +45,7 @@ std::vector<double> nodes_of(const Track& track, const std::vector<double>& plac
   x.erase(std::unique(x.begin(), x.end(), [&](double a, double b) { return b - a <= same; }),
           x.end());
   if (x.front() < -same || x.back() > track.length() + same)
-    throw std::out_of_range("point off the rail");
+    refuse("E-MODES-18", "point off the rail");
   return x;
 }
 
@@ -83,7 +83,7 @@ Eigen::SparseVector<double> TimoshenkoStatics::row(const RailPoint& point) const
     return std::abs(a - point.x) < std::abs(b - point.x);
   });
   if (!(std::abs(*nearest - point.x) <= 2. * kSamePlace * track_.length()))
-    throw std::out_of_range("no node of the beam stands at this point");
+    refuse("E-MODES-19", "no node of the beam stands at this point");
   const auto first = static_cast<std::size_t>(6 * (nearest - x_.begin()));
   Eigen::SparseVector<double> row(stiffness_.rows());
   const auto add = [&](std::size_t k, double factor) {
@@ -132,7 +132,7 @@ void TimoshenkoStatics::factorise() {
   factor_.compute(stiffness_);
   if (is_held(factor_, stiffness_)) return;
   refuse_free_modes(track_, railstep::assemble(track_), {});  // by its name
-  throw std::invalid_argument("the track has a free rigid mode: ends and pads do not hold it");
+  refuse("E-MODES-20", "the track has a free rigid mode: ends and pads do not hold it");
 }
 
 Eigen::VectorXd TimoshenkoStatics::load(const std::vector<PointForce>& forces,

@@ -1,10 +1,9 @@
 #include "offline/beam/linearise.h"
 
-#include <stdexcept>
-
 #include "offline/analysis/statics.h"
 #include "offline/beam/equilibrium.h"
 #include "offline/beam/track_structure.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -18,9 +17,9 @@ Track linearised_under_weight(Track track, double gravity) {
   const TrackStructure rails(track);
   const Equilibrium found = equilibrium(rails.structure(), {rails.weight(gravity)});
   if (!found.converged)
-    throw std::invalid_argument("the track finds no equilibrium under its own weight and preload");
+    refuse("E-NONLINEAR-01", "the track finds no equilibrium under its own weight and preload");
   if (!is_stable(rails.structure(), found.q))
-    throw std::invalid_argument("the track buckles under its own weight and preload");
+    refuse("E-NONLINEAR-02", "the track buckles under its own weight and preload");
   track.state = rails.state(found.q);
   track.state->gravity = gravity;
   return track;

@@ -1,9 +1,9 @@
 #include "offline/beam/track_structure.h"
 
-#include <stdexcept>
 #include <utility>
 
 #include "offline/element/shape.h"
+#include "offline/math/refuse.h"
 #include "offline/track/fixed_port.h"
 #include "offline/track/pad.h"
 
@@ -28,27 +28,27 @@ Sparse row_of(int unknowns, const Entries& entries) {
 
 TrackStructure::TrackStructure(const Track& track) : track_(track) {
   if (track.unknowns != Unknowns::full)
-    throw std::invalid_argument("a nonlinear rail moves in space: it needs all unknowns");
+    refuse("E-NONLINEAR-03", "a nonlinear rail moves in space: it needs all unknowns");
   if (!track.section.moments || (track.right && !track.right->section.moments))
-    throw std::invalid_argument("a nonlinear rail wants its section's moments to degree 4");
+    refuse("E-NONLINEAR-04", "a nonlinear rail wants its section's moments to degree 4");
   if (track.bays < 1 || track.elements_per_bay < 1)
-    throw std::invalid_argument("a track needs one bay and one element");
+    refuse("E-NONLINEAR-05", "a track needs one bay and one element");
   if (!fixed_ports(track).empty())
-    throw std::invalid_argument(
-        "a nonlinear rail, and one linearised under its weight, stands on seats that pull too; "
-        "accepted without gap_m, unilateral and [[stop]]");
+    refuse("E-NONLINEAR-06",
+           "a nonlinear rail, and one linearised under its weight, stands on seats that pull too; "
+           "accepted without gap_m, unilateral and [[stop]]");
   if (!track.joints.empty())
-    throw std::invalid_argument(
-        "a nonlinear rail has no joints; accepted is track.model = \"linearised\"");
+    refuse("E-NONLINEAR-07",
+           "a nonlinear rail has no joints; accepted is track.model = \"linearised\"");
   // A pin off the centroid does not hold the moment of a force through it.
   const auto held = [&](RailEnd end) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);
   };
   const bool pressed = track.axial_force != 0. || (track.right && track.right->axial_force != 0.);
   if (pressed && !(held(track.ends[0]) && held(track.ends[1])))
-    throw std::invalid_argument(
-        "a nonlinear rail under axial force wants both ends held, "
-        "clamped where the reference line is off the centroid");
+    refuse("E-NONLINEAR-08",
+           "a nonlinear rail under axial force wants both ends held, "
+           "clamped where the reference line is off the centroid");
   const int rail_unknowns = 9 * track.nodes() * track.rails;
   const int unknowns = number_sleepers(rail_unknowns);
   structure_.rest = Eigen::VectorXd::Zero(unknowns);

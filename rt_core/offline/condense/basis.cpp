@@ -5,8 +5,9 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -59,9 +60,9 @@ Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs) {
 
 void refuse_free_mode(double lowest_hz) {
   if (!(lowest_hz >= kLeastHz))
-    throw std::invalid_argument(
-        "a condensed track is held in every direction in which it is moved: this one has a free "
-        "rigid mode");
+    refuse("E-CONDENSE-01",
+           "a condensed track is held in every direction in which it is moved: this one has a free "
+           "rigid mode");
 }
 
 Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes) {
@@ -70,7 +71,7 @@ Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes) {
   const Eigen::MatrixXd kept =
       shapes.cols() > 0 ? independent(line, shapes * scale.asDiagonal()) : shapes;
   if (kept.cols() == 0)
-    throw std::invalid_argument("a condensed line without dampers keeps one mode or more");
+    refuse("E-CONDENSE-02", "a condensed line without dampers keeps one mode or more");
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
       kept.transpose() * (line.stiffness * kept), kept.transpose() * (line.mass * kept));
   refuse_free_mode(std::sqrt(std::max(0., solver.eigenvalues()[0])) / (2. * M_PI));

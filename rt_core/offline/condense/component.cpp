@@ -4,10 +4,10 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "offline/analysis/massless.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -108,7 +108,7 @@ Eigen::MatrixXd lowest(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, int m
 std::vector<int> kept_unknowns(const Track& track, const Line& line, int nodes_per_bay) {
   const int nodes = 2 * track.elements_per_bay;
   if (nodes_per_bay < 1 || nodes % nodes_per_bay != 0)
-    throw std::invalid_argument("a bay of " + std::to_string(nodes) +
+    refuse("E-CONDENSE-03", "a bay of " + std::to_string(nodes) +
                                 " nodes keeps every one, or each second, third and so on; accepted "
                                 "are divisors of that");
   std::vector<int> kept;
@@ -142,7 +142,7 @@ Eigen::MatrixXd irs_shapes(const Line& line, const std::vector<int>& kept) {
                         reduced_K = T.transpose() * (line.stiffness * T);
   const Eigen::LLT<Eigen::MatrixXd> mass(reduced_M);
   if (mass.info() != Eigen::Success)
-    throw std::invalid_argument("the kept unknowns of a line carry no mass");
+    refuse("E-CONDENSE-04", "the kept unknowns of a line carry no mass");
   const Eigen::MatrixXd inertia = line.mass * (T * mass.solve(reduced_K));
   return T + held.under(parts.pick_following.transpose() * inertia);
 }
@@ -155,10 +155,10 @@ Eigen::MatrixXd craig_bampton_shapes(const Line& line, const std::vector<int>& i
   std::vector<Eigen::VectorXd> found;
   for (const std::vector<int>& part : connected(held.stiffness())) {
     if (part.size() > static_cast<std::size_t>(kMostPartUnknowns))
-      throw std::invalid_argument(
-          "the seats do not cut the track into bays of their own: one part "
-          "has " +
-          std::to_string(part.size()) + " unknowns");
+      refuse("E-CONDENSE-05",
+             "the seats do not cut the track into bays of their own: one part "
+             "has " +
+                 std::to_string(part.size()) + " unknowns");
     const Eigen::MatrixXd shapes =
         lowest(block(held.stiffness(), part), block(mass, part), modes, highest_hz);
     for (const auto& shape : shapes.colwise()) {

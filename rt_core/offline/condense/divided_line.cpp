@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <stdexcept>
 
 #include "offline/analysis/free_motion.h"
 #include "offline/condense/line_flexibility.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -94,8 +94,8 @@ void DividedLine::find_spans() {
 void DividedLine::refuse_free_modes() const {
   if (held_) return;
   railstep::refuse_free_modes(track_, {line_}, {});  // by its name
-  throw std::invalid_argument(
-      "residual flexibility needs a track that is held: it has a free rigid mode");
+  refuse("E-CONDENSE-06",
+         "residual flexibility needs a track that is held: it has a free rigid mode");
 }
 
 /// From a rail's own unknowns to the line's.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "offline/track/pad.h"
 
 namespace railstep {
@@ -80,7 +80,7 @@ bool carries_any(const std::vector<int>& carried, bool upright) {
 void check_functional(const Track& track, const Functional& functional) {
   const auto check = [&](int rail, int direction, int most) {
     if (rail < 0 || rail >= track.rails || direction < 0 || direction > most)
-      throw std::out_of_range("a functional names a rail or a direction that the track lacks");
+      refuse("E-CONDENSE-07", "a functional names a rail or a direction that the track lacks");
   };
   for (const Functional::OnRail& point : functional.rail) {
     check(point.at.rail, point.at.direction, 2);
@@ -89,7 +89,7 @@ void check_functional(const Track& track, const Functional& functional) {
   for (const Functional::OnSleeper& at : functional.sleeper) {
     check(at.rail, at.direction, 3);
     if (at.seat < 0 || at.seat > track.bays || !track.seat(at.seat).sleeper)
-      throw std::out_of_range("a functional names a sleeper that the track lacks");
+      refuse("E-CONDENSE-08", "a functional names a sleeper that the track lacks");
   }
 }
 
@@ -123,9 +123,9 @@ ResidualFlexibility::~ResidualFlexibility() = default;
 ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
                                          const std::vector<Basis>& bases, int points)
     : track_(track), lines_(lines), bases_(bases), points_(points) {
-  if (points < 3) throw std::invalid_argument("residual flexibility needs 3 intervals or more");
+  if (points < 3) refuse("E-CONDENSE-09", "residual flexibility needs 3 intervals or more");
   if (!bases.empty() && bases.size() != lines.size())
-    throw std::invalid_argument("residual flexibility needs one basis per line, or none");
+    refuse("E-CONDENSE-10", "residual flexibility needs one basis per line, or none");
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const Line& line = lines_[i];
     const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
@@ -145,7 +145,7 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
 /// Weight of the port in the line, 0 if it does not move the line.
 double ResidualFlexibility::weight(const Pair& pair, Port port) const {
   if (port.rail < 0 || port.rail >= track_.rails)
-    throw std::invalid_argument("residual flexibility is asked on a rail that the track lacks");
+    refuse("E-CONDENSE-11", "residual flexibility is asked on a rail that the track lacks");
   const auto rail = static_cast<std::size_t>(port.rail);
   double row[9];
   height_row(track_.lean(port.rail), port.y, port.z, row);
@@ -282,7 +282,7 @@ double ResidualFlexibility::largest_exact(Port port) const {
 
 PairTable ResidualFlexibility::between(Port a, Port b, int points, int most) const {
   if (points < 1 || points_ % points != 0)
-    throw std::invalid_argument("a table between ports takes a divisor of the points of the track");
+    refuse("E-CONDENSE-12", "a table between ports takes a divisor of the points of the track");
   most = std::min(most, track_.elements() - 1);
   const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
   const int elements = tabled_elements(track_);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <stdexcept>
 
 #include "offline/irregularity/sincos.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -103,7 +103,7 @@ class Blocks {
         std::conj(step) * block_[0] + block_[1].cast<std::complex<double>>() + step * block_[2];
     const Eigen::MatrixXcd turned = T.adjoint() * A * T;
     if (!(turned.imag().norm() <= 1e-9 * turned.norm()))
-      throw std::invalid_argument("a bay of a ring is not its own mirror image about its seat");
+      refuse("E-CONDENSE-13", "a bay of a ring is not its own mirror image about its seat");
     return .5 * (turned.real() + turned.real().transpose());
   }
 

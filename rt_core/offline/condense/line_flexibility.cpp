@@ -1,8 +1,8 @@
 #include "offline/condense/line_flexibility.h"
 
 #include <algorithm>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "offline/track/pad.h"
 #include "offline/track/squeeze.h"
 
@@ -34,7 +34,7 @@ Line matching(const Track& other, const Line& line) {
   for (Line& there : assemble(other))
     if (there.rail_factor == line.rail_factor && carries_all(there, 0) && carries_all(there, 1))
       return std::move(there);
-  throw std::invalid_argument("a line is not one of its track's");
+  refuse("E-CONDENSE-14", "a line is not one of its track's");
 }
 
 namespace {

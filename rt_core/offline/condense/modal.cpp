@@ -6,13 +6,13 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "offline/analysis/modes.h"
 #include "offline/analysis/statics.h"
 #include "offline/condense/damped_shapes.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -94,7 +94,7 @@ void complete(DampedModes& modes, const Eigen::VectorXd& omega) {
   text << "modes share one shape, as their damping is near to critical (completeness is missed by "
        << std::setprecision(2) << error << ", their equation by " << off
        << "); change the number of modes, or step the full track";
-  throw std::invalid_argument(text.str());
+  refuse("E-CONDENSE-15", text.str());
 }
 
 }  // namespace
@@ -102,10 +102,10 @@ void complete(DampedModes& modes, const Eigen::VectorXd& omega) {
 Basis modal_basis(const Line& line, const ModalLimit& limit,
                   const Eigen::SparseMatrix<double>& rows) {
   if (line.unknowns() > kMostModalUnknowns)
-    throw std::invalid_argument(
-        "modes of a line of " + std::to_string(line.unknowns()) + " unknowns; accepted are " +
-        std::to_string(kMostModalUnknowns) +
-        ": step it in full order, cut it shorter, or drive on a track without end");
+    refuse("E-CONDENSE-16",
+           "modes of a line of " + std::to_string(line.unknowns()) + " unknowns; accepted are " +
+               std::to_string(kMostModalUnknowns) +
+               ": step it in full order, cut it shorter, or drive on a track without end");
   int count = std::min(limit.most, line.unknowns());
   if (std::isfinite(limit.highest_hz)) count = std::min(count, modes_below(line, limit.highest_hz));
   const Modes lowest = lowest_modes(line, std::max(count, 1));
@@ -134,7 +134,7 @@ DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& 
   A.bottomRightCorner(m, m) = -D;
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   if (solver.info() != Eigen::Success)
-    throw std::invalid_argument("the damped modes of a line were not found");
+    refuse("E-CONDENSE-17", "the damped modes of a line were not found");
   DampedShapes found = damped_shapes(basis.omega, D, solver.eigenvalues(), solver.eigenvectors());
   DampedModes result{std::move(found.rate), std::move(found.shape), D};
   complete(result, basis.omega);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <stdexcept>
 #include <string>
 
 #include "offline/analysis/krylov.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -40,7 +40,7 @@ Eigen::MatrixXcd response(const Line& line, const Eigen::MatrixXd& forces, doubl
   const Eigen::SparseLU<Eigen::SparseMatrix<std::complex<double>>> factor(
       dynamic_stiffness(line, {0., 2. * M_PI * hz}));
   if (factor.info() != Eigen::Success)
-    throw std::invalid_argument("the track resonates without damping at the expansion point of " +
+    refuse("E-CONDENSE-18", "the track resonates without damping at the expansion point of " +
                                 std::to_string(hz) + " Hz; accepted is another");
   return factor.solve(forces.cast<std::complex<double>>().eval());
 }

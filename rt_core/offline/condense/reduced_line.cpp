@@ -1,16 +1,16 @@
 #include <map>
-#include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
 ReducedLine::ReducedLine(const Track& track, const Line& line, const Basis& basis)
     : track_(track), line_(line), basis_(basis) {
   if (basis.shapes.rows() != line.unknowns() || basis.shapes.cols() != basis.omega.size())
-    throw std::invalid_argument("a basis has one row per unknown of its line, one omega per shape");
+    refuse("E-CONDENSE-19", "a basis has one row per unknown of its line, one omega per shape");
   if (basis.omega.size() > 0 && !(basis.omega.minCoeff() > 0.))
-    throw std::invalid_argument("a basis for residual flexibility has no free rigid mode");
+    refuse("E-CONDENSE-20", "a basis for residual flexibility has no free rigid mode");
 }
 
 /// The line's unknowns at each place of some elements of a rail that a port reads, and their part.

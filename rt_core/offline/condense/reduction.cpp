@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
 #include "offline/condense/component.h"
 #include "offline/condense/rational_krylov.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -44,7 +44,8 @@ constexpr double kMostExcess = 1e-2;
 void refuse_damped_massless(const Line& line) {
   for (int i = 0; i < line.unknowns(); ++i)
     if (!(line.mass.coeff(i, i) > 0.) && line.damping.coeff(i, i) > 0.)
-      throw std::invalid_argument(
+      refuse(
+          "E-CONDENSE-21",
           "dampers hold a sleeper without mass, which a condensed track does not carry; accepted "
           "are a mass, no damping there, or full order");
 }
@@ -77,7 +78,8 @@ ReducedLineModel truncated(const Line& line, const ModalLimit& limit) {
     most = made.modes.rate.size() - 1;
   } while (most > 0 && excess(made.basis) > kMostExcess);
   if (made.modes.rate.size() == 0 || excess(made.basis) > kMostExcess)
-    throw std::invalid_argument(
+    refuse(
+        "E-CONDENSE-22",
         "no few damped modes stand for a line alone: it keeps one or more, and none without the "
         "one that is alike but for near critical damping; accepted are more modes or another kind");
   made.basis.at_once = at_once_of(made.modes);
@@ -99,15 +101,16 @@ int kept_coordinates(const Basis& basis, const ModeGroups& modes) {
 ReducedLineModel reduce(const Track& track, const Line& line, const Reduction& reduction,
                         const Eigen::SparseMatrix<double>& rows) {
   if (line.unknowns() > kMostModalUnknowns)
-    throw std::invalid_argument(
-        "a line of " + std::to_string(line.unknowns()) + " unknowns is condensed; accepted are " +
-        std::to_string(kMostModalUnknowns) +
-        ": step it in full order, cut it shorter, or drive on a track without end");
+    refuse("E-CONDENSE-23",
+           "a line of " + std::to_string(line.unknowns()) +
+               " unknowns is condensed; accepted are " + std::to_string(kMostModalUnknowns) +
+               ": step it in full order, cut it shorter, or drive on a track without end");
   refuse_damped_massless(line);
   const ModalLimit most = limit_of(line, reduction);
   if (reduction.kind == ReductionKind::complex_modes) {
     if (filled_columns(rows, line.unknowns()).cols() > 0)
-      throw std::invalid_argument(
+      refuse(
+          "E-CONDENSE-24",
           "truncated damped modes do not answer one-sided supports, stops and gaps; accepted for "
           "such a track are the other kinds");
     return truncated(line, most);

@@ -1,8 +1,8 @@
-#include <stdexcept>
 
 #include "offline/analysis/free_motion.h"
 #include "offline/condense/line_flexibility.h"
 #include "offline/element/shape.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -48,8 +48,8 @@ RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)
 void RefinedLine::refuse_free_modes() const {
   if (held_) return;
   railstep::refuse_free_modes(track_, {line_}, {});  // by its name
-  throw std::invalid_argument(
-      "residual flexibility needs a track that is held: it has a free rigid mode");
+  refuse("E-CONDENSE-06",
+         "residual flexibility needs a track that is held: it has a free rigid mode");
 }
 
 Eigen::SparseMatrix<double> RefinedLine::columns(const Port& port, int element, int points) const {

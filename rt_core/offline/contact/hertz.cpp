@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 namespace {
 
 void require(bool holds, const char* what, double got) {
-  if (!holds) throw std::invalid_argument(std::string(what) + ", it is " + std::to_string(got));
+  if (!holds) refuse("E-CONTACT-01", std::string(what) + ", it is " + std::to_string(got));
 }
 
 /// What the axes need of m; ratio = (E/k^2 - K)/(K - E) falls from infinity at k = 0 to 1 at k = 1.

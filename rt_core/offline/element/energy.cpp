@@ -3,12 +3,12 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "offline/element/polynomial.h"
 #include "offline/element/shape.h"
 #include "offline/math/gauss.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -62,9 +62,9 @@ Metric metric(const RestPoint& p) {
   const double volume = A.determinant();
   const Vector3d normal = p.a.cross(p.b);
   if (!(volume > 1e-6 * p.r.norm() * p.a.norm() * p.b.norm()))
-    throw std::invalid_argument(
-        "the nodes of an element at rest make no section: r', r_y and r_z "
-        "are to be three directions, right-handed");
+    refuse("E-ELEMENT-01",
+           "the nodes of an element at rest make no section: r', r_y and r_z "
+           "are to be three directions, right-handed");
   const Vector3d e1 = normal.normalized(), e2 = p.a.normalized();
   frame << e1, e2, e1.cross(e2);
   const Matrix3d inverse = A.inverse(), B = inverse * frame;
@@ -219,8 +219,8 @@ void check_curvature(const RestPoint& p, const SectionMoments& m) {
   const double bent = std::abs((inverse * p.a_slope)[0]) * reach(m.of[4][0]) +
                       std::abs((inverse * p.b_slope)[0]) * reach(m.of[0][4]);
   if (!(bent <= .5))
-    throw std::invalid_argument("an element at rest is curved too sharply: half its section is " +
-                                std::to_string(bent) + " of the radius; accepted is up to 0.5");
+    refuse("E-ELEMENT-02", "an element at rest is curved too sharply: half its section is " +
+                               std::to_string(bent) + " of the radius; accepted is up to 0.5");
 }
 
 enum class Part { both, uncoupled, coupling };
@@ -276,7 +276,7 @@ BeamPoint straight_point(const BeamLaw& law, double weight) {
 
 Beam beam_element(const BeamLaw& law, const Vector27& rest) {
   const double length = (rest.segment<3>(18) - rest.segment<3>(0)).norm();
-  if (!(length > 0.)) throw std::invalid_argument("an element's end nodes lie in one place");
+  if (!(length > 0.)) refuse("E-ELEMENT-03", "an element's end nodes lie in one place");
   const int apart = law.rule.coupling_points;
   const bool together = apart == 0 || apart == law.rule.axial_points;
   Beam beam{};

@@ -1,14 +1,14 @@
 #include "offline/element/straight_beam.h"
 
-#include <stdexcept>
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
 StraightBeam straight_beam(const BeamLaw& law, double length) {
-  if (!(length > 0.)) throw std::invalid_argument("a straight element has a length above 0");
+  if (!(length > 0.)) refuse("E-ELEMENT-04", "a straight element has a length above 0");
   const int apart = law.rule.coupling_points;
   if (law.rule.axial_points != 2 || (apart != 0 && apart != 2))
-    throw std::invalid_argument("the straight element has two points for all strains, no others");
+    refuse("E-ELEMENT-05", "the straight element has two points for all strains, no others");
   const BeamPoint point = straight_point(law, length / 2.);
 
   StraightBeam beam{};
@@ -22,8 +22,7 @@ StraightBeam straight_beam(const BeamLaw& law, double length) {
       if (c >= 0) beam.stiffness[c] = point.stiffness[k][l];
       fits = fits && (c >= 0 || point.stiffness[k][l] == 0.);
     }
-    if (!fits)
-      throw std::invalid_argument("the straight element needs a section symmetric about y = 0");
+    if (!fits) refuse("E-ELEMENT-06", "the straight element needs a section symmetric about y = 0");
   }
   return beam;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "offline/irregularity/sincos.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -14,7 +14,7 @@ constexpr double kTwoPi = 6.28318530717958647692;
 
 int whole_steps(double length, double step) {
   if (!(length > 0.) || !(step > 0.) || !(length / step < kMostDefectSteps))
-    throw std::invalid_argument("a defect's length and step are above 0, with 1e7 steps at most");
+    refuse("E-IRREGULARITY-01", "a defect's length and step are above 0, with 1e7 steps at most");
   return static_cast<int>(std::ceil(length / step * (1. - 1e-12)));
 }
 
@@ -25,8 +25,8 @@ Signal around(double place, double half, const DefectGrid& grid, const Shape& sh
   const int steps = whole_steps(half, grid.step);
   const double step = half / steps;
   if (!(grid.patch / step < kMostDefectSteps))
-    throw std::invalid_argument(
-        "a defect is so short that its contact patch holds over 1e7 of its steps");
+    refuse("E-IRREGULARITY-02",
+           "a defect is so short that its contact patch holds over 1e7 of its steps");
   const int beyond = static_cast<int>(std::ceil(grid.patch / step)) + 1;
   std::vector<double> samples;
   for (int k = -steps - beyond; k <= steps + beyond; ++k)
@@ -46,7 +46,7 @@ Signal on_wheel(double radius, const DefectGrid& grid, const Shape& shape) {
 
 void want_flat(double radius, double length) {
   if (!(length > 0.) || !(length < radius))
-    throw std::invalid_argument("a flat is shorter than the wheel's radius");
+    refuse("E-IRREGULARITY-03", "a flat is shorter than the wheel's radius");
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ Signal corrugation(double from, double to, double wavelength, double amplitude,
                    const DefectGrid& grid) {
   const double half = .5 * (to - from);
   if (!(wavelength > 0.) || !(half >= wavelength))
-    throw std::invalid_argument("corrugation is two wavelengths long or more");
+    refuse("E-IRREGULARITY-04", "corrugation is two wavelengths long or more");
   return around(.5 * (from + to), half, grid, [=](double x) {
     const double to_end = (half - std::fabs(x)) / wavelength;
     const double fade = to_end < 1. ? .5 * (1. - cosine_sine(.5 * to_end).cosine) : 1.;
@@ -87,7 +87,7 @@ Signal rounded_flat(double radius, double length, double depth, const DefectGrid
 }
 
 Signal out_of_round(double radius, int order, double amplitude, const DefectGrid& grid) {
-  if (order < 1) throw std::invalid_argument("an out-of-round wheel has an order of 1 or more");
+  if (order < 1) refuse("E-IRREGULARITY-05", "an out-of-round wheel has an order of 1 or more");
   return on_wheel(radius, grid, [=](double x) {
     return amplitude * cosine_sine(order * x / (kTwoPi * radius)).cosine;
   });

@@ -1,10 +1,10 @@
 #include "offline/irregularity/generate.h"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "offline/irregularity/random.h"
 #include "offline/irregularity/sincos.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -19,16 +19,16 @@ struct Waves {
 Waves waves_of(const GenerateOptions& o) {
   if (!(o.shortest > 0.) || !(o.longest >= o.shortest) || !(o.length >= o.longest) ||
       !(o.patch >= 0.))
-    throw std::invalid_argument(
-        "wavelengths want 0 < shortest <= longest <= length, and a patch of 0 m or more");
+    refuse("E-IRREGULARITY-06",
+           "wavelengths want 0 < shortest <= longest <= length, and a patch of 0 m or more");
   // Whole numbers of waves are kept where rounding leaves a quotient beside them.
   const double low = o.length / o.longest, high = o.length / o.shortest;
   if (!(high * kSamplesPerWave * (high - low) < kMostGenerated))
-    throw std::invalid_argument("more waves and samples than are generated in seconds");
+    refuse("E-IRREGULARITY-07", "more waves and samples than are generated in seconds");
   const Waves waves = {static_cast<std::int64_t>(std::ceil(low * (1. - 1e-12))),
                        static_cast<std::int64_t>(std::floor(high * (1. + 1e-12))),
                        kSamplesPerWave * static_cast<std::int64_t>(std::ceil(high))};
-  if (waves.last < waves.first) throw std::invalid_argument("no whole wave lies in the band");
+  if (waves.last < waves.first) refuse("E-IRREGULARITY-08", "no whole wave lies in the band");
   return waves;
 }
 

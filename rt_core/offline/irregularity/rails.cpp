@@ -1,6 +1,6 @@
 #include "offline/irregularity/rails.h"
 
-#include <stdexcept>
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -16,7 +16,7 @@ Signal combined(const Signal& mean, const Signal& difference, double factor) {
   }
   if (sum.coefficient.size() != difference.coefficient.size() || sum.start != difference.start ||
       sum.step != difference.step || sum.periodic != difference.periodic)
-    throw std::invalid_argument("a track's geometries want the same places");
+    refuse("E-IRREGULARITY-09", "a track's geometries want the same places");
   for (std::size_t i = 0; i < sum.coefficient.size(); ++i)
     sum.coefficient[i] += factor * difference.coefficient[i];
   return sum;

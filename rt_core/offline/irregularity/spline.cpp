@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -69,8 +70,8 @@ SignalModel Signal::model() const {
 }
 
 Signal fit_signal(const std::vector<double>& samples, double start, double step, bool periodic) {
-  if (samples.empty()) throw std::invalid_argument("a signal has one sample or more");
-  if (!(step > 0.)) throw std::invalid_argument("a signal's step is above 0");
+  if (samples.empty()) refuse("E-IRREGULARITY-10", "a signal has one sample or more");
+  if (!(step > 0.)) refuse("E-IRREGULARITY-11", "a signal's step is above 0");
   const int n = static_cast<int>(samples.size());
   std::vector<double> longer;
   for (int k = -kBeyond; k < n + kBeyond; ++k) {

@@ -3,8 +3,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "online/math/sha256.h"
 #include "online/model/describe.h"
 #include "online/model/load_model.h"
@@ -26,9 +26,8 @@ class Writer {
 
   void count(std::int32_t& value, std::int64_t most) {
     if (value < 0 || value > most)
-      throw std::invalid_argument("a model too large to be written: " + std::to_string(value) +
-                                  " of something of which " + std::to_string(most) +
-                                  " are accepted");
+      refuse("E-PACK-01", "a model too large to be written: " + std::to_string(value) +
+                              " of something of which " + std::to_string(most) + " are accepted");
     integer(value);
   }
   void integer(std::int64_t value) { put(kWords, &value, 1); }

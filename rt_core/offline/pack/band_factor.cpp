@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 namespace {
@@ -72,8 +73,8 @@ Block cholesky(const Block& D, int panel) {
       for (int k = 0; k < j; ++k)
         sum -= G[static_cast<std::size_t>(at(i, k))] * G[static_cast<std::size_t>(at(j, k))];
       if (i == j && !(sum > 0.0 && std::isfinite(sum)))
-        throw std::invalid_argument("the matrix is not positive definite at unknown " +
-                                    std::to_string(panel * kLanes + j));
+        refuse("E-PACK-02", "the matrix is not positive definite at unknown " +
+                                std::to_string(panel * kLanes + j));
       G[static_cast<std::size_t>(at(i, j))] =
           i == j ? std::sqrt(sum) : sum / G[static_cast<std::size_t>(at(j, j))];
     }
@@ -122,8 +123,8 @@ void factor(BlockBand& band) {
 
 BandFactor factor_band(const Eigen::SparseMatrix<double>& A) {
   if (A.rows() == 0 || A.rows() != A.cols())
-    throw std::invalid_argument("a band matrix to factor must be square and not empty, it is " +
-                                std::to_string(A.rows()) + " by " + std::to_string(A.cols()));
+    refuse("E-PACK-03", "a band matrix to factor must be square and not empty, it is " +
+                            std::to_string(A.rows()) + " by " + std::to_string(A.cols()));
   BlockBand band = gather(A);
   factor(band);
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "offline/analysis/free_motion.h"
 #include "offline/contact/hertz.h"
 #include "offline/cost/cost.h"
+#include "offline/math/refuse.h"
 #include "offline/pack/released.h"
 #include "online/model/external_input.h"
 
@@ -79,8 +79,8 @@ std::int32_t PackedModel::load_point_at(const Port& port) {
         load_points_[i].y == port.y)
       return static_cast<std::int32_t>(i);
   if (load_points_.size() == static_cast<std::size_t>(kMaxLoadPoints))
-    throw std::invalid_argument("vertical forces act at more than " +
-                                std::to_string(kMaxLoadPoints) + " heights, counted for each rail");
+    refuse("E-PACK-04", "vertical forces act at more than " + std::to_string(kMaxLoadPoints) +
+                            " heights, counted for each rail");
   load_points_.push_back(port);
   return static_cast<std::int32_t>(load_points_.size()) - 1;
 }
@@ -93,9 +93,9 @@ std::int32_t PackedModel::load_point_of_wheel(int rail) {
 
 void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   if (model_.loads == kMaxLoads)
-    throw std::invalid_argument("more than " + std::to_string(kMaxLoads) + " loads");
+    refuse("E-PACK-05", "more than " + std::to_string(kMaxLoads) + " loads");
   if (load.rail < 0 || load.rail >= track.rails)
-    throw std::invalid_argument("a load stands on a rail that the track does not have");
+    refuse("E-PACK-06", "a load stands on a rail that the track does not have");
   LoadModel& packed = model_.load[model_.loads++];
   height_row(model_.cant[load.rail], 0., load.z, packed.row);
   packed.rail = load.rail;
@@ -113,25 +113,25 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
 
 void PackedModel::add_irregularity(const Track& track, const RailIrregularity& irregularity) {
   if (model_.signals == kMaxSignals)
-    throw std::invalid_argument("more than " + std::to_string(kMaxSignals) +
-                                " irregularities and defects of the rails");
+    refuse("E-PACK-07",
+           "more than " + std::to_string(kMaxSignals) + " irregularities and defects of the rails");
   if (irregularity.rail < 0 || irregularity.rail >= track.rails)
-    throw std::invalid_argument("an irregularity of a rail that the track does not have");
+    refuse("E-PACK-08", "an irregularity of a rail that the track does not have");
   if (irregularity.direction != 1 && irregularity.direction != 2)
-    throw std::invalid_argument("an irregularity is lateral or vertical");
+    refuse("E-PACK-09", "an irregularity is lateral or vertical");
   model_.signal[model_.signals++] = {irregularity.rail, irregularity.direction,
                                      keep(irregularity.signal)};
 }
 
 void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
                                const std::array<Railhead, 2>& heads) {
-  if (track.rails != 2) throw std::invalid_argument("a wheelset stands on two rails");
+  if (track.rails != 2) refuse("E-PACK-10", "a wheelset stands on two rails");
   if (model_.wheelsets == kMaxWheelsets)
-    throw std::invalid_argument("more than " + std::to_string(kMaxWheelsets) + " wheelsets");
+    refuse("E-PACK-11", "more than " + std::to_string(kMaxWheelsets) + " wheelsets");
   for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
                                wheelset.inertia_yaw, wheelset.radius})
     if (!(inertia > 0.))
-      throw std::invalid_argument("a wheelset's mass, inertias and radius are above zero");
+      refuse("E-PACK-12", "a wheelset's mass, inertias and radius are above zero");
   WheelsetModel& packed = model_.wheelset[model_.wheelsets++];
   packed.first = model_.unknowns;
   model_.unknowns += 8;
@@ -167,10 +167,10 @@ std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce*
                                const char* bearer) {
   const std::string on = std::string(" on a ") + bearer;
   if (forces.size() > static_cast<std::size_t>(kMaxBodyForces))
-    throw std::invalid_argument("more than " + std::to_string(kMaxBodyForces) + " forces" + on);
+    refuse("E-PACK-13", "more than " + std::to_string(kMaxBodyForces) + " forces" + on);
   for (const OuterForce& own : forces) {
     if (own.input >= model_.inputs || (own.input >= 0) != own.table.empty())
-      throw std::invalid_argument("a force" + on + " has a table, or an input of its own");
+      refuse("E-PACK-14", "a force" + on + " has a table, or an input of its own");
     *force++ = {own.direction, static_cast<std::int32_t>(own.table.size() / 2), keep(own.table),
                 own.input};
   }
@@ -182,10 +182,10 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
                              const std::array<Railhead, 2>& heads) {
   const Flange& flange = *wheelset.flange;
   if (track.cant != 0.)
-    throw std::invalid_argument("flanges meet the heads of upright rails; accepted is no cant");
+    refuse("E-PACK-15", "flanges meet the heads of upright rails; accepted is no cant");
   FlangeModel& packed = model_.flange[model_.flanges++];
   if (contact_count(model_) > kMaxWheels)
-    throw std::invalid_argument("more than " + std::to_string(kMaxWheels) + " wheels and flanges");
+    refuse("E-PACK-16", "more than " + std::to_string(kMaxWheels) + " wheels and flanges");
   packed.wheelset = model_.wheelsets - 1;
   packed.normal[0] = -std::sin(flange.angle);
   packed.normal[1] = std::cos(flange.angle);
@@ -208,15 +208,16 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
 
 void PackedModel::set_start(std::vector<double> state) {
   if (static_cast<std::int64_t>(state.size()) != state_doubles(model_))
-    throw std::invalid_argument("a start that is not a state of this model");
+    refuse("E-PACK-17", "a start that is not a state of this model");
   model_.start = keep(std::move(state));
 }
 
 PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackOptions& options) {
-  if (options.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
+  if (options.steps_per_frame < 1) refuse("E-PACK-18", "a frame has one step or more");
   model_.scheme = options.scheme;
   if (options.scheme.mean != 0 && !options.reduction)
-    throw std::invalid_argument(
+    refuse(
+        "E-PACK-19",
         "contact forces that are means over the step are held over it, as with condensed tracks");
   model_.steps_per_frame = options.steps_per_frame;
   // A model always has a run: of one frame where none is told.
@@ -240,7 +241,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   }
   model_.form = options.reduction ? Form::condensed : Form::banded;
   if (track.cant != 0. && !traffic.held.empty())
-    throw std::invalid_argument("bodies hold on to rails that stand upright; accepted is no cant");
+    refuse("E-PACK-20", "bodies hold on to rails that stand upright; accepted is no cant");
   met_ = {0, track.elements()};
   if (options.endless) add_endless(track, traffic, options);
   add_lines(track, traffic, options);
@@ -273,7 +274,7 @@ void PackedModel::add_lines(const Track& track, const Traffic& traffic,
     kept.push_back({{}, i, closing, {}, {}});
     moved.push_back(std::move(lines[i]));
   }
-  if (moved.empty()) throw std::invalid_argument("nothing moves the track");
+  if (moved.empty()) refuse("E-PACK-21", "nothing moves the track");
   // Whatever the start: what runs on it would push the track away.
   refuse_free_modes(track, moved,
                     options.reduction ? std::vector<FixedPort>{} : fixed_ports(track));
@@ -285,25 +286,24 @@ void PackedModel::add_lines(const Track& track, const Traffic& traffic,
 
 void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
   if (model_.external_wheels == kMaxExternalWheels)
-    throw std::invalid_argument("more than " + std::to_string(kMaxExternalWheels) +
-                                " external wheels");
+    refuse("E-PACK-22", "more than " + std::to_string(kMaxExternalWheels) + " external wheels");
   if (wheel.rail < 0 || wheel.rail >= track.rails)
-    throw std::invalid_argument("an external wheel is on a rail that the track does not have");
+    refuse("E-PACK-23", "an external wheel is on a rail that the track does not have");
   if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.fixed.count > 0)
-    throw std::invalid_argument(
-        "external wheels run on a track that is linear: beside loads, and without wheelsets, "
-        "vehicles, stops, joints with a gap and supports that do not pull");
+    refuse("E-PACK-24",
+           "external wheels run on a track that is linear: beside loads, and without wheelsets, "
+           "vehicles, stops, joints with a gap and supports that do not pull");
   for (const PackedLine& own : lines_)
     if (own.basis.flexibility.size() > 0)
-      throw std::invalid_argument(
+      refuse(
+          "E-PACK-25",
           "truncated damped modes do not know the velocity under external wheels; accepted are the "
           "other kinds of condensed tracks, and full order");
-  if (model_.steps_per_frame != 1)
-    throw std::invalid_argument("external wheels want a frame of one step");
+  if (model_.steps_per_frame != 1) refuse("E-PACK-26", "external wheels want a frame of one step");
   if (model_.scheme.part > 0.)
-    throw std::invalid_argument(
-        "external wheels press at the ends of steps; accepted is a scheme of one stage, which "
-        "TR-BDF2 is not");
+    refuse("E-PACK-27",
+           "external wheels press at the ends of steps; accepted is a scheme of one stage, which "
+           "TR-BDF2 is not");
   constexpr double kFar = 1e9;  // m
   const std::int32_t input = model_.inputs;
   std::vector<double> limits(kExternalInputs, wheel.limit);
@@ -316,9 +316,9 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
 void take_inputs(const std::vector<double>& limits, Model& model) {
   for (const double limit : limits) {
     if (model.inputs == kMaxInputs)
-      throw std::invalid_argument("more than " + std::to_string(kMaxInputs) + " inputs");
+      refuse("E-PACK-28", "more than " + std::to_string(kMaxInputs) + " inputs");
     if (!(limit > 0.) || !std::isfinite(limit))
-      throw std::invalid_argument("an input's limit is a finite number above 0");
+      refuse("E-PACK-29", "an input's limit is a finite number above 0");
     model.input_limit[model.inputs++] = limit;
   }
 }

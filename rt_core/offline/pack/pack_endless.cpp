@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "offline/analysis/decay_length.h"
 #include "offline/analysis/statics.h"
+#include "offline/math/refuse.h"
 #include "offline/pack/pack.h"
 #include "offline/pack/pack_progress.h"
 
@@ -18,7 +18,7 @@ double speed_of(const Traffic& traffic) {
   std::vector<double> speeds;
   const auto add = [&](double speed, const std::vector<double>& table) {
     if (!table.empty())
-      throw std::invalid_argument("on a track without end all runs at one speed, without a table");
+      refuse("E-PACK-30", "on a track without end all runs at one speed, without a table");
     speeds.push_back(speed);
   };
   for (const MovingLoad& load : traffic.loads) add(load.speed, load.speeds);
@@ -26,7 +26,7 @@ double speed_of(const Traffic& traffic) {
   for (const RunningVehicle& vehicle : traffic.vehicles) add(vehicle.speed, vehicle.speeds);
   for (const double speed : speeds)
     if (speed != speeds[0])
-      throw std::invalid_argument("on a track without end all that runs has one speed");
+      refuse("E-PACK-31", "on a track without end all that runs has one speed");
   return speeds.empty() ? 0. : speeds[0];
 }
 
@@ -58,8 +58,8 @@ std::string too_short(const Track& track, double span, double decay) {
 void PackedModel::add_endless(const Track& track, const Traffic& traffic,
                               const PackOptions& options) {
   if (track.ring != options.reduction.has_value())
-    throw std::invalid_argument(
-        "a track without end is a ring where it is condensed, and a window in full order");
+    refuse("E-PACK-32",
+           "a track without end is a ring where it is condensed, and a window in full order");
   const double bay = track.bay_length;
   const auto [first, last] = span_of(traffic);
   Endless& e = model_.endless;
@@ -71,7 +71,7 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
                before = track.length() - (e.origin + last + bay);
   const bool room = track.ring ? behind + before >= decay && behind >= bay && before >= bay
                                : behind >= decay && before >= decay;
-  if (!room) throw std::invalid_argument(too_short(track, (last - first + bay), decay));
+  if (!room) refuse("E-PACK-33", too_short(track, (last - first + bay), decay));
   if (!track.ring || !traffic.external_wheels.empty() || !traffic.held.empty()) return;
   // Of a ring's shapes and tables no more is ever read: from a bay before all that runs to one
   // behind that to which it goes on, and the seats around a wheelset.

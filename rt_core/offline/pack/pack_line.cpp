@@ -1,9 +1,9 @@
 #include <cmath>
 #include <complex>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
+#include "offline/math/refuse.h"
 #include "offline/pack/band_factor.h"
 #include "offline/pack/pack.h"
 
@@ -175,8 +175,8 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
 
 void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions& options) {
   if (model_.lines == kMaxLines)
-    throw std::invalid_argument(
-        "the track falls into too many lines: under gravity each sleeper without pads is one");
+    refuse("E-PACK-34",
+           "the track falls into too many lines: under gravity each sleeper without pads is one");
   LineModel packed{};
   std::size_t twin = 0;
   while (twin < lines_.size() && !(same_but_for_the_rail(lines_[twin].line, own.line) &&

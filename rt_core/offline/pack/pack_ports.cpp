@@ -1,6 +1,6 @@
-#include <stdexcept>
 #include <string>
 
+#include "offline/math/refuse.h"
 #include "offline/pack/pack.h"
 #include "online/track/closing.h"
 
@@ -10,11 +10,11 @@ void PackedModel::add_fixed_ports(const Track& track) {
   const std::vector<FixedPort> ports = fixed_ports(track);
   if (ports.empty()) return;
   if (ports.size() > static_cast<std::size_t>(kMaxFixedPorts))
-    throw std::invalid_argument("the track has " + std::to_string(ports.size()) +
-                                " one-sided springs (stops, gaps of joints, and pads and ballast "
-                                "that do not pull or have a gap, a pad with a half spread as two); "
-                                "accepted are " +
-                                std::to_string(kMaxFixedPorts));
+    refuse("E-PACK-35", "the track has " + std::to_string(ports.size()) +
+                            " one-sided springs (stops, gaps of joints, and pads and ballast "
+                            "that do not pull or have a gap, a pad with a half spread as two); "
+                            "accepted are " +
+                            std::to_string(kMaxFixedPorts));
   FixedPortModel& fixed = model_.fixed;
   std::vector<double> stiffness, damping, gap;
   for (const FixedPort& port : ports) {

@@ -1,8 +1,8 @@
 #include "offline/pack/pack_progress.h"
 
 #include <cmath>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "online/model/progress.h"
 
 namespace railstep {
@@ -41,8 +41,7 @@ Convergents convergents_of(double x, std::int64_t most) {
 
 BayProgress bay_progress(double bays_per_step) {
   if (!(bays_per_step >= 0.) || !(bays_per_step < 1.))
-    throw std::invalid_argument(
-        "on a track without end traffic goes forward, less than a bay in a step");
+    refuse("E-PACK-36", "on a track without end traffic goes forward, less than a bay in a step");
   const Convergents found = convergents_of(bays_per_step, kMostSteps);
   if (!found.exact)
     return {std::int64_t{1} << 62, 0, static_cast<std::int64_t>(std::ldexp(bays_per_step, 62))};

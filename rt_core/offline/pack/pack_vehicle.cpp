@@ -1,9 +1,9 @@
 #include <Eigen/LU>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "offline/contact/hertz.h"
+#include "offline/math/refuse.h"
 #include "offline/pack/pack.h"
 #include "offline/pack/travel_rows.h"
 #include "online/math/table.h"
@@ -32,7 +32,7 @@ ContactModel contact_of(const RunningVehicle& vehicle, double radius, const Rail
   switch (vehicle.contact) {
     case WheelContactKind::linear:
       if (!(vehicle.stiffness > 0.) || !(vehicle.damping >= 0.))
-        throw std::invalid_argument("a linear contact has a stiffness above 0");
+        refuse("E-PACK-37", "a linear contact has a stiffness above 0");
       return {0., vehicle.stiffness, vehicle.damping};
     case WheelContactKind::bonded:
       return {0., kBonded, 0.};
@@ -58,7 +58,7 @@ TravelTable travel_table(double speed, const std::vector<double>& speeds) {
     double gone = 0.;
     if (!rows.empty()) {
       const double* last = rows.data() + rows.size() - 3;
-      if (!(t > last[0])) throw std::invalid_argument("the times of a table of speeds do not rise");
+      if (!(t > last[0])) refuse("E-PACK-38", "the times of a table of speeds do not rise");
       gone = last[2] + .5 * (t - last[0]) * (last[1] + v);
     }
     rows.insert(rows.end(), {t, v, gone});
@@ -79,20 +79,20 @@ TravelModel PackedModel::keep_travel(double speed, const std::vector<double>& sp
 void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
                               const std::array<Railhead, 2>& heads) {
   if (vehicle.rail < 0 || vehicle.rail >= track.rails)
-    throw std::invalid_argument("a vehicle stands on a rail that the track does not have");
+    refuse("E-PACK-39", "a vehicle stands on a rail that the track does not have");
   if (model_.vehicles == kMaxVehicles)
-    throw std::invalid_argument("more than " + std::to_string(kMaxVehicles) + " vehicles");
+    refuse("E-PACK-40", "more than " + std::to_string(kMaxVehicles) + " vehicles");
   const VehicleMatrices m = vehicle_matrices(vehicle.vehicle, vehicle.gravity);
   const auto n = static_cast<std::int32_t>(m.mass.rows());
   const auto wheels = static_cast<std::int32_t>(m.wheels.rows());
   if (n > kMaxVehicleUnknowns)
-    throw std::invalid_argument("more than " + std::to_string(kMaxVehicleUnknowns) +
-                                " coordinates of one vehicle");
+    refuse("E-PACK-41",
+           "more than " + std::to_string(kMaxVehicleUnknowns) + " coordinates of one vehicle");
   if (contact_count(model_) + wheels > kMaxWheels)
-    throw std::invalid_argument("more than " + std::to_string(kMaxWheels) +
-                                " wheels of wheelsets and vehicles");
+    refuse("E-PACK-42",
+           "more than " + std::to_string(kMaxWheels) + " wheels of wheelsets and vehicles");
   if (!vehicle.tread.empty() && vehicle.tread.size() != vehicle.vehicle.wheels.size())
-    throw std::invalid_argument("treads of a vehicle that are not one for each wheel");
+    refuse("E-PACK-43", "treads of a vehicle that are not one for each wheel");
   const auto rail = static_cast<std::size_t>(vehicle.rail);
   VehicleModel& packed = model_.vehicle[model_.vehicles];
   packed.first = model_.unknowns;
@@ -114,7 +114,7 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   packed.give = keep(row_by_row(give));
   for (const OuterForce& force : vehicle.forces)
     if (force.direction < 0 || force.direction >= n)
-      throw std::invalid_argument("a force along a coordinate that its vehicle does not have");
+      refuse("E-PACK-44", "a force along a coordinate that its vehicle does not have");
   packed.forces = keep(vehicle.forces, packed.force, "vehicle");
   packed.compliance = keep(row_by_row(.5 * (compliance + compliance.transpose())));
   for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i) {

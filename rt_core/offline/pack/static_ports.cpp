@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "online/contact/ports.h"
 
 namespace railstep {
@@ -22,8 +22,8 @@ Eigen::VectorXd static_port_forces(const Eigen::MatrixXd& compliance,
     met = solve_ports(n, compliance.data(), law.data(), free.data(), force.data(), depth.data())
               .status;
   if (met != PortStatus::converged)
-    throw std::invalid_argument(
-        "no equilibrium was found: the one-sided supports open and close without end");
+    refuse("E-PACK-50",
+           "no equilibrium was found: the one-sided supports open and close without end");
   return Eigen::Map<const Eigen::VectorXd>(force.data(), n);
 }
 

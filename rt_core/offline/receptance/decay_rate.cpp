@@ -1,7 +1,8 @@
 #include "offline/receptance/decay_rate.h"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -30,7 +31,7 @@ Eigen::VectorXd band_energy(Receptance& along, const ThirdOctave& band) {
 double decay_rate(const std::vector<double>& distance, const std::vector<double>& energy) {
   const std::size_t n = distance.size();
   if (n < 2 || energy.size() != n || distance[0] != 0.)
-    throw std::invalid_argument("a decay rate needs two positions from 0 on, an energy at each");
+    refuse("E-RECEPTANCE-01", "a decay rate needs two positions from 0 on, an energy at each");
   double sum = 0.;
   for (std::size_t i = 0; i < n; ++i) {
     const double before = i == 0 ? 0. : distance[i] - distance[i - 1];

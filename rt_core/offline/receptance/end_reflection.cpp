@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <stdexcept>
 
 #include "offline/condense/line_flexibility.h"
+#include "offline/math/refuse.h"
 #include "offline/track/end_zone.h"
 #include "offline/track/pad.h"
 
@@ -52,21 +52,21 @@ Matrix for_ever(Matrix part) {
     part = joined;
     if (change < 1e-14 * part.topLeftCorner(d, d).norm()) return part.topLeftCorner(d, d);
   }
-  throw std::runtime_error("a track without end needs damping where its waves run");
+  fail("E-RECEPTANCE-02", "a track without end needs damping where its waves run");
 }
 
 void check(const Track& track) {
   if (track.cant != 0.)
-    throw std::invalid_argument("the reflection of an end is that of upright rails");
+    refuse("E-RECEPTANCE-03", "the reflection of an end is that of upright rails");
   if (!track.changed_seats.empty() || track.right || has_long_pads(track) || track.state ||
       !track.joints.empty())
-    throw std::invalid_argument(
-        "the reflection of an end is that of a uniform track at rest: seats and rails alike, no "
-        "joints, pads "
-        "that are points");
+    refuse("E-RECEPTANCE-04",
+           "the reflection of an end is that of a uniform track at rest: seats and rails alike, no "
+           "joints, pads "
+           "that are points");
   if (track.ends[1] != RailEnd::free && track.ends[1] != RailEnd::non_reflecting)
-    throw std::invalid_argument("the reflection of a far end that is held is not asked for");
-  if (track.bays < 3) throw std::invalid_argument("a wave needs three bays or more");
+    refuse("E-RECEPTANCE-05", "the reflection of a far end that is held is not asked for");
+  if (track.bays < 3) refuse("E-RECEPTANCE-06", "a wave needs three bays or more");
 }
 
 /// Sections that do not strain: b_y = -a_z.
@@ -98,7 +98,7 @@ EndReflection::EndReflection(const Track& track, const Line& line, int direction
   carried_ = carried_unknowns(line, rail);
   const auto driven = std::find(carried_.begin(), carried_.end(), direction);
   if (driven == carried_.end())
-    throw std::invalid_argument("the line does not move in that direction");
+    refuse("E-RECEPTANCE-07", "the line does not move in that direction");
   driven_ = driven - carried_.begin();
   mirror_.resize(static_cast<Eigen::Index>(carried_.size()));
   for (std::size_t i = 0; i < carried_.size(); ++i)

@@ -4,8 +4,8 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "offline/track/pad.h"
 
 namespace railstep {
@@ -36,19 +36,19 @@ Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, const Eigen::Mat
     across = (-across * inverse * across).eval();
     if (change.norm() < 1e-14 * near.norm()) return near;
   }
-  throw std::runtime_error("a track without end needs damping where its waves run");
+  fail("E-RECEPTANCE-02", "a track without end needs damping where its waves run");
 }
 
 ExactRailReceptance::ExactRailReceptance(const Track& track, const Transfer& transfer,
                                          BeamTheory theory, bool endless)
     : track_(track), transfer_(transfer), beam_(bending_beam(track, theory)), endless_(endless) {
   if (track.cant != 0.)
-    throw std::invalid_argument("the exact beam stands for rails upright; accepted is no cant");
+    refuse("E-RECEPTANCE-08", "the exact beam stands for rails upright; accepted is no cant");
   if (track.axial_force != 0. || track.axis_z != 0.)
-    throw std::invalid_argument("the exact beam carries no axial force and is on the centroid");
+    refuse("E-RECEPTANCE-09", "the exact beam carries no axial force and is on the centroid");
   if (!track.changed_seats.empty() || track.right || has_long_pads(track) || !track.joints.empty())
-    throw std::invalid_argument(
-        "the exact beam stands on points, all seats and both rails alike, without joints");
+    refuse("E-RECEPTANCE-10",
+           "the exact beam stands on points, all seats and both rails alike, without joints");
   for (int i = 0; i <= track.bays; ++i) x_.push_back(i * track.bay_length);
   take_places(transfer.force);
   for (const Functional& read : transfer.reads) take_places(read);
@@ -66,7 +66,7 @@ ExactRailReceptance::ExactRailReceptance(const Track& track, const Transfer& tra
 void ExactRailReceptance::take_places(const Functional& functional) {
   const auto check = [](int direction) {
     if (direction != 2)
-      throw std::invalid_argument("the exact beam answers vertical forces with vertical motion");
+      refuse("E-RECEPTANCE-11", "the exact beam answers vertical forces with vertical motion");
   };
   for (const Functional::OnRail& point : functional.rail) {
     check(point.at.direction);
@@ -76,7 +76,7 @@ void ExactRailReceptance::take_places(const Functional& functional) {
   for (const Functional::OnSleeper& end : functional.sleeper) {
     check(end.direction);
     if (!track_.sleeper || end.seat < 0 || end.seat > track_.bays)
-      throw std::out_of_range("a sleeper that the track lacks");
+      refuse("E-RECEPTANCE-12", "a sleeper that the track lacks");
   }
 }
 

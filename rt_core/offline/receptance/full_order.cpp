@@ -1,11 +1,11 @@
 #include "offline/receptance/full_order.h"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "offline/analysis/krylov.h"
+#include "offline/math/refuse.h"
 #include "offline/receptance/residual_statics.h"
 
 namespace railstep {
@@ -42,7 +42,7 @@ Eigen::VectorXcd FullOrderReceptance::at(double hz) {
   for (const std::unique_ptr<Part>& part : parts_) {
     part->factor.factorize(dynamic_stiffness(part->line, Value(0., 2. * M_PI * hz)));
     if (part->factor.info() != Eigen::Success)
-      throw std::runtime_error("the track swings without damping at " + std::to_string(hz) + " Hz");
+      fail("E-RECEPTANCE-13", "the track swings without damping at " + std::to_string(hz) + " Hz");
     const Eigen::VectorXcd moved = part->factor.solve(part->force);
     sum += part->reads.cast<Value>() * moved;
   }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 namespace {
@@ -74,19 +75,19 @@ bool is_symmetric(const std::vector<Point>& polygon, double tolerance) {
 }  // namespace
 
 void check_polygon(const std::vector<Point>& polygon) {
-  if (polygon.size() < 3) throw std::invalid_argument("a section needs at least three points");
+  if (polygon.size() < 3) refuse("E-SECTION-01", "a section needs at least three points");
   const double size = extent(polygon);
   if (!std::isfinite(size))
-    throw std::invalid_argument("a section's coordinates must be finite numbers");
+    refuse("E-SECTION-02", "a section's coordinates must be finite numbers");
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Point& next = polygon[(i + 1) % polygon.size()];
     if (std::hypot(next[0] - polygon[i][0], next[1] - polygon[i][1]) <= 1e-9 * size)
-      throw std::invalid_argument(
-          "two consecutive points of the section coincide; do not repeat the first point");
+      refuse("E-SECTION-03",
+             "two consecutive points of the section coincide; do not repeat the first point");
   }
   if (signed_area(polygon) <= 1e-9 * size * size)
-    throw std::invalid_argument("the section must be counter-clockwise and enclose an area");
-  if (crosses_itself(polygon)) throw std::invalid_argument("the section's outline crosses itself");
+    refuse("E-SECTION-04", "the section must be counter-clockwise and enclose an area");
+  if (crosses_itself(polygon)) refuse("E-SECTION-05", "the section's outline crosses itself");
 }
 
 namespace {
@@ -111,7 +112,7 @@ std::vector<Point> with_axis_points(const std::vector<Point>& polygon) {
 HalfPolygon right_half(const std::vector<Point>& polygon) {
   check_polygon(polygon);
   if (!is_symmetric(polygon, 1e-6 * extent(polygon)))
-    throw std::invalid_argument("the section is not symmetric about y = 0");
+    refuse("E-SECTION-06", "the section is not symmetric about y = 0");
   const std::vector<Point> all = with_axis_points(polygon);
   const std::size_t n = all.size();
   std::size_t first = n;
@@ -122,7 +123,7 @@ HalfPolygon right_half(const std::vector<Point>& polygon) {
       ++departures;
     }
   if (departures != 1)
-    throw std::invalid_argument("the section's outline must meet its axis exactly twice");
+    refuse("E-SECTION-07", "the section's outline must meet its axis exactly twice");
   HalfPolygon half{all[first]};
   for (std::size_t i = first + 1; half.size() == 1 || half.back()[0] > 0.0; ++i)
     half.push_back(all[i % n]);

@@ -1,10 +1,10 @@
 #include "offline/section/moments.h"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "offline/math/gauss.h"
+#include "offline/math/refuse.h"
 
 namespace railstep {
 namespace {
@@ -82,8 +82,7 @@ void add_arc(SectionMoments& m, const Segment& s) {
 
 void check_points(int points) {
   if (points < 1 || points > 3)
-    throw std::invalid_argument("points per rectangle: " + std::to_string(points) +
-                                "; accepted 1 to 3");
+    refuse("E-SECTION-08", "points per rectangle: " + std::to_string(points) + "; accepted 1 to 3");
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 namespace {
@@ -51,8 +52,7 @@ std::vector<Point> right_chain(const std::vector<Point>& points) {
     if (here != next) ++changes;
     if (!here && next) enters = i;
   }
-  if (changes != 2)
-    throw std::invalid_argument("the outline must cross its upright axis exactly twice");
+  if (changes != 2) refuse("E-SECTION-23", "the outline must cross its upright axis exactly twice");
   const auto on_axis = [](const Point& a, const Point& b) {
     const double t = a[0] / (a[0] - b[0]);
     return Point{0.0, a[1] + t * (b[1] - a[1])};

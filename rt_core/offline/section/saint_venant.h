@@ -1,17 +1,18 @@
 #pragma once
 
 #include <array>
-#include <stdexcept>
 #include <vector>
 
+#include "offline/math/refuse.h"
 #include "offline/section/section.h"
 
 namespace railstep {
 
 /// Cowper's factor of a section is not between 0 and 1.
-struct NoShearFactor : std::invalid_argument {
+struct NoShearFactor : Refused {
   NoShearFactor()
-      : std::invalid_argument(
+      : Refused(
+            "E-SECTION-30",
             "Cowper's shear factor of this section is not between 0 and 1; with a Poisson's ratio "
             "of 0 it is the energy's factor and always is") {}
 };

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <stdexcept>
 #include <utility>
 
+#include "offline/math/refuse.h"
 #include "offline/section/delaunay.h"
 
 namespace railstep {
@@ -188,7 +188,7 @@ class Refiner {
 
   void check_count() const {
     if (mesh_.points().size() > kMostPoints)
-      throw std::invalid_argument("the section's outline is too fine to be triangulated");
+      refuse("E-SECTION-27", "the section's outline is too fine to be triangulated");
   }
 
   std::vector<Point> outline_, corners_;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "offline/analysis/statics.h"
 #include "offline/contact/hertz.h"
+#include "offline/math/refuse.h"
 #include "offline/start/start_vehicle.h"
 #include "offline/start/start_wheelset.h"
 #include "offline/start/static_lines.h"
@@ -126,7 +126,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     if (most <= kNothing || (most < kRounding && !(most < before))) return pose;
     before = most;
   }
-  throw std::invalid_argument("no equilibrium was found of a wheelset on its rails");
+  refuse("E-START-01", "no equilibrium was found of a wheelset on its rails");
 }
 
 /// What all stands on `time` later, for its rates alone: each wheel presses right over its place
@@ -208,7 +208,7 @@ double wheel_load(const WheelsetModel& w) {
     if (w.force[i].direction == 2) vertical -= force;
   }
   if (!(vertical > 0.))
-    throw std::invalid_argument("no equilibrium in contact: nothing presses a wheelset down");
+    refuse("E-START-02", "no equilibrium in contact: nothing presses a wheelset down");
   return vertical / 2.;
 }
 

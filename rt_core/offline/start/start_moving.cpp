@@ -4,10 +4,10 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "offline/math/larger.h"
+#include "offline/math/refuse.h"
 #include "offline/pack/pack_progress.h"
 #include "offline/start/start.h"
 #include "offline/start/start_vehicle.h"
@@ -83,8 +83,8 @@ Model evened(const Model& model) {
 Model with_forces(const Model& even) {
   Model carried = even;
   if (carried.loads + wheel_count(even) > kMaxLoads)
-    throw std::invalid_argument("a start on the move takes " + std::to_string(kMaxLoads) +
-                                " loads and wheels at most");
+    refuse("E-START-03",
+           "a start on the move takes " + std::to_string(kMaxLoads) + " loads and wheels at most");
   int wheel = 0;
   for (const double force : static_forces(even))
     carried.load[carried.loads++] = load_of(even, wheel++, force);
@@ -190,9 +190,9 @@ void settle(const Model& even, std::vector<double>& memory) {
     memory = passage.memory();
     return;
   }
-  throw std::invalid_argument(
-      "the track does not settle into a moving steady state; accepted is step.start = "
-      "\"equilibrium\"");
+  refuse("E-START-04",
+         "the track does not settle into a moving steady state; accepted is step.start = "
+         "\"equilibrium\"");
 }
 
 /// Coordinates of what stands on rails whose heads are `height` over rest under each wheel, and the
@@ -266,12 +266,11 @@ std::string no_whole_bays(const Model& model) {
 std::vector<double> start_moving(const Track& track, const PackedModel& packed, double gravity) {
   const Model& model = packed.model();
   if (model.endless.bays == 0)
-    throw std::invalid_argument("a start on the move wants a track without end");
-  if (model.endless.progress.period > kMostSteps) throw std::invalid_argument(no_whole_bays(model));
+    refuse("E-START-05", "a start on the move wants a track without end");
+  if (model.endless.progress.period > kMostSteps) refuse("E-START-06", no_whole_bays(model));
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     if (side_force(model.wheelset[b]) != 0.)
-      throw std::invalid_argument(
-          "a start on the move takes no lateral force on a wheelset at the start");
+      refuse("E-START-07", "a start on the move takes no lateral force on a wheelset at the start");
   if (model.endless.progress.bays == 0) return start_in_equilibrium(track, packed, gravity);
   const Model even = evened(model);
   if (model.form == Form::banded) {

@@ -4,9 +4,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "offline/contact/hertz.h"
+#include "offline/math/refuse.h"
 #include "offline/start/static_lines.h"
 #include "online/contact/body_force.h"
 #include "online/contact/wheel.h"
@@ -88,7 +88,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       Eigen::VectorXd::Constant(wheels, all.borne / static_cast<double>(wheels));
   for (Eigen::Index i = 0; i < wheels; ++i)
     if (model.vehicle_wheel[i].contact.hertz > 0. && !(force[i] > 0.))
-      throw std::invalid_argument("no equilibrium in contact: nothing presses a vehicle down");
+      refuse("E-START-08", "no equilibrium in contact: nothing presses a vehicle down");
   bool settled = false, lifted_off = false;
   for (int iteration = 0; iteration < kIterations && !settled && !lifted_off; ++iteration) {
     Eigen::MatrixXd A(n + wheels, n + wheels);
@@ -106,8 +106,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
     }
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
     if (!lu.isInvertible())
-      throw std::invalid_argument(
-          "no equilibrium: a vehicle's springs and wheels leave it a free motion");
+      refuse("E-START-09", "no equilibrium: a vehicle's springs and wheels leave it a free motion");
     const Eigen::VectorXd change = lu.solve(b);
     u += change.head(n);
     settled = iteration > 0;
@@ -122,8 +121,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       if (taken < kLiftedOff * std::abs(all.borne) && lifted) lifted_off = true;
     }
   }
-  if (!settled)
-    throw std::invalid_argument("no equilibrium with all of a vehicle's wheels on the rail");
+  if (!settled) refuse("E-START-10", "no equilibrium with all of a vehicle's wheels on the rail");
   SettledVehicles found{force, {}};
   for (Eigen::Index b = 0, at = 0; b < model.vehicles; at += model.vehicle[b].size, ++b)
     found.displacement.emplace_back(u.segment(at, model.vehicle[b].size));
@@ -244,9 +242,9 @@ SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packe
     force = settled.force;
   }
   if (!done)
-    throw std::invalid_argument(
-        "no equilibrium was found of vehicles on supports that press alone; accepted is "
-        "step.start = \"released\"");
+    refuse("E-START-11",
+           "no equilibrium was found of vehicles on supports that press alone; accepted is "
+           "step.start = \"released\"");
   for (std::size_t i = 0; i < wheels.count(); ++i) {
     if (!wheels.on_rail[i]) continue;
     RailForce port = wheels.port[i];

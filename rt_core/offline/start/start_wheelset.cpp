@@ -1,9 +1,9 @@
 #include "offline/start/start_wheelset.h"
 
 #include <Eigen/LU>
-#include <stdexcept>
 
 #include "offline/contact/hertz.h"
+#include "offline/math/refuse.h"
 #include "online/contact/body_force.h"
 
 namespace railstep {
@@ -41,10 +41,12 @@ void check_sides(const Model& model) {
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     if (side_force(model.wheelset[b]) == 0.) continue;
     if (contacts_of(model, b).count == 2)
-      throw std::invalid_argument(
+      refuse(
+          "E-START-12",
           "no equilibrium: a lateral force acts on a wheelset at the start and nothing holds it");
     if (model.wheelsets + model.vehicles > 1)
-      throw std::invalid_argument(
+      refuse(
+          "E-START-13",
           "no equilibrium is sought of a wheelset that leans on its flange beside other wheelsets "
           "and vehicles; accepted is step.start = \"released\"");
   }
@@ -67,9 +69,10 @@ Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
   stance.force = rows_of(stance).partialPivLu().solve(-applied.tail(stance.count));
   for (int i = 0; i < stance.count; ++i) {
     if (stance.contact[static_cast<std::size_t>(i)].on_rail && stance.force[i] > 0.) continue;
-    throw std::invalid_argument(
-        aside != 0. ? "no equilibrium in contact: the lateral force lifts a wheel over its flange"
-                    : "no equilibrium in contact: a wheelset does not stand on both railheads");
+    refuse("E-START-14",
+           aside != 0.
+               ? "no equilibrium in contact: the lateral force lifts a wheel over its flange"
+               : "no equilibrium in contact: a wheelset does not stand on both railheads");
   }
   return stance;
 }

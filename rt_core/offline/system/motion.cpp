@@ -2,7 +2,8 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -40,7 +41,7 @@ void add_spline(MotionPieces& pieces, const std::vector<std::array<double, 2>>& 
   for (std::size_t i = 0; i < table.size(); ++i)
     if (!std::isfinite(table[i][0]) || !std::isfinite(table[i][1]) ||
         (i > 0 && !(table[i][0] > table[i - 1][0])))
-      throw std::invalid_argument("a motion's table has finite values and rising times");
+      refuse("E-SYSTEM-27", "a motion's table has finite values and rising times");
   const Eigen::VectorXd m = bends(table);
   add_piece(pieces, table[0][0] - 1., {table[0][1]});
   for (std::size_t i = 0; i + 1 < table.size(); ++i) {
@@ -57,17 +58,17 @@ void add_spline(MotionPieces& pieces, const std::vector<std::array<double, 2>>& 
 
 MotionPieces motion_pieces(const Motion& motion) {
   if (motion.polynomial.empty() == motion.table.empty())
-    throw std::invalid_argument("a motion is either a polynomial or a table");
+    refuse("E-SYSTEM-28", "a motion is either a polynomial or a table");
   MotionPieces pieces;
   if (!motion.table.empty()) {
-    if (motion.table.size() < 2) throw std::invalid_argument("a motion's table has 2 rows or more");
+    if (motion.table.size() < 2) refuse("E-SYSTEM-29", "a motion's table has 2 rows or more");
     add_spline(pieces, motion.table);
     return pieces;
   }
   if (motion.polynomial.size() > static_cast<std::size_t>(kMotionCoefficients))
-    throw std::invalid_argument("a motion's polynomial has 6 coefficients or fewer");
+    refuse("E-SYSTEM-30", "a motion's polynomial has 6 coefficients or fewer");
   for (const double c : motion.polynomial)
-    if (!std::isfinite(c)) throw std::invalid_argument("a motion's coefficients are finite");
+    if (!std::isfinite(c)) refuse("E-SYSTEM-31", "a motion's coefficients are finite");
   add_piece(pieces, 0., motion.polynomial);
   return pieces;
 }

@@ -4,10 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "offline/element/straight_beam.h"
+#include "offline/math/refuse.h"
 #include "online/math/lanes.h"
 #include "online/model/beam_chain.h"
 
@@ -42,18 +42,17 @@ void set(double (&to)[9], const Matrix3d& from) {
 
 void check_body(const RigidBody& body, const std::string& name) {
   if (!(body.mass > 0.) || !std::isfinite(body.mass))
-    throw std::invalid_argument(name + "its mass is above zero");
+    refuse("E-SYSTEM-32", name + "its mass is above zero");
   if (!body.inertia.allFinite() ||
       (body.inertia - body.inertia.transpose()).norm() > 1e-12 * body.inertia.norm())
-    throw std::invalid_argument(name + "its inertia is finite and symmetric");
+    refuse("E-SYSTEM-33", name + "its inertia is finite and symmetric");
   const Vector3d own = Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia).eigenvalues();
-  if (!(own[0] > 0.))
-    throw std::invalid_argument(name + "its inertia is positive about every axis");
+  if (!(own[0] > 0.)) refuse("E-SYSTEM-34", name + "its inertia is positive about every axis");
   if (own[2] > (own[0] + own[1]) * (1. + 1e-9))
-    throw std::invalid_argument(
-        name + "no body has an inertia about one axis above the sum of the others");
+    refuse("E-SYSTEM-35",
+           name + "no body has an inertia about one axis above the sum of the others");
   if (!(std::abs(body.orientation.norm() - 1.) < 1e-9))
-    throw std::invalid_argument(name + "its orientation is a quaternion of length 1");
+    refuse("E-SYSTEM-36", name + "its orientation is a quaternion of length 1");
 }
 
 void add_body(const RigidBody& body, std::size_t index, bool planar, SystemParts& parts) {
@@ -61,9 +60,9 @@ void add_body(const RigidBody& body, std::size_t index, bool planar, SystemParts
   check_body(body, name);
   if (planar && !(body.velocity.y() == 0. && is_lateral(body.angular_velocity) &&
                   keeps_plane(body.orientation.toRotationMatrix())))
-    throw std::invalid_argument(name + "a planar system moves in x and z and turns about y");
+    refuse("E-SYSTEM-37", name + "a planar system moves in x and z and turns about y");
   if (planar && body.inertia.row(1).cwiseAbs().dot(Vector3d(1., 0., 1.)) > 0.)
-    throw std::invalid_argument(name + "in a planar system y is a principal axis");
+    refuse("E-SYSTEM-38", name + "in a planar system y is a principal axis");
   RigidBodyModel& packed = parts.bodies.emplace_back();
   packed.first = parts.unknowns;
   packed.unknowns = planar ? 3 : 6;
@@ -79,19 +78,18 @@ void add_body(const RigidBody& body, std::size_t index, bool planar, SystemParts
 
 void check_beam(const FlexibleBeam& beam, const std::string& name, bool planar) {
   if (beam.elements < 1 || beam.elements > kMostElementsOfBeam)
-    throw std::invalid_argument(name + "a beam has 1 to " + std::to_string(kMostElementsOfBeam) +
-                                " elements");
+    refuse("E-SYSTEM-39",
+           name + "a beam has 1 to " + std::to_string(kMostElementsOfBeam) + " elements");
   if (!(beam.length > 0.) || !std::isfinite(beam.length))
-    throw std::invalid_argument(name + "its length is above zero");
-  if (!(beam.half_height > 0.)) throw std::invalid_argument(name + "its height is above zero");
-  if (!(beam.material.density > 0.))
-    throw std::invalid_argument(name + "its density is above zero");
+    refuse("E-SYSTEM-40", name + "its length is above zero");
+  if (!(beam.half_height > 0.)) refuse("E-SYSTEM-41", name + "its height is above zero");
+  if (!(beam.material.density > 0.)) refuse("E-SYSTEM-42", name + "its density is above zero");
   if (!((beam.axes.transpose() * beam.axes - Matrix3d::Identity()).norm() < 1e-12) ||
       beam.axes.determinant() < 0.)
-    throw std::invalid_argument(name + "its axes are square, of length 1 and right-handed");
+    refuse("E-SYSTEM-43", name + "its axes are square, of length 1 and right-handed");
   if (planar &&
       !(keeps_plane(beam.axes) && beam.velocity.y() == 0. && is_lateral(beam.angular_velocity)))
-    throw std::invalid_argument(name + "a planar system moves in x and z and turns about y");
+    refuse("E-SYSTEM-44", name + "a planar system moves in x and z and turns about y");
 }
 
 /// Positions and slopes of a node, [9].
@@ -194,15 +192,15 @@ void add_weight(const System& system, SystemParts& parts) {
 
 void add_parts(const System& system, SystemParts& parts) {
   if (system.bodies.size() + system.beams.size() > static_cast<std::size_t>(kMaxSystemParts))
-    throw std::invalid_argument("a system has at most " + std::to_string(kMaxSystemParts) +
-                                " bodies and beams");
+    refuse("E-SYSTEM-45",
+           "a system has at most " + std::to_string(kMaxSystemParts) + " bodies and beams");
   if (system.planar && system.gravity.y() != 0.)
-    throw std::invalid_argument("gravity of a planar system has no lateral part");
+    refuse("E-SYSTEM-46", "gravity of a planar system has no lateral part");
   for (std::size_t i = 0; i < system.bodies.size(); ++i)
     add_body(system.bodies[i], i, system.planar, parts);
   for (std::size_t i = 0; i < system.beams.size(); ++i)
     add_beam(system.beams[i], i, system.planar, parts);
-  if (parts.unknowns == 0) throw std::invalid_argument("a system has a body or a beam");
+  if (parts.unknowns == 0) refuse("E-SYSTEM-47", "a system has a body or a beam");
   parts.pad();
   add_weight(system, parts);
 }

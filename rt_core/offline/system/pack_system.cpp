@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "offline/cost/cost.h"
+#include "offline/math/refuse.h"
 #include "offline/system/pack_parts.h"
 #include "offline/system/pack_track_ports.h"
 #include "offline/system/start_system.h"
@@ -26,27 +26,26 @@ PackedSystem::~PackedSystem() = default;
 namespace {
 
 void check(const System& system, const SystemOptions& o, bool with_scheme) {
-  if (!system.gravity.allFinite()) throw std::invalid_argument("gravity is finite");
-  if (o.steps_per_frame < 1) throw std::invalid_argument("a frame has one step or more");
+  if (!system.gravity.allFinite()) refuse("E-SYSTEM-48", "gravity is finite");
+  if (o.steps_per_frame < 1) refuse("E-SYSTEM-49", "a frame has one step or more");
   if (o.cap < 1 || o.projections < 0 || o.keep_steps < 1)
-    throw std::invalid_argument("caps: 1 iteration or more, projections 0 or more, kept 1 or more");
+    refuse("E-SYSTEM-50", "caps: 1 iteration or more, projections 0 or more, kept 1 or more");
   if (!(o.penalty >= 0.) || !(o.tolerance > 0.) || !(o.joint_tolerance > 0.))
-    throw std::invalid_argument("tolerances are above zero, and the penalty is not below it");
+    refuse("E-SYSTEM-51", "tolerances are above zero, and the penalty is not below it");
   if (!(o.alpha >= 0.) || !(o.beta >= 0.))
-    throw std::invalid_argument("Baumgarte's alpha and beta are not negative");
+    refuse("E-SYSTEM-52", "Baumgarte's alpha and beta are not negative");
   const Scheme& c = o.scheme;
   if (with_scheme && c.part > 0.)
-    throw std::invalid_argument("bodies and beams are stepped by schemes of one stage");
+    refuse("E-SYSTEM-53", "bodies and beams are stepped by schemes of one stage");
   const bool means = std::abs(c.kg * c.dt * c.dt - 2.) < 1e-9 &&
                      std::abs(c.kv * c.dt - 2.) < 1e-9;  // energy_momentum(dt)
   if (with_scheme && means != o.energy_momentum)
-    throw std::invalid_argument(
-        "the scheme energy_momentum() and the option of that name go together");
+    refuse("E-SYSTEM-54", "the scheme energy_momentum() and the option of that name go together");
   const bool by_mean = o.constraint_method == ConstraintMethod::augmented_lagrangian ||
                        o.constraint_method == ConstraintMethod::direct;
   if (o.energy_momentum && !by_mean)
-    throw std::invalid_argument(
-        "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
+    refuse("E-SYSTEM-55",
+           "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
 }
 
 /// Index 3 has -rho_inf as a double root: of a scheme that does not damp joint forces swing from
@@ -59,7 +58,8 @@ void check_damping(const System& system, const SystemOptions& o, const Scheme& c
   if (!index_3 || o.energy_momentum || system.joints.empty()) return;
   // generalised_alpha: a0 / ag = alpha_f / (1 - alpha_f) = rho_inf
   if (c.a0 >= (1. - 1e-9) * c.ag || radius_at_infinity(c) >= 1. - 1e-7)
-    throw std::invalid_argument(
+    refuse(
+        "E-SYSTEM-56",
         "hold = \"direct\", or \"augmented-lagrangian\" without projections, and newmark_gamma = "
         "0.5, hht_alpha = 0 or rho_inf = 1: nothing damps the joint forces, which swing from step "
         "to step and grow; accepted is rho_inf below 1, or another hold");
@@ -99,7 +99,7 @@ std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
 std::vector<std::int32_t> indices(const std::vector<int>& traced, std::size_t count) {
   for (const int index : traced)
     if (index < 0 || static_cast<std::size_t>(index) >= count)
-      throw std::invalid_argument("a traced joint or spring that is not there");
+      refuse("E-SYSTEM-57", "a traced joint or spring that is not there");
   return {traced.begin(), traced.end()};
 }
 
@@ -136,15 +136,14 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
                            const Traffic& traffic, const PackOptions& track_options)
     : memory_(std::make_unique<Memory>()) {
   if (!traffic.wheelsets.empty() || !traffic.vehicles.empty())
-    throw std::invalid_argument(
-        "a track beside a system of bodies carries no wheelsets and no vehicles");
+    refuse("E-SYSTEM-58", "a track beside a system of bodies carries no wheelsets and no vehicles");
   if (track_options.reduction)
-    throw std::invalid_argument("a track beside a system of bodies is taken in full order");
+    refuse("E-SYSTEM-59", "a track beside a system of bodies is taken in full order");
   if (options.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
-    throw std::invalid_argument(
-        "a track beside a system of bodies is not held by Gear, Gupta and Leimkuhler's way");
+    refuse("E-SYSTEM-60",
+           "a track beside a system of bodies is not held by Gear, Gupta and Leimkuhler's way");
   if (options.energy_momentum)
-    throw std::invalid_argument("a track beside a system of bodies has no energy-momentum scheme");
+    refuse("E-SYSTEM-61", "a track beside a system of bodies has no energy-momentum scheme");
   Traffic both = traffic;
   for (int rail = 0; rail < track.rails; ++rail) both.held.push_back(rail);
   memory_->track = std::make_unique<PackedModel>(track, both, track_options);

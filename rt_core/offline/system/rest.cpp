@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
+#include "offline/math/refuse.h"
 #include "offline/system/pack_system.h"
 #include "offline/system/system_energy.h"
 #include "online/step/step.h"
@@ -139,8 +139,8 @@ Rest settle(const StillSystem& make, double shift, std::optional<Rest> from) {
     const Outcome met = still.settle(may_lengthen ? kPatience : left, left);
     if (met == Outcome::settled) return still.rest(false);
     if (left == 0 || met == Outcome::away || (met == Outcome::lost && dt < kShortestStep))
-      throw std::invalid_argument("no static equilibrium is found at the start: " +
-                                  still.restless() + " does not come to rest");
+      refuse("E-SYSTEM-62", "no static equilibrium is found at the start: " + still.restless() +
+                                " does not come to rest");
     if (met == Outcome::lost) {
       --left;
       longest = dt / kLonger;

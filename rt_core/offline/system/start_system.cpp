@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <stdexcept>
 
+#include "offline/math/refuse.h"
 #include "online/model/beam_chain.h"
 #include "online/system/row.h"
 #include "online/system/rows.h"
@@ -71,7 +71,7 @@ Sparse mass(const SystemModel& s) {
 class Mobility {
  public:
   explicit Mobility(const Model& model) : model_(model), inverse_(mass(model.system)) {
-    if (inverse_.info() != Eigen::Success) throw std::invalid_argument("the mass is not positive");
+    if (inverse_.info() != Eigen::Success) refuse("E-SYSTEM-63", "the mass is not positive");
   }
   MatrixXd operator*(const MatrixXd& forces) const {
     MatrixXd moved = inverse_.solve(forces);
@@ -149,9 +149,9 @@ struct Standing {
 void check_joints(const SystemModel& s, const SystemWorkspace& w, double size) {
   for (std::int32_t r = 0; r < s.joint_rows; ++r)
     if (!(std::abs(w.value[r]) <= 1e-9 * size))
-      throw std::invalid_argument("joint " + std::to_string(s.row[r].joint) +
-                                  ": it does not hold at the start: it is off by " +
-                                  std::to_string(w.value[r]));
+      refuse("E-SYSTEM-64", "joint " + std::to_string(s.row[r].joint) +
+                                ": it does not hold at the start: it is off by " +
+                                std::to_string(w.value[r]));
 }
 
 std::vector<double> start_quaternions(const System& system, const Rest* rest) {
@@ -208,8 +208,8 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
     at.place();
     for (std::int32_t r = 0; r < joints; ++r)
       if (!(std::abs(at.jet(r).v) <= 1e-9 * (1. + rates.cwiseAbs().maxCoeff())))
-        throw std::invalid_argument("joint " + std::to_string(s.row[r].joint) +
-                                    ": no velocities at the start suit it and the others");
+        refuse("E-SYSTEM-65", "joint " + std::to_string(s.row[r].joint) +
+                                  ": no velocities at the start suit it and the others");
   }
   VectorXd spring_force = VectorXd::Zero(rows),
            fresh_force = spring_force;  // that no rest balances

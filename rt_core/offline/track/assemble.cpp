@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
+#include "offline/math/refuse.h"
 #include "offline/track/assembly.h"
 #include "offline/track/end_zone.h"
 #include "offline/track/fixed_port.h"
@@ -213,7 +213,7 @@ void split(const Assembly& part, std::array<double, 2> factor, std::vector<Line>
 void check_one_sided(const Seat& seat, std::size_t side) {
   const Support& pad = seat.pad[side];
   const Ballast& ballast = seat.ballast[side];
-  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-01", what); };
   if (!(pad.gap >= 0.) || !(ballast.gap >= 0.)) refuse("a gap under a rail is at least 0");
   if (pad.one_sided() && pad.length > 0.)
     refuse("a pad that does not pull is a point; accepted is a length of 0");
@@ -227,7 +227,7 @@ void check_one_sided(const Seat& seat, std::size_t side) {
 }
 
 void check_stop(const Track& track, const Stop& stop) {
-  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-02", what); };
   if (stop.rail < 0 || stop.rail >= track.rails) refuse("a stop on a rail that is not there");
   if (stop.direction != 1 && stop.direction != 2) refuse("a stop acts along y or z");
   if (std::abs(stop.side) != 1. || !(stop.gap >= 0.))
@@ -237,7 +237,7 @@ void check_stop(const Track& track, const Stop& stop) {
 }
 
 void check_ring(const Track& track) {
-  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-03", what); };
   if (track.bays < 3) refuse("a ring has three bays or more");
   if (track.ends != RailEnds{}) refuse("a ring has no ends to be held");
   if (!track.changed_seats.empty()) refuse("the seats of a ring are alike");
@@ -248,7 +248,7 @@ void check_ring(const Track& track) {
 }
 
 void check(const Track& track) {
-  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-04", what); };
   if (track.bays < 1 || track.elements_per_bay < 1) refuse("a track needs one bay and one element");
   if (track.rails != 1 && track.rails != 2) refuse("a track has one rail or two");
   if (!(track.bay_length > 0.) || !(track.rail_spacing > 0.))
@@ -324,7 +324,7 @@ bool is_held(const Track& track, int node, int k) {
 ElementPlace place_on(const Track& track, double x) {
   const double place = x / track.element_length();
   if (!(place >= 0.) || !(place <= track.elements() * (1. + 1e-12)))
-    throw std::out_of_range("point off the rail");
+    refuse("E-TRACK-05", "point off the rail");
   const int element = std::min(static_cast<int>(place), track.elements() - 1);
   return {element, 2. * (place - element) - 1.};
 }

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
+#include "offline/math/refuse.h"
 #include "offline/track/assembly.h"
 
 namespace railstep {
@@ -43,9 +43,9 @@ void add_spring(Assembly& part, const Row& row, double stiffness, double damping
 int joint_node(const Track& track, const RailJoint& joint) {
   const double place = joint.x / track.element_length(), border = std::round(place);
   if (!(std::fabs(place - border) <= kOnBorder))
-    throw std::invalid_argument("a rail is cut at a border of its elements");
+    refuse("E-TRACK-06", "a rail is cut at a border of its elements");
   if (border < 1. || border > track.elements() - 1.)
-    throw std::invalid_argument("a rail is cut between its ends");
+    refuse("E-TRACK-07", "a rail is cut between its ends");
   return 2 * static_cast<int>(border);
 }
 
@@ -62,26 +62,26 @@ void check_joints(const Track& track) {
     for (int rail = 0; rail < track.rails; ++rail)
       if (joint.rails[static_cast<std::size_t>(rail)] &&
           !cut.insert({rail, joint_node(track, joint)}).second)
-        throw std::invalid_argument("a rail has two joints at one place");
+        refuse("E-TRACK-08", "a rail has two joints at one place");
     for (const auto* values :
          {&joint.stiffness, &joint.damping, &joint.turn_stiffness, &joint.turn_damping})
       for (const double value : *values)
-        if (!(value >= 0.))
-          throw std::invalid_argument("a joint's stiffness and damping are at least 0");
+        if (!(value >= 0.)) refuse("E-TRACK-09", "a joint's stiffness and damping are at least 0");
     const bool opens = std::isfinite(joint.end_stiffness) && joint.end_stiffness >= 0. &&
                        joint.end_damping >= 0. && std::isfinite(joint.stiffness[0]);
     if ((joint.end_stiffness != 0. || joint.end_damping != 0.) && !opens)
-      throw std::invalid_argument(
+      refuse(
+          "E-TRACK-10",
           "ends that press have a stiffness and a damping that are finite and at least 0, and do "
           "not share their motion along x");
     for (const std::size_t side : {0u, 1u})
       if (!(joint.pressed[side] >= 0.) || (joint.pressed[side] > 0. && joint.end_stiffness == 0.))
-        throw std::invalid_argument("ends that are pressed have a stiffness");
+        refuse("E-TRACK-11", "ends that are pressed have a stiffness");
     if (std::isinf(joint.turn_stiffness[0]))
-      throw std::invalid_argument("a joint's stiffness against twist is finite");
+      refuse("E-TRACK-12", "a joint's stiffness against twist is finite");
   }
   if (track.state && !track.joints.empty())
-    throw std::invalid_argument("a rail with joints is linearised at rest");
+    refuse("E-TRACK-13", "a rail with joints is linearised at rest");
 }
 
 void number_cut(const Track& track, Assembly& part, int rail, int node) {

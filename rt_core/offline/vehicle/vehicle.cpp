@@ -1,7 +1,8 @@
 #include "offline/vehicle/vehicle.h"
 
 #include <Eigen/LU>
-#include <stdexcept>
+
+#include "offline/math/refuse.h"
 
 namespace railstep {
 
@@ -17,7 +18,7 @@ Eigen::VectorXd row(const Vehicle& vehicle, const std::vector<int>& first, int b
 }
 
 void check(const Vehicle& vehicle) {
-  const auto refuse = [](const char* what) { throw std::invalid_argument(what); };
+  const auto refuse = [](const char* what) { railstep::refuse("E-VEHICLE-01", what); };
   const auto is_body = [&](int body) {
     return body >= 0 && body < static_cast<int>(vehicle.bodies.size());
   };
@@ -88,7 +89,7 @@ VehicleRest vehicle_at_rest(const VehicleMatrices& m) {
   b.head(n) = -m.weight / scale;
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
   if (!lu.isInvertible())
-    throw std::invalid_argument("a vehicle's springs and wheels leave it a free motion");
+    refuse("E-VEHICLE-02", "a vehicle's springs and wheels leave it a free motion");
   const Eigen::VectorXd x = lu.solve(b);
   return {x.head(n), scale * x.tail(wheels)};
 }

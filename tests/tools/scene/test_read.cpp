@@ -11,7 +11,6 @@
 
 using namespace railstep;
 using Catch::Contains;
-using Catch::EndsWith;
 using Overrides = std::vector<std::string>;
 
 namespace {
@@ -55,16 +54,16 @@ TEST_CASE("a number may be written as an integer, and a string is refused with i
   const Table rail = root.table("rail");
   CHECK(rail.number("young_pa", above(0)) == 210e9);
   CHECK(sentence([&] { (void)rail.number("poisson", above(0)); }) ==
-        "bay.toml:3:11: [rail] poisson = \"0.3\" is a string; a number is accepted");
+        "bay.toml:3:11: [rail] poisson = \"0.3\" is a string; expected a number [E-KEY-03]");
 }
 
 TEST_CASE("numbers out of range or not finite are refused with the range", "[read]") {
   const Table root = parse("a = -1.5\nb = nan\nc = inf\nd_m = 600.0\n");
   CHECK(sentence([&] { (void)root.number("a", above_upto(0, 10)); }) ==
-        "bay.toml:1:5: a = -1.5 is out of range; accepted is above 0, at most 10");
+        "bay.toml:1:5: a = -1.5 is out of range; expected above 0, at most 10 [E-KEY-05]");
   CHECK_THAT(sentence([&] { (void)root.number("b", at_least(0)); }),
-             Contains("bay.toml:2:5: b = nan is not finite; accepted is at least 0"));
-  CHECK_THAT(sentence([&] { (void)root.number("c", any_number()); }), Contains("not finite"));
+             Contains("bay.toml:2:5: b = nan is not finite; expected at least 0 [E-KEY-04]"));
+  CHECK_THAT(sentence([&] { (void)root.number("c", any_number()); }), Contains("E-KEY-04"));
   CHECK_THAT(sentence([&] { (void)root.number("d_m", between(0.1, 2)); }),
              Contains("was it given in millimetres?"));
   CHECK_FALSE(above(0).holds(0));
@@ -74,25 +73,27 @@ TEST_CASE("numbers out of range or not finite are refused with the range", "[rea
 
 TEST_CASE("each getter refuses a value of another kind", "[read]") {
   const Table root = parse("x = 1.5\nt = true\ns = \"\"\nn = 7\nm = \"stiff\"\na = [1, \"2\"]\n");
-  CHECK_THAT(sentence([&] { (void)root.integer("x", 0, 9); }), Contains("an integer is accepted"));
-  CHECK_THAT(sentence([&] { (void)root.integer("n", 0, 5); }), Contains("accepted is 0 to 5"));
-  CHECK_THAT(sentence([&] { (void)root.boolean("n"); }), Contains("true or false is accepted"));
-  CHECK_THAT(sentence([&] { (void)root.string("t"); }), Contains("t = true is a boolean"));
-  CHECK_THAT(sentence([&] { (void)root.string("s"); }), Contains("empty string"));
+  CHECK_THAT(sentence([&] { (void)root.integer("x", 0, 9); }),
+             Contains("x = 1.5") && Contains("E-KEY-03"));
+  CHECK_THAT(sentence([&] { (void)root.integer("n", 0, 5); }), Contains("0 to 5 [E-KEY-05]"));
+  CHECK_THAT(sentence([&] { (void)root.boolean("n"); }), Contains("E-KEY-03"));
+  CHECK_THAT(sentence([&] { (void)root.string("t"); }),
+             Contains("t = true") && Contains("E-KEY-03"));
+  CHECK_THAT(sentence([&] { (void)root.string("s"); }), Contains("E-KEY-09"));
   CHECK_THAT(sentence([&] {
                (void)root.choice("m", {"soft", "hard"});
              }),
-             Contains("m = \"stiff\" is unknown; accepted are \"soft\", \"hard\""));
-  CHECK_THAT(sentence([&] { (void)root.choice("n", {"soft"}); }), Contains("one of \"soft\""));
+             Contains("m = \"stiff\"") && Contains("\"soft\", \"hard\" [E-KEY-06]"));
+  CHECK_THAT(sentence([&] { (void)root.choice("n", {"soft"}); }), Contains("\"soft\" [E-KEY-03]"));
   CHECK_THAT(sentence([&] { (void)root.numbers("a", any_number()); }),
-             Contains("bay.toml:6:9: a = \"2\" is a string"));
+             Contains("bay.toml:6:9: a = \"2\"") && Contains("E-KEY-03"));
   CHECK_THAT(sentence([&] { (void)root.numbers("a", any_number(), 3, 4); }),
-             Contains("2 entries; accepted are 3 to 4"));
-  CHECK_THAT(sentence([&] { (void)root.rows("a", 2); }), Contains("rows of 2 numbers"));
+             Contains("2 entries") && Contains("3 to 4 [E-KEY-07]"));
+  CHECK_THAT(sentence([&] { (void)root.rows("a", 2); }), Contains("rows of 2 numbers [E-KEY-11]"));
   CHECK_THAT(sentence([&] { (void)root.numbers("n", any_number()); }),
-             Contains("an array is accepted"));
-  CHECK_THAT(sentence([&] { (void)root.table("n"); }), Contains("a table is accepted"));
-  CHECK_THAT(sentence([&] { (void)root.tables("a"); }), Contains("[[a]] tables are accepted"));
+             Contains("n = 7") && Contains("E-KEY-03"));
+  CHECK_THAT(sentence([&] { (void)root.table("n"); }), Contains("n = 7") && Contains("E-KEY-03"));
+  CHECK_THAT(sentence([&] { (void)root.tables("a"); }), Contains("[[a]]") && Contains("E-KEY-12"));
 }
 
 TEST_CASE("getters return the value in the file or the default", "[read]") {
@@ -126,25 +127,26 @@ TEST_CASE("an unknown key is refused with the nearest known one, in any opened t
   (void)loads[0].string("name");
   (void)loads[0].number("force_z_n", any_number(), 0.0);
   CHECK(sentence([&] { root.finish(); }) ==
-        "bay.toml:5:1: [load[0]] unknown key 'force_z'; did you mean 'force_z_n'? Unknown too: "
-        "[support] 'stifness' ('stiffness_z_n_per_m'?)");
+        "bay.toml:2:1: [support] unknown key 'stifness'; did you mean 'stiffness_z_n_per_m'? "
+        "[E-KEY-02] (and 1 more error)");
   const Table only = parse("[support]\nstifness = 3e7\n");
   (void)only.table("support").number("stiffness_z_n_per_m", at_least(0), 0.0);
   (void)only.table("support").number("at", at_least(0), 0.0);
   CHECK(sentence([&] { only.finish(); }) ==
-        "bay.toml:2:1: [support] unknown key 'stifness'; did you mean 'stiffness_z_n_per_m'?");
+        "bay.toml:2:1: [support] unknown key 'stifness'; did you mean 'stiffness_z_n_per_m'? "
+        "[E-KEY-02]");
   CHECK_THAT(parse_sentence("a = 1"), Contains("bay.toml:1:1: unknown key 'a'"));
   CHECK(parse_sentence("a = 1\nb = 2\n[c]\n") ==
-        "bay.toml:1:1: unknown key 'a'; no key is accepted here. Unknown too: 'b', 'c'");
-  CHECK_THAT(parse_sentence("a=1\nb=1\nc=1\nd=1\ne=1\nf=1\ng=1\n"), EndsWith("and 2 more"));
+        "bay.toml:1:1: unknown key 'a'; expected no key here [E-KEY-02] (and 2 more errors)");
 }
 
 TEST_CASE("a missing key is named, with a misspelt one if there is one", "[read]") {
   const Table root = parse("[step]\ndt = 0.001\n\n[rail]\nx = 1\n");
   CHECK(sentence([&] { (void)root.table("step").number("dt_s", above(0)); }) ==
-        "bay.toml:2:1: [step] key 'dt_s' is missing; did you mean it by 'dt'?");
-  CHECK_THAT(sentence([&] { (void)root.table("rail").number("poisson", above(0)); }),
-             Contains("bay.toml:4:1: [rail] key 'poisson' is missing; it has no default"));
+        "bay.toml:2:1: [step] key 'dt_s' is missing; did you mean it by 'dt'? [E-KEY-01]");
+  CHECK_THAT(
+      sentence([&] { (void)root.table("rail").number("poisson", above(0)); }),
+      Contains("bay.toml:4:1: [rail] key 'poisson' is missing; it has no default [E-KEY-01]"));
 }
 
 TEST_CASE("the search for the nearest key counts edits and forgives a missing end", "[read]") {
@@ -209,14 +211,15 @@ TEST_CASE("the option --set acts as if the key stood in the file", "[read]") {
   CHECK(root.table("step").number("dt_s", above(0)) == 1e-3);
   CHECK(root.string("name") == "a=b");
   CHECK(sentence([&] { (void)root.table("rail").number("poisson", above(1)); }) ==
-        "--set rail.poisson=0.25: [rail] poisson = 0.25 is out of range; accepted is above 1");
+        "--set rail.poisson=0.25: [rail] poisson = 0.25 is out of range; expected above 1 "
+        "[E-KEY-05]");
   const Table unknown = parse(text, {"rail.posson=0.2"});
   const Table rail = unknown.table("rail");
   (void)rail.rows("v", 2);
   (void)rail.number("poisson", above(0));
   for (const Table& load : unknown.tables("load")) (void)load.integer("n", 0, 9);
   CHECK(sentence([&] { unknown.finish(); }) ==
-        "--set rail.posson=0.2: [rail] unknown key 'posson'; did you mean 'poisson'?");
+        "--set rail.posson=0.2: [rail] unknown key 'posson'; did you mean 'poisson'? [E-KEY-02]");
 }
 
 TEST_CASE("an option --set that cannot be applied is named in the message", "[read]") {
