@@ -40,7 +40,7 @@ Real mean_of(Real C, Real d, Real e) {
 /// A port's law, as ports.h states it.
 Real force_of(const PortLaw& law, Real d) {
   if (law.mean) return mean_of(law.hertz, d, law.from);
-  if (law.pulls) return law.slope * d + law.jump;
+  if (law.bilateral) return law.slope * d + law.jump;
   if (!(d > 0.L)) return 0.L;
   if (law.hertz > 0.) return hertz(law.hertz, d);
   const Real part = law.jump > 0. ? std::fmin(1.L, d / kJumpDepth) : 1.L;
@@ -77,7 +77,7 @@ PortLaw random_law(Draw& draw) {
   }
   law.slope = draw.of_any_size(1e5, 1e11);
   if (draw.chance(.5)) law.jump = draw.between(-1e4, 1e4);
-  law.pulls = kind < 3.;
+  law.bilateral = kind < 3.;
   return law;
 }
 

@@ -67,7 +67,7 @@ Case random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::
 }
 
 Real force_of(const PortLaw& law, Real d) {
-  if (law.pulls) return law.slope * d + law.jump;
+  if (law.bilateral) return law.slope * d + law.jump;
   if (d <= 0) return 0;
   if (law.hertz > 0.) return law.hertz * d * std::sqrt(d);
   const Real part = law.jump > 0. ? std::min<Real>(1, d / kJumpDepth) : 1;
@@ -76,7 +76,7 @@ Real force_of(const PortLaw& law, Real d) {
 
 /// Root of d + w f(d) = d_free by bisection, in long double.
 Real bisect(Real w, const PortLaw& law, Real d_free) {
-  if (law.pulls) return (d_free - w * law.jump) / (1 + w * law.slope);
+  if (law.bilateral) return (d_free - w * law.jump) / (1 + w * law.slope);
   if (d_free <= 0) return d_free;
   Real low = 0, high = d_free;
   for (int i = 0; i < 200; ++i) {

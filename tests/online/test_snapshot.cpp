@@ -72,7 +72,7 @@ Instants instants_of(const Model& single, std::int64_t steps) {
     const Status met = advance_frame(single, run.state, run.workspace, outputs);
     note(found.airborne, has(met, Status::contact_lost), n);
     note(found.cap, has(met, Status::cap_reached), n);
-    note(found.shift, passed(single, n + 1) != passed(single, n), n);
+    note(found.shift, track_offset(single, n + 1) != track_offset(single, n), n);
     double force = 0.;
     for (std::int32_t i = 0; i < wheel_count(single); ++i)
       force = std::max(force, outputs.wheel_force[i]);

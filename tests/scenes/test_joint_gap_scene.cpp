@@ -29,7 +29,7 @@ TEST_CASE("heat closes the gaps of joints in a scene", "[joint]") {
   const double kc = closed.joints[0].end_stiffness;
   const double P = (1.15e-5 * 30. * 9.6 - .0023) / (9.6 / EA + 1. / kc);
   CHECK_THAT(-closed.axial_force, WithinRel(P, 1e-12));
-  CHECK_THAT(closed.joints[0].pressed[0], WithinRel(P, 1e-12));
+  CHECK_THAT(closed.joints[0].end_force[0], WithinRel(P, 1e-12));
   CHECK_THAT(closed.joints[0].gap[0], WithinRel(-P / kc, 1e-12));
   const Scene scene = read({"rail.temperature_rise_k=30"});
   CHECK_THAT(kc, WithinRel(EA / section_of(scene).height, 1e-12));

@@ -36,14 +36,14 @@ HeatedJoints heated_joints(const Scene& scene, const std::array<double, 2>& area
     for (std::size_t i = 0; i < heated.joints.size(); ++i) {
       RailJoint& joint = heated.joints[i];
       if (!joint.rails[side] || joint.end_stiffness == 0.) continue;
-      joint.pressed[side] = pressed;
+      joint.end_force[side] = pressed;
       joint.gap[side] = pressed > 0. ? -pressed / joint.end_stiffness
                                      : *scene.joint_gaps[i].cold - scene.joint_gaps[i].grown[side];
     }
   }
   if (scene.track.rails == 1)
     for (RailJoint& joint : heated.joints) {
-      joint.pressed[1] = joint.pressed[0];
+      joint.end_force[1] = joint.end_force[0];
       joint.gap[1] = joint.gap[0];
     }
   return heated;

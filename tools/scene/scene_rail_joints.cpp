@@ -75,9 +75,11 @@ Jointed read_joint(const Table& t, const Scene& scene) {
   read_plates(t, "along", false, 0.0, joint.stiffness[0], joint.damping[0]);
   read_plates(t, "shear_lateral", false, kRigid, joint.stiffness[1], joint.damping[1]);
   read_plates(t, "shear_vertical", false, kRigid, joint.stiffness[2], joint.damping[2]);
-  read_plates(t, "twist", true, 0.0, joint.turn_stiffness[0], joint.turn_damping[0]);
-  read_plates(t, "bending_vertical", true, 0.0, joint.turn_stiffness[1], joint.turn_damping[1]);
-  read_plates(t, "bending_lateral", true, 0.0, joint.turn_stiffness[2], joint.turn_damping[2]);
+  read_plates(t, "twist", true, 0.0, joint.rotation_stiffness[0], joint.rotation_damping[0]);
+  read_plates(t, "bending_vertical", true, 0.0, joint.rotation_stiffness[1],
+              joint.rotation_damping[1]);
+  read_plates(t, "bending_lateral", true, 0.0, joint.rotation_stiffness[2],
+              joint.rotation_damping[2]);
   read.gap = read_gap(t);
   return read;
 }

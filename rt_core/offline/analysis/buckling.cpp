@@ -41,14 +41,14 @@ bool is_unstable(const Eigen::SparseMatrix<double>& stiffness) {
 }
 
 /// With both rails' forces `factor` times what they are.
-Track pressed(Track track, double factor) {
+Track compressed(Track track, double factor) {
   track.axial_force *= factor;
   if (track.right) track.right->axial_force *= factor;
   return track;
 }
 
 bool buckles(const Track& track, double factor) {
-  for (const Line& line : assemble(pressed(track, factor)))
+  for (const Line& line : assemble(compressed(track, factor)))
     if (is_unstable(line.stiffness)) return true;
   return false;
 }
@@ -67,7 +67,7 @@ double critical_factor(const Track& track, double unstable) {
 /// Where the shape in which a track buckles is largest, m and rail; at the factor at which it does,
 /// where inverse iteration finds that shape at once.
 std::string place_of_buckling(const Track& given, double factor) {
-  const Track track = pressed(given, factor);
+  const Track track = compressed(given, factor);
   double most = -1., x = 0.;
   int at = 0;
   for (const Line& line : assemble(track)) {

@@ -8,12 +8,12 @@
 namespace railstep {
 namespace {
 
-/// Waves e^(i k x) of the deflection w of a rail, the turn a of its sections and the sleepers' s:
-/// rail w'' + (S k^2 + N k^2 + pad) w + S k a - pad s = 0, rotary a'' + (B k^2 + S) a + S k w = 0,
-/// sleeper s'' + (pad + ballast) s - pad w = 0.
+/// Waves e^(i k x) of the deflection w of a rail, the rotation a of its sections and the sleepers'
+/// s: rail w'' + (S k^2 + N k^2 + pad) w + S k a - pad s = 0, rotary a'' + (B k^2 + S) a + S k w =
+/// 0, sleeper s'' + (pad + ballast) s - pad w = 0.
 struct Waves {
-  double rail, rotary, sleeper = 0.;          // kg/m, kg m, kg/m; no sleepers, or of no mass: 0
-  double shear, bending, pull, pad, ballast;  // N, N m2, N, N/m2, N/m2
+  double rail, rotary, sleeper = 0.;             // kg/m, kg m, kg/m; no sleepers, or of no mass: 0
+  double shear, bending, tension, pad, ballast;  // N, N m2, N, N/m2, N/m2
 
   Waves(const Track& track, int which) {
     const RailBar bar = track.bar(which);
@@ -21,7 +21,7 @@ struct Waves {
     rotary = bar.material.density * bar.section.inertia_y;
     shear = bar.section.shear_factor_z * bar.material.shear_modulus() * bar.section.area;
     bending = bar.material.young * bar.section.inertia_y;
-    pull = bar.axial_force;
+    tension = bar.axial_force;
     pad = track.support.stiffness[2] / track.bay_length;
     ballast = track.sleeper ? track.sleeper->ballast_stiffness[2] / track.bay_length : 0.;
     if (track.sleeper) sleeper = .5 * track.sleeper->mass / track.bay_length;
@@ -36,7 +36,7 @@ struct Waves {
   [[nodiscard]] Eigen::VectorXd squares(double k) const {
     const Eigen::Index n = branches() + 1;
     Eigen::MatrixXd over_mass(n, n);
-    over_mass(0, 0) = ((shear + pull) * k * k + pad) / rail;
+    over_mass(0, 0) = ((shear + tension) * k * k + pad) / rail;
     over_mass(1, 1) = (bending * k * k + shear) / rotary;
     over_mass(1, 0) = shear * k / std::sqrt(rail * rotary);
     if (n == 3) {

@@ -181,12 +181,12 @@ NaturalModes natural_modes(const Track& track, int count) {
   keep_lowest(undamped, count);
   std::vector<Listed> found = sure;
   // Dampers may raise rates (what they hold still stiffens) and take low modes out of the list.
-  double reach = undamped.empty() ? 1. : std::max(1.05 * undamped.back().first, 1.);
-  for (bool all = damped.empty(); !all; reach *= 1.3) {
+  double highest = undamped.empty() ? 1. : std::max(1.05 * undamped.back().first, 1.);
+  for (bool all = damped.empty(); !all; highest *= 1.3) {
     found = sure;
-    all = add_damped(damped, reach, found);
+    all = add_damped(damped, highest, found);
     keep_lowest(found, count);
-    all = all || (static_cast<int>(found.size()) == count && found.back().first <= reach);
+    all = all || (static_cast<int>(found.size()) == count && found.back().first <= highest);
   }
   keep_lowest(found, count);
   NaturalModes result;

@@ -145,8 +145,8 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> parted(const Track& track,
   size *= shapes.cwiseAbs().maxCoeff();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(strain, Eigen::ComputeFullV);
   const auto met = (svd.singularValues().array() > kNothing * size).count();
-  const Eigen::MatrixXd turned = shapes * svd.matrixV();
-  return {turned.leftCols(met), turned.rightCols(shapes.cols() - met)};
+  const Eigen::MatrixXd rotated = shapes * svd.matrixV();
+  return {rotated.leftCols(met), rotated.rightCols(shapes.cols() - met)};
 }
 
 /// Which nodes of a rail move, of the first to the last; none: {-1, -1}.
@@ -283,10 +283,10 @@ void refuse_free_modes(const Track& track, const std::vector<Line>& lines,
   const Factor factor(stiffness);
   if (is_held(factor, stiffness)) return;
   // What springs hold, as soft as they are, is not free: the rounding of stiff rails does not tell.
-  Track pulling = track;
-  if (ports.empty()) pulling = all_open(pulling);
+  Track bilateral = track;
+  if (ports.empty()) bilateral = all_open(bilateral);
   const Eigen::MatrixXd shapes =
-      parted(track, lines, joined, stiff_springs(pulling), free_shapes(stiffness)).second;
+      parted(track, lines, joined, stiff_springs(bilateral), free_shapes(stiffness)).second;
   if (shapes.cols() == 0) return;
   std::vector<Functional> open;
   if (ports.empty())

@@ -27,10 +27,10 @@ OneSided::OneSided(const Track& track, const std::vector<Line>& lines, std::vect
   refuse("E-MODES-13", "the track's stiffness cannot be factored");
 }
 
-OneSided::Sparse OneSided::stiffness(const Closed& closed, double open_part) const {
+OneSided::Sparse OneSided::stiffness(const Closed& closed, double open_fraction) const {
   Eigen::VectorXd k(static_cast<Eigen::Index>(ports_.size()));
   for (std::size_t p = 0; p < ports_.size(); ++p)
-    k[static_cast<Eigen::Index>(p)] = (closed[p] ? 1. : open_part) * ports_[p].stiffness;
+    k[static_cast<Eigen::Index>(p)] = (closed[p] ? 1. : open_fraction) * ports_[p].stiffness;
   return joined_.stiffness + Sparse(joined_.closing * k.asDiagonal() * joined_.closing.transpose());
 }
 
@@ -40,27 +40,27 @@ Eigen::VectorXd OneSided::depth(const Eigen::VectorXd& u) const {
   return d;
 }
 
-OneSided::Closed OneSided::pressing(const Eigen::VectorXd& u) const {
+OneSided::Closed OneSided::closed_at(const Eigen::VectorXd& u) const {
   const Eigen::VectorXd d = depth(u);
   Closed closed;
   for (const double own : d) closed.push_back(own >= 0.);
   return closed;
 }
 
-/// K u + what the springs press - f.
+/// K u + forces of the springs - f.
 Eigen::VectorXd OneSided::gradient(const Eigen::VectorXd& u, const Eigen::VectorXd& load) const {
-  Eigen::VectorXd pressed = depth(u).cwiseMax(0.);
+  Eigen::VectorXd force = depth(u).cwiseMax(0.);
   for (std::size_t p = 0; p < ports_.size(); ++p)
-    pressed[static_cast<Eigen::Index>(p)] *= ports_[p].stiffness;
-  return joined_.stiffness * u + joined_.closing * pressed - load;
+    force[static_cast<Eigen::Index>(p)] *= ports_[p].stiffness;
+  return joined_.stiffness * u + joined_.closing * force - load;
 }
 
-/// Where too few press to hold the track, those that are open hold it a little: the step goes as
-/// far as the next that presses. Where it buckles then, they hold it as if all pressed. Both go
-/// down.
+/// Where too few are closed to hold the track, those that are open hold it a little: the step goes
+/// as far as the next that closes. Where it buckles then, they hold it as if all were closed. Both
+/// go down.
 Eigen::VectorXd OneSided::newton_step(const Closed& closed, const Eigen::VectorXd& g) const {
-  for (const double open_part : {0., kLittle}) {
-    const Sparse held = stiffness(closed, open_part);
+  for (const double open_fraction : {0., kLittle}) {
+    const Sparse held = stiffness(closed, open_fraction);
     const Factor factor(held);
     if (is_held(factor, held)) return factor.solve(-g);
   }
@@ -73,9 +73,9 @@ double OneSided::minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& 
                                const Eigen::VectorXd& load) const {
   const Eigen::VectorXd d = depth(u), s = joined_.closing.transpose() * step;
   const Eigen::VectorXd Ks = joined_.stiffness * step;
-  const double start = step.dot(joined_.stiffness * u - load), rise = step.dot(Ks);
+  const double start = step.dot(joined_.stiffness * u - load), curvature = step.dot(Ks);
   const auto slope = [&](double t) {
-    double sum = start + t * rise;
+    double sum = start + t * curvature;
     for (std::size_t p = 0; p < ports_.size(); ++p) {
       const auto i = static_cast<Eigen::Index>(p);
       sum += ports_[p].stiffness * std::max(0., d[i] + t * s[i]) * s[i];
@@ -94,7 +94,7 @@ double OneSided::minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& 
   }
   const double low = slope(from), more = slope(from + 1.) - low;
   if (low >= 0.) return from;
-  double all = rise;
+  double all = curvature;
   for (std::size_t p = 0; p < ports_.size(); ++p)
     all += ports_[p].stiffness * std::pow(s[static_cast<Eigen::Index>(p)], 2);
   if (!(more > 1e-12 * all))
@@ -110,23 +110,23 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
     f.segment(joined_.first[l], load[l].size()) = load[l];
   // All closed is where a track rests that carries what it is made for.
   Eigen::VectorXd gaps(static_cast<Eigen::Index>(ports_.size()));
-  double largest_gap = 0.;  // m; what rests pressed does not move at all
+  double largest_gap = 0.;  // m; what rests closed does not move at all
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     gaps[static_cast<Eigen::Index>(p)] = ports_[p].stiffness * ports_[p].gap;
     largest_gap = std::max(largest_gap, std::abs(ports_[p].gap));
   }
   Eigen::VectorXd u = all_closed_.solve(f + joined_.closing * gaps);
-  Closed closed = pressing(u);
+  Closed closed = closed_at(u);
   bool done = false;
   for (int iteration = 0; iteration < kMostIterations && !done; ++iteration) {
     const Eigen::VectorXd step = newton_step(closed, gradient(u, f));
-    const double part = minimum_along(u, step, f);
-    u += part * step;
-    const Closed now = pressing(u);
+    const double length = minimum_along(u, step, f);
+    u += length * step;
+    const Closed now = closed_at(u);
     // A whole step that changes no spring's state solved the linear system of that state; one that
     // flickers about 0 moves nothing any more.
     const double nothing = std::max(1e-9 * u.norm(), 1e-12 * largest_gap);
-    done = (now == closed && std::abs(part - 1.) < 1e-6) || step.norm() <= nothing;
+    done = (now == closed && std::abs(length - 1.) < 1e-6) || step.norm() <= nothing;
     closed = now;
   }
   if (!done)

@@ -9,7 +9,7 @@ namespace railstep {
 /// Equilibrium of a track with one-sided springs: the u that makes
 ///   E(u) = u' K u / 2 + sum stiffness max(0, d)^2 / 2 - f' u,   d = closing - gap,
 /// least over all lines together. E is convex and piecewise quadratic: Newton's method with the
-/// set of springs that press, and the exact minimum on each of its lines, ends in finitely many
+/// set of closed springs, and the exact minimum on each of its lines, ends in finitely many
 /// steps.
 class OneSided {
  public:
@@ -26,9 +26,9 @@ class OneSided {
   using Sparse = Eigen::SparseMatrix<double>;
   using Closed = std::vector<bool>;
 
-  Sparse stiffness(const Closed& closed, double open_part) const;
+  Sparse stiffness(const Closed& closed, double open_fraction) const;
   Eigen::VectorXd depth(const Eigen::VectorXd& u) const;
-  Closed pressing(const Eigen::VectorXd& u) const;
+  Closed closed_at(const Eigen::VectorXd& u) const;
   Eigen::VectorXd gradient(const Eigen::VectorXd& u, const Eigen::VectorXd& load) const;
   Eigen::VectorXd newton_step(const Closed& closed, const Eigen::VectorXd& gradient) const;
   double minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& step,

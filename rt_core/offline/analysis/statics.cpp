@@ -50,11 +50,11 @@ std::vector<Eigen::VectorXd> Statics::unbalanced(const std::vector<Eigen::Vector
                                                  const std::vector<PointForce>& forces,
                                                  double gravity) const {
   std::vector<Eigen::VectorXd> left = loads(forces, gravity);
-  const std::vector<double> pressed = port_forces(displacement);
+  const std::vector<double> port_force = port_forces(displacement);
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     left[i] -= lines_[i].stiffness * displacement[i];
     for (std::size_t j = 0; j < ports_.size(); ++j)
-      left[i] -= pressed[j] * closing_row(track_, lines_[i], ports_[j]);
+      left[i] -= port_force[j] * closing_row(track_, lines_[i], ports_[j]);
   }
   return left;
 }
@@ -73,11 +73,11 @@ double Statics::flexibility(const RailPoint& a, const RailPoint& b) const {
 double Statics::support_force(const std::vector<Eigen::VectorXd>& displacement, int rail,
                               int seat) const {
   if (track_.seat(seat).pad[static_cast<std::size_t>(rail)].one_sided()) {
-    const std::vector<double> pressed = port_forces(displacement);
+    const std::vector<double> port_force = port_forces(displacement);
     double force = 0.;
     for (std::size_t j = 0; j < ports_.size(); ++j)
       if (ports_[j].of == FixedPort::Of::pad && ports_[j].rail == rail && ports_[j].seat == seat)
-        force += pressed[j];
+        force += port_force[j];
     return force;
   }
   const Functional gap = pad_gap(track_, rail, seat);

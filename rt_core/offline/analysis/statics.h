@@ -15,7 +15,7 @@ struct PointForce {
 };
 
 /// Factored stiffness of every line of a track, for many right-hand sides. Where some of the track
-/// is one-sided (fixed_port.h) each solution finds what of it presses.
+/// is one-sided (fixed_port.h) each solution finds which of its supports are closed.
 class Statics {
  public:
   /// Throws std::invalid_argument, as refuse_free_modes (free_motion.h) does, when a line has a
@@ -37,7 +37,7 @@ class Statics {
   double support_force(const std::vector<Eigen::VectorXd>& displacement, int rail, int seat) const;
   /// The forces and the weight over each line's unknowns.
   std::vector<Eigen::VectorXd> loads(const std::vector<PointForce>& forces, double gravity) const;
-  /// What is left of the load in each line: f - K u, and what one-sided supports press.
+  /// What is left of the load in each line: f - K u, and the forces of one-sided supports.
   std::vector<Eigen::VectorXd> unbalanced(const std::vector<Eigen::VectorXd>& displacement,
                                           const std::vector<PointForce>& forces,
                                           double gravity) const;

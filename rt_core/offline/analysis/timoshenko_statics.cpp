@@ -123,7 +123,7 @@ void TimoshenkoStatics::assemble(int unknowns) {
       for (int d = 0; d < 3; ++d)
         add(row({0, x, 2. * side * support.half_spread, z, d}),
             support.stiffness[static_cast<std::size_t>(d)] / 2.);
-    // The turn about x is the rise of a point one metre aside, less the axis's own.
+    // The roll about x is the height of a point one metre aside, less the axis's own.
     add(row({0, x, 1., 0., 2}) - row({0, x, 0., 0., 2}), support.roll_stiffness);
   }
 }

@@ -22,11 +22,11 @@ Matrix3d cross_matrix(const Vector3d& v) {
 }
 
 /// A moment on a slope s turns it: force (M x s)/(s's).
-Vector3d turning_force(const Vector3d& moment, const Vector3d& slope) {
+Vector3d moment_force(const Vector3d& moment, const Vector3d& slope) {
   return moment.cross(slope) / slope.squaredNorm();
 }
 
-Matrix3d turning_slope(const Vector3d& moment, const Vector3d& slope) {
+Matrix3d moment_tangent(const Vector3d& moment, const Vector3d& slope) {
   const double s2 = slope.squaredNorm();
   return cross_matrix(moment) / s2 - 2. / (s2 * s2) * moment.cross(slope) * slope.transpose();
 }
@@ -57,8 +57,8 @@ class Balance {
     for (const auto& [node, moment] : load_.moments) {
       const Vector3d a = q.segment<3>(9 * node + 3), b = q.segment<3>(9 * node + 6);
       const MomentShare share = shared(moment, a, b);
-      force.segment<3>(9 * node + 3) += turning_force(share.on_a, a);
-      force.segment<3>(9 * node + 6) += turning_force(share.on_b, b);
+      force.segment<3>(9 * node + 3) += moment_force(share.on_a, a);
+      force.segment<3>(9 * node + 6) += moment_force(share.on_b, b);
     }
     return force;
   }
@@ -73,7 +73,7 @@ class Balance {
       const int at[2] = {9 * node + 3, 9 * node + 6};
       const Vector3d a = q.segment<3>(at[0]), b = q.segment<3>(at[1]);
       const MomentShare share = shared(moment, a, b);
-      const Matrix3d slopes[2] = {turning_slope(share.on_a, a), turning_slope(share.on_b, b)};
+      const Matrix3d slopes[2] = {moment_tangent(share.on_a, a), moment_tangent(share.on_b, b)};
       for (int s = 0; s < 2; ++s)
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j) K.coeffRef(at[s] + i, at[s] + j) -= factor * slopes[s](i, j);

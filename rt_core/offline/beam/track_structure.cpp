@@ -44,8 +44,9 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
   const auto held = [&](RailEnd end) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);
   };
-  const bool pressed = track.axial_force != 0. || (track.right && track.right->axial_force != 0.);
-  if (pressed && !(held(track.ends[0]) && held(track.ends[1])))
+  const bool has_axial_force =
+      track.axial_force != 0. || (track.right && track.right->axial_force != 0.);
+  if (has_axial_force && !(held(track.ends[0]) && held(track.ends[1])))
     refuse("E-NONLINEAR-08",
            "a nonlinear rail under axial force wants both ends held, "
            "clamped where the reference line is off the centroid");
@@ -106,7 +107,7 @@ void TrackStructure::lay_rails() {
 void TrackStructure::add_seat(int rail, int seat) {
   const Seat there = track_.seat(seat);
   const Support& support = there.pad[index(rail)];
-  const bool turns = there.sleeper && track_.rails == 2;
+  const bool rotates = there.sleeper && track_.rails == 2;
   const double g = track_.rail_spacing;
   const std::array<int, 4>& sleeper = sleeper_[index(rail)][index(seat)];
   const Cant cant = track_.lean(rail);
@@ -114,7 +115,7 @@ void TrackStructure::add_seat(int rail, int seat) {
   const double along[3][3] = {
       {1., 0., 0.}, {0., cant.cosine, cant.sine}, {0., -cant.sine, cant.cosine}};
   const auto end = [&](int side, int d) {
-    return turns ? sleeper_[index(side)][index(seat)][index(d)] : -1;
+    return rotates ? sleeper_[index(side)][index(seat)][index(d)] : -1;
   };
   const auto add = [&](double stiffness, const Entries& entries) {
     if (stiffness > 0.)
@@ -186,16 +187,16 @@ TrackState TrackStructure::state(const Eigen::VectorXd& q) const {
   const bool symmetric = is_symmetric(track_);
   TrackState state;
   for (int rail = 0; rail < track_.rails; ++rail) {
-    const int seen = symmetric ? 0 : rail;
+    const int own_rail = symmetric ? 0 : rail;
     Eigen::VectorXd& own = state.rail[index(rail)];
-    own = change.segment(place(seen, 0, 0), 9 * track_.nodes());
+    own = change.segment(place(own_rail, 0, 0), 9 * track_.nodes());
     const double mirrored = track_.cant == 0. ? 0. : rail == 0 ? 1. : -1.;
     for (int node = 0; node < track_.nodes() && symmetric; ++node)
       for (const int sideways : {1, 3, 5, 7}) own[9 * node + sideways] *= mirrored;
     Eigen::VectorXd& ends = state.sleeper[index(rail)];
     ends = Eigen::VectorXd::Zero(4 * (track_.bays + 1));
     Eigen::Index i = 0;
-    for (const auto& unknowns : sleeper_[index(seen)])
+    for (const auto& unknowns : sleeper_[index(own_rail)])
       for (const std::size_t d : {0UL, 1UL, 2UL, 3UL}) {
         if (unknowns[d] >= 0 && !(symmetric && d == 1)) ends[i] = change[unknowns[d]];
         ++i;

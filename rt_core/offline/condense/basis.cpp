@@ -35,12 +35,12 @@ Eigen::VectorXd norms(const Line& line, const Eigen::MatrixXd& shapes) {
 
 }  // namespace
 
-Eigen::MatrixXd Basis::give(const Eigen::MatrixXd& forces) const {
+Eigen::MatrixXd Basis::static_response(const Eigen::MatrixXd& forces) const {
   if (flexibility.size() > 0) return flexibility * forces;
   return omega.cwiseAbs2().cwiseInverse().asDiagonal() * forces;
 }
 
-Eigen::VectorXd Basis::shown(const Eigen::VectorXd& y) const {
+Eigen::VectorXd Basis::modelled(const Eigen::VectorXd& y) const {
   if (flexibility.size() == 0) return y;
   return flexibility * omega.cwiseAbs2().cwiseProduct(y);
 }
@@ -51,10 +51,10 @@ Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs) {
   const Eigen::MatrixXd unit = basis.shapes.dense() * basis.omega.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd held = unit.transpose() * (springs * unit);
   const auto n = held.rows();
-  const Eigen::MatrixXd give =
+  const Eigen::MatrixXd flexible =
       (Eigen::MatrixXd::Identity(n, n) + held).llt().solve(Eigen::MatrixXd::Identity(n, n));
   const auto scale = basis.omega.cwiseInverse().asDiagonal();
-  basis.flexibility = scale * (.5 * (give + give.transpose())) * scale;
+  basis.flexibility = scale * (.5 * (flexible + flexible.transpose())) * scale;
   return basis;
 }
 

@@ -12,22 +12,22 @@ namespace railstep {
 struct Basis {
   Eigen::VectorXd omega;  // [kept] rad/s, above 0, ascending
   Shapes shapes;          // [unknowns of the line][kept]
-  /// What the stepped model gives way statically, [kept][kept]; empty where that is omega^-2, as of
-  /// all but truncated damped modes.
+  /// Static flexibility of the stepped model, [kept][kept]; empty where that is omega^-2, as of all
+  /// but truncated damped modes.
   Eigen::MatrixXd flexibility = {};
   /// Velocity that a force has at once beside the rate of the modes, [kept][kept], 1/kg; empty
   /// beside an empty flexibility.
   Eigen::MatrixXd at_once = {};
 
   /// The y under forces shapes' f that stand still; [kept][any].
-  Eigen::MatrixXd give(const Eigen::MatrixXd& forces) const;
-  /// What the stepped model shows of omega^-2 p, the static y of all coordinates: that itself, or
-  /// where modes are truncated their part, give(p).
-  Eigen::VectorXd shown(const Eigen::VectorXd& y) const;
+  Eigen::MatrixXd static_response(const Eigen::MatrixXd& forces) const;
+  /// The stepped model's part of y = omega^-2 p, the static displacement in all coordinates: y
+  /// itself, or where modes are truncated static_response(p).
+  Eigen::VectorXd modelled(const Eigen::VectorXd& y) const;
 };
 
-/// The same coordinates where springs press that were open as they were chosen: what gives way is
-/// (omega^2 + shapes' springs shapes)^-1.
+/// The same coordinates where springs are closed that were open as they were chosen: the
+/// flexibility is (omega^2 + shapes' springs shapes)^-1.
 /// @param springs  [unknowns][unknowns] of the line, N/m, symmetric, none below 0
 /// @param basis    whose flexibility is omega^-2
 Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs);

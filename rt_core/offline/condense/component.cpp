@@ -50,8 +50,8 @@ class Held {
     return parts_.pick_following * moved;
   }
   Eigen::MatrixXd guyan() const {
-    const Sparse pull = parts_.pick_following.transpose() * line_.stiffness * parts_.pick_kept;
-    return Eigen::MatrixXd(parts_.pick_kept) - under(Eigen::MatrixXd(pull));
+    const Sparse coupling = parts_.pick_following.transpose() * line_.stiffness * parts_.pick_kept;
+    return Eigen::MatrixXd(parts_.pick_kept) - under(Eigen::MatrixXd(coupling));
   }
 
  private:
@@ -64,16 +64,16 @@ class Held {
 /// Which part of a symmetric matrix's graph each row is in, numbered by their first rows.
 std::vector<std::vector<int>> connected(const Sparse& A) {
   std::vector<std::vector<int>> parts;
-  std::vector<bool> seen(static_cast<std::size_t>(A.cols()), false);
+  std::vector<bool> visited(static_cast<std::size_t>(A.cols()), false);
   for (int start = 0; start < A.cols(); ++start) {
-    if (seen[static_cast<std::size_t>(start)]) continue;
+    if (visited[static_cast<std::size_t>(start)]) continue;
     std::vector<int> part = {start};
-    seen[static_cast<std::size_t>(start)] = true;
+    visited[static_cast<std::size_t>(start)] = true;
     for (std::size_t next = 0; next < part.size(); ++next)
       for (Sparse::InnerIterator entry(A, part[next]); entry; ++entry) {
         const int row = static_cast<int>(entry.row());
-        if (entry.value() == 0. || seen[static_cast<std::size_t>(row)]) continue;
-        seen[static_cast<std::size_t>(row)] = true;
+        if (entry.value() == 0. || visited[static_cast<std::size_t>(row)]) continue;
+        visited[static_cast<std::size_t>(row)] = true;
         part.push_back(row);
       }
     std::sort(part.begin(), part.end());

@@ -27,8 +27,8 @@ struct OneRate {
     return std::abs(rate.imag()) <= within(std::abs(rate));
   }
   [[nodiscard]] bool same(Complex a, Complex b) const {
-    const double apart = (real(b) ? 2. : 1.) * within(std::abs(b));
-    return real(a) == real(b) && std::abs(a - b) <= apart;
+    const double tolerance = (real(b) ? 2. : 1.) * within(std::abs(b));
+    return real(a) == real(b) && std::abs(a - b) <= tolerance;
   }
 };
 

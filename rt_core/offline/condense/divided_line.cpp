@@ -105,14 +105,14 @@ void DividedLine::sign(int rail, Eigen::VectorXd& row) const {
     row[i] *= sign_of(line_, rail, carried[static_cast<std::size_t>(i) % carried.size()]);
 }
 
-Superelement::Rows DividedLine::port_rows(const Port& port, int points) const {
-  const Superelement& own = element(port.rail);
+Superelement::Rows DividedLine::load_rows(const LoadPoint& load_point, int points) const {
+  const Superelement& own = element(load_point.rail);
   const int parts = own.parts();
   Eigen::MatrixXd rows(points + 1, (2 * parts + 1) * static_cast<int>(own.carried().size()));
   for (int p = 0; p <= points; ++p) {
-    Eigen::VectorXd row =
-        own.row(static_cast<double>(p) * parts / points, track_.lean(port.rail), port.y, port.z, 2);
-    sign(port.rail, row);
+    Eigen::VectorXd row = own.row(static_cast<double>(p) * parts / points,
+                                  track_.lean(load_point.rail), load_point.y, load_point.z, 2);
+    sign(load_point.rail, row);
     rows.row(p) = row.transpose();
   }
   return own.condense(rows);
@@ -145,37 +145,38 @@ const Eigen::MatrixXd& DividedLine::end_flexibility(int rail, int at) const {
   return result;
 }
 
-Eigen::VectorXd DividedLine::under(const Port& port, const Port& seen, int points) const {
+Eigen::VectorXd DividedLine::under(const LoadPoint& load_point, const LoadPoint& other,
+                                   int points) const {
   refuse_free_modes();
-  const Superelement::Rows a = port_rows(port, points), b = port_rows(seen, points);
-  const Eigen::VectorXd held = element(port.rail).held(a, b).diagonal();
+  const Superelement::Rows a = load_rows(load_point, points), b = load_rows(other, points);
+  const Eigen::VectorXd held = element(load_point.rail).held(a, b).diagonal();
   Eigen::VectorXd result(tabled_elements(track_) * (points + 1));
   for (int e = 0; e < tabled_elements(track_); ++e) {
-    const Eigen::MatrixXd& ends = end_flexibility(port.rail, e);
+    const Eigen::MatrixXd& ends = end_flexibility(load_point.rail, e);
     for (int p = 0; p <= points; ++p)
       result[e * (points + 1) + p] = a.ends.row(p).dot(ends * b.ends.row(p).transpose()) + held[p];
   }
   return result;
 }
 
-LineFlexibility::Strip DividedLine::between(const Port& a, const Port& b, int points,
-                                            int reach) const {
+LineFlexibility::Strip DividedLine::between(const LoadPoint& a, const LoadPoint& b, int points,
+                                            int range) const {
   refuse_free_modes();
-  const Superelement::Rows from = port_rows(a, points), to = port_rows(b, points);
+  const Superelement::Rows from = load_rows(a, points), to = load_rows(b, points);
   const bool same = same_rail(line_, a.rail, b.rail);
   const Eigen::MatrixXd held = same ? element(a.rail).held(from, to) : Eigen::MatrixXd();
   return [=, this](int at) {
     const std::vector<int> acting = end_unknowns(line_, a.rail, element(a.rail), at);
-    const Elements around{std::max(at - reach, 0), std::min(at + reach + 1, track_.elements())};
-    Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(points + 1, (2 * reach + 1) * (points + 1));
+    const Elements around{std::max(at - range, 0), std::min(at + range + 1, track_.elements())};
+    Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(points + 1, (2 * range + 1) * (points + 1));
     for (int p = 0; p <= points; ++p) {
       const Stretch x = moved(spread_over(line_, acting, from.ends.row(p).transpose()), around);
-      for (int shift = -reach; shift <= reach; ++shift)
+      for (int shift = -range; shift <= range; ++shift)
         if (const int e = shifted(track_, at, shift); e >= 0)
-          strip.row(p).segment((shift + reach) * (points + 1), points + 1) =
+          strip.row(p).segment((shift + range) * (points + 1), points + 1) =
               to.ends * gather(x, end_unknowns(line_, b.rail, element(b.rail), e));
     }
-    if (same) strip.middleCols(reach * (points + 1), points + 1) += held;
+    if (same) strip.middleCols(range * (points + 1), points + 1) += held;
     return strip;
   };
 }
@@ -210,19 +211,19 @@ DividedLine::Spread DividedLine::spread(const Functional& functional) const {
   return result;
 }
 
-Eigen::VectorXd DividedLine::from(const Port& port, const Functional& functional, int points,
-                                  Elements at) const {
+Eigen::VectorXd DividedLine::from(const LoadPoint& load_point, const Functional& functional,
+                                  int points, Elements at) const {
   refuse_free_modes();
-  const Superelement& own = element(port.rail);
-  const Superelement::Rows rows = port_rows(port, points);
+  const Superelement& own = element(load_point.rail);
+  const Superelement::Rows rows = load_rows(load_point, points);
   const Spread read = spread(functional);
   const Stretch x = moved(read.load, at);
   Eigen::VectorXd result(at.count() * (points + 1));
   for (int e = at.first; e < at.last; ++e)
     result.segment((e - at.first) * (points + 1), points + 1) =
-        rows.ends * gather(x, end_unknowns(line_, port.rail, own, e));
+        rows.ends * gather(x, end_unknowns(line_, load_point.rail, own, e));
   for (const Spread::OnElement& point : read.points)
-    if (same_rail(line_, port.rail, point.rail) && point.element >= at.first &&
+    if (same_rail(line_, load_point.rail, point.rail) && point.element >= at.first &&
         point.element < at.last)
       result.segment((point.element - at.first) * (points + 1), points + 1) +=
           own.held(rows, point.rows).col(0);

@@ -30,24 +30,24 @@ constexpr FirstLook kFunctionalLook{96, 16}, kPairLook{24, 8};
 int first_look(const FirstLook& look, const Track& track) {
   return std::max(look.elements, look.bays * track.elements_per_bay);
 }
-bool has_faded(int reach, int look) { return 4 * reach <= 3 * look; }
+bool has_faded(int range, int look) { return 4 * range <= 3 * look; }
 
 std::size_t place_in(const PairTable& table, int e, int p, int e2, int q) {
   const auto n = static_cast<std::size_t>(table.points) + 1;
-  const auto blocks = 2 * static_cast<std::size_t>(table.reach) + 1;
-  const int shift = e2 - e + table.reach;
+  const auto blocks = 2 * static_cast<std::size_t>(table.range) + 1;
+  const int shift = e2 - e + table.range;
   const std::size_t block = static_cast<std::size_t>(e) * blocks + static_cast<std::size_t>(shift);
   return (block * n + static_cast<std::size_t>(p)) * n + static_cast<std::size_t>(q);
 }
 
 /// All elements' strips in one table.
-PairTable table_of(const LineFlexibility::Strip& strip, int elements, int points, int reach) {
+PairTable table_of(const LineFlexibility::Strip& strip, int elements, int points, int range) {
   const int n = points + 1;
-  PairTable table{points, reach, {}};
-  table.value.reserve(place_in(table, elements, 0, elements - reach, 0));
+  PairTable table{points, range, {}};
+  table.value.reserve(place_in(table, elements, 0, elements - range, 0));
   for (int e = 0; e < elements; ++e) {
     const Eigen::MatrixXd row = strip(e);
-    for (int shift = 0; shift <= 2 * reach; ++shift)
+    for (int shift = 0; shift <= 2 * range; ++shift)
       for (int p = 0; p < n; ++p)
         for (int q = 0; q < n; ++q) table.value.push_back(row(p, shift * n + q));
   }
@@ -56,18 +56,18 @@ PairTable table_of(const LineFlexibility::Strip& strip, int elements, int points
 
 /// The distance, in elements, beyond which all values of strips stay below a limit. Nothing is kept
 /// of them: far apart, all pairs of elements would be their number squared.
-int reach_of(const LineFlexibility::Strip& strip, int elements, int points, int look,
+int range_of(const LineFlexibility::Strip& strip, int elements, int points, int look,
              double limit) {
-  int reach = 0;
+  int range = 0;
   for (int e = 0; e < elements; ++e) {
     const Eigen::MatrixXd row = strip(e);
     for (int shift = -look; shift <= look; ++shift)
-      if (std::abs(shift) > reach &&
+      if (std::abs(shift) > range &&
           row.middleCols((shift + look) * (points + 1), points + 1).lpNorm<Eigen::Infinity>() >=
               limit)
-        reach = std::abs(shift);
+        range = std::abs(shift);
   }
-  return reach;
+  return range;
 }
 
 /// Whether a vertical force moves any of these, on y = 0 of an upright rail or anywhere.
@@ -142,55 +142,60 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
   }
 }
 
-/// Weight of the port in the line, 0 if it does not move the line.
-double ResidualFlexibility::weight(const Pair& pair, Port port) const {
-  if (port.rail < 0 || port.rail >= track_.rails)
+/// Weight of the load point in the line, 0 if it does not move the line.
+double ResidualFlexibility::weight(const Pair& pair, LoadPoint load_point) const {
+  if (load_point.rail < 0 || load_point.rail >= track_.rails)
     refuse("E-CONDENSE-11", "residual flexibility is asked on a rail that the track lacks");
-  const auto rail = static_cast<std::size_t>(port.rail);
+  const auto rail = static_cast<std::size_t>(load_point.rail);
   double row[9];
-  height_row(track_.lean(port.rail), port.y, port.z, row);
+  height_row(track_.lean(load_point.rail), load_point.y, load_point.z, row);
   const std::vector<int>& carried = pair.carried[rail];
   const bool moved =
       std::any_of(carried.begin(), carried.end(), [&](int k) { return row[k] != 0.; });
   return moved ? pair.line->rail_factor[rail] : 0.;
 }
 
-std::vector<double> ResidualFlexibility::under(Port port) const { return under(port, port); }
+std::vector<double> ResidualFlexibility::under(LoadPoint load_point) const {
+  return under(load_point, load_point);
+}
 
-std::vector<double> ResidualFlexibility::under(Port port, Port seen) const {
+std::vector<double> ResidualFlexibility::under(LoadPoint load_point, LoadPoint other) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(tabled_elements(track_) * (points_ + 1));
   for (const Pair& pair : pairs_) {
-    const double w = weight(pair, port) * weight(pair, seen);
+    const double w = weight(pair, load_point) * weight(pair, other);
     if (w == 0.) continue;
-    sum += w * (pair.exact->under(port, seen, points_) - pair.model->under(port, seen, points_));
+    sum += w * (pair.exact->under(load_point, other, points_) -
+                pair.model->under(load_point, other, points_));
   }
   return to_vector(sum);
 }
 
-std::vector<double> ResidualFlexibility::exact_under(Port port) const {
+std::vector<double> ResidualFlexibility::exact_under(LoadPoint load_point) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(tabled_elements(track_) * (points_ + 1));
   for (const Pair& pair : pairs_) {
-    const double w = weight(pair, port);
-    if (w != 0.) sum += w * w * pair.exact->under(port, port, points_);
+    const double w = weight(pair, load_point);
+    if (w != 0.) sum += w * w * pair.exact->under(load_point, load_point, points_);
   }
   return to_vector(sum);
 }
 
-std::vector<double> ResidualFlexibility::from(Port port, const Functional& functional) const {
-  return to_vector(sums(port, functional, {0, track_.elements()}).missing);
+std::vector<double> ResidualFlexibility::from(LoadPoint load_point,
+                                              const Functional& functional) const {
+  return to_vector(sums(load_point, functional, {0, track_.elements()}).missing);
 }
 
-ResidualFlexibility::Sums ResidualFlexibility::sums(Port port, const Functional& functional,
+ResidualFlexibility::Sums ResidualFlexibility::sums(LoadPoint load_point,
+                                                    const Functional& functional,
                                                     Elements at) const {
   check_functional(track_, functional);
   Sums sum{Eigen::VectorXd::Zero(at.count() * (points_ + 1)), 0.};
   Eigen::VectorXd exact = sum.missing;
   for (const Pair& pair : pairs_) {
-    const double w = weight(pair, port);
+    const double w = weight(pair, load_point);
     if (w == 0.) continue;
-    const Eigen::VectorXd own = w * pair.exact->from(port, functional, points_, at);
+    const Eigen::VectorXd own = w * pair.exact->from(load_point, functional, points_, at);
     exact += own;
-    sum.missing += own - w * pair.model->from(port, functional, points_, at);
+    sum.missing += own - w * pair.model->from(load_point, functional, points_, at);
   }
   sum.largest_exact = exact.lpNorm<Eigen::Infinity>();
   return sum;
@@ -206,7 +211,7 @@ Elements ResidualFlexibility::filled(const Sums& sums, Elements at, double nothi
   return found;
 }
 
-ResidualFlexibility::Near ResidualFlexibility::near(const std::vector<Port>& ports,
+ResidualFlexibility::Near ResidualFlexibility::near(const std::vector<LoadPoint>& load_points,
                                                     const Functional& functional,
                                                     Elements among) const {
   const bool whole = !bases_.empty() || track_.ring;
@@ -214,21 +219,23 @@ ResidualFlexibility::Near ResidualFlexibility::near(const std::vector<Port>& por
   const Elements own = whole ? all : elements_of(track_, functional);
   for (int look = first_look(kFunctionalLook, track_);; look *= 2) {
     const Elements at{std::max(own.first - look, 0), std::min(own.last + look, all.last)};
-    std::vector<Sums> of_port;
-    of_port.reserve(ports.size());
+    std::vector<Sums> of_load_point;
+    of_load_point.reserve(load_points.size());
     double largest = 0.;
-    for (const Port& port : ports)
-      largest = std::max(largest, of_port.emplace_back(sums(port, functional, at)).largest_exact);
+    for (const LoadPoint& load_point : load_points)
+      largest = std::max(
+          largest, of_load_point.emplace_back(sums(load_point, functional, at)).largest_exact);
     Elements found = own;
-    for (const Sums& sum : of_port) {
+    for (const Sums& sum : of_load_point) {
       const Elements more = filled(sum, at, kFaded * largest);
       found = {std::min(found.first, more.first), std::max(found.last, more.last)};
     }
-    const int reach = std::max(own.first - found.first, found.last - own.last);
-    if (!has_faded(reach, look) && at.count() < all.count()) continue;
+    const int range = std::max(own.first - found.first, found.last - own.last);
+    if (!has_faded(range, look) && at.count() < all.count()) continue;
     Near near{found, {}};
-    near.value.reserve(ports.size() * static_cast<std::size_t>(found.count() * (points_ + 1)));
-    for (const Sums& sum : of_port) {
+    near.value.reserve(load_points.size() *
+                       static_cast<std::size_t>(found.count() * (points_ + 1)));
+    for (const Sums& sum : of_load_point) {
       const double* const first = sum.missing.data() + (found.first - at.first) * (points_ + 1);
       near.value.insert(near.value.end(), first, first + found.count() * (points_ + 1));
     }
@@ -236,26 +243,28 @@ ResidualFlexibility::Near ResidualFlexibility::near(const std::vector<Port>& por
   }
 }
 
-std::vector<double> ResidualFlexibility::at_once(Port port, const Functional& functional,
+std::vector<double> ResidualFlexibility::at_once(LoadPoint load_point, const Functional& functional,
                                                  Elements at) const {
   check_functional(track_, functional);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(at.count() * (points_ + 1));
   for (const Pair& pair : pairs_) {
     const auto i = static_cast<std::size_t>(pair.line - lines_.data());
-    const double w = weight(pair, port);
+    const double w = weight(pair, load_point);
     if (w == 0. || bases_.empty() || bases_[i].at_once.size() == 0) continue;
-    sum += w * ReducedLine(track_, *pair.line, bases_[i]).at_once(port, functional, points_, at);
+    sum +=
+        w * ReducedLine(track_, *pair.line, bases_[i]).at_once(load_point, functional, points_, at);
   }
   return to_vector(sum);
 }
 
 double PairTable::at(int e, int p, int e2, int q) const {
-  if (std::abs(e2 - e) > reach) return 0.;
+  if (std::abs(e2 - e) > range) return 0.;
   return value[place_in(*this, e, p, e2, q)];
 }
 
-/// Sum over the lines that both ports move.
-LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points, int reach) const {
+/// Sum over the lines that both load points move.
+LineFlexibility::Strip ResidualFlexibility::strips(LoadPoint a, LoadPoint b, int points,
+                                                   int range) const {
   struct Part {
     double weight;
     LineFlexibility::Strip exact, model;
@@ -265,9 +274,9 @@ LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points, i
     const double w = weight(pair, a) * weight(pair, b);
     if (w != 0.)
       parts.push_back(
-          {w, pair.exact->between(a, b, points, reach), pair.model->between(a, b, points, reach)});
+          {w, pair.exact->between(a, b, points, range), pair.model->between(a, b, points, range)});
   }
-  const Eigen::Index rows = points + 1, columns = (2 * reach + 1) * rows;
+  const Eigen::Index rows = points + 1, columns = (2 * range + 1) * rows;
   return [parts, rows, columns](int element) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows, columns);
     for (const Part& part : parts) sum += part.weight * (part.exact(element) - part.model(element));
@@ -275,25 +284,26 @@ LineFlexibility::Strip ResidualFlexibility::strips(Port a, Port b, int points, i
   };
 }
 
-double ResidualFlexibility::largest_exact(Port port) const {
-  const std::vector<double> exact = exact_under(port);
+double ResidualFlexibility::largest_exact(LoadPoint load_point) const {
+  const std::vector<double> exact = exact_under(load_point);
   return *std::max_element(exact.begin(), exact.end());
 }
 
-PairTable ResidualFlexibility::between(Port a, Port b, int points, int most) const {
+PairTable ResidualFlexibility::between(LoadPoint a, LoadPoint b, int points, int most) const {
   if (points < 1 || points_ % points != 0)
-    refuse("E-CONDENSE-12", "a table between ports takes a divisor of the points of the track");
+    refuse("E-CONDENSE-12",
+           "a table between load points takes a divisor of the points of the track");
   most = std::min(most, track_.elements() - 1);
   const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
   const int elements = tabled_elements(track_);
   // What a basis misses is not local.
   int look = std::min(most, bases_.empty() ? first_look(kPairLook, track_) : most);
-  int reach = reach_of(strips(a, b, points, look), elements, points, look, limit);
-  while (look < most && !has_faded(reach, look)) {
+  int range = range_of(strips(a, b, points, look), elements, points, look, limit);
+  while (look < most && !has_faded(range, look)) {
     look = std::min(most, 2 * look);
-    reach = reach_of(strips(a, b, points, look), elements, points, look, limit);
+    range = range_of(strips(a, b, points, look), elements, points, look, limit);
   }
-  return table_of(strips(a, b, points, reach), elements, points, reach);
+  return table_of(strips(a, b, points, range), elements, points, range);
 }
 
 }  // namespace railstep

@@ -9,30 +9,30 @@
 
 namespace railstep {
 
-/// Residual flexibility between two ports, by element of the first and, within `reach` elements of
-/// it, of the second.
+/// Residual flexibility between two load points, by element of the first and, within `range`
+/// elements of it, of the second.
 struct PairTable {
   int points;                 // intervals per element
-  int reach;                  // elements
-  std::vector<double> value;  // [tabled e][e2 - e + reach][p][q], m/N; 0 where e2 is off the rail
+  int range;                  // elements
+  std::vector<double> value;  // [tabled e][e2 - e + range][p][q], m/N; 0 where e2 is off the rail
 
-  /// Of the first port at place p of element e and the second at place q of element e2, both on
-  /// the rail; 0 beyond the reach.
+  /// Of the first load point at place p of element e and the second at place q of element e2, both
+  /// on the rail; 0 beyond the range.
   double at(int e, int p, int e2, int q) const;
 };
 
 /// Residual flexibility G_res(a, b) = G_exact(a, b) - G_model(a, b) of a track: what a model of it
-/// misses statically, between ports and from ports to all else.
+/// misses statically, between load points and from load points to all else.
 ///
 /// Exact is the same track with every element divided into `points` elements, taken at their ends,
 /// where the element is exact: each divided element is condensed to its two end nodes, its static
 /// shapes and its inner flexibility with the ends held. The model is the track as it stands, or its
-/// lines in the coordinates of a basis; there a port leaves out the section's own strain (a_y,
-/// b_z), so that the squeeze of the head is in G_res. G_exact has a slope jump of
-/// -1/(k_z G A) at equal places, G_res carries it.
+/// lines in the coordinates of a basis; there a load point leaves out the section's own strain
+/// (a_y, b_z), so that the squeeze of the head is in G_res. G_exact has a slope jump of -1/(k_z G
+/// A) at equal places, G_res carries it.
 ///
-/// All queries skip lines that the port does not move. They throw std::invalid_argument on a rail
-/// that the track does not have, and on a free rigid mode of a line that the port moves.
+/// All queries skip lines that the load point does not move. They throw std::invalid_argument on a
+/// rail that the track does not have, and on a free rigid mode of a line that the load point moves.
 class ResidualFlexibility {
  public:
   /// @param lines  of the track, as assemble() gives them
@@ -50,48 +50,50 @@ class ResidualFlexibility {
   /// by rounding. Above it the element's two Gauss points make it softer than the rail to the
   /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0,
   /// and nothing is clipped here.
-  std::vector<double> under(Port port) const;
-  /// From the port to another of its rail in the same section.
-  std::vector<double> under(Port port, Port seen) const;
+  std::vector<double> under(LoadPoint load_point) const;
+  /// From the load point to another of its rail in the same section.
+  std::vector<double> under(LoadPoint load_point, LoadPoint other) const;
   /// G_exact(x, x); [tabled elements][points + 1], m/N.
-  std::vector<double> exact_under(Port port) const;
+  std::vector<double> exact_under(LoadPoint load_point) const;
 
-  /// G_res of all places of two ports of one or two rails; between(b, a) is its transpose.
-  /// `reach` is the smallest number of elements beyond which all of it stays below 1e-4 of the
-  /// largest G_exact(x, x) of the ports. It is not 0 for the track as it stands: an element reads a
-  /// force inside it quadratically, and so moves others wrongly (5e-3 of G_exact next to it with
-  /// one element of 0.6 m per bay, 1e-3 with two).
+  /// G_res of all places of two load points of one or two rails; between(b, a) is its transpose.
+  /// `range` is the smallest number of elements beyond which all of it stays below 1e-4 of the
+  /// largest G_exact(x, x) of the load points. It is not 0 for the track as it stands: an element
+  /// reads a force inside it quadratically, and so moves others wrongly (5e-3 of G_exact next to it
+  /// with one element of 0.6 m per bay, 1e-3 with two).
   /// @param points intervals per element, a divisor of the constructor's
-  /// @param most   reach at most, where ports are known to stand no farther apart
-  PairTable between(Port a, Port b, int points, int most = std::numeric_limits<int>::max()) const;
+  /// @param most   range at most, where load points are known to stand no farther apart
+  PairTable between(LoadPoint a, LoadPoint b, int points,
+                    int most = std::numeric_limits<int>::max()) const;
 
-  /// What the model misses of the functional under a unit force of the port at each place;
+  /// What the model misses of the functional under a unit force of the load point at each place;
   /// [elements][points + 1], m/N. Throws std::out_of_range if the functional is off the track.
-  std::vector<double> from(Port port, const Functional& functional) const;
-  /// Velocity of a functional at once under a unit force of the port, which the modes' rates do not
-  /// show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.
-  std::vector<double> at_once(Port port, const Functional& functional, Elements at) const;
-  /// What from() gives of several ports at those of some elements that have something of it:
+  std::vector<double> from(LoadPoint load_point, const Functional& functional) const;
+  /// Velocity of a functional at once under a unit force of the load point, which the modes' rates
+  /// do not show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.
+  std::vector<double> at_once(LoadPoint load_point, const Functional& functional,
+                              Elements at) const;
+  /// What from() gives of several load points at those of some elements that have something of it:
   /// beyond, all stays below 1e-8 of the most that a force of any on the exact track makes of the
   /// functional. Of a model in the coordinates of a basis, and of a ring, all of them.
   struct Near {
     Elements at;
-    std::vector<double> value;  // [ports][elements][points + 1]
+    std::vector<double> value;  // [load_points][elements][points + 1]
   };
-  Near near(const std::vector<Port>& ports, const Functional& functional,
+  Near near(const std::vector<LoadPoint>& load_points, const Functional& functional,
             Elements among = {0, std::numeric_limits<int>::max()}) const;
 
  private:
   struct Pair;                // exact and model of one line
-  struct Sums {               // over the lines that a port moves
+  struct Sums {               // over the lines that a load point moves
     Eigen::VectorXd missing;  // as from() gives it
     double largest_exact;     // of the exact track
   };
-  double weight(const Pair& pair, Port port) const;
-  Sums sums(Port port, const Functional& functional, Elements at) const;
+  double weight(const Pair& pair, LoadPoint load_point) const;
+  Sums sums(LoadPoint load_point, const Functional& functional, Elements at) const;
   Elements filled(const Sums& sums, Elements at, double nothing) const;
-  LineFlexibility::Strip strips(Port a, Port b, int points, int reach) const;
-  double largest_exact(Port port) const;
+  LineFlexibility::Strip strips(LoadPoint a, LoadPoint b, int points, int range) const;
+  double largest_exact(LoadPoint load_point) const;
 
   Track track_;
   std::vector<Line> lines_;

@@ -101,10 +101,10 @@ class Blocks {
   Eigen::MatrixXd real(std::complex<double> step, const Eigen::MatrixXcd& T) const {
     const Eigen::MatrixXcd A =
         std::conj(step) * block_[0] + block_[1].cast<std::complex<double>>() + step * block_[2];
-    const Eigen::MatrixXcd turned = T.adjoint() * A * T;
-    if (!(turned.imag().norm() <= 1e-9 * turned.norm()))
+    const Eigen::MatrixXcd rotated = T.adjoint() * A * T;
+    if (!(rotated.imag().norm() <= 1e-9 * rotated.norm()))
       refuse("E-CONDENSE-13", "a bay of a ring is not its own mirror image about its seat");
-    return .5 * (turned.real() + turned.real().transpose());
+    return .5 * (rotated.real() + rotated.real().transpose());
   }
 
  private:
@@ -113,7 +113,7 @@ class Blocks {
 
 /// Columns that mirroring and conjugating leave as they are, a unitary basis. At k = 0 and k = pi
 /// each is real or imaginary.
-Eigen::MatrixXcd turned_basis(const std::vector<CellUnknown>& cell, double m_over_n) {
+Eigen::MatrixXcd real_basis(const std::vector<CellUnknown>& cell, double m_over_n) {
   const std::complex<double> i(0., 1.), half = phase(.5 * m_over_n), whole = phase(m_over_n);
   const auto n = static_cast<Eigen::Index>(cell.size());
   Eigen::MatrixXcd T = Eigen::MatrixXcd::Zero(n, n);
@@ -204,7 +204,7 @@ class Builder {
  private:
   void add(int m) {
     const double t = static_cast<double>(m) / bays_;
-    const Eigen::MatrixXcd T = turned_basis(cell_, t);
+    const Eigen::MatrixXcd T = real_basis(cell_, t);
     const bool alone = m == 0 || 2 * m == bays_;
     std::vector<Eigen::MatrixXcd> parts = {T};
     if (alone) parts = {of_class(T, false), of_class(T, true)};
@@ -230,13 +230,13 @@ class Builder {
 
   /// @param partner  where its partner's modes stand from its own, in times of their number
   void place(const Wave& wave, int m, bool imaginary, double scale, int partner) {
-    const std::complex<double> turn = phase(static_cast<double>(m) / bays_);
+    const std::complex<double> shift = phase(static_cast<double>(m) / bays_);
     const Eigen::Index modes = wave.modes.rate.size();
     for (Eigen::Index k = 0; k < modes; ++k) {
       partner_.push_back(static_cast<int>(count_ + k + partner * modes));
       // u(b + 1): Re e^(ik) (Re, Im) of x e^(ikb), the sine's part with the other sign
-      cosine_.push_back(turn.real());
-      sine_.push_back(partner == 0 ? 0. : (imaginary ? -turn.imag() : turn.imag()));
+      cosine_.push_back(shift.real());
+      sine_.push_back(partner == 0 ? 0. : (imaginary ? -shift.imag() : shift.imag()));
     }
     count_ += modes;
     omega_.insert(omega_.end(), wave.basis.omega.begin(), wave.basis.omega.end());

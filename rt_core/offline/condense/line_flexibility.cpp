@@ -46,25 +46,26 @@ class StrainedLine : public LineFlexibility {
   StrainedLine(const Track& track, const Line& line, int parts)
       : track_(with_strain(track)),
         line_(matching(track_, line)),
-        goes_along_(carries_along(line)),
+        carries_along_(carries_along(line)),
         divided_(exact_line(track_, line_, parts)) {}
 
-  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override {
-    return divided_->under(port, seen, points);
+  Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
+                        int points) const override {
+    return divided_->under(load_point, other, points);
   }
-  Strip between(const Port& a, const Port& b, int points, int reach) const override {
-    return divided_->between(a, b, points, reach);
+  Strip between(const LoadPoint& a, const LoadPoint& b, int points, int range) const override {
+    return divided_->between(a, b, points, range);
   }
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+  Eigen::VectorXd from(const LoadPoint& load_point, const Functional& functional, int points,
                        Elements at) const override {
-    return divided_->from(port, seen(functional), points, at);
+    return divided_->from(load_point, counted_from_axis(functional), points, at);
   }
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override {
     std::vector<Functional> those;
     those.reserve(reads.size());
-    for (const Functional& one : reads) those.push_back(seen(one));
-    return divided_->flexibility(those, seen(force));
+    for (const Functional& one : reads) those.push_back(counted_from_axis(one));
+    return divided_->flexibility(those, counted_from_axis(force));
   }
   bool held() const override { return divided_->held(); }
 
@@ -73,8 +74,8 @@ class StrainedLine : public LineFlexibility {
     const std::vector<int> own = carried_unknowns(line, line.first_rail());
     return std::find(own.begin(), own.end(), 0) != own.end();
   }
-  Functional seen(Functional functional) const {
-    if (goes_along_) return functional;
+  Functional counted_from_axis(Functional functional) const {
+    if (carries_along_) return functional;
     const std::vector<Functional::OnRail> whole = functional.rail;
     for (const Functional::OnRail& one : whole)
       if (one.at.direction == 0)
@@ -86,7 +87,7 @@ class StrainedLine : public LineFlexibility {
 
   Track track_;
   Line line_;
-  bool goes_along_;
+  bool carries_along_;
   std::unique_ptr<LineFlexibility> divided_;
 };
 

@@ -14,8 +14,8 @@
 
 namespace railstep {
 
-/// A vertical force on a rail and the displacement there.
-struct Port {
+/// A point of a rail's section at which a vertical force acts and its displacement is read.
+struct LoadPoint {
   int rail;       // 0 left (+y), 1 right
   double z;       // of the section's point above the axis, m
   double y = 0.;  // beside it, m
@@ -34,24 +34,25 @@ struct Elements {
   int count() const { return last - first; }
 };
 
-/// Static flexibility of one line between the places of ports, `points` intervals per element at
-/// equal steps of x, in the line's own coordinates: the weights of a port's rail in the line are
-/// left to the caller, those of a functional are in.
+/// Static flexibility of one line between the places of load points, `points` intervals per element
+/// at equal steps of x, in the line's own coordinates: the weights of a load point's rail in the
+/// line are left to the caller, those of a functional are in.
 class LineFlexibility {
  public:
-  /// Displacements of port b at the places of the elements within a reach of one, under a unit
-  /// force of port a at each place of that: [places][(2 reach + 1) x (points + 1)], m/N; 0 off the
-  /// rail.
+  /// Displacements of load point b at the places of the elements within a range of one, under a
+  /// unit force of load point a at each place of that: [places][(2 range + 1) x (points + 1)], m/N;
+  /// 0 off the rail.
   using Strip = std::function<Eigen::MatrixXd(int element)>;
 
   virtual ~LineFlexibility() = default;
-  /// G(x, x) from a port to another of its rail; [tabled elements x (points + 1)], m/N.
-  virtual Eigen::VectorXd under(const Port& port, const Port& seen, int points) const = 0;
-  virtual Strip between(const Port& a, const Port& b, int points, int reach) const = 0;
-  /// The functional under a unit force of a port at each place of some elements, of a ring all;
-  /// [elements x (points + 1)].
-  virtual Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
-                               Elements at) const = 0;
+  /// G(x, x) from a load point to another of its rail; [tabled elements x (points + 1)], m/N.
+  virtual Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
+                                int points) const = 0;
+  virtual Strip between(const LoadPoint& a, const LoadPoint& b, int points, int range) const = 0;
+  /// The functional under a unit force of a load point at each place of some elements, of a ring
+  /// all; [elements x (points + 1)].
+  virtual Eigen::VectorXd from(const LoadPoint& load_point, const Functional& functional,
+                               int points, Elements at) const = 0;
   /// Each of `reads` under a unit force spread by `force`, whatever their directions; m/N. Weights
   /// of rails are in.
   virtual Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
@@ -68,9 +69,10 @@ class DividedLine : public LineFlexibility {
   DividedLine(const Track& track, const Line& line, int parts);
 
   /// These throw std::invalid_argument if the line has a free rigid mode.
-  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
-  Strip between(const Port& a, const Port& b, int points, int reach) const override;
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+  Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
+                        int points) const override;
+  Strip between(const LoadPoint& a, const LoadPoint& b, int points, int range) const override;
+  Eigen::VectorXd from(const LoadPoint& load_point, const Functional& functional, int points,
                        Elements at) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override;
@@ -88,7 +90,7 @@ class DividedLine : public LineFlexibility {
   };
   Spread spread(const Functional& functional) const;
   const Superelement& element(int rail) const;
-  Superelement::Rows port_rows(const Port& port, int points) const;
+  Superelement::Rows load_rows(const LoadPoint& load_point, int points) const;
   Superelement::Rows rail_rows(const Functional::OnRail& point, int element) const;
   void sign(int rail, Eigen::VectorXd& row) const;
   Stretch moved(const Eigen::SparseVector<double>& load, Elements around) const;
@@ -116,17 +118,18 @@ class RefinedLine : public LineFlexibility {
   RefinedLine(const Track& track, const Line& line, int parts);
 
   /// These throw std::invalid_argument if the line has a free rigid mode.
-  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
-  Strip between(const Port& a, const Port& b, int points, int reach) const override;
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+  Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
+                        int points) const override;
+  Strip between(const LoadPoint& a, const LoadPoint& b, int points, int range) const override;
+  Eigen::VectorXd from(const LoadPoint& load_point, const Functional& functional, int points,
                        Elements at) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override;
   bool held() const override { return held_; }
 
  private:
-  /// Of a port at the places of one element of the track; [unknowns][points + 1]
-  Eigen::SparseMatrix<double> columns(const Port& port, int element, int points) const;
+  /// Of a load point at the places of one element of the track; [unknowns][points + 1]
+  Eigen::SparseMatrix<double> columns(const LoadPoint& load_point, int element, int points) const;
   void refuse_free_modes() const;
 
   const Track& whole_;
@@ -137,31 +140,33 @@ class RefinedLine : public LineFlexibility {
   bool held_ = false;  // no free rigid mode
 };
 
-/// The line in the coordinates of a basis. A port leaves out the section's own strain (a_y, b_z),
-/// which few coordinates do not carry; functionals are read whole.
+/// The line in the coordinates of a basis. A load point leaves out the section's own strain (a_y,
+/// b_z), which few coordinates do not carry; functionals are read whole.
 class ReducedLine : public LineFlexibility {
  public:
   /// Throws std::invalid_argument if the basis is not one of the line.
   ReducedLine(const Track& track, const Line& line, const Basis& basis);
 
-  Eigen::VectorXd under(const Port& port, const Port& seen, int points) const override;
-  Strip between(const Port& a, const Port& b, int points, int reach) const override;
-  Eigen::VectorXd from(const Port& port, const Functional& functional, int points,
+  Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
+                        int points) const override;
+  Strip between(const LoadPoint& a, const LoadPoint& b, int points, int range) const override;
+  Eigen::VectorXd from(const LoadPoint& load_point, const Functional& functional, int points,
                        Elements at) const override;
   Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                               const Functional& force) const override;
-  /// Velocity of the functional at once under a unit force of a port at each place;
+  /// Velocity of the functional at once under a unit force of a load point at each place;
   /// [elements x (points + 1)], of a basis that has such.
-  Eigen::VectorXd at_once(const Port& port, const Functional& functional, int points,
+  Eigen::VectorXd at_once(const LoadPoint& load_point, const Functional& functional, int points,
                           Elements at) const;
 
  private:
   template <typename Take>
-  void read_port(const Port& port, int points, Elements at, const Take& take) const;
-  Eigen::VectorXd seen_by(const Port& port, int points, Elements at,
-                          const Eigen::VectorXd& y) const;
-  /// The shapes at a port's places, on a ring round it; [elements x (points + 1)][kept]
-  Eigen::MatrixXd port_shapes(const Port& port, int points, Elements at) const;
+  void read_load_point(const LoadPoint& load_point, int points, Elements at,
+                       const Take& take) const;
+  Eigen::VectorXd displacement_at(const LoadPoint& load_point, int points, Elements at,
+                                  const Eigen::VectorXd& y) const;
+  /// The shapes at a load point's places, on a ring round it; [elements x (points + 1)][kept]
+  Eigen::MatrixXd load_shapes(const LoadPoint& load_point, int points, Elements at) const;
 
   const Track& track_;
   const Line& line_;

@@ -17,7 +17,7 @@ namespace {
 /// Where on the section a wheel's forces meet the rail, near enough: beside the middle of a head,
 /// so that they turn it too, m.
 constexpr double kBeside = .01, kAbove = .1;
-constexpr double kUnseen = 1e-14;  // of the largest eigenvalue of the Gram matrix
+constexpr double kDependent = 1e-14;  // of the largest eigenvalue of the Gram matrix
 
 /// Unit forces over every seat and in the middle of every bay, of every rail of the line.
 Eigen::MatrixXd wheel_forces(const Track& track, const Line& line) {
@@ -60,8 +60,9 @@ Eigen::MatrixXd rational_krylov_shapes(const Track& track, const Line& line,
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(all.transpose() *
                                                             (line.stiffness * all));
-  const auto seen = (gram.eigenvalues().array() > kUnseen * gram.eigenvalues().maxCoeff()).count();
-  const Eigen::Index count = std::min<Eigen::Index>(seen, most);
+  const auto independent =
+      (gram.eigenvalues().array() > kDependent * gram.eigenvalues().maxCoeff()).count();
+  const Eigen::Index count = std::min<Eigen::Index>(independent, most);
   return all * gram.eigenvectors().rightCols(count);
 }
 

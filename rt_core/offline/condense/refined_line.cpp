@@ -52,49 +52,52 @@ void RefinedLine::refuse_free_modes() const {
          "residual flexibility needs a track that is held: it has a free rigid mode");
 }
 
-Eigen::SparseMatrix<double> RefinedLine::columns(const Port& port, int element, int points) const {
+Eigen::SparseMatrix<double> RefinedLine::columns(const LoadPoint& load_point, int element,
+                                                 int points) const {
   const double length = track_.element_length() * parts_;
-  // The weight of the port's rail is left to the caller.
-  const double weight = line_.rail_factor[static_cast<std::size_t>(port.rail)];
+  // The weight of the load point's rail is left to the caller.
+  const double weight = line_.rail_factor[static_cast<std::size_t>(load_point.rail)];
   Eigen::SparseMatrix<double> all(line_.unknowns(), points + 1);
   for (int p = 0; p <= points; ++p) {
     const double x = length * (element + static_cast<double>(p) / points);
-    all.col(p) = point_row(track_, line_, {port.rail, x, port.y, port.z, 2}) / weight;
+    all.col(p) =
+        point_row(track_, line_, {load_point.rail, x, load_point.y, load_point.z, 2}) / weight;
   }
   return all;
 }
 
-Eigen::VectorXd RefinedLine::under(const Port& port, const Port& seen, int points) const {
-  const Strip strip = between(port, seen, points, 0);
+Eigen::VectorXd RefinedLine::under(const LoadPoint& load_point, const LoadPoint& other,
+                                   int points) const {
+  const Strip strip = between(load_point, other, points, 0);
   Eigen::VectorXd result(tabled_elements(whole_) * (points + 1));
   for (int e = 0; e < tabled_elements(whole_); ++e)
     result.segment(e * (points + 1), points + 1) = strip(e).diagonal();
   return result;
 }
 
-LineFlexibility::Strip RefinedLine::between(const Port& a, const Port& b, int points,
-                                            int reach) const {
+LineFlexibility::Strip RefinedLine::between(const LoadPoint& a, const LoadPoint& b, int points,
+                                            int range) const {
   refuse_free_modes();
   return [=, this](int element) {
     const Eigen::MatrixXd moved = factor_.solve(Eigen::MatrixXd(columns(a, element, points)));
-    Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(points + 1, (2 * reach + 1) * (points + 1));
-    for (int shift = -reach; shift <= reach; ++shift)
+    Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(points + 1, (2 * range + 1) * (points + 1));
+    for (int shift = -range; shift <= range; ++shift)
       if (const int e2 = shifted(whole_, element, shift); e2 >= 0)
-        strip.middleCols((shift + reach) * (points + 1), points + 1) =
+        strip.middleCols((shift + range) * (points + 1), points + 1) =
             (columns(b, e2, points).transpose() * moved).transpose();
     return strip;
   };
 }
 
-Eigen::VectorXd RefinedLine::from(const Port& port, const Functional& functional, int points,
-                                  Elements at) const {
+Eigen::VectorXd RefinedLine::from(const LoadPoint& load_point, const Functional& functional,
+                                  int points, Elements at) const {
   refuse_free_modes();
   const Eigen::VectorXd load = functional_row(track_, line_, functional);
   const Eigen::VectorXd moved = factor_.solve(load);
   Eigen::VectorXd result(at.count() * (points + 1));
   for (int e = at.first; e < at.last; ++e)
     result.segment((e - at.first) * (points + 1), points + 1) =
-        columns(port, e, points).transpose() * moved;
+        columns(load_point, e, points).transpose() * moved;
   return result;
 }
 

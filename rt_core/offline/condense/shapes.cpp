@@ -21,7 +21,7 @@ Shapes::Shapes(std::vector<std::vector<int>> cells, std::vector<Wave> waves)
 }
 
 /// e^(i k b), over -i where the wave is an imaginary part: the real part of the product is wanted.
-std::complex<double> Shapes::turned(const Wave& wave, int bay) const {
+std::complex<double> Shapes::wave_phase(const Wave& wave, int bay) const {
   const std::int64_t whole = static_cast<std::int64_t>(wave.number) * bay;
   const std::complex<double> at =
       around_[static_cast<std::size_t>(whole % static_cast<std::int64_t>(around_.size()))];
@@ -46,7 +46,7 @@ Eigen::VectorXd Shapes::row(int unknown) const {
   Eigen::Index first = 0;
   for (const Wave& wave : waves_) {
     result.segment(first, wave.x.cols()) =
-        (turned(wave, at.bay) * wave.x.row(at.index)).real().transpose();
+        (wave_phase(wave, at.bay) * wave.x.row(at.index)).real().transpose();
     first += wave.x.cols();
   }
   return result;
@@ -54,16 +54,16 @@ Eigen::VectorXd Shapes::row(int unknown) const {
 
 Eigen::VectorXd Shapes::project(const Eigen::VectorXd& load) const {
   if (waves_.empty()) return dense_.transpose() * load;
-  std::vector<std::pair<int, Eigen::VectorXd>> loaded;  // bays that have any
+  std::vector<std::pair<int, Eigen::VectorXd>> nonzero;  // bays that have any
   for (std::size_t bay = 0; bay < cells_.size(); ++bay) {
     const Eigen::VectorXd own = load(cells_[bay]);
-    if (!own.isZero(0.)) loaded.emplace_back(static_cast<int>(bay), own);
+    if (!own.isZero(0.)) nonzero.emplace_back(static_cast<int>(bay), own);
   }
   Eigen::VectorXd result(cols());
   Eigen::Index first = 0;
   for (const Wave& wave : waves_) {
     Eigen::VectorXcd sum = Eigen::VectorXcd::Zero(wave.x.rows());
-    for (const auto& [bay, own] : loaded) sum += turned(wave, bay) * own;
+    for (const auto& [bay, own] : nonzero) sum += wave_phase(wave, bay) * own;
     result.segment(first, wave.x.cols()) = (wave.x.transpose() * sum).real();
     first += wave.x.cols();
   }
@@ -83,7 +83,7 @@ Eigen::VectorXd Shapes::displacement(const Eigen::VectorXd& y) const {
     parts.col(2 * w) = x.real();
     parts.col(2 * w + 1) = -x.imag();
     for (int bay = 0; bay < static_cast<int>(bays); ++bay) {
-      const std::complex<double> at = turned(wave, bay);
+      const std::complex<double> at = wave_phase(wave, bay);
       phases(2 * w, bay) = at.real();
       phases(2 * w + 1, bay) = at.imag();
     }

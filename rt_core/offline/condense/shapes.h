@@ -37,7 +37,7 @@ class Shapes {
   struct Place {
     int bay, index;  // of a bay, of an unknown in it
   };
-  std::complex<double> turned(const Wave& wave, int bay) const;
+  std::complex<double> wave_phase(const Wave& wave, int bay) const;
 
   Eigen::MatrixXd dense_;  // without waves
   std::vector<std::vector<int>> cells_;

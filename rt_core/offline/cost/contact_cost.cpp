@@ -6,10 +6,10 @@ namespace railstep {
 
 namespace {
 
-constexpr std::int64_t kSeenNodes = 6;  // of the two elements that a wheel looks at, at a joint
+constexpr std::int64_t kSearchNodes = 6;  // of the two elements that a wheel looks at, at a joint
 
 /// Irregularities of the rails and of the tread.
-Cost irregular_cost(const Model& model) {
+Cost irregularity_cost(const Model& model) {
   return (1 + std::int64_t{model.signals}) * (kSignal + work(4, 2));
 }
 
@@ -17,16 +17,16 @@ Cost irregular_cost(const Model& model) {
 Cost located_pair(const Model& model) {
   constexpr Cost rest = branching(240, 120);  // the nodes' places in the track's axes
   constexpr Cost contact =
-      branching(700, 300);  // poses, the point on the crown, rows, the turn's part
+      branching(700, 300);  // poses, the point on the crown, rows, the roll's part
   constexpr Cost search = kLocateSteps * branching(205, 60) + branching(200, 60);
-  Cost sum = 2 * (rest + contact + search + irregular_cost(model) + kPDeltaSeats * kLookUp);
+  Cost sum = 2 * (rest + contact + search + irregularity_cost(model) + kPDeltaSeats * kLookUp);
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     const LineCost cost = line_cost(model, line);
     // Of a table for both rails each unknown is read once.
     const std::int64_t tables = line.unknown_of[0] == line.unknown_of[1] ? 1 : 2;
-    sum = sum + kSeenNodes * 9 * (work(4, 6) + tables * cost.value) +
-          2 * kPDeltaSeats * cost.node_turn;
+    sum = sum + kSearchNodes * 9 * (work(4, 6) + tables * cost.value) +
+          2 * kPDeltaSeats * cost.node_roll;
   }
   return sum;
 }
@@ -37,7 +37,7 @@ Cost vehicles_cost(const Model& model, std::int64_t contacts) {
   for (std::int32_t v = 0; v < model.vehicles; ++v) {
     const std::int64_t n = model.vehicle[v].size, wheels = model.vehicle[v].wheels;
     const Cost law = work(150 + 6 * n, 100 + 4 * n) + contacts * kPairLookUp;
-    const Cost own = work(200 + 8 * n, 80 + 6 * n) + 2 * irregular_cost(model);
+    const Cost own = work(200 + 8 * n, 80 + 6 * n) + 2 * irregularity_cost(model);
     sum = sum + work(6 * n * n + 20 * n, 3 * n * n + 14 * n) + wheels * (law + own);
     for (std::int32_t l = 0; l < model.lines; ++l)
       sum = sum + 3 * wheels * line_cost(model, model.line[l]).wheel_row;
@@ -66,10 +66,10 @@ Cost tables_cost(const Model& model) {
 
 /// The track under all contacts: responses, W, penetrations, and the forces' way back.
 Cost responses_cost(const Model& model, const LineModel& line) {
-  const std::int64_t wheels = pressing(model, line);
+  const std::int64_t wheels = contacts_on(model, line);
   const LineCost cost = line_cost(model, line);
   Cost sum = wheels * (cost.unit + cost.add) + wheels * (wheels + 1) / 2 * cost.read +
-             2 * wheels * cost.read;  // seen as located, and moved since
+             2 * wheels * cost.read;  // read as located, and moved since
   sum = sum + wheels * std::int64_t{model.fixed.count} * cost.read;
   // Dampers of flanges: the rail's motion at three instants.
   return sum + 6 * std::int64_t{model.flanges} * cost.wheel_row;
@@ -83,17 +83,18 @@ Cost fixed_cost(const Model& model) {
          3 * work(2 * model.fixed.entries, 3 * model.fixed.entries);
 }
 
-/// The guides' turns, each with a solve of all ports.
+/// The guides' iterations, each with a solve of all ports.
 Cost coupled_cost(const Model& model, std::int64_t contacts) {
-  std::int64_t turns = 1, lift = 20 * std::int64_t{model.wheelsets} * 4;
+  std::int64_t iterations = 1, lift = 20 * std::int64_t{model.wheelsets} * 4;
   for (std::int32_t i = 0; i < model.wheelsets; ++i)
-    if (model.wheelset[i].guide == Guide::augmented_lagrangian && model.wheelset[i].cap > turns)
-      turns = model.wheelset[i].cap;
+    if (model.wheelset[i].guide == Guide::augmented_lagrangian &&
+        model.wheelset[i].cap > iterations)
+      iterations = model.wheelset[i].cap;
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     lift += 2 * std::int64_t{model.vehicle[v].size} * model.vehicle[v].wheels;
   const std::int64_t ports = contacts + model.fixed.count;
-  return turns * (ports_cost(ports, model.scheme.mean != 0) + work(lift + 3 * ports, lift) +
-                  model.wheelsets * work(150, 100));
+  return iterations * (ports_cost(ports, model.scheme.mean != 0) + work(lift + 3 * ports, lift) +
+                       model.wheelsets * work(150, 100));
 }
 
 }  // namespace

@@ -45,9 +45,9 @@ inline constexpr Cost branching(std::int64_t flops, std::int64_t doubles) {
 
 /// Of finding the row of a time in a table by bisection, and the value there.
 inline constexpr Cost table_cost(std::int64_t rows) {
-  std::int64_t turns = 0;
-  for (std::int64_t left = rows; left > 0; left /= 2) ++turns;
-  return rows == 0 ? Cost{} : branching(8, 6 + 2 * turns);
+  std::int64_t halvings = 0;
+  for (std::int64_t left = rows; left > 0; left /= 2) ++halvings;
+  return rows == 0 ? Cost{} : branching(8, 6 + 2 * halvings);
 }
 
 }  // namespace railstep

@@ -19,7 +19,7 @@ std::int64_t carried(const Model& model, const LineModel& line) {
   return most;
 }
 
-bool turns(const Model& model) {
+bool has_levers(const Model& model) {
   return model.p_delta.lever[0] != nullptr || model.p_delta.lever[1] != nullptr;
 }
 
@@ -37,7 +37,7 @@ Cost solve_cost(const Band& band) {
 LineCost line_cost(const Model& model, const LineModel& line) {
   const std::int64_t n = line.size, points = carried(model, line);
   const bool modal = model.form == Form::condensed;
-  const std::int64_t seats = turns(model) ? 2 * kPDeltaSeats : 0;
+  const std::int64_t seats = has_levers(model) ? 2 * kPDeltaSeats : 0;
   LineCost c{};
   c.value = modal ? work(4 * n + 7, 4 * n) : work(0, 1);
   c.row = points * (work(3, 2) + (modal ? work(4 * n + 7, 6 * n) : Cost{}));
@@ -46,7 +46,7 @@ LineCost line_cost(const Model& model, const LineModel& line) {
   c.unit = modal ? c.shape + work(6 * n, 6 * n) : c.wheel_row + work(0, n) + solve_cost(line.step);
   c.read = modal ? work(4 * n + 8, 4 * n) : c.wheel_row;
   c.add = modal ? work(4 * n, 6 * n) : work(2 * n, 3 * n);
-  c.node_turn = 2 * (work(3, 2) + c.value);
+  c.node_roll = 2 * (work(3, 2) + c.value);
   return c;
 }
 
@@ -69,7 +69,7 @@ Cost loads_cost(const Model& model) {
   return sum;
 }
 
-std::int64_t pressing(const Model& model, const LineModel& line) {
+std::int64_t contacts_on(const Model& model, const LineModel& line) {
   std::int64_t count = 0;
   for (std::int32_t i = 0; i < contact_count(model); ++i)
     if (line.rail_factor[rail_of(model, i)] != 0.) ++count;

@@ -10,12 +10,12 @@ namespace railstep {
 struct LineCost {
   Cost value;      // an unknown's displacement
   Cost row;        // the displacement along a row, or a force along it onto the right-hand side
-  Cost wheel_row;  // the same of a wheel's row, which the turns over its seats go into
+  Cost wheel_row;  // the same of a wheel's row, which the roll over its seats goes into
   Cost shape;      // a wheel's row among the modes
   Cost unit;       // what a unit force under a wheel makes of the line, its row included
   Cost read;       // that read under a wheel: an entry of W
   Cost add;        // a multiple of such a response added to the line
-  Cost node_turn;  // the turn of a section
+  Cost node_roll;  // the roll of a section
 };
 LineCost line_cost(const Model& model, const LineModel& line);
 
@@ -25,11 +25,11 @@ Cost solve_cost(const Band& band);
 /// The lines' own part of a step: its forces and responses apart.
 Cost advance_cost(const Model& model, const LineModel& line);
 
-/// Of all loads once: where they are and how they press.
+/// Of all loads once: where they are and what they apply.
 Cost loads_cost(const Model& model);
 
-/// Contacts that press a line.
-std::int64_t pressing(const Model& model, const LineModel& line);
+/// How many contacts act on a line.
+std::int64_t contacts_on(const Model& model, const LineModel& line);
 
 // Tables (math/table.h, model/signal.h), as the tests count them.
 inline constexpr Cost kLookUp = branching(32, 5);  // a cubic

@@ -9,10 +9,10 @@ constexpr Cost kBodySolve = branching(30, 30);  // S^-1 of six numbers
 constexpr Cost kMotion = branching(37, 8);      // s(t)
 constexpr Cost kSines = branching(80, 2);       // of an angle
 
-/// Of one marker: its pose, the same with rates, and a pull at it as forces on its part. On beams
-/// and rails they are those in space.
+/// Of one marker: its pose, the same with rates, and a generalised force of it on its part. On
+/// beams and rails they are those in space.
 struct MarkerCost {
-  Cost pose, jet, pull;
+  Cost pose, jet, force;
 };
 MarkerCost marker_cost(PartKind kind) {
   if (kind == PartKind::ground) return {branching(0, 24), branching(0, 48), {}};
@@ -62,15 +62,16 @@ class SystemCost {
     for (std::int32_t m = 0; m < s_.markers - s_.sensors; ++m) sum = sum + at(m).pose;
     return sum;
   }
-  bool is_turned(const RowModel& row) const {
+  bool has_driven_angle(const RowModel& row) const {
     return row.kind == RowKind::square && row.motion >= 0;
   }
-  Cost pulls(const RowModel& row) const {
-    return branching(60, 60) + (is_turned(row) ? kSines + branching(30, 10) : Cost{}) +
-           at(row.a).pull + at(row.b).pull;
+  Cost gradient(const RowModel& row) const {
+    return branching(60, 60) + (has_driven_angle(row) ? kSines + branching(30, 10) : Cost{}) +
+           at(row.a).force + at(row.b).force;
   }
   Cost rates(const RowModel& row) const {
-    return motion() + branching(75, 60) + (is_turned(row) ? kSines + branching(70, 20) : Cost{});
+    return motion() + branching(75, 60) +
+           (has_driven_angle(row) ? kSines + branching(70, 20) : Cost{});
   }
   std::int64_t track_ends() const { return part_ends(s_, s_.bodies + s_.beams); }
 
@@ -96,7 +97,7 @@ class SystemCost {
     }
     sum = sum + work(0, 3 * u);
     for (std::int32_t f = 0; f < s_.forces; ++f)
-      sum = sum + motion() + at(s_.force[f].marker).pull + branching(50, 60);
+      sum = sum + motion() + at(s_.force[f].marker).force + branching(50, 60);
     for (std::int32_t r = 0; r < rows(); ++r) sum = sum + row(r);
     if (s_.constraint_method == ConstraintMethod::baumgarte)
       sum = sum + work(2 * u, 3 * u) + s_.bodies * branching(180, 40) + poses();
@@ -108,8 +109,9 @@ class SystemCost {
   Cost row(std::int32_t r) const {
     const RowModel& own = s_.row[r];
     const bool joint = r < s_.joint_rows;
-    Cost sum = motion() + branching(25, 40) + (is_turned(own) ? kSines : Cost{}) + pulls(own);
-    if (has_slopes(s_)) sum = sum + pulls(own) + 2 * branching(30, 20);
+    Cost sum =
+        motion() + branching(25, 40) + (has_driven_angle(own) ? kSines : Cost{}) + gradient(own);
+    if (has_slopes(s_)) sum = sum + gradient(own) + 2 * branching(30, 20);
     const bool plain = s_.constraint_method == ConstraintMethod::augmented_lagrangian ||
                        s_.constraint_method == ConstraintMethod::direct;
     if (joint ? !plain : s_.mean == 0) sum = sum + at(own.a).jet + at(own.b).jet + rates(own);
@@ -121,7 +123,7 @@ class SystemCost {
     return work(2 * n * n + 3 * n, n * n + 4 * n);
   }
 
-  /// S^-1 of what all ends pull with, and of the residual.
+  /// S^-1 of the gradients of all ends, and of the residual.
   Cost ends() const {
     Cost sum = work(s_.unknowns, 2 * s_.unknowns) + ports();
     for (std::int32_t b = 0; b < s_.bodies; ++b) sum = sum + (1 + part_ends(s_, b)) * kBodySolve;
@@ -141,8 +143,10 @@ class SystemCost {
     std::int64_t pairs = 0;
     for (std::int32_t part = 0; part <= s_.bodies + s_.beams; ++part) {
       const std::int64_t own = part_ends(s_, part);
-      const int reach = part < s_.bodies ? 6 : part < s_.bodies + s_.beams ? kMostNodeUnknowns : 9;
-      pairs += own * own * (2 * reach + 1);
+      const int unknowns = part < s_.bodies              ? 6
+                           : part < s_.bodies + s_.beams ? kMostNodeUnknowns
+                                                         : 9;
+      pairs += own * own * (2 * unknowns + 1);
     }
     const Cost once = work(pairs + 3 * n, 2 * pairs + n * n) +
                       work(2 * n * n * n / 3 + 2 * n * n + n, n * n * n + 4 * n * n);

@@ -5,20 +5,20 @@ namespace railstep {
 
 namespace {
 
-/// What one external wheel takes of a step: placed, pressed along three directions, read.
+/// What one external wheel takes of a step: placed, its force applied along three directions, read.
 Cost external_cost(const Model& model) {
   Cost sum = work(300, 150) + kPDeltaSeats * (kLookUp + work(8, 4));
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineCost line = line_cost(model, model.line[l]);
     const std::int64_t n = model.line[l].size;
-    const Cost press =
+    const Cost apply =
         model.form == Form::condensed ? line.shape + work(8 * n, 8 * n) : line.wheel_row;
-    sum = sum + line.row + kPDeltaSeats * line.node_turn + 3 * press + 6 * line.wheel_row;
+    sum = sum + line.row + kPDeltaSeats * line.node_roll + 3 * apply + 6 * line.wheel_row;
   }
   return sum;
 }
 
-/// Of a frame's end: places, deflections, the residual flexibility between all that presses.
+/// Of a frame's end: places, deflections, the residual flexibility between all forces.
 Cost publish_cost(const Model& model) {
   const std::int64_t wheels = wheel_count(model);
   const std::int64_t forces = model.loads + wheels + model.external_wheels;
@@ -49,7 +49,7 @@ Cost stage_cost(const Model& model) {
 }
 
 Cost step_cost(const Model& model) {
-  if (model.scheme.part == 0.) return stage_cost(model);
+  if (model.scheme.stage_fraction == 0.) return stage_cost(model);
   // Where a step starts is kept for its second stage.
   return 2 * stage_cost(model) + work(2, 4 * std::int64_t{model.unknowns});
 }

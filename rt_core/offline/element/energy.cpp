@@ -209,15 +209,15 @@ void add_preload(BeamPoint& point, const BeamLaw& law, const StrainRow& e11,
     point.preload[k] += weight * stress * (e11[k] * determinant).over(law.moments);
 }
 
-/// Beyond a reach of half the radius of curvature the cut polynomials say little.
+/// Beyond an extent of half the radius of curvature the cut polynomials say little.
 void check_curvature(const RestPoint& p, const SectionMoments& m) {
   Matrix3d A;
   A << p.r, p.a, p.b;
   const Matrix3d inverse = A.inverse();
   // 1.5 times the fourth root of a rectangle's mean y^4 is its half width.
-  const auto reach = [&](double fourth) { return 1.5 * std::pow(fourth / m.area(), .25); };
-  const double bent = std::abs((inverse * p.a_slope)[0]) * reach(m.of[4][0]) +
-                      std::abs((inverse * p.b_slope)[0]) * reach(m.of[0][4]);
+  const auto extent = [&](double fourth) { return 1.5 * std::pow(fourth / m.area(), .25); };
+  const double bent = std::abs((inverse * p.a_slope)[0]) * extent(m.of[4][0]) +
+                      std::abs((inverse * p.b_slope)[0]) * extent(m.of[0][4]);
   if (!(bent <= .5))
     refuse("E-ELEMENT-02", "an element at rest is curved too sharply: half its section is " +
                                std::to_string(bent) + " of the radius; accepted is up to 0.5");
@@ -277,15 +277,15 @@ BeamPoint straight_point(const BeamLaw& law, double weight) {
 Beam beam_element(const BeamLaw& law, const Vector27& rest) {
   const double length = (rest.segment<3>(18) - rest.segment<3>(0)).norm();
   if (!(length > 0.)) refuse("E-ELEMENT-03", "an element's end nodes lie in one place");
-  const int apart = law.rule.coupling_points;
-  const bool together = apart == 0 || apart == law.rule.axial_points;
+  const int coupling_points = law.rule.coupling_points;
+  const bool together = coupling_points == 0 || coupling_points == law.rule.axial_points;
   Beam beam{};
   const auto add = [&](int points, Part part) {
     for (const GaussPoint& g : gauss(points))
       beam.point[beam.points++] = beam_point(law, rest, length, g, part);
   };
   add(law.rule.axial_points, together ? Part::both : Part::uncoupled);
-  if (!together) add(apart, Part::coupling);
+  if (!together) add(coupling_points, Part::coupling);
   return beam;
 }
 

@@ -6,8 +6,8 @@ namespace railstep {
 
 StraightBeam straight_beam(const BeamLaw& law, double length) {
   if (!(length > 0.)) refuse("E-ELEMENT-04", "a straight element has a length above 0");
-  const int apart = law.rule.coupling_points;
-  if (law.rule.axial_points != 2 || (apart != 0 && apart != 2))
+  const int coupling_points = law.rule.coupling_points;
+  if (law.rule.axial_points != 2 || (coupling_points != 0 && coupling_points != 2))
     refuse("E-ELEMENT-05", "the straight element has two points for all strains, no others");
   const BeamPoint point = straight_point(law, length / 2.);
 

@@ -5,7 +5,7 @@
 namespace railstep {
 namespace {
 
-enum : int { kX, kY, kZ, kTurnX, kTurnY, kTurnZ };
+enum : int { kX, kY, kZ, kRotationX, kRotationY, kRotationZ };
 
 /// A pair of springs of opposite signs, k/L, on one coordinate of both nodes.
 void add_bar(Matrix12& K, int coordinate, double stiffness) {
@@ -35,19 +35,19 @@ Matrix12 timoshenko_stiffness(const BeamSection& s, const Material& material, do
   const double E = material.young, G = material.shear_modulus();
   Matrix12 K = Matrix12::Zero();
   add_bar(K, kX, E * s.area / length);
-  add_bar(K, kTurnX, G * s.torsion / length);
-  add_bending(K, kZ, kTurnY, -1., E * s.inertia_y, s.shear_factor_z * G * s.area, length);
-  add_bending(K, kY, kTurnZ, 1., E * s.inertia_z, s.shear_factor_y * G * s.area, length);
+  add_bar(K, kRotationX, G * s.torsion / length);
+  add_bending(K, kZ, kRotationY, -1., E * s.inertia_y, s.shear_factor_z * G * s.area, length);
+  add_bending(K, kY, kRotationZ, 1., E * s.inertia_z, s.shear_factor_y * G * s.area, length);
   Matrix12 centroid = Matrix12::Identity();  // from the centroid's to the shear centre's u_y
-  centroid(kY, kTurnX) = centroid(6 + kY, 6 + kTurnX) = -s.shear_centre_z;
+  centroid(kY, kRotationX) = centroid(6 + kY, 6 + kRotationX) = -s.shear_centre_z;
   return centroid.transpose() * K * centroid;
 }
 
 Vector12 timoshenko_line_load(double length) {
   Vector12 load = Vector12::Zero();
   load[kZ] = load[6 + kZ] = length / 2.;
-  load[kTurnY] = -length * length / 12.;
-  load[6 + kTurnY] = length * length / 12.;
+  load[kRotationY] = -length * length / 12.;
+  load[6 + kRotationY] = length * length / 12.;
   return load;
 }
 

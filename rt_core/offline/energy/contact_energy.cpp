@@ -11,7 +11,7 @@ namespace railstep {
 namespace {
 
 /// Where the forces act: of loads, and of wheels still without force.
-int ports_of(const Model& model, StandingContacts& c, RailForce* port) {
+int ports_of(const Model& model, StandingContacts& c, RailForce* rail_force) {
   for (int i = 0; i < c.loads; ++i)
     port[i] = {model.load[i].load_point, c.load[i].row.element, c.load[i].xi, c.load[i].force};
   for (int i = 0; i < c.contacts; ++i)
@@ -19,21 +19,22 @@ int ports_of(const Model& model, StandingContacts& c, RailForce* port) {
   return c.loads + c.contacts;
 }
 
-/// Turns after which a negative residual no longer matters: each leaves |G| dP/dd of it, 1e-2.
+/// Iterations after which a negative residual no longer matters: each leaves |G| dP/dd of it, 1e-2.
 constexpr int kIterations = 10;
 
 bool stands(const WheelContact& at) { return at.on_rail || at.on_ground; }
 
-/// A linear contact pulls too, and its damper's part is not in its penetration: its force is known.
+/// A linear contact is bilateral, and its damper's part is not in its penetration: its force is
+/// known.
 bool is_linear(const Model& model, int wheel) {
   return !is_of_wheelset(model, wheel) && vehicle_wheel(model, wheel).contact.hertz == 0.;
 }
 /// Whether the residual flexibility has a part in how deep a contact is.
-bool is_pressed(const Model& model, int wheel) {
+bool takes_residual(const Model& model, int wheel) {
   return !is_flange(model, wheel) && !is_linear(model, wheel);
 }
 double hertz_of(const Model& model, int wheel) {
-  if (!is_pressed(model, wheel)) return 1.;  // of a port that is never met
+  if (!takes_residual(model, wheel)) return 1.;  // of a port that is never met
   return is_of_wheelset(model, wheel)
              ? model.wheelset[wheelset_of(model, wheel)].hertz[rail_of(model, wheel)]
              : vehicle_wheel(model, wheel).contact.hertz;
@@ -47,21 +48,21 @@ double linear_energy(const ContactModel& contact, double force, double depth) {
 }
 
 /// Forces of the wheels by d + W f = d_free, W = G between wheels. Where G is below 0, which it may
-/// be by itself, it acts through the force of the turn before.
-void press(const Model& model, StandingContacts& c, RailForce* port, int ports) {
+/// be by itself, it acts through the force of the iteration before.
+void solve_forces(const Model& model, StandingContacts& c, RailForce* rail_force, int ports) {
   double W[kMaxWheels * kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
   PortLaw law[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
   for (int i = 0; i < c.contacts; ++i) {
-    const bool on_rail = c.contact[i].on_rail && is_pressed(model, i);
+    const bool on_rail = c.contact[i].on_rail && takes_residual(model, i);
     law[i] = {hertz_of(model, i), 0., 0.};
     force[i] = 0.;
     free[i] =
         on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;
-    if (c.contact[i].on_ground && is_pressed(model, i)) free[i] = c.approach[i];
+    if (c.contact[i].on_ground && takes_residual(model, i)) free[i] = c.approach[i];
     for (int j = 0; j < c.contacts; ++j) {
       const RailForce &at = port[c.loads + i], &other = port[c.loads + j];
-      const bool coupled = on_rail && c.contact[j].on_rail && is_pressed(model, j);
+      const bool coupled = on_rail && c.contact[j].on_rail && takes_residual(model, j);
       W[i * c.contacts + j] = !coupled ? 0.
                               : i == j ? residual_under(model, at)
                                        : residual_between(model, other, at);
@@ -76,7 +77,7 @@ void press(const Model& model, StandingContacts& c, RailForce* port, int ports) 
     static_cast<void>(solve_ports(c.contacts, W, law, shifted, force, d));  // as good as it gets
   }
   for (int i = 0; i < c.contacts; ++i) {
-    if (!is_pressed(model, i)) continue;
+    if (!takes_residual(model, i)) continue;
     port[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
     const double depth = std::max(d[i], 0.);
     c.hertz += .4 * law[i].hertz * depth * depth * std::sqrt(depth);
@@ -89,8 +90,8 @@ double flange_energy(const ContactModel& contact, double depth) {
                             : .5 * contact.stiffness * d * d;
 }
 
-/// Penetrations of all contacts, and the energy of those that are not pressed, under known forces.
-void press_others(const Model& model, const State& state, StandingContacts& c) {
+/// Penetrations of all contacts, and the energy of those without a part in G, under known forces.
+void find_depths(const Model& model, const State& state, StandingContacts& c) {
   for (int i = 0; i < c.contacts; ++i) {
     c.depth[i] = c.approach[i] + c.moved[c.loads + i];
     if (is_linear(model, i))
@@ -105,7 +106,7 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
   StandingContacts c{};
   c.loads = model.loads;
   c.contacts = contact_count(model);
-  const Configuration at{state.u, {state.u, state.v}, passed(model, state.steps)};
+  const Configuration at{state.u, {state.u, state.v}, track_offset(model, state.steps)};
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     find_contacts(model, model.wheelset[b], at, c.contact + tread_of(b, 0));
@@ -116,19 +117,19 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
     find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., at, c.contact);
   for (int i = 0; i < c.contacts; ++i)
     c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
-  RailForce port[kMaxRailForces];
+  RailForce rail_force[kMaxRailForces];
   const int ports = ports_of(model, c, port);
   for (int i = 0; i < c.contacts; ++i)
     if (is_linear(model, i) && c.contact[i].on_rail)
       port[c.loads + i].force = -state.wheel_force[i];
-  if (c.contacts > 0) press(model, c, port, ports);
+  if (c.contacts > 0) solve_forces(model, c, port, ports);
   for (int i = 0; i < ports; ++i) {
     c.force[i] = port[i].force;
     const bool on_rail = i < c.loads ? c.load[i].on_rail : c.contact[i - c.loads].on_rail;
     c.moved[i] = on_rail ? residual_displacement(model, port, ports, i) : 0.;
     c.residual += .5 * c.force[i] * c.moved[i];
   }
-  press_others(model, state, c);
+  find_depths(model, state, c);
   return c;
 }
 
@@ -138,13 +139,13 @@ double contact_dissipation(const Model& model, const StandingContacts& before,
   const double late = held ? model.scheme.theta : .5;
   double sum = 0.;
   for (ContactId i = tread_count(model); i < after.contacts; ++i) {
-    const bool presses = is_flange(model, i);
+    const bool one_sided = is_flange(model, i);
     const ContactModel& contact =
-        presses ? flange_of(model, i).contact : vehicle_wheel(model, i).contact;
+        one_sided ? flange_of(model, i).contact : vehicle_wheel(model, i).contact;
     if (contact.damping == 0.) continue;
     const double d0 = before.depth[i], d1 = after.depth[i];
     const auto spring = [&](double d) {
-      return contact.stiffness * (presses ? std::max(d, 0.) : d);
+      return contact.stiffness * (one_sided ? std::max(d, 0.) : d);
     };
     const double kept =
         held ? spring(late * d1 + (1. - late) * d0) : late * (spring(d0) + spring(d1));

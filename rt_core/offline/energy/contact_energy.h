@@ -8,7 +8,7 @@ namespace railstep {
 /// Contacts and residual flexibility in a state as it stands, whatever its step held frozen. With a
 /// the approach of wheels and rails by lines and bodies, G the residual flexibility between all
 /// ports and F their vertical forces (loads P, wheels -f): w = G F, and d = a + w, f = C d^1.5 on
-/// wheels of Hertz contacts; f of the state on those that pull too. Flanges have no part in G.
+/// wheels of Hertz contacts; f of the state on bilateral ones. Flanges have no part in G.
 struct StandingContacts {
   int loads, contacts;
   PlacedLoad load[kMaxLoads];

@@ -84,7 +84,7 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
 
 void EnergyAccount::follow(const State& state) {
   Standing now = stand(state);
-  pass_on(now.state.steps);
+  shift_bay(now.state.steps);
   now.external = external_in_step(model_, last_.state, now.state);
   stored_ = stored(now);
   add_lines(now);
@@ -100,7 +100,7 @@ void EnergyAccount::follow(const State& state) {
 }
 
 /// On a track without end, puts what stood at the step's start where it stands after a border.
-void EnergyAccount::pass_on(std::int64_t step) {
+void EnergyAccount::shift_bay(std::int64_t step) {
   const Endless& e = model_.endless;
   if (e.bays == 0 || bays_passed(e.progress, step).bays == bays_passed(e.progress, step - 1).bays)
     return;
@@ -193,11 +193,12 @@ double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
     const Standing &at = later ? now : last_, &other = later ? last_ : now;
     std::vector<double> u(at.state.u, at.state.u + model_.unknowns);
     u[static_cast<std::size_t>(w.first)] = other.state.u[w.first];
-    const Configuration seen{u.data(), {at.state.u, at.state.v}, passed(model_, now.state.steps)};
+    const Configuration moved_along{
+        u.data(), {at.state.u, at.state.v}, track_offset(model_, now.state.steps)};
     const WheelsetContacts own = contacts_of(model_, b);
     WheelContact moved[4];
-    find_contacts(model_, w, seen, moved);
-    if (own.count > 2) find_flanges(model_, flange_of(model_, own.at[2]), seen, moved + 2);
+    find_contacts(model_, w, moved_along, moved);
+    if (own.count > 2) find_flanges(model_, flange_of(model_, own.at[2]), moved_along, moved + 2);
     for (int n = 0; n < own.count; ++n) {
       const ContactId i = own.at[n];
       if (!moved[n].on_rail || !at.contacts.contact[i].on_rail) continue;
@@ -216,7 +217,8 @@ double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const
     const std::int64_t step = now.state.steps;
     WheelContact moved[kMaxWheels];
     find_vehicle_contacts(model_, v, step, later ? model_.scheme.dt : 0.,
-                          {at.state.u, {at.state.u, at.state.v}, passed(model_, step)}, moved);
+                          {at.state.u, {at.state.u, at.state.v}, track_offset(model_, step)},
+                          moved);
     for (int k = 0; k < v.wheels; ++k) {
       const ContactId i = vehicle_contact(model_, v.first_wheel + k);
       const double change = moved[i].penetration - at.contacts.approach[i];
@@ -227,11 +229,11 @@ double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const
 }
 
 void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
-  const VehiclePassed passed = vehicle_passed(model_, model_.vehicle[b], last_.state, now.state);
-  flow_.weight += passed.weight;
-  flow_.forces += passed.forces;
-  flow_.dissipated += passed.dissipated;
-  flow_.loss += passed.loss;
+  const VehicleWork work = vehicle_work(model_, model_.vehicle[b], last_.state, now.state);
+  flow_.weight += work.weight;
+  flow_.forces += work.forces;
+  flow_.dissipated += work.dissipated;
+  flow_.loss += work.loss;
   flow_.guides += vehicle_passage(now, b);
 }
 

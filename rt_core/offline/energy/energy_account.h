@@ -91,11 +91,11 @@ class EnergyAccount {
     std::vector<LineMotion> lines;
     StandingContacts contacts;
     std::vector<double> depth, speed;       // of one-sided springs, m, m/s
-    std::vector<ExternalContact> external;  // as they pressed in the step that ended here
+    std::vector<ExternalContact> external;  // as they acted in the step that ended here
   };
   Standing stand(const State& state) const;
   StoredEnergy stored(const Standing& at) const;
-  void pass_on(std::int64_t step);
+  void shift_bay(std::int64_t step);
   void add_lines(const Standing& now);
   void add_loads(const Standing& now);
   void add_contacts(const Standing& now);

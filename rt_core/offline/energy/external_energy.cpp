@@ -19,9 +19,9 @@ std::vector<ExternalContact> external_in_step(const Model& model, const State& b
                                               const State& after) {
   std::vector<ExternalContact> contacts(static_cast<std::size_t>(model.external_wheels));
   std::vector<double> scaled(static_cast<std::size_t>(model.unknowns));
-  State seen = before;
-  seen.input = after.input;
-  place_in_step(model, after.steps, seen, scaled.data(), contacts.data());
+  State at_step = before;
+  at_step.input = after.input;
+  place_in_step(model, after.steps, at_step, scaled.data(), contacts.data());
   return contacts;
 }
 

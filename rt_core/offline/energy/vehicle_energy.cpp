@@ -37,8 +37,8 @@ VehicleEnergy vehicle_energy(const VehicleModel& vehicle, const State& at) {
   return {.5 * v.dot(m.mass.cwiseProduct(v)), .5 * u.dot(m.stiffness * u)};
 }
 
-VehiclePassed vehicle_passed(const Model& model, const VehicleModel& vehicle, const State& before,
-                             const State& after) {
+VehicleWork vehicle_work(const Model& model, const VehicleModel& vehicle, const State& before,
+                         const State& after) {
   const Matrices m(vehicle);
   const auto part = [&](const double* values) {
     return Vector(values + vehicle.first, vehicle.size);

@@ -14,11 +14,11 @@ VehicleEnergy vehicle_energy(const VehicleModel& vehicle, const State& at);
 /// end dampers take the trapezoidal mean of v' C v, and the loss is LineEnergy::loss with the
 /// vehicle's matrices; where forces are held over the step they take du' C du / dt exactly and
 /// nothing is lost, but of a table's or an input's force, held at its value at the step's end.
-struct VehiclePassed {
+struct VehicleWork {
   double weight, forces, dissipated, loss;
 };
-VehiclePassed vehicle_passed(const Model& model, const VehicleModel& vehicle, const State& before,
-                             const State& after);
+VehicleWork vehicle_work(const Model& model, const VehicleModel& vehicle, const State& before,
+                         const State& after);
 
 /// B' f + forces - weight - M g - C v - K u at a state, along what the vehicle goes from there, J:
 /// what a start leaves out of balance.

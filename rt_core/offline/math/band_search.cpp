@@ -105,14 +105,14 @@ class Search {
                                        : hz[gap] + (hz[gap + 1] - hz[gap]) * i / kBetween);
     for (const double at : places) {
       const Eigen::VectorXcd a = one.at(at);
-      const double apart = (a - other.at(at)).cwiseAbs().maxCoeff();
+      const double difference = (a - other.at(at)).cwiseAbs().maxCoeff();
       sizes.push_back(size_of(a));
       const double agree = std::max(kAgree * sizes.back(), least);
-      found_.unresolved = std::max(found_.unresolved, apart / largest);
-      if (apart <= agree) continue;
+      found_.unresolved = std::max(found_.unresolved, difference / largest);
+      if (difference <= agree) continue;
       const auto after = std::upper_bound(hz.begin() + 1, hz.end() - 1, at) - hz.begin();
       Wanted& gap = wanted[static_cast<std::size_t>(after - 1)];
-      if (apart / agree > gap.amount) gap = {at, apart / agree};
+      if (difference / agree > gap.amount) gap = {at, difference / agree};
     }
     for (std::size_t i = 1; i + 1 < places.size(); ++i) {
       if (sizes[i] < sizes[i - 1] || sizes[i] < sizes[i + 1]) continue;

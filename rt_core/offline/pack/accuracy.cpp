@@ -81,7 +81,7 @@ class ModalReceptances {
 
 /// The line with rails that have no inertia along x: a vertical track does not say what would damp
 /// them there, and the strain of the section would make them ring.
-void hold_back_along(const Track& track, Line& line) {
+void drop_inertia_along(const Track& track, Line& line) {
   std::vector<bool> along(static_cast<std::size_t>(line.unknowns()), false);
   for (int rail = 0; rail < track.rails; ++rail)
     for (int node = 0; node < track.nodes(); ++node)
@@ -98,7 +98,7 @@ class TrackReceptances {
   TrackReceptances(const Track& track, const std::vector<RailPoint>& points)
       : lines_(assemble(track)), points_(static_cast<Eigen::Index>(points.size())) {
     if (track.unknowns == Unknowns::in_plane)
-      for (Line& line : lines_) hold_back_along(track, line);
+      for (Line& line : lines_) drop_inertia_along(track, line);
     for (const Line& line : lines_)
       each_.push_back(std::make_unique<LineReceptances>(track, line, points));
   }
@@ -130,7 +130,7 @@ struct Asked {
   Asked(const PackedModel& packed, const std::vector<double>& places) {
     for (std::size_t kind = 0; kind < packed.load_points().size(); ++kind)
       for (const double x : places) {
-        const Port& port = packed.load_points()[kind];
+        const LoadPoint& port = packed.load_points()[kind];
         points.push_back({port.rail, x, port.y, port.z, 2});
         kinds.push_back(static_cast<std::int32_t>(kind));
       }
@@ -157,7 +157,7 @@ class ModelReceptances {
           packed.model(), rail_force(packed.model(), asked.kinds[i], asked.points[i].x, 1.));
     if (packed.model().form == Form::condensed) {
       for (const PackedLine& own : packed.lines()) modal_.emplace_back(track, own, asked.points);
-      pressed_.emplace(track, packed, asked.points);
+      closed_.emplace(track, packed, asked.points);
       return;
     }
     const Track at_rest = linear_about_rest(track);
@@ -170,15 +170,15 @@ class ModelReceptances {
     Eigen::VectorXcd sums = residual_.cast<Value>();
     for (const ModalReceptances& line : modal_) line.add(omega, sums);
     for (const auto& line : full_) line->add(omega, sums);
-    if (pressed_) pressed_->subtract(omega, sums);
+    if (closed_) closed_->subtract(omega, sums);
     return sums;
   }
 
  private:
   Eigen::VectorXd residual_;
   std::vector<ModalReceptances> modal_;
-  std::optional<PressedPorts> pressed_;  // of a condensed model
-  std::vector<Line> lines_;              // of one in full order, at rest
+  std::optional<ClosedPorts> closed_;  // of a condensed model
+  std::vector<Line> lines_;            // of one in full order, at rest
   std::vector<std::unique_ptr<LineReceptances>> full_;
 };
 
@@ -232,9 +232,9 @@ double static_error(const Track& track, const PackedModel& packed) {
   if (packed.model().fixed.count == 0) return error;
   const std::vector<FixedPort> ports = fixed_ports(track);
   return std::max(
-      error,
-      largest_error(pressed_under(ports, port_statics(track, packed, asked.points), got),
-                    pressed_under(ports, port_statics(track, exact.track(), asked.points), want)));
+      error, largest_error(
+                 deflection_under(ports, port_statics(track, packed, asked.points), got),
+                 deflection_under(ports, port_statics(track, exact.track(), asked.points), want)));
 }
 
 std::vector<double> receptance_frequencies(const std::array<double, 2>& band) {

@@ -12,8 +12,8 @@ namespace railstep {
 /// own, at all of these in the first and the last element, and at the ends, against a track of
 /// elements so fine that these are nodes; over the largest deflection. 0 without ports. Of a track
 /// with one-sided supports the larger of two: of the track at rest, in which those without a gap
-/// are springs and those with one open, and where under each force alone those press that it
-/// presses, gaps counting as nothing.
+/// are springs and those with one open, and where under each force alone those are closed
+/// that it closes, gaps counting as nothing.
 double static_error(const Track& track, const PackedModel& packed);
 
 struct ReceptanceError {

@@ -31,8 +31,8 @@ SignalModel PackedModel::keep(const Signal& signal) {
 
 namespace {
 
-/// Whether a force on a rail, at a place that is no node, reaches a line.
-bool reaches(const Track& track, const Line& line, int rail, double y, double z, int direction) {
+/// Whether a force on a rail, at a place that is not a node, acts on a line.
+bool acts_on(const Track& track, const Line& line, int rail, double y, double z, int direction) {
   const double x = .37 * track.element_length();
   return point_row(track, line, {rail, x, y, z, direction}).norm() > 0.;
 }
@@ -55,33 +55,33 @@ bool has_preload(const Track& track) {
 
 bool is_moved(const Track& track, const Line& line, const Traffic& traffic, double gravity) {
   for (const MovingLoad& load : traffic.loads)
-    if (reaches(track, line, load.rail, 0., load.z, 2)) return true;
+    if (acts_on(track, line, load.rail, 0., load.z, 2)) return true;
   for (const int rail : traffic.held)
     for (int direction = 0; direction < 3; ++direction)
-      if (reaches(track, line, rail, .01, .1, direction)) return true;
+      if (acts_on(track, line, rail, .01, .1, direction)) return true;
   for (const ExternalWheel& wheel : traffic.external_wheels)
     for (int direction = 0; direction < 3; ++direction)
-      if (reaches(track, line, wheel.rail, .01, .1, direction)) return true;
+      if (acts_on(track, line, wheel.rail, .01, .1, direction)) return true;
   for (const RunningVehicle& vehicle : traffic.vehicles)
-    if (reaches(track, line, vehicle.rail, 0., .1, 2)) return true;
+    if (acts_on(track, line, vehicle.rail, 0., .1, 2)) return true;
   for (int direction = 0; direction < 3 && !traffic.wheelsets.empty(); ++direction)
     for (int rail = 0; rail < track.rails; ++rail)
-      if (reaches(track, line, rail, .01, .1, direction)) return true;
+      if (acts_on(track, line, rail, .01, .1, direction)) return true;
   return gravity != 0. && weight(track, line, gravity).norm() > 0.;
 }
 
 }  // namespace
 
 /// The number of a load point, a new one if no force has acted there yet.
-std::int32_t PackedModel::load_point_at(const Port& port) {
+std::int32_t PackedModel::load_point_at(const LoadPoint& point) {
   for (std::size_t i = 0; i < load_points_.size(); ++i)
-    if (load_points_[i].rail == port.rail && load_points_[i].z == port.z &&
-        load_points_[i].y == port.y)
+    if (load_points_[i].rail == point.rail && load_points_[i].z == point.z &&
+        load_points_[i].y == point.y)
       return static_cast<std::int32_t>(i);
   if (load_points_.size() == static_cast<std::size_t>(kMaxLoadPoints))
     refuse("E-PACK-04", "vertical forces act at more than " + std::to_string(kMaxLoadPoints) +
                             " heights, counted for each rail");
-  load_points_.push_back(port);
+  load_points_.push_back(point);
   return static_cast<std::int32_t>(load_points_.size()) - 1;
 }
 
@@ -164,8 +164,8 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
 }
 
 std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce* force,
-                               const char* bearer) {
-  const std::string on = std::string(" on a ") + bearer;
+                               const char* body) {
+  const std::string on = std::string(" on a ") + body;
   if (forces.size() > static_cast<std::size_t>(kMaxBodyForces))
     refuse("E-PACK-13", "more than " + std::to_string(kMaxBodyForces) + " forces" + on);
   for (const OuterForce& own : forces) {
@@ -300,7 +300,7 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
           "truncated damped modes do not know the velocity under external wheels; accepted are the "
           "other kinds of condensed tracks, and full order");
   if (model_.steps_per_frame != 1) refuse("E-PACK-26", "external wheels want a frame of one step");
-  if (model_.scheme.part > 0.)
+  if (model_.scheme.stage_fraction > 0.)
     refuse("E-PACK-27",
            "external wheels press at the ends of steps; accepted is a scheme of one stage, which "
            "TR-BDF2 is not");

@@ -20,7 +20,7 @@ struct MovingLoad {
   double start = 0., speed = 0.;    // m, m/s
   double stop = 0.;                 // m; taken off beyond it
   double force = 0.;                // N along z, up positive
-  double z = 0.;                    // of the loaded point over the axis, m
+  double z = 0.;                    // of the load's point over the axis, m
   std::vector<double> table = {};   // t (s), factor, t, factor, ...; empty: constant
   std::vector<double> speeds = {};  // t (s), m/s, t, m/s, ...; empty: `speed`
   /// Beside `force`: amplitude sin(2 pi (frequency t + phase)); N, Hz, turns.
@@ -114,11 +114,11 @@ struct TrackSensor {
   int vehicle = -1;                   // of a track sensor on a vehicle, whose coordinate it is
   double lever = 0.;                  // of a vehicle's next coordinate, beside it
   double acceleration = 0.;           // factor, of a track sensor on a vehicle
-  struct Press {
+  struct PortForce {
     int port;       // among fixed_ports() of the track
     double factor;  // of its force
   };
-  std::vector<Press> ports = {};
+  std::vector<PortForce> ports = {};
   bool along = false;  // a place along the track, which traffic without end takes
                        // with it
 };
@@ -192,8 +192,8 @@ class PackedModel {
 
   const Model& model() const { return model_; }
   const std::vector<PackedLine>& lines() const { return lines_; }
-  /// Where vertical forces act, by kind of port.
-  const std::vector<Port>& load_points() const { return load_points_; }
+  /// Where vertical forces act.
+  const std::vector<LoadPoint>& load_points() const { return load_points_; }
   /// @param state  state_doubles() values, from start.h
   void set_start(std::vector<double> state);
   /// The most by which G_res was raised under a wheel so that W stays positive, m/N.
@@ -216,9 +216,9 @@ class PackedModel {
   void add_load(const Track& track, const MovingLoad& load);
   SignalModel keep(const Signal& signal);
   /// @param force   [kMaxBodyForces] overwritten
-  /// @param bearer  what they are on, for errors
+  /// @param body  what they are on, for errors
   /// @returns their number
-  std::int32_t keep(const std::vector<OuterForce>& forces, BodyForce* force, const char* bearer);
+  std::int32_t keep(const std::vector<OuterForce>& forces, BodyForce* force, const char* body);
   void add_fixed_ports(const Track& track);
   void add_port_rows();
   void add_port_shapes();
@@ -238,12 +238,12 @@ class PackedModel {
                                const std::vector<TrackSensor>& track_sensors);
   void add_p_delta(const Track& track);
   void clip(int points, std::vector<double>& under);
-  std::int32_t load_point_at(const Port& port);
+  std::int32_t load_point_at(const LoadPoint& point);
   std::int32_t load_point_of_wheel(int rail);
 
   Model model_{};
   std::vector<PackedLine> lines_;
-  std::vector<Port> load_points_;
+  std::vector<LoadPoint> load_points_;
   double clipped_ = 0.;
   Elements met_{};  // by what runs, on a ring those it comes to, else all
   std::vector<std::unique_ptr<std::vector<double>>> reals_;

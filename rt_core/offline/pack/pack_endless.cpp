@@ -76,8 +76,8 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   // Of a ring's shapes and tables no more is ever read: from a bay before all that runs to one
   // behind that to which it goes on, and the seats around a wheelset.
   const auto border = [&](double x) { return static_cast<int>(std::floor((e.origin + x) / bay)); };
-  const bool turns = track.unknowns != Unknowns::vertical && !traffic.wheelsets.empty();
-  const int spare = 1 + (turns ? kPDeltaSeats / 2 : 0);
+  const bool rolls = track.unknowns != Unknowns::vertical && !traffic.wheelsets.empty();
+  const int spare = 1 + (rolls ? kPDeltaSeats / 2 : 0);
   met_ = {std::max(border(first) - spare, 0) * track.elements_per_bay,
           std::min(border(last) + 2 + spare, track.bays) * track.elements_per_bay};
 }

@@ -55,7 +55,7 @@ std::vector<double> parts(const Eigen::VectorXcd& values, std::size_t padded) {
 }
 
 /// (e^w - 1) / w and (e^w - 1 - w) / w^2, by their series where the difference would cancel.
-std::pair<std::complex<double>, std::complex<double>> held_and_rising(std::complex<double> w) {
+std::pair<std::complex<double>, std::complex<double>> constant_and_linear(std::complex<double> w) {
   if (std::abs(w) > .5) {
     const std::complex<double> first = (std::exp(w) - 1.) / w;
     return {first, (first - 1.) / w};
@@ -138,7 +138,7 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
   Eigen::VectorXcd held(modes), rising(modes), keep_rate(modes);
   for (Eigen::Index k = 0; k < modes; ++k) {
     const std::complex<double> w = own.modes.rate()[k] * dt;
-    const auto [first, second] = held_and_rising(w);
+    const auto [first, second] = constant_and_linear(w);
     held[k] = dt * first;
     rising[k] = dt * second;
     keep_rate[k] = std::exp(w);

@@ -8,10 +8,10 @@ namespace railstep {
 
 namespace {
 
-constexpr int kTurnPoints = 4;  // intervals per element of the levers' table
+constexpr int kLeverPoints = 4;  // intervals per element of the levers' table
 
-/// What a seat bears of a unit force on its rail: by reciprocity the shape that a unit force along
-/// its pad makes, for all places of the force at once. Lines that are free are left out.
+/// What a seat carries of a unit force on its rail: by reciprocity the shape that a unit force
+/// along its pad makes, for all places of the force at once. Lines that are free are left out.
 class SeatShares {
  public:
   SeatShares(const Track& track, const std::vector<Line>& lines)
@@ -64,7 +64,7 @@ bool pads_are_off_the_axis(const Track& track) {
 std::vector<double> levers(const Track& track, const SeatShares& shares, int rail, Elements met) {
   const int per_bay = track.elements_per_bay;
   std::vector<double> lever(
-      static_cast<std::size_t>(track.elements()) * kPDeltaSeats * (kTurnPoints + 1), 0.);
+      static_cast<std::size_t>(track.elements()) * kPDeltaSeats * (kLeverPoints + 1), 0.);
   const int around = kPDeltaSeats / 2, last = std::min(met.last / per_bay + around, track.bays);
   for (int seat = std::max(met.first / per_bay - around, 0); seat <= last; ++seat) {
     const Support pad = track.seat(seat).pad[static_cast<std::size_t>(rail)];
@@ -74,9 +74,9 @@ std::vector<double> levers(const Track& track, const SeatShares& shares, int rai
       const int bay = seat - s + (kPDeltaSeats / 2 - 1);
       for (int e = std::max(bay * per_bay, met.first); e < std::min((bay + 1) * per_bay, met.last);
            ++e)
-        for (int p = 0; p <= kTurnPoints; ++p) {
-          const double x = (e + static_cast<double>(p) / kTurnPoints) * track.element_length();
-          const int at = (e * kPDeltaSeats + s) * (kTurnPoints + 1) + p;
+        for (int p = 0; p <= kLeverPoints; ++p) {
+          const double x = (e + static_cast<double>(p) / kLeverPoints) * track.element_length();
+          const int at = (e * kPDeltaSeats + s) * (kLeverPoints + 1) + p;
           lever[static_cast<std::size_t>(at)] = pad.stiffness[2] * pad.height_z * shape(x);
         }
     }
@@ -92,8 +92,8 @@ void PackedModel::add_p_delta(const Track& track) {
   if (!pads_are_off_the_axis(track)) return;
   PDeltaModel& p_delta = model_.p_delta;
   p_delta.elements_per_bay = track.elements_per_bay;
-  p_delta.points = kTurnPoints;
-  // What does not pull and has no gap mostly presses, as a spring.
+  p_delta.points = kLeverPoints;
+  // What does not pull and has no gap is mostly closed, as a spring.
   const Track reference = linear_about_rest(track);
   const std::vector<Line> all = assemble(reference);
   std::vector<Line> lines;

@@ -10,7 +10,7 @@ namespace railstep {
 
 namespace {
 
-constexpr int kPairPoints = 4;  // intervals per element of tables between ports
+constexpr int kPairPoints = 4;  // intervals per element of tables between load points
 
 /// Places at the start of all forces at each load point, m along the model's elements.
 std::vector<std::vector<double>> places_of(const Model& model, std::size_t load_points) {
@@ -30,7 +30,7 @@ std::vector<std::vector<double>> places_of(const Model& model, std::size_t load_
   return places;
 }
 
-/// How many elements two ports of these places are apart at most: on a track without end they stay
+/// How many elements two forces at these places are apart at most: on a track without end they stay
 /// as they are, within the element that a contact's search may find beside the wheel.
 int farthest(const Model& model, const std::vector<double>& a, const std::vector<double>& b) {
   if (model.endless.bays == 0 || model.external_wheels > 0) return model.elements;
@@ -88,8 +88,8 @@ void PackedModel::add_track_sensors(const Track& track,
       entry(at, track_sensor.displacement);
       entry(model_.unknowns + at, track_sensor.velocity);
     }
-    for (const TrackSensor::Press& press : track_sensor.ports)
-      entry(2 * model_.unknowns + press.port, press.factor);
+    for (const TrackSensor::PortForce& force : track_sensor.ports)
+      entry(2 * model_.unknowns + force.port, force.factor);
     if (track_sensor.vehicle >= 0) {
       const std::int32_t at = model_.vehicle[track_sensor.vehicle].first + track_sensor.coordinate;
       const std::int32_t g = 2 * model_.unknowns + model_.fixed.count;
@@ -117,7 +117,7 @@ void PackedModel::add_track_sensors(const Track& track,
 }
 
 /// A contact needs a rail that gives way under it: where wheels stand, G_res takes no more than
-/// half of what the lines give way within a step.
+/// half of the lines' compliance within a step.
 void PackedModel::clip(int points, std::vector<double>& under) {
   if (wheel_count(model_) == 0) return;
   const StepCompliance compliance(model_, lines_);
@@ -136,18 +136,19 @@ void PackedModel::clip(int points, std::vector<double>& under) {
 
 namespace {
 
-/// A track sensor's answer to unit forces of ports, as far as the model's unknowns leave it out.
-ResidualFlexibility::Near seen_at_once(const ResidualFlexibility& residual,
-                                       const std::vector<Port>& ports,
+/// A track sensor's response to unit forces at load points, as far as the model's unknowns leave it
+/// out.
+ResidualFlexibility::Near near_at_once(const ResidualFlexibility& residual,
+                                       const std::vector<LoadPoint>& load_points,
                                        const TrackSensor& track_sensor, Elements met) {
-  ResidualFlexibility::Near seen = residual.near(ports, track_sensor.track, met);
-  for (double& value : seen.value) value *= track_sensor.displacement;
-  if (track_sensor.velocity == 0.) return seen;
-  auto value = seen.value.begin();
-  for (const Port& port : ports)
-    for (const double speed : residual.at_once(port, track_sensor.track, seen.at))
+  ResidualFlexibility::Near near = residual.near(load_points, track_sensor.track, met);
+  for (double& value : near.value) value *= track_sensor.displacement;
+  if (track_sensor.velocity == 0.) return near;
+  auto value = near.value.begin();
+  for (const LoadPoint& point : load_points)
+    for (const double speed : residual.at_once(point, track_sensor.track, near.at))
       *value++ += track_sensor.velocity * speed;
-  return seen;
+  return near;
 }
 
 }  // namespace
@@ -155,8 +156,8 @@ ResidualFlexibility::Near seen_at_once(const ResidualFlexibility& residual,
 void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor>& track_sensors,
                                int points) {
   if (load_points_.empty()) return;
-  // What is one-sided without a gap mostly presses: tables are those of the track in which it is a
-  // spring. About it the model misses what is near a port alone, whatever then presses; about a
+  // What is one-sided without a gap is mostly closed: tables are those of the track in which it is
+  // a spring. About it the model misses what is near a force alone, whatever then closes; about a
   // track that is open there it would miss what the whole of its rail bends between other seats.
   const Track reference = linear_about_rest(track);
   const std::vector<Line> all = assemble(reference);
@@ -170,9 +171,9 @@ void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor
   const ResidualFlexibility residual(reference, lines, bases, points);
   model_.residual.elements = tabled_elements(reference);
   std::vector<double> under, axis;
-  for (const Port& port : load_points_) {
-    append(under, residual.under(port));
-    append(axis, residual.under(port, {port.rail, 0.}));
+  for (const LoadPoint& point : load_points_) {
+    append(under, residual.under(point));
+    append(axis, residual.under(point, {point.rail, 0.}));
   }
   clip(points, under);
   model_.residual.load_points = static_cast<std::int32_t>(load_points_.size());
@@ -186,7 +187,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor
       PairTable pair = residual.between(load_points_[a], load_points_[b], kPairPoints,
                                         farthest(model_, places[a], places[b]));
       if (all_zero(pair.value)) continue;
-      model_.residual.pair[a][b] = {pair.points, pair.reach, keep(std::move(pair.value))};
+      model_.residual.pair[a][b] = {pair.points, pair.range, keep(std::move(pair.value))};
     }
   add_track_sensor_tables(residual, track_sensors);
 }
@@ -199,12 +200,12 @@ void PackedModel::add_track_sensor_tables(const ResidualFlexibility& residual,
     table.push_back(-1);
     const bool of_track = track_sensor.wheelset < 0 && track_sensor.vehicle < 0;
     if (!of_track || (track_sensor.displacement == 0. && track_sensor.velocity == 0.)) continue;
-    const ResidualFlexibility::Near seen = seen_at_once(residual, load_points_, track_sensor, met_);
-    if (all_zero(seen.value)) continue;
+    const ResidualFlexibility::Near near = near_at_once(residual, load_points_, track_sensor, met_);
+    if (all_zero(near.value)) continue;
     table.back() = static_cast<std::int32_t>(first.size());
-    first.push_back(seen.at.first);
-    ends.push_back(ends.back() + seen.at.count());
-    append(values, seen.value);
+    first.push_back(near.at.first);
+    ends.push_back(ends.back() + near.at.count());
+    append(values, near.value);
   }
   if (first.empty()) return;
   model_.track_sensor.table = keep(std::move(table));

@@ -103,15 +103,15 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
   const Eigen::MatrixXd inverse =
       step_inverse(m, model_.scheme, model_.form == Form::condensed ? .5 : 1.);
-  const Eigen::MatrixXd give = m.wheels * inverse;
-  const Eigen::MatrixXd compliance = give * m.wheels.transpose();
+  const Eigen::MatrixXd response = m.wheels * inverse;
+  const Eigen::MatrixXd compliance = response * m.wheels.transpose();
   packed.mass = keep(row_by_row(m.mass.diagonal()));
   packed.damping = keep(row_by_row(m.damping));
   packed.stiffness = keep(row_by_row(m.stiffness));
   packed.weight = keep(row_by_row(m.weight));
   packed.inverse = keep(row_by_row(inverse));
   packed.row = keep(row_by_row(m.wheels));
-  packed.give = keep(row_by_row(give));
+  packed.response = keep(row_by_row(response));
   for (const OuterForce& force : vehicle.forces)
     if (force.direction < 0 || force.direction >= n)
       refuse("E-PACK-44", "a force along a coordinate that its vehicle does not have");

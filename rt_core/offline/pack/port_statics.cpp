@@ -10,13 +10,13 @@
 
 namespace railstep {
 
-PressedPorts::PressedPorts(const Track& track, const PackedModel& packed,
-                           const std::vector<RailPoint>& points) {
-  std::vector<Eigen::Index> pressed;
+ClosedPorts::ClosedPorts(const Track& track, const PackedModel& packed,
+                         const std::vector<RailPoint>& points) {
+  std::vector<Eigen::Index> closed;
   const std::vector<FixedPort> all = fixed_ports(track);
   for (std::size_t j = 0; j < all.size(); ++j) {
-    if (!presses_at_rest(all[j])) continue;
-    pressed.push_back(static_cast<Eigen::Index>(j));
+    if (!is_closed_at_rest(all[j])) continue;
+    closed.push_back(static_cast<Eigen::Index>(j));
     ports_.push_back(all[j]);
   }
   if (ports_.empty()) return;
@@ -24,7 +24,7 @@ PressedPorts::PressedPorts(const Track& track, const PackedModel& packed,
   for (const PackedLine& own : packed.lines()) modes += own.modes.rate().size();
   rate_.resize(modes);
   points_.resize(modes, static_cast<Eigen::Index>(points.size()));
-  rows_.resize(modes, static_cast<Eigen::Index>(pressed.size()));
+  rows_.resize(modes, static_cast<Eigen::Index>(closed.size()));
   modes = 0;
   for (const PackedLine& own : packed.lines()) {
     const Eigen::Index n = own.modes.rate().size();
@@ -35,14 +35,14 @@ PressedPorts::PressedPorts(const Track& track, const PackedModel& packed,
     for (std::size_t i = 0; i < points.size(); ++i)
       points_.col(static_cast<Eigen::Index>(i)).segment(modes, n) =
           modal(Eigen::VectorXd(point_row(track, own.line, points[i], false)));
-    for (std::size_t j = 0; j < pressed.size(); ++j)
+    for (std::size_t j = 0; j < closed.size(); ++j)
       rows_.col(static_cast<Eigen::Index>(j)).segment(modes, n) =
-          modal(Eigen::VectorXd(own.closing.col(pressed[j])));
+          modal(Eigen::VectorXd(own.closing.col(closed[j])));
     modes += n;
   }
 }
 
-void PressedPorts::subtract(double omega, Eigen::VectorXcd& receptances) const {
+void ClosedPorts::subtract(double omega, Eigen::VectorXcd& receptances) const {
   if (ports_.empty()) return;
   const std::complex<double> rate(0., omega);
   const Eigen::VectorXcd along = .5 * (rate - rate_.array()).inverse(),
@@ -126,7 +126,7 @@ PortStatics port_statics(const Track& track, const PackedModel& packed,
     add_line(
         Eigen::MatrixXd(shapes.transpose() * rows.points),
         Eigen::MatrixXd(shapes.transpose() * rows.ports),
-        [&basis](const Eigen::MatrixXd& forces) { return basis.give(forces); }, sum);
+        [&basis](const Eigen::MatrixXd& forces) { return basis.static_response(forces); }, sum);
   }
   return sum;
 }
@@ -141,18 +141,18 @@ PortStatics port_statics(const Track& track, const Track& at_rest,
 
 namespace {
 
-/// What of a spring that presses at rest stays where all ports are open, so that a track that
-/// nothing else holds is held. Model and reference have it alike.
+/// The part of a spring that is closed at rest which stays where all ports are open, so that a
+/// track that nothing else holds is held. Model and reference have it alike.
 constexpr double kStays = 1e-5;
 
-/// Adds what is pressed less where the springs that press at rest are all but away:
+/// Adds what goes down further where the springs that are closed at rest are all but away:
 ///   G + G_p s (1 - s G_pp s)^-1 s G_p',   s^2 = (1 - kStays) k.
 void open(const std::vector<FixedPort>& ports, PortStatics& statics, Eigen::VectorXd& under) {
   const auto n = static_cast<Eigen::Index>(ports.size());
   Eigen::VectorXd s(n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const FixedPort& port = ports[static_cast<std::size_t>(j)];
-    s[j] = presses_at_rest(port) ? std::sqrt((1. - kStays) * port.stiffness) : 0.;
+    s[j] = is_closed_at_rest(port) ? std::sqrt((1. - kStays) * port.stiffness) : 0.;
   }
   const Eigen::MatrixXd held =
       Eigen::MatrixXd::Identity(n, n) - s.asDiagonal() * statics.ports * s.asDiagonal();
@@ -166,8 +166,8 @@ void open(const std::vector<FixedPort>& ports, PortStatics& statics, Eigen::Vect
 
 }  // namespace
 
-Eigen::VectorXd pressed_under(const std::vector<FixedPort>& ports, const PortStatics& statics,
-                              const Eigen::VectorXd& under) {
+Eigen::VectorXd deflection_under(const std::vector<FixedPort>& ports, const PortStatics& statics,
+                                 const Eigen::VectorXd& under) {
   constexpr double kForce = 1e5;  // N
   PortStatics opened = statics;
   Eigen::VectorXd result = under;
@@ -175,11 +175,11 @@ Eigen::VectorXd pressed_under(const std::vector<FixedPort>& ports, const PortSta
   Eigen::VectorXd stiffness(opened.ports.rows());
   for (std::size_t j = 0; j < ports.size(); ++j)
     stiffness[static_cast<Eigen::Index>(j)] =
-        (presses_at_rest(ports[j]) ? 1. - kStays : 1.) * ports[j].stiffness;
+        (is_closed_at_rest(ports[j]) ? 1. - kStays : 1.) * ports[j].stiffness;
   for (Eigen::Index i = 0; i < under.size(); ++i) {
     const Eigen::VectorXd closing = opened.points.col(i);
     const Eigen::VectorXd force = static_port_forces(opened.ports, stiffness, -kForce * closing);
-    // Down under a force down: G F, and ports that press lift by their share.
+    // Down under a force down: G F, and closed ports lift by their share.
     result[i] += closing.dot(force) / kForce;
   }
   return result;

@@ -8,11 +8,11 @@
 namespace railstep {
 
 /// What the fixed ports of a condensed model take off the receptance of rails' points, those that
-/// press at rest as springs and dampers: with G between points and ports of the lines, which are
-/// open there, G_xp (1/(k + i omega c) + G_pp)^-1 G_px.
-class PressedPorts {
+/// are closed at rest as springs and dampers: with G between points and ports of the lines, which
+/// are open there, G_xp (1/(k + i omega c) + G_pp)^-1 G_px.
+class ClosedPorts {
  public:
-  PressedPorts(const Track& track, const PackedModel& packed, const std::vector<RailPoint>& points);
+  ClosedPorts(const Track& track, const PackedModel& packed, const std::vector<RailPoint>& points);
   void subtract(double omega, Eigen::VectorXcd& receptances) const;
 
  private:
@@ -21,7 +21,7 @@ class PressedPorts {
   Eigen::MatrixXcd points_, rows_;  // [modes][points], [modes][ports]
 };
 
-/// Static flexibility of a track at rest, where what presses is a spring, between the closings of
+/// Static flexibility of a track at rest, where what is closed is a spring, between the closings of
 /// all its fixed ports and points of its rails, m/N.
 struct PortStatics {
   Eigen::MatrixXd points;  // [ports][points]
@@ -35,9 +35,9 @@ PortStatics port_statics(const Track& track, const Track& at_rest,
                          const std::vector<RailPoint>& points);
 
 /// How far each point goes down under a force of 1 N on it alone, where of the fixed ports those
-/// press that it presses, and gaps count as nothing; m.
+/// are closed that it closes, and gaps count as nothing; m.
 /// @param under  [points] the same of the track at rest
-Eigen::VectorXd pressed_under(const std::vector<FixedPort>& ports, const PortStatics& statics,
-                              const Eigen::VectorXd& under);
+Eigen::VectorXd deflection_under(const std::vector<FixedPort>& ports, const PortStatics& statics,
+                                 const Eigen::VectorXd& under);
 
 }  // namespace railstep

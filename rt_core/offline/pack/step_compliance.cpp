@@ -9,18 +9,18 @@
 namespace railstep {
 namespace {
 
-/// A vertical force of a port at a place of an element.
-RailRow row_of(const Model& model, const Port& port, std::int32_t element, double xi) {
-  RailRow row{port.rail, element, {}, 0, {}, {}};
+/// A vertical force of a load point at a place of an element.
+RailRow row_of(const Model& model, const LoadPoint& load_point, std::int32_t element, double xi) {
+  RailRow row{load_point.rail, element, {}, 0, {}, {}};
   double shape[3];
   shape_functions(xi, shape);
-  set_height_row(model.cant[port.rail], port.y, port.z, shape, row);
+  set_height_row(model.cant[load_point.rail], load_point.y, load_point.z, shape, row);
   return row;
 }
 
 /// row S^-1 row' of a banded line.
-double banded_give(const Line& own, const LineModel& line, const LocalInverse& inverse,
-                   const RailRow& row) {
+double banded_compliance(const Line& own, const LineModel& line, const LocalInverse& inverse,
+                         const RailRow& row) {
   Eigen::SparseVector<double> load(own.unknowns());
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 9; ++k) {
@@ -38,8 +38,8 @@ double banded_give(const Line& own, const LineModel& line, const LocalInverse& i
 }
 
 /// Re row held_force row of a condensed line.
-double condensed_give(const LineModel& line, const RailRow& row, std::vector<double>& re,
-                      std::vector<double>& im) {
+double condensed_compliance(const LineModel& line, const RailRow& row, std::vector<double>& re,
+                            std::vector<double>& im) {
   std::fill(re.begin(), re.end(), 0.);
   std::fill(im.begin(), im.end(), 0.);
   spread_modes(line, row, 1., re.data(), im.data());
@@ -63,7 +63,7 @@ StepCompliance::StepCompliance(const Model& model, const std::vector<PackedLine>
       inverse_.emplace_back(own.line.stiffness + s.kv * own.line.damping + s.kg * own.line.mass);
 }
 
-std::vector<double> StepCompliance::table(const Port& port, int points) const {
+std::vector<double> StepCompliance::table(const LoadPoint& load_point, int points) const {
   const auto n = static_cast<std::size_t>(model_.unknowns);
   std::vector<double> re(n), im(n), table;
   // Tables of one bay, of the one that traffic on a ring stands in.
@@ -74,12 +74,12 @@ std::vector<double> StepCompliance::table(const Port& port, int points) const {
           : 0;
   for (std::int32_t element = first; element < first + model_.residual.elements; ++element)
     for (int p = 0; p <= points; ++p) {
-      const RailRow row = row_of(model_, port, element, 2. * p / points - 1.);
+      const RailRow row = row_of(model_, load_point, element, 2. * p / points - 1.);
       double sum = 0.;
       for (std::size_t l = 0; l < lines_.size(); ++l)
         sum += model_.form == Form::condensed
-                   ? condensed_give(model_.line[l], row, re, im)
-                   : banded_give(lines_[l].line, model_.line[l], inverse_[l], row);
+                   ? condensed_compliance(model_.line[l], row, re, im)
+                   : banded_compliance(lines_[l].line, model_.line[l], inverse_[l], row);
       table.push_back(model_.scheme.theta * sum);
     }
   return table;

@@ -6,13 +6,13 @@
 
 namespace railstep {
 
-/// What the lines of a packed model give way within a step under forces of ports: theta row S^-1
-/// row', or of condensed lines theta Re row held_force row.
+/// Compliance of the lines of a packed model within a step, to forces at load points: theta row
+/// S^-1 row', or of condensed lines theta Re row held_force row.
 class StepCompliance {
  public:
   StepCompliance(const Model& model, const std::vector<PackedLine>& lines);
   /// At the places of the model's tables over elements, m/N; [elements][points + 1].
-  std::vector<double> table(const Port& port, int points) const;
+  std::vector<double> table(const LoadPoint& load_point, int points) const;
 
  private:
   const Model& model_;

@@ -83,8 +83,8 @@ Scheme tr_bdf2(double dt) {
   check_step(dt);
   const double part = 2. - std::sqrt(2.), tau = .5 * part * dt;
   // Up to part dt: v1 = v + tau (g + g1), u1 = u + tau (v + v1). Over the whole step, with
-  // over = 1 / (part (2 - part)) and (1 - part) / (2 - part) = part / 2 at this part:
-  //   v1 = v0 + over (vp - v0) + tau g1,  u1 = u0 + over (up - u0) + tau v1.
+  // weight = 1 / (part (2 - part)) and (1 - part) / (2 - part) = part / 2 at this part:
+  //   v1 = v0 + weight (vp - v0) + tau g1,  u1 = u0 + weight (up - u0) + tau v1.
   Scheme s{};
   s.dt = dt;
   s.uv = 2. * tau;
@@ -94,8 +94,8 @@ Scheme tr_bdf2(double dt) {
   s.kv = 1. / tau;
   s.ag = 1.;
   s.theta = 1.;
-  s.part = part;
-  s.over = 1. / (part * (2. - part));
+  s.stage_fraction = part;
+  s.stage_weight = 1. / (part * (2. - part));
   return s;
 }
 

@@ -34,17 +34,17 @@ BendingBeam bending_beam(const Track& track, BeamTheory theory) {
 
 Eigen::Matrix4cd beam_dynamic_stiffness(const BendingBeam& beam, double length, double omega) {
   const std::array<Value, 2> falling = falling_waves(beam, omega);
-  const double pull = beam.mass * omega * omega;
-  const double b = pull * beam.shear_softness;
+  const double inertia = beam.mass * omega * omega;
+  const double b = inertia * beam.shear_softness;
   Eigen::Matrix4cd moved, forces;
   for (int i = 0; i < 4; ++i) {
     const Value kappa =
         i < 2 ? falling[static_cast<std::size_t>(i)] : -falling[static_cast<std::size_t>(i - 2)];
-    const Value turn = kappa + b / kappa, shear = -pull / kappa,
-                moment = beam.stiffness * kappa * turn;
+    const Value rotation = kappa + b / kappa, shear = -inertia / kappa,
+                moment = beam.stiffness * kappa * rotation;
     const Value along = std::exp(i < 2 ? kappa * length : -kappa * length);
     const Value start = i < 2 ? 1. : along, end = i < 2 ? along : 1.;
-    moved.col(i) << start, turn * start, end, turn * end;
+    moved.col(i) << start, rotation * start, end, rotation * end;
     forces.col(i) << -shear * start, -moment * start, shear * end, moment * end;
   }
   return forces * moved.inverse();

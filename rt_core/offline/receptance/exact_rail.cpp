@@ -88,18 +88,18 @@ std::size_t ExactRailReceptance::node_at(double x) const {
 Eigen::Matrix2cd ExactRailReceptance::Seat::on_rail() const {
   Eigen::Matrix2cd stiffness = Eigen::Matrix2cd::Zero();
   stiffness(0, 0) = has_sleeper ? pad * sleeper / (pad + sleeper) : pad;
-  stiffness(1, 1) = turn;
+  stiffness(1, 1) = rotation;
   return stiffness;
 }
 
 ExactRailReceptance::Seat ExactRailReceptance::seat(const Part& part, double omega) const {
   const Value pad(track_.support.stiffness[2], omega * track_.support.damping[2]);
   const Value along(track_.support.stiffness[0], omega * track_.support.damping[0]);
-  const Value turn = along * std::pow(track_.support.height_z, 2);
-  if (!track_.sleeper) return {pad, 0., turn, false};
+  const Value rotation = along * std::pow(track_.support.height_z, 2);
+  if (!track_.sleeper) return {pad, 0., rotation, false};
   const Value ballast(track_.sleeper->ballast_stiffness[2],
                       omega * track_.sleeper->ballast_damping[2]);
-  return {pad, ballast - omega * omega * part.sleeper_mass, turn, true};
+  return {pad, ballast - omega * omega * part.sleeper_mass, rotation, true};
 }
 
 /// The rails' coefficients; a sleeper stands for what of it the rail at its seat feels.

@@ -11,7 +11,7 @@ namespace railstep {
 /// Vertical receptance of rails as exact beams between their seats: no mesh. An independent check
 /// of the linear ANCF rail, the answer that Euler-Bernoulli codes give, and that of a track without
 /// end. Rails do not roll, forces act on y = 0 and heights in the section are not told apart; pads
-/// below the axis hold the rail's turn by their stiffness along x, against sleepers that stand
+/// below the axis hold the rail's rotation by their stiffness along x, against sleepers that stand
 /// still in that direction.
 class ExactRailReceptance : public Receptance {
  public:
@@ -34,7 +34,7 @@ class ExactRailReceptance : public Receptance {
   /// What stands under a rail at one frequency, N/m; without a sleeper the pad's foot stands still.
   struct Seat {
     Value pad, sleeper;
-    Value turn;  // N m/rad
+    Value rotation;  // N m/rad
     bool has_sleeper;
     /// Over the rail's [w, theta].
     Eigen::Matrix2cd on_rail() const;

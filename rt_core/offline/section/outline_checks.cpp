@@ -46,10 +46,10 @@ bool meet(const Chord& p, const Chord& q) {
     return false;
   const double d1 = orientation(p.a, p.b, q.a), d2 = orientation(p.a, p.b, q.b);
   const double d3 = orientation(q.a, q.b, p.a), d4 = orientation(q.a, q.b, p.b);
-  const auto apart = [](double u, double v) {
+  const auto same_side = [](double u, double v) {
     return (u > 0.0 && v > 0.0) || (u < 0.0 && v < 0.0);
   };
-  return !apart(d1, d2) && !apart(d3, d4);
+  return !same_side(d1, d2) && !same_side(d3, d4);
 }
 
 /// True where q, which starts at p's end, runs back over p.
@@ -175,10 +175,10 @@ void check_crossing(const std::vector<Segment>& segments) {
   for (std::size_t i = 0; i < n; ++i) {
     const double top = std::max(chords[i].a[1], chords[i].b[1]);
     for (std::size_t j = i + 1; j < n && std::min(chords[j].a[1], chords[j].b[1]) <= top; ++j) {
-      const std::size_t apart = chords[i].place > chords[j].place
-                                    ? chords[i].place - chords[j].place
-                                    : chords[j].place - chords[i].place;
-      if (apart == 1 || apart == n - 1) continue;  // neighbours share a point
+      const std::size_t distance = chords[i].place > chords[j].place
+                                       ? chords[i].place - chords[j].place
+                                       : chords[j].place - chords[i].place;
+      if (distance == 1 || distance == n - 1) continue;  // neighbours share a point
       if (meet(chords[i], chords[j])) refuse_crossing(chords[i], chords[j]);
     }
   }

@@ -76,10 +76,10 @@ void put_wheelsets(const Model& model, double time, State& state) {
   }
 }
 
-/// What all stands on, turn by turn: the forces that balance the wheelsets where they are, the
+/// What all stands on, by iteration: the forces that balance the wheelsets where they are, the
 /// rails and vehicles under these, and each wheelset's way to the depths that its forces want.
 /// Contacts are those that the step finds, so that it keeps the start. The forces hang on the rails
-/// by their small turns alone, so each turn leaves 1e-3 of the last or less, down to rounding.
+/// by their small rolls alone, so each iteration leaves 1e-3 of the last or less, down to rounding.
 /// Everything that moves is shifted by `time`.
 Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
   constexpr int kMostIterations = 30;
@@ -88,7 +88,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
   const Acting loads = loads_at(statics, packed, time);
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());
-  const Configuration at{state.u, {state.u, state.v}, passed(model, 0)};
+  const Configuration at{state.u, {state.u, state.v}, track_offset(model, 0)};
   put_wheelsets(model, time, state);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) (void)wheel_load(model.wheelset[b]);
   Pose pose;
@@ -157,7 +157,8 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
           height_of(statics.track(), packed, pose.lines, acting.forces[port].at) +
           residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
                                 static_cast<int>(port)) +
-          irregularity(model, w.tread[rail], rail, up, w.start + rolled + passed(model, 0), rolled)
+          irregularity(model, w.tread[rail], rail, up, w.start + rolled + track_offset(model, 0),
+                       rolled)
               .depth;
     }
     pose.wheelsets.push_back(standing_wheelset(model, w, height));

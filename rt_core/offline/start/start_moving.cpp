@@ -129,11 +129,11 @@ void close_wave(const LineModel& line, const BayProgress& progress, const State&
   const BayShift& shift = line.shift;
   for (std::int32_t k = 0; k < line.size; ++k) {
     const std::int32_t i = line.first + k, j = line.first + shift.from[k];
-    const std::complex<double> turn =
+    const std::complex<double> wave_shift =
         std::pow(std::complex<double>(shift.own[k], shift.other[k]), progress.bays);
     const std::complex<double> keep = std::pow(
         std::complex<double>(line.modal.keep.re[k], line.modal.keep.im[k]), progress.period);
-    const std::complex<double> c = keep * turn.real(), s = keep * turn.imag();
+    const std::complex<double> c = keep * wave_shift.real(), s = keep * wave_shift.imag();
     const std::complex<double> own(r.u[i], r.v[i]), other(r.u[j], r.v[j]);
     const std::complex<double> found = ((1. - c) * own + s * other) / ((1. - c) * (1. - c) + s * s);
     z.u[i] = found.real();

@@ -29,13 +29,13 @@ using Rows =
 struct Together {
   Eigen::MatrixXd stiffness, row;  // [all][all], [wheels][all]
   Eigen::VectorXd weight;          // [all] N, less what forces at the start lift
-  double borne;                    // N, by all wheels together
+  double carried;                  // N, by all wheels together
   double stiff;                    // N/m: forces over it keep the pivots alike
 };
 
-/// What the wheels bear: the weight along the way on which all heights rise alike, which stretches
+/// What the wheels carry: the weight along the way on which all heights rise alike, which stretches
 /// no spring.
-double borne(const Together& all) {
+double carried(const Together& all) {
   const Eigen::Index n = all.weight.size(), wheels = all.row.rows();
   Eigen::MatrixXd A(n + wheels, n);
   A << all.stiffness / all.stiff, all.row;
@@ -60,14 +60,14 @@ Together together(const Model& model) {
     n += v.size;
   }
   all.stiff = std::max(all.stiffness.diagonal().maxCoeff(), kSoftest);
-  all.borne = all.weight.sum();
+  all.carried = all.weight.sum();
   if (lift.isZero(0.)) return all;
   all.weight -= lift;
-  all.borne = borne(all);
+  all.carried = carried(all);
   return all;
 }
 
-/// Penetration under a force, and its rise over it.
+/// Penetration under a force, and its slope over it.
 struct Depth {
   double value, slope;  // m, m/N
 };
@@ -85,7 +85,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
   const double stiff = all.stiff;
   Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd force =
-      Eigen::VectorXd::Constant(wheels, all.borne / static_cast<double>(wheels));
+      Eigen::VectorXd::Constant(wheels, all.carried / static_cast<double>(wheels));
   for (Eigen::Index i = 0; i < wheels; ++i)
     if (model.vehicle_wheel[i].contact.hertz > 0. && !(force[i] > 0.))
       refuse("E-START-08", "no equilibrium in contact: nothing presses a vehicle down");
@@ -112,13 +112,14 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
     settled = iteration > 0;
     for (Eigen::Index i = 0; i < wheels; ++i) {
       const double next = force[i] + stiff * change[n + i];
-      // A wheel that presses less than nothing gets a tenth of what it had, and another turn.
+      // A wheel that presses less than nothing is set to a tenth of its last force and iterated
+      // again.
       const bool lifted = model.vehicle_wheel[i].contact.hertz > 0. && !(next > 0.);
       const double taken = lifted ? .1 * force[i] : next;
       if (lifted || std::abs(taken - force[i]) > kSettled * force.cwiseAbs().maxCoeff())
         settled = false;
       force[i] = taken;
-      if (taken < kLiftedOff * std::abs(all.borne) && lifted) lifted_off = true;
+      if (taken < kLiftedOff * std::abs(all.carried) && lifted) lifted_off = true;
     }
   }
   if (!settled) refuse("E-START-10", "no equilibrium with all of a vehicle's wheels on the rail");
@@ -157,7 +158,8 @@ Wheels wheels_of(const PackedModel& packed, const Track& track, double time, con
     if (!w.on_rail[i]) continue;
     w.point[i] = point_of(packed, wheel.load_point, x);
     w.port[i] = rail_force(model, wheel.load_point, x, 0.);
-    uneven = irregularity(model, wheel.tread, wheel.rail, up, x + passed(model, 0), rolled).depth;
+    uneven =
+        irregularity(model, wheel.tread, wheel.rail, up, x + track_offset(model, 0), rolled).depth;
     for (const RailForce& f : acting.ports)
       uneven += f.force * residual_between(model, f, w.port[i]);
   }

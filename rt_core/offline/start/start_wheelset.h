@@ -29,8 +29,8 @@ struct Stance {
 /// Throws std::invalid_argument where a wheel is off its rail or would have to pull.
 Stance stance_of(const Model& model, std::int32_t b, const Configuration& at);
 
-/// How far along y takes a wheelset that no force pushes aside off a flange that its lean turns
-/// into the rail, m; 0 where none touches. Its treads bear nothing sideways, so neither may a
+/// How far along y takes a wheelset that no force pushes aside off a flange that its lean brings
+/// into the rail, m; 0 where none touches. Its treads carry nothing sideways, so neither may a
 /// flange.
 double way_off_flanges(const Model& model, std::int32_t b, const Configuration& at);
 

@@ -33,7 +33,7 @@ Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRo
 }
 
 /// Displacements of each line of a condensed model under its fixed ports' forces too.
-void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines) {
+void apply_port_forces(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines) {
   const FixedPortModel& fixed = packed.model().fixed;
   const Eigen::Index n = fixed.count;
   // Rows over the lines' coordinates, and what they move: K = omega^2.
@@ -46,8 +46,8 @@ void press_ports(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines)
     for (Eigen::Index j = 0; j < n; ++j)
       row.col(j) = own.basis.shapes.project(Eigen::VectorXd(own.closing.col(j)));
     moved.push_back(own.basis.omega.cwiseAbs2().cwiseInverse().asDiagonal() * rows.back());
-    W += rows.back().transpose() * own.basis.give(rows.back());
-    free += rows.back().transpose() * own.basis.shown(lines[l]);
+    W += rows.back().transpose() * own.basis.static_response(rows.back());
+    free += rows.back().transpose() * own.basis.modelled(lines[l]);
   }
   const Eigen::VectorXd force =
       static_port_forces(W, Eigen::Map<const Eigen::VectorXd>(fixed.stiffness, n), free);
@@ -78,7 +78,7 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
     lines.push_back(
         own.basis.shapes.project(load).cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
   }
-  if (packed.model().fixed.count > 0) press_ports(packed, lines);
+  if (packed.model().fixed.count > 0) apply_port_forces(packed, lines);
   return lines;
 }
 
@@ -90,13 +90,13 @@ double height_of(const Track& track, const PackedModel& packed,
     const Eigen::SparseVector<double> row = row_of(track, packed, own.line, at);
     sum += packed.model().form == Form::banded
                ? row.dot(lines[l])
-               : own.basis.shapes.project(Eigen::VectorXd(row)).dot(own.basis.shown(lines[l]));
+               : own.basis.shapes.project(Eigen::VectorXd(row)).dot(own.basis.modelled(lines[l]));
   }
   return sum;
 }
 
 RailPoint point_of(const PackedModel& packed, std::int32_t load_point, double x) {
-  const Port& port = packed.load_points()[static_cast<std::size_t>(load_point)];
+  const LoadPoint& port = packed.load_points()[static_cast<std::size_t>(load_point)];
   return {port.rail, x, port.y, port.z, 2};
 }
 

@@ -23,7 +23,7 @@ struct Acting {
 };
 
 /// Static displacements of each line of the model, its unknowns or its coordinates if condensed,
-/// with what of the track's one-sided springs presses.
+/// with those of the track's one-sided springs that are closed.
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
                                           const Acting& acting, double gravity);
 

@@ -70,8 +70,8 @@ void set_frame(MarkerModel& marker, const Matrix3d& axes, const Matrix3d& own) {
 /// Where on a beam a point lies.
 void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& marker) {
   const Vector3d local = beam.axes.transpose() * (point - beam.start);
-  const double reach = 1e-9 * beam.length;
-  if (!(local.x() >= -reach && local.x() <= beam.length + reach))
+  const double slack = 1e-9 * beam.length;
+  if (!(local.x() >= -slack && local.x() <= beam.length + slack))
     refuse("E-SYSTEM-02", "its point lies " + std::to_string(local.x()) +
                               " m along a beam that is " + std::to_string(beam.length) + " m long");
   const double along = std::clamp(local.x() / beam.length * beam.elements, 0., 1. * beam.elements);
@@ -194,12 +194,12 @@ void Connector::add_either_way(const Joint& joint) {
     case JointKind::translation:
       return row(RowKind::along_a, 0, 0, 0, motion(joint.motion));
     case JointKind::rotation: {
-      const std::int32_t turn = motion(joint.motion);
+      const std::int32_t angle = motion(joint.motion);
       SystemModel drive{};
       drive.motion = parts_.motions.data();
       drive.piece_start = parts_.piece_start.data();
       drive.piece = parts_.piece.data();
-      const Jet start = motion_at(drive, turn, 0.);
+      const Jet start = motion_at(drive, angle, 0.);
       if (!(std::abs(start.x) < 1e-9))
         refuse("E-SYSTEM-12", "its rotation is 0 at t = 0: axes are given at rest");
       return row(RowKind::square, 2, 1, 1, turn);
@@ -269,11 +269,11 @@ void Connector::add_in_space(const Joint& joint) {
 /// Whether an axis of a planar system has to be its lateral one, or has to lie in its plane.
 void check_plane(const Joint& joint) {
   const Vector3d n = joint.axis.normalized();
-  const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::rotation;
+  const bool rotates = joint.kind == JointKind::revolute || joint.kind == JointKind::rotation;
   const bool free = joint.kind == JointKind::spherical || joint.kind == JointKind::distance;
-  if (turns && !(std::abs(n.y()) > 1. - 1e-12))
+  if (rotates && !(std::abs(n.y()) > 1. - 1e-12))
     refuse("E-SYSTEM-14", "in a planar system its axis is y");
-  if (!turns && !free && !(std::abs(n.y()) < 1e-12))
+  if (!rotates && !free && !(std::abs(n.y()) < 1e-12))
     refuse("E-SYSTEM-15", "in a planar system its axis lies in x and z");
 }
 
@@ -300,9 +300,9 @@ void Connector::add(const SpringDamper& spring, std::int32_t index) {
   if (!(spring.stiffness >= 0.) || !(spring.damping >= 0.) ||
       !(spring.stiffness + spring.damping > 0.))
     refuse("E-SYSTEM-18", "its stiffness and damping are not negative, and one is above 0");
-  const double apart = (spring.point_b - spring.point_a).norm();
-  const double length = std::isnan(spring.length) ? apart : spring.length;
-  if (!(length >= 0.) || !(apart > 0.))
+  const double distance = (spring.point_b - spring.point_a).norm();
+  const double length = std::isnan(spring.length) ? distance : spring.length;
+  if (!(length >= 0.) || !(distance > 0.))
     refuse("E-SYSTEM-19", "its two points lie apart, and its length is not negative");
   if (!std::isfinite(spring.stiffness) || !std::isfinite(spring.damping))
     refuse("E-SYSTEM-20", "its stiffness and damping are finite");

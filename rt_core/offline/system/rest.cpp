@@ -162,10 +162,10 @@ std::vector<double> rates(const Model& model, const Rest& before, const Rest& af
       const double* q = rest.quaternion.data() + std::ptrdiff_t{4} * b;
       return Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
     };
-    const Eigen::AngleAxisd turn(quaternion(before).conjugate() * quaternion(after));
+    const Eigen::AngleAxisd rotation(quaternion(before).conjugate() * quaternion(after));
     for (int c = 0; c < 3; ++c)
       if (const std::int32_t k = s.body[b].column[3 + c]; k >= 0)
-        v.data()[s.first + s.body[b].first + k] = turn.angle() * turn.axis()[c] / time;
+        v.data()[s.first + s.body[b].first + k] = rotation.angle() * rotation.axis()[c] / time;
   }
   return v;
 }

@@ -220,9 +220,9 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
   }
   VectorXd force = -vector(at.w.inertia, n);
   if (rest == nullptr) force = vector(at.w.outer, n) + force - vector(at.w.elastic, n);
-  VectorXd pulled = VectorXd::Zero(n);
-  add_row_forces(s, at.w.gradient, fresh_force.data(), pulled.data());
-  force = (force - pulled).cwiseProduct(is_free);
+  VectorXd row_part = VectorXd::Zero(n);
+  add_row_forces(s, at.w.gradient, fresh_force.data(), row_part.data());
+  force = (force - row_part).cwiseProduct(is_free);
   VectorXd wanted = VectorXd::Zero(joints);
   const VectorXd loose = mobility * force;
   for (std::int32_t r = 0; r < joints; ++r) wanted[r] = at.jet(r).a;

@@ -34,16 +34,16 @@ class SeatRows {
   Row gap(const PadPoint& at, std::size_t d, double y) const {
     Row row = rail_moves(at, d, y);
     const double aside = cant_.cosine * y - cant_.sine * pad_.height_z;
-    const double turned = side_ + 2. * aside / spacing_;
+    const double rolled = side_ + 2. * aside / spacing_;
     if (d == 0) {
-      push(row, sleeper_[kYaw], -share_ * turned);
+      push(row, sleeper_[kYaw], -share_ * rolled);
       push(row, sleeper_[kAlongX], -share_);
       return row;
     }
     // Of the sleeper's motion along y and z what lies along d.
     const double across = d == 1 ? cant_.cosine : -cant_.sine;
     const double up = d == 2 ? cant_.cosine : cant_.sine;
-    push(row, sleeper_[kRoll], -share_ * (turned * up));
+    push(row, sleeper_[kRoll], -share_ * (rolled * up));
     push(row, sleeper_[kPitch], share_ * (at.offset * up));
     push(row, sleeper_[kAlongY], -share_ * across);
     push(row, sleeper_[kAlongZ], -share_ * up);
@@ -77,7 +77,7 @@ class SeatRows {
  private:
   static constexpr std::array<std::size_t, 3> kMean = {kAlongX, kAlongY, kAlongZ};
 
-  /// Nodes of the element that a point of the pad presses; a pad that is a point stands on one.
+  /// Nodes of the element that a point of the pad acts on; a pad that is a point stands on one.
   template <typename Visit>
   void for_nodes(const PadPoint& at, const Visit& visit) const {
     if (pad_.length == 0.) return visit(at.xi < 0. ? 0 : 2, 1.);
@@ -156,9 +156,9 @@ void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast) {
 
 /// The sleeper's own inertia.
 void add_body(const Track& track, Assembly& part, int border, const SleeperBody& body) {
-  const double g = track.rail_spacing, turning = 2. * body.roll_inertia / (g * g);
+  const double g = track.rail_spacing, rotating = 2. * body.roll_inertia / (g * g);
   const std::array<double, kSleeperMotions> inertia = {
-      body.mass / 2., body.mass / 2., body.mass / 2., turning, turning, body.pitch_inertia / 2.};
+      body.mass / 2., body.mass / 2., body.mass / 2., rotating, rotating, body.pitch_inertia / 2.};
   const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
   for (std::size_t motion = 0; motion < inertia.size(); ++motion) {
     Row row;

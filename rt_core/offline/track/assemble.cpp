@@ -29,13 +29,13 @@ void number_sleeper(const Track& track, int border, Assembly& part) {
   const bool space = moves_sideways(track.unknowns);
   const bool along_x = space && body->moves[0], along_y = space && body->moves[1];
   const bool means = part.mirror != Mirror::antisymmetric;
-  const bool turns = part.mirror == Mirror::antisymmetric || part.rails.size() == 2;
+  const bool rotates = part.mirror == Mirror::antisymmetric || part.rails.size() == 2;
   if (along_x && means) sleeper[kAlongX] = part.count++;
-  if (along_x && turns) sleeper[kYaw] = part.count++;
+  if (along_x && rotates) sleeper[kYaw] = part.count++;
   if (body->moves[2] && means) sleeper[kPitch] = part.count++;
   if (along_y && part.mirror != Mirror::symmetric) sleeper[kAlongY] = part.count++;
   if (means) sleeper[kAlongZ] = part.count++;
-  if (turns) sleeper[kRoll] = part.count++;
+  if (rotates) sleeper[kRoll] = part.count++;
 }
 
 /// Numbers nodes along x, both rails' in turns, and a seat's sleeper behind its nodes, so that the
@@ -306,7 +306,7 @@ bool has_sleepers(const Track& track) {
 bool is_symmetric(const Track& track) {
   const auto alike = [](const RailJoint& joint) {
     return joint.rails[0] == joint.rails[1] && joint.gap[0] == joint.gap[1] &&
-           joint.pressed[0] == joint.pressed[1];
+           joint.end_force[0] == joint.end_force[1];
   };
   return !track.right && std::all_of(track.joints.begin(), track.joints.end(), alike) &&
          std::all_of(track.changed_seats.begin(), track.changed_seats.end(),

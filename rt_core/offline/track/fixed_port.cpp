@@ -69,7 +69,7 @@ void add_joints(const Track& track, std::vector<FixedPort>& ports) {
                        .stiffness = joint.end_stiffness,
                        .damping = joint.end_damping,
                        .gap = joint.gap[side],
-                       .preload = joint.pressed[side],
+                       .preload = joint.end_force[side],
                        .of = FixedPort::Of::joint,
                        .rail = rail,
                        .joint = static_cast<int>(j)});
@@ -129,7 +129,7 @@ Eigen::VectorXd preload(const Track& track, const Line& line) {
 }
 
 Track linear_about_rest(Track track) {
-  close_pressed_joints(track);
+  join_closed_ends(track);
   change_sides(track, [](auto& spring) {
     if (spring.gap == 0.) spring.unilateral = false;
   });
@@ -137,7 +137,7 @@ Track linear_about_rest(Track track) {
   return track;
 }
 
-bool presses_at_rest(const FixedPort& port) {
+bool is_closed_at_rest(const FixedPort& port) {
   if (port.of == FixedPort::Of::stop) return false;
   return port.of == FixedPort::Of::joint ? port.preload > 0. : port.gap == 0.;
 }
@@ -149,7 +149,7 @@ Track all_open(Track track) {
   });
   for (RailJoint& joint : track.joints) {
     joint.end_stiffness = joint.end_damping = 0.;
-    joint.gap = joint.pressed = {};
+    joint.gap = joint.end_force = {};
   }
   track.stops.clear();
   return track;

@@ -5,9 +5,9 @@
 
 namespace railstep {
 
-/// A one-sided spring and damper of the track. With d = closing - gap it presses what it stands
-/// between apart with max(0, stiffness d + damping d') while d > 0, and does not pull. One that
-/// presses where the track stands (gap < 0) is balanced there by its preload, which stays.
+/// A one-sided spring and damper of the track. With d = closing - gap it pushes what it stands
+/// between apart with max(0, stiffness d + damping d') while d > 0, and does not pull. One that is
+/// closed where the track stands (gap < 0) is balanced there by its preload, which stays.
 struct FixedPort {
   Functional closing;     // displacement towards it, from the unloaded straight track
   double stiffness = 0.;  // N/m
@@ -34,11 +34,11 @@ Eigen::SparseVector<double> closing_row(const Track& track, const Line& line,
 Eigen::VectorXd preload(const Track& track, const Line& line);
 
 /// The track about its unloaded state: what has no gap and does not pull, and ends of rails that
-/// heat presses, are taken for springs that do; what has a gap, and stops, stay out of its lines.
+/// heat closes, are taken for bilateral springs; what has a gap, and stops, stay out of its lines.
 Track linear_about_rest(Track track);
 
 /// Whether the port is such a spring.
-bool presses_at_rest(const FixedPort& port);
+bool is_closed_at_rest(const FixedPort& port);
 
 /// The track with everything one-sided away.
 Track all_open(Track track);

@@ -28,8 +28,8 @@ Row jump(const Line& line, int rail, int node, int k, double factor) {
 
 bool is_shared(const RailJoint& joint, int k) {
   if (k < 3) return std::isinf(joint.stiffness[static_cast<std::size_t>(k)]);
-  if (k == kVertical) return std::isinf(joint.turn_stiffness[1]);
-  return k == kLateral && std::isinf(joint.turn_stiffness[2]);
+  if (k == kVertical) return std::isinf(joint.rotation_stiffness[1]);
+  return k == kLateral && std::isinf(joint.rotation_stiffness[2]);
 }
 
 void add_spring(Assembly& part, const Row& row, double stiffness, double damping) {
@@ -64,7 +64,7 @@ void check_joints(const Track& track) {
           !cut.insert({rail, joint_node(track, joint)}).second)
         refuse("E-TRACK-08", "a rail has two joints at one place");
     for (const auto* values :
-         {&joint.stiffness, &joint.damping, &joint.turn_stiffness, &joint.turn_damping})
+         {&joint.stiffness, &joint.damping, &joint.rotation_stiffness, &joint.rotation_damping})
       for (const double value : *values)
         if (!(value >= 0.)) refuse("E-TRACK-09", "a joint's stiffness and damping are at least 0");
     const bool opens = std::isfinite(joint.end_stiffness) && joint.end_stiffness >= 0. &&
@@ -75,9 +75,10 @@ void check_joints(const Track& track) {
           "ends that press have a stiffness and a damping that are finite and at least 0, and do "
           "not share their motion along x");
     for (const std::size_t side : {0u, 1u})
-      if (!(joint.pressed[side] >= 0.) || (joint.pressed[side] > 0. && joint.end_stiffness == 0.))
+      if (!(joint.end_force[side] >= 0.) ||
+          (joint.end_force[side] > 0. && joint.end_stiffness == 0.))
         refuse("E-TRACK-11", "ends that are pressed have a stiffness");
-    if (std::isinf(joint.turn_stiffness[0]))
+    if (std::isinf(joint.rotation_stiffness[0]))
       refuse("E-TRACK-12", "a joint's stiffness against twist is finite");
   }
   if (track.state && !track.joints.empty())
@@ -106,29 +107,30 @@ void add_joints(const Track& track, Assembly& part, int rail) {
       add_spring(part, row(static_cast<int>(d), 1.), joint.stiffness[d], joint.damping[d]);
     Row twist = row(5, .5);  // (a_z - b_y)/2
     for (const auto& term : row(7, -.5)) twist.push_back(term);
-    add_spring(part, twist, joint.turn_stiffness[0], joint.turn_damping[0]);
-    add_spring(part, row(kVertical, 1.), joint.turn_stiffness[1], joint.turn_damping[1]);
-    add_spring(part, row(kLateral, 1.), joint.turn_stiffness[2], joint.turn_damping[2]);
+    add_spring(part, twist, joint.rotation_stiffness[0], joint.rotation_damping[0]);
+    add_spring(part, row(kVertical, 1.), joint.rotation_stiffness[1], joint.rotation_damping[1]);
+    add_spring(part, row(kLateral, 1.), joint.rotation_stiffness[2], joint.rotation_damping[2]);
   }
 }
 
-double compression_by_heat(double growth, double give, const std::vector<HeatedGap>& joints) {
+double compression_by_heat(double growth, double flexibility,
+                           const std::vector<HeatedGap>& joints) {
   double gaps = 0.;
   for (const HeatedGap& joint : joints) {
     if (joint.end_stiffness == 0.) return 0.;
     gaps += joint.gap;
-    give += 1. / joint.end_stiffness;
+    flexibility += 1. / joint.end_stiffness;
   }
-  return growth > gaps ? (growth - gaps) / give : 0.;
+  return growth > gaps ? (growth - gaps) / flexibility : 0.;
 }
 
-void close_pressed_joints(Track& track) {
+void join_closed_ends(Track& track) {
   for (RailJoint& joint : track.joints) {
-    if (joint.pressed[0] + joint.pressed[1] == 0.) continue;
+    if (joint.end_force[0] + joint.end_force[1] == 0.) continue;
     joint.stiffness[0] += joint.end_stiffness;
     joint.damping[0] += joint.end_damping;
     joint.end_stiffness = joint.end_damping = 0.;
-    joint.gap = joint.pressed = {};
+    joint.gap = joint.end_force = {};
   }
 }
 

@@ -8,21 +8,21 @@ namespace railstep {
 /// A bolted joint: a rail is cut at a border of its elements, and fishplates hold its two ends by
 /// springs and dampers on what one end does over the other, at the rail's axis. A stiffness that is
 /// infinite lets both ends share that motion; all others of the section (its own strains) are free
-/// at both ends. Where its gap closes, the ends press on each other along x at the axis: a
+/// at both ends. Where its gap closes, the ends are in contact along x at the axis: a
 /// one-sided spring (fixed_port.h). Nothing of that in a rail that does not move along x.
 struct RailJoint {
-  double x = 0.;                           // along the rail, m
-  std::array<bool, 2> rails{true, true};   // cut: left, right
-  std::array<double, 3> stiffness{};       // along x, y, z, N/m
-  std::array<double, 3> damping{};         // N s/m
-  std::array<double, 3> turn_stiffness{};  // twist, vertical bending, lateral bending, N m/rad;
-                                           // that of twist is finite
-  std::array<double, 3> turn_damping{};    // N m s/rad
-  double end_stiffness = 0.;               // of two ends that press, N/m; 0: they never meet
-  double end_damping = 0.;                 // N s/m
-  std::array<double, 2> gap{};             // between the ends of left and right rail at rest, m;
-                                           // closed by heat: -pressed / end_stiffness
-  std::array<double, 2> pressed{};         // with which heat presses them at rest, N
+  double x = 0.;                               // along the rail, m
+  std::array<bool, 2> rails{true, true};       // cut: left, right
+  std::array<double, 3> stiffness{};           // along x, y, z, N/m
+  std::array<double, 3> damping{};             // N s/m
+  std::array<double, 3> rotation_stiffness{};  // twist, vertical bending, lateral bending, N m/rad;
+                                               // that of twist is finite
+  std::array<double, 3> rotation_damping{};    // N m s/rad
+  double end_stiffness = 0.;                   // of two ends in contact, N/m; 0: they never meet
+  double end_damping = 0.;                     // N s/m
+  std::array<double, 2> gap{};        // between the ends of left and right rail at rest, m;
+                                      // closed by heat: -end_force / end_stiffness
+  std::array<double, 2> end_force{};  // compression of the ends by heat at rest, N
 
   bool operator==(const RailJoint&) const = default;
 };
@@ -44,14 +44,14 @@ void check_joints(const Track& track);
 ///   P = (growth - sum of gaps)/(L/EA + sum of 1/k),   0 where the gaps have room.
 /// It is the same all along, and where it is above 0 every gap is closed.
 /// @param growth  of all rails, free, m
-/// @param give    L/EA, m/N
+/// @param flexibility  L/EA, m/N
 /// @param joints  gap, m, and end_stiffness, N/m, of each; one whose ends never meet: 0
 struct HeatedGap {
   double gap, end_stiffness;
 };
-double compression_by_heat(double growth, double give, const std::vector<HeatedGap>& joints);
+double compression_by_heat(double growth, double flexibility, const std::vector<HeatedGap>& joints);
 
-/// Each joint whose ends heat presses, with a spring of that stiffness in the place of the ends.
-void close_pressed_joints(Track& track);
+/// Each joint whose ends heat closes, with a spring of that stiffness in the place of the ends.
+void join_closed_ends(Track& track);
 
 }  // namespace railstep

@@ -32,9 +32,9 @@ double part_of_pad(const Track& track, int border, int rail) {
   if (height == 0.) return 1.;
   const Squeeze squeeze = squeeze_of(track, rail);
   const bool at_end = !track.ring && (border == 0 || border == track.bays);
-  const double give = (at_end ? 2. : 1.) * squeeze.softness * height * height *
-                      spread(pad.length / squeeze.length, track.bay_length / squeeze.length);
-  return 1. / (1. + pad.stiffness[2] * give);
+  const double flexibility = (at_end ? 2. : 1.) * squeeze.softness * height * height *
+                             spread(pad.length / squeeze.length, track.bay_length / squeeze.length);
+  return 1. / (1. + pad.stiffness[2] * flexibility);
 }
 
 Track with_strain(Track track) {

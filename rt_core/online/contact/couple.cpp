@@ -58,7 +58,8 @@ void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c)
   }
 }
 
-/// What a unit force at wheel j adds to the approach of wheel i through what bears them both.
+/// What a unit force at wheel j adds to the approach of wheel i through the body that carries them
+/// both.
 double body_compliance(const Model& model, const Coupling& c, ContactId i, ContactId j) noexcept {
   if (is_of_wheelset(model, i) != is_of_wheelset(model, j)) return 0.;
   return is_of_wheelset(model, i) ? wheelset_compliance(model, c, i, j)
@@ -150,7 +151,7 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
     if (!stands(at) && !at.inactive) result.status = result.status | Status::off_rail;
     if (at.roll * at.roll > kLargeRollSquared) result.status = result.status | Status::large_turn;
     if (at.cap_reached) result.status = result.status | Status::cap_reached;
-    if (c.force[i] <= 0. && !c.law[i].pulls && !is_flange(model, i))
+    if (c.force[i] <= 0. && !c.law[i].bilateral && !is_flange(model, i))
       result.status = result.status | Status::contact_lost;
   }
 }
@@ -178,7 +179,7 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   solve_coupled(model, stage, state, w, c, result);
   move_track(model, w, c);
   move_vehicles(model, w, c);
-  if (model.fixed.count > 0) press_fixed_ports(model, c, state, w);
+  if (model.fixed.count > 0) apply_fixed_port_forces(model, c, state, w);
   publish_wheels(model, c, state, result);
   return result;
 }

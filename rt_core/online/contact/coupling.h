@@ -12,7 +12,7 @@ struct FreeWheelset {
 };
 
 /// A step's coupled problem: where the track and what stands on it would be without contact, and
-/// how both give way under contact forces. Written where it is read: nothing of it is zeroed.
+/// how both respond to contact forces. Written where it is read: nothing of it is zeroed.
 struct Coupling {
   int contacts, ports;  // ports: the contacts, then the fixed ones
   WheelContact contact[kMaxWheels];

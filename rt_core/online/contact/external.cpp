@@ -10,7 +10,7 @@ namespace railstep {
 
 namespace {
 
-/// Turn of the section under a point, rad.
+/// Roll of the section under a point, rad.
 double roll_under(const Model& model, const RailRow& place, const double* shape,
                   const Configuration& at) noexcept {
   RailRow row{};
@@ -40,10 +40,10 @@ void fill_rows(const Cant& cant, const double* shape, double y, double z,
 }
 
 void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64_t step,
-                 const double* input, const Configuration& seen, ExternalContact& at) noexcept {
+                 const double* input, const Configuration& located, ExternalContact& at) noexcept {
   at = ExternalContact{};
   const double* own = input + wheel.input;
-  at.place = own[kExternalX] - passed(model, step);
+  at.place = own[kExternalX] - track_offset(model, step);
   const double scaled = at.place / model.element_length;
   const double radius = model.crown_radius[wheel.rail], half = model.head_half_width[wheel.rail];
   at.on_rail = scaled >= 0. && scaled <= model.elements && std::fabs(own[kExternalY]) <= half;
@@ -63,12 +63,12 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
     row.element = element;
   }
   fill_rows(cant, shape, y, z, at);
-  const double up[3] = {0., 0., 1.}, roll = roll_under(model, at.row[2], shape, seen);
+  const double up[3] = {0., 0., 1.}, roll = roll_under(model, at.row[2], shape, located);
   at.roll = roll;
   double along[3];
   to_rail(cant, up, along);
   SeatMotions seats;
-  const double higher = add_p_delta(model, seen, roll, xi, y, z, up, at.row[2], seats);
+  const double higher = add_p_delta(model, located, roll, xi, y, z, up, at.row[2], seats);
   at.offset = .5 * roll * roll * (z * along[2] + y * along[1]) - higher;
   for (int d = 0; d < 3; ++d) at.force[d] = own[kExternalForce + d];
   at.port = {wheel.load_point, element, xi, at.force[2]};
@@ -93,8 +93,8 @@ void respond(const Model& model, const RailRow& row, Workspace& w) noexcept {
   }
 }
 
-/// Presses condensed lines with a force along a row.
-void press_modes(const Model& model, const RailRow& row, double force, Workspace& w) noexcept {
+/// Applies a force along a row to condensed lines.
+void apply_to_modes(const Model& model, const RailRow& row, double force, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     shape_row(line, row, w.u_star, w.v_star);
@@ -130,9 +130,9 @@ double moved(const Model& model, const RailRow& row, const Configuration& at) no
 }  // namespace
 
 void place_external(const Model& model, std::int64_t step, const double* input,
-                    const Configuration& seen, ExternalContact* contact) noexcept {
+                    const Configuration& located, ExternalContact* contact) noexcept {
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
-    place_wheel(model, model.external_wheel[n], step, input, seen, contact[n]);
+    place_wheel(model, model.external_wheel[n], step, input, located, contact[n]);
 }
 
 void place_in_step(const Model& model, std::int64_t step, const State& s, double* scaled,
@@ -144,14 +144,14 @@ void place_in_step(const Model& model, std::int64_t step, const State& s, double
   place_external(model, step, s.input, {scaled, {s.u, s.v}}, contact);
 }
 
-void press_external(const Model& model, std::int64_t step, const State& s, Workspace& w,
-                    ExternalContact* contact) noexcept {
+void apply_external_forces(const Model& model, std::int64_t step, const State& s, Workspace& w,
+                           ExternalContact* contact) noexcept {
   place_in_step(model, step, s, w.scaled, contact);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
     for (int d = 0; d < 3 && contact[n].on_rail; ++d) {
       const ExternalContact& at = contact[n];
       if (model.form == Form::condensed)
-        press_modes(model, at.row[d], at.force[d], w);
+        apply_to_modes(model, at.row[d], at.force[d], w);
       else
         for (std::int32_t l = 0; l < model.lines; ++l)
           spread(model.line[l], at.row[d], at.force[d], w.solved);

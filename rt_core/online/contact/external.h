@@ -28,18 +28,17 @@ constexpr ExternalRow external_row_at(std::int32_t row) noexcept { return {row /
 /// Places all external wheels by the inputs of a step. @param contact  [external_wheels]
 /// overwritten
 void place_external(const Model& model, std::int64_t step, const double* input,
-                    const Configuration& seen, ExternalContact* contact) noexcept;
+                    const Configuration& located, ExternalContact* contact) noexcept;
 
 /// The same on the state at the step's start, whose inputs are those of the step.
 /// @param scaled  [unknowns] scratch
 void place_in_step(const Model& model, std::int64_t step, const State& state, double* scaled,
                    ExternalContact* contact) noexcept;
 
-/// Places them so, and presses the lines with their
-/// forces: on the right-hand side of banded lines, held over the step on condensed ones, as those
-/// of wheels in the model are.
-void press_external(const Model& model, std::int64_t step, const State& state, Workspace& workspace,
-                    ExternalContact* contact) noexcept;
+/// Places them so, and applies their forces to the lines: on the right-hand side of banded lines,
+/// held over the step on condensed ones, as those of wheels in the model are.
+void apply_external_forces(const Model& model, std::int64_t step, const State& state,
+                           Workspace& workspace, ExternalContact* contact) noexcept;
 
 /// Displacements by the lines, and places and forces, of a state.
 void publish_external(const Model& model, const State& state, const ExternalContact* contact,

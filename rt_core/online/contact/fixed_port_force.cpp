@@ -71,7 +71,8 @@ void couple_fixed_ports(const Model& model, const State& s, const Workspace& w,
   }
 }
 
-void press_fixed_ports(const Model& model, const Coupling& c, State& s, Workspace& w) noexcept {
+void apply_fixed_port_forces(const Model& model, const Coupling& c, State& s,
+                             Workspace& w) noexcept {
   for (std::int32_t j = 0; j < model.fixed.count; ++j) {
     const Complex response = response_of(model, j);
     const double force = c.force[c.contacts + j];

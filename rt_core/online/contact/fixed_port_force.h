@@ -12,6 +12,7 @@ void couple_fixed_ports(const Model& model, const State& s, const Workspace& w,
                         Coupling& c) noexcept;
 
 /// Moves the lines by the fixed ports' forces, which pass into the state.
-void press_fixed_ports(const Model& model, const Coupling& c, State& s, Workspace& w) noexcept;
+void apply_fixed_port_forces(const Model& model, const Coupling& c, State& s,
+                             Workspace& w) noexcept;
 
 }  // namespace railstep

@@ -23,7 +23,7 @@ double lift(const WheelContact& at, const double* p, const double* from) noexcep
 DepthSpeed speed_of(const Model& model, const State& s, const Workspace& w, const WheelContact& at,
                     const WheelsetModel& set) noexcept {
   const std::int32_t first = set.first;
-  const double passing = at.rise * s.v[first], *located = w.scaled + first;
+  const double passing = at.slope * s.v[first], *located = w.scaled + first;
   if (model.form == Form::condensed) {
     DepthSpeed speed = mean_speed(model.scheme, at.penetration + lift(at, located, s.u + first));
     speed.before += passing;
@@ -41,11 +41,11 @@ DepthSpeed speed_of(const Model& model, const State& s, const Workspace& w, cons
 
 void locate_flanges(const Model& model, const State& s, const Workspace& w, double later,
                     Coupling& c) noexcept {
-  const Configuration seen = located_on(model, s, w);
+  const Configuration located = located_on(model, s, w);
   for (std::int32_t f = 0; f < model.flanges; ++f) {
     const FlangeModel& flange = model.flange[f];
     const ContactId left = flange_contact(model, flange_number(f, 0));
-    find_flanges(model, flange, seen, c.contact + left,
+    find_flanges(model, flange, located, c.contact + left,
                  later * s.v[model.wheelset[flange.wheelset].first]);
     for (ContactId i = left; i <= flange_contact(model, flange_number(f, 1)); ++i) {
       WheelContact& at = c.contact[i];
@@ -75,7 +75,7 @@ bool flange_impact_is_unresolved(const Model& model, const Coupling& c, const St
   double inverse_mass = 0.;
   for (int k = 1; k < 5; ++k)  // x and yaw are guided
     inverse_mass += at.body_row[k] * at.body_row[k] / set.mass[k];
-  const double speed = at.rise * s.v[set.first] - lift(at, s.v + set.first, nullptr);
+  const double speed = at.slope * s.v[set.first] - lift(at, s.v + set.first, nullptr);
   if (flange.contact.hertz > 0.)
     return impact_is_unresolved(flange.contact.hertz, inverse_mass, speed, model.scheme.dt);
   return spring_impact_is_unresolved(flange.contact.stiffness, inverse_mass, speed,

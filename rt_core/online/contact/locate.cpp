@@ -26,17 +26,17 @@ Frame frame(const RailShape& rail, RailPlace at) noexcept {
           blend(node + 3, N1), blend(node + 6, N1), blend(node, N2),    blend(node + 6, N2)};
 }
 
-/// What a search asks of a place: `pull` > 0 if the answer lies ahead, `stiffness` its falling
-/// slope by xi, or a positive substitute (`exact` false) where the slope would lead away.
+/// What a search asks of a place: `value` > 0 if the answer lies ahead, `slope` how fast that falls
+/// over xi, or a positive substitute (`exact` false) where the slope would lead away.
 struct Sample {
-  double pull, stiffness;
+  double value, slope;
   bool exact;
 };
 
-Sample sample(double pull, double slope, double substitute) noexcept {
+Sample sample(double value, double slope, double substitute) noexcept {
   // Below a tenth of the straight rail's slope the point is near the centre of curvature.
   const bool exact = slope > 0.1 * substitute;
-  return {pull, exact ? slope : substitute, exact};
+  return {value, exact ? slope : substitute, exact};
 }
 
 struct Found {
@@ -67,13 +67,13 @@ template <typename Ask>
 Found search(int elements, RailPlace at, int cap, Ask ask) noexcept {
   constexpr double kQuadratic = 1e-9;  // a Newton step this short leaves 1e-18 times a curvature
   constexpr double kRounding = 1e-14;
-  double low = -1.0, high = elements + 1.0;       // outside: not seen yet
+  double low = -1.0, high = elements + 1.0;       // outside: not visited yet
   int low_element = -1, high_element = elements;  // that saw them
   cap = cap < 1 ? 1 : cap > kLocateSteps ? kLocateSteps : cap;
   bool hopped = false;  // from the other side of this border, which pointed here
   for (int steps = 1; steps <= cap; ++steps) {
     const Sample got = ask(at);
-    const double step = got.pull / got.stiffness;
+    const double step = got.value / got.slope;
     if (!std::isfinite(step)) return {LocateStatus::cap_reached, steps, at};
     const bool ahead = step > 0.0;
     const double target = at.xi + step;
@@ -101,12 +101,12 @@ Found search(int elements, RailPlace at, int cap, Ask ask) noexcept {
                                : place_at(0.5 * (low + high), elements);
       continue;
     }
-    // Across a border. Where the far side was already seen to point back, stop on the border.
-    const bool seen = next == (ahead ? high_element : low_element);
+    // Across a border. Where the far side was already found to point back, stop on the border.
+    const bool visited = next == (ahead ? high_element : low_element);
     const double s = along(at) + 0.5 * step;
     if (next < 0 || next >= elements)
       at.xi = ahead ? 1.0 : -1.0;
-    else if (seen)
+    else if (visited)
       at = {next, ahead ? -1.0 : 1.0};
     else if (s <= 0.0 || s >= elements)
       at = ahead ? RailPlace{elements - 1, 1.0} : RailPlace{0, -1.0};

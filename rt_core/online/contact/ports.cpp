@@ -54,7 +54,7 @@ Mean mean_at(double C, double d, double e) noexcept {
 
 double force_at(const PortLaw& law, double d) noexcept {
   if (law.mean) return mean_at(law.hertz, d, law.from).force;
-  if (law.pulls) return law.slope * d + law.jump;
+  if (law.bilateral) return law.slope * d + law.jump;
   if (!(d > 0.0)) return 0.0;
   if (law.hertz > 0.0) return law.hertz * d * std::sqrt(d);
   const double part = law.jump > 0.0 && d < kJumpDepth ? d / kJumpDepth : 1.0;
@@ -64,13 +64,13 @@ double force_at(const PortLaw& law, double d) noexcept {
 /// df/dd where there is a force.
 double stiffness_at(const PortLaw& law, double d) noexcept {
   if (law.mean) return mean_at(law.hertz, d, law.from).slope;
-  if (law.pulls) return law.slope;
+  if (law.bilateral) return law.slope;
   if (law.hertz > 0.0) return 1.5 * law.hertz * std::sqrt(d);
   return law.jump > 0.0 && d < kJumpDepth ? law.slope + law.jump / kJumpDepth : law.slope;
 }
 
 /// Whether the port takes part: a force now, or one that a change of d makes.
-bool acts(const PortLaw& law, double force) noexcept { return law.pulls || force > 0.0; }
+bool acts(const PortLaw& law, double force) noexcept { return law.bilateral || force > 0.0; }
 
 /// Force where a jump above 0 is all there.
 double knee(const PortLaw& law) noexcept { return law.slope * kJumpDepth + law.jump; }
@@ -91,20 +91,20 @@ double mean_depth(const PortLaw& law, double force) noexcept {
   return d;
 }
 
-/// The penetration of a force > 0, or any of a port that pulls; at 0 that from which on there is
+/// The penetration of a force > 0, or any of a bilateral port; at 0 that from which on there is
 /// one.
 double depth_of(const PortLaw& law, double force) noexcept {
   if (law.mean) return mean_depth(law, force);
-  if (law.pulls) return (force - law.jump) / law.slope;
+  if (law.bilateral) return (force - law.jump) / law.slope;
   if (law.hertz > 0.0) return penetration(force, law.hertz);
   if (law.jump > 0.0 && force <= knee(law)) return force / knee(law) * kJumpDepth;
   return (force - law.jump) / law.slope;
 }
 
-/// A lone port's penetration under d_free > 0, or any of one that pulls: of a contact exact for w C
-/// sqrt(d) small and large and 14 % low between, of a spring exact.
+/// A lone port's penetration under d_free > 0, or any of a bilateral one: of a contact exact for w
+/// C sqrt(d) small and large and 14 % low between, of a spring exact.
 double lone_depth(const PortLaw& law, double d_free, double w) noexcept {
-  if (law.pulls) return (d_free - w * law.jump) / (1.0 + w * law.slope);
+  if (law.bilateral) return (d_free - w * law.jump) / (1.0 + w * law.slope);
   if (law.hertz > 0.0) {
     const double root = cube_root(w * law.hertz * std::sqrt(d_free));
     return d_free / (1.0 + root * root);
@@ -196,7 +196,7 @@ SmallSolve newton_step(const Problem& p, const Point& x, const double* K, double
 }
 
 /// The next penetrations: back from Newton's step to the law, on the line along which the port
-/// alone gives way. Of a spring that is exact. Of a contact, the step of a lone port ends above the
+/// alone yields. Of a spring that is exact. Of a contact, the step of a lone port ends above the
 /// answer in d, and below in f, by p : 1 with p = W_ii K_i; weighted by 1 : p the quadratic errors
 /// cancel.
 void advance(const Problem& p, const Point& x, const double* K, const double* delta,
@@ -249,10 +249,10 @@ SmallSolve iterate(const Problem& p, const Point& x, Point& next) noexcept {
 }
 
 bool is_law(const PortLaw& law) noexcept {
-  if (law.mean && !(std::isfinite(law.from) && law.hertz > 0.0 && !law.pulls)) return false;
+  if (law.mean && !(std::isfinite(law.from) && law.hertz > 0.0 && !law.bilateral)) return false;
   if (!std::isfinite(law.hertz) || !std::isfinite(law.slope) || !std::isfinite(law.jump))
     return false;
-  if (law.pulls) return law.slope > 0.0;
+  if (law.bilateral) return law.slope > 0.0;
   return law.hertz > 0.0 || (law.hertz == 0.0 && law.slope > 0.0);
 }
 

@@ -14,7 +14,7 @@ enum class PortStatus : std::uint8_t {
   bad_input,   // a number is not finite, a law is invalid, W_ii < 0 or n is out of range: forces 0
 };
 
-/// Force of a port over its penetration d, which never falls: of one that pulls too slope d + jump
+/// Force of a port over its penetration d, which never falls: of a bilateral one slope d + jump
 /// at every d, else 0 where d <= 0, and above
 ///   hertz d^1.5                                    of a contact (hertz > 0), else
 ///   max(0, slope d + jump)                         of a spring and a damper over one step.
@@ -30,7 +30,7 @@ struct PortLaw {
   double hertz;  // N/m^1.5
   double slope;  // N/m, > 0 unless hertz > 0
   double jump;   // N; below 0 of a port that opens
-  bool pulls = false;
+  bool bilateral = false;
   bool mean = false;
   double from = 0.;  // m, of a mean: the penetration at the step's start
 };
@@ -48,8 +48,8 @@ inline constexpr double kPortTolerance = 1e-12;
 
 /// Coupled one-sided ports: d + W f(d) = d_free, f_i(d_i) by the laws.
 ///
-/// f minimises the convex f'Wf/2 + sum of integrals of d_i(f_i) - d_free'f over f >= 0 of ports
-/// that do not pull and any f of those that do, whose d_i(f_i) rises too, so it is unique. Newton
+/// f minimises the convex f'Wf/2 + sum of integrals of d_i(f_i) - d_free'f over f >= 0 of
+/// one-sided ports and any f of bilateral ones, whose d_i(f_i) rises too, so it is unique. Newton
 /// on the active set; its step is taken partly in d and partly in f, weighted so that a lone
 /// contact converges cubically, and shortened if it runs far past the minimum on its line. A lone
 /// spring and damper is solved in one.
@@ -57,8 +57,8 @@ inline constexpr double kPortTolerance = 1e-12;
 /// @param W       [n][n] compliance, m/N, symmetric, positive semidefinite
 /// @param law     [n]
 /// @param d_free  [n] penetrations without port forces, m
-/// @param f       [n] in: forces of the last step (a start; of ports that do not pull anything not
-///                a positive number counts as none); out: forces, N, finite, >= 0 without pull
+/// @param f       [n] in: forces of the last step (a start; of one-sided ports anything not a
+///                positive number counts as none); out: forces, N, finite, >= 0 of one-sided ones
 /// @param d       [n] out: penetrations, m; negative is a gap
 /// @param cap     most iterations, clipped to 0..8
 /// Work: at most 8 iterations of one n x n solve and four products. Always finite.

@@ -12,7 +12,7 @@ Complex row_of(const Model& model, const Workspace& w, const LineModel& line,
 }
 
 /// Whether a force at the wheel moves the line.
-bool presses(const Coupling& c, ContactId wheel, const LineModel& line) noexcept {
+bool acts_on(const Coupling& c, ContactId wheel, const LineModel& line) noexcept {
   return c.contact[wheel].on_rail && line.rail_factor[c.contact[wheel].row.rail] != 0.;
 }
 
@@ -40,7 +40,8 @@ void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   }
 }
 
-/// What a unit force under each wheel, held over the step, makes of the condensed lines it presses.
+/// What a unit force under each wheel, held over the step, makes of the condensed lines that it
+/// acts on.
 void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (ContactId i = 0; i < c.contacts; ++i) {
@@ -48,7 +49,7 @@ void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept
     const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
-      if (!presses(c, i, line)) continue;
+      if (!acts_on(c, i, line)) continue;
       shape_row(line, c.contact[i].row, re, re + stride);
       modes_multiply(line.modal.held_force, row_of(model, w, line, i), w.unit + unit + line.first,
                      w.unit_imaginary + unit + line.first, line.size);
@@ -72,7 +73,7 @@ void subtract(const double* const* unit, const double* force, int count, int siz
   }
 }
 
-/// What a line that wheel `i` presses adds to the displacement under it.
+/// What a line that a force at contact `i` moves adds to the displacement under it.
 double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
                   ContactId i, const double* re, const double* im) noexcept {
   if (model.form == Form::banded) return motion(line, c.contact[i].row, {re, {}});
@@ -95,7 +96,7 @@ double track_under(const Model& model, const Workspace& w, const Coupling& c, Co
                    const double* re, const double* im) noexcept {
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    if (presses(c, i, model.line[l])) sum += line_under(model, w, c, model.line[l], i, re, im);
+    if (acts_on(c, i, model.line[l])) sum += line_under(model, w, c, model.line[l], i, re, im);
   return sum;
 }
 
@@ -104,7 +105,7 @@ double track_compliance(const Model& model, const Workspace& w, const Coupling& 
   const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(j) * model.unknowns;
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    if (presses(c, i, model.line[l]) && presses(c, j, model.line[l]))
+    if (acts_on(c, i, model.line[l]) && acts_on(c, j, model.line[l]))
       sum += line_under(model, w, c, model.line[l], i, w.unit + unit, w.unit_imaginary + unit);
   return sum;
 }
@@ -121,7 +122,7 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
     double force[kMaxWheels];
     int count = 0;
     for (ContactId i = 0; i < c.contacts; ++i) {
-      if (!presses(c, i, line)) continue;
+      if (!acts_on(c, i, line)) continue;
       const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i) * model.unknowns + line.first;
       re[count] = w.unit + unit;
       im[count] = w.unit_imaginary + unit;

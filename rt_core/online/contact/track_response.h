@@ -6,12 +6,12 @@ namespace railstep {
 
 /// Configuration at which the contacts of a step are located.
 inline Configuration located_on(const Model& model, const State& s, const Workspace& w) noexcept {
-  return {w.scaled, {s.u, s.v}, passed(model, s.steps + 1)};
+  return {w.scaled, {s.u, s.v}, track_offset(model, s.steps + 1)};
 }
 
 /// Solves banded lines for their own right-hand side (in workspace.solved) and the lines that a
-/// wheel presses for a unit force there (unit[wheel]); of condensed lines the force is held over
-/// the step. Notes where the lines were seen under each wheel.
+/// wheel acts on for a unit force there (unit[wheel]); of condensed lines the force is held over
+/// the step. Notes where the lines were located under each wheel.
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
 
 /// Displacement under wheel `i` of the track moved by unit forces at wheel `j`, at the step's end.

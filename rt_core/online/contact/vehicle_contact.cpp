@@ -20,20 +20,22 @@ double rail_height(const Model& model, const RailRow& row, const Configuration& 
   return sum;
 }
 
-double slope_under(const Model& model, const WheelContact& at, const Configuration& seen) noexcept {
+double slope_under(const Model& model, const WheelContact& at,
+                   const Configuration& located) noexcept {
   const double per_metre = 2. / model.element_length;
   const double slope[3] = {(at.xi - .5) * per_metre, -2. * at.xi * per_metre,
                            (at.xi + .5) * per_metre};
   RailRow along = at.row;
   set_height_row(model.cant[along.rail], at.y, at.z, slope, along);
-  return rail_height(model, along, seen);
+  return rail_height(model, along, located);
 }
 
 void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::int64_t step,
                           double before, WheelContact* contact, double later) noexcept {
   const double way = way_at(model, vehicle.travel, step, before).distance;
   const double further = way_at(model, vehicle.travel, step, before - later).distance;
-  const double behind = passed(model, step), rolled = (behind + model.endless.origin) + further;
+  const double behind = track_offset(model, step),
+               rolled = (behind + model.endless.origin) + further;
   const double up[3] = {0., 0., 1.};
   for (std::int32_t k = 0; k < vehicle.wheels; ++k) {
     const VehicleWheel& wheel = model.vehicle_wheel[vehicle.first_wheel + k];
@@ -59,11 +61,11 @@ void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::
       const Irregularity off = irregularity(model, wheel.tread, wheel.rail, up,
                                             (found.x + behind) + (further - way), rolled);
       found.irregularity = off.depth;
-      found.rise = off.rise;
+      found.slope = off.slope;
     } else {
       const SignalValue tread = signal_at(wheel.tread, rolled);
       found.irregularity = tread.value;
-      found.rise = tread.slope;
+      found.slope = tread.slope;
     }
   }
 }

@@ -22,6 +22,7 @@ void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std:
 double rail_height(const Model& model, const RailRow& row, const Configuration& at) noexcept;
 
 /// Slope of the rail along x in a contact by the lines alone.
-double slope_under(const Model& model, const WheelContact& at, const Configuration& seen) noexcept;
+double slope_under(const Model& model, const WheelContact& at,
+                   const Configuration& located) noexcept;
 
 }  // namespace railstep

@@ -40,10 +40,10 @@ DepthSpeed speed_of(const Model& model, double time, const State& s, const Works
   const WheelContact& at = c.contact[i];
   const VehicleModel& v = vehicle_of(model, i);
   const double* row = row_of(model, i);
-  const Configuration seen = located_on(model, s, w);
-  double along = at.rise, missed = 0.;
+  const Configuration located = located_on(model, s, w);
+  double along = at.slope, missed = 0.;
   if (at.on_rail) {
-    along += slope_under(model, at, seen);
+    along += slope_under(model, at, located);
     missed = residual_before(model, s, c, i);
   }
   const double when = time - (1. - held_at(model)) * model.scheme.dt;
@@ -124,7 +124,7 @@ void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept
     for (int k = 0; k < v.size; ++k) u[k] = c.vehicle[b][k];
     for (int i = 0; i < v.wheels; ++i) {
       const double force = c.force[vehicle_contact(model, v.first_wheel + i)];
-      for (int k = 0; k < v.size; ++k) u[k] += v.give[i * v.size + k] * force;
+      for (int k = 0; k < v.size; ++k) u[k] += v.response[i * v.size + k] * force;
     }
   }
 }
@@ -135,7 +135,7 @@ bool vehicle_impact_is_unresolved(const Model& model, const Coupling& c, const S
   const double* row = row_of(model, wheel);
   const double hertz = vehicle_wheel(model, wheel).contact.hertz;
   const double time = static_cast<double>(s.steps) * model.scheme.dt;
-  double speed = c.contact[wheel].rise * travelled(v.travel, time).speed, inverse_mass = 0.;
+  double speed = c.contact[wheel].slope * travelled(v.travel, time).speed, inverse_mass = 0.;
   for (int k = 0; k < v.size; ++k) {
     speed -= row[k] * s.v[v.first + k];
     inverse_mass += row[k] * row[k] / v.mass[k];

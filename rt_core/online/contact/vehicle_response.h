@@ -16,11 +16,12 @@ void free_vehicles(const Model& model, double time, const State& s, const Worksp
 void find_vehicle_laws(const Model& model, double time, const State& s, const Workspace& w,
                        Coupling& c) noexcept;
 
-/// What a unit force at wheel j adds to the approach of wheel i through a vehicle that bears both.
+/// What a unit force at wheel j adds to the approach of wheel i through a vehicle that carries
+/// both.
 double vehicle_compliance(const Model& model, ContactId i, ContactId j) noexcept;
 
-/// Penetration that the rail as it was seen, irregularities and the vehicle's place at the step's
-/// start leave of wheel i: what the coordinates at the step's end take off is left out.
+/// Penetration that the rail as it was located, irregularities and the vehicle's place at the
+/// step's start leave of wheel i: what the coordinates at the step's end take off is left out.
 double vehicle_offset(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
 
 /// Height of wheel i at the step's end without contact forces.

@@ -10,7 +10,7 @@ namespace railstep {
 
 namespace {
 
-constexpr int kWindow = 2;  // elements that the search sees: the wheel's and the nearest other
+constexpr int kWindow = 2;  // elements that the search takes in: the wheel's and the nearest other
 constexpr int kWindowNodes = 3 * kWindow;  // elements on both sides of a joint share none
 
 struct Window {
@@ -97,7 +97,7 @@ void interpolate_nodes(const Window& window, RailPlace place, const double* shap
   for (int k = 0; k < 9; ++k) q[k] = shape[0] * n[k] + shape[1] * n[9 + k] + shape[2] * n[18 + k];
 }
 
-/// Turn of a section about x from rest, rad; q of a node in the track's axes.
+/// Roll of a section about x from rest, rad; q of a node in the track's axes.
 double section_roll(const Cant& cant, const double* q) noexcept {
   double a[3], b[3];
   to_rail(cant, q + 3, a);
@@ -172,10 +172,10 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   // contact at the true shapes' nearest points does not.
   const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length +
                    (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
-  const double rolled = (now.passed + model.endless.origin) + now.u[w.first];
-  const Irregularity off =
-      irregularity(model, w.tread[side], side, at.normal, (x + now.passed) + ahead, rolled + ahead);
-  fill_row(model.cant[side], shape, off.rail_rise, at);
+  const double rolled = (now.track_offset + model.endless.origin) + now.u[w.first];
+  const Irregularity off = irregularity(model, w.tread[side], side, at.normal,
+                                        (x + now.track_offset) + ahead, rolled + ahead);
+  fill_row(model.cant[side], shape, off.rail_slope, at);
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   at.roll = section_roll(model.cant[side], q);
   const double higher =
@@ -185,7 +185,7 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
     gap += at.normal[d] * (centre[d] + arm[d] - (q[d] + at.y * q[3 + d] + at.z * q[6 + d]));
   at.penetration = (w.radius - gap) + off.depth + higher;
   at.irregularity = off.depth;
-  at.rise = off.rise;
+  at.slope = off.slope;
   fill_body_row(body, arm, at);
   return at;
 }
@@ -236,14 +236,14 @@ WheelContact find_flange(const Model& model, const FlangeModel& flange, int side
   }
   const double x = at.x + (face[0] - (centre[0] + arm[0]));
   const Irregularity off =
-      irregularity(model, SignalModel{}, side, at.normal, (x + now.passed) + ahead, 0.);
-  fill_row(model.cant[side], shape, off.rail_rise, at);
+      irregularity(model, SignalModel{}, side, at.normal, (x + now.track_offset) + ahead, 0.);
+  fill_row(model.cant[side], shape, off.rail_slope, at);
   at.roll = section_roll(model.cant[side], q);
   const double higher =
       add_p_delta(model, now, at.roll, at.xi, at.y, at.z, at.normal, at.row, seats);
   at.penetration = (off.depth + higher) - gap;
   at.irregularity = off.depth;
-  at.rise = off.rise + slope_along(model, window, found.place, at);
+  at.slope = off.slope + slope_along(model, window, found.place, at);
   if (at.penetration > 0. && dot(arm, up) < flange.tip) at.on_rail = false;
   fill_body_row(body, arm, at);
   return at;
@@ -260,9 +260,9 @@ Irregularity irregularity(const Model& model, const SignalModel& tread, int rail
     if (own.rail != rail) continue;
     const SignalValue at = signal_at(own.signal, x);
     sum.depth += normal[own.direction] * at.value;
-    sum.rail_rise += normal[own.direction] * at.slope;
+    sum.rail_slope += normal[own.direction] * at.slope;
   }
-  sum.rise += sum.rail_rise;
+  sum.slope += sum.rail_slope;
   return sum;
 }
 

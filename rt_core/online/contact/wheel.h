@@ -21,17 +21,17 @@ struct WheelContact {
   double penetration;   // of that configuration, m; negative is a gap
   double body_row[6];   // d(gap)/d(coordinates) of the wheelset
   double irregularity;  // what irregularities add to the penetration, m
-  double rise;          // of that, per metre that the wheel goes on
+  double slope;         // of that, per metre that the wheel goes on
 };
 
-/// What irregularities add to the penetration along a normal, m, and its rise over x. To first
+/// What irregularities add to the penetration along a normal, m, and its slope over x. To first
 /// order: the normal is that of the true shapes.
 /// @param tread   of the wheel
 /// @param x       of the contact along the track, m
 /// @param rolled  distance that the wheel has gone, m
 struct Irregularity {
-  double depth, rise;
-  double rail_rise;  // the part of the rise that is the rail's, which goes along with its steel
+  double depth, slope;
+  double rail_slope;  // the part of the slope that is the rail's, which goes along with its steel
 };
 Irregularity irregularity(const Model& model, const SignalModel& tread, int rail,
                           const double* normal, double x, double rolled) noexcept;
@@ -44,11 +44,12 @@ void find_contacts(const Model& model, const WheelsetModel& wheelset, const Conf
                    WheelContact* sides, double ahead = 0.) noexcept;
 
 /// Finds the contacts of a wheelset's left and right flange, each in the rail's section through its
-/// face: X the gauge face's point there, c the wheelset's centre, n the face's normal, R its turn,
-///   gap = n.(c + R point - X),  d(gap) = n.(dc - dX) + ((X - c) x n).(turn of the wheelset),
+/// face: X the gauge face's point there, c the wheelset's centre, n the face's normal, R its
+/// rotation,
+///   gap = n.(c + R point - X),  d(gap) = n.(dc - dX) + ((X - c) x n).(rotation of the wheelset),
 /// so that a force f n on the wheelset at X is the opposite of that on the rail. A flange whose tip
-/// is over X on the rail's side has run off: on_rail is false. `rise` has the rail's own slope too.
-/// Arguments as those of find_contacts().
+/// is over X on the rail's side has run off: on_rail is false. `slope` has the rail's own slope
+/// too. Arguments as those of find_contacts().
 void find_flanges(const Model& model, const FlangeModel& flange, const Configuration& at,
                   WheelContact* sides, double ahead = 0.) noexcept;
 

@@ -178,7 +178,7 @@ bool tread_impact_is_unresolved(const Model& model, const Coupling& c, const Sta
     alone += row[k] * row[k] / set.mass[k];
     together += row[k] * (row[k] + other[k]) / set.mass[k];
   }
-  speed += c.contact[wheel].rise * s.v[set.first];
+  speed += c.contact[wheel].slope * s.v[set.first];
   const double inverse_mass = alone > together ? alone : together;
   return impact_is_unresolved(set.hertz[rail_of(model, wheel)], inverse_mass, speed,
                               model.scheme.dt);

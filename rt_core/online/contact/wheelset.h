@@ -5,12 +5,12 @@ namespace railstep {
 
 // Wheelsets in a step's coupled problem, on their treads and flanges (model/contact_id.h).
 
-/// Where each wheelset goes without contact, and how it gives way. A coordinate on Baumgarte's
-/// guide does not give way at all: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
+/// Where each wheelset goes without contact, and its compliance. A coordinate on Baumgarte's guide
+/// has none: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
 void free_wheelsets(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                     Coupling& c) noexcept;
 
-/// What a unit force at contact j adds to the approach of contact i through a wheelset that bears
+/// What a unit force at contact j adds to the approach of contact i through a wheelset that carries
 /// both.
 double wheelset_compliance(const Model& model, const Coupling& c, ContactId i,
                            ContactId j) noexcept;
@@ -27,7 +27,7 @@ double free_lift(const Model& model, const State& s, const Coupling& c, ContactI
 double wheelset_lift_before(const Model& model, const State& s, const Coupling& c,
                             ContactId i) noexcept;
 
-/// Most turns of the guides' augmented Lagrangian around the contacts.
+/// Most iterations of the guides' augmented Lagrangian around the contacts.
 std::int32_t guide_iterations(const Model& model) noexcept;
 
 /// Moves the wheelsets under the contact forces and corrects the guides' multipliers.
@@ -37,7 +37,7 @@ bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace&
                     const Coupling& c, double& violation) noexcept;
 
 /// Whether a wheel that closes now on its rail will have left it within 10 steps (impact.h), with
-/// the rail taken as rigid (one that gives way holds the wheel for longer)
+/// the rail taken as rigid (a compliant one holds the wheel for longer)
 /// and the smaller of the masses that the wheel has alone and together with the set's other one.
 bool tread_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
                                 ContactId wheel) noexcept;

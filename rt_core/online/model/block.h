@@ -26,7 +26,7 @@ enum SectionName : std::size_t {
 /// Largest of the loops in a step.
 struct BlockCaps {
   std::int32_t locate, ports;   // of this library: caps.h
-  std::int32_t guides, system;  // turns of a wheelset's guide; Newton iterations of a system
+  std::int32_t guides, system;  // iterations of a wheelset's guide; Newton's of a system
 };
 
 /// The first bytes of a block, as they stand in memory: fields without gaps, little-endian. Behind

@@ -20,7 +20,7 @@ namespace railstep {
 template <typename Archive>
 void describe(Archive& a, Scheme& s) {
   for (double* x : {&s.dt, &s.uv, &s.ua, &s.ug, &s.va, &s.vg, &s.kv, &s.kg, &s.ag, &s.a0, &s.aa,
-                    &s.theta, &s.part, &s.over})
+                    &s.theta, &s.stage_fraction, &s.stage_weight})
     a.real(*x);
   a.count(s.mean, 1);
 }
@@ -159,7 +159,7 @@ void describe(Archive& a, WheelsetModel& w) {
   std::int32_t guide = static_cast<std::int32_t>(w.guide);
   a.count(guide, 1);
   w.guide = static_cast<Guide>(guide);
-  a.count(w.cap, kMostGuideTurns);
+  a.count(w.cap, kMostGuideIterations);
   a.count(w.forces, kMaxBodyForces);
   for (std::int32_t i = 0; i < w.forces; ++i) describe(a, w.force[i], 2);
   for (std::int32_t& point : w.load_point) a.count(point, kMaxLoadPoints - 1);
@@ -203,7 +203,7 @@ void describe(Archive& a, VehicleModel& v) {
   const std::int64_t n = v.size, wheels = v.wheels;
   for (const double** of : {&v.mass, &v.weight}) a.reals(*of, n);
   for (const double** of : {&v.damping, &v.stiffness, &v.inverse}) a.reals(*of, n * n);
-  for (const double** of : {&v.row, &v.give}) a.reals(*of, wheels * n);
+  for (const double** of : {&v.row, &v.response}) a.reals(*of, wheels * n);
   a.reals(v.compliance, wheels * wheels);
   a.count(v.forces, kMaxBodyForces);
   for (std::int32_t i = 0; i < v.forces; ++i) describe(a, v.force[i], kMaxVehicleUnknowns - 1);
@@ -221,9 +221,9 @@ void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
     for (std::int32_t j = 0; j < r.load_points; ++j) {
       PairModel& pair = r.pair[i][j];
       a.count(pair.points, kMostPairPoints);
-      a.count(pair.reach, elements);
+      a.count(pair.range, elements);
       const std::int64_t block = std::int64_t{pair.points + 1} * (pair.points + 1);
-      a.reals(pair.value, std::int64_t{r.elements} * (2 * pair.reach + 1) * block);
+      a.reals(pair.value, std::int64_t{r.elements} * (2 * pair.range + 1) * block);
     }
 }
 

@@ -164,8 +164,8 @@ bool check_is_valid(const BlockHeader& h) noexcept {
 /// contact forces that are means are held over the step.
 bool scheme_is_valid(const Model& m) noexcept {
   if (m.scheme.mean != 0 && (m.form == Form::banded || m.scheme.theta != 1.)) return false;
-  if (!(m.scheme.part >= 0.) || !(m.scheme.part < 1.)) return false;
-  return m.scheme.part == 0. ||
+  if (!(m.scheme.stage_fraction >= 0.) || !(m.scheme.stage_fraction < 1.)) return false;
+  return m.scheme.stage_fraction == 0. ||
          (m.form == Form::banded && m.system.unknowns == 0 && m.external_wheels == 0);
 }
 

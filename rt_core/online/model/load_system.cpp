@@ -34,7 +34,7 @@ bool solve_is_valid(const Scheme& c, const SystemModel& s) noexcept {
 }
 
 /// Compliances of its ports on rails are not negative.
-bool ports_give(const SystemModel& s) noexcept {
+bool compliances_are_valid(const SystemModel& s) noexcept {
   const std::int64_t n = std::int64_t{9} * s.ports;
   for (std::int64_t i = 0; i < n; ++i)
     if (!(s.port_compliance[i * n + i] >= 0.)) return false;
@@ -50,20 +50,20 @@ bool stands_alone_or_beside(const Model& m) noexcept {
     return false;
   if (m.lines > 0)
     return s.mean == 0 && s.constraint_method != ConstraintMethod::gear_gupta_leimkuhler &&
-           (s.ports == 0 || (s.port_compliance && s.port_shapes && ports_give(s)));
+           (s.ports == 0 || (s.port_compliance && s.port_shapes && compliances_are_valid(s)));
   return s.ports == 0 && m.line_unknowns == 0 && m.elements == 0 && m.loads == 0 && m.signals == 0;
 }
 
-/// Its unknowns are each of one direction or turn.
+/// Its unknowns are each of one direction or rotation.
 bool columns_are_valid(const RigidBodyModel& b) noexcept {
   if (b.unknowns != 3 && b.unknowns != 6) return false;
-  std::uint32_t seen = 0;
+  std::uint32_t carried = 0;
   for (const std::int32_t column : b.column) {
     if (column == -1) continue;
-    if (!is_index(column, b.unknowns) || (seen >> column & 1u) != 0u) return false;
-    seen |= 1u << column;
+    if (!is_index(column, b.unknowns) || (carried >> column & 1u) != 0u) return false;
+    carried |= 1u << column;
   }
-  return seen == (1u << b.unknowns) - 1u;
+  return carried == (1u << b.unknowns) - 1u;
 }
 
 bool body_is_valid(const RigidBodyModel& b) noexcept {

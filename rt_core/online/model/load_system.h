@@ -8,7 +8,7 @@ namespace railstep {
 /// and a mass, every loop an end.
 bool system_is_valid(const Model& model) noexcept;
 
-/// Whether the bodies of a system that holds start with turns.
+/// Whether the bodies of a system that holds start with rotations.
 bool system_start_is_valid(const Model& model) noexcept;
 
 }  // namespace railstep

@@ -77,8 +77,8 @@ bool line_is_valid(const Model& m, const LineModel& line) noexcept {
          diagonals_are_valid(line.mass) && diagonals_are_valid(line.damping);
 }
 
-/// Whether it is a turn, to its rounding.
-bool turns(const Cant& cant) noexcept {
+/// Whether it is a rotation, to its rounding.
+bool is_rotation(const Cant& cant) noexcept {
   const double off = (cant.cosine * cant.cosine + cant.sine * cant.sine) - 1.;
   return off > -1e-14 && off < 1e-14 && cant.cosine > 0.;
 }
@@ -137,7 +137,7 @@ bool vehicle_is_valid(const Model& m, const VehicleModel& v) noexcept {
   for (std::int32_t i = 0; i < v.forces; ++i)
     if (v.force[i].direction >= v.size || !force_is_valid(m, v.force[i])) return false;
   return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_is_valid(v.travel) && v.mass &&
-         v.damping && v.stiffness && v.weight && v.inverse && v.row && v.give && v.compliance &&
+         v.damping && v.stiffness && v.weight && v.inverse && v.row && v.response && v.compliance &&
          are_above_zero(v.mass, v.size) && diagonal_is_above_zero(v.inverse, v.size) &&
          diagonal_is_above_zero(v.compliance, v.wheels);
 }
@@ -227,7 +227,7 @@ bool track_is_valid(const Model& m) noexcept {
   for (std::int32_t i = 0; i < m.loads; ++i)
     if (!load_is_valid(m.load[i])) return false;
   for (const Cant& cant : m.cant)
-    if (!turns(cant)) return false;
+    if (!is_rotation(cant)) return false;
   for (std::int32_t i = 0; i < m.wheelsets; ++i)
     if (!wheelset_is_valid(m, m.wheelset[i])) return false;
   if (!flanges_are_valid(m)) return false;

@@ -32,7 +32,7 @@ inline constexpr std::int64_t kMostRows = 1 << 22;  // of tables, track sensors 
 inline constexpr std::int64_t kMostEntries = 1 << 28;
 inline constexpr std::int64_t kMostPairPoints = 64;
 inline constexpr std::int64_t kMostSamples = 1 << 26;  // of an irregularity
-inline constexpr std::int64_t kMostGuideTurns = 1000;
+inline constexpr std::int64_t kMostGuideIterations = 1000;
 
 /// How far the traffic of a track without end has gone at a step, exactly. Fractions count bays by
 /// 2^-62: n steps are n / period times `bays` whole ones, and n % period steps of `advance`.
@@ -164,7 +164,7 @@ struct WheelsetModel {
 
 /// How a vehicle's wheel holds on to what is under it, d the penetration:
 ///   hertz d^1.5 above 0   of a Hertz contact (hertz > 0), else
-///   stiffness d + damping d'   at any d: it pulls too.
+///   stiffness d + damping d'   at any d: it pulls too (bilateral).
 struct ContactModel {
   double hertz;               // N/m^1.5
   double stiffness, damping;  // N/m, N s/m
@@ -207,18 +207,18 @@ struct VehicleModel {
   const double* weight;               // [size] N
   const double* inverse;              // [size][size] of s K + s kv C + kg M
   const double* row;                  // [wheels][size] B
-  const double* give;                 // [wheels][size] inverse B'
+  const double* response;             // [wheels][size] inverse B'
   const double* compliance;           // [wheels][wheels] B inverse B', m/N
   std::int32_t forces;
   BodyForce force[kMaxBodyForces];  // N, and N m on what pitches
 };
 
 /// Residual flexibility between ports of two kinds: of the first in element e at point p, of the
-/// second in element e + shift at point q, -reach <= shift <= reach; zero beyond, or on a track
+/// second in element e + shift at point q, -range <= shift <= range; zero beyond, or on a track
 /// without end nowhere.
 struct PairModel {
-  std::int32_t points, reach;  // intervals per element, elements
-  const double* value;         // [elements][2 reach + 1][points + 1][points + 1] m/N, or null
+  std::int32_t points, range;  // intervals per element; elements to either side
+  const double* value;         // [elements][2 range + 1][points + 1][points + 1] m/N, or null
 };
 
 /// What the model's unknowns miss of the static deflection under vertical forces, tabled over
@@ -233,8 +233,8 @@ struct ResidualModel {
 };
 
 /// Levers of a vertical force on a railhead over the seats around it, bays to the left and right of
-/// it alike: the part of the force that a seat bears times the height of its pad over the axis (a
-/// foot: below 0). Where the rail turns over its seats the force goes down. Null pointers: not
+/// it alike: the part of the force that a seat carries times the height of its pad over the axis (a
+/// foot: below 0). Where the rail rolls over its seats the force goes down. Null pointers: not
 /// modelled.
 struct PDeltaModel {
   std::int32_t elements_per_bay;
@@ -279,7 +279,7 @@ struct FixedPortModel {
   const double* compliance;  // [count][count] theta row response, m/N
 };
 
-/// A wheel of a vehicle outside the model, as it presses a rail. Its place and force are inputs
+/// A wheel of a vehicle outside the model, as it acts on a rail. Its place and force are inputs
 /// from `input` on (external_input.h); they are those of the step, which is a frame.
 struct ExternalWheelModel {
   std::int32_t rail, input;

@@ -46,11 +46,11 @@ std::uint64_t hash_of(Name name) noexcept {
 
 /// Whether no two names are equal, by their hashes. Without memory for all of them: share after
 /// share of the names, each in a table that it fills by half.
-bool are_apart(const Names& names) noexcept {
+bool are_distinct(const Names& names) noexcept {
   constexpr std::uint64_t kPlaces = 1024, kShare = kPlaces / 2;
   const auto shares = static_cast<std::uint64_t>(names.count) / (kShare / 2) + 1;
-  bool apart = true;
-  for (std::uint64_t share = 0; share < shares && apart; ++share) {
+  bool distinct = true;
+  for (std::uint64_t share = 0; share < shares && distinct; ++share) {
     std::uint64_t place[kPlaces] = {}, held = 0;
     for_names(names, [&](std::int32_t, Name name) noexcept {
       const std::uint64_t hash = hash_of(name);
@@ -58,12 +58,12 @@ bool are_apart(const Names& names) noexcept {
       std::uint64_t at = hash / 2 % kPlaces;
       while (place[at] != 0 && place[at] != hash) at = (at + 1) % kPlaces;
       // A share of twice what falls to it is no work of chance.
-      apart = place[at] != hash && ++held <= kShare;
+      distinct = place[at] != hash && ++held <= kShare;
       place[at] = hash;
-      return !apart;
+      return !distinct;
     });
   }
-  return apart;
+  return distinct;
 }
 
 Names names_in(const char* text, std::size_t bytes) noexcept {
@@ -88,7 +88,7 @@ bool split_names(const char* text, std::size_t bytes, Names& columns, Names& inp
   };
   for (const Names* const names : {&columns, &inputs}) {
     for_names(*names, look);
-    if (named && names->count <= kMostCompared) named = are_apart(*names);
+    if (named && names->count <= kMostCompared) named = are_distinct(*names);
   }
   return named;
 }

@@ -41,7 +41,7 @@ inline double within_bay(const Model& model, std::int64_t step) noexcept {
 }
 
 /// What to add to a place along the model's elements for the distance along the track, m.
-inline double passed(const Model& model, std::int64_t step) noexcept {
+inline double track_offset(const Model& model, std::int64_t step) noexcept {
   const Endless& e = model.endless;
   if (e.bays == 0) return 0.;
   return static_cast<double>(bays_passed(e.progress, step).bays) * e.bay_length - e.origin;

@@ -12,10 +12,10 @@ struct Scheme {
   double dt;  // s
   double uv, ua, ug, va, vg, kv, kg, ag, a0, aa;
   double theta;  // contact forces follow the penetration theta d1 + (1 - theta) d0; 1: at the end
-  /// Of two stages with the same matrix the first, as above, ends at `part` of the step (0: there
-  /// is one stage); from the values 0 and p at its ends the second goes on with
-  ///   v* = v0 + over (vp - v0),   u* = u0 + over (up - u0) + v* / kv.
-  double part, over;
+  /// Of two stages with the same matrix the first, as above, ends at `stage_fraction` of the
+  /// step (0: there is one stage); from the values 0 and p at its ends the second goes on with
+  ///   v* = v0 + w (vp - v0),   u* = u0 + w (up - u0) + v* / kv,   w = stage_weight.
+  double stage_fraction, stage_weight;
   /// 1: the force of a Hertz contact is the mean of its law over the way that the penetration goes
   /// in the step (PortLaw::mean), of forces held over the step with theta = 1.
   std::int32_t mean;
@@ -32,10 +32,10 @@ inline double time_of(const Scheme& scheme, const Stage& at) noexcept {
 }
 /// The last stage of a step, or its only one.
 inline Stage last_stage(const Scheme& scheme, std::int64_t step) noexcept {
-  return {step, 0., scheme.dt - scheme.part * scheme.dt};
+  return {step, 0., scheme.dt - scheme.stage_fraction * scheme.dt};
 }
 inline Stage first_stage(const Scheme& scheme, std::int64_t step) noexcept {
-  return {step, scheme.dt - scheme.part * scheme.dt, scheme.part * scheme.dt};
+  return {step, scheme.dt - scheme.stage_fraction * scheme.dt, scheme.stage_fraction * scheme.dt};
 }
 
 }  // namespace railstep

@@ -21,9 +21,9 @@ namespace signal {
 
 /// x less the multiple of n that leaves it in [0, n); 0 where x is too large to have a rest.
 inline double wrapped(double x, double n) noexcept {
-  const double turns = x / n;
-  if (!(turns > -1e15 && turns < 1e15)) return 0.;
-  double rest = x - static_cast<double>(static_cast<std::int64_t>(turns)) * n;
+  const double periods = x / n;
+  if (!(periods > -1e15 && periods < 1e15)) return 0.;
+  double rest = x - static_cast<double>(static_cast<std::int64_t>(periods)) * n;
   if (rest < 0.) rest += n;
   return rest < n ? rest : 0.;
 }

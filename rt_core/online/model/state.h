@@ -22,7 +22,7 @@ struct State {
                         // the force on the wheelset is its negative
   double* quaternion;   // [system.bodies][4] body axes to ground
   double* row_force;    // [rows] of the system's joints and springs, N; the force on its parts is
-                        // -G' of it, so a joint's or spring's pull is positive
+                        // -G' of it, so a tensile force of a joint or spring is positive
   double* kept;         // Newton's matrix of the system where it is kept over steps, or null
   double* input;        // [inputs] N or N m: the last good ones
   Status latched;       // kLatched bits that were met since the reset
@@ -112,7 +112,7 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t of_modes = model.form == Form::condensed ? 1 + 3 * contacts : 0;
   return (4 + contacts + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
-         (model.scheme.part > 0. ? 2LL * model.unknowns : 0);
+         (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
 
 /// Views over the caller's memory, which must be aligned to doubles.

@@ -8,8 +8,8 @@ namespace railstep {
 // Rigid bodies and nonlinear beams, what holds and drives them. Their unknowns stand in the state's
 // u, v, a, g behind the track's and the wheelsets'.
 //   beam   displacement from rest of its nodes, 9 each (r, a, b), planar 5 (r_x, r_z, a_y, b_x,
-//   b_z) body   displacement of its centre from rest, then the turn of the step in body axes, which
-//   the
+//   b_z) body   displacement of its centre from rest, then the rotation of the step in body axes,
+//   which the
 //          end of the step folds into the state's quaternion: between steps 0; planar x, z, about y
 // Structures hold no pointers and no gaps, so that arrays of them stand in a block as they do here:
 // fields of 4 bytes come first and are even in number.
@@ -28,11 +28,12 @@ inline constexpr int kMostNodeUnknowns = 27;  // that one row touches in one par
 
 /// A rigid body about its centre of mass.
 struct RigidBodyModel {
-  std::int32_t first;      // of its unknowns among the system's
-  std::int32_t column[6];  // unknown of x, y, z and of turns about the body's axes; -1: not carried
-  std::int32_t unknowns;   // 6 or 3
-  double mass;             // kg
-  double inertia[9];       // kg m2, in body axes
+  std::int32_t first;  // of its unknowns among the system's
+  std::int32_t
+      column[6];  // unknown of x, y, z and of rotations about the body's axes; -1: not carried
+  std::int32_t unknowns;  // 6 or 3
+  double mass;            // kg
+  double inertia[9];      // kg m2, in body axes
   double inverse_inertia[9];
   double rest[3];  // of the centre, m
   double radius;   // of gyration, m: a moment over it compares with a force
@@ -49,7 +50,7 @@ struct BeamChainModel {
   StraightBeam element;
 };
 
-/// A place of a linear track's rail that rows pull at. Its nine unknowns are the displacements of
+/// A place of a linear track's rail that rows act on. Its nine unknowns are the displacements of
 /// r, a, b there; the track's step matrix gives them as free motion - compliance * forces.
 struct RailPortModel {
   std::int32_t first;  // of its unknowns among the system's
@@ -78,7 +79,7 @@ struct MarkerModel {
 enum class RowKind : std::int32_t {
   along_ground,  // axis k of the ground . (p_B - p_A) - s(t), m
   along_a,       // e_k of A . (p_B - p_A) - s(t), m
-  square,        // e_i of A . e_j of B, 1; turned by s(t): cos(s) e_i . e_j - sin(s) e_l . e_j
+  square,        // e_i of A . e_j of B, 1; rotated by s(t): cos(s) e_i . e_j - sin(s) e_l . e_j
   distance,      // (|p_B - p_A|^2 - s^2) / (2 s0), m
   spring,        // |p_B - p_A| - s0, m; a spring and a damper along it
 };

@@ -12,12 +12,13 @@ struct MarkerPose {
   double axis[3][3];
 };
 
-/// What a row pulls with at one end per unit of its force: a force on the point, and one on each
-/// direction e_k (for a body the moment e_k x f).
-struct Pull {
+/// Gradient of a row's value in the point and in the directions e_k of the marker at one end: per
+/// unit of the row's force the force on the point, and one on each direction (for a body the moment
+/// e_k x f).
+struct MarkerGradient {
   double point[3];
   double axis[3][3];
-  bool on_axes;  // else the row pulls on the point alone
+  bool has_axes;  // else all of `axis` is 0
 };
 
 /// What Newton's matrix is made of. Stands in the state where it is kept over steps, else in the
@@ -74,7 +75,7 @@ struct SystemWorkspace {
 inline std::int32_t system_rows(const SystemModel& s) noexcept {
   return s.joint_rows + s.spring_rows;
 }
-/// Whether what a step asks of a row changes with x otherwise than by the gradient that pulls.
+/// Whether what a step asks of a row changes with x otherwise than by the gradient of its force.
 inline bool has_slopes(const SystemModel& s) noexcept {
   return s.mean != 0 || s.constraint_method == ConstraintMethod::baumgarte;
 }

@@ -14,9 +14,9 @@ namespace railstep {
 
 namespace {
 
-/// What a rail's or sleeper's displacement does not come near, m, nor its turn, rad: it is at most
-/// a few times a section's height where the linear track means anything. A run that grows from bay
-/// to bay or step to step ends here, long before its numbers overflow.
+/// What a rail's or sleeper's displacement does not come near, m, nor its rotation, rad: it is at
+/// most a few times a section's height where the linear track means anything. A run that grows from
+/// bay to bay or step to step ends here, long before its numbers overflow.
 constexpr double kMostSag = 0x1p10;
 
 /// Its highest bit is set where |x| is `most` and more, or x is no number: but for the sign, bits
@@ -61,8 +61,8 @@ std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) 
       if (!is_moderate(s.quaternion[4 * b + k])) return system.body[b].first;
   for (std::int32_t i = 0; i < system_rows(system); ++i) {
     if (is_moderate(s.row_force[i])) continue;
-    const Reach b = reach(system, system.marker[system.row[i].b]);
-    return b.count > 0 ? b.first : reach(system, system.marker[system.row[i].a]).first;
+    const UnknownRange b = unknowns_of(system, system.marker[system.row[i].b]);
+    return b.count > 0 ? b.first : unknowns_of(system, system.marker[system.row[i].a]).first;
   }
   return -1;
 }
@@ -111,7 +111,7 @@ void collect_solve(const CoupleResult& met, Outputs& out) noexcept {
 
 void collect(const Model& model, const State& s, const CoupleResult& met, Outputs& out) noexcept {
   collect_solve(met, out);
-  const double gone_by = passed(model, s.steps + 1);
+  const double offset = track_offset(model, s.steps + 1);
   for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     const double force = s.wheel_force[i];
     out.wheel_force[i] = force;
@@ -119,7 +119,7 @@ void collect(const Model& model, const State& s, const CoupleResult& met, Output
     out.wheel_force_mean[i] = out.wheel_impulse[i] / (model.scheme.dt * model.steps_per_frame);
     if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
     out.wheel_gap[i] = met.gap[i];
-    out.wheel_x[i] = met.x[i] + gone_by;
+    out.wheel_x[i] = met.x[i] + offset;
     out.wheel_place[i] = met.x[i];
     out.wheel_on_rail[i] = met.on_rail[i];
   }
@@ -180,7 +180,7 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
     outputs.wheel_gap[i] = -contact[i].penetration;
     outputs.wheel_on_rail[i] = contact[i].on_rail;
     outputs.wheel_place[i] = contact[i].x;
-    outputs.wheel_x[i] = contact[i].x + passed(model, state.steps);
+    outputs.wheel_x[i] = contact[i].x + track_offset(model, state.steps);
   }
   for (std::int32_t f = 0; f < model.flanges; ++f)
     find_flanges(model, model.flange[f], standing(model, state), contact + flange_number(f, 0));

@@ -11,7 +11,7 @@ namespace railstep {
 
 /// The state's displacements, as the lines read them.
 inline Configuration standing(const Model& model, const State& s) noexcept {
-  return {s.u, {s.u, s.v}, passed(model, s.steps)};
+  return {s.u, {s.u, s.v}, track_offset(model, s.steps)};
 }
 
 /// Before the first step of a frame.

@@ -29,12 +29,12 @@ void predict(const Model& model, const State& s, Workspace& w) noexcept {
 
 /// The same of a scheme's second stage, from where the first came to.
 void predict_last(const Model& model, const State& s, Workspace& w) noexcept {
-  const double over = model.scheme.over, per_kv = 1. / model.scheme.kv;
+  const double weight = model.scheme.stage_weight, per_kv = 1. / model.scheme.kv;
   const double *u0 = w.start, *v0 = w.start + model.unknowns;
 #pragma omp simd
   for (std::int32_t i = 0; i < model.unknowns; ++i) {
-    w.v_star[i] = v0[i] + over * (s.v[i] - v0[i]);
-    w.u_star[i] = (u0[i] + over * (s.u[i] - u0[i])) + per_kv * w.v_star[i];
+    w.v_star[i] = v0[i] + weight * (s.v[i] - v0[i]);
+    w.u_star[i] = (u0[i] + weight * (s.u[i] - u0[i])) + per_kv * w.v_star[i];
   }
 }
 
@@ -56,8 +56,8 @@ void add_inertia(const Model& model, Workspace& w) noexcept {
   }
 }
 
-/// Whether anything but wheels and ports presses the track.
-bool is_pressed(const Model& model) noexcept {
+/// Whether anything but wheels and ports applies forces to the track.
+bool has_forces(const Model& model) noexcept {
   return model.loads > 0 || model.constant_force != nullptr;
 }
 
@@ -88,7 +88,7 @@ void advance_modes(const LineModel& line, State& s, Workspace& w) noexcept {
   }
 }
 
-/// The same of modes that nothing presses: q1 is 0, and was. Leaves bodies without a force.
+/// The same of modes without forces: q1 is 0, and was. Leaves bodies without a force.
 void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
@@ -100,7 +100,7 @@ void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
 
 /// Right-hand sides of banded lines, and condensed ones without wheels at the step's end.
 void advance_track(const Model& model, const Stage& stage, State& s, Workspace& w) noexcept {
-  if (model.form == Form::condensed && !is_pressed(model)) return keep_modes(model, s, w);
+  if (model.form == Form::condensed && !has_forces(model)) return keep_modes(model, s, w);
   forces(model, stage.step, w.solved, w.imaginary, stage.before);
   if (model.form == Form::banded) return add_inertia(model, w);
   for (std::int32_t l = 0; l < model.lines; ++l) advance_modes(model.line[l], s, w);
@@ -157,14 +157,14 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
                ExternalContact* external) noexcept {
   shift_window(model, state.steps + 1, state, w);
   const Stage stage = last_stage(model.scheme, state.steps + 1);
-  if (model.scheme.part > 0.) {
+  if (model.scheme.stage_fraction > 0.) {
     make_first_stage(model, state, w, outputs);
     predict_last(model, state, w);
   } else {
     predict(model, state, w);
   }
   advance_track(model, stage, state, w);
-  if (model.external_wheels > 0) press_external(model, state.steps + 1, state, w, external);
+  if (model.external_wheels > 0) apply_external_forces(model, state.steps + 1, state, w, external);
   if (has_ports(model))
     collect(model, state, couple(model, stage, state, w), outputs);
   else if (model.form == Form::banded)

@@ -66,7 +66,7 @@ inline constexpr JointColumn kJointColumns[] = {
     {"force_z_n", &JointForce::force, 2},     {"moment_x_n_m", &JointForce::moment, 0},
     {"moment_y_n_m", &JointForce::moment, 1}, {"moment_z_n_m", &JointForce::moment, 2}};
 
-/// The column of a traced spring: its pull.
+/// The column of a traced spring: its force, positive in tension.
 struct SpringColumn {
   const char* name;
 };

@@ -95,7 +95,7 @@ MarkerPose on_section(const SystemModel& system, const MarkerModel& marker,
 }
 
 /// x with w x x and w' x x + w x (w x x).
-void turning(const double* x, const double* w, const double* dw, Jet* out) noexcept {
+void rotating(const double* x, const double* w, const double* dw, Jet* out) noexcept {
   double v[3], a[3], b[3];
   cross(w, x, v);
   cross(dw, x, a);
@@ -116,13 +116,13 @@ MarkerJet jet_on_body(const RigidBodyModel& body, const MarkerModel& marker, con
   rotate(R, own[1], dw);
   rotate(R, marker.position, lever);
   MarkerJet jet;
-  turning(lever, w, dw, jet.point);
+  rotating(lever, w, dw, jet.point);
   for (int c = 0; c < 3; ++c) {
     const std::int32_t k = body.column[c];
     jet.point[c].x = pose.point[c];
     if (k >= 0) jet.point[c] = jet.point[c] + Jet{0., at.v[body.first + k], at.g[body.first + k]};
   }
-  for (int k = 0; k < 3; ++k) turning(pose.axis[k], w, dw, jet.axis[k]);
+  for (int k = 0; k < 3; ++k) rotating(pose.axis[k], w, dw, jet.axis[k]);
   return jet;
 }
 
@@ -147,33 +147,33 @@ MarkerJet jet_on_section(const SystemModel& system, const MarkerModel& marker,
   return jet;
 }
 
-void pull_on_body(const RigidBodyModel& body, const MarkerPose& at, const double* centre,
-                  const double* matrix, const Pull& pull, double* row) noexcept {
+void force_on_body(const RigidBodyModel& body, const MarkerPose& at, const double* centre,
+                   const double* matrix, const MarkerGradient& gradient, double* row) noexcept {
   double lever[3], part[3], moment[3], own[3];
   for (int c = 0; c < 3; ++c) lever[c] = at.point[c] - centre[c];
-  cross(lever, pull.point, moment);
-  for (int k = 0; pull.on_axes && k < 3; ++k) {
-    cross(at.axis[k], pull.axis[k], part);
+  cross(lever, gradient.point, moment);
+  for (int k = 0; gradient.has_axes && k < 3; ++k) {
+    cross(at.axis[k], gradient.axis[k], part);
     for (int c = 0; c < 3; ++c) moment[c] += part[c];
   }
-  turn_back(matrix, moment, own);
+  rotate_back(matrix, moment, own);
   for (int c = 0; c < 3; ++c) {
-    if (body.column[c] >= 0) row[body.column[c]] = pull.point[c];
+    if (body.column[c] >= 0) row[body.column[c]] = gradient.point[c];
     if (body.column[3 + c] >= 0) row[body.column[3 + c]] = own[c];
   }
 }
 
-/// Adds what a pull on the axes does to the a and b of a section.
-void add_axes_pull(const MarkerModel& marker, const MarkerPose& at, const Pull& pull,
-                   double* on) noexcept {
+/// Adds the part of the directions on the a and b of a section.
+void add_axes_force(const MarkerModel& marker, const MarkerPose& at, const MarkerGradient& gradient,
+                    double* on) noexcept {
   double normal[3] = {}, a[3] = {}, b[3] = {}, part[3];
   for (int k = 0; k < 3; ++k)
     for (int c = 0; c < 3; ++c) {
-      normal[c] += marker.frame[3 * k] * pull.axis[k][c];
+      normal[c] += marker.frame[3 * k] * gradient.axis[k][c];
       a[c] += marker.frame[3 * k + 1] * at.axis[k][c];  // the frame's transpose gives a, b back
       b[c] += marker.frame[3 * k + 2] * at.axis[k][c];
-      on[3 + c] += marker.frame[3 * k + 1] * pull.axis[k][c];
-      on[6 + c] += marker.frame[3 * k + 2] * pull.axis[k][c];
+      on[3 + c] += marker.frame[3 * k + 1] * gradient.axis[k][c];
+      on[6 + c] += marker.frame[3 * k + 2] * gradient.axis[k][c];
     }
   cross(b, normal, part);  // n . (da x b) = da . (b x n)
   for (int c = 0; c < 3; ++c) on[3 + c] += part[c];
@@ -181,15 +181,15 @@ void add_axes_pull(const MarkerModel& marker, const MarkerPose& at, const Pull& 
   for (int c = 0; c < 3; ++c) on[6 + c] += part[c];
 }
 
-/// A pull as forces on the r, a, b of a section.
-void pull_on_section(const MarkerModel& marker, const MarkerPose& at, const Pull& pull,
-                     double* on) noexcept {
+/// Generalised force on the r, a, b of a section.
+void force_on_section(const MarkerModel& marker, const MarkerPose& at,
+                      const MarkerGradient& gradient, double* on) noexcept {
   for (int c = 0; c < 3; ++c) {
-    on[c] = pull.point[c];
-    on[3 + c] = marker.position[1] * pull.point[c];
-    on[6 + c] = marker.position[2] * pull.point[c];
+    on[c] = gradient.point[c];
+    on[3 + c] = marker.position[1] * gradient.point[c];
+    on[6 + c] = marker.position[2] * gradient.point[c];
   }
-  if (pull.on_axes) add_axes_pull(marker, at, pull, on);
+  if (gradient.has_axes) add_axes_force(marker, at, gradient, on);
 }
 
 template <bool kPlanar>
@@ -199,10 +199,10 @@ void spread(const MarkerModel& marker, const double* on, double* row) noexcept {
     for (int k = 0; k < W; ++k) row[W * n + k] = marker.value[n] * on[of_nine<kPlanar>(k)];
 }
 
-void pull_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const MarkerPose& at,
-                  const Pull& pull, double* row) noexcept {
+void force_on_beam(const BeamChainModel& beam, const MarkerModel& marker, const MarkerPose& at,
+                   const MarkerGradient& gradient, double* row) noexcept {
   double on[9];
-  pull_on_section(marker, at, pull, on);
+  force_on_section(marker, at, gradient, on);
   beam.planar != 0 ? spread<true>(marker, on, row) : spread<false>(marker, on, row);
 }
 
@@ -230,15 +230,15 @@ MarkerJet marker_jet(const SystemModel& system, const MarkerModel& marker,
   return jet;
 }
 
-void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const MarkerPose& at,
-                      const double* centre, const double* matrix, const Pull& pull,
-                      double* row) noexcept {
+void generalised_force(const SystemModel& system, const MarkerModel& marker, const MarkerPose& at,
+                       const double* centre, const double* matrix, const MarkerGradient& gradient,
+                       double* row) noexcept {
   if (marker.kind == PartKind::body)
-    pull_on_body(system.body[marker.part], at, centre, matrix, pull, row);
+    force_on_body(system.body[marker.part], at, centre, matrix, gradient, row);
   else if (marker.kind == PartKind::beam)
-    pull_on_beam(system.beam[marker.part], marker, at, pull, row);
+    force_on_beam(system.beam[marker.part], marker, at, gradient, row);
   else if (marker.kind == PartKind::rail)
-    pull_on_section(marker, at, pull, row);
+    force_on_section(marker, at, gradient, row);
 }
 
 }  // namespace railstep

@@ -20,7 +20,7 @@ struct MarkerJet {
   Jet axis[3][3];
 };
 
-/// Configuration of a system: x are displacements (of bodies with the turn folded into `matrix`),
+/// Configuration of a system: x are displacements (of bodies their rotation is in `matrix`),
 /// v and g velocities and accelerations in the unknowns' order.
 struct Motions {
   const double* x;
@@ -37,21 +37,21 @@ MarkerPose marker_pose(const SystemModel& system, const MarkerModel& marker, con
 MarkerJet marker_jet(const SystemModel& system, const MarkerModel& marker,
                      const Motions& at) noexcept;
 
-/// A pull on a marker as forces on its part's own unknowns: of a body its 6 or 3, of a beam those
-/// of the marker's three nodes.
-/// @param at      pose at which the pull is taken
+/// Generalised force of a row at a marker on the unknowns of the marker's part, per unit of the
+/// row's force: of a body its 6 or 3, of a beam those of the marker's three nodes.
+/// @param at      pose at which the force is taken
 /// @param centre  of the body at that pose, m
-/// @param matrix  that turns the body's axes of the turn unknowns to the ground
+/// @param matrix  that rotates the body's axes of the rotation unknowns to the ground
 /// @param row     [kMostNodeUnknowns], overwritten
-void pull_on_unknowns(const SystemModel& system, const MarkerModel& marker, const MarkerPose& at,
-                      const double* centre, const double* matrix, const Pull& pull,
-                      double* row) noexcept;
+void generalised_force(const SystemModel& system, const MarkerModel& marker, const MarkerPose& at,
+                       const double* centre, const double* matrix, const MarkerGradient& gradient,
+                       double* row) noexcept;
 
-/// How many unknowns a marker's part gives to a row, and where in the part they begin.
-struct Reach {
+/// The system's unknowns on which a marker depends: `count` from `first` on.
+struct UnknownRange {
   std::int32_t first, count;
 };
-inline Reach reach(const SystemModel& system, const MarkerModel& marker) noexcept {
+inline UnknownRange unknowns_of(const SystemModel& system, const MarkerModel& marker) noexcept {
   switch (marker.kind) {
     case PartKind::beam: {
       const BeamChainModel& beam = system.beam[marker.part];

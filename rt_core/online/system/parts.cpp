@@ -11,15 +11,15 @@ namespace railstep {
 
 namespace {
 
-/// The turn unknowns of a body as a vector in its axes.
-void own_turn(const RigidBodyModel& body, const double* x, double* out) noexcept {
+/// The rotation unknowns of a body as a vector in its axes.
+void rotation_of(const RigidBodyModel& body, const double* x, double* out) noexcept {
   for (int c = 0; c < 3; ++c) {
     const std::int32_t k = body.column[3 + c];
     out[c] = k >= 0 ? x[body.first + k] : 0.;
   }
 }
 
-void set_turn(const RigidBodyModel& body, const double* from, double* out) noexcept {
+void set_rotation(const RigidBodyModel& body, const double* from, double* out) noexcept {
   for (int c = 0; c < 3; ++c)
     if (const std::int32_t k = body.column[3 + c]; k >= 0) out[body.first + k] = from[c];
 }
@@ -56,8 +56,8 @@ void place_centre(const SystemModel& s, std::int32_t b, const SystemStart& start
 }
 
 /// J g + v x J v, in the body's axes at the step's end.
-void turn_inertia(const RigidBodyModel& body, const double* v, const double* g,
-                  double* out) noexcept {
+void rotation_inertia(const RigidBodyModel& body, const double* v, const double* g,
+                      double* out) noexcept {
   double momentum[3], gyroscopic[3];
   rotate(body.inertia, v, momentum);
   cross(v, momentum, gyroscopic);
@@ -67,8 +67,8 @@ void turn_inertia(const RigidBodyModel& body, const double* v, const double* g,
 
 /// Change of the angular momentum over the step, in the body's axes at its start: a free body
 /// keeps it, and its energy, to round-off (Simo and Wong 1991, with Cayley's rotation).
-void mean_turn_inertia(const RigidBodyModel& body, double per_step, const double* change,
-                       const double* v0, const double* v1, double* out) noexcept {
+void mean_rotation_inertia(const RigidBodyModel& body, double per_step, const double* change,
+                           const double* v0, const double* v1, double* out) noexcept {
   constexpr double upright[4] = {1., 0., 0., 0.};
   double q[4], R[9], old[3], fresh[3];
   rotated_by_mean(upright, change, q);
@@ -82,17 +82,17 @@ void mean_turn_inertia(const RigidBodyModel& body, double per_step, const double
 void body_inertia(const Model& model, const RigidBodyModel& body, const SystemStart& start,
                   SystemWorkspace& w) noexcept {
   double v[3], g[3], moment[3];
-  own_turn(body, w.v, v);
-  own_turn(body, w.g, g);
+  rotation_of(body, w.v, v);
+  rotation_of(body, w.g, g);
   if (model.system.mean != 0) {
     double v0[3], change[3];
-    own_turn(body, start.v, v0);
-    own_turn(body, w.x, change);
-    mean_turn_inertia(body, 1. / model.scheme.dt, change, v0, v, moment);
+    rotation_of(body, start.v, v0);
+    rotation_of(body, w.x, change);
+    mean_rotation_inertia(body, 1. / model.scheme.dt, change, v0, v, moment);
   } else {
-    turn_inertia(body, v, g, moment);
+    rotation_inertia(body, v, g, moment);
   }
-  set_turn(body, moment, w.inertia);
+  set_rotation(body, moment, w.inertia);
   for (int c = 0; c < 3; ++c)
     if (const std::int32_t k = body.column[c]; k >= 0)
       w.inertia[body.first + k] = body.mass * w.g[body.first + k];
@@ -109,18 +109,18 @@ void beam_elastic(const Model& model, const BeamChainModel& beam, bool renew,
     beam_forces(beam, nodes, half, force);
 }
 
-/// A body's S is kg M: gyroscopic terms and those of turning axes are h |w| / 2 of it, and left to
+/// A body's S is kg M: gyroscopic terms and those of rotating axes are h |w| / 2 of it, and left to
 /// the iterations.
 void solve_body(const RigidBodyModel& body, double per_kg, const double* force,
                 double* out) noexcept {
-  double moment[3] = {}, turned[3];
+  double moment[3] = {}, rate[3];
   for (int c = 0; c < 3; ++c) {
     if (body.column[c] >= 0) out[body.column[c]] = per_kg / body.mass * force[body.column[c]];
     if (body.column[3 + c] >= 0) moment[c] = per_kg * force[body.column[3 + c]];
   }
-  rotate(body.inverse_inertia, moment, turned);
+  rotate(body.inverse_inertia, moment, rate);
   for (int c = 0; c < 3; ++c)
-    if (body.column[3 + c] >= 0) out[body.column[3 + c]] = turned[c];
+    if (body.column[3 + c] >= 0) out[body.column[3 + c]] = rate[c];
 }
 
 /// change = -residual, of bodies -S^-1 residual.
@@ -149,7 +149,7 @@ void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor,
   for (std::int32_t e = 0; e < ends; ++e) {
     const EndModel& end = s.end[first + e];
     const RowModel& row = s.row[end.row];
-    const Reach at = reach(s, s.marker[end.side == 0 ? row.a : row.b]);
+    const UnknownRange at = unknowns_of(s, s.marker[end.side == 0 ? row.a : row.b]);
     for (std::int32_t k = 0; k < at.count; ++k)
       solved[end_group_place(beam, e, at.first - beam.first + k)] =
           gradient[std::ptrdiff_t{kMostNodeUnknowns} * (first + e) + k];
@@ -195,16 +195,16 @@ std::int32_t solve_track_end(const SystemModel& s, std::int32_t end, const doubl
   return n;
 }
 
-/// An applied force or moment on the unknowns of its part. A moment of a body turns in the axes in
+/// An applied force or moment on the unknowns of its part. A moment on a body acts in the axes in
 /// which the step takes it: of the start for the mean of both ends.
 void applied(const SystemModel& s, const SystemWorkspace& w, const PointForceModel& force,
              double size, double* row) noexcept {
   const MarkerModel& marker = s.marker[force.marker];
-  Pull pull{};
+  MarkerGradient gradient{};
   double own[3];
-  for (int c = 0; c < 3; ++c) own[c] = pull.point[c] = size * force.direction[c];
-  if (force.moment == 0) return end_row(s, w, force.marker, pull, row);
-  turn_back((s.mean != 0 ? w.start_matrix : w.matrix) + 9 * marker.part, own, own);
+  for (int c = 0; c < 3; ++c) own[c] = gradient.point[c] = size * force.direction[c];
+  if (force.moment == 0) return end_row(s, w, force.marker, gradient, row);
+  rotate_back((s.mean != 0 ? w.start_matrix : w.matrix) + 9 * marker.part, own, own);
   for (int c = 0; c < 3; ++c)
     if (const std::int32_t k = s.body[marker.part].column[3 + c]; k >= 0) row[k] = own[c];
 }
@@ -231,7 +231,7 @@ void place_parts(const Model& model, const SystemStart& start, SystemWorkspace& 
   }
   for (std::int32_t b = 0; b < s.bodies; ++b) {
     double change[3];
-    own_turn(s.body[b], w.x, change);
+    rotation_of(s.body[b], w.x, change);
     const double* q0 = start.quaternion + 4 * b;
     if (s.mean != 0)
       rotated_by_mean(q0, change, w.quaternion + 4 * b);
@@ -260,7 +260,7 @@ double place_ahead(const Model& model, SystemWorkspace& w) noexcept {
   for (std::int32_t i = 0; i < s.unknowns; ++i) w.ahead[i] = w.x[i] + time * w.v[i];
   for (std::int32_t b = 0; b < s.bodies; ++b) {
     double change[3], q[4];
-    own_turn(s.body[b], w.v, change);
+    rotation_of(s.body[b], w.v, change);
     for (double& c : change) c *= time;
     rotated(w.quaternion + 4 * b, change, q);
     rotation_matrix(q, w.ahead_matrix + 9 * b);
@@ -300,7 +300,7 @@ void outer_forces(const Model& model, double time, const double* input,
     const MarkerModel& marker = s.marker[force.marker];
     const double size =
         force.input >= 0 ? held_input(input, force.input) : motion_at(s, force.motion, time).x;
-    const Reach at = reach(s, marker);
+    const UnknownRange at = unknowns_of(s, marker);
     double row[kMostNodeUnknowns] = {};
     applied(s, w, force, size, row);
     for (std::int32_t k = 0; k < at.count; ++k) w.outer[at.first + k] += row[k];

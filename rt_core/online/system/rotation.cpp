@@ -28,24 +28,25 @@ CosSinc cos_sinc(double x_squared) noexcept {
 }
 
 CosSin cos_sin(double angle) noexcept {
-  const double turns = angle / (2. * kPi);
-  if (!(turns > -1e15 && turns < 1e15)) return {turns - turns, turns - turns};  // no angle: NaN
-  const double whole =
-      static_cast<double>(static_cast<std::int64_t>(turns < 0. ? turns - .5 : turns + .5));
-  const double x = (turns - whole) * (2. * kPi);
+  const double revolutions = angle / (2. * kPi);
+  if (!(revolutions > -1e15 && revolutions < 1e15))
+    return {revolutions - revolutions, revolutions - revolutions};  // no angle: NaN
+  const double whole = static_cast<double>(
+      static_cast<std::int64_t>(revolutions < 0. ? revolutions - .5 : revolutions + .5));
+  const double x = (revolutions - whole) * (2. * kPi);
   const CosSinc at = cos_sinc(x * x);
   return {at.cos, at.sinc * x};
 }
 
-void rotated(const double* q0, const double* turn, double* q1) noexcept {
-  const CosSinc half = cos_sinc(.25 * dot(turn, turn));
-  const double v[3] = {.5 * half.sinc * turn[0], .5 * half.sinc * turn[1],
-                       .5 * half.sinc * turn[2]};
+void rotated(const double* q0, const double* rotation, double* q1) noexcept {
+  const CosSinc half = cos_sinc(.25 * dot(rotation, rotation));
+  const double v[3] = {.5 * half.sinc * rotation[0], .5 * half.sinc * rotation[1],
+                       .5 * half.sinc * rotation[2]};
   product(q0, half.cos, v, q1);
 }
 
-void rotated_by_mean(const double* q0, const double* turn, double* q1) noexcept {
-  const double v[3] = {.5 * turn[0], .5 * turn[1], .5 * turn[2]};
+void rotated_by_mean(const double* q0, const double* rotation, double* q1) noexcept {
+  const double v[3] = {.5 * rotation[0], .5 * rotation[1], .5 * rotation[2]};
   product(q0, 1., v, q1);
 }
 

@@ -4,7 +4,7 @@
 namespace railstep {
 
 // Rotations without the C library's functions, whose last bits differ between machines. Matrices
-// are [9], row after row; quaternions [w, x, y, z]; R turns body axes into the ground's.
+// are [9], row after row; quaternions [w, x, y, z]; R rotates body axes into the ground's.
 
 /// y = R x.
 inline void rotate(const double* R, const double* x, double* y) noexcept {
@@ -15,7 +15,7 @@ inline void rotate(const double* R, const double* x, double* y) noexcept {
 }
 
 /// y = R' x.
-inline void turn_back(const double* R, const double* x, double* y) noexcept {
+inline void rotate_back(const double* R, const double* x, double* y) noexcept {
   const double a = (R[0] * x[0] + R[3] * x[1]) + R[6] * x[2];
   const double b = (R[1] * x[0] + R[4] * x[1]) + R[7] * x[2];
   y[2] = (R[2] * x[0] + R[5] * x[1]) + R[8] * x[2];
@@ -35,12 +35,12 @@ struct CosSin {
 };
 CosSin cos_sin(double angle) noexcept;
 
-/// q1 = q0 exp(turn), the turn a rotation vector in body axes of at most 2 pi; of unit length.
-void rotated(const double* q0, const double* turn, double* q1) noexcept;
+/// q1 = q0 exp(rotation), a rotation vector in body axes of at most 2 pi; of unit length.
+void rotated(const double* q0, const double* rotation, double* q1) noexcept;
 
-/// q1 = q0 cay(turn): the rotation by 2 atan(|turn| / 2), which the mean of both ends' directions
-/// makes exact: R1 - R0 = [R0 turn]x (R0 + R1) / 2.
-void rotated_by_mean(const double* q0, const double* turn, double* q1) noexcept;
+/// q1 = q0 cay(rotation), by the angle 2 atan(|rotation| / 2), which the mean of both ends'
+/// directions makes exact: R1 - R0 = [R0 rotation]x (R0 + R1) / 2.
+void rotated_by_mean(const double* q0, const double* rotation, double* q1) noexcept;
 
 void rotation_matrix(const double* q, double* R) noexcept;
 

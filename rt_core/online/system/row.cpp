@@ -9,7 +9,7 @@ namespace railstep {
 namespace {
 
 /// cos s and sin s with their derivatives.
-void turning_jet(Jet s, Jet& cos, Jet& sin) noexcept {
+void cos_sin_jet(Jet s, Jet& cos, Jet& sin) noexcept {
   const CosSin at = cos_sin(s.x);
   cos = {at.cos, -at.sin * s.v, -at.cos * s.v * s.v - at.sin * s.a};
   sin = {at.sin, at.cos * s.v, -at.sin * s.v * s.v + at.cos * s.a};
@@ -41,7 +41,9 @@ T joint_row(const RowModel& row, const Place& a, const Place& b, T s, T cos, T s
   return s;
 }
 
-bool turns(const RowModel& row) noexcept { return row.kind == RowKind::square && row.motion >= 0; }
+bool has_driven_angle(const RowModel& row) noexcept {
+  return row.kind == RowKind::square && row.motion >= 0;
+}
 
 }  // namespace
 
@@ -67,8 +69,8 @@ double row_length(const MarkerPose& a, const MarkerPose& b) noexcept {
 
 double row_value(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double s) noexcept {
   if (row.kind == RowKind::spring) return row_length(a, b) - s;
-  const CosSin turn = turns(row) ? cos_sin(s) : CosSin{1., 0.};
-  return joint_row(row, a, b, s, turn.cos, turn.sin);
+  const CosSin angle = has_driven_angle(row) ? cos_sin(s) : CosSin{1., 0.};
+  return joint_row(row, a, b, s, angle.cos, angle.sin);
 }
 
 Jet row_jet(const RowModel& row, const MarkerJet& a, const MarkerJet& b, Jet s) noexcept {
@@ -80,12 +82,12 @@ Jet row_jet(const RowModel& row, const MarkerJet& a, const MarkerJet& b, Jet s) 
     return {length - s.x, rate - s.v, 0.};
   }
   Jet cos{1., 0., 0.}, sin{0., 0., 0.};
-  if (turns(row)) turning_jet(s, cos, sin);
+  if (has_driven_angle(row)) cos_sin_jet(s, cos, sin);
   return joint_row(row, a, b, s, cos, sin);
 }
 
-void row_pulls(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double length,
-               double s, Pull& on_a, Pull& on_b) noexcept {
+void row_gradient(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double length,
+                  double s, MarkerGradient& on_a, MarkerGradient& on_b) noexcept {
   on_a = on_b = {};
   const double d[3] = {b.point[0] - a.point[0], b.point[1] - a.point[1], b.point[2] - a.point[2]};
   double along[3] = {};
@@ -98,18 +100,18 @@ void row_pulls(const RowModel& row, const MarkerPose& a, const MarkerPose& b, do
         along[c] = a.axis[row.i][c];
         on_a.axis[row.i][c] = d[c];
       }
-      on_a.on_axes = true;
+      on_a.has_axes = true;
       break;
     case RowKind::square: {
-      const CosSin turn = row.motion < 0 ? CosSin{1., 0.} : cos_sin(s);
+      const CosSin angle = row.motion < 0 ? CosSin{1., 0.} : cos_sin(s);
       for (int c = 0; c < 3; ++c) {
-        on_a.axis[row.i][c] = turn.cos * b.axis[row.j][c];
-        on_b.axis[row.j][c] = turn.cos * a.axis[row.i][c];
+        on_a.axis[row.i][c] = angle.cos * b.axis[row.j][c];
+        on_b.axis[row.j][c] = angle.cos * a.axis[row.i][c];
         if (row.motion < 0) continue;
-        on_a.axis[row.l][c] -= turn.sin * b.axis[row.j][c];
-        on_b.axis[row.j][c] -= turn.sin * a.axis[row.l][c];
+        on_a.axis[row.l][c] -= angle.sin * b.axis[row.j][c];
+        on_b.axis[row.j][c] -= angle.sin * a.axis[row.l][c];
       }
-      on_a.on_axes = on_b.on_axes = true;
+      on_a.has_axes = on_b.has_axes = true;
       return;
     }
     case RowKind::distance:

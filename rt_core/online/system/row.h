@@ -13,13 +13,12 @@ double row_value(const RowModel& row, const MarkerPose& a, const MarkerPose& b, 
 /// Phi with its derivatives. A spring's acceleration is not given (0).
 Jet row_jet(const RowModel& row, const MarkerJet& a, const MarkerJet& b, Jet s) noexcept;
 
-/// Gradient of Phi: what the row does to both its ends per unit of its multiplier. A row's force
-/// acts as -multiplier times this.
+/// Gradient of Phi at both ends. A row's force acts as -multiplier times this.
 /// @param a, b    poses at which the force is taken: the step's end, or the mean of both ends
 /// @param length  of springs: |p_B - p_A| there, for a mean that of both ends' lengths, m
 /// @param s       motion at the step's end
-void row_pulls(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double length,
-               double s, Pull& on_a, Pull& on_b) noexcept;
+void row_gradient(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double length,
+                  double s, MarkerGradient& on_a, MarkerGradient& on_b) noexcept;
 
 /// |p_B - p_A|, m.
 double row_length(const MarkerPose& a, const MarkerPose& b) noexcept;

@@ -60,23 +60,23 @@ double spring_lack(const Model& model, std::int32_t r, const SystemWorkspace& w,
 void set_gradient(const SystemModel& s, std::int32_t r, double motion, const std::int32_t* end,
                   SystemWorkspace& w) noexcept {
   const RowModel& row = s.row[r];
-  Pull pull[2];
+  MarkerGradient of_end[2];
   double length = 0.;
   if (row.kind == RowKind::spring) {
     length = row_length(w.pose[row.a], w.pose[row.b]);
     if (s.mean != 0) length = .5 * (length + row_length(w.start_pose[row.a], w.start_pose[row.b]));
   }
-  row_pulls(row, w.force_pose[row.a], w.force_pose[row.b], length, motion, pull[0], pull[1]);
+  row_gradient(row, w.force_pose[row.a], w.force_pose[row.b], length, motion, of_end[0], of_end[1]);
   for (int side = 0; side < 2; ++side)
     if (end[side] >= 0)
-      end_row(s, w, side == 0 ? row.a : row.b, pull[side],
+      end_row(s, w, side == 0 ? row.a : row.b, of_end[side],
               w.gradient + std::ptrdiff_t{kMostNodeUnknowns} * end[side]);
 }
 
-/// Forces on a body's turn D of the step, R1 = R0 cay(D), from moments at the step's end in the
+/// Forces on a body's rotation D of the step, R1 = R0 cay(D), from moments at the step's end in the
 /// body's axes at its start: T' moment, as dR1 R1' = R0 [T dD]x R0' with
 /// T = (1 + [D]x / 2) / (1 + |D|^2 / 4) (Hairer, Lubich, Wanner 2006, IV.8.3).
-void turn_to_cayley(const RigidBodyModel& body, const double* x, double* row) noexcept {
+void moment_to_cayley(const RigidBodyModel& body, const double* x, double* row) noexcept {
   double moment[3] = {}, D[3] = {}, part[3];
   for (int c = 0; c < 3; ++c)
     if (const std::int32_t k = body.column[3 + c]; k >= 0) {
@@ -89,8 +89,9 @@ void turn_to_cayley(const RigidBodyModel& body, const double* x, double* row) no
       row[k] = (moment[c] - .5 * part[c]) / (1. + .25 * dot(D, D));
 }
 
-/// What Newton's step changes `wanted` by, where that is not the gradient that pulls: the gradient
-/// at the step's end (energy-momentum), or of joint rows ahead of it (Baumgarte, place_ahead).
+/// What Newton's step changes `wanted` by, where that is not the gradient of its force: the
+/// gradient at the step's end (energy-momentum), or of joint rows ahead of it (Baumgarte,
+/// place_ahead).
 /// @param motion  at the same time
 void set_slope(const SystemModel& s, std::int32_t r, double motion, const std::int32_t* end,
                SystemWorkspace& w) noexcept {
@@ -99,24 +100,24 @@ void set_slope(const SystemModel& s, std::int32_t r, double motion, const std::i
   const MarkerPose* const pose = ahead ? w.ahead_pose : w.pose;
   const double* const x = ahead ? w.ahead : w.x;
   const double* const matrix = mean ? w.start_matrix : ahead ? w.ahead_matrix : w.matrix;
-  Pull pull[2];
-  row_pulls(row, pose[row.a], pose[row.b], row_length(pose[row.a], pose[row.b]), motion, pull[0],
-            pull[1]);
+  MarkerGradient of_end[2];
+  row_gradient(row, pose[row.a], pose[row.b], row_length(pose[row.a], pose[row.b]), motion,
+               of_end[0], of_end[1]);
   for (int side = 0; side < 2; ++side) {
     if (end[side] < 0) continue;
     const std::int32_t m = side == 0 ? row.a : row.b;
     const MarkerModel& on = s.marker[m];
     double* const out = w.slope + std::ptrdiff_t{kMostNodeUnknowns} * end[side];
     if (on.kind != PartKind::body) {
-      pull_on_unknowns(s, on, pose[m], nullptr, nullptr, pull[side], out);
+      generalised_force(s, on, pose[m], nullptr, nullptr, of_end[side], out);
       continue;
     }
     const RigidBodyModel& body = s.body[on.part];
     double centre[3];
     for (int c = 0; c < 3; ++c)
       centre[c] = body.rest[c] + (body.column[c] >= 0 ? x[body.first + body.column[c]] : 0.);
-    pull_on_unknowns(s, on, pose[m], centre, matrix + 9 * on.part, pull[side], out);
-    if (mean) turn_to_cayley(body, x, out);
+    generalised_force(s, on, pose[m], centre, matrix + 9 * on.part, of_end[side], out);
+    if (mean) moment_to_cayley(body, x, out);
   }
 }
 
@@ -134,7 +135,7 @@ void add_part(const SystemModel& s, std::int32_t part, std::int32_t stride,
               const SystemWorkspace& w, const Lane& lane) noexcept {
   const std::int32_t rows = system_rows(s);
   for (std::int32_t e = s.part_end[part]; e < s.part_end[part + 1]; ++e) {
-    const Reach at = reach(s, marker_of(s, s.end[e]));
+    const UnknownRange at = unknowns_of(s, marker_of(s, s.end[e]));
     const double* g = w.slope + std::ptrdiff_t{kMostNodeUnknowns} * e;
     double* const row = w.tangent.compliance + std::ptrdiff_t{rows} * s.end[e].row;
     for (std::int32_t f = s.part_end[part]; f < s.part_end[part + 1]; ++f)
@@ -185,7 +186,7 @@ void factor_yielding(const Model& model, bool yields, SystemWorkspace& w) noexce
 }  // namespace
 
 void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t marker,
-             const Pull& pull, double* out) noexcept {
+             const MarkerGradient& gradient, double* out) noexcept {
   const MarkerModel& on = system.marker[marker];
   double centre[3] = {};
   const double* matrix = nullptr;
@@ -193,7 +194,7 @@ void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t m
     matrix = (system.mean != 0 ? w.start_matrix : w.matrix) + 9 * on.part;
     for (int c = 0; c < 3; ++c) centre[c] = w.centre[3 * on.part + c];
   }
-  pull_on_unknowns(system, on, w.force_pose[marker], centre, matrix, pull, out);
+  generalised_force(system, on, w.force_pose[marker], centre, matrix, gradient, out);
 }
 
 double spring_slope(const Model& model, const RowModel& row) noexcept {
@@ -234,7 +235,7 @@ double joint_violation(const SystemModel& system, const SystemWorkspace& w) noex
 void add_row_forces(const SystemModel& system, const double* gradient, const double* force,
                     double* out) noexcept {
   for (std::int32_t e = 0; e < system.ends; ++e) {
-    const Reach at = reach(system, marker_of(system, system.end[e]));
+    const UnknownRange at = unknowns_of(system, marker_of(system, system.end[e]));
     const double* g = gradient + std::ptrdiff_t{kMostNodeUnknowns} * e;
     const double f = force[system.end[e].row];
     for (std::int32_t k = 0; k < at.count; ++k) out[at.first + k] += f * g[k];
@@ -244,7 +245,7 @@ void add_row_forces(const SystemModel& system, const double* gradient, const dou
 void add_row_changes(const SystemModel& system, const double* gradient, const double* change,
                      double* out) noexcept {
   for (std::int32_t e = 0; e < system.ends; ++e) {
-    const Reach at = reach(system, marker_of(system, system.end[e]));
+    const UnknownRange at = unknowns_of(system, marker_of(system, system.end[e]));
     out[system.end[e].row] +=
         lanes_dot(gradient + std::ptrdiff_t{kMostNodeUnknowns} * e, change + at.first, 1, at.count);
   }

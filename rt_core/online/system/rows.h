@@ -5,10 +5,11 @@
 
 namespace railstep {
 
-/// A pull on a marker as forces on the unknowns that reach() names, where the step takes forces.
-/// @param out  [kMostNodeUnknowns], overwritten as far as the reach goes
+/// Generalised force at a marker on the unknowns that unknowns_of() names, where the step takes
+/// forces.
+/// @param out  [kMostNodeUnknowns], overwritten as far as there are such unknowns
 void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t marker,
-             const Pull& pull, double* out) noexcept;
+             const MarkerGradient& gradient, double* out) noexcept;
 
 /// Values and gradients of all rows at the iterate, and what Newton's step is to bring of each, m:
 /// `wanted`, without the parts' own change. @returns the largest of these, over joint rows

@@ -32,7 +32,7 @@ MarkerPose pose_of(const MarkerJet& jet) noexcept {
   return pose;
 }
 
-// Never inlined, as joint_pull(): no arithmetic of theirs may leave the mode that their callers
+// Never inlined, as sum_of_rows(): no arithmetic of theirs may leave the mode that their callers
 // set.
 [[gnu::noinline]] PointMotion point_motion(const Model& model, const State& state,
                                            std::int32_t sensor) noexcept {
@@ -48,8 +48,8 @@ MarkerPose pose_of(const MarkerJet& jet) noexcept {
   return motion;
 }
 
-[[gnu::noinline]] JointForce joint_pull(const Model& model, const State& state,
-                                        std::int32_t joint) noexcept {
+[[gnu::noinline]] JointForce sum_of_rows(const Model& model, const State& state,
+                                         std::int32_t joint) noexcept {
   const SystemModel& s = model.system;
   const Rotations rotations(s, state);
   const Motions at = motions_of(s, state, rotations);
@@ -60,9 +60,9 @@ MarkerPose pose_of(const MarkerJet& jet) noexcept {
     if (row.joint != joint) continue;
     const MarkerPose a = pose_of(marker_jet(s, s.marker[row.a], at));
     const MarkerPose b = pose_of(marker_jet(s, s.marker[row.b], at));
-    Pull on_a, on_b;
+    MarkerGradient on_a, on_b;
     const double motion = row.motion >= 0 ? motion_at(s, row.motion, time).x : row.offset;
-    row_pulls(row, a, b, row_length(a, b), motion, on_a, on_b);
+    row_gradient(row, a, b, row_length(a, b), motion, on_a, on_b);
     for (int c = 0; c < 3; ++c) sum.force[c] -= state.row_force[r] * on_b.point[c];
     for (int k = 0; k < 3; ++k) {
       double moment[3];
@@ -87,7 +87,7 @@ void body_rotation(const State& state, std::int32_t body, double* matrix) noexce
 
 JointForce joint_force(const Model& model, const State& state, std::int32_t joint) noexcept {
   const FloatMode flushed_to_zero;
-  return joint_pull(model, state, joint);
+  return sum_of_rows(model, state, joint);
 }
 
 }  // namespace railstep

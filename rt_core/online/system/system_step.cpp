@@ -15,7 +15,7 @@ SystemStart start_of(const Model& model, const State& s, const Workspace& w) noe
   return {s.u + at, s.v + at, w.u_star + at, w.v_star + at, s.quaternion};
 }
 
-/// Squared norm of forces, moments of slopes and turns over lengths of their parts, N2.
+/// Squared norm of forces, moments of slopes and rotations over lengths of their parts, N2.
 struct Square {
   double sum[kLanes] = {};
   void add(const double* force, const double* per_length) noexcept {
@@ -233,12 +233,12 @@ struct Search {
   /// force, so that a good step may leave more of Phi than the guess had.
   void compare(const Size& left, double tolerance, bool renew) noexcept {
     const bool was = old && !renew;  // this iterate came by a matrix of an earlier step
-    const auto over = [&](double part) {
-      return !(left.residual <= part * residual) ||
-             (was && left.wanted > tolerance && !(left.wanted <= part * wanted));
+    const auto exceeds = [&](double fraction) {
+      return !(left.residual <= fraction * residual) ||
+             (was && left.wanted > tolerance && !(left.wanted <= fraction * wanted));
     };
-    slow = !renew && over(.5);
-    grown = was && over(1.);
+    slow = !renew && exceeds(.5);
+    grown = was && exceeds(1.);
     residual = left.residual;
     wanted = left.wanted;
   }

@@ -18,9 +18,9 @@ struct SystemResult {
 /// and the forces of joints and springs.
 SystemResult solve_system(const Model& model, State& state, Workspace& workspace) noexcept;
 
-/// After the scheme's correction: turns pass into quaternions, and velocities and accelerations are
-/// put onto the joints where the way to hold them asks for it. @returns cap_reached if a projection
-/// was not done
+/// After the scheme's correction: rotations pass into quaternions, and velocities and accelerations
+/// are put onto the joints where the way to hold them asks for it. @returns cap_reached if a
+/// projection was not done
 Status finish_system(const Model& model, State& state, Workspace& workspace) noexcept;
 
 }  // namespace railstep

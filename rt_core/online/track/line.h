@@ -4,8 +4,8 @@
 namespace railstep {
 
 /// Displacement of a material point of one rail in one direction, over the nodes of its element and
-/// the turns (a_z - b_y)/2 of its section over the seats around it:
-///   sum coefficient[i][k] q_k(node i) + sum lever[s] turn(node seat[s]),
+/// the roll (a_z - b_y)/2 of its section over the seats around it:
+///   sum coefficient[i][k] q_k(node i) + sum lever[s] roll(node seat[s]),
 /// q = [r, a, b] in the rail's own axes.
 struct RailRow {
   std::int32_t rail, element;
@@ -38,7 +38,7 @@ constexpr std::int32_t table_place(std::int32_t node, int k) noexcept {
 struct Configuration {
   const double* u;
   Complex modes;
-  double passed = 0.;  // m, from the elements' x to the distance along a track without end
+  double track_offset = 0.;  // m, from the elements' x to the distance along a track without end
 };
 
 /// Displacement of an unknown, as the line's tables number it.

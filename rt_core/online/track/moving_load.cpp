@@ -11,7 +11,7 @@ PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step,
   const double time = static_cast<double>(step) * model.scheme.dt - before;
   PlacedLoad at{};
   at.place = load.start + way_at(model, load.travel, step, before).distance;
-  at.x = passed(model, step) + at.place;
+  at.x = track_offset(model, step) + at.place;
   const double scaled = at.place / model.element_length;
   at.on_rail = scaled >= 0. && scaled <= model.elements;
   if (!at.on_rail) return at;

@@ -6,19 +6,19 @@ namespace railstep {
 
 namespace {
 
-/// Turn of a node's section, rad; where the rail is cut, of the end behind.
-/// @param s      seat among those seen
-/// @param known  the other rail's have been seen
-double node_turn(const Model& model, std::int32_t rail, std::int32_t node, const Configuration& at,
-                 std::int32_t s, bool known, SeatMotions& seen) noexcept {
+/// Roll of a node's section, rad; where the rail is cut, of the end behind.
+/// @param s       the node's seat among those around the point
+/// @param shared  `motions` holds the other rail's
+double node_roll(const Model& model, std::int32_t rail, std::int32_t node, const Configuration& at,
+                 std::int32_t s, bool shared, SeatMotions& motions) noexcept {
   const ElementNode own = element_node(node);
   double roll = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     if (line.rail_factor[rail] == 0.) continue;
     const bool alike = line.unknown_of[0] == line.unknown_of[1] && line.rail_factor[1 - rail] != 0.;
-    double* const value = seen.value[l][s];
-    if (!known || !alike) {
+    double* const value = motions.value[l][s];
+    if (!shared || !alike) {
       value[0] = nodal_value(line, rail, own, 5, at);
       value[1] = nodal_value(line, rail, own, 7, at);
     }
@@ -31,7 +31,7 @@ double node_turn(const Model& model, std::int32_t rail, std::int32_t node, const
 }  // namespace
 
 double add_p_delta(const Model& model, const Configuration& at, double roll, double xi, double y,
-                   double z, const double* normal, RailRow& row, SeatMotions& seen) noexcept {
+                   double z, const double* normal, RailRow& row, SeatMotions& motions) noexcept {
   double shape[3];
   shape_functions(xi, shape);
   double along[3];
@@ -46,19 +46,19 @@ double add_p_delta(const Model& model, const Configuration& at, double roll, dou
   if (lever == nullptr) return 0.;
   const std::int32_t bays = model.elements / seats.elements_per_bay;
   const std::int32_t first = row.element / seats.elements_per_bay - (kPDeltaSeats / 2 - 1);
-  const bool known = seen.first == first;
-  seen.first = first;
+  const bool shared = motions.first == first;
+  motions.first = first;
   lever += static_cast<std::ptrdiff_t>(row.element) * kPDeltaSeats * (seats.points + 1);
   double higher = 0.;
   for (std::int32_t s = 0; s < kPDeltaSeats; ++s) {
     if (first + s < 0 || first + s > bays) continue;
     const std::int32_t node = 2 * seats.elements_per_bay * (first + s);
-    const double over = node_turn(model, row.rail, node, at, s, known, seen);
+    const double roll_over = node_roll(model, row.rail, node, at, s, shared, motions);
     const double arm =
-        normal[2] * over * interpolate(lever + s * (seats.points + 1), seats.points, xi);
+        normal[2] * roll_over * interpolate(lever + s * (seats.points + 1), seats.points, xi);
     row.seat[row.seats] = node;
     row.lever[row.seats++] = arm;
-    higher += .5 * over * arm;
+    higher += .5 * roll_over * arm;
   }
   return higher;
 }

@@ -74,12 +74,12 @@ double residual_between(const Model& model, const RailForce& force, const RailFo
   if (force.load_point == kNoLoadPoint || at.load_point == kNoLoadPoint) return 0.;
   const PairModel& pair = model.residual.pair[force.load_point][at.load_point];
   const std::int32_t shift = at.element - force.element;
-  if (pair.value == nullptr || shift > pair.reach || shift < -pair.reach) return 0.;
+  if (pair.value == nullptr || shift > pair.range || shift < -pair.range) return 0.;
   const std::int32_t points = pair.points;
   const double* block =
       pair.value +
-      (static_cast<std::ptrdiff_t>(force.element % model.residual.elements) * (2 * pair.reach + 1) +
-       (shift + pair.reach)) *
+      (static_cast<std::ptrdiff_t>(force.element % model.residual.elements) * (2 * pair.range + 1) +
+       (shift + pair.range)) *
           static_cast<std::ptrdiff_t>((points + 1) * (points + 1));
   const Cubic along = cubic(points, force.xi);
   double sum = 0.;

@@ -23,7 +23,7 @@ double value_at(const Model& model, const State& state, std::int32_t at) noexcep
   RailForce forces[kMaxRailForces];
   const int count = rail_forces(model, outputs, forces);
   const TrackSensorModel& track_sensor = model.track_sensor;
-  const double gone = passed(model, state.steps);
+  const double offset = track_offset(model, state.steps);
   for (std::int32_t i = 0; i < track_sensor.count; ++i) {
     double sum = 0.;
     for (std::int32_t k = track_sensor.start[i]; k < track_sensor.start[i + 1]; ++k) {
@@ -31,7 +31,7 @@ double value_at(const Model& model, const State& state, std::int32_t at) noexcep
       sum += track_sensor.value[k] * value_at(model, state, at);
     }
     value[i] = track_sensor.rest[i] + (sum + residual_of_track_sensor(model, i, forces, count));
-    if (track_sensor.along[i] != 0) value[i] += gone;
+    if (track_sensor.along[i] != 0) value[i] += offset;
   }
 }
 

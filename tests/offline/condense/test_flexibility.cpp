@@ -21,10 +21,10 @@ TEST_CASE("model and residual add up to the fine track's flexibility between por
   const std::vector<Basis> bases = bases_of(kind, coarse, lines);
   const ResidualFlexibility residual(coarse, lines, bases, kPoints);
   const KeptFlexibility model(coarse, bases);
-  const Port a{0, kHeadZ};
+  const LoadPoint a{0, kHeadZ};
   const std::vector<double> under = residual.exact_under(a);
   const double largest = *std::max_element(under.begin(), under.end());
-  for (const Port b : {Port{0, kHeadZ}, Port{0, 0.}, Port{1, kHeadZ}}) {
+  for (const LoadPoint b : {LoadPoint{0, kHeadZ}, LoadPoint{0, 0.}, LoadPoint{1, kHeadZ}}) {
     const PairTable table = residual.between(a, b, kPoints);
     double inside = 0., beyond = 0., missing = 0.;
     for (int e = 0; e < coarse.elements(); ++e)
@@ -34,19 +34,19 @@ TEST_CASE("model and residual add up to the fine track's flexibility between por
         for (int e2 = 0; e2 < coarse.elements(); ++e2)
           for (const int q : {0, 3, 6}) {
             const double x2 = place(coarse, e2, q);
-            // Port b reads its whole row on the fine track, and its own row in the model.
+            // LoadPoint b reads its whole row on the fine track, and its own row in the model.
             const double want = exact(fine, at_point({b.rail, x2, 0., b.z, 2}), moved);
             const double read_z = kind == Kind::full ? b.z : 0.;
             const double kept = model(at_point({b.rail, x2, 0., read_z, 2}), a.rail, x, a.z);
             const double error = std::abs(kept + table.at(e, p, e2, q) - want);
-            double& sum = std::abs(e2 - e) <= table.reach ? inside : beyond;
+            double& sum = std::abs(e2 - e) <= table.range ? inside : beyond;
             sum = std::max(sum, error);
             missing = std::max(missing, std::abs(want - kept));
           }
       }
-    CAPTURE(static_cast<int>(kind), elements_per_bay, b.rail, b.z, table.reach, missing / largest);
+    CAPTURE(static_cast<int>(kind), elements_per_bay, b.rail, b.z, table.range, missing / largest);
     CHECK(inside / largest < kRounding);
-    CHECK(beyond / largest < 1e-4);                         // the reach states this
+    CHECK(beyond / largest < 1e-4);                         // the range states this
     if (b.rail == a.rail) CHECK(missing / largest > 1e-3);  // there is something to add
   }
 }
@@ -63,13 +63,13 @@ TEST_CASE("model and residual add up to the fine track with unlike sides or long
   const std::vector<Basis> bases = bases_of(kind, coarse, lines);
   const ResidualFlexibility residual(coarse, lines, bases, kPoints);
   const KeptFlexibility model(coarse, bases);
-  const Port a{1, kHeadZ};
+  const LoadPoint a{1, kHeadZ};
   const std::vector<double> under = residual.exact_under(a);
   const double largest = *std::max_element(under.begin(), under.end());
   const Functional pad = pad_gap(coarse, 0, 1);
   const std::vector<double> read = residual.from(a, pad);
   double error = 0., missing = 0.;
-  for (const Port b : {Port{0, kHeadZ}, Port{1, kHeadZ}}) {
+  for (const LoadPoint b : {LoadPoint{0, kHeadZ}, LoadPoint{1, kHeadZ}}) {
     const PairTable table = residual.between(a, b, kPoints);
     for (int e = 1; e < coarse.elements(); ++e)
       for (const int p : {0, 3, 6}) {
@@ -118,7 +118,7 @@ TEST_CASE("model and residual add up to the fine track from a port to rails, sle
                         {"pad, other rail", opening(1, 2)}};
   for (const Case& c : cases) {
     double error = 0., size = 0., missing = 0.;
-    const Port port{0, kHeadZ};
+    const LoadPoint port{0, kHeadZ};
     const std::vector<double> table = residual.from(port, c.functional);
     REQUIRE(table.size() == static_cast<std::size_t>(coarse.elements() * (kPoints + 1)));
     for (int e = 0; e < coarse.elements(); ++e)
@@ -176,9 +176,9 @@ TEST_CASE("residual flexibility is symmetric in its ports", "[flexibility]") {
   const Track t = sleeper_track(1);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, bases_of(kind, t, lines), kPoints);
-  const Port a{0, kHeadZ}, b{1, .02};
+  const LoadPoint a{0, kHeadZ}, b{1, .02};
   const PairTable ab = residual.between(a, b, 4), ba = residual.between(b, a, 4);
-  REQUIRE(ab.reach == ba.reach);
+  REQUIRE(ab.range == ba.range);
   double error = 0.;
   for (int e = 0; e < t.elements(); ++e)
     for (int e2 = 0; e2 < t.elements(); ++e2)
@@ -193,7 +193,7 @@ TEST_CASE("on the diagonal the table of pairs equals that of a single port", "[f
   const Track t = sleeper_track(2);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, bases_of(kind, t, lines), kPoints);
-  const Port port{1, kHeadZ};
+  const LoadPoint port{1, kHeadZ};
   const std::vector<double> under = residual.under(port);
   const PairTable table = residual.between(port, port, 4);
   for (int e = 0; e < t.elements(); ++e)
@@ -227,7 +227,7 @@ TEST_CASE("the residual flexibility holds the jump of slope under a point force"
     }
 }
 
-TEST_CASE("the reach ends where the residual flexibility becomes negligible", "[flexibility]") {
+TEST_CASE("the range ends where the residual flexibility becomes negligible", "[flexibility]") {
   // The largest |G_res| at each distance, by hand from fine and coarse statics or from modes.
   const Kind kind = GENERATE(Kind::full, Kind::modal);
   const Track coarse = peers_track(1);
@@ -253,13 +253,13 @@ TEST_CASE("the reach ends where the residual flexibility becomes negligible", "[
         }
     }
   }
-  int reach = 15;
-  while (reach > 0 && by_distance[static_cast<std::size_t>(reach)] < 1e-4 * largest) --reach;
+  int range = 15;
+  while (range > 0 && by_distance[static_cast<std::size_t>(range)] < 1e-4 * largest) --range;
   const PairTable table =
       ResidualFlexibility(coarse, lines, bases, kPoints).between({0, 0.}, {0, 0.}, 4);
   CAPTURE(static_cast<int>(kind));
-  CHECK(table.reach == reach);
-  CHECK(table.value.size() == static_cast<std::size_t>(16 * (2 * table.reach + 1) * 25));
+  CHECK(table.range == range);
+  CHECK(table.value.size() == static_cast<std::size_t>(16 * (2 * table.range + 1) * 25));
 }
 
 TEST_CASE("residual flexibility is below 0 only by the squeeze of a section", "[flexibility]") {

@@ -119,7 +119,7 @@ TEST_CASE("a ring's table of one bay gives the flexibility between two places of
   const Model& model = packed.model();
   const PackedLine& own = packed.lines()[0];
   CHECK(model.residual.elements == 2);
-  CHECK(model.residual.pair[0][0].reach <= 7);  // 1.5 m of .3 m, and one on each side
+  CHECK(model.residual.pair[0][0].range <= 7);  // 1.5 m of .3 m, and one on each side
   Track fine = ring;
   fine.elements_per_bay *= 16;
   const Statics exact(fine);

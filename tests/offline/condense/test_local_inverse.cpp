@@ -64,7 +64,7 @@ TEST_CASE("a port's own table is the diagonal of the table between ports", "[fle
   double largest = 0., most = 0.;
   for (const Line& line : lines) {
     const auto exact = exact_line(track, line, 4);
-    const Port a{0, kHeadZ}, b{0, 0.};
+    const LoadPoint a{0, kHeadZ}, b{0, 0.};
     if (line.rail_factor[0] == 0. || carried_unknowns(line, 0).empty()) continue;
     const Eigen::VectorXd under = exact->under(a, b, 4);
     const LineFlexibility::Strip strip = exact->between(a, b, 4, 1);

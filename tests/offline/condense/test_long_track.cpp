@@ -41,7 +41,7 @@ TEST_CASE("a functional's table ends where its value is negligible", "[flexibili
   const int seat = GENERATE(0, 3, 90, kBays);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, {}, kPoints);
-  const Port port{0, kHeadZ};
+  const LoadPoint port{0, kHeadZ};
   const Functional functional = seat_of(t, seat);
   const std::vector<double> whole = residual.from(port, functional);
   const auto near = residual.near({port}, functional);

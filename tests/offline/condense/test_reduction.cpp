@@ -168,14 +168,14 @@ TEST_CASE("static condensation is exact for forces on the unknowns that it keeps
   const Statics statics(track);
   for (const double seat : {0., 4., 7.}) {
     const Eigen::VectorXd force = vertical(track, line, seat * track.bay_length);
-    const Eigen::VectorXd moved =
-        model.basis.shapes.displacement(model.basis.give(model.basis.shapes.project(force)));
+    const Eigen::VectorXd moved = model.basis.shapes.displacement(
+        model.basis.static_response(model.basis.shapes.project(force)));
     const Eigen::VectorXd want = statics.solve({{{0, seat * track.bay_length, 0., 0., 2}, 1.}})[0];
     CHECK((moved - want).cwiseAbs().maxCoeff() < 1e-9 * want.cwiseAbs().maxCoeff());  // rounding
   }
   const Eigen::VectorXd between = vertical(track, line, 4.5 * track.bay_length);
-  const Eigen::VectorXd there =
-      model.basis.shapes.displacement(model.basis.give(model.basis.shapes.project(between)));
+  const Eigen::VectorXd there = model.basis.shapes.displacement(
+      model.basis.static_response(model.basis.shapes.project(between)));
   const double got = between.dot(there);
   const RailPoint at{0, 4.5 * track.bay_length, 0., 0., 2};
   CHECK(got < (1. - 1e-3) * statics.flexibility(at, at));  // others need G_res
@@ -262,8 +262,8 @@ TEST_CASE("all damped modes are the line, and the slowest ones answer slow force
     CHECK(kept_coordinates(slow.basis, slow.modes) >= 16);
     const Eigen::MatrixXd acting = slow.basis.shapes.dense().transpose() * rows;
     const Eigen::MatrixXd whole_acting = whole.shapes.dense().transpose() * rows;
-    const Eigen::MatrixXd missing = whole_acting.transpose() * whole.give(whole_acting) -
-                                    acting.transpose() * slow.basis.give(acting);
+    const Eigen::MatrixXd missing = whole_acting.transpose() * whole.static_response(whole_acting) -
+                                    acting.transpose() * slow.basis.static_response(acting);
     for (const double hz : {5., 20., 60.}) {
       const Eigen::MatrixXcd want = receptance(line, rows, hz), got = receptance(slow, rows, hz);
       const double bare = (got - want).cwiseAbs().maxCoeff() / want.cwiseAbs().maxCoeff(),

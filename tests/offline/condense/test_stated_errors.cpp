@@ -107,7 +107,7 @@ class Beside {
       : track_(track), fine_(with_strain(track)), packed_(packed) {
     fine_.elements_per_bay = elements;
     lines_ = assemble(fine_);
-    const Port& port = packed.load_points()[0];
+    const LoadPoint& port = packed.load_points()[0];
     for (const double x : places) at_.push_back({port.rail, x, port.y, port.z, 2});
     for (const Line& line : lines_) {
       massless_.emplace_back(static_cast<std::size_t>(line.unknowns()), false);
@@ -235,7 +235,7 @@ TEST_CASE("the stated static error is the largest along random tracks", "[stated
     Track fine = with_strain(built.track);
     fine.elements_per_bay = 20;
     const Statics exact(fine);
-    const Port& port = built.packed->load_points()[0];
+    const LoadPoint& port = built.packed->load_points()[0];
     std::vector<RailPoint> at;
     for (int bay = 0; bay < built.track.bays; ++bay)
       for (int i = 0; i < fine.elements_per_bay; ++i)

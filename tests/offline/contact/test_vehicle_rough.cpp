@@ -61,8 +61,8 @@ struct RoughRun {
     const Configuration at{run.state.u, {run.state.u, run.state.v}};
     WheelContact contact[kMaxWheels];
     find_vehicle_contacts(model, model.vehicle[0], run.state.steps, 0., at, contact);
-    return {contact[0].rise + slope_under(model, contact[0], at),
-            contact[1].rise + slope_under(model, contact[1], at)};
+    return {contact[0].slope + slope_under(model, contact[0], at),
+            contact[1].slope + slope_under(model, contact[1], at)};
   }
   std::array<double, 2> forces() const {
     return {run.state.wheel_force[0], run.state.wheel_force[1]};

@@ -134,8 +134,8 @@ TEST_CASE("numbers that would make a solve unsafe are refused even with the righ
     CHECK(status([&](Model& m) { m.load[0].force = value; }) == bad);
     CHECK(status([&](Model& m) { m.rail_z[1] = value; }) == bad);
   }
-  CHECK(status([&](Model& m) { m.scheme.part = -.1; }) == bad);
-  CHECK(status([&](Model& m) { m.scheme.part = 1.; }) == bad);
+  CHECK(status([&](Model& m) { m.scheme.stage_fraction = -.1; }) == bad);
+  CHECK(status([&](Model& m) { m.scheme.stage_fraction = 1.; }) == bad);
   CHECK(status([&](Model& m) { m.scheme.mean = 1; }) == bad);
   CHECK(status([&](Model& m) { m.load[0].stop = nan; }) == bad);
   CHECK(status([&](Model& m) { m.wheelset[0].mass[3] = 0.; }) == bad);

@@ -38,7 +38,7 @@ RailJoint hinge(double x, double stiffness) {
   RailJoint joint;
   joint.x = x;
   joint.stiffness = {0., kRigid, kRigid};
-  joint.turn_stiffness[1] = stiffness;
+  joint.rotation_stiffness[1] = stiffness;
   return joint;
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("a stiff joint acts as a whole rail", "[joint]") {
   RailJoint stiff;
   stiff.x = 2.4;
   stiff.stiffness = {kRigid, kRigid, kRigid};
-  stiff.turn_stiffness = {1e12, kRigid, kRigid};
+  stiff.rotation_stiffness = {1e12, kRigid, kRigid};
   space.joints = {stiff};
   CHECK_THAT(Statics(space).flexibility(axis(2.4), axis(2.4)), WithinRel(solid, 1e-3));
   CHECK_THAT(Statics(space).flexibility(axis(2.4, 1), axis(2.4, 1)), WithinRel(solid_y, 1e-2));
@@ -191,7 +191,7 @@ TEST_CASE("a joint works on rails whose section does not strain", "[joint]") {
   // Rigid plates share all six unknowns, as without a joint. Without plates nothing passes.
   const auto sideways = [&](double plates) {
     space.joints[0].stiffness = {plates, plates, plates};
-    space.joints[0].turn_stiffness = {plates, plates, plates};
+    space.joints[0].rotation_stiffness = {plates, plates, plates};
     return Statics(space).flexibility(axis(3., 1), axis(1.8, 1));
   };
   space.joints.clear();
@@ -233,8 +233,8 @@ TEST_CASE("a joint in both rails is the same in mirror coordinates", "[joint]") 
   RailJoint joint = hinge(1.8, 2e6);
   joint.stiffness = {1e8, 3e8, 5e8};
   joint.damping = {1e3, 2e3, 3e3};
-  joint.turn_stiffness = {1e5, 2e6, 1e6};
-  joint.turn_damping = {10., 20., 30.};
+  joint.rotation_stiffness = {1e5, 2e6, 1e6};
+  joint.rotation_damping = {10., 20., 30.};
   mirror.joints = {joint};
   Track general = mirror;
   general.mirror_coordinates = false;
@@ -291,7 +291,7 @@ TEST_CASE("joints must be where elements meet", "[joint]") {
   CHECK_THROWS_AS(assemble(track), std::invalid_argument);
   track.joints.pop_back();
   CHECK(assemble(track)[0].unknowns() == 2 * 17 + 1);  // both sides share their heights
-  track.joints[0].turn_stiffness[0] = kRigid;
+  track.joints[0].rotation_stiffness[0] = kRigid;
   CHECK_THROWS_AS(assemble(track), std::invalid_argument);
 }
 

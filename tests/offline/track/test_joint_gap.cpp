@@ -29,7 +29,7 @@ Track cut_rail(double gap, double along) {
   RailJoint joint;
   joint.x = .5 * t.length();
   joint.stiffness = {0., kRigid, kRigid};
-  joint.turn_stiffness = {1e6, 1e6, 1e6};
+  joint.rotation_stiffness = {1e6, 1e6, 1e6};
   joint.end_stiffness = kEnds;
   joint.gap = {gap, gap};
   t.joints = {joint};
@@ -94,7 +94,7 @@ TEST_CASE("ends pressed by heat stay at rest and open under a pull", "[joint]") 
   const double P = 1e5;
   Track t = cut_rail(-P / kEnds, kAlong);
   t.axial_force = -P;
-  t.joints[0].pressed = {P, P};
+  t.joints[0].end_force = {P, P};
   const Half each = half(t);
   const Statics statics(t);
   const double x = t.joints[0].x, h = t.element_length();
@@ -156,7 +156,7 @@ TEST_CASE("a load passes a joint pressed by heat on condensed track as in full o
   t.support.damping = {2e4, 2e4, 2e4};
   t.support.height_z = -.08;
   t.axial_force = -P;
-  t.joints[0].pressed = {P, P};
+  t.joints[0].end_force = {P, P};
   const Traffic traffic{.loads = {{.start = 4., .speed = 40., .stop = 12., .force = -8e4}}};
   ModelRun full = in_equilibrium(t, traffic, full_order(1e-4));
   ModelRun modal = in_equilibrium(t, traffic, condensed(t, 6., 1e-4));
