@@ -8,9 +8,9 @@
 namespace railstep {
 namespace {
 
-/// Waves e^(i k x) of the deflection w of a rail, the rotation a of its sections and the sleepers'
-/// s: rail w'' + (S k^2 + N k^2 + pad) w + S k a - pad s = 0, rotary a'' + (B k^2 + S) a + S k w =
-/// 0, sleeper s'' + (pad + ballast) s - pad w = 0.
+/// Waves e^(i k x) of the deflection w of a rail, the slope a of its sections and the sleepers' s:
+/// rail w'' + (S k^2 + N k^2 + pad) w + S k a - pad s = 0, rotary a'' + (B k^2 + S) a + S k w = 0,
+/// sleeper s'' + (pad + ballast) s - pad w = 0.
 struct Waves {
   double rail, rotary, sleeper = 0.;             // kg/m, kg m, kg/m; no sleepers, or of no mass: 0
   double shear, bending, tension, pad, ballast;  // N, N m2, N, N/m2, N/m2

@@ -28,8 +28,8 @@ struct PairTable {
 /// where the element is exact: each divided element is condensed to its two end nodes, its static
 /// shapes and its inner flexibility with the ends held. The model is the track as it stands, or its
 /// lines in the coordinates of a basis; there a load point leaves out the section's own strain
-/// (a_y, b_z), so that the squeeze of the head is in G_res. G_exact has a slope jump of -1/(k_z G
-/// A) at equal places, G_res carries it.
+/// (a_y, b_z), so that the squeeze of the head is in G_res. G_exact has a slope jump of
+/// -1/(k_z G A) at equal places, G_res carries it.
 ///
 /// All queries skip lines that the load point does not move. They throw std::invalid_argument on a
 /// rail that the track does not have, and on a free rigid mode of a line that the load point moves.

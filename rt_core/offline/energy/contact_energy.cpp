@@ -11,11 +11,11 @@ namespace railstep {
 namespace {
 
 /// Where the forces act: of loads, and of wheels still without force.
-int ports_of(const Model& model, StandingContacts& c, RailForce* rail_force) {
+int ports_of(const Model& model, StandingContacts& c, RailForce* acting) {
   for (int i = 0; i < c.loads; ++i)
-    port[i] = {model.load[i].load_point, c.load[i].row.element, c.load[i].xi, c.load[i].force};
+    acting[i] = {model.load[i].load_point, c.load[i].row.element, c.load[i].xi, c.load[i].force};
   for (int i = 0; i < c.contacts; ++i)
-    port[c.loads + i] = {load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+    acting[c.loads + i] = {load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
   return c.loads + c.contacts;
 }
 
@@ -49,7 +49,7 @@ double linear_energy(const ContactModel& contact, double force, double depth) {
 
 /// Forces of the wheels by d + W f = d_free, W = G between wheels. Where G is below 0, which it may
 /// be by itself, it acts through the force of the iteration before.
-void solve_forces(const Model& model, StandingContacts& c, RailForce* rail_force, int ports) {
+void solve_forces(const Model& model, StandingContacts& c, RailForce* acting, int ports) {
   double W[kMaxWheels * kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
   PortLaw law[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
@@ -58,10 +58,10 @@ void solve_forces(const Model& model, StandingContacts& c, RailForce* rail_force
     law[i] = {hertz_of(model, i), 0., 0.};
     force[i] = 0.;
     free[i] =
-        on_rail ? c.approach[i] + residual_displacement(model, port, ports, c.loads + i) : -1.;
+        on_rail ? c.approach[i] + residual_displacement(model, acting, ports, c.loads + i) : -1.;
     if (c.contact[i].on_ground && takes_residual(model, i)) free[i] = c.approach[i];
     for (int j = 0; j < c.contacts; ++j) {
-      const RailForce &at = port[c.loads + i], &other = port[c.loads + j];
+      const RailForce &at = acting[c.loads + i], &other = acting[c.loads + j];
       const bool coupled = on_rail && c.contact[j].on_rail && takes_residual(model, j);
       W[i * c.contacts + j] = !coupled ? 0.
                               : i == j ? residual_under(model, at)
@@ -78,7 +78,7 @@ void solve_forces(const Model& model, StandingContacts& c, RailForce* rail_force
   }
   for (int i = 0; i < c.contacts; ++i) {
     if (!takes_residual(model, i)) continue;
-    port[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
+    acting[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
     const double depth = std::max(d[i], 0.);
     c.hertz += .4 * law[i].hertz * depth * depth * std::sqrt(depth);
   }
@@ -117,16 +117,16 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
     find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., at, c.contact);
   for (int i = 0; i < c.contacts; ++i)
     c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
-  RailForce rail_force[kMaxRailForces];
-  const int ports = ports_of(model, c, port);
+  RailForce acting[kMaxRailForces];
+  const int ports = ports_of(model, c, acting);
   for (int i = 0; i < c.contacts; ++i)
     if (is_linear(model, i) && c.contact[i].on_rail)
-      port[c.loads + i].force = -state.wheel_force[i];
-  if (c.contacts > 0) solve_forces(model, c, port, ports);
+      acting[c.loads + i].force = -state.wheel_force[i];
+  if (c.contacts > 0) solve_forces(model, c, acting, ports);
   for (int i = 0; i < ports; ++i) {
-    c.force[i] = port[i].force;
+    c.force[i] = acting[i].force;
     const bool on_rail = i < c.loads ? c.load[i].on_rail : c.contact[i - c.loads].on_rail;
-    c.moved[i] = on_rail ? residual_displacement(model, port, ports, i) : 0.;
+    c.moved[i] = on_rail ? residual_displacement(model, acting, ports, i) : 0.;
     c.residual += .5 * c.force[i] * c.moved[i];
   }
   find_depths(model, state, c);

@@ -122,17 +122,17 @@ Track refined(const Track& of, int times) {
   return track.state ? linearised_under_weight(track, track.state->gravity) : track;
 }
 
-/// Every kind of port at every place.
+/// Every load point at every place.
 struct Asked {
   std::vector<RailPoint> points;
-  std::vector<std::int32_t> kinds;
+  std::vector<std::int32_t> load_points;
 
   Asked(const PackedModel& packed, const std::vector<double>& places) {
-    for (std::size_t kind = 0; kind < packed.load_points().size(); ++kind)
+    for (std::size_t i = 0; i < packed.load_points().size(); ++i)
       for (const double x : places) {
-        const LoadPoint& port = packed.load_points()[kind];
-        points.push_back({port.rail, x, port.y, port.z, 2});
-        kinds.push_back(static_cast<std::int32_t>(kind));
+        const LoadPoint& at = packed.load_points()[i];
+        points.push_back({at.rail, x, at.y, at.z, 2});
+        load_points.push_back(static_cast<std::int32_t>(i));
       }
   }
 };
@@ -154,7 +154,7 @@ class ModelReceptances {
       : residual_(static_cast<Eigen::Index>(asked.points.size())) {
     for (std::size_t i = 0; i < asked.points.size(); ++i)
       residual_[static_cast<Eigen::Index>(i)] = residual_under(
-          packed.model(), rail_force(packed.model(), asked.kinds[i], asked.points[i].x, 1.));
+          packed.model(), rail_force(packed.model(), asked.load_points[i], asked.points[i].x, 1.));
     if (packed.model().form == Form::condensed) {
       for (const PackedLine& own : packed.lines()) modal_.emplace_back(track, own, asked.points);
       closed_.emplace(track, packed, asked.points);

@@ -34,22 +34,22 @@ class SeatRows {
   Row gap(const PadPoint& at, std::size_t d, double y) const {
     Row row = rail_moves(at, d, y);
     const double aside = cant_.cosine * y - cant_.sine * pad_.height_z;
-    const double rolled = side_ + 2. * aside / spacing_;
+    const double lever = side_ + 2. * aside / spacing_;
     if (d == 0) {
-      push(row, sleeper_[kYaw], -share_ * rolled);
+      push(row, sleeper_[kYaw], -share_ * lever);
       push(row, sleeper_[kAlongX], -share_);
       return row;
     }
     // Of the sleeper's motion along y and z what lies along d.
     const double across = d == 1 ? cant_.cosine : -cant_.sine;
     const double up = d == 2 ? cant_.cosine : cant_.sine;
-    push(row, sleeper_[kRoll], -share_ * (rolled * up));
+    push(row, sleeper_[kRoll], -share_ * (lever * up));
     push(row, sleeper_[kPitch], share_ * (at.offset * up));
     push(row, sleeper_[kAlongY], -share_ * across);
     push(row, sleeper_[kAlongZ], -share_ * up);
     return row;
   }
-  /// What the pad is turned by about x at one of its points.
+  /// How far the pad rolls about x at one of its points.
   Row roll(const PadPoint& at) const {
     Row row;
     for_nodes(at, [&](int node, double shape) {
@@ -156,9 +156,9 @@ void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast) {
 
 /// The sleeper's own inertia.
 void add_body(const Track& track, Assembly& part, int border, const SleeperBody& body) {
-  const double g = track.rail_spacing, rotating = 2. * body.roll_inertia / (g * g);
+  const double g = track.rail_spacing, rotary = 2. * body.roll_inertia / (g * g);
   const std::array<double, kSleeperMotions> inertia = {
-      body.mass / 2., body.mass / 2., body.mass / 2., rotating, rotating, body.pitch_inertia / 2.};
+      body.mass / 2., body.mass / 2., body.mass / 2., rotary, rotary, body.pitch_inertia / 2.};
   const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
   for (std::size_t motion = 0; motion < inertia.size(); ++motion) {
     Row row;

@@ -25,9 +25,9 @@ void add_sleeper_top(const Track& track, int rail, int seat, double y, double fa
   const double aside =
       cant.cosine * y - cant.sine * there.pad[static_cast<std::size_t>(rail)].height_z;
   if (track.rails == 1 || aside == 0.) return;
-  const double rolled = cant.cosine * aside / track.rail_spacing;
-  to.sleeper.push_back({0, seat, 2, factor * rolled});
-  to.sleeper.push_back({1, seat, 2, -factor * rolled});
+  const double lever = cant.cosine * aside / track.rail_spacing;
+  to.sleeper.push_back({0, seat, 2, factor * lever});
+  to.sleeper.push_back({1, seat, 2, -factor * lever});
 }
 
 Functional pad_gap(const Track& track, int rail, int seat) {

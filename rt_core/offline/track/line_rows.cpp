@@ -42,12 +42,12 @@ Eigen::SparseVector<double> sleeper_row(const Track& track, const Line& line, in
   const auto add = [&](SleeperMotion motion, double factor) {
     if (motions[motion] >= 0) row.coeffRef(motions[motion]) += factor;
   };
-  const double rolled = rail == 0 ? share : -share;
+  const double signed_share = rail == 0 ? share : -share;
   if (direction == 0) add(kAlongX, share);
-  if (direction == 0) add(kYaw, rolled);
+  if (direction == 0) add(kYaw, signed_share);
   if (direction == 1) add(kAlongY, share);
   if (direction == 2) add(kAlongZ, share);
-  if (direction == 2) add(kRoll, rolled);
+  if (direction == 2) add(kRoll, signed_share);
   if (direction == 3) add(kPitch, share);
   return row;
 }

@@ -34,7 +34,7 @@ TEST_CASE("model and residual add up to the fine track's flexibility between por
         for (int e2 = 0; e2 < coarse.elements(); ++e2)
           for (const int q : {0, 3, 6}) {
             const double x2 = place(coarse, e2, q);
-            // LoadPoint b reads its whole row on the fine track, and its own row in the model.
+            // Load point b reads its whole row on the fine track, and its own row in the model.
             const double want = exact(fine, at_point({b.rail, x2, 0., b.z, 2}), moved);
             const double read_z = kind == Kind::full ? b.z : 0.;
             const double kept = model(at_point({b.rail, x2, 0., read_z, 2}), a.rail, x, a.z);
@@ -91,8 +91,9 @@ TEST_CASE("model and residual add up to the fine track with unlike sides or long
   CHECK(missing / largest > 1e-3);
 }
 
-TEST_CASE("model and residual add up to the fine track from a port to rails, sleepers and pads",
-          "[flexibility]") {
+TEST_CASE(
+    "model and residual add up to the fine track from a load point to rails, sleepers and pads",
+    "[flexibility]") {
   const Kind kind = GENERATE(Kind::full, Kind::modal, Kind::nothing_kept);
   const Track coarse = sleeper_track(1);
   const Statics fine(sleeper_track(kPoints));
@@ -118,15 +119,15 @@ TEST_CASE("model and residual add up to the fine track from a port to rails, sle
                         {"pad, other rail", opening(1, 2)}};
   for (const Case& c : cases) {
     double error = 0., size = 0., missing = 0.;
-    const LoadPoint port{0, kHeadZ};
-    const std::vector<double> table = residual.from(port, c.functional);
+    const LoadPoint load_point{0, kHeadZ};
+    const std::vector<double> table = residual.from(load_point, c.functional);
     REQUIRE(table.size() == static_cast<std::size_t>(coarse.elements() * (kPoints + 1)));
     for (int e = 0; e < coarse.elements(); ++e)
       for (int p = 0; p <= kPoints; ++p) {
         const double x = place(coarse, e, p);
-        const double want =
-            exact(fine, c.functional, fine.solve({{{port.rail, x, 0., port.z, 2}, 1.}}));
-        const double kept = model(c.functional, port.rail, x, port.z);
+        const double want = exact(fine, c.functional,
+                                  fine.solve({{{load_point.rail, x, 0., load_point.z, 2}, 1.}}));
+        const double kept = model(c.functional, load_point.rail, x, load_point.z);
         const double added =
             table[static_cast<std::size_t>(e) * (kPoints + 1) + static_cast<std::size_t>(p)];
         error = std::max(error, std::abs(kept + added - want));
@@ -188,14 +189,15 @@ TEST_CASE("residual flexibility is symmetric in its ports", "[flexibility]") {
   CHECK(error / 2e-8 < kRounding);
 }
 
-TEST_CASE("on the diagonal the table of pairs equals that of a single port", "[flexibility]") {
+TEST_CASE("on the diagonal the table of pairs equals that of a single load point",
+          "[flexibility]") {
   const Kind kind = GENERATE(Kind::full, Kind::modal);
   const Track t = sleeper_track(2);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, bases_of(kind, t, lines), kPoints);
-  const LoadPoint port{1, kHeadZ};
-  const std::vector<double> under = residual.under(port);
-  const PairTable table = residual.between(port, port, 4);
+  const LoadPoint load_point{1, kHeadZ};
+  const std::vector<double> under = residual.under(load_point);
+  const PairTable table = residual.between(load_point, load_point, 4);
   for (int e = 0; e < t.elements(); ++e)
     for (int p = 0; p <= 4; ++p)
       CHECK_THAT(
@@ -279,7 +281,7 @@ TEST_CASE("residual flexibility is below 0 only by the squeeze of a section", "[
   CHECK(lowest(residual.under({0, 0.})) > -kRounding * 2.5e-8);
 }
 
-TEST_CASE("lines that the port does not move may be free", "[flexibility]") {
+TEST_CASE("lines that the load point does not move may be free", "[flexibility]") {
   Track t = sleeper_track(1);
   t.rails = 1;
   t.sleeper.reset();

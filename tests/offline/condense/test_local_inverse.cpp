@@ -57,7 +57,8 @@ TEST_CASE("near loads and far from them a local inverse gives the solution", "[f
   }
 }
 
-TEST_CASE("a port's own table is the diagonal of the table between ports", "[flexibility]") {
+TEST_CASE("a load point's own table is the diagonal of the table between load points",
+          "[flexibility]") {
   const auto make = GENERATE(&lopsided_track, &long_pads);
   const Track track = make(1);
   const std::vector<Line> lines = assemble(track);

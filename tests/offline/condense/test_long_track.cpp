@@ -41,15 +41,15 @@ TEST_CASE("a functional's table ends where its value is negligible", "[flexibili
   const int seat = GENERATE(0, 3, 90, kBays);
   const std::vector<Line> lines = assemble(t);
   const ResidualFlexibility residual(t, lines, {}, kPoints);
-  const LoadPoint port{0, kHeadZ};
+  const LoadPoint load_point{0, kHeadZ};
   const Functional functional = seat_of(t, seat);
-  const std::vector<double> whole = residual.from(port, functional);
-  const auto near = residual.near({port}, functional);
+  const std::vector<double> whole = residual.from(load_point, functional);
+  const auto near = residual.near({load_point}, functional);
   CAPTURE(seat, near.at.first, near.at.last);
   CHECK(near.at.count() > 2);
   CHECK(near.at.count() < kBays / 2);
   const double peak = exact_line(t, lines[0], kPoints)
-                          ->from(port, functional, kPoints, {0, t.elements()})
+                          ->from(load_point, functional, kPoints, {0, t.elements()})
                           .lpNorm<Eigen::Infinity>();
   constexpr std::size_t places = kPoints + 1;  // per element
   const std::size_t first = places * static_cast<std::size_t>(near.at.first),

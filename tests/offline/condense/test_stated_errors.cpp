@@ -107,8 +107,9 @@ class Beside {
       : track_(track), fine_(with_strain(track)), packed_(packed) {
     fine_.elements_per_bay = elements;
     lines_ = assemble(fine_);
-    const LoadPoint& port = packed.load_points()[0];
-    for (const double x : places) at_.push_back({port.rail, x, port.y, port.z, 2});
+    const LoadPoint& load_point = packed.load_points()[0];
+    for (const double x : places)
+      at_.push_back({load_point.rail, x, load_point.y, load_point.z, 2});
     for (const Line& line : lines_) {
       massless_.emplace_back(static_cast<std::size_t>(line.unknowns()), false);
       forces_.push_back(forces_of(fine_, line, at_, true));
@@ -235,15 +236,15 @@ TEST_CASE("the stated static error is the largest along random tracks", "[stated
     Track fine = with_strain(built.track);
     fine.elements_per_bay = 20;
     const Statics exact(fine);
-    const LoadPoint& port = built.packed->load_points()[0];
+    const LoadPoint& load_point = built.packed->load_points()[0];
     std::vector<RailPoint> at;
     for (int bay = 0; bay < built.track.bays; ++bay)
       for (int i = 0; i < fine.elements_per_bay; ++i)
         at.push_back(
-            {port.rail,
+            {load_point.rail,
              (bay + static_cast<double>(i) / fine.elements_per_bay) * built.track.bay_length,
-             port.y, port.z, 2});
-    at.push_back({port.rail, built.track.length(), port.y, port.z, 2});
+             load_point.y, load_point.z, 2});
+    at.push_back({load_point.rail, built.track.length(), load_point.y, load_point.z, 2});
     if (built.track.ring) at.pop_back();
     const Eigen::VectorXcd got = stepped(built.track, *built.packed, at, 0.);
     for (std::size_t i = 0; i < at.size(); ++i) {
