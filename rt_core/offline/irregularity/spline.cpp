@@ -41,8 +41,8 @@ class Integral {
     if (model_.periodic == 0 && at <= 0.) return at * model_.step * end_value(0.);
     if (model_.periodic == 0 && at >= n)
       return whole_.back() + (at - n) * model_.step * end_value(n);
-    const double turns = model_.periodic != 0 ? std::floor(at / n) : 0.;
-    return turns * whole_.back() + within(at - turns * n);
+    const double periods = model_.periodic != 0 ? std::floor(at / n) : 0.;
+    return periods * whole_.back() + within(at - periods * n);
   }
 
  private:

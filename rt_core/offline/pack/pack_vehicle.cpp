@@ -55,13 +55,13 @@ TravelTable travel_table(double speed, const std::vector<double>& speeds) {
   std::vector<double>& rows = made.rows;
   for (std::size_t i = 0; i < speeds.size(); i += 2) {
     const double t = speeds[i], v = speeds[i + 1];
-    double gone = 0.;
+    double way = 0.;
     if (!rows.empty()) {
       const double* last = rows.data() + rows.size() - 3;
       if (!(t > last[0])) refuse("E-PACK-38", "the times of a table of speeds do not rise");
-      gone = last[2] + .5 * (t - last[0]) * (last[1] + v);
+      way = last[2] + .5 * (t - last[0]) * (last[1] + v);
     }
-    rows.insert(rows.end(), {t, v, gone});
+    rows.insert(rows.end(), {t, v, way});
     if (std::abs(v) > std::abs(made.speed)) made.speed = v;
   }
   const double at_zero = travelled(made.model(), 0.).distance;

@@ -67,16 +67,16 @@ void add_line(SectionMoments& m, const Segment& s) {
 /// In pieces of at most 0.1 rad, over which five Gauss points leave 1e-16 of a degree 5 integrand.
 void add_arc(SectionMoments& m, const Segment& s) {
   const Arc arc = arc_of(s);
-  const double turn = s.radius > 0. ? 1. : -1.;
+  const double orientation = s.radius > 0. ? 1. : -1.;
   const double middle = std::atan2(arc.outwards[1], arc.outwards[0]);
   const int pieces = static_cast<int>(std::ceil(2. * arc.half / .1));
   const double step = 2. * arc.half / pieces;
   for (int k = 0; k < pieces; ++k)
     for (const GaussPoint& g : gauss(5)) {
-      const double t = middle + turn * (-arc.half + step * (k + .5 * (1. + g.xi)));
+      const double t = middle + orientation * (-arc.half + step * (k + .5 * (1. + g.xi)));
       const Point p = {arc.centre[0] + arc.radius * std::cos(t),
                        arc.centre[1] + arc.radius * std::sin(t)};
-      add_boundary(m, p, .5 * g.weight * step * turn * arc.radius * std::cos(t));
+      add_boundary(m, p, .5 * g.weight * step * orientation * arc.radius * std::cos(t));
     }
 }
 

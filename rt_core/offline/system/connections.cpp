@@ -202,7 +202,7 @@ void Connector::add_either_way(const Joint& joint) {
       const Jet start = motion_at(drive, angle, 0.);
       if (!(std::abs(start.x) < 1e-9))
         refuse("E-SYSTEM-12", "its rotation is 0 at t = 0: axes are given at rest");
-      return row(RowKind::square, 2, 1, 1, turn);
+      return row(RowKind::square, 2, 1, 1, angle);
     }
     default:
       break;

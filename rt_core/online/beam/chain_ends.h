@@ -13,11 +13,11 @@ inline constexpr int kOwnVectors = (W + kWide - 1) / kWide;
 template <int W>
 inline constexpr int kRowVectors = kChainRow<W> / kWide;
 
-/// kWide columns of a row of the condensed elements, turned from lanes to elements.
+/// kWide columns of a row of the condensed elements, transposed from lanes to elements.
 /// @param at  where a column is in the group's blocks, at(column); 0 beyond `columns`
 template <class At>
-[[gnu::always_inline]] inline void turned(const double* S, int column, int columns, const At& at,
-                                          Wide* of_lane) noexcept {
+[[gnu::always_inline]] inline void transposed(const double* S, int column, int columns,
+                                              const At& at, Wide* of_lane) noexcept {
   unrolled<kWide>([&](auto c) __attribute__((always_inline)) {
     of_lane[c] = column + c < columns ? load(S + at(column + c)) : Wide{};
   });
@@ -40,7 +40,7 @@ void add_condensed(int first, int count, const double* S, double* nodes) noexcep
         constexpr int column = kWide * (diagonal + v);
         Wide of_lane[kWide];
         const auto last = [=](int j) { return At::tangent(kLastLast, i, j); };
-        turned(S + lane, column, W, last, of_lane);
+        transposed(S + lane, column, W, last, of_lane);
         unrolled<kWide>([&](auto l) __attribute__((always_inline)) {
           if (l < lanes) store(of_lane[l], node + (l + 1) * At::kNode + At::kRow * i + column);
         });
@@ -54,7 +54,7 @@ void add_condensed(int first, int count, const double* S, double* nodes) noexcep
         const auto both = [=](int j) {
           return j < W ? At::tangent(kFirstFirst, i, j) : At::tangent(kFirstLast, i, j - W);
         };
-        turned(S + lane, column, 2 * W, both, of_lane);
+        transposed(S + lane, column, 2 * W, both, of_lane);
         unrolled<kWide>([&](auto l) __attribute__((always_inline)) {
           double* to = node + l * At::kNode + At::kRow * i + column;
           if (l < lanes)

@@ -94,10 +94,11 @@ template <class Kind>
   double of[kWide][3 * W];
   unrolled<kParts<3 * W>>([&](auto part) __attribute__((always_inline)) {
     constexpr int c = part_first<3 * W>(part);
-    Wide turned[kWide];
-    unrolled<kWide>([&](auto i) __attribute__((always_inline)) { turned[i] = nodes[c + i]; });
-    transpose(turned);
-    unrolled<kWide>([&](auto l) __attribute__((always_inline)) { store(turned[l], of[l] + c); });
+    Wide transposed[kWide];
+    unrolled<kWide>([&](auto i) __attribute__((always_inline)) { transposed[i] = nodes[c + i]; });
+    transpose(transposed);
+    unrolled<kWide>([&](auto l)
+                        __attribute__((always_inline)) { store(transposed[l], of[l] + c); });
   });
   for (int l = 0; l < kWide && group.first + l < group.count; ++l) {
     double* at = force + 2 * W * (group.first + l);

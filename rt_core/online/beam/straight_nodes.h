@@ -32,10 +32,10 @@ template <class Kind, class T>
   constexpr int unknowns = Kind::kUnknowns, position = Kind::kSize[0];
   const double bend = 2. * kG * h;
   for (int c = 0; c < unknowns; ++c) {
-    const T stretch = h * even[c], turn = bend * odd[c];
-    n1[c] = turn - stretch;
-    n2[c] = -2. * turn;
-    n3[c] = turn + stretch;
+    const T stretch = h * even[c], rotation = bend * odd[c];
+    n1[c] = rotation - stretch;
+    n2[c] = -2. * rotation;
+    n3[c] = rotation + stretch;
   }
   for (int c = position; c < unknowns; ++c) {
     const T& sum = even[unknowns - position + c];

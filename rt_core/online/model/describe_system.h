@@ -39,11 +39,11 @@ void describe_counts(Archive& a, SystemModel& s) {
 
 template <typename Archive>
 void describe_solve(Archive& a, SystemModel& s) {
-  std::int32_t hold = static_cast<std::int32_t>(s.constraint_method),
+  std::int32_t method = static_cast<std::int32_t>(s.constraint_method),
                renew = static_cast<std::int32_t>(s.renew);
-  a.count(hold, static_cast<std::int32_t>(ConstraintMethod::direct));
+  a.count(method, static_cast<std::int32_t>(ConstraintMethod::direct));
   a.count(renew, static_cast<std::int32_t>(Renew::kept));
-  s.constraint_method = static_cast<ConstraintMethod>(hold);
+  s.constraint_method = static_cast<ConstraintMethod>(method);
   s.renew = static_cast<Renew>(renew);
   a.count(s.mean, 1);
   a.count(s.cap, kMostIterations);

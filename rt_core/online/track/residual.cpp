@@ -20,8 +20,8 @@ double look_up(const Model& model, const double* table, std::int32_t elements,
 
 /// Whether places are within an element's length of each other.
 bool close(const RailForce& a, const RailForce& b) noexcept {
-  const double apart = (b.element - a.element) + .5 * (b.xi - a.xi);
-  return apart * apart < 1.;
+  const double distance = (b.element - a.element) + .5 * (b.xi - a.xi);
+  return distance * distance < 1.;
 }
 
 /// No more than the geometric mean of what both have under themselves: else two opposite forces
