@@ -16,17 +16,17 @@ struct SpinUp {
   double speed;           // w, rad/s
   double duration = 15.;  // T, s
 
-  double turns() const { return 8. * std::atan(1.) / duration; }
+  double omega() const { return 8. * std::atan(1.) / duration; }
   double angle(double t) const {
     if (t >= duration) return speed * (t - duration / 2.);
-    return speed / duration * (t * t / 2. + (std::cos(turns() * t) - 1.) / (turns() * turns()));
+    return speed / duration * (t * t / 2. + (std::cos(omega() * t) - 1.) / (omega() * omega()));
   }
   double rate(double t) const {
     if (t >= duration) return speed;
-    return speed / duration * (t - std::sin(turns() * t) / turns());
+    return speed / duration * (t - std::sin(omega() * t) / omega());
   }
   double acceleration(double t) const {
-    return t >= duration ? 0. : speed / duration * (1. - std::cos(turns() * t));
+    return t >= duration ? 0. : speed / duration * (1. - std::cos(omega() * t));
   }
 };
 
