@@ -9,28 +9,28 @@ struct ColumnNames {
   const TraceNames& names;
   std::vector<std::string> columns;
 
-  const std::vector<std::string>& of(Bearer bearer) const {
-    switch (bearer) {
-      case Bearer::load:
+  const std::vector<std::string>& of(ColumnOf kind) const {
+    switch (kind) {
+      case ColumnOf::load:
         return names.loads;
-      case Bearer::wheel:
+      case ColumnOf::wheel:
         return names.wheels;
-      case Bearer::flange:
+      case ColumnOf::flange:
         return names.flanges;
-      case Bearer::external_wheel:
+      case ColumnOf::external_wheel:
         return names.external_wheels;
-      case Bearer::sensor:
+      case ColumnOf::sensor:
         return names.sensors;
-      case Bearer::joint:
+      case ColumnOf::joint:
         return names.joints;
-      case Bearer::spring:
+      case ColumnOf::spring:
         break;
     }
     return names.springs;
   }
   template <typename Column, std::size_t n>
-  void operator()(Bearer bearer, std::int32_t i, const Column (&own)[n]) {
-    const std::string& name = of(bearer).at(static_cast<std::size_t>(i));
+  void operator()(ColumnOf kind, std::int32_t i, const Column (&own)[n]) {
+    const std::string& name = of(kind).at(static_cast<std::size_t>(i));
     for (const Column& column : own) columns.push_back(name + "." + column.name);
   }
   void operator()(const TrackSensorModel&) {

@@ -73,22 +73,22 @@ struct SpringColumn {
 inline constexpr SpringColumn kSpringColumns[] = {{"force_n"}};
 
 /// What a column belongs to, beside track sensors, whose names are whole.
-enum class Bearer { load, wheel, flange, external_wheel, sensor, joint, spring };
+enum class ColumnOf { load, wheel, flange, external_wheel, sensor, joint, spring };
 
-/// Visits the columns in their order: visit(bearer, i, columns) for bearer i of a kind, with the
-/// table of its columns, and visit(track sensors) once for the columns of all of them.
+/// Visits the columns in their order: visit(of, i, columns) for load, wheel, ... number i, with
+/// the table of its columns, and visit(track sensors) once for the columns of all of them.
 template <typename Visit>
 void for_each_column(const Model& model, Visit& visit) {
-  for (std::int32_t i = 0; i < model.loads; ++i) visit(Bearer::load, i, kLoadColumns);
-  for (std::int32_t i = 0; i < wheel_count(model); ++i) visit(Bearer::wheel, i, kWheelColumns);
-  for (std::int32_t i = 0; i < flange_count(model); ++i) visit(Bearer::flange, i, kFlangeColumns);
+  for (std::int32_t i = 0; i < model.loads; ++i) visit(ColumnOf::load, i, kLoadColumns);
+  for (std::int32_t i = 0; i < wheel_count(model); ++i) visit(ColumnOf::wheel, i, kWheelColumns);
+  for (std::int32_t i = 0; i < flange_count(model); ++i) visit(ColumnOf::flange, i, kFlangeColumns);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
-    visit(Bearer::external_wheel, i, kExternalColumns);
+    visit(ColumnOf::external_wheel, i, kExternalColumns);
   visit(model.track_sensor);
   const SystemModel& s = model.system;
-  for (std::int32_t i = 0; i < s.sensors; ++i) visit(Bearer::sensor, i, kSensorColumns);
-  for (std::int32_t i = 0; i < s.traced_joints; ++i) visit(Bearer::joint, i, kJointColumns);
-  for (std::int32_t i = 0; i < s.traced_springs; ++i) visit(Bearer::spring, i, kSpringColumns);
+  for (std::int32_t i = 0; i < s.sensors; ++i) visit(ColumnOf::sensor, i, kSensorColumns);
+  for (std::int32_t i = 0; i < s.traced_joints; ++i) visit(ColumnOf::joint, i, kJointColumns);
+  for (std::int32_t i = 0; i < s.traced_springs; ++i) visit(ColumnOf::spring, i, kSpringColumns);
 }
 
 }  // namespace railstep

@@ -10,7 +10,7 @@ namespace {
 struct ColumnCount {
   std::int32_t count = 0;
   template <typename Column, std::size_t n>
-  void operator()(Bearer, std::int32_t, const Column (&)[n]) noexcept {
+  void operator()(ColumnOf, std::int32_t, const Column (&)[n]) noexcept {
     count += static_cast<std::int32_t>(n);
   }
   void operator()(const TrackSensorModel& all) noexcept { count += all.count; }
@@ -23,11 +23,11 @@ struct RowWriter {
   double* to;
 
   template <int most, std::size_t n>
-  void operator()(Bearer, std::int32_t i, const OutputColumn<most> (&columns)[n]) noexcept {
+  void operator()(ColumnOf, std::int32_t i, const OutputColumn<most> (&columns)[n]) noexcept {
     for (const OutputColumn<most>& column : columns) *to++ = (outputs.*column.value)[i];
   }
   template <std::size_t n>
-  void operator()(Bearer, std::int32_t i, const ExternalColumn (&columns)[n]) noexcept {
+  void operator()(ColumnOf, std::int32_t i, const ExternalColumn (&columns)[n]) noexcept {
     for (const ExternalColumn& column : columns)
       *to++ = (outputs.*column.value)[i][column.direction];
   }
@@ -36,7 +36,7 @@ struct RowWriter {
     to += all.count;
   }
   template <std::size_t n>
-  void operator()(Bearer, std::int32_t i, const SensorColumn (&columns)[n]) noexcept {
+  void operator()(ColumnOf, std::int32_t i, const SensorColumn (&columns)[n]) noexcept {
     const PointMotion point = sensor_motion(model, state, i);
     const double* const rest = model.system.sensor_rest + std::ptrdiff_t{3} * i;
     for (const SensorColumn& column : columns) {
@@ -55,12 +55,12 @@ struct RowWriter {
     }
   }
   template <std::size_t n>
-  void operator()(Bearer, std::int32_t i, const JointColumn (&columns)[n]) noexcept {
+  void operator()(ColumnOf, std::int32_t i, const JointColumn (&columns)[n]) noexcept {
     const JointForce joint = joint_force(model, state, model.system.traced_joint[i]);
     for (const JointColumn& column : columns) *to++ = (joint.*column.value)[column.direction];
   }
   template <std::size_t n>
-  void operator()(Bearer, std::int32_t i, const SpringColumn (&)[n]) noexcept {
+  void operator()(ColumnOf, std::int32_t i, const SpringColumn (&)[n]) noexcept {
     static_assert(n == 1);
     const SystemModel& s = model.system;
     *to++ = state.row_force[s.joint_rows + s.traced_spring[i]];
