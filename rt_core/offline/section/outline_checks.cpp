@@ -175,10 +175,10 @@ void check_crossing(const std::vector<Segment>& segments) {
   for (std::size_t i = 0; i < n; ++i) {
     const double top = std::max(chords[i].a[1], chords[i].b[1]);
     for (std::size_t j = i + 1; j < n && std::min(chords[j].a[1], chords[j].b[1]) <= top; ++j) {
-      const std::size_t distance = chords[i].place > chords[j].place
-                                       ? chords[i].place - chords[j].place
-                                       : chords[j].place - chords[i].place;
-      if (distance == 1 || distance == n - 1) continue;  // neighbours share a point
+      const std::size_t spacing = chords[i].place > chords[j].place
+                                      ? chords[i].place - chords[j].place
+                                      : chords[j].place - chords[i].place;
+      if (spacing == 1 || distance == n - 1) continue;  // neighbours share a point
       if (meet(chords[i], chords[j])) refuse_crossing(chords[i], chords[j]);
     }
   }
