@@ -178,7 +178,7 @@ void check_crossing(const std::vector<Segment>& segments) {
       const std::size_t spacing = chords[i].place > chords[j].place
                                       ? chords[i].place - chords[j].place
                                       : chords[j].place - chords[i].place;
-      if (spacing == 1 || distance == n - 1) continue;  // neighbours share a point
+      if (spacing == 1 || spacing == n - 1) continue;  // neighbours share a point
       if (meet(chords[i], chords[j])) refuse_crossing(chords[i], chords[j]);
     }
   }
