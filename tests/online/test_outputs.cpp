@@ -143,8 +143,9 @@ TEST_CASE("runs that write one trace at the same time leave the whole trace of o
   for (std::size_t i = 0; i < durations.size(); ++i)
     runs.emplace_back([&, i] {
       codes[i] =
-          std::system(("'" RAILSTEP_PROGRAM "' run " + shipped("moving_load") + " --duration " +
-                       durations[i] + " --trace " + files.path("t.csv") + " >/dev/null")
+          std::system(fmt::format("timeout {} '{}' run {} --duration {} --trace {} >/dev/null",
+                                  kPatience.count(), RAILSTEP_PROGRAM, shipped("moving_load"),
+                                  durations[i], files.path("t.csv"))
                           .c_str());
     });
   for (std::thread& run : runs) run.join();

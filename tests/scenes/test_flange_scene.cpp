@@ -37,7 +37,10 @@ struct Steps {
   double at(const double* of, int k) const { return of[model.wheelset[0].first + k]; }
   double y() const { return at(run.state.u, 1); }
   double speed() const { return at(run.state.v, 1); }
-  void step() { seen = seen | advance_frame(model, run.state, run.workspace, out); }
+  void step() {
+    REQUIRE(run.state.steps < model.steps);  // what is waited for does not come
+    seen = seen | advance_frame(model, run.state, run.workspace, out);
+  }
   void until(double t) {
     while (time() < t - 1e-9) step();
   }

@@ -1,13 +1,9 @@
 #pragma once
-#include <arpa/inet.h>
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <sys/mman.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
@@ -17,23 +13,11 @@
 
 #include "hil/hil_shm.h"
 #include "hil/hil_udp.h"
+#include "support/loopback.h"
 
 namespace railstep {
 
 using Values = std::vector<double>;
-
-/// A UDP port of the loopback that was free a moment ago.
-inline std::uint16_t free_port() {
-  const int file = socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in at{};
-  at.sin_family = AF_INET;
-  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof at;
-  REQUIRE(bind(file, reinterpret_cast<const sockaddr*>(&at), size) == 0);
-  getsockname(file, reinterpret_cast<sockaddr*>(&at), &size);
-  close(file);
-  return ntohs(at.sin_port);
-}
 
 /// The vehicle's end of an exchange of packets.
 struct Peer {
@@ -45,42 +29,28 @@ struct Peer {
 
 class UdpPeer : public Peer {
  public:
-  UdpPeer(const ExchangeLayout& layout, std::uint16_t port)
-      : layout_(layout), file_(socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(port);
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const timeval patience{60, 0};
-    setsockopt(file_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    REQUIRE(connect(file_, reinterpret_cast<sockaddr*>(&to), sizeof to) == 0);
-  }
-  UdpPeer(const UdpPeer&) = delete;
-  UdpPeer& operator=(const UdpPeer&) = delete;
-  ~UdpPeer() override { close(file_); }
+  UdpPeer(const ExchangeLayout& layout, std::uint16_t port) : layout_(layout), port_(port) {}
 
   void send(std::int64_t frame, const Values& values) override {
-    std::vector<unsigned char> bytes(packet_bytes(values.size()));
+    Bytes bytes(packet_bytes(values.size()));
     encode({.kind = PacketKind::inputs,
             .names = names_sum(layout_.inputs),
             .count = static_cast<std::uint32_t>(values.size()),
             .sequence = ++sequence_,
             .frame = frame},
            values.data(), bytes.data());
-    static_cast<void>(::send(file_, bytes.data(), bytes.size(), 0));
+    socket_.send(bytes, port_);
   }
   std::int64_t receive(Values& values) override {
-    unsigned char bytes[4096];
-    const ssize_t got = recv(file_, bytes, sizeof bytes, 0);
-    const auto head = decode({bytes, static_cast<std::size_t>(std::max<ssize_t>(got, 0))},
-                             PacketKind::outputs, names_sum(layout_.outputs),
+    const auto head = decode(socket_.receive(), PacketKind::outputs, names_sum(layout_.outputs),
                              static_cast<std::uint32_t>(values.size()), values.data());
     return head ? head->frame : -2;
   }
 
  private:
   const ExchangeLayout& layout_;
-  int file_;
+  std::uint16_t port_;
+  LoopbackSocket socket_;
   std::uint64_t sequence_ = 0;
 };
 
@@ -110,7 +80,7 @@ class SharedPeer : public Peer {
   std::int64_t receive(Values& values) override {
     const SeqLock from(word_ + word_[5].load() / 8, out_.size());
     std::uint64_t seen = 0;
-    for (int n = 0; n < 600'000; ++n) {
+    for (const Deadline deadline; !deadline.passed();) {
       if (from.number() != seen_ && from.read(out_.data(), 8, seen)) {
         seen_ = seen;
         std::memcpy(values.data(), &out_[kBlockHead], 8 * values.size());

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "support/wait.h"
+
 namespace railstep {
 
 inline std::string text_of(const std::filesystem::path& file) {
@@ -32,17 +34,27 @@ inline std::size_t entries(const std::filesystem::path& folder) {
 }
 
 struct Ran {
-  int code;
+  int code;  // -1 where a signal ended the shell
   std::string out, err;
 };
 
-/// The real program with these words, through the shell.
-inline Ran railstep_program(const std::string& words) {
+/// A program with its words, through the shell. One that takes longer than a test waits is killed
+/// and ends with code 124.
+/// @param before  words of the shell before the program, such as "ulimit -f 8;"
+inline Ran run_program(const std::string& program, const std::string& words,
+                       const std::string& before = "") {
   const auto folder = fresh_folder("words");
-  const std::string command = "'" RAILSTEP_PROGRAM "' " + words + " >'" +
-                              (folder / "out").string() + "' 2>'" + (folder / "err").string() + "'";
+  const std::string command =
+      before + " timeout --kill-after=5 " + std::to_string(kPatience.count()) + " '" + program +
+      "' >'" + (folder / "out").string() + "' 2>'" + (folder / "err").string() + "' " + words;
   const int status = std::system(command.c_str());
-  return {WEXITSTATUS(status), text_of(folder / "out"), text_of(folder / "err")};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(folder / "out"),
+          text_of(folder / "err")};
+}
+
+/// The real program with these words.
+inline Ran railstep_program(const std::string& words) {
+  return run_program(RAILSTEP_PROGRAM, words);
 }
 
 }  // namespace railstep

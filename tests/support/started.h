@@ -1,9 +1,9 @@
 #pragma once
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <functional>
@@ -12,9 +12,6 @@
 #include "support/program.h"
 
 namespace railstep {
-
-/// Longest time that a test waits, however busy the machine is.
-inline constexpr std::chrono::seconds kPatience{120};
 
 /// A program that runs beside the test, in a folder of its own. Every wait for it is bounded.
 class Started {
@@ -26,6 +23,7 @@ class Started {
     pid_ = fork();
     REQUIRE(pid_ >= 0);
     if (pid_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nothing behind
       execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
       _exit(127);
     }
@@ -58,20 +56,12 @@ class Started {
   /// Waits for the program's end.
   /// @returns code -N if signal N ended it
   Ran end() {
-    if (!waited([&] { return !runs(); })) FAIL("the program did not end");
+    wait_until([&] { return !runs(); }, "the end of the program");
     const int code = WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
     return {code, text_of(file("out")), text_of(file("err"))};
   }
 
  private:
-  static bool waited(const std::function<bool()>& done) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!done()) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      usleep(1000);
-    }
-    return true;
-  }
   static int& count() {
     static int of_process = 0;
     return of_process;

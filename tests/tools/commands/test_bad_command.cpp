@@ -19,12 +19,7 @@ const std::string kMovingLoad = shipped("moving_load"), kWheelset = shipped("whe
 
 /// Runs the program after other words of a shell command.
 Ran behind(const std::string& before, const std::string& words) {
-  const BadInput files("behind");
-  const std::string command = before + " '" RAILSTEP_PROGRAM "' >'" + files.path("out") + "' 2>'" +
-                              files.path("err") + "' " + words;
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(files.path("out")),
-          text_of(files.path("err"))};
+  return run_program(RAILSTEP_PROGRAM, words, before);
 }
 
 }  // namespace
@@ -121,7 +116,7 @@ TEST_CASE("a full disk ends the program with exit code 1 and the message names t
   bad.refused("condense " + kMovingLoad + " --skip-errors --out /dev/full", {"/dev/full"}, 1);
   bad.refused("fit " + kProfile + " --out /dev/full", {"/dev/full"}, 1);
   bad.refused("fit " + kProfile + " --report /dev/full", {"/dev/full"}, 1);
-  const Ran told = behind("", run + "--json >/dev/full");
+  const Ran told = railstep_program(run + "--json >/dev/full");
   CHECK(told.code == 1);
   CHECK_THAT(told.err, Contains("standard output: No space left on device"));
 }

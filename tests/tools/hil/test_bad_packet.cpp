@@ -1,10 +1,4 @@
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
-#include <cerrno>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -16,14 +10,13 @@
 #include "hil/hil_packet.h"
 #include "online/model/status.h"
 #include "support/bad_input.h"
+#include "support/loopback.h"
 #include "support/started.h"
 
 using namespace railstep;
 using Catch::Contains;
 
 namespace {
-
-using Bytes = std::vector<unsigned char>;
 
 const std::vector<std::string> kInputs = {"push.force_n"};
 constexpr double kLimit = 1e3;  // N, limit of the input
@@ -45,52 +38,6 @@ Bytes with(Bytes bytes, std::size_t at, unsigned char value) {
   return bytes;
 }
 
-/// The vehicle's side: a socket on the loopback.
-class Sender {
- public:
-  explicit Sender(std::uint16_t port = 0) : file_(socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in at = place(port);
-    const timeval patience{60, 0};
-    setsockopt(file_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    if (port != 0)
-      REQUIRE(connect(file_, reinterpret_cast<sockaddr*>(&at), sizeof at) == 0);
-    else
-      REQUIRE(bind(file_, reinterpret_cast<sockaddr*>(&at), sizeof at) == 0);
-  }
-  Sender(const Sender&) = delete;
-  Sender& operator=(const Sender&) = delete;
-  ~Sender() { close(file_); }
-
-  std::uint16_t own_port() const {
-    sockaddr_in own{};
-    socklen_t size = sizeof own;
-    getsockname(file_, reinterpret_cast<sockaddr*>(&own), &size);
-    return ntohs(own.sin_port);
-  }
-  void send(const Bytes& bytes) const {
-    static_cast<void>(::send(file_, bytes.data(), bytes.size(), 0));
-  }
-  Bytes receive() const {
-    Bytes bytes(4096);
-    ssize_t got = -1;
-    do  // an error that nobody listens any more comes before the packets that have arrived
-      got = recv(file_, bytes.data(), bytes.size(), 0);
-    while (got < 0 && errno == ECONNREFUSED);
-    bytes.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
-    return bytes;
-  }
-
- private:
-  static sockaddr_in place(std::uint16_t port) {
-    sockaddr_in at{};
-    at.sin_family = AF_INET;
-    at.sin_port = htons(port);
-    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    return at;
-  }
-  int file_;
-};
-
 /// Content of a packet of outputs.
 struct Told {
   PacketHead head;
@@ -101,7 +48,6 @@ struct Told {
 class PacedRun {
  public:
   explicit PacedRun(const std::string& words = "", int seconds = 1) {
-    port_ = Sender().own_port();  // this port was free a moment ago
     const std::string names = folder_.path("names");
     std::string all = "hil " + shipped("wheelset_on_track") +
                       " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]'"
@@ -111,17 +57,16 @@ class PacedRun {
     hil_ = std::make_unique<Started>(all);
     hil_->await(std::filesystem::path(names));
     read_outputs(text_of(names));
-    peer_ = std::make_unique<Sender>(port_);
   }
   PacedRun(const PacedRun&) = delete;
   PacedRun& operator=(const PacedRun&) = delete;
 
-  void send(const Bytes& bytes) const { peer_->send(bytes); }
+  void send(const Bytes& bytes) const { peer_.send(bytes, port_); }
   /// Sends from another sender.
-  void send_as_stranger(const Bytes& bytes) const { Sender(port_).send(bytes); }
+  void send_as_stranger(const Bytes& bytes) const { LoopbackSocket().send(bytes, port_); }
   Told receive() const {
     std::vector<double> values(outputs_.size());
-    const auto head = decode(peer_->receive(), PacketKind::outputs, names_sum(outputs_),
+    const auto head = decode(peer_.receive(), PacketKind::outputs, names_sum(outputs_),
                              static_cast<std::uint32_t>(outputs_.size()), values.data());
     if (!head) FAIL("no outputs came");
     const auto y = std::find(outputs_.begin(), outputs_.end(), "wheelset.y_m");
@@ -161,9 +106,9 @@ class PacedRun {
   }
 
   BadInput folder_{"packets"};
-  std::uint16_t port_ = 0;
+  std::uint16_t port_ = free_port();
   std::vector<std::string> outputs_;
-  std::unique_ptr<Sender> peer_;
+  LoopbackSocket peer_;
   Ran ran_{};
   std::unique_ptr<Started> hil_;
 };

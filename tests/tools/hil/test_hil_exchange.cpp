@@ -1,8 +1,5 @@
-#include <arpa/inet.h>
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <sys/mman.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,6 +17,8 @@
 #include "hil/hil_seqlock.h"
 #include "hil/hil_shm.h"
 #include "hil/hil_udp.h"
+#include "support/loopback.h"
+#include "support/wait.h"
 #include "text/read.h"
 
 using namespace railstep;
@@ -30,54 +29,8 @@ namespace {
 const std::vector<std::string> kInputs = {"push.force_n"}, kOutputs = {"time_s", "y_m", "z_m"};
 const ExchangeLayout kLayout{kInputs, kOutputs, 1e6, -1};
 
-/// A socket on the loopback with its own port.
-class Socket {
- public:
-  Socket() : file_(socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in any = place(0);
-    REQUIRE(bind(file_, reinterpret_cast<sockaddr*>(&any), sizeof any) == 0);
-    const timeval patience{20, 0};
-    setsockopt(file_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-  ~Socket() { close(file_); }
-
-  std::uint16_t port() const {
-    sockaddr_in own{};
-    socklen_t size = sizeof own;
-    getsockname(file_, reinterpret_cast<sockaddr*>(&own), &size);
-    return ntohs(own.sin_port);
-  }
-  void send(const std::vector<unsigned char>& bytes, std::uint16_t port) const {
-    const sockaddr_in to = place(port);
-    CHECK(sendto(file_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
-                 sizeof to) == static_cast<ssize_t>(bytes.size()));
-  }
-  std::vector<unsigned char> receive() const {
-    std::vector<unsigned char> bytes(65536);
-    const ssize_t got = recv(file_, bytes.data(), bytes.size(), 0);
-    bytes.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
-    return bytes;
-  }
-
- private:
-  static sockaddr_in place(std::uint16_t port) {
-    sockaddr_in at{};
-    at.sin_family = AF_INET;
-    at.sin_port = htons(port);
-    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    return at;
-  }
-  int file_;
-};
-
-/// A port that was free a moment ago.
-std::uint16_t free_port() { return Socket().port(); }
-
-std::vector<unsigned char> inputs_packet(std::uint64_t sequence, double value,
-                                         std::int64_t frame = -1) {
-  std::vector<unsigned char> bytes(packet_bytes(1));
+Bytes inputs_packet(std::uint64_t sequence, double value, std::int64_t frame = -1) {
+  Bytes bytes(packet_bytes(1));
   encode({.kind = PacketKind::inputs,
           .names = names_sum(kInputs),
           .count = 1,
@@ -88,14 +41,11 @@ std::vector<unsigned char> inputs_packet(std::uint64_t sequence, double value,
 }
 
 /// Waits until an exchange has this input.
-void await(Exchange& exchange, std::int64_t frame, double value) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
-  while (std::chrono::steady_clock::now() < end) {
+bool comes(Exchange& exchange, std::int64_t frame, double value) {
+  return waited([&] {
     const double* const fresh = exchange.inputs(frame);
-    if (fresh != nullptr && *fresh == value) return;
-    std::this_thread::sleep_for(std::chrono::microseconds(100));
-  }
-  FAIL("an input did not come");
+    return fresh != nullptr && *fresh == value;
+  });
 }
 
 /// A name that no other process of a test has.
@@ -115,7 +65,7 @@ TEST_CASE("the newest value arrives whole and only once", "[hil]") {
   });
   double last = 0.;
   std::int64_t torn = 0, old = 0;
-  while (last < static_cast<double>(kMost)) {
+  for (const Deadline deadline; last < static_cast<double>(kMost) && !deadline.passed();) {
     const double* const came = box.take();
     if (came == nullptr) continue;
     for (int i = 1; i < 16; ++i) torn += came[i] == came[0] ? 0 : 1;
@@ -123,6 +73,7 @@ TEST_CASE("the newest value arrives whole and only once", "[hil]") {
     last = came[0];
   }
   producer.join();
+  CHECK(last == static_cast<double>(kMost));
   CHECK(torn == 0);
   CHECK(old == 0);
   CHECK(box.take() == nullptr);
@@ -133,19 +84,21 @@ TEST_CASE("a queue hands on all values in order and refuses more when it is full
   const double values[2] = {1., 2.};
   for (int n = 0; n < 4; ++n) CHECK(queue.put(n, values));
   CHECK_FALSE(queue.put(4, values));
+  const Deadline deadline;
   std::thread producer([&] {
-    for (int n = 4; n < 50'000;) {
+    for (int n = 4; n < 50'000 && !deadline.passed();) {
       const double pair[2] = {static_cast<double>(n), -static_cast<double>(n)};
       if (queue.put(n, pair)) ++n;
     }
   });
   int next = 0, wrong = 0;
-  while (next < 50'000)
+  while (next < 50'000 && !deadline.passed())
     queue.take([&](int n, const double* pair) {
       wrong += n == next && (n < 4 || (pair[0] == n && pair[1] == -n)) ? 0 : 1;
       ++next;
     });
   producer.join();
+  CHECK(next == 50'000);
   CHECK(wrong == 0);
   CHECK_FALSE(queue.take([](int, const double*) {}));
 }
@@ -179,19 +132,19 @@ TEST_CASE("inputs are held until a silence takes them to 0 for good", "[hil]") {
 TEST_CASE("over UDP packets come in and are counted, and outputs go back", "[hil]") {
   const std::uint16_t port = free_port();
   UdpExchange exchange("127.0.0.1:" + std::to_string(port), kLayout);
-  const Socket client, stranger;
+  const LoopbackSocket client, stranger;
   const double values[3] = {1e-3, 2., 3.};
   client.send(inputs_packet(1, 1.), port);
-  await(exchange, 7, 1.);  // the exchange has the frame before the next packets are sent
+  REQUIRE(comes(exchange, 7, 1.));  // the exchange has the frame before the next packets are sent
   client.send(inputs_packet(2, 2., 9), port);
-  client.send(inputs_packet(2, 2., 9), port);         // repeated
-  client.send(inputs_packet(5, 5., 6), port);         // 3 and 4 are missing; late
-  client.send(inputs_packet(4, 4.), port);            // reordered
-  stranger.send(inputs_packet(6, 66.), port);         // foreign
-  client.send(std::vector<unsigned char>(51), port);  // foreign
-  client.send({}, port);                              // foreign
+  client.send(inputs_packet(2, 2., 9), port);  // repeated
+  client.send(inputs_packet(5, 5., 6), port);  // 3 and 4 are missing; late
+  client.send(inputs_packet(4, 4.), port);     // reordered
+  stranger.send(inputs_packet(6, 66.), port);  // foreign
+  client.send(Bytes(51), port);                // foreign
+  client.send({}, port);                       // foreign
   client.send(inputs_packet(6, 6.), port);
-  await(exchange, 7, 6.);
+  REQUIRE(comes(exchange, 7, 6.));
   exchange.outputs({7, Status::contact_lost, kSafeStop, values});
   double back[3] = {};
   const auto head = decode(client.receive(), PacketKind::outputs, names_sum(kOutputs), 3, back);
@@ -230,16 +183,17 @@ TEST_CASE("outputs that no one asked for or that are too many at once are counte
 TEST_CASE("of a flood of packets the newest one stays", "[hil]") {
   const std::uint16_t port = free_port();
   UdpExchange exchange("127.0.0.1:" + std::to_string(port), kLayout);
-  const Socket client;
+  const LoopbackSocket client;
   std::uint64_t sequence = 0;
   for (int n = 0; n < 20'000; ++n) client.send(inputs_packet(++sequence, 1.), port);
   std::atomic<bool> came{false};
   std::thread last([&] {  // the system may drop packets: until one comes through
     while (!came) client.send(inputs_packet(++sequence, 2.), port);
   });
-  await(exchange, 0, 2.);
+  const bool through = comes(exchange, 0, 2.);
   came = true;
   last.join();
+  REQUIRE(through);
   exchange.finish();
   const PacketCounts& in = exchange.received();
   CHECK(in.repeated + in.reordered + in.foreign == 0);
@@ -247,7 +201,7 @@ TEST_CASE("of a flood of packets the newest one stays", "[hil]") {
 }
 
 TEST_CASE("an address on which no one can listen is refused in one sentence", "[hil]") {
-  const Socket busy;
+  const LoopbackSocket busy;
   const auto told = [](const std::string& address) {
     try {
       const UdpExchange exchange(address, kLayout);
@@ -270,9 +224,10 @@ TEST_CASE("no reader sees a half-written change", "[hil]") {
   std::vector<SeqLock::Word> memory(1 + kWords);
   SeqLock lock(memory.data(), kWords);
   std::atomic<std::int64_t> torn{0}, whole{0};
+  const Deadline deadline;
   const auto read = [&] {
     std::uint64_t words[kWords], seen = 0;
-    while (words[0] = 0, seen < 2 * kChanges) {
+    while (words[0] = 0, seen < 2 * kChanges && !deadline.passed()) {
       if (!lock.read(words, 100, seen)) continue;
       for (const std::uint64_t word : words) torn += word == words[0] ? 0 : 1;
       torn += seen == 2 * words[0] ? 0 : 1;
@@ -287,6 +242,7 @@ TEST_CASE("no reader sees a half-written change", "[hil]") {
   }
   first.join();
   second.join();
+  CHECK_FALSE(deadline.passed());  // both saw the last change
   CHECK(torn == 0);
   CHECK(whole >= 2);
 }
@@ -352,7 +308,7 @@ TEST_CASE("two processes exchange through shared memory", "[hil]") {
   const double values[3] = {0., 1., 7.5};
   exchange.outputs({41, Status::large_turn, kSafeStop, values});
   int status = -1;
-  REQUIRE(waitpid(child, &status, 0) == child);
+  wait_until([&] { return waitpid(child, &status, WNOHANG) == child; }, "the other process");
   CHECK(WEXITSTATUS(status) == 0);
 }
 

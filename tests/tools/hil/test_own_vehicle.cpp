@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
+#include <cstdio>
 #include <string>
 
 #include "run/simulation.h"
@@ -44,11 +44,7 @@ Rows ride(const std::string& dt, const std::string& seconds, const char* way = "
   REQUIRE(made.code == 0);
   char hertz[40];
   std::snprintf(hertz, sizeof hertz, "%.17g", hertz_of_inside());
-  const std::string file = (folder / "ride.csv").string();
-  const std::string command = std::string(OWN_VEHICLE) + " " + model + " " + seconds + " " + hertz +
-                              " " + way + " > " + file;
-  static_cast<void>(std::system(command.c_str()));
-  return rows_of(text_of(file));
+  return rows_of(run_program(OWN_VEHICLE, model + " " + seconds + " " + hertz + " " + way).out);
 }
 
 /// Largest difference of the wheel's force from that of the vehicle in the model, over its peak.

@@ -301,8 +301,9 @@ TEST_CASE("a scene that is not a readable file is refused", "[bad_input][cli]") 
 }
 
 TEST_CASE("a scene may come through a pipe", "[bad_input][cli]") {
-  const std::string run = "'" RAILSTEP_PROGRAM "' run /dev/stdin --duration 0.01 >/dev/null";
-  CHECK(std::system(("cat '" + kMovingLoad + "' | " + run).c_str()) == 0);
+  CHECK(
+      run_program(RAILSTEP_PROGRAM, "run /dev/stdin --duration 0.01", "cat '" + kMovingLoad + "' |")
+          .code == 0);
   const BadInput bad("pipe");
   bad.refused("run /dev/stdin" + bad.old("--trace", "t.csv") + " </dev/null", {"stdin: is empty"});
 }
