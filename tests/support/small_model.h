@@ -17,20 +17,14 @@ inline std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
     traffic.loads.push_back(
         {.start = x, .speed = 10., .stop = 1., .force = -50e3, .table = {0., 0., .01, 1.}});
   if (wheels) {
-    Wheelset w;
-    w.mass = 100.;
-    w.inertia_roll = w.inertia_yaw = 8.3;
-    w.inertia_spin = 1.1;
-    w.weight = 981.;
-    w.radius = .148;
-    w.start = 1.2;
+    Wheelset w = paper_wheelset(1.2);
     w.forces = {{1, {0., 10., .01, 0.}}};
     w.tread[1] = fit_signal({0., 1e-5, -1e-5}, 0., .3, true);
     w.flange = Flange{.clearance = 1e-5, .angle = 1.2, .stiffness = 1e7, .damping = 1e4};
     traffic.wheelsets = {w};
     traffic.irregularities = {{0, 2, fit_signal({0., 1e-5}, 1., .1, false)},
                               {1, 1, fit_signal({1e-5, 0., 2e-5}, 0., .5, true)}};
-    traffic.head = {.1007375, .3, .038};
+    traffic.head = kHead;
     RunningVehicle v;
     v.vehicle = bogie({.frame_mass = 1000.,
                        .frame_inertia = 700.,

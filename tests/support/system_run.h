@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "offline/element/matrices.h"
@@ -255,6 +256,40 @@ inline SystemOptions sharp(const Scheme& scheme,
 
 /// Order of a scheme from its errors at a step and at half of it.
 inline double order(double coarse, double fine) { return std::log2(coarse / fine); }
+
+/// Schemes of steps h, s, and their orders: the first two are of second order.
+struct SchemeOrder {
+  Scheme (*scheme)(double h);
+  double order;
+};
+inline constexpr SchemeOrder kSchemeOrders[] = {
+    {[](double h) { return generalised_alpha(h, .9); }, 2.},
+    {[](double h) { return energy_momentum(h); }, 2.},
+    {[](double h) { return backward_euler(h); }, 1.}};
+
+inline RigidBody block(double mass, const Eigen::Vector3d& position) {
+  return {.mass = mass,
+          .inertia = Eigen::Vector3d(.4, .5, .6).asDiagonal().toDenseMatrix() * mass,
+          .position = position};
+}
+
+/// A block that is guided along z, on a spring and a damper on the axis of the left rail.
+inline System sprung_block(double x, double mass, double stiffness, double damping) {
+  System s;
+  s.bodies = {block(mass, {x, .75, .5})};
+  s.joints = {{.kind = JointKind::prismatic,
+               .a = ground(),
+               .b = body(0),
+               .point = {x, .75, .5},
+               .axis = Eigen::Vector3d::UnitZ()}};
+  s.springs = {{.a = rail(0),
+                .b = body(0),
+                .point_a = {x, .75, 0.},
+                .point_b = {x, .75, .5},
+                .stiffness = stiffness,
+                .damping = damping}};
+  return s;
+}
 
 /// A hinge about y.
 inline Joint hinge(Part a, Part b, const Eigen::Vector3d& point, bool planar) {

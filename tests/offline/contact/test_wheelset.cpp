@@ -6,7 +6,7 @@
 
 #include "offline/analysis/statics.h"
 #include "offline/pack/time_schemes.h"
-#include "support/model_run.h"
+#include "support/condensed.h"
 #include "support/rigid_track.h"
 
 using namespace railstep;
@@ -14,19 +14,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-Wheelset paper_wheelset() {
-  Wheelset w;
-  w.mass = 100.;
-  w.inertia_roll = w.inertia_yaw = 8.3;
-  w.inertia_spin = 1.1;
-  w.weight = 981.;
-  w.radius = .148;
-  w.start = 3.2;
-  return w;
-}
-
-const Railhead kHead{.1007375, .3, .038};
 
 ModelRun wheelset_run(const Track& track, const Wheelset& wheelset, const PackOptions& options) {
   return {track, {.wheelsets = {wheelset}, .head = kHead}, options};
@@ -37,7 +24,7 @@ PackOptions options(double dt) { return {.scheme = generalised_alpha(dt, .6)}; }
 }  // namespace
 
 TEST_CASE("the paper's wheelset settles in its static equilibrium", "[wheelset]") {
-  ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
+  ModelRun run = wheelset_run(paper_track(), paper_wheelset(3.2), options(1e-4));
   run.until(1.);
   CHECK(run.seen == Status::ok);
   // Wheels without friction carry half the weight each, however the rails move.
@@ -63,7 +50,7 @@ TEST_CASE("the paper's wheelset settles in its static equilibrium", "[wheelset]"
 TEST_CASE("a wheelset released as it touches sinks as in the reference", "[wheelset]") {
   // reference.md has the lowest wheel position -7.67e-5 m at 25.5 ms, to 3 digits. Its load acts on
   // the axis; the head is lower by its squeeze (0.02e-5), and both have the Hertz approach.
-  ModelRun run = wheelset_run(paper_track(), paper_wheelset(), options(1e-4));
+  ModelRun run = wheelset_run(paper_track(), paper_wheelset(3.2), options(1e-4));
   double lowest = 0., when = 0.;
   while (run.time() < .1) {
     run.step();
@@ -78,7 +65,7 @@ TEST_CASE("a wheelset released as it touches sinks as in the reference", "[wheel
 
 TEST_CASE("on cylinders without friction nothing resists a lateral force", "[wheelset]") {
   // reference.md has y = 0.05 t^2 for 10 N on 100 kg.
-  Wheelset w = paper_wheelset();
+  Wheelset w = paper_wheelset(3.2);
   w.forces = {{1, {-1., 10., 1., 10.}}};
   ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
   run.until(.2);
@@ -116,7 +103,7 @@ TEST_CASE("a wheel dropped on a rigid rail bounces with its energy", "[wheelset]
 
 TEST_CASE("both methods of the guide hold, with the same motion", "[wheelset]") {
   const auto run_to = [](Guide guide) {
-    Wheelset w = paper_wheelset();
+    Wheelset w = paper_wheelset(3.2);
     w.start = 2.;
     w.speed = 10.;
     w.guide = guide;
@@ -136,7 +123,7 @@ TEST_CASE("both methods of the guide hold, with the same motion", "[wheelset]") 
 TEST_CASE("a status reports an impact that the step cannot follow", "[wheelset]") {
   // R1 of hard-cases.md: 600 kg per wheel at 0.1 m/s has contact for 2.69 ms, 26.9 steps of 0.1 ms.
   const auto met = [](double dt, double above) {
-    Wheelset w = paper_wheelset();
+    Wheelset w = paper_wheelset(3.2);
     w.mass = 1200.;
     w.weight = 0.;
     w.inertia_roll = w.inertia_yaw = 1e9;
@@ -154,7 +141,7 @@ TEST_CASE("a status reports an impact that the step cannot follow", "[wheelset]"
 }
 
 TEST_CASE("a guide whose cap is too low sets a status", "[wheelset]") {
-  Wheelset w = paper_wheelset();
+  Wheelset w = paper_wheelset(3.2);
   w.cap = 1;
   w.speed = 10.;
   w.start = 2.;
@@ -166,7 +153,7 @@ TEST_CASE("a guide whose cap is too low sets a status", "[wheelset]") {
 }
 
 TEST_CASE("a wheelset that runs off the rails falls, and a status reports it", "[wheelset]") {
-  Wheelset w = paper_wheelset();
+  Wheelset w = paper_wheelset(3.2);
   w.start = 6.3;
   w.speed = 10.;
   ModelRun run = wheelset_run(paper_track(), w, options(1e-4));

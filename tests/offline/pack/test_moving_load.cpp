@@ -7,26 +7,13 @@
 #include "offline/condense/flexibility.h"
 #include "offline/pack/time_schemes.h"
 #include "online/math/finite.h"
-#include "support/model_run.h"
-#include "support/sections.h"
+#include "support/condensed.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-/// The scene of the peers: two rails, 16 bays of 0.6 m, springs at each border.
-Track peers_track(int elements_per_bay) {
-  Track t;
-  t.section = peers_rectangle();
-  t.unknowns = Unknowns::vertical;
-  t.bays = 16;
-  t.elements_per_bay = elements_per_bay;
-  t.support.stiffness = {3e6, 3e7, 3e7};
-  t.support.damping = {3e4, 3e4, 3e4};
-  return t;
-}
 
 double deflection_at(ModelRun& run, double time) {
   run.until(time);
@@ -48,7 +35,7 @@ const double kTimes[5] = {.05, .10, .15, .20, .25};
 TEST_CASE("a moving load on one element per bay with residual flexibility is as converged") {
   // The row of reference.md, "Moving load", is good to 2e-8 m; the demand is 1e-3.
   const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
-  ModelRun run = peers_run(peers_track(1), 1e-3, true);
+  ModelRun run = peers_run(peers_pair(1), 1e-3, true);
   for (int i = 0; i < 5; ++i) {
     const double z = deflection_at(run, kTimes[i]);
     CAPTURE(kTimes[i], z, z / converged[i] - 1.);
@@ -58,7 +45,7 @@ TEST_CASE("a moving load on one element per bay with residual flexibility is as 
 
 TEST_CASE("a moving load on eight elements per bay with a fine step has the converged row") {
   const double converged[5] = {-5.83728e-4, -5.74847e-4, -5.67153e-4, -5.74738e-4, -5.83492e-4};
-  ModelRun run = peers_run(peers_track(8), 1e-4, false);
+  ModelRun run = peers_run(peers_pair(8), 1e-4, false);
   for (int i = 0; i < 5; ++i)  // +-2e-8 m for the row and as much for this step
     CHECK_THAT(deflection_at(run, kTimes[i]), WithinAbs(converged[i], 4e-8));
 }
@@ -67,9 +54,9 @@ TEST_CASE("a moving load without residual flexibility has the element's own rows
   // reference.md has 1 element per bay with 2 and 3 axial points; the demand on the second is 3e-4.
   const double two[5] = {-5.83608e-4, -5.64767e-4, -5.66946e-4, -5.64658e-4, -5.83236e-4};
   const double three[5] = {-5.76017e-4, -5.62059e-4, -5.58991e-4, -5.61946e-4, -5.75650e-4};
-  Track locking = peers_track(1);
+  Track locking = peers_pair(1);
   locking.rule.axial_points = 3;
-  ModelRun run_two = peers_run(peers_track(1), 1e-4, false),
+  ModelRun run_two = peers_run(peers_pair(1), 1e-4, false),
            run_three = peers_run(locking, 1e-4, false);
   for (int i = 0; i < 5; ++i) {
     CHECK_THAT(deflection_at(run_two, kTimes[i]), WithinRel(two[i], 3e-4));
@@ -79,7 +66,7 @@ TEST_CASE("a moving load without residual flexibility has the element's own rows
 
 TEST_CASE("with residual flexibility the static deflection is that of a refined mesh everywhere") {
   for (const bool full : {false, true}) {
-    Track coarse = peers_track(1), fine = peers_track(16);
+    Track coarse = peers_pair(1), fine = peers_pair(16);
     if (full) {
       for (Track* t : {&coarse, &fine}) {
         t->unknowns = Unknowns::full;
@@ -108,7 +95,7 @@ TEST_CASE("with residual flexibility the static deflection is that of a refined 
 TEST_CASE("the schemes converge with their order") {
   // A load stands still and grows from zero: the response oscillates at the track's frequencies.
   const auto history = [](const Scheme& scheme) {
-    Track t = peers_track(1);
+    Track t = peers_pair(1);
     t.rails = 1;
     const MovingLoad load{.start = 4.5, .stop = 9.3, .force = -50e3, .table = {0., 0., .02, 1.}};
     ModelRun run(t, {.loads = {load}}, {scheme, 1, false, 16});
@@ -137,7 +124,7 @@ TEST_CASE("the schemes converge with their order") {
 TEST_CASE("a run gives the same bits again, and a frame of ten steps those of ten frames") {
   const auto hash_of = [](int steps_per_frame) {
     MovingLoad load{.rail = 1, .start = .3, .speed = 30., .stop = 9.3, .force = -50e3};
-    ModelRun run(peers_track(1), {.loads = {load}},
+    ModelRun run(peers_pair(1), {.loads = {load}},
                  {generalised_alpha(1e-3, .6), steps_per_frame, true, 16});
     deflection_at(run, .1);
     return state_hash(run.packed->model(), run.state);
@@ -148,7 +135,7 @@ TEST_CASE("a run gives the same bits again, and a frame of ten steps those of te
 
 TEST_CASE("a load that runs off the rail is reported and the track comes to rest") {
   MovingLoad load{.rail = 0, .start = 9., .speed = 30., .stop = 100., .force = -50e3};
-  ModelRun run(peers_track(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 100, true, 16});
+  ModelRun run(peers_pair(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 100, true, 16});
   CHECK(has(advance_frame(run.packed->model(), run.state, run.workspace, run.outputs),
             Status::off_rail));
   for (int frame = 0; frame < 20; ++frame)
@@ -161,7 +148,7 @@ TEST_CASE("a load that runs off the rail is reported and the track comes to rest
 
 TEST_CASE("a state that is not finite is reported with its unknown") {
   MovingLoad load{.rail = 0, .start = .3, .speed = 30., .stop = 9.3, .force = -50e3};
-  ModelRun run(peers_track(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1, true, 16});
+  ModelRun run(peers_pair(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1, true, 16});
   run.state.v[5] = std::numeric_limits<double>::infinity();
   CHECK(has(advance_frame(run.packed->model(), run.state, run.workspace, run.outputs),
             Status::nonfinite_state));
@@ -171,7 +158,7 @@ TEST_CASE("a state that is not finite is reported with its unknown") {
 TEST_CASE("a rail that is more than a kilometre away counts as not finite") {
   const MovingLoad load{.rail = 0, .start = .3, .speed = 30., .stop = 9.3, .force = -50e3};
   for (const double size : {-1e3, 1e3, -1.1e3, 1.1e3, 1e70}) {
-    ModelRun run(peers_track(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1, true, 16});
+    ModelRun run(peers_pair(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1, true, 16});
     run.state.u[5] = size;
     publish_start(run.model(), run.state, run.outputs);
     CHECK(has(run.outputs.status, Status::nonfinite_state) == (std::abs(size) > 1024.));
@@ -181,7 +168,7 @@ TEST_CASE("a rail that is more than a kilometre away counts as not finite") {
 
 TEST_CASE("long after the load has gone the state has no subnormal numbers") {
   MovingLoad load{.rail = 0, .start = 9., .speed = 30., .stop = 100., .force = -50e3};
-  ModelRun run(peers_track(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1000, true, 16});
+  ModelRun run(peers_pair(1), {.loads = {load}}, {generalised_alpha(1e-3, .6), 1000, true, 16});
   for (int frame = 0; frame < 20; ++frame)
     (void)advance_frame(run.packed->model(), run.state, run.workspace, run.outputs);
   for (const double value : run.memory)

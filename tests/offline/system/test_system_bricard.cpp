@@ -52,13 +52,7 @@ TEST_CASE("Bricard's mechanism moves right with one redundant row", "[system]") 
   const HighOrder solution = known(m, {0., 1.5});
   REQUIRE(solution.own_error < 1e-10);
   const Corners right = corners(m, solution.y[1]);
-  struct Case {
-    Scheme (*scheme)(double);
-    double order;
-  };
-  const Case cases[] = {{[](double h) { return generalised_alpha(h, .9); }, 2.},
-                        {[](double h) { return energy_momentum(h); }, 2.}};
-  for (const Case& c : cases) {
+  for (const SchemeOrder& c : std::span(kSchemeOrders).first(2)) {
     const auto error = [&](double h) {
       SystemRun r(m.scene(), sharp(c.scheme(h)));
       r.until(1.5);

@@ -108,13 +108,7 @@ TEST_CASE("a book flips as Jacobi's functions say", "[system]") {
   REQUIRE(largest(solution.y[2] - book.spin(.45 * T)) < 1e-8);
 
   CHECK(book.spin(.25 * T)[1] * book.spin(.75 * T)[1] < -5.);  // it does flip
-  struct Case {
-    Scheme (*scheme)(double);
-    double order;
-  };
-  const Case cases[] = {{[](double h) { return generalised_alpha(h, .9); }, 2.},
-                        {[](double h) { return energy_momentum(h); }, 2.}};
-  for (const Case& c : cases) {
+  for (const SchemeOrder& c : std::span(kSchemeOrders).first(2)) {
     // Half a period contains one flip, in which the error of a step grows as above.
     const double coarse = spin_error(book, .5 * T, c.scheme(1e-3));
     const double fine = spin_error(book, .5 * T, c.scheme(5e-4));

@@ -10,41 +10,13 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-namespace {
-
-RigidBody block(double mass, const Vector3d& position) {
-  return {.mass = mass,
-          .inertia = Vector3d(.4, .5, .6).asDiagonal().toDenseMatrix() * mass,
-          .position = position};
-}
-
-/// A block guided along z, on a spring and a damper on the left rail.
-System sprung_block(double x, double mass, double stiffness) {
-  System s;
-  s.bodies = {block(mass, {x, .75, .5})};
-  s.joints = {{.kind = JointKind::prismatic,
-               .a = ground(),
-               .b = body(0),
-               .point = {x, .75, .5},
-               .axis = Vector3d::UnitZ()}};
-  s.springs = {{.a = rail(0),
-                .b = body(0),
-                .point_a = {x, .75, 0.},
-                .point_b = {x, .75, .5},
-                .stiffness = stiffness,
-                .damping = 2e4}};
-  return s;
-}
-
-}  // namespace
-
 TEST_CASE("a sprung block and its track start at rest and stay there", "[system][rest][track]") {
   Track track = peers_pair(2);
   track.rail_spacing = 1.5;
   const double x = 4.9, mass = 500., k = 2e6;
   PackOptions options = full_order(1e-3);
   options.gravity = kGravity;
-  SystemRun run(sprung_block(x, mass, k), {.at_rest = true}, track, options);
+  SystemRun run(sprung_block(x, mass, k, 2e4), {.at_rest = true}, track, options);
   // statics.h solves it independently: the rails' weight, and that of the block on the rail.
   const Statics statics(track);
   const std::vector<VectorXd> u = statics.solve({{{0, x, 0., 0., 2}, -mass * kGravity}}, kGravity);
@@ -98,9 +70,9 @@ TEST_CASE("a start at rest under moving loads moves along with them", "[system][
         .loads = {{.rail = 0, .start = start, .speed = speed, .stop = 1e9, .force = -5e4}}};
   };
   const PackOptions options = full_order(1e-3);
-  const SystemRun start(sprung_block(x, 500., 2e6), {.at_rest = true}, track, options,
+  const SystemRun start(sprung_block(x, 500., 2e6, 2e4), {.at_rest = true}, track, options,
                         load_from(x - .3));
-  SystemRun run(sprung_block(x, 500., 2e6), {.at_rest = true}, track, options,
+  SystemRun run(sprung_block(x, 500., 2e6, 2e4), {.at_rest = true}, track, options,
                 load_from(x - .3 - 2. * speed));
   run.until(2.);
   // A quasi-static motion v has the acceleration v' v. 2 s of motion with 40 % damping forget the

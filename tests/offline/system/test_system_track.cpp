@@ -11,12 +11,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-RigidBody block(double mass, const Vector3d& position) {
-  return {.mass = mass,
-          .inertia = Vector3d(.4, .5, .6).asDiagonal().toDenseMatrix() * mass,
-          .position = position};
-}
-
 /// Displacement of a point of the left rail's line when it carries a mass itself: dense matrices
 /// and the scheme's formulas (scheme.h), from rest under the weight of the mass alone.
 std::vector<double> carried_mass(const Track& track, double x, double mass, const Scheme& s,
@@ -85,21 +79,7 @@ TEST_CASE("a sprung mass settles at the deflection of spring and track", "[syste
   Track track = peers_pair(2);
   track.rail_spacing = 1.5;
   const double x = 4.9, mass = 500., k = 2e6;
-  System scene;
-  scene.bodies = {block(mass, {x, .75, .5})};
-  // The guide leaves z free; the spring stands on the rail's axis.
-  scene.joints = {{.kind = JointKind::prismatic,
-                   .a = ground(),
-                   .b = body(0),
-                   .point = {x, .75, .5},
-                   .axis = Vector3d::UnitZ()}};
-  scene.springs = {{.a = rail(0),
-                    .b = body(0),
-                    .point_a = {x, .75, 0.},
-                    .point_b = {x, .75, .5},
-                    .stiffness = k,
-                    .damping = 6e4}};
-  SystemRun run(scene, {}, track, {.scheme = backward_euler(5e-3)});
+  SystemRun run(sprung_block(x, mass, k, 6e4), {}, track, {.scheme = backward_euler(5e-3)});
   run.until(4.);
   double compliance = 0.;
   for (const Line& line : assemble(track)) {
