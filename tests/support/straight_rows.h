@@ -1,7 +1,9 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
+#include <ios>
 #include <vector>
 
 #include "offline/element/straight_beam.h"
@@ -32,6 +34,23 @@ inline std::uint64_t hash(std::uint64_t h, const double* x, std::size_t n) {
   return h;
 }
 inline constexpr std::uint64_t kEmpty = 14695981039346656037ULL;
+
+/// Holds a kernel's bits to those that g++ 12 stored, at -O3 with SSE2; every compiler, level and
+/// vector width that was tried has the same. What to do where they differ is said.
+inline void check_stored(const char* kernel, std::uint64_t found, std::uint64_t stored) {
+  INFO(
+      "The bits of " << kernel << " have the hash 0x" << std::hex << found << ", stored is 0x"
+                     << stored << ".\n"
+                     << "The hash pins the order of every sum of the kernel. Model files must step "
+                        "to the same bits in each build.\n"
+                        "If other builds still have the stored hash, this one's compiler or flags "
+                        "reorder sums: mend the build (docs/determinism.md).\n"
+                        "If the kernel was changed on purpose: check it by the tests of its file "
+                        "against dense matrices, run tools/determinism-matrix, which shows that "
+                        "all builds agree, store the models' hashes by tools/determinism-matrix "
+                        "--store, and write the hash found here into this test.");
+  CHECK(found == stored);
+}
 
 inline bool same_bits(const double* a, const double* b, std::size_t n) {
   return std::memcmp(a, b, n * sizeof(double)) == 0;
