@@ -1,5 +1,3 @@
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -11,6 +9,7 @@
 #include "section/profile.h"
 #include "section/section_file.h"
 #include "section/section_fit.h"
+#include "support/bad_input.h"
 #include "support/profiles.h"
 #include "text/read.h"
 
@@ -23,46 +22,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An empty folder that is deleted with the object.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "railstep_fit_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no folder for the test");
-    path = name;
-  }
-  ~Folder() { fs::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const std::string& name, const std::string& content) const {
-    std::ofstream(path / name, std::ios::binary) << content;
-    return (path / name).string();
-  }
-  std::size_t entries() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(path), fs::directory_iterator()));
-  }
-};
+/// What `railstep fit` says with these arguments.
+Ran fit(const std::string& arguments) { return railstep_program("fit " + arguments); }
 
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-struct Ran {
-  int code;
-  std::string out, error;
-};
-
-/// Runs `railstep fit` with these arguments.
-Ran fit(const std::string& arguments) {
-  const Folder folder;
-  const std::string out = (folder.path / "out").string(), error = (folder.path / "error").string();
-  const int status = std::system(
-      (std::string(RAILSTEP_PROGRAM) + " fit " + arguments + " >" + out + " 2>" + error).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(error)};
+/// Width and height of a path on a report, mm.
+std::pair<double, double> drawn_size(const std::string& html, const std::string& path) {
+  const std::string start = "class=\"" + path + "\" d=\"M";
+  const std::size_t at = html.find(start);
+  REQUIRE(at != std::string::npos);
+  std::istringstream points(html.substr(at + start.size(), html.find('Z', at) - at - start.size()));
+  double least[2] = {1e9, 1e9}, most[2] = {-1e9, -1e9};
+  char comma = 0;
+  for (double p[2]; points >> p[0] >> comma >> p[1];)
+    for (int i = 0; i < 2; ++i) {
+      least[i] = std::min(least[i], p[i]);
+      most[i] = std::max(most[i], p[i]);
+    }
+  return {most[0] - least[0], most[1] - least[1]};
 }
 
 /// The outline of a profile as a list of points, in units of `metre`.
@@ -84,7 +60,7 @@ TEST_CASE("fit prints one JSON object with the contract's keys", "[cli]") {
     INFO(name);
     const Ran ran = fit(profile_file(name).string() + " --json");
     REQUIRE(ran.code == 0);
-    CHECK(ran.error.empty());
+    CHECK(ran.err.empty());
     const json all = json::parse(ran.out);
     for (const char* part : {"outline", "section"}) {
       CHECK(all[part].size() == 9);
@@ -123,7 +99,7 @@ TEST_CASE("the outline's torsion constant agrees with finite differences", "[cli
 }
 
 TEST_CASE("a list of points fits as its profile in every way of writing it", "[cli]") {
-  const Folder folder;
+  const BadInput folder("fit");
   const json want = json::parse(fit(profile_file("60e1").string() + " --json").out);
   const std::string plain = points_of("60e1", 1e3, ",", "\n", false);
   const std::string variants[] = {
@@ -135,7 +111,7 @@ TEST_CASE("a list of points fits as its profile in every way of writing it", "[c
       folder.file("d.csv", plain + plain.substr(0, plain.find('\n') + 1)) + " --unit mm"};
   for (const std::string& arguments : variants) {
     const Ran ran = fit(arguments + " --json");
-    INFO(arguments << ran.error);
+    INFO(arguments << ran.err);
     REQUIRE(ran.code == 0);
     const json got = json::parse(ran.out);
     // Chords up to 1e-7 m off arcs of 0.3 m miss up to 2e-8 m2 of 7.7e-3 m2: 3e-6.
@@ -165,9 +141,9 @@ TEST_CASE("targets without an outline give the section of the reference table", 
 }
 
 TEST_CASE("the written section reads back bit for bit and the page loads no other file", "[cli]") {
-  const Folder folder;
-  const std::string out = (folder.path / "section.toml").string();
-  const std::string page = (folder.path / "page.html").string();
+  const BadInput folder("fit");
+  const std::string out = folder.path("section.toml");
+  const std::string page = folder.path("page.html");
   const Ran ran =
       fit(profile_file("136re").string() + " --json --out " + out + " --report " + page);
   REQUIRE(ran.code == 0);
@@ -185,11 +161,17 @@ TEST_CASE("the written section reads back bit for bit and the page loads no othe
   CHECK(section.shear.torsion == again.shear.torsion);
   CHECK(section.shear.shear_centre_height == again.shear.shear_centre_height);
   CHECK(section.height == all["section"]["height_m"].get<double>());
-  const std::string html = content(page);
-  CHECK_THAT(html, Contains("<svg") && Contains("class=\"outline\"") &&
-                       Contains("class=\"rectangles\"") && Contains("136RE, 10 in crown"));
+  const std::string html = text_of(page);
+  CHECK_THAT(html, Contains("136RE, 10 in crown"));
+  // The outline is 7 5/16 in by 6 in; the rectangles are as high, and as wide as the foot.
+  const auto [width, height] = drawn_size(html, "outline");
+  CHECK_THAT(width, WithinAbs(6. * 25.4, 2e-3));  // written to a micrometre
+  CHECK_THAT(height, WithinAbs(7.3125 * 25.4, 2e-3));
+  const auto [foot, all_three] = drawn_size(html, "rectangles");
+  CHECK_THAT(foot, WithinAbs(1e3 * all["dimensions"]["foot_width_m"].get<double>(), 2e-3));
+  CHECK_THAT(all_three, WithinAbs(1e3 * section.height, 2e-3));
   CHECK_THAT(html, !Contains("http") && !Contains("src="));
-  CHECK(folder.entries() == 2);  // no other file is left beside them
+  CHECK(folder.content().size() == 2);  // no other file is left beside them
   const Ran table = fit(profile_file("136re").string());
   CHECK_THAT(table.out, Contains("outline") && Contains("head height, mm"));
 }
@@ -207,19 +189,19 @@ TEST_CASE("a usage error ends with 2 and names the option", "[cli][bad_input]") 
       {"--target area_m2=8e-3 --head-width-m nan_", "--head-width-m"}};
   for (const auto& [arguments, words] : cases) {
     const Ran ran = fit(arguments);
-    INFO(arguments << ": " << ran.error);
+    INFO(arguments << ": " << ran.err);
     CHECK(ran.code == 2);
     CHECK(ran.out.empty());
-    CHECK_THAT(ran.error, Contains(words));
+    CHECK_THAT(ran.err, Contains(words));
   }
 }
 
 TEST_CASE("a plain rectangle is fitted by three rectangles of the same width", "[cli]") {
-  const Folder folder;
+  const BadInput folder("fit");
   const std::string file = folder.file("bar.csv", "0 0\n30 0\n30 20\n0 20\n");
   const Ran ran = fit(file + " --unit mm --json");
   REQUIRE(ran.code == 0);
-  CHECK(ran.error.empty());
+  CHECK(ran.err.empty());
   const json all = json::parse(ran.out);
   for (const char* key : {"foot_width_m", "web_width_m", "head_width_m"})
     CHECK_THAT(all["dimensions"][key].get<double>(), WithinAbs(0.03, 1e-9));  // the fit's own 1e-9
@@ -229,5 +211,5 @@ TEST_CASE("a plain rectangle is fitted by three rectangles of the same width", "
 TEST_CASE("an output path that cannot be written is refused and named", "[cli]") {
   const Ran ran = fit(profile_file("60e1").string() + " --out /no/such/folder/section.toml");
   CHECK(ran.code == 2);
-  CHECK_THAT(ran.error, Contains("/no/such/folder/section.toml"));
+  CHECK_THAT(ran.err, Contains("/no/such/folder/section.toml"));
 }

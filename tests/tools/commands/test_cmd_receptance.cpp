@@ -14,6 +14,7 @@
 #include "online/track/track_sensor.h"
 #include "scene/scene.h"
 #include "support/condensed.h"
+#include "support/plotted.h"
 #include "support/program.h"
 
 using namespace railstep;
@@ -272,14 +273,29 @@ TEST_CASE("receptance writes its curves and its report", "[receptance]") {
         "frequency_hz,full.magnitude_m_per_n,full.phase_rad,euler.magnitude_m_per_n,"
         "euler.phase_rad,end_effect");
   CHECK(std::count(text.begin(), text.end(), '\n') == 61);
-  double hz = 0., magnitude = 0.;
-  REQUIRE(std::sscanf(text.c_str() + text.find('\n'), "%lf,%lf", &hz, &magnitude) == 2);
-  CHECK(hz == json["frequency_hz"][0].get<double>());
+  double first_hz = 0., magnitude = 0.;
+  REQUIRE(std::sscanf(text.c_str() + text.find('\n'), "%lf,%lf", &first_hz, &magnitude) == 2);
+  CHECK(first_hz == json["frequency_hz"][0].get<double>());
   CHECK(magnitude == json["magnitude_m_per_n"][0].get<double>());
-  std::size_t drawings = 0;
-  for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1))
-    ++drawings;
-  CHECK(drawings == 3);
+  const auto hz = json["frequency_hz"].get<std::vector<double>>();
+  const auto drawn = [&](const char* heading, const char* name, bool log_y) {
+    return plotted(html, std::string("<h2>") + heading, name, true, log_y);
+  };
+  const auto check_curve = [&](const nlohmann::json& of, const char* name) {
+    auto nm = of["magnitude_m_per_n"].get<std::vector<double>>(),
+         degrees = of["phase_rad"].get<std::vector<double>>();
+    for (double& each : nm) each *= 1e9;
+    for (double& each : degrees) each *= 180. / M_PI;
+    check_drawn(drawn("Magnitude", name, true), hz, nm, 1e-3);  // a logarithm's pixel is wider
+    check_drawn(drawn("Phase", name, false), hz, degrees, 1e-3);
+  };
+  check_curve(json, "full order");
+  check_curve(json["beside"]["euler"], "Euler-Bernoulli");
+  // The bands are numbered from 0 along the axis, on which their frequencies are written.
+  const auto rate = json["decay_rate"]["db_per_m"].get<std::vector<double>>();
+  const Curve decay = plotted(html, "<h2>Track decay rate", "", false, true);
+  REQUIRE(decay.y.size() == rate.size());
+  for (std::size_t i = 0; i < rate.size(); ++i) CHECK_THAT(decay.y[i], WithinRel(rate[i], 1e-3));
   for (const char* name : {"track on ballast", "sleeper anti-resonance", "rail on pads",
                            "pinned-pinned", "Euler-Bernoulli", "dB/m"})
     CHECK_THAT(html, Catch::Contains(name));
