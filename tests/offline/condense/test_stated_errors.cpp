@@ -202,6 +202,7 @@ TEST_CASE("a response without damping has no largest value", "[stated]") {
 }
 
 TEST_CASE("the stated receptance error is the largest of its band on random tracks", "[stated]") {
+  std::size_t judged = 0;
   for (const std::uint64_t seed : seeds()) {
     const StatedScene made(seed);
     const Scene scene = read_scene(made.file());
@@ -213,6 +214,7 @@ TEST_CASE("the stated receptance error is the largest of its band on random trac
       WARN("seed " << seed << ": undamped at " << *told.undamped_hz << " Hz");
       continue;
     }
+    ++judged;
     REQUIRE(told.largest);
     CHECK(told.unresolved < 1e-2);
     const int elements = receptance_refinement(built.track) * built.track.elements_per_bay;
@@ -223,6 +225,7 @@ TEST_CASE("the stated receptance error is the largest of its band on random trac
     CHECK(same <= *told.largest * (1. + 3. * kMet));
     CHECK(same >= *told.largest * (1. - 2e-2));
   }
+  CHECK(2 * judged > seeds().size());  // few tracks are undamped anywhere
 }
 
 TEST_CASE("the stated static error is the largest along random tracks", "[stated]") {
