@@ -15,7 +15,7 @@ namespace railstep {
 
 using Bytes = std::vector<unsigned char>;
 
-/// A UDP socket on the loopback, with a port that nothing else had.
+/// A UDP socket on the loopback with a port of its own.
 class LoopbackSocket {
  public:
   LoopbackSocket() : file_(socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -36,13 +36,13 @@ class LoopbackSocket {
   }
   std::string address() const { return "127.0.0.1:" + std::to_string(port()); }
 
-  /// Nobody has to listen there.
+  /// Sends a packet to a port; nobody has to listen there.
   void send(const Bytes& bytes, std::uint16_t port) const {
     const sockaddr_in to = place(port);
     static_cast<void>(sendto(file_, bytes.data(), bytes.size(), 0,
                              reinterpret_cast<const sockaddr*>(&to), sizeof to));
   }
-  /// @returns a packet; nothing where none came in time
+  /// @returns the next packet, or an empty one if none comes in time
   Bytes receive() const {
     Bytes bytes(65536);
     const ssize_t got = recv(file_, bytes.data(), bytes.size(), 0);
@@ -61,7 +61,7 @@ class LoopbackSocket {
   int file_;
 };
 
-/// Was free a moment ago.
+/// A port that was free a moment ago.
 inline std::uint16_t free_port() { return LoopbackSocket().port(); }
 
 }  // namespace railstep

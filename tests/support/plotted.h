@@ -1,86 +1,85 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
-#include <sstream>
 #include <string>
 #include <vector>
 
 namespace railstep {
 
-/// Points of a curve in the numbers of its axes.
+/// Points of a drawn curve in the units of its axes.
 struct Curve {
   std::vector<double> x, y;
 };
 
-/// Numbers behind pixels: two ticks of an axis.
+/// Numbers along an axis: pixels of its ticks and what is written at them.
 struct Ticks {
   bool logarithmic = false;
   std::vector<double> pixel, value;
 
   double at(double of) const {
     REQUIRE(pixel.size() >= 2);
-    const auto number = [&](double v) { return logarithmic ? std::log(v) : v; };
-    const double a = number(value.front()), b = number(value.back());
+    const auto place = [&](double v) { return logarithmic ? std::log(v) : v; };
+    const double a = place(value.front()), b = place(value.back());
     const double found = a + (b - a) * (of - pixel.front()) / (pixel.back() - pixel.front());
     return logarithmic ? std::exp(found) : found;
   }
 };
 
-/// A curve "with lines" as gnuplot drew it, up to a hundredth of a pixel.
+/// A curve "with lines" on a report's page, as gnuplot drew it. A pixel has two decimals.
 /// @param after  text of the page in front of the plot or in its head
-/// @param name   of the curve in the plot's key; "" of the plot's only curve without a key
+/// @param name   of the curve in the plot's key; "" for the first curve of a plot without a key
 inline Curve plotted(const std::string& page, const std::string& after, const std::string& name,
                      bool log_x = false, bool log_y = false) {
-  const std::size_t start = page.find(after);
-  REQUIRE(start != std::string::npos);
-  std::istringstream lines(page.substr(start, page.find("</svg>", start) - start));
-  Ticks across{log_x, {}, {}}, up{log_y, {}, {}};
-  std::vector<std::array<double, 2>> points;
-  bool own = false;
-  std::size_t in_key = 0;  // points of the curve's sample
-  for (std::string line, text; std::getline(lines, line);) {
-    const std::size_t path = line.find("d='M");
-    const bool tick = path != std::string::npos && line.find("text-anchor=") != std::string::npos;
-    if (tick && std::getline(lines, text)) {
-      Ticks& axis = line.find("\"end\"") != std::string::npos ? up : across;
-      const char* const from = line.c_str() + path + 4;
-      char* comma = nullptr;
-      const double x = std::strtod(from, &comma);
-      axis.pixel.push_back(&axis == &across ? x : std::strtod(comma + 1, nullptr));
-      axis.value.push_back(std::strtod(text.c_str() + text.find('>') + 1, nullptr));
-    } else if (name.empty() ? line.find("_plot_1\"") != std::string::npos
-                            : line.find("<text>" + name + "</text>") != std::string::npos) {
-      own = true;
-      in_key = name.empty() ? 0 : 2;
-    } else if (own && line == "\t</g>") {
-      break;
-    } else if (own && path != std::string::npos) {
-      std::istringstream words(line.substr(path + 3));
-      for (std::string word; words >> word && (word[0] == 'M' || word[0] == 'L');) {
-        std::array<double, 2> at{};
-        REQUIRE(std::sscanf(word.c_str() + 1, "%lf,%lf", &at[0], &at[1]) == 2);
-        if (in_key > 0)
-          --in_key;
-        else if (points.empty() || points.back() != at)  // a long curve goes on in another path
-          points.push_back(at);
-      }
-    }
-  }
   CAPTURE(after, name);
-  REQUIRE(points.size() > 1);
+  const std::size_t start = page.find(after), end = page.find("</svg>", start);
+  REQUIRE(end != std::string::npos);
+  const std::string svg = page.substr(start, end - start);
+  const auto point_at = [&](std::size_t at) {
+    std::array<double, 2> p{};
+    REQUIRE(std::sscanf(svg.c_str() + at, "%lf,%lf", &p[0], &p[1]) == 2);
+    return p;
+  };
+
+  // A tick's line has its mark and the place of its text; the next line has the number.
+  Ticks across{log_x, {}, {}}, up{log_y, {}, {}};
+  const std::string anchor = "text-anchor=\"", mark = "d='M";
+  for (std::size_t at = svg.find(anchor); at != std::string::npos; at = svg.find(anchor, at + 1)) {
+    const std::size_t path = svg.find(mark, svg.rfind('\n', at)), text = svg.find("<text>", at) + 6;
+    if (path > at) continue;
+    char* behind = nullptr;
+    const double value = std::strtod(svg.c_str() + text, &behind);
+    if (behind == svg.c_str() + text || *behind != '<') continue;
+    const bool is_up = svg[at + anchor.size()] == 'e';  // its text ends at the axis
+    Ticks& axis = is_up ? up : across;
+    axis.pixel.push_back(point_at(path + mark.size())[is_up ? 1 : 0]);
+    axis.value.push_back(value);
+  }
+
+  const std::size_t own = svg.find(name.empty() ? "_plot_1\"" : "<text>" + name + "</text>");
+  REQUIRE(own != std::string::npos);
+  const std::size_t first = svg.find(mark, own) + 3, last = svg.find("</g>\n\t</g>", first);
+  std::vector<std::array<double, 2>> pixels;
+  for (std::size_t at = first; (at = svg.find_first_of("ML", at)) < last; ++at) {
+    const auto p = point_at(at + 1);
+    if (pixels.empty() || pixels.back() != p) pixels.push_back(p);  // a long curve has more paths
+  }
+  if (!name.empty()) pixels.erase(pixels.begin(), pixels.begin() + 2);  // the key's sample
+  REQUIRE(pixels.size() > 1);
   Curve curve;
-  for (const auto& [x, y] : points) {
+  for (const auto& [x, y] : pixels) {
     curve.x.push_back(across.at(x));
     curve.y.push_back(up.at(y));
   }
   return curve;
 }
 
-/// A drawn curve goes through all these points and no others.
-/// @param off  how far it may be beside them, over the largest: a pixel's hundredth on an axis of
-///             some 300 is 3e-5, thrice that with the rounding of two ticks
+/// Checks that a drawn curve goes through all these points and no others.
+/// @param off  largest distance over the largest value: a hundredth of a pixel on 300 is 3e-5, and
+///             the ticks are as exact
 inline void check_drawn(const Curve& drawn, const std::vector<double>& x,
                         const std::vector<double>& y, double off = 1e-4) {
   REQUIRE(drawn.x.size() == x.size());

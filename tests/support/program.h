@@ -34,13 +34,13 @@ inline std::size_t entries(const std::filesystem::path& folder) {
 }
 
 struct Ran {
-  int code;  // -1 where a signal ended the shell
+  int code;  // -1 if a signal ended the shell
   std::string out, err;
 };
 
-/// A program with its words, through the shell. One that takes longer than a test waits is killed
-/// and ends with code 124.
-/// @param before  words of the shell before the program, such as "ulimit -f 8;"
+/// Runs a program with its words through the shell. A program that runs longer than a test waits is
+/// killed and has code 124.
+/// @param before  words of the shell in front of the program, such as "ulimit -f 8;"
 inline Ran run_program(const std::string& program, const std::string& words,
                        const std::string& before = "") {
   const auto folder = fresh_folder("words");

@@ -8,11 +8,11 @@
 
 namespace railstep {
 
-/// How long a test waits at most, however busy the machine is; tests/CMakeLists.txt sets it by
+/// Longest time that a test waits, however busy the machine is. CMakeLists.txt sets it for each
 /// build.
 inline constexpr std::chrono::seconds kPatience{RAILSTEP_PATIENCE};
 
-/// A moment after which a test waits no longer.
+/// The moment at which a test stops waiting.
 class Deadline {
  public:
   explicit Deadline(std::chrono::seconds from_now = kPatience)
@@ -23,8 +23,8 @@ class Deadline {
   std::chrono::steady_clock::time_point end_;
 };
 
-/// Waits for `done`, which is asked about once a millisecond.
-/// @returns whether it was done before the deadline
+/// Calls `done` once a millisecond until it is true or the deadline has passed.
+/// @returns whether it became true
 inline bool waited(const std::function<bool()>& done, const Deadline& deadline = Deadline()) {
   while (!done()) {
     if (deadline.passed()) return false;
@@ -33,7 +33,8 @@ inline bool waited(const std::function<bool()>& done, const Deadline& deadline =
   return true;
 }
 
-/// The same, and the test case fails where it was not done. For the test's own thread.
+/// Waits for `done` and fails the test case if it does not become true. Only for the test's own
+/// thread.
 inline void wait_until(const std::function<bool()>& done, const std::string& what,
                        std::chrono::seconds most = kPatience) {
   if (!waited(done, Deadline(most))) FAIL("waited " << most.count() << " s in vain for " << what);

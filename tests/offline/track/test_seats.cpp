@@ -99,25 +99,20 @@ TEST_CASE("a sleeper of 1 kg between springs of 1e9 and 1e8 N/m is stable with l
   series.support.stiffness[2] = 9.090909090909e7;
   CHECK_THAT(Statics(t).flexibility(at(2.4), at(2.4)),
              WithinRel(Statics(series).flexibility(at(2.4), at(2.4)), 1e-9));
-  // A rail of a million times its mass stands still where each of the nine sleepers swings, but for
-  // 1 kg over 3.6e7 kg a bay; its own modes are far below.
+  // A rail with a million times its mass does not move where each of the nine sleepers swings, but
+  // for 1 kg over 3.6e7 kg a bay. The rail's own modes are far below.
   Track still = t;
   still.material.density *= 1e6;
-  const Eigen::VectorXd frequency = modes(Statics(still).lines()[0]).frequency;
+  const Eigen::VectorXd frequency = modes(assemble(still)[0]).frequency;
   for (Eigen::Index i = frequency.size() - 9; i < frequency.size(); ++i)
-    CHECK_THAT(frequency[i], WithinRel(5278.6, 1e-5));  // as it is printed
+    CHECK_THAT(frequency[i], WithinRel(5278.6, 1e-5));  // as hard-cases.md prints it
   CHECK(frequency[frequency.size() - 10] < 1e3);
-  // A load that comes at a blow makes all of it swing. The seat's motion is the slowest to end: the
-  // damper's share of the pad's give, 1e3 (1/1.1)^2 N s/m of 36 kg, e^-23 in 2 s.
+  // A load is put on the track at rest, so that all of it swings. The rail's swing on the seats
+  // lasts longest: the pad's damper has 1e3 (1/1.1)^2 N s/m there for 36 kg, which is e^-23 in 2 s.
   Traffic traffic{.loads = {{.start = 2.4, .stop = 9., .force = -50e3}}};
   ModelRun run(t, traffic, full_order(1e-3));
+  for (int i = 0; i < 2000; ++i) run.step();
   const double rest = -50e3 * Statics(t).flexibility(at(2.4), at(2.4));
-  double deepest = 0.;
-  for (int i = 0; i < 2000; ++i) {
-    run.step();
-    deepest = std::min(deepest, run.outputs.load_deflection[0]);
-  }
-  CHECK(deepest < 1.3 * rest);  // it did swing
   CHECK_THAT(run.outputs.load_deflection[0], WithinRel(rest, 1e-6));
 }
 

@@ -152,7 +152,7 @@ TEST_CASE("a trace or report that cannot be written is reported in one sentence"
 TEST_CASE("the report is one page with all its plots", "[run]") {
   const auto folder = fresh_folder("report");
   const std::string page = (folder / "r.html").string(), trace = (folder / "t.csv").string();
-  // One rail carries twice the other's load, so that a curve is not taken for the other.
+  // The right rail carries twice the load, so that neither curve can be taken for the other.
   const Ran ran = railstep_program("run " + kMovingLoad + " --set 'load[1].force_z_n=-100e3'" +
                                    " --report " + page + " --trace " + trace);
   CAPTURE(ran.err);
@@ -169,18 +169,20 @@ TEST_CASE("the report is one page with all its plots", "[run]") {
       millimetres.push_back(1e3 * row[rows.column(name + ".deflection_z_m")]);
     check_drawn(plotted(html, "<title>deflection_z_m</title>", name), time, millimetres);
   }
-  // The rail is lowest at the node next to the load, by what the trace has there. A node is up to
-  // 0.15 m away and the mesh leaves out up to 2.5 % under a load (hard-cases.md, section 1).
-  const auto& middle = rows.row[150];
-  for (const auto& [rail, name] : {std::pair{"rail0", "load_left"}, {"rail1", "load_right"}}) {
-    const Curve shape = plotted(html, std::string("<title>") + rail + "</title>", "0.15 s");
+  // At 3/8 of the run the rail is lowest at the node next to the load, up to 0.15 m away. The trace
+  // has 1 % more there (0.1 m of a wave of 0.9 m), 1 % more by the kink of shear and up to 2.5 %
+  // more that the mesh leaves out under a load (hard-cases.md, section 1).
+  const auto& then = rows.row[113];
+  for (const auto& [rail, name] :
+       {std::pair{"rail0", "load_left"}, std::pair{"rail1", "load_right"}}) {
+    const Curve shape = plotted(html, std::string("<title>") + rail + "</title>", "0.113 s");
     CHECK(shape.x.front() == Approx(0.).margin(1e-3));
     CHECK(shape.x.back() == Approx(9.6).margin(1e-3));
     const auto lowest = std::min_element(shape.y.begin(), shape.y.end());
     const auto node = static_cast<std::size_t>(lowest - shape.y.begin());
-    CHECK(std::abs(shape.x[node] - middle[rows.column(std::string(name) + ".x_m")]) < .16);
-    const double deflection = 1e3 * middle[rows.column(std::string(name) + ".deflection_z_m")];
-    CHECK_THAT(*lowest, WithinRel(deflection, .03));
+    CHECK(std::abs(shape.x[node] - then[rows.column(std::string(name) + ".x_m")]) < .16);
+    const double deflection = 1e3 * then[rows.column(std::string(name) + ".deflection_z_m")];
+    CHECK_THAT(*lowest, WithinRel(deflection, .05));
   }
 }
 
