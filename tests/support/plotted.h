@@ -67,8 +67,8 @@ inline Curve plotted(const std::string& page, const std::string& after, const st
     const auto p = point_at(at + 1);
     if (pixels.empty() || pixels.back() != p) pixels.push_back(p);  // a long curve has more paths
   }
+  REQUIRE(pixels.size() > 2);
   if (!name.empty()) pixels.erase(pixels.begin(), pixels.begin() + 2);  // the key's sample
-  REQUIRE(pixels.size() > 1);
   Curve curve;
   for (const auto& [x, y] : pixels) {
     curve.x.push_back(across.at(x));

@@ -106,9 +106,9 @@ class PacedRun {
   }
 
   BadInput folder_{"packets"};
+  LoopbackSocket peer_;  // has its port before another one is looked for
   std::uint16_t port_ = free_port();
   std::vector<std::string> outputs_;
-  LoopbackSocket peer_;
   Ran ran_{};
   std::unique_ptr<Started> hil_;
 };
