@@ -161,15 +161,15 @@ TEST_CASE("a track without end refuses keys that it cannot have, each with its m
   refused({"track.model=\"nonlinear\"", "track.unknowns=\"full\""}, "accepted with length");
   refused({"support.length_m=0.1"}, "are points");
   refused({"output.supports=true"}, "pass under its traffic");
-  refused({"track.bays=8"}, "more bays");
-  refused({"wheelset[0].speed_m_per_s=-30.0"}, "goes forward");
-  refused({"wheelset[0].speed_m_per_s=31.4159265"}, "whole number of bays");
+  refused({"track.bays=8"}, "E-PACK-33");
+  refused({"wheelset[0].speed_m_per_s=-30.0"}, "E-PACK-36");
+  refused({"wheelset[0].speed_m_per_s=31.4159265"}, "E-START-06");
   refused({"sensor[0].sleeper=20"}, "ahead of x = 0");
   refused({R"(load=[{name="slow", rail="left", speed_m_per_s=20.0, force_z_n=-1e3, start_m=0.0}])"},
-          "one speed");
+          "E-PACK-31");
   refused({R"(vehicle=[{name="slow", rail="left", start_m=0.0, type="mass", mass_kg=1e3, )"
            R"(speed_table=[[0.0, 30.0], [1.0, 20.0]]}])"},
-          "without a table");
+          "E-PACK-30");
   CHECK_THROWS_WITH(read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/moving_load.toml",
                                {"step.start=\"moving\""}),
                     Contains("goes on as it is"));

@@ -112,9 +112,9 @@ TEST_CASE("a vehicle without weight is pressed down by a force and has no equili
   RunningVehicle v = running(bogie(kBogie), 5.3, 0.);
   v.gravity = 0.;
   const PackOptions options = options_of(false, track, 1e-4);
-  CHECK_THROWS_WITH(from_rest(track, {.vehicles = {v}}, options), Contains("nothing presses"));
+  CHECK_THROWS_WITH(from_rest(track, {.vehicles = {v}}, options), Contains("E-START-08"));
   v.forces = constant(kTurn, 6e3);
-  CHECK_THROWS_WITH(from_rest(track, {.vehicles = {v}}, options), Contains("nothing presses"));
+  CHECK_THROWS_WITH(from_rest(track, {.vehicles = {v}}, options), Contains("E-START-08"));
   v.forces = constant(kRise, -kPress);
   const ModelRun run = from_rest(track, {.vehicles = {v}}, options);
   for (const int i : {0, 1}) CHECK_THAT(run.state.wheel_force[i], WithinRel(.5 * kPress, 1e-8));
@@ -249,9 +249,9 @@ TEST_CASE("bad forces on vehicles are refused in one sentence", "[vehicle][input
     };
   };
   CHECK_THROWS_WITH(refused(std::vector<OuterForce>(5, {0, {0., 1.}, -1}))(),
-                    Contains("more than 4 forces on a vehicle"));
-  CHECK_THROWS_WITH(refused({{4, {0., 1.}, -1}})(), Contains("a coordinate that its vehicle"));
-  CHECK_THROWS_WITH(refused({{0, {}, 0}})(), Contains("has a table, or an input of its own"));
+                    Contains("on a vehicle; expected at most 4 [E-PACK-13]"));
+  CHECK_THROWS_WITH(refused({{4, {0., 1.}, -1}})(), Contains("E-PACK-44"));
+  CHECK_THROWS_WITH(refused({{0, {}, 0}})(), Contains("E-PACK-14"));
 }
 
 TEST_CASE("static counts a vehicle's forces at the start as weight", "[vehicle][inputs][cli]") {

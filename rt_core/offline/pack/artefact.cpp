@@ -26,8 +26,8 @@ class Writer {
 
   void count(std::int32_t& value, std::int64_t most) {
     if (value < 0 || value > most)
-      refuse("E-PACK-01", "a model too large to be written: " + std::to_string(value) +
-                              " of something of which " + std::to_string(most) + " are accepted");
+      refuse("E-PACK-01", "the model does not fit into a model file: one of its counts is " +
+                              std::to_string(value) + "; expected 0 to " + std::to_string(most));
     integer(value);
   }
   void integer(std::int64_t value) { put(kWords, &value, 1); }

@@ -74,7 +74,8 @@ Block cholesky(const Block& D, int panel) {
         sum -= G[static_cast<std::size_t>(at(i, k))] * G[static_cast<std::size_t>(at(j, k))];
       if (i == j && !(sum > 0.0 && std::isfinite(sum)))
         refuse("E-PACK-02", "the matrix is not positive definite at unknown " +
-                                std::to_string(panel * kLanes + j));
+                                std::to_string(panel * kLanes + j) +
+                                "; expected masses and stiffnesses of fewer orders of magnitude");
       G[static_cast<std::size_t>(at(i, j))] =
           i == j ? std::sqrt(sum) : sum / G[static_cast<std::size_t>(at(j, j))];
     }
@@ -123,8 +124,9 @@ void factor(BlockBand& band) {
 
 BandFactor factor_band(const Eigen::SparseMatrix<double>& A) {
   if (A.rows() == 0 || A.rows() != A.cols())
-    refuse("E-PACK-03", "a band matrix to factor must be square and not empty, it is " +
-                            std::to_string(A.rows()) + " by " + std::to_string(A.cols()));
+    refuse("E-PACK-03", "the band matrix is " + std::to_string(A.rows()) + " by " +
+                            std::to_string(A.cols()) +
+                            "; expected a square matrix that is not empty");
   BlockBand band = gather(A);
   factor(band);
 

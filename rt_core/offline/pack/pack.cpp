@@ -79,8 +79,9 @@ std::int32_t PackedModel::load_point_at(const LoadPoint& point) {
         load_points_[i].y == point.y)
       return static_cast<std::int32_t>(i);
   if (load_points_.size() == static_cast<std::size_t>(kMaxLoadPoints))
-    refuse("E-PACK-04", "vertical forces act at more than " + std::to_string(kMaxLoadPoints) +
-                            " heights, counted for each rail");
+    refuse("E-PACK-04",
+           "vertical forces act at too many heights, counted for each rail; expected at most " +
+               std::to_string(kMaxLoadPoints));
   load_points_.push_back(point);
   return static_cast<std::int32_t>(load_points_.size()) - 1;
 }
@@ -93,9 +94,11 @@ std::int32_t PackedModel::load_point_of_wheel(int rail) {
 
 void PackedModel::add_load(const Track& track, const MovingLoad& load) {
   if (model_.loads == kMaxLoads)
-    refuse("E-PACK-05", "more than " + std::to_string(kMaxLoads) + " loads");
+    refuse("E-PACK-05", "there are more loads than a model takes; expected at most " +
+                            std::to_string(kMaxLoads));
   if (load.rail < 0 || load.rail >= track.rails)
-    refuse("E-PACK-06", "a load stands on a rail that the track does not have");
+    refuse("E-PACK-06",
+           "a load is on a rail that the track does not have; expected rail 0, or rail 1 of two");
   LoadModel& packed = model_.load[model_.loads++];
   height_row(model_.cant[load.rail], 0., load.z, packed.row);
   packed.rail = load.rail;
@@ -113,25 +116,36 @@ void PackedModel::add_load(const Track& track, const MovingLoad& load) {
 
 void PackedModel::add_irregularity(const Track& track, const RailIrregularity& irregularity) {
   if (model_.signals == kMaxSignals)
-    refuse("E-PACK-07",
-           "more than " + std::to_string(kMaxSignals) + " irregularities and defects of the rails");
+    refuse(
+        "E-PACK-07",
+        "there are more irregularities and defects of rails than a model takes; expected at most " +
+            std::to_string(kMaxSignals));
   if (irregularity.rail < 0 || irregularity.rail >= track.rails)
-    refuse("E-PACK-08", "an irregularity of a rail that the track does not have");
+    refuse("E-PACK-06",
+           "an irregularity is on a rail that the track does not have; expected rail 0, or rail 1 "
+           "of two");
   if (irregularity.direction != 1 && irregularity.direction != 2)
-    refuse("E-PACK-09", "an irregularity is lateral or vertical");
+    refuse("E-PACK-09", "the direction of an irregularity is " +
+                            std::to_string(irregularity.direction) +
+                            "; expected 1 (lateral) or 2 (vertical)");
   model_.signal[model_.signals++] = {irregularity.rail, irregularity.direction,
                                      keep(irregularity.signal)};
 }
 
 void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
                                const std::array<Railhead, 2>& heads) {
-  if (track.rails != 2) refuse("E-PACK-10", "a wheelset stands on two rails");
+  if (track.rails != 2)
+    refuse("E-PACK-10",
+           "a wheelset stands on two rails, but the track has one; expected track.rails = 2");
   if (model_.wheelsets == kMaxWheelsets)
-    refuse("E-PACK-11", "more than " + std::to_string(kMaxWheelsets) + " wheelsets");
+    refuse("E-PACK-11", "there are more wheelsets than a model takes; expected at most " +
+                            std::to_string(kMaxWheelsets));
   for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
                                wheelset.inertia_yaw, wheelset.radius})
     if (!(inertia > 0.))
-      refuse("E-PACK-12", "a wheelset's mass, inertias and radius are above zero");
+      refuse("E-PACK-12",
+             "the mass, an inertia or the radius of a wheelset is not above 0; expected numbers "
+             "above 0");
   WheelsetModel& packed = model_.wheelset[model_.wheelsets++];
   packed.first = model_.unknowns;
   model_.unknowns += 8;
@@ -167,10 +181,14 @@ std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce*
                                const char* body) {
   const std::string on = std::string(" on a ") + body;
   if (forces.size() > static_cast<std::size_t>(kMaxBodyForces))
-    refuse("E-PACK-13", "more than " + std::to_string(kMaxBodyForces) + " forces" + on);
+    refuse("E-PACK-13",
+           "too many forces act" + on + "; expected at most " + std::to_string(kMaxBodyForces));
   for (const OuterForce& own : forces) {
     if (own.input >= model_.inputs || (own.input >= 0) != own.table.empty())
-      refuse("E-PACK-14", "a force" + on + " has a table, or an input of its own");
+      refuse(
+          "E-PACK-14",
+          "a force" + on +
+              " does not have exactly one source; expected a table, or one of the model's inputs");
     *force++ = {own.direction, static_cast<std::int32_t>(own.table.size() / 2), keep(own.table),
                 own.input};
   }
@@ -182,10 +200,11 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
                              const std::array<Railhead, 2>& heads) {
   const Flange& flange = *wheelset.flange;
   if (track.cant != 0.)
-    refuse("E-PACK-15", "flanges meet the heads of upright rails; accepted is no cant");
+    refuse("E-PACK-15", "a wheelset has flanges, but the rails have cant; expected track.cant = 0");
   FlangeModel& packed = model_.flange[model_.flanges++];
   if (contact_count(model_) > kMaxWheels)
-    refuse("E-PACK-16", "more than " + std::to_string(kMaxWheels) + " wheels and flanges");
+    refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
+                            std::to_string(kMaxWheels));
   packed.wheelset = model_.wheelsets - 1;
   packed.normal[0] = -std::sin(flange.angle);
   packed.normal[1] = std::cos(flange.angle);
@@ -208,17 +227,21 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
 
 void PackedModel::set_start(std::vector<double> state) {
   if (static_cast<std::int64_t>(state.size()) != state_doubles(model_))
-    refuse("E-PACK-17", "a start that is not a state of this model");
+    refuse("E-PACK-17", "the start has " + std::to_string(state.size()) + " numbers; expected " +
+                            std::to_string(state_doubles(model_)) +
+                            ", the size of a state of this model");
   model_.start = keep(std::move(state));
 }
 
 PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackOptions& options) {
-  if (options.steps_per_frame < 1) refuse("E-PACK-18", "a frame has one step or more");
+  if (options.steps_per_frame < 1)
+    refuse("E-PACK-18",
+           "a frame has " + std::to_string(options.steps_per_frame) + " steps; expected 1 or more");
   model_.scheme = options.scheme;
   if (options.scheme.mean != 0 && !options.reduction)
-    refuse(
-        "E-PACK-19",
-        "contact forces that are means over the step are held over it, as with condensed tracks");
+    refuse("E-PACK-19",
+           "the scheme averages contact forces over the step, but the track is in full order; "
+           "expected a condensed track");
   model_.steps_per_frame = options.steps_per_frame;
   // A model always has a run: of one frame where none is told.
   model_.steps = options.steps > 0 ? options.steps : options.steps_per_frame;
@@ -241,7 +264,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   }
   model_.form = options.reduction ? Form::condensed : Form::banded;
   if (track.cant != 0. && !traffic.held.empty())
-    refuse("E-PACK-20", "bodies hold on to rails that stand upright; accepted is no cant");
+    refuse("E-PACK-20", "bodies are joined to rails with cant; expected track.cant = 0");
   met_ = {0, track.elements()};
   if (options.endless) add_endless(track, traffic, options);
   add_lines(track, traffic, options);
@@ -274,7 +297,10 @@ void PackedModel::add_lines(const Track& track, const Traffic& traffic,
     kept.push_back({{}, i, closing, {}, {}});
     moved.push_back(std::move(lines[i]));
   }
-  if (moved.empty()) refuse("E-PACK-21", "nothing moves the track");
+  if (moved.empty())
+    refuse("E-PACK-21",
+           "nothing moves the track; expected a load, a wheelset, a vehicle or an external wheel "
+           "on it");
   // Whatever the start: what runs on it would push the track away.
   refuse_free_modes(track, moved,
                     options.reduction ? std::vector<FixedPort>{} : fixed_ports(track));
@@ -286,24 +312,30 @@ void PackedModel::add_lines(const Track& track, const Traffic& traffic,
 
 void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
   if (model_.external_wheels == kMaxExternalWheels)
-    refuse("E-PACK-22", "more than " + std::to_string(kMaxExternalWheels) + " external wheels");
+    refuse("E-PACK-22", "there are more external wheels than a model takes; expected at most " +
+                            std::to_string(kMaxExternalWheels));
   if (wheel.rail < 0 || wheel.rail >= track.rails)
-    refuse("E-PACK-23", "an external wheel is on a rail that the track does not have");
+    refuse("E-PACK-06",
+           "an external wheel is on a rail that the track does not have; expected rail 0, or rail "
+           "1 of two");
   if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.fixed.count > 0)
-    refuse("E-PACK-24",
-           "external wheels run on a track that is linear: beside loads, and without wheelsets, "
-           "vehicles, stops, joints with a gap and supports that do not pull");
+    refuse(
+        "E-PACK-24",
+        "an external wheel is beside a wheelset, a vehicle, a stop, a joint with a gap or a "
+        "support that does not pull; expected a linear track with loads and external wheels alone");
   for (const PackedLine& own : lines_)
     if (own.basis.flexibility.size() > 0)
-      refuse(
-          "E-PACK-25",
-          "truncated damped modes do not know the velocity under external wheels; accepted are the "
-          "other kinds of condensed tracks, and full order");
-  if (model_.steps_per_frame != 1) refuse("E-PACK-26", "external wheels want a frame of one step");
+      refuse("E-PACK-25",
+             "external wheels run on truncated damped modes, which do not know the velocity under "
+             "a wheel; expected full order, or another condense.kind than \"complex-modes\"");
+  if (model_.steps_per_frame != 1)
+    refuse("E-PACK-26", "a frame has " + std::to_string(model_.steps_per_frame) +
+                            " steps, but external wheels need a frame of one step; expected "
+                            "step.frame_s = step.dt_s");
   if (model_.scheme.stage_fraction > 0.)
     refuse("E-PACK-27",
-           "external wheels press at the ends of steps; accepted is a scheme of one stage, which "
-           "TR-BDF2 is not");
+           "external wheels press at the ends of steps, but the scheme has two stages; expected "
+           "another step.scheme than \"tr-bdf2\"");
   constexpr double kFar = 1e9;  // m
   const std::int32_t input = model_.inputs;
   std::vector<double> limits(kExternalInputs, wheel.limit);
@@ -316,9 +348,11 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
 void take_inputs(const std::vector<double>& limits, Model& model) {
   for (const double limit : limits) {
     if (model.inputs == kMaxInputs)
-      refuse("E-PACK-28", "more than " + std::to_string(kMaxInputs) + " inputs");
+      refuse("E-PACK-28", "there are more inputs than a model takes; expected at most " +
+                              std::to_string(kMaxInputs));
     if (!(limit > 0.) || !std::isfinite(limit))
-      refuse("E-PACK-29", "an input's limit is a finite number above 0");
+      refuse("E-PACK-29", "the limit of an input is " + std::to_string(limit) +
+                              "; expected a finite number above 0");
     model.input_limit[model.inputs++] = limit;
   }
 }

@@ -18,7 +18,9 @@ double speed_of(const Traffic& traffic) {
   std::vector<double> speeds;
   const auto add = [&](double speed, const std::vector<double>& table) {
     if (!table.empty())
-      refuse("E-PACK-30", "on a track without end all runs at one speed, without a table");
+      refuse("E-PACK-30",
+             "traffic on a track without end has a table of speeds; expected one constant speed "
+             "for all traffic");
     speeds.push_back(speed);
   };
   for (const MovingLoad& load : traffic.loads) add(load.speed, load.speeds);
@@ -26,7 +28,9 @@ double speed_of(const Traffic& traffic) {
   for (const RunningVehicle& vehicle : traffic.vehicles) add(vehicle.speed, vehicle.speeds);
   for (const double speed : speeds)
     if (speed != speeds[0])
-      refuse("E-PACK-31", "on a track without end all that runs has one speed");
+      refuse("E-PACK-31", "traffic on a track without end has the speeds " +
+                              std::to_string(speeds[0]) + " and " + std::to_string(speed) +
+                              " m/s; expected one speed for all traffic");
   return speeds.empty() ? 0. : speeds[0];
 }
 
@@ -47,9 +51,9 @@ std::pair<double, double> span_of(const Traffic& traffic) {
 std::string too_short(const Track& track, double span, double decay) {
   std::ostringstream text;
   text << (track.ring ? "the ring" : "the window") << " of a track without end is "
-       << track.length() << " m long; accepted are " << span << " m of traffic and "
-       << (track.ring ? "a decay length of " : "on either side a decay length of ") << decay
-       << " m: more bays";
+       << track.length() << " m long; expected at least " << span << " m of traffic and "
+       << (track.ring ? "" : "on either side of it ") << "a decay length of " << decay
+       << " m: more track.bays";
   return text.str();
 }
 
@@ -59,7 +63,8 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
                               const PackOptions& options) {
   if (track.ring != options.reduction.has_value())
     refuse("E-PACK-32",
-           "a track without end is a ring where it is condensed, and a window in full order");
+           "a track without end has the wrong form; expected a ring if it is condensed, and a "
+           "window if it is in full order");
   const double bay = track.bay_length;
   const auto [first, last] = span_of(traffic);
   Endless& e = model_.endless;
@@ -71,7 +76,9 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
                before = track.length() - (e.origin + last + bay);
   const bool room = track.ring ? behind + before >= decay && behind >= bay && before >= bay
                                : behind >= decay && before >= decay;
-  if (!room) refuse("E-PACK-33", too_short(track, (last - first + bay), decay));
+  if (!room)
+    refuse(track.ring ? MessageId("E-PACK-33") : MessageId("E-PACK-51"),
+           too_short(track, (last - first + bay), decay));
   if (!track.ring || !traffic.external_wheels.empty() || !traffic.held.empty()) return;
   // Of a ring's shapes and tables no more is ever read: from a bay before all that runs to one
   // behind that to which it goes on, and the seats around a wheelset.

@@ -175,8 +175,9 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
 
 void PackedModel::add_line(const Track& track, PackedLine own, const PackOptions& options) {
   if (model_.lines == kMaxLines)
-    refuse("E-PACK-34",
-           "the track falls into too many lines: under gravity each sleeper without pads is one");
+    refuse("E-PACK-34", "the track splits into too many independent lines; expected at most " +
+                            std::to_string(kMaxLines) +
+                            ". Under gravity each sleeper without pads is one line");
   LineModel packed{};
   std::size_t twin = 0;
   while (twin < lines_.size() && !(same_but_for_the_rail(lines_[twin].line, own.line) &&

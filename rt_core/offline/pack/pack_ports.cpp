@@ -11,10 +11,10 @@ void PackedModel::add_fixed_ports(const Track& track) {
   if (ports.empty()) return;
   if (ports.size() > static_cast<std::size_t>(kMaxFixedPorts))
     refuse("E-PACK-35", "the track has " + std::to_string(ports.size()) +
-                            " one-sided springs (stops, gaps of joints, and pads and ballast "
-                            "that do not pull or have a gap, a pad with a half spread as two); "
-                            "accepted are " +
-                            std::to_string(kMaxFixedPorts));
+                            " one-sided springs; expected at most " +
+                            std::to_string(kMaxFixedPorts) +
+                            ". They are stops, gaps of joints, and pads and ballast that do not "
+                            "pull or have a gap; a pad with a length counts as two");
   FixedPortModel& fixed = model_.fixed;
   std::vector<double> stiffness, damping, gap;
   for (const FixedPort& port : ports) {

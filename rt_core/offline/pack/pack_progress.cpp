@@ -41,7 +41,8 @@ Convergents convergents_of(double x, std::int64_t most) {
 
 BayProgress bay_progress(double bays_per_step) {
   if (!(bays_per_step >= 0.) || !(bays_per_step < 1.))
-    refuse("E-PACK-36", "on a track without end traffic goes forward, less than a bay in a step");
+    refuse("E-PACK-36", "traffic on a track without end goes " + std::to_string(bays_per_step) +
+                            " bays in a step; expected at least 0 and less than 1");
   const Convergents found = convergents_of(bays_per_step, kMostSteps);
   if (!found.exact)
     return {std::int64_t{1} << 62, 0, static_cast<std::int64_t>(std::ldexp(bays_per_step, 62))};

@@ -32,7 +32,10 @@ ContactModel contact_of(const RunningVehicle& vehicle, double radius, const Rail
   switch (vehicle.contact) {
     case WheelContactKind::linear:
       if (!(vehicle.stiffness > 0.) || !(vehicle.damping >= 0.))
-        refuse("E-PACK-37", "a linear contact has a stiffness above 0");
+        refuse("E-PACK-37", "the stiffness of a linear contact is " +
+                                std::to_string(vehicle.stiffness) + " N/m and its damping " +
+                                std::to_string(vehicle.damping) +
+                                " N s/m; expected a stiffness above 0 and a damping of at least 0");
       return {0., vehicle.stiffness, vehicle.damping};
     case WheelContactKind::bonded:
       return {0., kBonded, 0.};
@@ -58,7 +61,10 @@ TravelTable travel_table(double speed, const std::vector<double>& speeds) {
     double way = 0.;
     if (!rows.empty()) {
       const double* last = rows.data() + rows.size() - 3;
-      if (!(t > last[0])) refuse("E-PACK-38", "the times of a table of speeds do not rise");
+      if (!(t > last[0]))
+        refuse(
+            "E-PACK-38",
+            "the times in a table of speeds do not rise; expected each time above the one before");
       way = last[2] + .5 * (t - last[0]) * (last[1] + v);
     }
     rows.insert(rows.end(), {t, v, way});
@@ -79,20 +85,25 @@ TravelModel PackedModel::keep_travel(double speed, const std::vector<double>& sp
 void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
                               const std::array<Railhead, 2>& heads) {
   if (vehicle.rail < 0 || vehicle.rail >= track.rails)
-    refuse("E-PACK-39", "a vehicle stands on a rail that the track does not have");
+    refuse(
+        "E-PACK-06",
+        "a vehicle is on a rail that the track does not have; expected rail 0, or rail 1 of two");
   if (model_.vehicles == kMaxVehicles)
-    refuse("E-PACK-40", "more than " + std::to_string(kMaxVehicles) + " vehicles");
+    refuse("E-PACK-40", "there are more vehicles than a model takes; expected at most " +
+                            std::to_string(kMaxVehicles));
   const VehicleMatrices m = vehicle_matrices(vehicle.vehicle, vehicle.gravity);
   const auto n = static_cast<std::int32_t>(m.mass.rows());
   const auto wheels = static_cast<std::int32_t>(m.wheels.rows());
   if (n > kMaxVehicleUnknowns)
-    refuse("E-PACK-41",
-           "more than " + std::to_string(kMaxVehicleUnknowns) + " coordinates of one vehicle");
+    refuse("E-PACK-41", "a vehicle has " + std::to_string(n) + " coordinates; expected at most " +
+                            std::to_string(kMaxVehicleUnknowns));
   if (contact_count(model_) + wheels > kMaxWheels)
-    refuse("E-PACK-42",
-           "more than " + std::to_string(kMaxWheels) + " wheels of wheelsets and vehicles");
+    refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
+                            std::to_string(kMaxWheels));
   if (!vehicle.tread.empty() && vehicle.tread.size() != vehicle.vehicle.wheels.size())
-    refuse("E-PACK-43", "treads of a vehicle that are not one for each wheel");
+    refuse("E-PACK-43", "a vehicle has " + std::to_string(vehicle.tread.size()) +
+                            " treads; expected none or " +
+                            std::to_string(vehicle.vehicle.wheels.size()) + ", one for each wheel");
   const auto rail = static_cast<std::size_t>(vehicle.rail);
   VehicleModel& packed = model_.vehicle[model_.vehicles];
   packed.first = model_.unknowns;
@@ -114,7 +125,8 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   packed.response = keep(row_by_row(response));
   for (const OuterForce& force : vehicle.forces)
     if (force.direction < 0 || force.direction >= n)
-      refuse("E-PACK-44", "a force along a coordinate that its vehicle does not have");
+      refuse("E-PACK-44", "a force acts along coordinate " + std::to_string(force.direction) +
+                              " of a vehicle; expected 0 to " + std::to_string(n - 1));
   packed.forces = keep(vehicle.forces, packed.force, "vehicle");
   packed.compliance = keep(row_by_row(.5 * (compliance + compliance.transpose())));
   for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i) {

@@ -23,7 +23,8 @@ Eigen::VectorXd static_port_forces(const Eigen::MatrixXd& compliance,
               .status;
   if (met != PortStatus::converged)
     refuse("E-PACK-50",
-           "no equilibrium was found: the one-sided supports open and close without end");
+           "no equilibrium was found: the one-sided supports open and close again and again; "
+           "expected loads that keep the track on its supports");
   return Eigen::Map<const Eigen::VectorXd>(force.data(), n);
 }
 

@@ -10,11 +10,14 @@ namespace railstep {
 namespace {
 
 void check_step(double dt) {
-  if (!(dt > 0.) || !std::isfinite(dt)) refuse("E-PACK-46", "the step is a finite time above zero");
+  if (!(dt > 0.) || !std::isfinite(dt))
+    refuse("E-PACK-46",
+           "the time step is " + std::to_string(dt) + " s; expected a finite time above 0");
 }
 
 void check_rho(double rho_inf) {
-  if (!(rho_inf >= 0.) || !(rho_inf <= 1.)) refuse("E-PACK-47", "rho_inf lies between 0 and 1");
+  if (!(rho_inf >= 0.) || !(rho_inf <= 1.))
+    refuse("E-PACK-47", "rho_inf is " + std::to_string(rho_inf) + "; expected 0 to 1");
 }
 
 /// M a_{1-alpha_m} + C v_{1-alpha_f} + K u_{1-alpha_f} = f_{1-alpha_f}, all means of a step's ends,
@@ -53,17 +56,17 @@ Scheme generalised_alpha(double dt, double rho_inf) {
 Scheme newmark(double dt, double gamma, double beta) {
   check_step(dt);
   if (!(gamma >= .5) || !(gamma <= 1.) || !(beta >= .5 * gamma) || !(beta <= 1.))
-    refuse(
-        "E-PACK-48",
-        "Newmark's gamma lies between 1/2 and 1, beta between gamma/2 and 1: others are not stable "
-        "at every step");
+    refuse("E-PACK-48", "newmark_gamma is " + std::to_string(gamma) + " and newmark_beta is " +
+                            std::to_string(beta) +
+                            "; expected a gamma from 1/2 to 1 and a beta from gamma/2 to 1, since "
+                            "other values are not stable at every step");
   return by_alphas(dt, 0., 0., beta, gamma);
 }
 
 Scheme hilber_hughes_taylor(double dt, double alpha) {
   check_step(dt);
   if (!(alpha >= -1. / 3.) || !(alpha <= 0.))
-    refuse("E-PACK-49", "alpha of Hilber, Hughes and Taylor lies between -1/3 and 0");
+    refuse("E-PACK-49", "hht_alpha is " + std::to_string(alpha) + "; expected -1/3 to 0");
   return by_alphas(dt, 0., -alpha, .25 * (1. - alpha) * (1. - alpha), .5 - alpha);
 }
 

@@ -126,7 +126,9 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     if (most <= kNothing || (most < kRounding && !(most < before))) return pose;
     before = most;
   }
-  refuse("E-START-01", "no equilibrium was found of a wheelset on its rails");
+  refuse("E-START-01",
+         "no equilibrium of a wheelset on its rails was found; expected a place where both wheels "
+         "stand on the rails, or step.start = \"released\"");
 }
 
 /// What all stands on `time` later, for its rates alone: each wheel presses right over its place
@@ -209,7 +211,9 @@ double wheel_load(const WheelsetModel& w) {
     if (w.force[i].direction == 2) vertical -= force;
   }
   if (!(vertical > 0.))
-    refuse("E-START-02", "no equilibrium in contact: nothing presses a wheelset down");
+    refuse("E-START-02",
+           "no equilibrium: nothing presses a wheelset onto its rails; expected gravity, a force "
+           "downwards, or step.start = \"released\"");
   return vertical / 2.;
 }
 

@@ -83,8 +83,10 @@ Model evened(const Model& model) {
 Model with_forces(const Model& even) {
   Model carried = even;
   if (carried.loads + wheel_count(even) > kMaxLoads)
-    refuse("E-START-03",
-           "a start on the move takes " + std::to_string(kMaxLoads) + " loads and wheels at most");
+    refuse("E-START-03", "a moving start takes " + std::to_string(kMaxLoads) +
+                             " loads and wheels, and there are " +
+                             std::to_string(carried.loads + wheel_count(even)) +
+                             "; expected fewer, or step.start = \"equilibrium\"");
   int wheel = 0;
   for (const double force : static_forces(even))
     carried.load[carried.loads++] = load_of(even, wheel++, force);
@@ -191,7 +193,7 @@ void settle(const Model& even, std::vector<double>& memory) {
     return;
   }
   refuse("E-START-04",
-         "the track does not settle into a moving steady state; accepted is step.start = "
+         "the track does not settle into a moving steady state; expected step.start = "
          "\"equilibrium\"");
 }
 
@@ -250,14 +252,15 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
 std::string no_whole_bays(const Model& model) {
   const Endless& e = model.endless;
   std::ostringstream text;
-  text << std::setprecision(17) << "no number of steps is a whole number of bays; accepted is ";
+  text << std::setprecision(17)
+       << "no number of steps is a whole number of bays at this speed; expected ";
   const double here = std::ldexp(static_cast<double>(e.progress.advance), -62);
   for (const WholeBays& near : whole_bays_near(here, kMostSteps / 16))
     text << "a speed of "
          << static_cast<double>(near.bays) / static_cast<double>(near.steps) * e.bay_length /
                 model.scheme.dt
          << " m/s (" << near.bays << " bays in " << near.steps << " steps), ";
-  text << "another at which one is, or step.start = \"equilibrium\"";
+  text << "another with whole bays, or step.start = \"equilibrium\"";
   return text.str();
 }
 
@@ -266,11 +269,14 @@ std::string no_whole_bays(const Model& model) {
 std::vector<double> start_moving(const Track& track, const PackedModel& packed, double gravity) {
   const Model& model = packed.model();
   if (model.endless.bays == 0)
-    refuse("E-START-05", "a start on the move wants a track without end");
+    refuse("E-START-05",
+           "the start is \"moving\", but the track has ends; expected a track without end");
   if (model.endless.progress.period > kMostSteps) refuse("E-START-06", no_whole_bays(model));
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     if (side_force(model.wheelset[b]) != 0.)
-      refuse("E-START-07", "a start on the move takes no lateral force on a wheelset at the start");
+      refuse("E-START-07",
+             "a lateral force acts on a wheelset at a moving start; expected a lateral force of 0 "
+             "N at t = 0, or step.start = \"equilibrium\"");
   if (model.endless.progress.bays == 0) return start_in_equilibrium(track, packed, gravity);
   const Model even = evened(model);
   if (model.form == Form::banded) {

@@ -88,7 +88,9 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       Eigen::VectorXd::Constant(wheels, all.carried / static_cast<double>(wheels));
   for (Eigen::Index i = 0; i < wheels; ++i)
     if (model.vehicle_wheel[i].contact.hertz > 0. && !(force[i] > 0.))
-      refuse("E-START-08", "no equilibrium in contact: nothing presses a vehicle down");
+      refuse("E-START-08",
+             "no equilibrium: nothing presses a vehicle onto its rail; expected gravity, a force "
+             "downwards, or step.start = \"released\"");
   bool settled = false, lifted_off = false;
   for (int iteration = 0; iteration < kIterations && !settled && !lifted_off; ++iteration) {
     Eigen::MatrixXd A(n + wheels, n + wheels);
@@ -106,7 +108,9 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
     }
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
     if (!lu.isInvertible())
-      refuse("E-START-09", "no equilibrium: a vehicle's springs and wheels leave it a free motion");
+      refuse("E-START-09",
+             "no equilibrium: the springs and wheels of a vehicle leave it a free motion; expected "
+             "stiffnesses above 0");
     const Eigen::VectorXd change = lu.solve(b);
     u += change.head(n);
     settled = iteration > 0;
@@ -122,7 +126,10 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       if (taken < kLiftedOff * std::abs(all.carried) && lifted) lifted_off = true;
     }
   }
-  if (!settled) refuse("E-START-10", "no equilibrium with all of a vehicle's wheels on the rail");
+  if (!settled)
+    refuse("E-START-10",
+           "no equilibrium: a wheel of a vehicle lifts off the rail; expected a load that presses "
+           "on each wheel, or step.start = \"released\"");
   SettledVehicles found{force, {}};
   for (Eigen::Index b = 0, at = 0; b < model.vehicles; at += model.vehicle[b].size, ++b)
     found.displacement.emplace_back(u.segment(at, model.vehicle[b].size));
@@ -245,8 +252,8 @@ SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packe
   }
   if (!done)
     refuse("E-START-11",
-           "no equilibrium was found of vehicles on supports that press alone; accepted is "
-           "step.start = \"released\"");
+           "no equilibrium of vehicles on supports that do not pull was found; expected step.start "
+           "= \"released\"");
   for (std::size_t i = 0; i < wheels.count(); ++i) {
     if (!wheels.on_rail[i]) continue;
     RailForce port = wheels.port[i];

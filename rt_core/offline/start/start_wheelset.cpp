@@ -41,14 +41,13 @@ void check_sides(const Model& model) {
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     if (side_force(model.wheelset[b]) == 0.) continue;
     if (contacts_of(model, b).count == 2)
-      refuse(
-          "E-START-12",
-          "no equilibrium: a lateral force acts on a wheelset at the start and nothing holds it");
+      refuse("E-START-12",
+             "no equilibrium: a lateral force acts on a wheelset at the start and nothing holds "
+             "it; expected a flange, or a lateral force of 0 N at t = 0");
     if (model.wheelsets + model.vehicles > 1)
-      refuse(
-          "E-START-13",
-          "no equilibrium is sought of a wheelset that leans on its flange beside other wheelsets "
-          "and vehicles; accepted is step.start = \"released\"");
+      refuse("E-START-13",
+             "a wheelset leans on its flange beside other wheelsets or vehicles, and no "
+             "equilibrium is sought for this; expected step.start = \"released\"");
   }
 }
 
@@ -69,10 +68,13 @@ Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
   stance.force = rows_of(stance).partialPivLu().solve(-applied.tail(stance.count));
   for (int i = 0; i < stance.count; ++i) {
     if (stance.contact[static_cast<std::size_t>(i)].on_rail && stance.force[i] > 0.) continue;
-    refuse("E-START-14",
-           aside != 0.
-               ? "no equilibrium in contact: the lateral force lifts a wheel over its flange"
-               : "no equilibrium in contact: a wheelset does not stand on both railheads");
+    if (aside != 0.)
+      refuse("E-START-14",
+             "no equilibrium: the lateral force lifts a wheel over its flange; expected a smaller "
+             "lateral force at t = 0");
+    refuse("E-START-15",
+           "no equilibrium: a wheelset does not stand on both railheads; expected a place where "
+           "it does, or step.start = \"released\"");
   }
   return stance;
 }

@@ -51,7 +51,7 @@ class Connector {
 /// plane an axis in it gives the lateral one second.
 Matrix3d around(const Vector3d& axis) {
   if (!axis.allFinite() || !(axis.norm() > 0.))
-    refuse("E-SYSTEM-01", "its axis is a finite vector that is not 0");
+    refuse("E-SYSTEM-01", "its axis is 0 or not finite; expected a finite vector that is not 0");
   const Vector3d n = axis.normalized();
   const Vector3d helper = std::abs(n.y()) < .9 ? Vector3d::UnitY() : Vector3d::UnitZ();
   Matrix3d axes;
@@ -72,8 +72,9 @@ void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& m
   const Vector3d local = beam.axes.transpose() * (point - beam.start);
   const double slack = 1e-9 * beam.length;
   if (!(local.x() >= -slack && local.x() <= beam.length + slack))
-    refuse("E-SYSTEM-02", "its point lies " + std::to_string(local.x()) +
-                              " m along a beam that is " + std::to_string(beam.length) + " m long");
+    refuse("E-SYSTEM-02", "its point is at " + std::to_string(local.x()) +
+                              " m along a beam; expected 0 to " + std::to_string(beam.length) +
+                              " m");
   const double along = std::clamp(local.x() / beam.length * beam.elements, 0., 1. * beam.elements);
   const int element = std::min(static_cast<int>(along), beam.elements - 1);
   double xi = 2. * (along - element) - 1.;
@@ -90,15 +91,22 @@ void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& m
 void Connector::check_in_plane(const Part& part, const Vector3d& point) const {
   const auto index = static_cast<std::size_t>(part.index);
   if (index < system_.beams.size() && point.y() != system_.beams[index].start.y())
-    refuse("E-SYSTEM-03", "in a planar system its point lies in the beam's plane");
+    refuse("E-SYSTEM-03", "its point is at y = " + std::to_string(point.y()) +
+                              " m, beside its beam; expected the beam's y in a planar system");
 }
 
 void Connector::put_on_rail(const Part& part, const Vector3d& point, MarkerModel& marker) {
-  if (track_ == nullptr) refuse("E-SYSTEM-04", "it names a rail, but there is no track");
+  if (track_ == nullptr)
+    refuse("E-SYSTEM-04",
+           "it names a rail, but there is no track; expected a body, a beam or the ground");
   if (part.index < 0 || part.index >= track_->rails)
-    refuse("E-SYSTEM-05", "it names a rail that the track does not have");
+    refuse("E-SYSTEM-05", "it names rail " + std::to_string(part.index) +
+                              ", which the track does not have; expected 0 to " +
+                              std::to_string(track_->rails - 1));
   if (!(point.x() >= 0. && point.x() <= track_->length()))
-    refuse("E-SYSTEM-06", "its point lies beyond the rail's ends");
+    refuse("E-SYSTEM-06", "its point is at x = " + std::to_string(point.x()) +
+                              " m, beyond the rail's ends; expected 0 to " +
+                              std::to_string(track_->length()) + " m");
   const double side = track_->rails == 2 ? track_->rail_spacing / 2. : 0.;
   const double y = part.index == 0 ? side : -side;
   const double along = point.x() / track_->element_length();
@@ -118,7 +126,8 @@ void Connector::put_on_rail(const Part& part, const Vector3d& point, MarkerModel
 }
 
 std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Matrix3d& axes) {
-  if (!point.allFinite()) refuse("E-SYSTEM-07", "its point is finite");
+  if (!point.allFinite())
+    refuse("E-SYSTEM-07", "its point is not finite; expected three finite numbers");
   MarkerModel m{};
   m.part = part.index;
   if (part.kind == Part::Kind::ground) {
@@ -127,7 +136,9 @@ std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Ma
     set_frame(m, axes, Matrix3d::Identity());
   } else if (part.kind == Part::Kind::body) {
     if (part.index < 0 || static_cast<std::size_t>(part.index) >= system_.bodies.size())
-      refuse("E-SYSTEM-08", "it names a body that is not there");
+      refuse("E-SYSTEM-08", "it names body " + std::to_string(part.index) +
+                                ", which does not exist; expected one of the " +
+                                std::to_string(system_.bodies.size()) + " bodies, counted from 0");
     const RigidBody& body = system_.bodies[static_cast<std::size_t>(part.index)];
     const Matrix3d R = body.orientation.toRotationMatrix();
     m.kind = PartKind::body;
@@ -140,7 +151,9 @@ std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Ma
     set_frame(m, axes, Matrix3d::Identity());
   } else {
     if (part.index < 0 || static_cast<std::size_t>(part.index) >= system_.beams.size())
-      refuse("E-SYSTEM-09", "it names a beam that is not there");
+      refuse("E-SYSTEM-09", "it names beam " + std::to_string(part.index) +
+                                ", which does not exist; expected one of the " +
+                                std::to_string(system_.beams.size()) + " beams, counted from 0");
     const FlexibleBeam& beam = system_.beams[static_cast<std::size_t>(part.index)];
     m.kind = PartKind::beam;
     put_on_beam(beam, point, m);
@@ -183,9 +196,10 @@ void Connector::add_either_way(const Joint& joint) {
   switch (joint.kind) {
     case JointKind::distance: {
       const double length = (joint.other_point - joint.point).norm();
-      if (!(length > 0.)) refuse("E-SYSTEM-10", "its two points lie apart");
+      if (!(length > 0.))
+        refuse("E-SYSTEM-10", "its two points are the same; expected a distance above 0 m");
       if (system_.planar && joint.point.y() != joint.other_point.y())
-        refuse("E-SYSTEM-11", "in a planar system its points lie side by side, not across");
+        refuse("E-SYSTEM-11", "its two points differ in y; expected the same y in a planar system");
       const bool driven = !joint.motion.polynomial.empty() || !joint.motion.table.empty();
       return row(RowKind::distance, 0, 0, 0, driven ? motion(joint.motion) : -1, length);
     }
@@ -201,7 +215,8 @@ void Connector::add_either_way(const Joint& joint) {
       drive.piece = parts_.piece.data();
       const Jet start = motion_at(drive, angle, 0.);
       if (!(std::abs(start.x) < 1e-9))
-        refuse("E-SYSTEM-12", "its rotation is 0 at t = 0: axes are given at rest");
+        refuse("E-SYSTEM-12", "its rotation at t = 0 is " + std::to_string(start.x) +
+                                  " rad; expected 0, since axes are given at rest");
       return row(RowKind::square, 2, 1, 1, angle);
     }
     default:
@@ -224,7 +239,9 @@ void Connector::add_in_plane(const Joint& joint) {
     case JointKind::point_on_line:
       return row(RowKind::along_a, 2);
     case JointKind::universal:
-      refuse("E-SYSTEM-13", "a planar system has no universal joint; take a revolute one");
+      refuse("E-SYSTEM-13",
+             "it is a universal joint, which a planar system does not have; expected a revolute "
+             "joint");
     default:
       return add_either_way(joint);
   }
@@ -272,15 +289,16 @@ void check_plane(const Joint& joint) {
   const bool rotates = joint.kind == JointKind::revolute || joint.kind == JointKind::rotation;
   const bool free = joint.kind == JointKind::spherical || joint.kind == JointKind::distance;
   if (rotates && !(std::abs(n.y()) > 1. - 1e-12))
-    refuse("E-SYSTEM-14", "in a planar system its axis is y");
+    refuse("E-SYSTEM-14", "its axis is not y; expected y in a planar system");
   if (!rotates && !free && !(std::abs(n.y()) < 1e-12))
-    refuse("E-SYSTEM-15", "in a planar system its axis lies in x and z");
+    refuse("E-SYSTEM-15",
+           "its axis leaves the plane of x and z; expected an axis in x and z in a planar system");
 }
 
 void Connector::add(const Joint& joint, std::int32_t index) {
   if (joint.a.kind == joint.b.kind && joint.a.index == joint.b.index &&
       joint.a.kind != Part::Kind::beam)
-    refuse("E-SYSTEM-16", "it joins a part with itself");
+    refuse("E-SYSTEM-16", "it joins a part with itself; expected two parts");
   if (system_.planar) check_plane(joint);
   const Matrix3d axes = around(joint.axis);
   const bool two = joint.kind == JointKind::distance;
@@ -290,7 +308,7 @@ void Connector::add(const Joint& joint, std::int32_t index) {
   if (joint.kind == JointKind::universal) {
     other = around(joint.other_axis);
     if (std::abs(other.col(0).dot(axes.col(0))) > 1e-12)
-      refuse("E-SYSTEM-17", "its two axes are square to each other");
+      refuse("E-SYSTEM-17", "its two axes are not perpendicular; expected 90 degrees between them");
   }
   b_ = marker(joint.b, two ? joint.other_point : joint.point, other);
   system_.planar ? add_in_plane(joint) : add_in_space(joint);
@@ -299,15 +317,19 @@ void Connector::add(const Joint& joint, std::int32_t index) {
 void Connector::add(const SpringDamper& spring, std::int32_t index) {
   if (!(spring.stiffness >= 0.) || !(spring.damping >= 0.) ||
       !(spring.stiffness + spring.damping > 0.))
-    refuse("E-SYSTEM-18", "its stiffness and damping are not negative, and one is above 0");
+    refuse("E-SYSTEM-18",
+           "its stiffness or damping is negative, or both are 0; expected both to be at least 0, "
+           "and one above 0");
   const double distance = (spring.point_b - spring.point_a).norm();
   const double length = std::isnan(spring.length) ? distance : spring.length;
   if (!(length >= 0.) || !(distance > 0.))
-    refuse("E-SYSTEM-19", "its two points lie apart, and its length is not negative");
+    refuse("E-SYSTEM-19",
+           "its two points are the same, or its length is negative; expected two points and a "
+           "length of at least 0 m");
   if (!std::isfinite(spring.stiffness) || !std::isfinite(spring.damping))
-    refuse("E-SYSTEM-20", "its stiffness and damping are finite");
+    refuse("E-SYSTEM-20", "its stiffness or damping is not finite; expected finite numbers");
   if (system_.planar && spring.point_a.y() != spring.point_b.y())
-    refuse("E-SYSTEM-11", "in a planar system its points lie side by side, not across");
+    refuse("E-SYSTEM-11", "its two points differ in y; expected the same y in a planar system");
   joint_ = index;
   a_ = marker(spring.a, spring.point_a, Matrix3d::Identity());
   b_ = marker(spring.b, spring.point_b, Matrix3d::Identity());
@@ -318,19 +340,24 @@ void Connector::add(const SpringDamper& spring, std::int32_t index) {
 
 void Connector::add(const SystemForce& force) {
   if (force.on.kind == Part::Kind::rail)
-    refuse("E-SYSTEM-21", "a force on a rail is a load of the track");
-  if (!force.direction.allFinite()) refuse("E-SYSTEM-22", "its direction is finite");
+    refuse("E-SYSTEM-21", "it acts on a rail; expected a load of the track for this");
+  if (!force.direction.allFinite())
+    refuse("E-SYSTEM-22", "its direction is not finite; expected three finite numbers");
   const Vector3d& d = force.direction;
   if (system_.planar && !(force.moment ? d.x() == 0. && d.z() == 0. : d.y() == 0.))
-    refuse("E-SYSTEM-23", "in a planar system forces lie in x and z, moments along y");
+    refuse("E-SYSTEM-23",
+           "its direction leaves the plane; expected a force in x and z, or a moment about y, in a "
+           "planar system");
   if (system_.planar && !force.moment && force.on.kind == Part::Kind::beam)
     check_in_plane(force.on, force.point);
   if (force.moment && force.on.kind != Part::Kind::body)
-    refuse("E-SYSTEM-24", "a moment acts on a body");
+    refuse("E-SYSTEM-24", "it is a moment on a part that is not a body; expected a body");
   PointForceModel packed{};
   packed.marker = marker(force.on, force.point, Matrix3d::Identity());
   if (force.input >= static_cast<int>(system_.input_limits.size()))
-    refuse("E-SYSTEM-25", "its input is one of the system's");
+    refuse("E-SYSTEM-25", "its input is " + std::to_string(force.input) + "; expected one of the " +
+                              std::to_string(system_.input_limits.size()) +
+                              " inputs of the system, counted from 0");
   packed.motion = force.input >= 0 ? -1 : motion(force.factor);
   packed.input = force.input;
   packed.moment = force.moment ? 1 : 0;
@@ -389,7 +416,7 @@ void add_connections(const System& system, const Track* track, SystemParts& part
   parts.rows.insert(parts.rows.end(), parts.spring_rows.begin(), parts.spring_rows.end());
   if (parts.rows.size() > static_cast<std::size_t>(kMaxSystemRows))
     refuse("E-SYSTEM-26", "joints and springs have " + std::to_string(parts.rows.size()) +
-                              " rows; at most " + std::to_string(kMaxSystemRows));
+                              " rows; expected at most " + std::to_string(kMaxSystemRows));
   add_ends(parts);
   parts.pad();
 }

@@ -41,7 +41,9 @@ void add_spline(MotionPieces& pieces, const std::vector<std::array<double, 2>>& 
   for (std::size_t i = 0; i < table.size(); ++i)
     if (!std::isfinite(table[i][0]) || !std::isfinite(table[i][1]) ||
         (i > 0 && !(table[i][0] > table[i - 1][0])))
-      refuse("E-SYSTEM-27", "a motion's table has finite values and rising times");
+      refuse("E-SYSTEM-27", "row " + std::to_string(i) +
+                                " of the table of a motion is not finite or does not rise in time; "
+                                "expected finite values at rising times");
   const Eigen::VectorXd m = bends(table);
   add_piece(pieces, table[0][0] - 1., {table[0][1]});
   for (std::size_t i = 0; i + 1 < table.size(); ++i) {
@@ -58,17 +60,24 @@ void add_spline(MotionPieces& pieces, const std::vector<std::array<double, 2>>& 
 
 MotionPieces motion_pieces(const Motion& motion) {
   if (motion.polynomial.empty() == motion.table.empty())
-    refuse("E-SYSTEM-28", "a motion is either a polynomial or a table");
+    refuse("E-SYSTEM-28",
+           "a motion has both a polynomial and a table, or neither of them; expected one of them");
   MotionPieces pieces;
   if (!motion.table.empty()) {
-    if (motion.table.size() < 2) refuse("E-SYSTEM-29", "a motion's table has 2 rows or more");
+    if (motion.table.size() < 2)
+      refuse("E-SYSTEM-29", "the table of a motion has one row; expected 2 or more");
     add_spline(pieces, motion.table);
     return pieces;
   }
   if (motion.polynomial.size() > static_cast<std::size_t>(kMotionCoefficients))
-    refuse("E-SYSTEM-30", "a motion's polynomial has 6 coefficients or fewer");
+    refuse("E-SYSTEM-30",
+           "the polynomial of a motion has " + std::to_string(motion.polynomial.size()) +
+               " coefficients; expected at most " + std::to_string(kMotionCoefficients));
   for (const double c : motion.polynomial)
-    if (!std::isfinite(c)) refuse("E-SYSTEM-31", "a motion's coefficients are finite");
+    if (!std::isfinite(c))
+      refuse("E-SYSTEM-31",
+             "the polynomial of a motion has a coefficient that is not finite; expected finite "
+             "numbers");
   add_piece(pieces, 0., motion.polynomial);
   return pieces;
 }

@@ -42,17 +42,26 @@ void set(double (&to)[9], const Matrix3d& from) {
 
 void check_body(const RigidBody& body, const std::string& name) {
   if (!(body.mass > 0.) || !std::isfinite(body.mass))
-    refuse("E-SYSTEM-32", name + "its mass is above zero");
+    refuse("E-SYSTEM-32", name + "its mass is " + std::to_string(body.mass) +
+                              " kg; expected a finite mass above 0");
   if (!body.inertia.allFinite() ||
       (body.inertia - body.inertia.transpose()).norm() > 1e-12 * body.inertia.norm())
-    refuse("E-SYSTEM-33", name + "its inertia is finite and symmetric");
+    refuse(
+        "E-SYSTEM-33",
+        name + "its inertia is not finite or not symmetric; expected a finite, symmetric matrix");
   const Vector3d own = Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia).eigenvalues();
-  if (!(own[0] > 0.)) refuse("E-SYSTEM-34", name + "its inertia is positive about every axis");
+  if (!(own[0] > 0.))
+    refuse(
+        "E-SYSTEM-34",
+        name +
+            "its inertia about an axis is not above 0; expected inertias above 0 about every axis");
   if (own[2] > (own[0] + own[1]) * (1. + 1e-9))
-    refuse("E-SYSTEM-35",
-           name + "no body has an inertia about one axis above the sum of the others");
+    refuse("E-SYSTEM-35", name +
+                              "its inertia about one axis is above the sum of the other two, which "
+                              "no mass has; expected at most their sum");
   if (!(std::abs(body.orientation.norm() - 1.) < 1e-9))
-    refuse("E-SYSTEM-36", name + "its orientation is a quaternion of length 1");
+    refuse("E-SYSTEM-36", name + "the quaternion of its orientation has the length " +
+                              std::to_string(body.orientation.norm()) + "; expected 1");
 }
 
 void add_body(const RigidBody& body, std::size_t index, bool planar, SystemParts& parts) {
@@ -60,9 +69,14 @@ void add_body(const RigidBody& body, std::size_t index, bool planar, SystemParts
   check_body(body, name);
   if (planar && !(body.velocity.y() == 0. && is_lateral(body.angular_velocity) &&
                   keeps_plane(body.orientation.toRotationMatrix())))
-    refuse("E-SYSTEM-37", name + "a planar system moves in x and z and turns about y");
+    refuse("E-SYSTEM-37", name +
+                              "its orientation or velocity leaves the plane; expected motion in x "
+                              "and z and rotation about y in a planar system");
   if (planar && body.inertia.row(1).cwiseAbs().dot(Vector3d(1., 0., 1.)) > 0.)
-    refuse("E-SYSTEM-38", name + "in a planar system y is a principal axis");
+    refuse(
+        "E-SYSTEM-38",
+        name +
+            "y is not a principal axis of its inertia; expected Ixy = Iyz = 0 in a planar system");
   RigidBodyModel& packed = parts.bodies.emplace_back();
   packed.first = parts.unknowns;
   packed.unknowns = planar ? 3 : 6;
@@ -78,18 +92,27 @@ void add_body(const RigidBody& body, std::size_t index, bool planar, SystemParts
 
 void check_beam(const FlexibleBeam& beam, const std::string& name, bool planar) {
   if (beam.elements < 1 || beam.elements > kMostElementsOfBeam)
-    refuse("E-SYSTEM-39",
-           name + "a beam has 1 to " + std::to_string(kMostElementsOfBeam) + " elements");
+    refuse("E-SYSTEM-39", name + "it has " + std::to_string(beam.elements) +
+                              " elements; expected 1 to " + std::to_string(kMostElementsOfBeam));
   if (!(beam.length > 0.) || !std::isfinite(beam.length))
-    refuse("E-SYSTEM-40", name + "its length is above zero");
-  if (!(beam.half_height > 0.)) refuse("E-SYSTEM-41", name + "its height is above zero");
-  if (!(beam.material.density > 0.)) refuse("E-SYSTEM-42", name + "its density is above zero");
+    refuse("E-SYSTEM-40", name + "its length is " + std::to_string(beam.length) +
+                              " m; expected a finite length above 0");
+  if (!(beam.half_height > 0.))
+    refuse("E-SYSTEM-41", name + "half its height is " + std::to_string(beam.half_height) +
+                              " m; expected a height above 0");
+  if (!(beam.material.density > 0.))
+    refuse("E-SYSTEM-42", name + "its density is " + std::to_string(beam.material.density) +
+                              " kg/m3; expected a density above 0");
   if (!((beam.axes.transpose() * beam.axes - Matrix3d::Identity()).norm() < 1e-12) ||
       beam.axes.determinant() < 0.)
-    refuse("E-SYSTEM-43", name + "its axes are square, of length 1 and right-handed");
+    refuse("E-SYSTEM-43", name +
+                              "its axes are not perpendicular, of length 1 and right-handed; "
+                              "expected a rotation matrix");
   if (planar &&
       !(keeps_plane(beam.axes) && beam.velocity.y() == 0. && is_lateral(beam.angular_velocity)))
-    refuse("E-SYSTEM-44", name + "a planar system moves in x and z and turns about y");
+    refuse("E-SYSTEM-37", name +
+                              "its orientation or velocity leaves the plane; expected motion in x "
+                              "and z and rotation about y in a planar system");
 }
 
 /// Positions and slopes of a node, [9].
@@ -193,14 +216,17 @@ void add_weight(const System& system, SystemParts& parts) {
 void add_parts(const System& system, SystemParts& parts) {
   if (system.bodies.size() + system.beams.size() > static_cast<std::size_t>(kMaxSystemParts))
     refuse("E-SYSTEM-45",
-           "a system has at most " + std::to_string(kMaxSystemParts) + " bodies and beams");
+           "the system has " + std::to_string(system.bodies.size() + system.beams.size()) +
+               " bodies and beams; expected at most " + std::to_string(kMaxSystemParts));
   if (system.planar && system.gravity.y() != 0.)
-    refuse("E-SYSTEM-46", "gravity of a planar system has no lateral part");
+    refuse("E-SYSTEM-46",
+           "gravity has a lateral part; expected gravity in x and z in a planar system");
   for (std::size_t i = 0; i < system.bodies.size(); ++i)
     add_body(system.bodies[i], i, system.planar, parts);
   for (std::size_t i = 0; i < system.beams.size(); ++i)
     add_beam(system.beams[i], i, system.planar, parts);
-  if (parts.unknowns == 0) refuse("E-SYSTEM-47", "a system has a body or a beam");
+  if (parts.unknowns == 0)
+    refuse("E-SYSTEM-47", "the system has neither a body nor a beam; expected at least one");
   parts.pad();
   add_weight(system, parts);
 }

@@ -26,26 +26,39 @@ PackedSystem::~PackedSystem() = default;
 namespace {
 
 void check(const System& system, const SystemOptions& o, bool with_scheme) {
-  if (!system.gravity.allFinite()) refuse("E-SYSTEM-48", "gravity is finite");
-  if (o.steps_per_frame < 1) refuse("E-SYSTEM-49", "a frame has one step or more");
+  if (!system.gravity.allFinite())
+    refuse("E-SYSTEM-48", "gravity is not finite; expected three finite numbers");
+  if (o.steps_per_frame < 1)
+    refuse("E-PACK-18",
+           "a frame has " + std::to_string(o.steps_per_frame) + " steps; expected 1 or more");
   if (o.cap < 1 || o.projections < 0 || o.keep_steps < 1)
-    refuse("E-SYSTEM-50", "caps: 1 iteration or more, projections 0 or more, kept 1 or more");
+    refuse("E-SYSTEM-50",
+           "a cap of the solution of the joints is too low; expected at least 1 iteration, 0 "
+           "projections and 1 step that keeps its matrix");
   if (!(o.penalty >= 0.) || !(o.tolerance > 0.) || !(o.joint_tolerance > 0.))
-    refuse("E-SYSTEM-51", "tolerances are above zero, and the penalty is not below it");
+    refuse("E-SYSTEM-51",
+           "a tolerance is not above 0, or the penalty is negative; expected tolerances above 0 "
+           "and a penalty of at least 0");
   if (!(o.alpha >= 0.) || !(o.beta >= 0.))
-    refuse("E-SYSTEM-52", "Baumgarte's alpha and beta are not negative");
+    refuse("E-SYSTEM-52",
+           "Baumgarte's alpha or beta is negative; expected both to be at least 0 1/s");
   const Scheme& c = o.scheme;
   if (with_scheme && c.part > 0.)
-    refuse("E-SYSTEM-53", "bodies and beams are stepped by schemes of one stage");
+    refuse("E-SYSTEM-53",
+           "the scheme has two stages, but bodies and beams need a scheme of one stage; expected "
+           "another step.scheme than \"tr-bdf2\"");
   const bool means = std::abs(c.kg * c.dt * c.dt - 2.) < 1e-9 &&
                      std::abs(c.kv * c.dt - 2.) < 1e-9;  // energy_momentum(dt)
   if (with_scheme && means != o.energy_momentum)
-    refuse("E-SYSTEM-54", "the scheme energy_momentum() and the option of that name go together");
+    refuse("E-SYSTEM-54",
+           "the scheme and the option energy_momentum do not match; expected the scheme "
+           "energy_momentum() with this option, and no other scheme with it");
   const bool by_mean = o.constraint_method == ConstraintMethod::augmented_lagrangian ||
                        o.constraint_method == ConstraintMethod::direct;
   if (o.energy_momentum && !by_mean)
     refuse("E-SYSTEM-55",
-           "the energy-momentum scheme holds joints by the augmented Lagrangian or directly");
+           "the energy-momentum scheme does not hold joints by this method; expected joints.hold = "
+           "\"augmented-lagrangian\" or \"direct\"");
 }
 
 /// Index 3 has -rho_inf as a double root: of a scheme that does not damp joint forces swing from
@@ -58,11 +71,11 @@ void check_damping(const System& system, const SystemOptions& o, const Scheme& c
   if (!index_3 || o.energy_momentum || system.joints.empty()) return;
   // generalised_alpha: a0 / ag = alpha_f / (1 - alpha_f) = rho_inf
   if (c.a0 >= (1. - 1e-9) * c.ag || radius_at_infinity(c) >= 1. - 1e-7)
-    refuse(
-        "E-SYSTEM-56",
-        "hold = \"direct\", or \"augmented-lagrangian\" without projections, and newmark_gamma = "
-        "0.5, hht_alpha = 0 or rho_inf = 1: nothing damps the joint forces, which swing from step "
-        "to step and grow; accepted is rho_inf below 1, or another hold");
+    refuse("E-SYSTEM-56",
+           "nothing damps the joint forces, which swing from step to step and grow: joints.hold is "
+           "\"direct\", or \"augmented-lagrangian\" without projections, and the scheme has "
+           "rho_inf = 1, newmark_gamma = 0.5 or hht_alpha = 0; expected rho_inf below 1, or "
+           "another joints.hold");
 }
 
 /// By which the equilibrium is looked for: long steps of backward Euler, joints held without
@@ -99,7 +112,9 @@ std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
 std::vector<std::int32_t> indices(const std::vector<int>& traced, std::size_t count) {
   for (const int index : traced)
     if (index < 0 || static_cast<std::size_t>(index) >= count)
-      refuse("E-SYSTEM-57", "a traced joint or spring that is not there");
+      refuse("E-SYSTEM-57", "joint or spring " + std::to_string(index) +
+                                " is traced, but does not exist; expected one of " +
+                                std::to_string(count) + ", counted from 0");
   return {traced.begin(), traced.end()};
 }
 
@@ -136,14 +151,16 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
                            const Traffic& traffic, const PackOptions& track_options)
     : memory_(std::make_unique<Memory>()) {
   if (!traffic.wheelsets.empty() || !traffic.vehicles.empty())
-    refuse("E-SYSTEM-58", "a track beside a system of bodies carries no wheelsets and no vehicles");
+    refuse("E-SYSTEM-58",
+           "a track beside a system of bodies carries wheelsets or vehicles; expected loads alone");
   if (track_options.reduction)
-    refuse("E-SYSTEM-59", "a track beside a system of bodies is taken in full order");
+    refuse("E-SYSTEM-59", "a track beside a system of bodies is condensed; expected full order");
   if (options.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
     refuse("E-SYSTEM-60",
-           "a track beside a system of bodies is not held by Gear, Gupta and Leimkuhler's way");
+           "joints.hold is \"gear-gupta-leimkuhler\" beside a track; expected another joints.hold");
   if (options.energy_momentum)
-    refuse("E-SYSTEM-61", "a track beside a system of bodies has no energy-momentum scheme");
+    refuse("E-SYSTEM-61",
+           "the energy-momentum scheme is given beside a track; expected another step.scheme");
   Traffic both = traffic;
   for (int rail = 0; rail < track.rails; ++rail) both.held.push_back(rail);
   memory_->track = std::make_unique<PackedModel>(track, both, track_options);

@@ -139,8 +139,9 @@ Rest settle(const StillSystem& make, double shift, std::optional<Rest> from) {
     const Outcome met = still.settle(may_lengthen ? kPatience : left, left);
     if (met == Outcome::settled) return still.rest(false);
     if (left == 0 || met == Outcome::away || (met == Outcome::lost && dt < kShortestStep))
-      refuse("E-SYSTEM-62", "no static equilibrium is found at the start: " + still.restless() +
-                                " does not come to rest");
+      refuse("E-SYSTEM-62", "no static equilibrium was found at the start: " + still.restless() +
+                                " does not come to rest; expected parts that joints and springs "
+                                "hold, or step.start = \"released\"");
     if (met == Outcome::lost) {
       --left;
       longest = dt / kLonger;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <sstream>
 
 #include "offline/math/refuse.h"
 #include "online/model/beam_chain.h"
@@ -71,7 +72,9 @@ Sparse mass(const SystemModel& s) {
 class Mobility {
  public:
   explicit Mobility(const Model& model) : model_(model), inverse_(mass(model.system)) {
-    if (inverse_.info() != Eigen::Success) refuse("E-SYSTEM-63", "the mass is not positive");
+    if (inverse_.info() != Eigen::Success)
+      refuse("E-SYSTEM-63",
+             "the mass matrix is not positive definite; expected masses and inertias above 0");
   }
   MatrixXd operator*(const MatrixXd& forces) const {
     MatrixXd moved = inverse_.solve(forces);
@@ -147,11 +150,13 @@ struct Standing {
 };
 
 void check_joints(const SystemModel& s, const SystemWorkspace& w, double size) {
-  for (std::int32_t r = 0; r < s.joint_rows; ++r)
-    if (!(std::abs(w.value[r]) <= 1e-9 * size))
-      refuse("E-SYSTEM-64", "joint " + std::to_string(s.row[r].joint) +
-                                ": it does not hold at the start: it is off by " +
-                                std::to_string(w.value[r]));
+  for (std::int32_t r = 0; r < s.joint_rows; ++r) {
+    if (std::abs(w.value[r]) <= 1e-9 * size) continue;
+    std::ostringstream text;
+    text << "joint " << s.row[r].joint << ": it is open by " << w.value[r]
+         << " at the start; expected positions that close it to " << 1e-9 * size;
+    refuse("E-SYSTEM-64", text.str());
+  }
 }
 
 std::vector<double> start_quaternions(const System& system, const Rest* rest) {
@@ -209,7 +214,8 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
     for (std::int32_t r = 0; r < joints; ++r)
       if (!(std::abs(at.jet(r).v) <= 1e-9 * (1. + rates.cwiseAbs().maxCoeff())))
         refuse("E-SYSTEM-65", "joint " + std::to_string(s.row[r].joint) +
-                                  ": no velocities at the start suit it and the others");
+                                  ": no velocities at the start fit it and the other joints; "
+                                  "expected a drive that the other joints allow");
   }
   VectorXd spring_force = VectorXd::Zero(rows),
            fresh_force = spring_force;  // that no rest balances

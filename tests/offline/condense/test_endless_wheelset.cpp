@@ -183,18 +183,18 @@ TEST_CASE("a track without end continues from its block and from a saved state b
 TEST_CASE("a track that cannot be without end is refused in one sentence") {
   const Track ring = ring_of(endless_track(24, 2));
   const auto refused = [](const Track& track, const Traffic& traffic, const PackOptions& options,
-                          const char* why) {
-    CHECK_THROWS_WITH(PackedModel(track, traffic, options), Catch::Contains(why));
+                          const char* id) {
+    CHECK_THROWS_WITH(PackedModel(track, traffic, options), Catch::Contains(id));
   };
   const Traffic one{.loads = {moving_load(0.)}};
   const Track small = ring_of(endless_track(6, 2));
-  refused(small, one, ring_options(small, 1), "more bays");
+  refused(small, one, ring_options(small, 1), "E-PACK-33");
   const Track narrow = endless_track(12, 2);
-  refused(narrow, one, window_options(narrow), "on either side a decay length");
+  refused(narrow, one, window_options(narrow), "E-PACK-51");
   Traffic two{.loads = {moving_load(0.), moving_load(1.)}};
   two.loads[1].speed = 20.;
-  refused(ring, two, ring_options(ring, 1), "one speed");
-  refused(ring, one, window_options(ring), "a window in full order");
+  refused(ring, two, ring_options(ring, 1), "E-PACK-31");
+  refused(ring, one, window_options(ring), "E-PACK-32");
   Track held = ring;
   held.ends = {RailEnd::pinned, RailEnd::free};
   refused(held, one, ring_options(held, 1), "no ends");

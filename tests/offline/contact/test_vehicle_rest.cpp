@@ -105,6 +105,5 @@ TEST_CASE("vehicles without support have no equilibrium on such a track", "[vehi
   v.vehicle.bodies[0].place = 2.;  // the frame's weight is ahead of both wheels
   const Track track = hanging();
   PackedModel packed(track, {.vehicles = {v}}, full_order(1e-4));
-  CHECK_THROWS_WITH(start_in_equilibrium(track, packed, 0.),
-                    "no equilibrium with all of a vehicle's wheels on the rail");
+  CHECK_THROWS_WITH(start_in_equilibrium(track, packed, 0.), Catch::Contains("E-START-10"));
 }

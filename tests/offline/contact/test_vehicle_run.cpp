@@ -192,9 +192,10 @@ TEST_CASE("more vehicles than a model has room for are refused", "[vehicle]") {
   CHECK_NOTHROW(PackedModel(track, traffic, full_order(1e-4)));
   for (int i = 0; i < 4; ++i) traffic.vehicles.push_back(running(car(kCar), 5., 0.));
   CHECK_THROWS_WITH(PackedModel(track, traffic, full_order(1e-4)),
-                    "more than 32 wheels of wheelsets and vehicles");
+                    Catch::Contains("32 [E-PACK-16]"));
   traffic.vehicles.assign(17, running(point_mass(1.), 5., 0.));
-  CHECK_THROWS_WITH(PackedModel(track, traffic, full_order(1e-4)), "more than 16 vehicles");
+  CHECK_THROWS_WITH(PackedModel(track, traffic, full_order(1e-4)),
+                    Catch::Contains("16 [E-PACK-40]"));
   traffic.vehicles.assign(1, running(point_mass(1.), 5., 0.));
   traffic.vehicles[0].rail = 1;
   CHECK_THROWS_AS(PackedModel(track, traffic, full_order(1e-4)), std::invalid_argument);
@@ -205,8 +206,7 @@ TEST_CASE("a vehicle that would lift a wheel has no equilibrium", "[vehicle]") {
   v.vehicle.bodies[0].place = 2.;  // the frame's weight is ahead of both wheels
   const Track track = one_rail(20);
   PackedModel packed(track, {.vehicles = {v}}, full_order(1e-4));
-  CHECK_THROWS_WITH(start_in_equilibrium(track, packed, 0.),
-                    "no equilibrium with all of a vehicle's wheels on the rail");
+  CHECK_THROWS_WITH(start_in_equilibrium(track, packed, 0.), Catch::Contains("E-START-10"));
 }
 
 TEST_CASE("vehicles keep their energy except for the scheme's loss", "[vehicle][energy]") {

@@ -193,6 +193,6 @@ TEST_CASE("a table of speeds on a track without end is refused in a sentence", "
          "sensor=[]", "defect=[]"}));
     FAIL("accepted");
   } catch (const InputError& error) {
-    CHECK_THAT(error.what(), Contains("all runs at one speed, without a table"));
+    CHECK_THAT(error.what(), Contains("E-PACK-30"));
   }
 }

@@ -115,9 +115,8 @@ TEST_CASE("a start at rest adds the speed of a drive", "[system][rest][track]") 
 TEST_CASE("the start names the body that does not come to rest", "[system][rest]") {
   System s;
   s.bodies = {block(3., {0., 0., 1.})};
-  CHECK_THROWS_WITH(
-      PackedSystem(s, {.scheme = generalised_alpha(1e-3, .6), .at_rest = true}),
-      Catch::Contains("no static equilibrium is found at the start: body 0 does not come to rest"));
+  CHECK_THROWS_WITH(PackedSystem(s, {.scheme = generalised_alpha(1e-3, .6), .at_rest = true}),
+                    Catch::Contains("body 0") && Catch::Contains("E-SYSTEM-62"));
   s.joints = {{.kind = JointKind::spherical, .a = ground(), .b = body(0), .point = {0., 0., 1.}}};
   CHECK_NOTHROW(PackedSystem(s, {.scheme = generalised_alpha(1e-3, .6), .at_rest = true}));
 }

@@ -138,7 +138,6 @@ TEST_CASE("a body that nothing holds has no equilibrium", "[scene]") {
   CHECK_THAT(with({"joint[2].between=[\"frame\", \"disc_left\"]", "joint[2].point_m=[12, 0.3, 0.6]",
                    "joint[4].between=[\"frame\", \"disc_left\"]", "joint[4].point_m=[12, 0.3, 0.6]",
                    "joint[4].polynomial_rad=[0, 188.49555921538759]"}),
-             Contains("exciter_on_track.toml: no static equilibrium is found at the start: body 2 "
-                      "does not come to rest"));
+             Contains("exciter_on_track.toml: ") && Contains("body 2") && Contains("E-SYSTEM-62"));
   CHECK(with({"joint=[]", "step.start=\"released\""}) == "accepted");
 }
