@@ -157,8 +157,8 @@ TEST_CASE("a track refuses springs that do not pull where it cannot have them", 
   refused(run + "ballast.unilateral=true", "accepted are 32");
   refused(run + "ballast.gap_m=-1e-3", "gap_m");
   refused(run + "support_change[0].ballast.gap_m=0.2", "gap_m");
-  refused(run + "support.length_m=0.1 --set support.unilateral=true", "a length of 0");
-  refused(run + "ballast.unilateral=true --set condense.kind='\"modal\"'", "free rigid mode");
+  refused(run + "support.length_m=0.1 --set support.unilateral=true", "E-TRACK-14");
+  refused(run + "ballast.unilateral=true --set condense.kind='\"modal\"'", "E-TRACK-34");
   refused(run +
               "'stop=[{name=\"a\", rail=\"left\", position_m=9.0, direction=\"y\", "
               "side=\"left\", stiffness_n_per_m=1e8}]'",

@@ -122,8 +122,8 @@ void refuse_buckled(const Track& given) {
     sentence << "the rails carry compressions of " << -left << " N (left) and " << -right
              << " N (right), and the track buckles at " << most << " times these";
   sentence << place_of_buckling(track, most)
-           << "; accepted are rail.axial_force_n and heat that press less";
-  refuse("E-MODES-01", sentence.str());
+           << "; expected a lower compression by rail.axial_force_n and heat";
+  refuse("E-TRACK-33", sentence.str());
 }
 
 }  // namespace railstep

@@ -65,7 +65,7 @@ void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
   }
   if (!(residual(line, rate, shape) <= std::max(kAccepted, rounding(line, shape))))
     fail("E-MODES-02", "a damped mode near " + std::to_string(std::abs(rate) / (2. * kPi)) +
-                           " Hz does not converge");
+                           " Hz does not converge; ask for fewer modes or shorten the track");
 }
 
 /// The swinging Ritz pairs with |rate| <= radius, none where some are not yet sharp.
@@ -113,7 +113,7 @@ Search search(const Line& line, double radius) {
   }
   fail("E-MODES-03",
        "the damped modes up to " + std::to_string(radius / (2. * kPi)) +
-           " Hz lie too close to be told apart; ask for fewer of them or shorten the track");
+           " Hz lie too close to be told apart; ask for fewer modes or shorten the track");
 }
 
 }  // namespace
@@ -127,8 +127,9 @@ double residual(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
 
 Oscillations oscillations(const Line& line, double radius) {
   if (line.unknowns() > kMostUnknowns)
-    fail("E-MODES-04", "damped modes of a line of " + std::to_string(line.unknowns()) +
-                           " unknowns; accepted are " + std::to_string(kMostUnknowns));
+    fail("E-MODES-04", "the damped modes of a line of " + std::to_string(line.unknowns()) +
+                           " unknowns cannot be found; expected at most " +
+                           std::to_string(kMostUnknowns) + ": shorten the track");
   Search result = search(line, radius);
   Oscillations modes;
   modes.all = result.complete && radius > kBeyond * highest_rate(line);

@@ -104,8 +104,7 @@ std::vector<Lacking> lacking_springs(const Track& track) {
   std::vector<Lacking> all;
   for (const int k : {2, 1, 0, 3}) {
     const bool everywhere = pad_stiffness(track.support, k) == 0.;
-    all.push_back({motions[k],
-                   everywhere ? keys[k] : "fewer seats that [[support_change]] takes away",
+    all.push_back({motions[k], everywhere ? keys[k] : "[[support_change]] to take away fewer seats",
                    pad_strains(track, k, false)});
     if (k == 2)
       all.push_back(
@@ -214,7 +213,7 @@ std::string motion_and_remedy(const Track& track, const std::vector<Line>& lines
   if (motions.empty()) return "";
   return "the track has a free rigid mode: nothing holds " +
          moving_rails(track, lines, joined, first) + " " + joined_words(motions, " and ") +
-         "; accepted is " + joined_words(remedies, " and ");
+         "; expected " + joined_words(remedies, " and ");
 }
 
 /// Shapes of a stiffness that it does not strain, over its unknowns scaled by their own stiffness;
@@ -293,13 +292,12 @@ void refuse_free_modes(const Track& track, const std::vector<Line>& lines,
     for (const FixedPort& port : fixed_ports(track)) open.push_back(port.closing);
   const Eigen::MatrixXd alone = parted(track, lines, joined, open, shapes).first;
   if (alone.cols() > 0)
-    refuse(
-        "E-MODES-05",
-        "the track has a free rigid mode: one-sided supports alone hold " +
-            moving_rails(track, lines, joined, alone) +
-            ", and a condensed track has them open; accepted is full order, or supports that pull");
+    refuse("E-TRACK-34", "the track has a free rigid mode: one-sided supports alone hold " +
+                             moving_rails(track, lines, joined, alone) +
+                             ", and a condensed track has them open; expected condense.kind = "
+                             "\"full\", or supports that pull too");
   const std::string found = motion_and_remedy(track, lines, joined, shapes);
-  refuse("E-MODES-06", found.empty() ? loosest(lines, joined, stiffness, factor) : found);
+  refuse("E-TRACK-35", found.empty() ? loosest(lines, joined, stiffness, factor) : found);
 }
 
 }  // namespace railstep

@@ -27,7 +27,9 @@ Krylov::Krylov(const Line& line, Complex shift)
     : line_(line), shift_(shift), scale_(std::abs(shift)) {
   factor_.compute(dynamic_stiffness(line, shift));
   if (factor_.info() != Eigen::Success)
-    fail("E-MODES-07", "a line's dynamic stiffness cannot be factored");
+    fail("E-MODES-07",
+         "the dynamic stiffness of the track cannot be factored; expected stiffnesses and masses "
+         "that differ by fewer orders of magnitude");
   basis_ = start_block(2 * line.unknowns(), 1).cast<Complex>();
   basis_ /= basis_.norm();
   projection_.resize(1, 0);

@@ -25,7 +25,9 @@ MassiveLine without_massless(const Line& line) {
   const Sparse held = left.transpose() * line.stiffness * left;
   const Eigen::SimplicialLDLT<Sparse> factor(held);
   if (factor.info() != Eigen::Success || !(factor.vectorD().array() > 0.).all())
-    refuse("E-MODES-08", "a sleeper without mass needs stiffness in its pad or ballast");
+    refuse("E-TRACK-36",
+           "nothing holds a sleeper without mass; expected stiffness in its pad or ballast, or "
+           "sleeper.mass_kg above 0");
   const Sparse coupled = left.transpose() * line.stiffness * kept;
   const Sparse following = factor.solve(coupled);
   MassiveLine result;

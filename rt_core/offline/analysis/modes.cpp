@@ -29,7 +29,8 @@ Modes of_squares(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes,
   for (Eigen::Index i = 0; i < squares.size(); ++i) {
     if (i >= rigid && squares[i] < 0.)
       refuse("E-MODES-09",
-             "the track's stiffness is not positive: a mode would grow without bound");
+             "the stiffness of the track is not positive, so that a mode would grow without bound; "
+             "expected less compression, or the default [rail.rule]");
     result.frequency[i] = i < rigid ? 0. : std::sqrt(squares[i]) / (2. * kPi);
     Eigen::Index largest = 0;
     result.shape.col(i).cwiseAbs().maxCoeff(&largest);
@@ -60,7 +61,9 @@ class Inverse {
     lost_ = 1. / -shift - 1. / (far_ - shift);
     factor_.compute(Eigen::SparseMatrix<double>(line_.stiffness - shift * line_.mass));
     if (factor_.info() != Eigen::Success)
-      refuse("E-MODES-10", "a line's stiffness cannot be factored");
+      refuse("E-TRACK-37",
+             "the stiffness of the track cannot be factored; expected stiffnesses that differ by "
+             "fewer orders of magnitude");
   }
   void perform_op(const double* in, double* out) const {
     const Eigen::Map<const Eigen::VectorXd> x(in, rows());
@@ -129,7 +132,9 @@ Modes modes(const Line& line) {
   const Eigen::MatrixXd K(massive.stiffness), M(massive.mass);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
   if (solver.info() != Eigen::Success)
-    refuse("E-MODES-11", "the modes of a line were not found: is a mass negative?");
+    refuse("E-MODES-11",
+           "the modes of the track were not found; expected masses and inertias that are not "
+           "negative");
   Eigen::Index rigid = 0;
   while (rigid < K.rows() && is_rigid(massive.stiffness, solver.eigenvectors().col(rigid))) ++rigid;
   return of_squares(solver.eigenvalues(), massive.follow * solver.eigenvectors(), rigid);
@@ -148,8 +153,9 @@ Modes lowest_modes(const Line& line, int count) {
   for (const int room : {2 * sought + 20, 5 * sought + 60})
     if (const auto found = lanczos(massive, rigid, sought, std::min(n, room))) return first(*found);
   if (n > kMostDenseUnknowns)
-    fail("E-MODES-12", "the lowest " + std::to_string(count) + " modes of a line of " +
-                           std::to_string(n) + " unknowns were not all found");
+    fail("E-MODES-12",
+         "the lowest " + std::to_string(count) + " modes of a line of " + std::to_string(n) +
+             " unknowns were not all found; ask for fewer modes or shorten the track");
   return first(modes(line));
 }
 

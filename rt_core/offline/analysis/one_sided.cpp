@@ -24,7 +24,9 @@ OneSided::OneSided(const Track& track, const std::vector<Line>& lines, std::vect
   all_closed_.compute(all);
   if (is_held(all_closed_, all)) return;
   refuse_free_modes(track, lines, ports_);  // by its name
-  refuse("E-MODES-13", "the track's stiffness cannot be factored");
+  refuse("E-TRACK-37",
+         "the stiffness of the track cannot be factored; expected stiffnesses that differ by fewer "
+         "orders of magnitude");
 }
 
 OneSided::Sparse OneSided::stiffness(const Closed& closed, double open_fraction) const {
@@ -99,8 +101,9 @@ double OneSided::minimum_along(const Eigen::VectorXd& u, const Eigen::VectorXd& 
     all += ports_[p].stiffness * std::pow(s[static_cast<Eigen::Index>(p)], 2);
   if (!(more > 1e-12 * all))
     refuse(
-        "E-MODES-14",
-        "no equilibrium: the loads lift the track off the one-sided supports that would hold it");
+        "E-TRACK-38",
+        "no equilibrium: the loads lift the track off the one-sided supports that should hold it; "
+        "expected track.gravity = true, a load that presses down, or step.start = \"released\"");
   return from - low / more;
 }
 
@@ -130,8 +133,9 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
     closed = now;
   }
   if (!done)
-    refuse("E-MODES-15",
-           "no equilibrium was found: the one-sided supports open and close without end");
+    refuse("E-TRACK-39",
+           "no equilibrium was found: the one-sided supports open and close again and again; use "
+           "step.start = \"released\"");
   std::vector<Eigen::VectorXd> result;
   for (std::size_t l = 0; l < load.size(); ++l)
     result.emplace_back(u.segment(joined_.first[l], load[l].size()));

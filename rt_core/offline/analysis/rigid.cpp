@@ -25,7 +25,9 @@ Eigen::MatrixXd ritz(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMa
                                 Eigen::MatrixXd::Identity(found.rows(), found.cols());
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
       block.transpose() * (K * block), block.transpose() * (M * block));
-  if (solver.info() != Eigen::Success) refuse("E-MODES-16", "a line's mass is not positive");
+  if (solver.info() != Eigen::Success)
+    refuse("E-MODES-16",
+           "the mass of a part of the track is not positive; expected masses above 0");
   return block * solver.eigenvectors();
 }
 
@@ -59,7 +61,9 @@ Eigen::MatrixXd rigid_modes(const Eigen::SparseMatrix<double>& stiffness,
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(
       Eigen::SparseMatrix<double>(stiffness + shift * mass));
   if (factor.info() != Eigen::Success)
-    refuse("E-MODES-10", "a line's stiffness cannot be factored");
+    refuse("E-TRACK-37",
+           "the stiffness of the track cannot be factored; expected stiffnesses that differ by "
+           "fewer orders of magnitude");
   Eigen::MatrixXd block = start_block(n, std::min(kBlock, n));
   for (int iteration = 0; iteration < kIterations; ++iteration)
     block = ritz(stiffness, mass, factor.solve(mass * block));

@@ -14,7 +14,9 @@ Statics::Statics(const Track& track)
     factors_[i].compute(lines_[i].stiffness);
     if (is_held(factors_[i], lines_[i].stiffness)) continue;
     refuse_free_modes(track_, lines_, {});  // by its name
-    refuse("E-MODES-13", "the track's stiffness cannot be factored");
+    refuse("E-TRACK-37",
+           "the stiffness of the track cannot be factored; expected stiffnesses that differ by "
+           "fewer orders of magnitude");
   }
 }
 

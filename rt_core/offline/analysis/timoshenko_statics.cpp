@@ -18,22 +18,26 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr double kSamePlace = 1e-9;  // of the rail's length
 
 void check(const Track& track) {
-  const auto refuse = [](bool wrong, const char* what) {
-    if (wrong) railstep::refuse("E-MODES-17", std::string("a Timoshenko beam stands for ") + what);
+  const auto refuse = [](bool wrong, MessageId id, const char* what) {
+    if (wrong) railstep::refuse(id, std::string("a Timoshenko beam ") + what);
   };
-  refuse(track.rails != 1, "one rail; accepted is track.rails = 1");
-  refuse(track.cant != 0., "a rail that stands upright; accepted is no cant");
-  refuse(!track.joints.empty(), "a rail without joints; accepted is model = \"linearised\"");
-  refuse(has_sleepers(track), "a rail on the ground; accepted without sleepers");
-  refuse(has_long_pads(track), "a rail on point seats; accepted is support.length_m = 0");
-  refuse(!fixed_ports(track).empty(),
-         "a rail on seats that pull too; accepted without gap_m, unilateral and [[stop]]");
-  refuse(track.axial_force != 0., "a rail without axial force");
-  refuse(track.axis_z != 0., "its centroid; accepted is track.reference_line = \"centroid\"");
+  refuse(track.rails != 1, "E-TIMOSHENKO-01", "is one rail; expected track.rails = 1");
+  refuse(track.cant != 0., "E-TIMOSHENKO-02", "stands upright; expected no cant");
+  refuse(!track.joints.empty(), "E-TIMOSHENKO-03",
+         "has no joints; expected track.model = \"linearised\"");
+  refuse(has_sleepers(track), "E-TIMOSHENKO-04", "has no sleepers; expected no [sleeper]");
+  refuse(has_long_pads(track), "E-TIMOSHENKO-05",
+         "stands on points; expected support.length_m = 0");
+  refuse(!fixed_ports(track).empty(), "E-TIMOSHENKO-06",
+         "stands on seats that press and pull; expected no gap_m, unilateral and [[stop]]");
+  refuse(track.axial_force != 0., "E-TIMOSHENKO-07",
+         "has no axial force; expected no rail.axial_force_n and no heat");
+  refuse(track.axis_z != 0., "E-TIMOSHENKO-08",
+         "has its nodes on the centroid; expected track.reference_line = \"centroid\"");
   const ElementRule& rule = track.rule;
   refuse(rule.axial_points != 2 || (rule.coupling_points != 0 && rule.coupling_points != 2) ||
              rule.coupling != Coupling::centroid || rule.shear != Shear::twist,
-         "an exact integration; accepted without [rail.rule]");
+         "E-TIMOSHENKO-09", "is integrated exactly; expected no [rail.rule]");
 }
 
 /// Element borders and further places, rising, each once.
@@ -45,7 +49,8 @@ std::vector<double> nodes_of(const Track& track, const std::vector<double>& plac
   x.erase(std::unique(x.begin(), x.end(), [&](double a, double b) { return b - a <= same; }),
           x.end());
   if (x.front() < -same || x.back() > track.length() + same)
-    refuse("E-MODES-18", "point off the rail");
+    refuse("E-TRACK-05", "a point is off the rail; expected x from 0 to " +
+                             std::to_string(track.length()) + " m");
   return x;
 }
 
@@ -83,7 +88,8 @@ Eigen::SparseVector<double> TimoshenkoStatics::row(const RailPoint& point) const
     return std::abs(a - point.x) < std::abs(b - point.x);
   });
   if (!(std::abs(*nearest - point.x) <= 2. * kSamePlace * track_.length()))
-    refuse("E-MODES-19", "no node of the beam stands at this point");
+    refuse("E-TIMOSHENKO-10", "the beam has no node at x = " + std::to_string(point.x) +
+                                  " m; expected a place given to its constructor");
   const auto first = static_cast<std::size_t>(6 * (nearest - x_.begin()));
   Eigen::SparseVector<double> row(stiffness_.rows());
   const auto add = [&](std::size_t k, double factor) {
@@ -132,7 +138,9 @@ void TimoshenkoStatics::factorise() {
   factor_.compute(stiffness_);
   if (is_held(factor_, stiffness_)) return;
   refuse_free_modes(track_, railstep::assemble(track_), {});  // by its name
-  refuse("E-MODES-20", "the track has a free rigid mode: ends and pads do not hold it");
+  refuse("E-TRACK-35",
+         "the track has a free rigid mode: its ends and pads do not hold it; expected a stiffness "
+         "in every direction, or ends that are held");
 }
 
 Eigen::VectorXd TimoshenkoStatics::load(const std::vector<PointForce>& forces,

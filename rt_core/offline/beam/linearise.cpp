@@ -17,9 +17,13 @@ Track linearised_under_weight(Track track, double gravity) {
   const TrackStructure rails(track);
   const Equilibrium found = equilibrium(rails.structure(), {rails.weight(gravity)});
   if (!found.converged)
-    refuse("E-NONLINEAR-01", "the track finds no equilibrium under its own weight and preload");
+    refuse("E-NONLINEAR-01",
+           "no equilibrium of the track was found under its own weight and preload; expected less "
+           "axial force, or stiffer supports");
   if (!is_stable(rails.structure(), found.q))
-    refuse("E-NONLINEAR-02", "the track buckles under its own weight and preload");
+    refuse("E-NONLINEAR-02",
+           "the track buckles under its own weight and preload; expected less axial force, or "
+           "stiffer supports");
   track.state = rails.state(found.q);
   track.state->gravity = gravity;
   return track;

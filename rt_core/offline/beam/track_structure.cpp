@@ -28,18 +28,20 @@ Sparse row_of(int unknowns, const Entries& entries) {
 
 TrackStructure::TrackStructure(const Track& track) : track_(track) {
   if (track.unknowns != Unknowns::full)
-    refuse("E-NONLINEAR-03", "a nonlinear rail moves in space: it needs all unknowns");
+    refuse("E-NONLINEAR-03", "a nonlinear rail moves in space; expected track.unknowns = \"full\"");
   if (!track.section.moments || (track.right && !track.right->section.moments))
-    refuse("E-NONLINEAR-04", "a nonlinear rail wants its section's moments to degree 4");
+    refuse("E-NONLINEAR-04",
+           "a nonlinear rail needs the moments of its section to degree 4; expected a section with "
+           "a shape, not constants");
   if (track.bays < 1 || track.elements_per_bay < 1)
-    refuse("E-NONLINEAR-05", "a track needs one bay and one element");
+    refuse("E-TRACK-04", "the track has no bay or no element in a bay; expected 1 or more of each");
   if (!fixed_ports(track).empty())
     refuse("E-NONLINEAR-06",
-           "a nonlinear rail, and one linearised under its weight, stands on seats that pull too; "
-           "accepted without gap_m, unilateral and [[stop]]");
+           "a rail that is nonlinear, or linearised under its weight, stands on seats that press "
+           "and pull; expected a track without gap_m, unilateral and [[stop]]");
   if (!track.joints.empty())
     refuse("E-NONLINEAR-07",
-           "a nonlinear rail has no joints; accepted is track.model = \"linearised\"");
+           "a nonlinear rail has no joints; expected track.model = \"linearised\"");
   // A pin off the centroid does not hold the moment of a force through it.
   const auto held = [&](RailEnd end) {
     return end == RailEnd::clamped || (end == RailEnd::pinned && track.axis_z == 0.);
@@ -48,8 +50,8 @@ TrackStructure::TrackStructure(const Track& track) : track_(track) {
       track.axial_force != 0. || (track.right && track.right->axial_force != 0.);
   if (has_axial_force && !(held(track.ends[0]) && held(track.ends[1])))
     refuse("E-NONLINEAR-08",
-           "a nonlinear rail under axial force wants both ends held, "
-           "clamped where the reference line is off the centroid");
+           "a nonlinear rail under axial force has an end that is not held; expected both ends "
+           "held in track.ends, and clamped where the reference line is off the centroid");
   const int rail_unknowns = 9 * track.nodes() * track.rails;
   const int unknowns = number_sleepers(rail_unknowns);
   structure_.rest = Eigen::VectorXd::Zero(unknowns);

@@ -60,9 +60,9 @@ Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs) {
 
 void refuse_free_mode(double lowest_hz) {
   if (!(lowest_hz >= kLeastHz))
-    refuse("E-CONDENSE-01",
-           "a condensed track is held in every direction in which it is moved: this one has a free "
-           "rigid mode");
+    refuse("E-TRACK-35",
+           "the track has a free rigid mode; expected a support or a held end in every direction "
+           "in which it moves");
 }
 
 Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes) {
@@ -71,7 +71,9 @@ Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes) {
   const Eigen::MatrixXd kept =
       shapes.cols() > 0 ? independent(line, shapes * scale.asDiagonal()) : shapes;
   if (kept.cols() == 0)
-    refuse("E-CONDENSE-02", "a condensed line without dampers keeps one mode or more");
+    refuse("E-CONDENSE-02",
+           "a condensed line without dampers has no mode left; expected one mode or more: raise "
+           "condense.modes_per_bay or condense.highest_hz");
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
       kept.transpose() * (line.stiffness * kept), kept.transpose() * (line.mass * kept));
   refuse_free_mode(std::sqrt(std::max(0., solver.eigenvalues()[0])) / (2. * M_PI));

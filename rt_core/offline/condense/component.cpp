@@ -108,9 +108,9 @@ Eigen::MatrixXd lowest(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, int m
 std::vector<int> kept_unknowns(const Track& track, const Line& line, int nodes_per_bay) {
   const int nodes = 2 * track.elements_per_bay;
   if (nodes_per_bay < 1 || nodes % nodes_per_bay != 0)
-    refuse("E-CONDENSE-03", "a bay of " + std::to_string(nodes) +
-                                " nodes keeps every one, or each second, third and so on; accepted "
-                                "are divisors of that");
+    refuse("E-CONDENSE-03", "condense.nodes_per_bay = " + std::to_string(nodes_per_bay) +
+                                " does not divide the " + std::to_string(nodes) +
+                                " nodes of a bay; expected a divisor of " + std::to_string(nodes));
   std::vector<int> kept;
   const auto add = [&](int unknown) {
     if (unknown >= 0 && line.mass.coeff(unknown, unknown) > 0.) kept.push_back(unknown);
@@ -142,7 +142,8 @@ Eigen::MatrixXd irs_shapes(const Line& line, const std::vector<int>& kept) {
                         reduced_K = T.transpose() * (line.stiffness * T);
   const Eigen::LLT<Eigen::MatrixXd> mass(reduced_M);
   if (mass.info() != Eigen::Success)
-    refuse("E-CONDENSE-04", "the kept unknowns of a line carry no mass");
+    refuse("E-CONDENSE-04",
+           "the kept unknowns of a line carry no mass; raise condense.nodes_per_bay");
   const Eigen::MatrixXd inertia = line.mass * (T * mass.solve(reduced_K));
   return T + held.under(parts.pick_following.transpose() * inertia);
 }
@@ -156,9 +157,9 @@ Eigen::MatrixXd craig_bampton_shapes(const Line& line, const std::vector<int>& i
   for (const std::vector<int>& part : connected(held.stiffness())) {
     if (part.size() > static_cast<std::size_t>(kMostPartUnknowns))
       refuse("E-CONDENSE-05",
-             "the seats do not cut the track into bays of their own: one part "
-             "has " +
-                 std::to_string(part.size()) + " unknowns");
+             "the seats do not cut the track into bays that move on their own: one part has " +
+                 std::to_string(part.size()) + " unknowns; expected at most " +
+                 std::to_string(kMostPartUnknowns) + ": raise condense.nodes_per_bay");
     const Eigen::MatrixXd shapes =
         lowest(block(held.stiffness(), part), block(mass, part), modes, highest_hz);
     for (const auto& shape : shapes.colwise()) {

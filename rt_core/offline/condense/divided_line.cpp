@@ -94,8 +94,9 @@ void DividedLine::find_spans() {
 void DividedLine::refuse_free_modes() const {
   if (held_) return;
   railstep::refuse_free_modes(track_, {line_}, {});  // by its name
-  refuse("E-CONDENSE-06",
-         "residual flexibility needs a track that is held: it has a free rigid mode");
+  refuse("E-TRACK-35",
+         "the track has a free rigid mode; expected a support or a held end in every direction in "
+         "which it moves");
 }
 
 /// From a rail's own unknowns to the line's.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "offline/math/refuse.h"
 #include "offline/track/pad.h"
@@ -80,7 +81,8 @@ bool carries_any(const std::vector<int>& carried, bool upright) {
 void check_functional(const Track& track, const Functional& functional) {
   const auto check = [&](int rail, int direction, int most) {
     if (rail < 0 || rail >= track.rails || direction < 0 || direction > most)
-      refuse("E-CONDENSE-07", "a functional names a rail or a direction that the track lacks");
+      refuse("E-CONDENSE-07",
+             "a functional names a rail or a direction that the track does not have");
   };
   for (const Functional::OnRail& point : functional.rail) {
     check(point.at.rail, point.at.direction, 2);
@@ -89,7 +91,7 @@ void check_functional(const Track& track, const Functional& functional) {
   for (const Functional::OnSleeper& at : functional.sleeper) {
     check(at.rail, at.direction, 3);
     if (at.seat < 0 || at.seat > track.bays || !track.seat(at.seat).sleeper)
-      refuse("E-CONDENSE-08", "a functional names a sleeper that the track lacks");
+      refuse("E-CONDENSE-08", "a functional names a sleeper that the track does not have");
   }
 }
 
@@ -123,9 +125,13 @@ ResidualFlexibility::~ResidualFlexibility() = default;
 ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
                                          const std::vector<Basis>& bases, int points)
     : track_(track), lines_(lines), bases_(bases), points_(points) {
-  if (points < 3) refuse("E-CONDENSE-09", "residual flexibility needs 3 intervals or more");
+  if (points < 3)
+    refuse("E-CONDENSE-09",
+           "residual flexibility has " + std::to_string(points) + " intervals; expected 3 or more");
   if (!bases.empty() && bases.size() != lines.size())
-    refuse("E-CONDENSE-10", "residual flexibility needs one basis per line, or none");
+    refuse("E-CONDENSE-10", "residual flexibility has " + std::to_string(bases.size()) +
+                                " bases for " + std::to_string(lines.size()) +
+                                " lines; expected one a line, or none at all");
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const Line& line = lines_[i];
     const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
@@ -145,7 +151,8 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
 /// Weight of the load point in the line, 0 if it does not move the line.
 double ResidualFlexibility::weight(const Pair& pair, LoadPoint load_point) const {
   if (load_point.rail < 0 || load_point.rail >= track_.rails)
-    refuse("E-CONDENSE-11", "residual flexibility is asked on a rail that the track lacks");
+    refuse("E-CONDENSE-11",
+           "residual flexibility is asked for on a rail that the track does not have");
   const auto rail = static_cast<std::size_t>(load_point.rail);
   double row[9];
   height_row(track_.lean(load_point.rail), load_point.y, load_point.z, row);
@@ -291,8 +298,9 @@ double ResidualFlexibility::largest_exact(LoadPoint load_point) const {
 
 PairTable ResidualFlexibility::between(LoadPoint a, LoadPoint b, int points, int most) const {
   if (points < 1 || points_ % points != 0)
-    refuse("E-CONDENSE-12",
-           "a table between load points takes a divisor of the points of the track");
+    refuse("E-CONDENSE-12", "a table between load points has " + std::to_string(points) +
+                                " points; expected a divisor of the " + std::to_string(points_) +
+                                " points of the track");
   most = std::min(most, track_.elements() - 1);
   const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
   const int elements = tabled_elements(track_);

@@ -103,7 +103,9 @@ class Blocks {
         std::conj(step) * block_[0] + block_[1].cast<std::complex<double>>() + step * block_[2];
     const Eigen::MatrixXcd rotated = T.adjoint() * A * T;
     if (!(rotated.imag().norm() <= 1e-9 * rotated.norm()))
-      refuse("E-CONDENSE-13", "a bay of a ring is not its own mirror image about its seat");
+      refuse("E-CONDENSE-13",
+             "a bay of a ring is not its own mirror image about its seat; expected a bay that is "
+             "symmetric");
     return .5 * (rotated.real() + rotated.real().transpose());
   }
 

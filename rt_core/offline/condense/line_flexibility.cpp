@@ -34,7 +34,7 @@ Line matching(const Track& other, const Line& line) {
   for (Line& there : assemble(other))
     if (there.rail_factor == line.rail_factor && carries_all(there, 0) && carries_all(there, 1))
       return std::move(there);
-  refuse("E-CONDENSE-14", "a line is not one of its track's");
+  refuse("E-CONDENSE-14", "a line does not belong to its track");
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -91,9 +92,10 @@ void complete(DampedModes& modes, const Eigen::VectorXd& omega) {
   const double error = incompleteness(modes), off = residual(modes, omega);
   if (error < kMostIncomplete && off < kMostResidual) return;
   std::ostringstream text;
-  text << "modes share one shape, as their damping is near to critical (completeness is missed by "
+  text << "modes share one shape, because their damping is near to critical (completeness is "
+          "missed by "
        << std::setprecision(2) << error << ", their equation by " << off
-       << "); change the number of modes, or step the full track";
+       << "); change the number of modes, or use condense.kind = \"full\"";
   refuse("E-CONDENSE-15", text.str());
 }
 
@@ -103,9 +105,10 @@ Basis modal_basis(const Line& line, const ModalLimit& limit,
                   const Eigen::SparseMatrix<double>& rows) {
   if (line.unknowns() > kMostModalUnknowns)
     refuse("E-CONDENSE-16",
-           "modes of a line of " + std::to_string(line.unknowns()) + " unknowns; accepted are " +
+           "a line of " + std::to_string(line.unknowns()) +
+               " unknowns cannot be condensed; expected at most " +
                std::to_string(kMostModalUnknowns) +
-               ": step it in full order, cut it shorter, or drive on a track without end");
+               ": use condense.kind = \"full\", a shorter track, or track.length = \"endless\"");
   int count = std::min(limit.most, line.unknowns());
   if (std::isfinite(limit.highest_hz)) count = std::min(count, modes_below(line, limit.highest_hz));
   const Modes lowest = lowest_modes(line, std::max(count, 1));
@@ -134,7 +137,8 @@ DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& 
   A.bottomRightCorner(m, m) = -D;
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   if (solver.info() != Eigen::Success)
-    refuse("E-CONDENSE-17", "the damped modes of a line were not found");
+    refuse("E-CONDENSE-17",
+           "the damped modes of a line were not found; use another condense.kind, or more modes");
   DampedShapes found = damped_shapes(basis.omega, D, solver.eigenvalues(), solver.eigenvectors());
   DampedModes result{std::move(found.rate), std::move(found.shape), D};
   complete(result, basis.omega);

@@ -41,7 +41,8 @@ Eigen::MatrixXcd response(const Line& line, const Eigen::MatrixXd& forces, doubl
       dynamic_stiffness(line, {0., 2. * M_PI * hz}));
   if (factor.info() != Eigen::Success)
     refuse("E-CONDENSE-18", "the track resonates without damping at the expansion point of " +
-                                std::to_string(hz) + " Hz; accepted is another");
+                                std::to_string(hz) +
+                                " Hz; expected another condense.expansion_hz, or damping");
   return factor.solve(forces.cast<std::complex<double>>().eval());
 }
 

@@ -8,9 +8,11 @@ namespace railstep {
 ReducedLine::ReducedLine(const Track& track, const Line& line, const Basis& basis)
     : track_(track), line_(line), basis_(basis) {
   if (basis.shapes.rows() != line.unknowns() || basis.shapes.cols() != basis.omega.size())
-    refuse("E-CONDENSE-19", "a basis has one row per unknown of its line, one omega per shape");
+    refuse("E-CONDENSE-19",
+           "a basis does not fit its line; expected one row per unknown and one omega per shape");
   if (basis.omega.size() > 0 && !(basis.omega.minCoeff() > 0.))
-    refuse("E-CONDENSE-20", "a basis for residual flexibility has no free rigid mode");
+    refuse("E-CONDENSE-20",
+           "a basis for residual flexibility has a free rigid mode; expected omega above 0");
 }
 
 /// The line's unknowns at each place of some elements of a rail that a load point reads, and their

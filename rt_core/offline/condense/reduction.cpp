@@ -44,10 +44,9 @@ constexpr double kMostExcess = 1e-2;
 void refuse_damped_massless(const Line& line) {
   for (int i = 0; i < line.unknowns(); ++i)
     if (!(line.mass.coeff(i, i) > 0.) && line.damping.coeff(i, i) > 0.)
-      refuse(
-          "E-CONDENSE-21",
-          "dampers hold a sleeper without mass, which a condensed track does not carry; accepted "
-          "are a mass, no damping there, or full order");
+      refuse("E-CONDENSE-21",
+             "dampers hold a sleeper without mass, which cannot be condensed; expected "
+             "sleeper.mass_kg above 0, no damping there, or condense.kind = \"full\"");
 }
 
 /// Shapes of the kinds that are not made of modes of the whole line.
@@ -78,10 +77,9 @@ ReducedLineModel truncated(const Line& line, const ModalLimit& limit) {
     most = made.modes.rate.size() - 1;
   } while (most > 0 && excess(made.basis) > kMostExcess);
   if (made.modes.rate.size() == 0 || excess(made.basis) > kMostExcess)
-    refuse(
-        "E-CONDENSE-22",
-        "no few damped modes stand for a line alone: it keeps one or more, and none without the "
-        "one that is alike but for near critical damping; accepted are more modes or another kind");
+    refuse("E-CONDENSE-22",
+           "the chosen damped modes cannot stand for a line: none is left, or one is kept without "
+           "its partner of near critical damping; expected more modes, or another condense.kind");
   made.basis.at_once = at_once_of(made.modes);
   return made;
 }
@@ -101,18 +99,18 @@ int kept_coordinates(const Basis& basis, const ModeGroups& modes) {
 ReducedLineModel reduce(const Track& track, const Line& line, const Reduction& reduction,
                         const Eigen::SparseMatrix<double>& rows) {
   if (line.unknowns() > kMostModalUnknowns)
-    refuse("E-CONDENSE-23",
+    refuse("E-CONDENSE-16",
            "a line of " + std::to_string(line.unknowns()) +
-               " unknowns is condensed; accepted are " + std::to_string(kMostModalUnknowns) +
-               ": step it in full order, cut it shorter, or drive on a track without end");
+               " unknowns cannot be condensed; expected at most " +
+               std::to_string(kMostModalUnknowns) +
+               ": use condense.kind = \"full\", a shorter track, or track.length = \"endless\"");
   refuse_damped_massless(line);
   const ModalLimit most = limit_of(line, reduction);
   if (reduction.kind == ReductionKind::complex_modes) {
     if (filled_columns(rows, line.unknowns()).cols() > 0)
-      refuse(
-          "E-CONDENSE-24",
-          "truncated damped modes do not answer one-sided supports, stops and gaps; accepted for "
-          "such a track are the other kinds");
+      refuse("E-CONDENSE-24",
+             "truncated damped modes do not represent one-sided supports, stops and gaps; expected "
+             "another condense.kind for this track");
     return truncated(line, most);
   }
   Basis basis;

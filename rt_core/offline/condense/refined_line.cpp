@@ -48,8 +48,9 @@ RefinedLine::RefinedLine(const Track& track, const Line& line, int parts)
 void RefinedLine::refuse_free_modes() const {
   if (held_) return;
   railstep::refuse_free_modes(track_, {line_}, {});  // by its name
-  refuse("E-CONDENSE-06",
-         "residual flexibility needs a track that is held: it has a free rigid mode");
+  refuse("E-TRACK-35",
+         "the track has a free rigid mode; expected a support or a held end in every direction in "
+         "which it moves");
 }
 
 Eigen::SparseMatrix<double> RefinedLine::columns(const LoadPoint& load_point, int element,

@@ -10,8 +10,9 @@
 namespace railstep {
 namespace {
 
-void require(bool holds, const char* what, double got) {
-  if (!holds) refuse("E-CONTACT-01", std::string(what) + ", it is " + std::to_string(got));
+void require(bool holds, MessageId id, double got, const char* what, const char* expected) {
+  if (!holds)
+    refuse(id, std::string(what) + " is " + std::to_string(got) + "; expected " + expected);
 }
 
 /// What the axes need of m; ratio = (E/k^2 - K)/(K - E) falls from infinity at k = 0 to 1 at k = 1.
@@ -59,15 +60,18 @@ EllipticIntegrals elliptic_integrals(double m) {
 HertzContact hertz_contact(double wheel_radius, double crown_radius, double young, double poisson,
                            double load) {
   const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
-  require(positive(wheel_radius), "the wheel radius must be a positive length", wheel_radius);
-  require(positive(crown_radius), "the crown radius must be a positive length", crown_radius);
-  require(positive(young), "Young's modulus must be positive", young);
-  require(poisson > -1.0 && poisson <= 0.5, "Poisson's ratio must be in (-1, 1/2]", poisson);
-  require(positive(load), "the load must be positive", load);
+  require(positive(wheel_radius), "E-CONTACT-01", wheel_radius, "the wheel radius",
+          "a length above 0 m");
+  require(positive(crown_radius), "E-CONTACT-02", crown_radius, "the crown radius",
+          "a length above 0 m");
+  require(positive(young), "E-CONTACT-03", young, "Young's modulus", "a number of Pa above 0");
+  require(poisson > -1.0 && poisson <= 0.5, "E-CONTACT-04", poisson, "Poisson's ratio",
+          "above -1, at most 0.5");
+  require(positive(load), "E-CONTACT-05", load, "the load", "a force above 0 N");
   const double along = 0.5 / wheel_radius, across = 0.5 / crown_radius;
   const double small = std::min(along, across), ratio = std::max(along, across) / small;
-  require(ratio <= 1e6, "the radii must be within 1 : 1e6 of each other (else a line contact)",
-          ratio);
+  require(ratio <= 1e6, "E-CONTACT-06", ratio, "the ratio of wheel and crown radius",
+          "at most 1e6 (beyond it the contact is a line)");
 
   const double m = find_modulus(ratio);
   const Shape s = shape(m);

@@ -63,8 +63,8 @@ Metric metric(const RestPoint& p) {
   const Vector3d normal = p.a.cross(p.b);
   if (!(volume > 1e-6 * p.r.norm() * p.a.norm() * p.b.norm()))
     refuse("E-ELEMENT-01",
-           "the nodes of an element at rest make no section: r', r_y and r_z "
-           "are to be three directions, right-handed");
+           "the nodes of an element at rest do not form a section; expected r', r_y and r_z in "
+           "three directions, right-handed");
   const Vector3d e1 = normal.normalized(), e2 = p.a.normalized();
   frame << e1, e2, e1.cross(e2);
   const Matrix3d inverse = A.inverse(), B = inverse * frame;
@@ -220,7 +220,7 @@ void check_curvature(const RestPoint& p, const SectionMoments& m) {
                       std::abs((inverse * p.b_slope)[0]) * extent(m.of[0][4]);
   if (!(bent <= .5))
     refuse("E-ELEMENT-02", "an element at rest is curved too sharply: half its section is " +
-                               std::to_string(bent) + " of the radius; accepted is up to 0.5");
+                               std::to_string(bent) + " of the radius; expected at most 0.5");
 }
 
 enum class Part { both, uncoupled, coupling };
@@ -276,7 +276,9 @@ BeamPoint straight_point(const BeamLaw& law, double weight) {
 
 Beam beam_element(const BeamLaw& law, const Vector27& rest) {
   const double length = (rest.segment<3>(18) - rest.segment<3>(0)).norm();
-  if (!(length > 0.)) refuse("E-ELEMENT-03", "an element's end nodes lie in one place");
+  if (!(length > 0.))
+    refuse("E-ELEMENT-03",
+           "the end nodes of an element lie in one place; expected a length above 0");
   const int coupling_points = law.rule.coupling_points;
   const bool together = coupling_points == 0 || coupling_points == law.rule.axial_points;
   Beam beam{};

@@ -1,14 +1,20 @@
 #include "offline/element/straight_beam.h"
 
+#include <string>
+
 #include "offline/math/refuse.h"
 
 namespace railstep {
 
 StraightBeam straight_beam(const BeamLaw& law, double length) {
-  if (!(length > 0.)) refuse("E-ELEMENT-04", "a straight element has a length above 0");
+  if (!(length > 0.))
+    refuse("E-ELEMENT-04", "the length of a straight element is " + std::to_string(length) +
+                               " m; expected above 0");
   const int coupling_points = law.rule.coupling_points;
   if (law.rule.axial_points != 2 || (coupling_points != 0 && coupling_points != 2))
-    refuse("E-ELEMENT-05", "the straight element has two points for all strains, no others");
+    refuse("E-ELEMENT-05",
+           "the straight element has two points for all strains; expected axial_points = 2 and "
+           "coupling_points = 0 or 2");
   const BeamPoint point = straight_point(law, length / 2.);
 
   StraightBeam beam{};
@@ -22,7 +28,10 @@ StraightBeam straight_beam(const BeamLaw& law, double length) {
       if (c >= 0) beam.stiffness[c] = point.stiffness[k][l];
       fits = fits && (c >= 0 || point.stiffness[k][l] == 0.);
     }
-    if (!fits) refuse("E-ELEMENT-06", "the straight element needs a section symmetric about y = 0");
+    if (!fits)
+      refuse("E-ELEMENT-06",
+             "the section of a straight element is not symmetric about y = 0; expected a symmetric "
+             "section");
   }
   return beam;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "offline/irregularity/sincos.h"
 #include "offline/math/refuse.h"
@@ -14,7 +15,9 @@ constexpr double kTwoPi = 6.28318530717958647692;
 
 int whole_steps(double length, double step) {
   if (!(length > 0.) || !(step > 0.) || !(length / step < kMostDefectSteps))
-    refuse("E-IRREGULARITY-01", "a defect's length and step are above 0, with 1e7 steps at most");
+    refuse("E-IRREGULARITY-01",
+           "the length or the step of a defect is out of range; expected both above 0, and fewer "
+           "than 1e7 steps");
   return static_cast<int>(std::ceil(length / step * (1. - 1e-12)));
 }
 
@@ -26,7 +29,8 @@ Signal around(double place, double half, const DefectGrid& grid, const Shape& sh
   const double step = half / steps;
   if (!(grid.patch / step < kMostDefectSteps))
     refuse("E-IRREGULARITY-02",
-           "a defect is so short that its contact patch holds over 1e7 of its steps");
+           "a defect is too short for its contact patch, which covers over 1e7 of its steps; "
+           "expected a longer defect or a shorter patch");
   const int beyond = static_cast<int>(std::ceil(grid.patch / step)) + 1;
   std::vector<double> samples;
   for (int k = -steps - beyond; k <= steps + beyond; ++k)
@@ -46,7 +50,8 @@ Signal on_wheel(double radius, const DefectGrid& grid, const Shape& shape) {
 
 void want_flat(double radius, double length) {
   if (!(length > 0.) || !(length < radius))
-    refuse("E-IRREGULARITY-03", "a flat is shorter than the wheel's radius");
+    refuse("E-IRREGULARITY-03",
+           "the length of a flat is out of range; expected above 0 and below the wheel's radius");
 }
 
 }  // namespace
@@ -63,7 +68,8 @@ Signal corrugation(double from, double to, double wavelength, double amplitude,
                    const DefectGrid& grid) {
   const double half = .5 * (to - from);
   if (!(wavelength > 0.) || !(half >= wavelength))
-    refuse("E-IRREGULARITY-04", "corrugation is two wavelengths long or more");
+    refuse("E-IRREGULARITY-04",
+           "the corrugation is shorter than two wavelengths; expected two or more");
   return around(.5 * (from + to), half, grid, [=](double x) {
     const double to_end = (half - std::fabs(x)) / wavelength;
     const double fade = to_end < 1. ? .5 * (1. - cosine_sine(.5 * to_end).cosine) : 1.;
@@ -87,7 +93,9 @@ Signal rounded_flat(double radius, double length, double depth, const DefectGrid
 }
 
 Signal out_of_round(double radius, int order, double amplitude, const DefectGrid& grid) {
-  if (order < 1) refuse("E-IRREGULARITY-05", "an out-of-round wheel has an order of 1 or more");
+  if (order < 1)
+    refuse("E-IRREGULARITY-05", "the order of an out-of-round wheel is " + std::to_string(order) +
+                                    "; expected 1 or more");
   return on_wheel(radius, grid, [=](double x) {
     return amplitude * cosine_sine(order * x / (kTwoPi * radius)).cosine;
   });

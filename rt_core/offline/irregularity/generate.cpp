@@ -20,15 +20,21 @@ Waves waves_of(const GenerateOptions& o) {
   if (!(o.shortest > 0.) || !(o.longest >= o.shortest) || !(o.length >= o.longest) ||
       !(o.patch >= 0.))
     refuse("E-IRREGULARITY-06",
-           "wavelengths want 0 < shortest <= longest <= length, and a patch of 0 m or more");
+           "the wavelengths are out of order; expected 0 < shortest <= longest <= length, and a "
+           "contact patch of 0 m or more");
   // Whole numbers of waves are kept where rounding leaves a quotient beside them.
   const double low = o.length / o.longest, high = o.length / o.shortest;
   if (!(high * kSamplesPerWave * (high - low) < kMostGenerated))
-    refuse("E-IRREGULARITY-07", "more waves and samples than are generated in seconds");
+    refuse("E-IRREGULARITY-07",
+           "the irregularity has more waves and samples than can be generated in seconds; use a "
+           "shorter period or a longer shortest wavelength");
   const Waves waves = {static_cast<std::int64_t>(std::ceil(low * (1. - 1e-12))),
                        static_cast<std::int64_t>(std::floor(high * (1. + 1e-12))),
                        kSamplesPerWave * static_cast<std::int64_t>(std::ceil(high))};
-  if (waves.last < waves.first) refuse("E-IRREGULARITY-08", "no whole wave lies in the band");
+  if (waves.last < waves.first)
+    refuse("E-IRREGULARITY-08",
+           "no whole number of waves lies between the shortest and the longest wavelength; "
+           "expected a wider band");
   return waves;
 }
 

@@ -16,7 +16,8 @@ Signal combined(const Signal& mean, const Signal& difference, double factor) {
   }
   if (sum.coefficient.size() != difference.coefficient.size() || sum.start != difference.start ||
       sum.step != difference.step || sum.periodic != difference.periodic)
-    refuse("E-IRREGULARITY-09", "a track's geometries want the same places");
+    refuse("E-IRREGULARITY-09",
+           "the geometries of a track stand at different places; expected the same places");
   for (std::size_t i = 0; i < sum.coefficient.size(); ++i)
     sum.coefficient[i] += factor * difference.coefficient[i];
   return sum;

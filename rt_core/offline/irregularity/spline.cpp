@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "offline/math/refuse.h"
 
@@ -70,8 +71,11 @@ SignalModel Signal::model() const {
 }
 
 Signal fit_signal(const std::vector<double>& samples, double start, double step, bool periodic) {
-  if (samples.empty()) refuse("E-IRREGULARITY-10", "a signal has one sample or more");
-  if (!(step > 0.)) refuse("E-IRREGULARITY-11", "a signal's step is above 0");
+  if (samples.empty())
+    refuse("E-IRREGULARITY-10", "the signal is empty; expected one sample or more");
+  if (!(step > 0.))
+    refuse("E-IRREGULARITY-11",
+           "the step of a signal is " + std::to_string(step) + "; expected above 0");
   const int n = static_cast<int>(samples.size());
   std::vector<double> longer;
   for (int k = -kBeyond; k < n + kBeyond; ++k) {

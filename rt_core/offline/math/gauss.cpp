@@ -33,7 +33,7 @@ std::vector<GaussPoint> gauss(int points) {
       return {{-x2, w2}, {-x1, w1}, {0., 128. / 225.}, {x1, w1}, {x2, w2}};
     }
     default:
-      refuse("E-MATH-01", "axial points: " + std::to_string(points) + "; accepted 1 to 5");
+      refuse("E-MATH-01", "axial points: " + std::to_string(points) + "; expected 1 to 5");
   }
 }
 

@@ -31,7 +31,9 @@ Eigen::VectorXd band_energy(Receptance& along, const ThirdOctave& band) {
 double decay_rate(const std::vector<double>& distance, const std::vector<double>& energy) {
   const std::size_t n = distance.size();
   if (n < 2 || energy.size() != n || distance[0] != 0.)
-    refuse("E-RECEPTANCE-01", "a decay rate needs two positions from 0 on, an energy at each");
+    refuse("E-RECEPTANCE-01",
+           "a decay rate has too few positions or energies; expected two positions or more, the "
+           "first at 0, and an energy at each");
   double sum = 0.;
   for (std::size_t i = 0; i < n; ++i) {
     const double before = i == 0 ? 0. : distance[i] - distance[i - 1];

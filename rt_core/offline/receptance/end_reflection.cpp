@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <string>
 
 #include "offline/condense/line_flexibility.h"
 #include "offline/math/refuse.h"
@@ -52,21 +53,27 @@ Matrix for_ever(Matrix part) {
     part = joined;
     if (change < 1e-14 * part.topLeftCorner(d, d).norm()) return part.topLeftCorner(d, d);
   }
-  fail("E-RECEPTANCE-02", "a track without end needs damping where its waves run");
+  fail("E-RECEPTANCE-02",
+       "waves run without damping along a track without end; expected damping in its pads or "
+       "ballast, or other frequencies");
 }
 
 void check(const Track& track) {
   if (track.cant != 0.)
-    refuse("E-RECEPTANCE-03", "the reflection of an end is that of upright rails");
+    refuse("E-RECEPTANCE-03",
+           "the reflection of an end is found for upright rails only; expected no cant");
   if (!track.changed_seats.empty() || track.right || has_long_pads(track) || track.state ||
       !track.joints.empty())
     refuse("E-RECEPTANCE-04",
-           "the reflection of an end is that of a uniform track at rest: seats and rails alike, no "
-           "joints, pads "
-           "that are points");
+           "the reflection of an end is found for a uniform track at rest only; expected equal "
+           "seats and rails, no joints, and pads that are points");
   if (track.ends[1] != RailEnd::free && track.ends[1] != RailEnd::non_reflecting)
-    refuse("E-RECEPTANCE-05", "the reflection of a far end that is held is not asked for");
-  if (track.bays < 3) refuse("E-RECEPTANCE-06", "a wave needs three bays or more");
+    refuse("E-RECEPTANCE-05",
+           "the reflection of an end is not found for an end that is held; expected a free or "
+           "non-reflecting far end");
+  if (track.bays < 3)
+    refuse("E-RECEPTANCE-06",
+           "the track has " + std::to_string(track.bays) + " bays; expected 3 or more for a wave");
 }
 
 /// Sections that do not strain: b_y = -a_z.
@@ -98,7 +105,7 @@ EndReflection::EndReflection(const Track& track, const Line& line, int direction
   carried_ = carried_unknowns(line, rail);
   const auto driven = std::find(carried_.begin(), carried_.end(), direction);
   if (driven == carried_.end())
-    refuse("E-RECEPTANCE-07", "the line does not move in that direction");
+    refuse("E-RECEPTANCE-07", "the line does not move in this direction");
   driven_ = driven - carried_.begin();
   mirror_.resize(static_cast<Eigen::Index>(carried_.size()));
   for (std::size_t i = 0; i < carried_.size(); ++i)

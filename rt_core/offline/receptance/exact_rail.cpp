@@ -36,19 +36,24 @@ Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, const Eigen::Mat
     across = (-across * inverse * across).eval();
     if (change.norm() < 1e-14 * near.norm()) return near;
   }
-  fail("E-RECEPTANCE-02", "a track without end needs damping where its waves run");
+  fail("E-RECEPTANCE-02",
+       "waves run without damping along a track without end; expected damping in its pads or "
+       "ballast, or other frequencies");
 }
 
 ExactRailReceptance::ExactRailReceptance(const Track& track, const Transfer& transfer,
                                          BeamTheory theory, bool endless)
     : track_(track), transfer_(transfer), beam_(bending_beam(track, theory)), endless_(endless) {
   if (track.cant != 0.)
-    refuse("E-RECEPTANCE-08", "the exact beam stands for rails upright; accepted is no cant");
+    refuse("E-RECEPTANCE-08", "the exact beam stands upright; expected no cant");
   if (track.axial_force != 0. || track.axis_z != 0.)
-    refuse("E-RECEPTANCE-09", "the exact beam carries no axial force and is on the centroid");
+    refuse("E-RECEPTANCE-09",
+           "the exact beam has no axial force and its nodes are on the centroid; expected no "
+           "rail.axial_force_n and no heat, and track.reference_line = \"centroid\"");
   if (!track.changed_seats.empty() || track.right || has_long_pads(track) || !track.joints.empty())
     refuse("E-RECEPTANCE-10",
-           "the exact beam stands on points, all seats and both rails alike, without joints");
+           "the exact beam stands on equal point seats; expected equal seats and rails, "
+           "support.length_m = 0, and no joints");
   for (int i = 0; i <= track.bays; ++i) x_.push_back(i * track.bay_length);
   take_places(transfer.force);
   for (const Functional& read : transfer.reads) take_places(read);
@@ -66,7 +71,8 @@ ExactRailReceptance::ExactRailReceptance(const Track& track, const Transfer& tra
 void ExactRailReceptance::take_places(const Functional& functional) {
   const auto check = [](int direction) {
     if (direction != 2)
-      refuse("E-RECEPTANCE-11", "the exact beam answers vertical forces with vertical motion");
+      refuse("E-RECEPTANCE-11",
+             "the exact beam moves vertically only; expected force and sensor along z");
   };
   for (const Functional::OnRail& point : functional.rail) {
     check(point.at.direction);
@@ -76,7 +82,8 @@ void ExactRailReceptance::take_places(const Functional& functional) {
   for (const Functional::OnSleeper& end : functional.sleeper) {
     check(end.direction);
     if (!track_.sleeper || end.seat < 0 || end.seat > track_.bays)
-      refuse("E-RECEPTANCE-12", "a sleeper that the track lacks");
+      refuse("E-RECEPTANCE-12",
+             "the force or the sensor is on a sleeper that the track does not have");
   }
 }
 

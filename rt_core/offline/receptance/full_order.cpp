@@ -42,7 +42,8 @@ Eigen::VectorXcd FullOrderReceptance::at(double hz) {
   for (const std::unique_ptr<Part>& part : parts_) {
     part->factor.factorize(dynamic_stiffness(part->line, Value(0., 2. * M_PI * hz)));
     if (part->factor.info() != Eigen::Success)
-      fail("E-RECEPTANCE-13", "the track swings without damping at " + std::to_string(hz) + " Hz");
+      fail("E-RECEPTANCE-13", "the track swings without damping at " + std::to_string(hz) +
+                                  " Hz; expected dampers, or another frequency");
     const Eigen::VectorXcd moved = part->factor.solve(part->force);
     sum += part->reads.cast<Value>() * moved;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "offline/math/refuse.h"
 
@@ -75,19 +76,26 @@ bool is_symmetric(const std::vector<Point>& polygon, double tolerance) {
 }  // namespace
 
 void check_polygon(const std::vector<Point>& polygon) {
-  if (polygon.size() < 3) refuse("E-SECTION-01", "a section needs at least three points");
+  if (polygon.size() < 3)
+    refuse("E-SECTION-01",
+           "the section has " + std::to_string(polygon.size()) + " points; expected 3 or more");
   const double size = extent(polygon);
   if (!std::isfinite(size))
-    refuse("E-SECTION-02", "a section's coordinates must be finite numbers");
+    refuse("E-SECTION-02", "a coordinate of the section is not finite; expected finite numbers");
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Point& next = polygon[(i + 1) % polygon.size()];
     if (std::hypot(next[0] - polygon[i][0], next[1] - polygon[i][1]) <= 1e-9 * size)
       refuse("E-SECTION-03",
-             "two consecutive points of the section coincide; do not repeat the first point");
+             "two consecutive points of the section coincide; expected different points, and the "
+             "first one not repeated at the end");
   }
   if (signed_area(polygon) <= 1e-9 * size * size)
-    refuse("E-SECTION-04", "the section must be counter-clockwise and enclose an area");
-  if (crosses_itself(polygon)) refuse("E-SECTION-05", "the section's outline crosses itself");
+    refuse("E-SECTION-04",
+           "the section encloses no area or its points run clockwise; expected points in "
+           "counter-clockwise order around it");
+  if (crosses_itself(polygon))
+    refuse("E-SECTION-05",
+           "the outline of the section crosses itself; expected points in order around it");
 }
 
 namespace {
@@ -112,7 +120,8 @@ std::vector<Point> with_axis_points(const std::vector<Point>& polygon) {
 HalfPolygon right_half(const std::vector<Point>& polygon) {
   check_polygon(polygon);
   if (!is_symmetric(polygon, 1e-6 * extent(polygon)))
-    refuse("E-SECTION-06", "the section is not symmetric about y = 0");
+    refuse("E-SECTION-06",
+           "the section is not symmetric about y = 0; expected a symmetric section");
   const std::vector<Point> all = with_axis_points(polygon);
   const std::size_t n = all.size();
   std::size_t first = n;
@@ -123,7 +132,9 @@ HalfPolygon right_half(const std::vector<Point>& polygon) {
       ++departures;
     }
   if (departures != 1)
-    refuse("E-SECTION-07", "the section's outline must meet its axis exactly twice");
+    refuse("E-SECTION-07",
+           "the outline does not cross its upright axis exactly twice; expected one crossing at "
+           "the foot and one at the crown");
   HalfPolygon half{all[first]};
   for (std::size_t i = first + 1; half.size() == 1 || half.back()[0] > 0.0; ++i)
     half.push_back(all[i % n]);

@@ -82,7 +82,7 @@ void add_arc(SectionMoments& m, const Segment& s) {
 
 void check_points(int points) {
   if (points < 1 || points > 3)
-    refuse("E-SECTION-08", "points per rectangle: " + std::to_string(points) + "; accepted 1 to 3");
+    refuse("E-SECTION-08", "points per rectangle: " + std::to_string(points) + "; expected 1 to 3");
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ Outline finish(std::vector<Segment> segments) {
   if (moments_of(segments).area < 0.0) reverse(segments);
   const Moments m = moments_of(segments);
   if (!(m.area > 1e-6 * (high - low) * (high - low)))
-    refuse("E-SECTION-09", "the outline encloses no area: list its points in order around it");
+    refuse("E-SECTION-09", "the outline encloses no area; list its points in order around it");
   const double across = m.y / m.area;
   // A mirrored outline is exact about y = 0 already: moving it by round-off would spoil that.
   const double shift = std::abs(across) > 1e-12 * (high - low) ? across : 0.0;

@@ -77,7 +77,7 @@ std::vector<Chord> chords_of(const std::vector<Segment>& segments) {
                              std::to_string(std::min(p.number, q.number)) + " and " +
                              std::to_string(std::max(p.number, q.number)) + " meet near (" +
                              millimetres(where[0]) + ", " + millimetres(where[1]) +
-                             "); accepted is one that does not");
+                             "); expected an outline that does not cross itself");
 }
 
 }  // namespace
@@ -87,32 +87,32 @@ void check_rows(std::span<const OutlineRow> rows, std::size_t fewest) {
     if (!std::isfinite(row.point[0]) || !std::isfinite(row.point[1]) || !std::isfinite(row.radius))
       refuse("E-SECTION-11",
              "row " + std::to_string(row.number) +
-                 " of the outline holds a value that is not finite; finite numbers are accepted");
+                 " of the outline holds a value that is not finite; expected finite numbers");
   if (rows.size() < fewest)
-    refuse("E-SECTION-12", "the outline has " + std::to_string(rows.size()) + " points; at least " +
-                               std::to_string(fewest) + " are needed");
+    refuse("E-SECTION-12", "the outline has " + std::to_string(rows.size()) +
+                               " points; expected at least " + std::to_string(fewest));
   if (rows.size() > kMostPoints)
-    refuse("E-SECTION-13", "the outline has " + std::to_string(rows.size()) + " points; at most " +
-                               std::to_string(kMostPoints) + " are read");
+    refuse("E-SECTION-13", "the outline has " + std::to_string(rows.size()) +
+                               " points; expected at most " + std::to_string(kMostPoints));
   for (std::size_t i = 1; i < rows.size(); ++i)
     if (distance(rows[i - 1].point, rows[i].point) < kSamePlace)
       refuse("E-SECTION-14", "rows " + std::to_string(rows[i - 1].number) + " and " +
                                  std::to_string(rows[i].number) +
-                                 " of the outline are the same point; each differs from the one "
-                                 "before it");
+                                 " of the outline are the same point; remove one of them");
 }
 
 void check_half(std::span<const OutlineRow> half) {
   for (const OutlineRow* end : {&half.front(), &half.back()})
     if (std::abs(end->point[0]) > kSamePlace)
-      refuse("E-SECTION-15", "the half outline leaves a gap: its row " +
-                                 std::to_string(end->number) + " is " + millimetres(end->point[0]) +
-                                 " off the axis x = 0, on which its first and last rows lie");
+      refuse("E-SECTION-15",
+             "the half outline leaves a gap: its row " + std::to_string(end->number) + " is " +
+                 millimetres(end->point[0]) +
+                 " off the axis x = 0; expected its first and last rows on that axis");
   for (const OutlineRow& row : half)
     if (row.point[0] < -kSamePlace)
       refuse("E-SECTION-16", "row " + std::to_string(row.number) + " of the half outline is " +
                                  millimetres(-row.point[0]) +
-                                 " left of the axis x = 0; accepted is x from 0 on");
+                                 " left of the axis x = 0; expected x of 0 or more");
 }
 
 void check_closing(std::span<const OutlineRow> points) {
@@ -121,9 +121,10 @@ void check_closing(std::span<const OutlineRow> points) {
     longest = std::max(longest, distance(points[i - 1].point, points[i].point));
   const double closing = distance(points.front().point, points.back().point);
   if (closing < kSamePlace)
-    refuse("E-SECTION-17", "rows " + std::to_string(points.front().number) + " and " +
-                               std::to_string(points.back().number) +
-                               " of the outline are nearly, but not, the same point");
+    refuse("E-SECTION-17",
+           "rows " + std::to_string(points.front().number) + " and " +
+               std::to_string(points.back().number) +
+               " of the outline are nearly, but not exactly, the same point; remove the last row");
   if (closing > 3.0 * longest)
     refuse("E-SECTION-18", "the outline has a gap of " + millimetres(closing) +
                                " between its last and first points, over three times its longest "
@@ -135,14 +136,14 @@ void check_segment(const Segment& s) {
   // The moments of a flatter arc drown in round-off: at 10 m they still hold to 2e-10.
   if (std::abs(s.radius) > kLargestRadius)
     refuse("E-SECTION-19", "row " + std::to_string(s.number) + " has an arc radius of " +
-                               millimetres(std::abs(s.radius)) + ", over the limit of " +
-                               millimetres(kLargestRadius) + "; write 0 for a straight line");
+                               millimetres(std::abs(s.radius)) + "; expected at most " +
+                               millimetres(kLargestRadius) + ", or 0 for a straight line");
   // A semicircle is allowed, up to the rounding of printed coordinates.
   if (s.radius != 0.0 && std::abs(s.radius) < 0.5 * chord * (1.0 - 1e-9))
     refuse("E-SECTION-20", "row " + std::to_string(s.number) + " has an arc radius of " +
                                millimetres(std::abs(s.radius)) + ", under half its chord of " +
-                               millimetres(chord) + "; accepted is " + millimetres(0.5 * chord) +
-                               " and more, or 0 for a straight line");
+                               millimetres(chord) + "; expected " + millimetres(0.5 * chord) +
+                               " or more, or 0 for a straight line");
 }
 
 void check_size(double width, double height) {
@@ -150,14 +151,14 @@ void check_size(double width, double height) {
   for (const auto& [size, way] : {std::pair(height, "high"), std::pair(width, "wide")}) {
     if (!(size <= 1.0)) {
       std::snprintf(text, sizeof text,
-                    "the outline is %.6g m %s, over the limit of 1 m: are these millimetres?", size,
+                    "the outline is %.6g m %s; expected at most 1 m: are these millimetres?", size,
                     way);
       refuse("E-SECTION-21", text);
     }
   }
   if (!(height > 1e-3)) {
     std::snprintf(text, sizeof text,
-                  "the outline is %.6g mm high, under the limit of 1 mm: are these metres?",
+                  "the outline is %.6g mm high; expected over 1 mm: are these metres?",
                   1e3 * height);
     refuse("E-SECTION-22", text);
   }

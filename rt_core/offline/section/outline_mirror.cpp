@@ -52,7 +52,10 @@ std::vector<Point> right_chain(const std::vector<Point>& points) {
     if (here != next) ++changes;
     if (!here && next) enters = i;
   }
-  if (changes != 2) refuse("E-SECTION-23", "the outline must cross its upright axis exactly twice");
+  if (changes != 2)
+    refuse("E-SECTION-07",
+           "the outline does not cross its upright axis exactly twice; expected one crossing at "
+           "the foot and one at the crown");
   const auto on_axis = [](const Point& a, const Point& b) {
     const double t = a[0] / (a[0] - b[0]);
     return Point{0.0, a[1] + t * (b[1] - a[1])};

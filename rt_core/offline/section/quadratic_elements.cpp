@@ -122,7 +122,9 @@ Eigen::MatrixXd solve_fixed(const Eigen::SparseMatrix<double>& K, const std::vec
     if (!fixed[i]) right.row(row[i]) = load.row(static_cast<Eigen::Index>(i));
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(reduced);
   if (solver.info() != Eigen::Success)
-    refuse("E-SECTION-24", "the section is too thin or ragged for its Saint-Venant solution");
+    refuse("E-SECTION-24",
+           "the section is too thin or ragged for its Saint-Venant solution; use fewer points and "
+           "remove slivers");
   const Eigen::MatrixXd solved = solver.solve(right);
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(load.rows(), load.cols());
   for (std::size_t i = 0; i < fixed.size(); ++i)

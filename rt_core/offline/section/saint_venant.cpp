@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "offline/math/refuse.h"
 #include "offline/section/half_polygon.h"
@@ -204,14 +205,17 @@ auto refined(Solve solve) {
   double size = kCoarsest;
   for (int i = 0; i <= kRefinements; ++i, size *= 0.5)
     if (const auto found = solve(size)) return *found;
-  refuse("E-SECTION-24", "the section is too thin or ragged for its Saint-Venant solution");
+  refuse("E-SECTION-24",
+         "the section is too thin or ragged for its Saint-Venant solution; use fewer points and "
+         "remove slivers");
 }
 
 }  // namespace
 
 SaintVenant saint_venant(const std::vector<std::array<double, 2>>& polygon, double poisson) {
   if (!(poisson > -1.0 && poisson <= 0.5))
-    refuse("E-SECTION-25", "Poisson's ratio must be above -1 and at most 0.5");
+    refuse("E-SECTION-25",
+           "Poisson's ratio is " + std::to_string(poisson) + "; expected above -1, at most 0.5");
   const ScaledHalf half = scale(polygon);
   return refined([&](double size) { return solve(half, size, poisson); });
 }
@@ -223,7 +227,8 @@ Twist twist(const std::vector<std::array<double, 2>>& polygon) {
 
 TorsionBounds torsion_bounds(const std::vector<std::array<double, 2>>& polygon, double size) {
   if (!(size > 0.0 && size <= 1.0))
-    refuse("E-SECTION-26", "the triangle size must be above 0 and at most 1");
+    refuse("E-SECTION-26",
+           "the triangle size is " + std::to_string(size) + "; expected above 0, at most 1");
   const ScaledHalf half = scale(polygon);
   const Discrete d = discretise(mesh_half(half.outline, size));
   const TorsionBounds J = bounds(d, solve_odd(d, d.warping_load));

@@ -11,10 +11,10 @@ namespace railstep {
 /// Cowper's factor of a section is not between 0 and 1.
 struct NoShearFactor : Refused {
   NoShearFactor()
-      : Refused(
-            "E-SECTION-30",
-            "Cowper's shear factor of this section is not between 0 and 1; with a Poisson's ratio "
-            "of 0 it is the energy's factor and always is") {}
+      : Refused("E-SECTION-30",
+                "Cowper's shear factor of this section is not between 0 and 1; use a Poisson's "
+                "ratio of "
+                "0, which makes it the factor of the shear energy, or give the shear factors") {}
 };
 
 /// Lower and upper bound of the torsion constant: Prandtl's stress function can only be too soft,

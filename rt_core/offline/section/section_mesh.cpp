@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <string>
 #include <utility>
 
 #include "offline/math/refuse.h"
@@ -188,7 +189,9 @@ class Refiner {
 
   void check_count() const {
     if (mesh_.points().size() > kMostPoints)
-      refuse("E-SECTION-27", "the section's outline is too fine to be triangulated");
+      refuse("E-SECTION-27",
+             "the outline of the section is too fine: its triangles need more than " +
+                 std::to_string(kMostPoints) + " points; use fewer points in the outline");
   }
 
   std::vector<Point> outline_, corners_;

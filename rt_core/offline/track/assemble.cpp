@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "offline/math/refuse.h"
@@ -213,61 +214,86 @@ void split(const Assembly& part, std::array<double, 2> factor, std::vector<Line>
 void check_one_sided(const Seat& seat, std::size_t side) {
   const Support& pad = seat.pad[side];
   const Ballast& ballast = seat.ballast[side];
-  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-01", what); };
-  if (!(pad.gap >= 0.) || !(ballast.gap >= 0.)) refuse("a gap under a rail is at least 0");
+  if (!(pad.gap >= 0.) || !(ballast.gap >= 0.))
+    refuse("E-TRACK-01", "a gap under a rail is negative; expected 0 m or more");
   if (pad.one_sided() && pad.length > 0.)
-    refuse("a pad that does not pull is a point; accepted is a length of 0");
+    refuse("E-TRACK-14",
+           "support.unilateral and support.gap_m need a pad that is a point; expected "
+           "support.length_m = 0");
   if (!seat.sleeper || !ballast.one_sided()) return;
   if (ballast.length > 0.)
-    refuse("ballast that does not pull is a point; accepted is a length of 0");
+    refuse("E-TRACK-15",
+           "ballast.unilateral and ballast.gap_m need ballast that is a point; expected a length "
+           "of 0");
   if (pad.one_sided() && seat.sleeper->mass == 0.)
-    refuse(
-        "a sleeper of 0 kg between a pad and ballast that both do not pull is held by nothing "
-        "where both are open; accepted is a mass above 0");
+    refuse("E-TRACK-16",
+           "nothing holds a sleeper of 0 kg while both its pad and its ballast are open; expected "
+           "sleeper.mass_kg above 0, or a pad or ballast that pulls too");
 }
 
 void check_stop(const Track& track, const Stop& stop) {
-  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-02", what); };
-  if (stop.rail < 0 || stop.rail >= track.rails) refuse("a stop on a rail that is not there");
-  if (stop.direction != 1 && stop.direction != 2) refuse("a stop acts along y or z");
+  if (stop.rail < 0 || stop.rail >= track.rails)
+    refuse("E-TRACK-02", "a stop names a rail that the track does not have");
+  if (stop.direction != 1 && stop.direction != 2)
+    refuse("E-TRACK-17", "a stop does not act along y or z; expected direction 1 or 2");
   if (std::abs(stop.side) != 1. || !(stop.gap >= 0.))
-    refuse("a stop's side is 1 or -1, its gap at least 0");
+    refuse("E-TRACK-18",
+           "the side or the gap of a stop is out of range; expected a side of 1 or -1 and a gap of "
+           "0 m or more");
   if (!(stop.stiffness >= 0.) || !(stop.damping >= 0.))
-    refuse("a stop's stiffness and damping are at least 0");
+    refuse("E-TRACK-19", "the stiffness or the damping of a stop is negative; expected 0 or more");
 }
 
 void check_ring(const Track& track) {
-  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-03", what); };
-  if (track.bays < 3) refuse("a ring has three bays or more");
-  if (track.ends != RailEnds{}) refuse("a ring has no ends to be held");
-  if (!track.changed_seats.empty()) refuse("the seats of a ring are alike");
-  if (track.support.length != 0.) refuse("the pads of a ring are points");
-  if (!track.joints.empty()) refuse("the rails of a ring are not cut");
-  if (!fixed_ports(track).empty()) refuse("the seats of a ring pull too, and it has no stops");
-  if (track.state) refuse("a ring is taken at rest, not where its weight leaves it");
+  if (track.bays < 3)
+    refuse("E-TRACK-03",
+           "the ring of a track without end has fewer than three bays; expected 3 or more");
+  if (track.ends != RailEnds{})
+    refuse("E-TRACK-20", "a track without end has no ends to hold; leave out the ends");
+  if (!track.changed_seats.empty())
+    refuse("E-TRACK-21", "the seats of a track without end differ; expected equal seats");
+  if (track.support.length != 0.)
+    refuse("E-TRACK-22",
+           "the pads of a track without end have a length; expected support.length_m = 0");
+  if (!track.joints.empty())
+    refuse("E-TRACK-23", "the rails of a track without end have joints; expected none");
+  if (!fixed_ports(track).empty())
+    refuse("E-TRACK-24",
+           "a track without end has one-sided supports or stops; expected seats that press and "
+           "pull, and no stops");
+  if (track.state)
+    refuse("E-TRACK-25",
+           "a track without end cannot be linearised under its weight; expected it at rest");
 }
 
 void check(const Track& track) {
-  const auto refuse = [](const char* what) { railstep::refuse("E-TRACK-04", what); };
-  if (track.bays < 1 || track.elements_per_bay < 1) refuse("a track needs one bay and one element");
-  if (track.rails != 1 && track.rails != 2) refuse("a track has one rail or two");
+  if (track.bays < 1 || track.elements_per_bay < 1)
+    refuse("E-TRACK-04", "the track has no bay or no element in a bay; expected 1 or more of each");
+  if (track.rails != 1 && track.rails != 2)
+    refuse("E-TRACK-26", "the number of rails is not 1 or 2");
   if (!(track.bay_length > 0.) || !(track.rail_spacing > 0.))
-    refuse("bay length and rail spacing are above zero");
-  if (!(std::abs(track.cant) <= 1.)) refuse("rails lean by at most 1:1");
+    refuse("E-TRACK-27",
+           "the bay length or the rail spacing is not positive; expected both above 0 m");
+  if (!(std::abs(track.cant) <= 1.))
+    refuse("E-TRACK-28", "the cant of the rails is steeper than 1:1; expected -1 to 1");
   if (track.cant != 0. && !moves_sideways(track.unknowns))
-    refuse(
-        "a rail that leans moves sideways under a vertical force; accepted with a cant are all "
-        "unknowns of a rail, or those of a rigid section");
+    refuse("E-TRACK-29",
+           "a rail with cant moves sideways under a vertical force; expected track.unknowns = "
+           "\"full\" or \"rigid-section\"");
   check_joints(track);
   if (end_zones(track) * track.end_zone_bays > track.bays)
-    refuse("the zones of non-reflecting ends do not fit on the track");
+    refuse("E-TRACK-30",
+           "the zones of the non-reflecting ends do not fit on the track; expected more bays or "
+           "shorter zones");
   if (track.ring) check_ring(track);
   for (const auto& [border, seat] : track.changed_seats)
-    if (border < 0 || border > track.bays) refuse("a changed seat stands at no bay border");
+    if (border < 0 || border > track.bays)
+      refuse("E-TRACK-31", "a changed seat does not stand at a bay border of the track");
   for (int border = 0; border <= track.bays; ++border)
     for (const Support& pad : track.seat(border).pad)
       if (!(pad.length >= 0.) || pad.length > track.bay_length)
-        refuse("a pad's length is at least 0 and at most the bay's");
+        refuse("E-TRACK-32",
+               "the length of a pad is out of range; expected 0 to the length of a bay");
   for (int border = 0; border <= track.bays; ++border)
     for (std::size_t side = 0; side < static_cast<std::size_t>(track.rails); ++side)
       check_one_sided(track.seat(border), side);
@@ -324,7 +350,9 @@ bool is_held(const Track& track, int node, int k) {
 ElementPlace place_on(const Track& track, double x) {
   const double place = x / track.element_length();
   if (!(place >= 0.) || !(place <= track.elements() * (1. + 1e-12)))
-    refuse("E-TRACK-05", "point off the rail");
+    refuse("E-TRACK-05", "the point x = " + std::to_string(x) +
+                             " m is off the rail; expected 0 to " + std::to_string(track.length()) +
+                             " m");
   const int element = std::min(static_cast<int>(place), track.elements() - 1);
   return {element, 2. * (place - element) - 1.};
 }

@@ -43,9 +43,10 @@ void add_spring(Assembly& part, const Row& row, double stiffness, double damping
 int joint_node(const Track& track, const RailJoint& joint) {
   const double place = joint.x / track.element_length(), border = std::round(place);
   if (!(std::fabs(place - border) <= kOnBorder))
-    refuse("E-TRACK-06", "a rail is cut at a border of its elements");
+    refuse("E-TRACK-06",
+           "a rail is cut inside an element; expected a joint at a border of two elements");
   if (border < 1. || border > track.elements() - 1.)
-    refuse("E-TRACK-07", "a rail is cut between its ends");
+    refuse("E-TRACK-07", "a rail is cut at its end; expected a joint between its ends");
   return 2 * static_cast<int>(border);
 }
 
@@ -62,27 +63,33 @@ void check_joints(const Track& track) {
     for (int rail = 0; rail < track.rails; ++rail)
       if (joint.rails[static_cast<std::size_t>(rail)] &&
           !cut.insert({rail, joint_node(track, joint)}).second)
-        refuse("E-TRACK-08", "a rail has two joints at one place");
+        refuse("E-TRACK-08", "a rail has two joints at one place; expected one");
     for (const auto* values :
          {&joint.stiffness, &joint.damping, &joint.rotation_stiffness, &joint.rotation_damping})
       for (const double value : *values)
-        if (!(value >= 0.)) refuse("E-TRACK-09", "a joint's stiffness and damping are at least 0");
+        if (!(value >= 0.))
+          refuse("E-TRACK-09",
+                 "the stiffness or the damping of a joint is negative; expected 0 or more");
     const bool opens = std::isfinite(joint.end_stiffness) && joint.end_stiffness >= 0. &&
                        joint.end_damping >= 0. && std::isfinite(joint.stiffness[0]);
     if ((joint.end_stiffness != 0. || joint.end_damping != 0.) && !opens)
-      refuse(
-          "E-TRACK-10",
-          "ends that press have a stiffness and a damping that are finite and at least 0, and do "
-          "not share their motion along x");
+      refuse("E-TRACK-10",
+             "rail ends that meet at a joint have a negative or infinite stiffness or damping, or "
+             "share their motion along x; expected finite values of 0 or more, and ends that move "
+             "apart");
     for (const std::size_t side : {0u, 1u})
       if (!(joint.end_force[side] >= 0.) ||
           (joint.end_force[side] > 0. && joint.end_stiffness == 0.))
-        refuse("E-TRACK-11", "ends that are pressed have a stiffness");
+        refuse("E-TRACK-11",
+               "rail ends are pressed together without a stiffness; expected an end stiffness "
+               "above 0");
     if (std::isinf(joint.rotation_stiffness[0]))
-      refuse("E-TRACK-12", "a joint's stiffness against twist is finite");
+      refuse("E-TRACK-12",
+             "the stiffness of a joint against twist is infinite; expected a finite value");
   }
   if (track.state && !track.joints.empty())
-    refuse("E-TRACK-13", "a rail with joints is linearised at rest");
+    refuse("E-TRACK-13",
+           "a rail with joints cannot be linearised under its weight; expected it at rest");
 }
 
 void number_cut(const Track& track, Assembly& part, int rail, int node) {

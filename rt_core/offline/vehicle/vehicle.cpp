@@ -18,26 +18,33 @@ Eigen::VectorXd row(const Vehicle& vehicle, const std::vector<int>& first, int b
 }
 
 void check(const Vehicle& vehicle) {
-  const auto refuse = [](const char* what) { railstep::refuse("E-VEHICLE-01", what); };
   const auto is_body = [&](int body) {
     return body >= 0 && body < static_cast<int>(vehicle.bodies.size());
   };
   if (vehicle.bodies.empty() || vehicle.wheels.empty())
-    refuse("a vehicle has a body and a wheel or more");
+    refuse("E-VEHICLE-01", "a vehicle has no body or no wheel; expected one of each or more");
   for (const Vehicle::Body& body : vehicle.bodies) {
-    if (!(body.mass > 0.)) refuse("a vehicle's bodies have masses above 0");
-    if (!(body.pitch_inertia >= 0.)) refuse("a pitch inertia is 0 or more");
-    if (!(body.carried >= 0.)) refuse("a carried mass is 0 or more");
+    if (!(body.mass > 0.))
+      refuse("E-VEHICLE-40", "the mass of a vehicle's body is not positive; expected above 0 kg");
+    if (!(body.pitch_inertia >= 0.))
+      refuse("E-VEHICLE-41",
+             "the pitch inertia of a vehicle's body is negative; expected 0 or more");
+    if (!(body.carried >= 0.))
+      refuse("E-VEHICLE-42", "a carried mass is negative; expected 0 kg or more");
   }
   for (const Vehicle::Suspension& s : vehicle.suspensions) {
     if (!is_body(s.upper) || !is_body(s.lower) || s.upper == s.lower)
-      refuse("a suspension is between two bodies of its vehicle");
+      refuse("E-VEHICLE-43",
+             "a suspension does not join two bodies of its vehicle; expected two different ones");
     if (!(s.stiffness >= 0.) || !(s.damping >= 0.))
-      refuse("a suspension's stiffness and damping are 0 or more");
+      refuse("E-VEHICLE-44",
+             "the stiffness or damping of a suspension is negative; expected 0 or more");
   }
   for (const Vehicle::Wheel& wheel : vehicle.wheels)
     if (!is_body(wheel.body) || !(wheel.radius > 0.))
-      refuse("a wheel has a body of its vehicle and a radius above 0");
+      refuse("E-VEHICLE-45",
+             "a wheel has no body of its vehicle, or no radius; expected both, and a radius above "
+             "0 m");
 }
 
 }  // namespace
@@ -89,7 +96,9 @@ VehicleRest vehicle_at_rest(const VehicleMatrices& m) {
   b.head(n) = -m.weight / scale;
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
   if (!lu.isInvertible())
-    refuse("E-VEHICLE-02", "a vehicle's springs and wheels leave it a free motion");
+    refuse("E-VEHICLE-02",
+           "the springs and wheels of a vehicle leave it a free motion; expected suspensions with "
+           "stiffness in every direction in which its bodies move");
   const Eigen::VectorXd x = lu.solve(b);
   return {x.head(n), scale * x.tail(wheels)};
 }

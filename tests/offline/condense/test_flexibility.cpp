@@ -291,7 +291,7 @@ TEST_CASE("lines that the load point does not move may be free", "[flexibility]"
   t.support.stiffness = {0., 0., 3e7};  // x is on b_z's line, which the axis does not move
   CHECK_NOTHROW(ResidualFlexibility(t, assemble(t), {}, 4).under({0, 0.}));
   CHECK_THROWS_WITH(ResidualFlexibility(t, assemble(t), {}, 4).under({0, kHeadZ}),
-                    Catch::Contains("free rigid mode"));
+                    Catch::Contains("E-TRACK-35"));
   t.support.stiffness = {3e6, 3e6, 0.};
   const ResidualFlexibility loose(t, assemble(t), {}, 4);
   CHECK_THROWS_AS(loose.under({0, 0.}), std::invalid_argument);
@@ -302,20 +302,20 @@ TEST_CASE("lines that the load point does not move may be free", "[flexibility]"
 TEST_CASE("tables of bad size, basis or place are refused", "[flexibility]") {
   const Track t = peers_track(1);
   const std::vector<Line> lines = assemble(t);
-  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, {}, 2), Catch::Contains("3 intervals"));
+  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, {}, 2), Catch::Contains("E-CONDENSE-09"));
   const std::vector<Basis> good = lowest_modes(t, lines, 1);
   std::vector<Basis> bad = good;
   bad.push_back(good[0]);
-  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("one basis per line"));
+  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("E-CONDENSE-10"));
   bad = good;
   bad[0].shapes = Eigen::MatrixXd(good[0].shapes.dense().topRows(10));
-  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("one row per unknown"));
+  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("E-CONDENSE-19"));
   bad = good;
   bad[0].omega[0] = 0.;
-  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("free rigid mode"));
+  CHECK_THROWS_WITH(ResidualFlexibility(t, lines, bad, 8), Catch::Contains("E-CONDENSE-20"));
   const ResidualFlexibility residual(t, lines, {}, 8);
   CHECK_THROWS_AS(residual.under({1, 0.}), std::invalid_argument);  // there is one rail
-  CHECK_THROWS_WITH(residual.between({0, 0.}, {0, 0.}, 3), Catch::Contains("divisor"));
+  CHECK_THROWS_WITH(residual.between({0, 0.}, {0, 0.}, 3), Catch::Contains("E-CONDENSE-12"));
   CHECK_THROWS_AS(residual.from({0, 0.}, at_point({0, 9.7, 0., 0., 2})), std::out_of_range);
   CHECK_THROWS_AS(residual.from({0, 0.}, at_point({1, 1., 0., 0., 2})), std::out_of_range);
   CHECK_THROWS_AS(residual.from({0, 0.}, {.sleeper = {{0, 3, 2, 1.}}}), std::out_of_range);

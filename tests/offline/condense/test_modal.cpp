@@ -305,7 +305,7 @@ TEST_CASE("slow rates are right beside very fast ones", "[modal]") {
 }
 
 TEST_CASE("near critical damping the answer is right or the line is refused", "[modal]") {
-  CHECK_THROWS_WITH(one_coordinate(300., 600.), Contains("critical"));
+  CHECK_THROWS_WITH(one_coordinate(300., 600.), Contains("E-CONDENSE-15"));
   const double omega = 300., t = 2. / omega;
   int accepted = 0;
   for (const double off : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, -1e-2, -1e-5, -1e-9}) {
@@ -331,14 +331,14 @@ TEST_CASE("near critical damping the answer is right or the line is refused", "[
 TEST_CASE("lines without modes to keep are refused in a sentence", "[modal]") {
   Track free = peers_pair(1);
   free.support.stiffness[2] = 0.;
-  CHECK_THROWS_WITH(basis_of(assemble(free)[0], 8), Contains("free rigid mode"));
+  CHECK_THROWS_WITH(basis_of(assemble(free)[0], 8), Contains("E-TRACK-35"));
   Track long_track = peers_pair(1);
   long_track.bays = 1000;  // 2001 nodes of 2 unknowns
   CHECK_THROWS_WITH(basis_of(assemble(long_track)[0], 8),
-                    Contains("4002 unknowns") && Contains("4000"));
+                    Contains("E-CONDENSE-16") && Contains("4002") && Contains("4000"));
   Track undamped = peers_pair(1);
   undamped.support.damping = {};
-  CHECK_THROWS_WITH(basis_of(assemble(undamped)[0], 0), Contains("keeps one mode or more"));
+  CHECK_THROWS_WITH(basis_of(assemble(undamped)[0], 0), Contains("E-CONDENSE-02"));
   // Shapes of dampers are a basis on their own, and a limit in Hz works as one in modes.
   CHECK(basis_of(assemble(peers_pair(1))[0], 0).omega.size() == 17);
   const Line line = assemble(undamped)[0];

@@ -307,7 +307,7 @@ TEST_CASE("two real modes that nearly share a shape are kept or left together", 
   line.rail_factor = {1., 0.};
   const Track track = rail(4, 0.);
   CHECK_THROWS_WITH(reduce(track, line, of(ReductionKind::complex_modes, 1)),
-                    Contains("near critical damping"));
+                    Contains("E-CONDENSE-22"));
   const ReducedLineModel both = reduce(track, line, of(ReductionKind::complex_modes, 2));
   CHECK_THAT(both.basis.flexibility(0, 0), WithinRel(1. / 1.01, 1e-9));
   CHECK(std::abs(both.basis.at_once(0, 0)) < 1e-9);
@@ -318,17 +318,17 @@ TEST_CASE("lines that a reduction cannot condense are refused in a sentence", "[
   const Line line = assemble(track)[0];
   Reduction odd = of(ReductionKind::guyan, 0);
   odd.nodes_per_bay = 3;
-  CHECK_THROWS_WITH(reduce(track, line, odd), Contains("divisors"));
+  CHECK_THROWS_WITH(reduce(track, line, odd), Contains("E-CONDENSE-03"));
   CHECK_THROWS_WITH(reduce(track, line, of(ReductionKind::complex_modes, 0)),
-                    Contains("one or more"));
+                    Contains("E-CONDENSE-22"));
   CHECK_THROWS_WITH(
       reduce(track, line, of(ReductionKind::complex_modes, 4), line.stiffness.leftCols(1)),
-      Contains("one-sided supports"));
+      Contains("E-CONDENSE-24"));
   Track massless = rail(4, 0.);
   massless.sleeper->mass = 0.;
   for (const ReductionKind kind : kAll)
     CHECK_THROWS_WITH(reduce(massless, assemble(massless)[0], of(kind, 4)),
-                      Contains("a sleeper without mass"));
+                      Contains("E-CONDENSE-21"));
   massless.sleeper->ballast_damping = {};
   for (const ReductionKind kind : kAll)
     CHECK_NOTHROW(reduce(massless, assemble(massless)[0], of(kind, 8)));
@@ -336,5 +336,5 @@ TEST_CASE("lines that a reduction cannot condense are refused in a sentence", "[
   loose.sleeper->ballast_stiffness[2] = 0.;
   const Line free = assemble(loose)[0];
   for (const ReductionKind kind : kAll)
-    CHECK_THROWS_WITH(reduce(loose, free, of(kind, 4)), Contains("free rigid mode"));
+    CHECK_THROWS_WITH(reduce(loose, free, of(kind, 4)), Contains("E-TRACK-35"));
 }

@@ -120,9 +120,9 @@ TEST_CASE("features that a Timoshenko beam lacks are refused", "[timoshenko]") {
   loose.ends = {RailEnd::free, RailEnd::free};
   off.axis_z = .01;
   locked.rule.axial_points = 3;
-  CHECK_THROWS_WITH(refused(two), Catch::Contains("one rail"));
-  CHECK_THROWS_WITH(refused(on_sleepers), Catch::Contains("sleepers"));
-  CHECK_THROWS_WITH(refused(loose), Catch::Contains("free rigid mode"));
-  CHECK_THROWS_WITH(refused(off), Catch::Contains("reference_line"));
-  CHECK_THROWS_WITH(refused(locked), Catch::Contains("rail.rule"));
+  CHECK_THROWS_WITH(refused(two), Catch::Contains("E-TIMOSHENKO-01"));
+  CHECK_THROWS_WITH(refused(on_sleepers), Catch::Contains("E-TIMOSHENKO-04"));
+  CHECK_THROWS_WITH(refused(loose), Catch::Contains("E-TRACK-35"));
+  CHECK_THROWS_WITH(refused(off), Catch::Contains("E-TIMOSHENKO-08"));
+  CHECK_THROWS_WITH(refused(locked), Catch::Contains("E-TIMOSHENKO-09"));
 }

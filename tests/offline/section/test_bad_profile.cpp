@@ -56,23 +56,24 @@ TEST_CASE("an empty profile is refused", "[bad_input][cli]") {
   fit_refuses("p.toml", profile(""), {"p.toml:4:", "half_outline_mm"});
   fit_refuses("p.csv", "", {"is empty"});
   for (const char* nothing : {" \n\n", "# 60E1\n", "y,z\n"})
-    fit_refuses("p.csv", nothing, {"has 0 points", "at least 3"});
+    fit_refuses("p.csv", nothing, {"E-SECTION-12", "0 points"});
 }
 
 TEST_CASE("an outline that crosses itself is refused with both segments", "[bad_input][cli]") {
-  fit_refuses("p.csv", "0,0\n100,100\n100,0\n0,100\n", {"crosses itself", "rows 2 and 4"});
+  fit_refuses("p.csv", "0,0\n100,100\n100,0\n0,100\n", {"E-SECTION-10", "rows 2 and 4"});
   fit_refuses("p.toml", profile("[0,0,0],[50,0,0],[50,90,0],[20,10,0],[60,20,0],[0,100,0]"),
-              {"p.toml:4:", "crosses itself", "rows 3 and 5", "mm"});
+              {"p.toml:4:", "E-SECTION-10", "rows 3 and 5", "mm"});
   fit_refuses("p.toml", profile("[0,0,0],[50,0,0],[-10,50,0],[50,90,0],[0,100,0]"),
-              {"row 3", "10 mm left of the axis", "accepted is x from 0 on"});
+              {"E-SECTION-16", "row 3", "10 mm"});
 }
 
 TEST_CASE("a gap in an outline is refused with its width", "[bad_input][cli]") {
   fit_refuses("p.toml", profile("[0,0,0],[50,0,0],[50,90,0],[10,100,0]"),
-              {"p.toml:4:", "gap", "row 4", "10 mm off the axis"});
-  fit_refuses("p.toml", profile("[5,0,0],[50,0,0],[50,90,0],[0,100,0]"), {"gap", "row 1", "5 mm"});
+              {"p.toml:4:", "E-SECTION-15", "row 4", "10 mm"});
+  fit_refuses("p.toml", profile("[5,0,0],[50,0,0],[50,90,0],[0,100,0]"),
+              {"E-SECTION-15", "row 1", "5 mm"});
   fit_refuses("p.csv", "0 0\n10 0\n20 0\n20 10\n20 20\n20 30\n20 40\n20 50\n",
-              {"gap of 53.8516 mm", "list the full outline"});
+              {"E-SECTION-18", "53.8516 mm"});
 }
 
 TEST_CASE("a clockwise outline is read, with the area of the other direction", "[bad_input][cli]") {
@@ -83,22 +84,21 @@ TEST_CASE("a clockwise outline is read, with the area of the other direction", "
 }
 
 TEST_CASE("two points, and repeated points, are refused", "[bad_input][cli]") {
-  fit_refuses("p.csv", "0,0\n100,100\n", {"2 points", "at least 3"});
-  fit_refuses("p.toml", profile("[0,0,0],[50,0,0]"), {"p.toml:4:", "2 points", "at least 3"});
-  fit_refuses("p.csv", "0,0\n100,0\n100,0\n0,100\n", {"rows 2 and 3", "same point"});
+  fit_refuses("p.csv", "0,0\n100,100\n", {"E-SECTION-12", "2 points"});
+  fit_refuses("p.toml", profile("[0,0,0],[50,0,0]"), {"p.toml:4:", "E-SECTION-12", "2 points"});
+  fit_refuses("p.csv", "0,0\n100,0\n100,0\n0,100\n", {"E-SECTION-14", "rows 2 and 3"});
   fit_refuses("p.toml", profile("[0,0,0],[50,0,0],[50,90,0],[50,90,0],[0,90,0]"),
-              {"p.toml:4:", "rows 3 and 4", "same point"});
+              {"p.toml:4:", "E-SECTION-14", "rows 3 and 4"});
 }
 
 TEST_CASE("millimetres given as metres are refused with the unit named", "[bad_input][cli]") {
-  fit_refuses("p.csv", "0,0\n75,0\n75,172\n0,172\n", {"172 m high", "1 m", "millimetres"},
-              " --unit m");
-  fit_refuses("p.csv", "0,0\n75,0\n75,0.172\n0,0.172\n", {"75 m wide", "1 m", "millimetres"},
+  fit_refuses("p.csv", "0,0\n75,0\n75,172\n0,172\n", {"E-SECTION-21", "172 m high"}, " --unit m");
+  fit_refuses("p.csv", "0,0\n75,0\n75,0.172\n0,0.172\n", {"E-SECTION-21", "75 m wide"},
               " --unit m");
   fit_refuses("p.toml", profile("[0,0,0],[75000,0,0],[75000,172000,0],[0,172000,0]"),
-              {"p.toml:4:", "172 m high", "millimetres"});
+              {"p.toml:4:", "E-SECTION-21", "172 m high"});
   fit_refuses("p.toml", profile("[0,0,0],[1e200,0,0],[1e200,100,0],[0,100,0]"),
-              {"2e+197 m wide", "millimetres"});
+              {"E-SECTION-21", "2e+197 m wide"});
   const BadInput bad("unit");
   bad.refused(
       "fit --target area_m2=8700,inertia_y_m4=39e6,inertia_z_m4=6e6,centroid_height_m=85,"
@@ -111,15 +111,14 @@ TEST_CASE("millimetres given as metres are refused with the unit named", "[bad_i
 }
 
 TEST_CASE("metres given as millimetres are refused with the unit named", "[bad_input][cli]") {
-  fit_refuses("p.csv", "0,0\n.075,0\n.075,.172\n0,.172\n", {"0.172 mm high", "1 mm", "metres"});
+  fit_refuses("p.csv", "0,0\n.075,0\n.075,.172\n0,.172\n", {"E-SECTION-22", "0.172 mm high"});
   fit_refuses("p.toml", profile("[0,0,0],[0.075,0,0],[0.075,0.172,0],[0,0.172,0]"),
-              {"p.toml:4:", "0.172 mm high", "metres"});
+              {"p.toml:4:", "E-SECTION-22", "0.172 mm high"});
 }
 
 TEST_CASE("an outline that keeps too few points once they are rounded is refused",
           "[bad_input][cli]") {
-  fit_refuses("p.toml", profile("[0,0,0],[1e-3,0,0],[1e-3,100,0],[0,100,0]"),
-              {"at least three points"});
+  fit_refuses("p.toml", profile("[0,0,0],[1e-3,0,0],[1e-3,100,0],[0,100,0]"), {"E-SECTION-01"});
 }
 
 TEST_CASE("NaN, infinity and numbers over the largest are refused in a profile",
@@ -136,9 +135,9 @@ TEST_CASE("NaN, infinity and numbers over the largest are refused in a profile",
 TEST_CASE("an arc's radius under half its chord is refused", "[bad_input][cli]") {
   for (const char* radius : {"44", "-44"})
     fit_refuses("p.toml", profile("[0,0,0],[50,0,0],[50,90," + std::string(radius) + "],[0,100,0]"),
-                {"p.toml:4:", "row 3", "44 mm", "half its chord of 90 mm", "45 mm"});
+                {"p.toml:4:", "E-SECTION-20", "row 3", "44 mm", "90 mm", "45 mm"});
   fit_refuses("p.toml", profile("[0,0,0],[50,0,0],[50,90,20000],[0,100,0]"),
-              {"row 3", "20000 mm", "10000 mm", "write 0 for a straight line"});
+              {"E-SECTION-19", "row 3", "20000 mm", "10000 mm"});
 }
 
 TEST_CASE("without a good fit the program ends with 1 and prints the errors of the closest",
@@ -201,7 +200,7 @@ TEST_CASE("a scene with a bad profile names the profile", "[bad_input][cli]") {
   const std::string scene = bad.file(
       "scene.toml", text.substr(0, rail) + "[rail]\nprofile = \"p.toml\"\n" + text.substr(support));
   bad.refused("run " + scene + bad.old("--trace", "t.csv"),
-              {"p.toml:4:", "rows 2 and 3", "same point"});
+              {"p.toml:4:", "E-SECTION-14", "rows 2 and 3"});
 }
 
 TEST_CASE("points, a section and a profile in each other's place are named for what they are",

@@ -33,8 +33,10 @@ std::string refusal(const std::string& scene, const std::vector<std::string>& ov
   return "accepted";
 }
 
-std::string free_mode(const std::string& scene, const std::string& motion) {
-  return scene + ".toml: the track has a free rigid mode: nothing holds " + motion;
+void check_free(const std::string& said, const std::string& scene, const std::string& motion,
+                const std::string& key) {
+  CHECK_THAT(said, Contains(scene + ".toml: ") && Contains("the rails " + motion) &&
+                       Contains(key) && Contains("[E-TRACK-35]"));
 }
 
 const std::string kReleased = "step.start=\"released\"";
@@ -42,27 +44,23 @@ const std::string kReleased = "step.start=\"released\"";
 }  // namespace
 
 TEST_CASE("rails that traffic would push away are refused in any start", "[not_held]") {
-  const std::string along_y = "the rails along y; accepted is support.stiffness_y_n_per_m above 0";
-  CHECK_THAT(refusal("wheelset_flange",
+  const std::string key_y = "support.stiffness_y_n_per_m";
+  check_free(refusal("wheelset_flange",
                      {"support.stiffness_y_n_per_m=0", "support.damping_y_n_s_per_m=0"}),
-             Contains(free_mode("wheelset_flange", along_y)));
-  CHECK_THAT(refusal("wheelset_on_track", {"support.stiffness_roll_n_m_per_rad=0"}),
-             Contains(free_mode("wheelset_on_track",
-                                "the rails in roll; accepted is "
-                                "support.stiffness_roll_n_m_per_rad above 0")));
+             "wheelset_flange", "along y", key_y);
+  check_free(refusal("wheelset_on_track", {"support.stiffness_roll_n_m_per_rad=0"}),
+             "wheelset_on_track", "in roll", "support.stiffness_roll_n_m_per_rad");
   for (const std::string start : {"step.start=\"equilibrium\"", "step.start=\"released\""}) {
     CAPTURE(start);
-    CHECK_THAT(refusal("exciter_on_track", {start, "support.stiffness_y_n_per_m=0"}),
-               Contains(free_mode("exciter_on_track", along_y)));
-    CHECK_THAT(refusal("exciter_on_track", {start, "support.stiffness_z_n_per_m=0"}),
-               Contains(free_mode("exciter_on_track",
-                                  "the rails along z; accepted is support.stiffness_z")));
-    CHECK_THAT(refusal("moving_load", {start, "support.stiffness_z_n_per_m=0",
+    check_free(refusal("exciter_on_track", {start, "support.stiffness_y_n_per_m=0"}),
+               "exciter_on_track", "along y", key_y);
+    check_free(refusal("exciter_on_track", {start, "support.stiffness_z_n_per_m=0"}),
+               "exciter_on_track", "along z", "support.stiffness_z_n_per_m");
+    check_free(refusal("moving_load", {start, "support.stiffness_z_n_per_m=0",
                                        "condense={kind=\"modal\", residual_flexibility=false}"}),
-               Contains(free_mode("moving_load", "the rails along z; accepted is support.st")));
-    CHECK_THAT(refusal("ballasted_track", {start, "ballast.stiffness_z_n_per_m=0"}),
-               Contains(free_mode("ballasted_track",
-                                  "the rails along z; accepted is ballast.stiffness_z")));
+               "moving_load", "along z", "support.stiffness_z_n_per_m");
+    check_free(refusal("ballasted_track", {start, "ballast.stiffness_z_n_per_m=0"}),
+               "ballasted_track", "along z", "ballast.stiffness_z_n_per_m");
   }
 }
 
@@ -70,22 +68,22 @@ TEST_CASE("a scene that cannot be condensed is bad input of its file", "[not_hel
   const BadInput bad("loose");
   const std::string scene = shipped("exciter_on_track"), out = bad.old("--out", "o.model");
   bad.refused("condense " + scene + " --set support.stiffness_y_n_per_m=0" + out,
-              {"exciter_on_track.toml: the track has a free rigid mode", "along y"});
+              {"exciter_on_track.toml: ", "E-TRACK-35", "along y"});
 }
 
 TEST_CASE("a free motion is named with its rail, its place and all keys that it needs",
           "[not_held]") {
   Track t = paper_track();
   t.support.stiffness[0] = t.support.stiffness[1] = 0.;
-  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rails along"));
+  CHECK_THROWS_WITH(Statics(t), Contains("E-TRACK-35") && Contains("the rails along"));
   t = s1_rail(8);
   t.support.stiffness[2] = 0.;
   t.sleeper->ballast_stiffness[2] = 0.;
-  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the sleepers along z; accepted is "
-                                         "support.stiffness_z_n_per_m above 0"));
+  CHECK_THROWS_WITH(Statics(t),
+                    Contains("the sleepers along z") && Contains("support.stiffness_z_n_per_m"));
   t.support.stiffness[2] = 1e8;
-  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rail along z; accepted is "
-                                         "ballast.stiffness_z_n_per_m above 0"));
+  CHECK_THROWS_WITH(Statics(t),
+                    Contains("the rail along z") && Contains("ballast.stiffness_z_n_per_m"));
   // A rail is cut, and pads hold one piece along x.
   t = paper_track();
   t.bays = 6;
@@ -95,13 +93,13 @@ TEST_CASE("a free motion is named with its rail, its place and all keys that it 
   const Seat held = t.seat(1);
   t.support.stiffness[0] = 0.;
   t.changed_seats[1] = held;
-  CHECK_THROWS_WITH(Statics(t), Contains("nothing holds the rails (x = ") && Contains("along x"));
+  CHECK_THROWS_WITH(Statics(t), Contains("the rails (x = ") && Contains("along x"));
   // A vertical beam has one seat: of its pad's stiffnesses only that along x keeps it from tipping.
   t = r6_track();
   t.support.stiffness[0] = 1e6;
   for (int seat = 0; seat <= t.bays; ++seat)
     if (seat != 20) t.changed_seats[seat] = {};
-  CHECK_THROWS_WITH(Statics(t), Contains("free rigid mode") && Contains("[[support_change]]"));
+  CHECK_THROWS_WITH(Statics(t), Contains("E-TRACK-35") && Contains("[[support_change]]"));
 }
 
 TEST_CASE("a rail on one-sided supports alone is refused where the model has them open",
@@ -113,18 +111,18 @@ TEST_CASE("a rail on one-sided supports alone is refused where the model has the
   const Traffic load{.loads = {{.start = 1., .stop = 2., .force = -1e4}}};
   CHECK_NOTHROW(PackedModel(t, load, full_order(1e-3)));
   CHECK_THROWS_WITH(PackedModel(t, load, condensed(t, 2, 1e-3)),
-                    Contains("one-sided supports alone hold the rail, and a condensed track has "
-                             "them open"));
+                    Contains("E-TRACK-34") && Contains("the rail,"));
 }
 
 TEST_CASE("Timoshenko's beam and a receptance of few modes name the free motion too",
           "[not_held]") {
   Track t = r6_track();
   t.support.stiffness[2] = 0.;
-  const std::string along_z = "nothing holds the rail along z; accepted is support.stiffness_z";
-  CHECK_THROWS_WITH(TimoshenkoStatics(t, {1.}), Contains(along_z));
+  const std::string id = "E-TRACK-35", key = "support.stiffness_z_n_per_m";
+  CHECK_THROWS_WITH(TimoshenkoStatics(t, {1.}), Contains(id) && Contains(key));
   const Functional middle{{{{0, 12., 0., 0., 2}, 1.}}, {}};
-  CHECK_THROWS_WITH(CondensedReceptance(t, {middle, {middle}}, {}, false), Contains(along_z));
+  CHECK_THROWS_WITH(CondensedReceptance(t, {middle, {middle}}, {}, false),
+                    Contains(id) && Contains(key));
 }
 
 TEST_CASE("a rail on very soft springs is not free", "[not_held]") {
@@ -141,7 +139,7 @@ TEST_CASE("a rail on very soft springs is not free", "[not_held]") {
   options.residual_flexibility = false;
   CHECK_NOTHROW(PackedModel(t, load, options));
   t.support.stiffness[2] = 0.;
-  CHECK_THROWS_WITH(PackedModel(t, load, options), Contains("free rigid mode"));
+  CHECK_THROWS_WITH(PackedModel(t, load, options), Contains("E-TRACK-35"));
 }
 
 TEST_CASE("scenes without a moving track, or with held ends, need no pads", "[not_held]") {

@@ -171,15 +171,15 @@ TEST_CASE("loads without an equilibrium are refused in one sentence", "[supports
   t.support.unilateral = true;
   t.bays = 20;
   const Statics statics(t);
-  CHECK_THROWS_WITH(statics.solve({{at(6.), 10e3}}), Catch::StartsWith("no equilibrium"));
+  CHECK_THROWS_WITH(statics.solve({{at(6.), 10e3}}), Catch::Contains("E-TRACK-38"));
   // Beyond the last seat that holds the rail down, a load tips it over.
   Track tips = t;
   for (int seat = 0; seat <= 20; ++seat)
     if (seat != 10 && seat != 11) tips.changed_seats[seat] = {};
-  CHECK_THROWS_WITH(Statics(tips).solve({{at(3.), -10e3}}), Catch::StartsWith("no equilibrium"));
+  CHECK_THROWS_WITH(Statics(tips).solve({{at(3.), -10e3}}), Catch::Contains("E-TRACK-38"));
   CHECK_NOTHROW(Statics(tips).solve({{at(6.3), -10e3}}));
   for (int seat = 0; seat <= 20; ++seat) tips.changed_seats[seat] = {};
-  CHECK_THROWS_WITH(Statics(tips), Catch::Contains("free rigid mode"));
+  CHECK_THROWS_WITH(Statics(tips), Catch::Contains("E-TRACK-35"));
 }
 
 TEST_CASE("a sleeper of 0 kg over a gap acts as pad and gap in series", "[supports]") {
