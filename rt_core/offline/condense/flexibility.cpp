@@ -131,7 +131,7 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
   if (!bases.empty() && bases.size() != lines.size())
     refuse("E-CONDENSE-10", "residual flexibility has " + std::to_string(bases.size()) +
                                 " bases for " + std::to_string(lines.size()) +
-                                " lines; expected one a line, or none at all");
+                                " lines; expected one for each line, or none");
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const Line& line = lines_[i];
     const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
