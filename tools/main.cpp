@@ -49,7 +49,7 @@ Exit run(CLI::App& app, int argc, char** argv) {
       refuse_impossible_places(*command.parser);
       const Exit exit = command.run();
       if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit;
-      fail("E-FILE-20", fmt::format("standard output: {}", std::strerror(errno)));
+      fail("E-FILE-20", fmt::format("standard output cannot be written: {}", std::strerror(errno)));
     }
   return Exit::bad_input;
 }

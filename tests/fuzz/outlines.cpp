@@ -37,7 +37,7 @@ void check_written(const FitResult& result) {
 void fit(const Profile& profile) {
   const FitResult r = fit_profile(profile, "input");
   check(r.lopsided.share >= 0., "an asymmetry below 0");
-  if (!r.refusal.empty()) return;
+  if (r.refusal) return;
   check(largest(r.fit.errors) < 1e-9, "a fit that misses the properties");
   check_written(r);
 }

@@ -40,7 +40,7 @@ TEST_CASE("the cant of the rails is a slope", "[cant]") {
   CHECK(t.lean(0).sine > 0.);
   CHECK(t.lean(1).sine == -t.lean(0).sine);
   for (const char* bad : {"\"1:0\"", "\"1:2\"", "\"2:40\"", "\"1:20x\"", "\"1:-20\""})
-    CHECK_THROWS_WITH(with(bad), Contains("accepted is \"1:n\""));
+    CHECK_THROWS_WITH(with(bad), Contains("E-KEY-08"));
   CHECK_THROWS_WITH(with("0.3"), Contains("[rail] cant"));
 }
 

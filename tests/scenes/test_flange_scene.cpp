@@ -282,7 +282,7 @@ TEST_CASE("a wrong flange is refused in one sentence", "[scene]") {
              Contains("14 mm below their tops"));
   const std::string leans = "step.start=\"equilibrium\"' --set 'wheelset[0].force[0].table=[[0.0, ";
   CHECK_THAT(said("{clearance_m=7e-3}", leans + "3000.0]]"), Contains("E-START-14"));
-  CHECK_THAT(said("{clearance_m=7e-3, stifness_n_per_m=1.0}"), Contains("unknown key"));
+  CHECK_THAT(said("{clearance_m=7e-3, stifness_n_per_m=1.0}"), Contains("E-KEY-02"));
 }
 
 TEST_CASE("a push at the start leans the wheelset on its flange, where it stays", "[scenes]") {

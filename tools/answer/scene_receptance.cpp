@@ -29,17 +29,18 @@ constexpr int kMostFrequencies = 100'000;
 std::vector<double> frequencies(const ReceptanceRequest& r) {
   if (!(r.from_hz <= r.to_hz))
     throw InputError("E-RECEPTANCE-14",
-                     fmt::format("--from {:g} is above --to-hz {:g}", r.from_hz, r.to_hz));
+                     fmt::format("--from {:g} is above --to-hz {:g}; expected a lower --from",
+                                 r.from_hz, r.to_hz));
   if (r.from_hz == r.to_hz) return {r.from_hz};
   if (r.points == 1)
     throw InputError("E-RECEPTANCE-15",
-                     fmt::format("--points 1 is one frequency, and --from {:g} to --to-hz {:g} has "
-                                 "two ends; accepted is --from alone",
+                     fmt::format("--points 1 is one frequency, but --from {:g} and --to-hz {:g} "
+                                 "differ; expected --from alone",
                                  r.from_hz, r.to_hz));
   const double span = r.to_hz - r.from_hz;
   if (r.step_hz && !(span / *r.step_hz < kMostFrequencies))
     throw InputError("E-RECEPTANCE-16",
-                     fmt::format("--step-hz {:g} makes {:.3g} frequencies; accepted are {}",
+                     fmt::format("--step-hz {:g} makes {:.3g} frequencies; expected fewer than {}",
                                  *r.step_hz, span / *r.step_hz, kMostFrequencies));
   const int last =
       r.step_hz ? static_cast<int>(std::ceil(span / *r.step_hz * (1. - 1e-9))) : r.points - 1;
@@ -66,28 +67,36 @@ std::string listed(const Scene& scene) {
     if (std::holds_alternative<RailSensor>(sensor.on) ||
         std::holds_alternative<SleeperSensor>(sensor.on))
       names.push_back(sensor.name);
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  if (names.empty()) return "a sensor on a rail or a sleeper, and the scene has none";
+  return fmt::format("one of {}", fmt::join(names, ", "));
 }
 
 Sensed sensed(const Scene& scene, const Track& track, const std::string& name,
               const std::string& direction) {
-  const auto refuse = [&](const std::string& what) {
-    throw InputError("E-RECEPTANCE-17", fmt::format("{}: {}", scene.file.string(), what));
+  const auto refuse = [&](MessageId id, const std::string& sentence) {
+    throw InputError(id, fmt::format("{}: {}", scene.file.string(), sentence));
   };
   const int d = direction == "y" ? 1 : 2;
   for (const SensorScene& sensor : scene.sensors) {
     if (sensor.name != name) continue;
     const std::optional<Functional> on = functional_of(sensor, scene, track, d);
     if (!on)
-      refuse(fmt::format("sensor '{}' is not on the track; accepted are {}", name, listed(scene)));
+      refuse("E-RECEPTANCE-17",
+             fmt::format("sensor '{}' is not on the track; expected {}", name, listed(scene)));
     double moved = 0.;
     for (const Line& line : assemble(track)) moved += functional_row(track, line, *on).norm();
     if (moved == 0. && d == 1 && track.unknowns == Unknowns::vertical)
-      refuse("direction y is asked of a vertical scene; accepted is track.unknowns = \"full\"");
-    if (moved == 0.) refuse(fmt::format("sensor '{}' is held in {}", name, direction));
+      refuse("E-RECEPTANCE-22",
+             "the track of this scene moves vertically alone; expected track.unknowns = \"full\" "
+             "for direction y");
+    if (moved == 0.)
+      refuse("E-RECEPTANCE-23",
+             fmt::format("sensor '{}' cannot move in {}; expected another sensor or direction",
+                         name, direction));
     return {&sensor, d, *on};
   }
-  refuse(fmt::format("no sensor is named '{}'; accepted are {}", name, listed(scene)));
+  refuse("E-RECEPTANCE-24",
+         fmt::format("no sensor is named '{}'; expected {}", name, listed(scene)));
   return {};
 }
 
@@ -127,7 +136,7 @@ std::string end_warning(const std::vector<double>& hz, const std::vector<double>
   const std::size_t said = std::min<std::size_t>(bands.size(), 3);
   return fmt::format(
       "the track is too short to stand for a long one at {}{}: its ends change the receptance by "
-      "more than {:g} %, by {} % at {:.4g} Hz; {} are safe",
+      "more than {:g} %, by {} % at {:.4g} Hz; use {}",
       fmt::join(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(said), ", "),
       bands.size() > said ? fmt::format(" and {} more bands", bands.size() - said) : "",
       100. * kMostEndEffect, *worst > 1. ? "over 100" : fmt::format("up to {:.2g}", 100. * *worst),
@@ -145,8 +154,8 @@ void warn(const std::vector<const Sensed*>& points, bool zones, ReceptanceAnswer
     const double most = lateral ? kValidLateral : kValidVertical;
     if (answer.hz.back() <= most) continue;
     answer.warnings.push_back(
-        {"W-RECEPTANCE-02", fmt::format("the beam has no warping and no bending of the web: {} "
-                                        "motion is good to about {:g} Hz",
+        {"W-RECEPTANCE-02", fmt::format("the beam does not warp and its web does not bend: {} "
+                                        "motion is right up to about {:g} Hz",
                                         lateral ? "lateral" : "vertical", most)});
     return;
   }
@@ -161,22 +170,22 @@ void add_decay(const ReceptanceRequest& request, const Scene& scene, const Track
                const Sensed& force, ReceptanceAnswer& answer) {
   const RailPoint* at = rail_of(force);
   if (at == nullptr)
-    throw InputError("E-RECEPTANCE-18",
-                     fmt::format("{}: a decay rate is taken along a rail; accepted for --at is a "
-                                 "sensor on a rail",
-                                 scene.file.string()));
+    throw InputError(
+        "E-RECEPTANCE-18",
+        fmt::format("{}: a decay rate is taken along a rail; expected a sensor on a rail for --at",
+                    scene.file.string()));
   const std::vector<ThirdOctave> bands = third_octaves(request.from_hz, request.to_hz);
   if (bands.empty())
-    throw InputError(
-        "E-RECEPTANCE-19",
-        "no one-third octave band from 100 to 5000 Hz lies within --from and --to-hz, of which a "
-        "decay rate could be given");
+    throw InputError("E-RECEPTANCE-19",
+                     "no one-third octave band from 100 to 5000 Hz lies between --from and "
+                     "--to-hz; expected one for a decay rate");
   const bool back = at->x > track.length() - at->x;
   Transfer along{force.on, {}};
   answer.decay_distance = decay_distances(track, at->x);
   if (answer.decay_distance.size() < 2)
-    throw InputError("E-RECEPTANCE-20",
-                     "a decay rate needs a quarter of a bay of rail beside --at");
+    throw InputError(
+        "E-RECEPTANCE-20",
+        "too little rail lies beside --at for a decay rate; expected a quarter of a bay or more");
   for (const double away : answer.decay_distance) {
     RailPoint there = *at;
     there.x = std::clamp(at->x + (back ? -away : away), 0., track.length());
@@ -190,10 +199,10 @@ void add_decay(const ReceptanceRequest& request, const Scene& scene, const Track
     if (!rate.suitable) short_of.push_back(rate.band.nominal_hz);
   if (!short_of.empty())
     answer.warnings.push_back(
-        {"W-RECEPTANCE-03", fmt::format("decay rates of the bands {} Hz are upper bounds: {:.3g} m "
-                                        "of rail are too short for them "
-                                        "(EN 15461, 6.7 and 7)",
-                                        fmt::join(short_of, ", "), answer.decay_distance.back())});
+        {"W-RECEPTANCE-03",
+         fmt::format("the decay rates of the bands {} Hz are upper bounds: {:.3g} m of rail are "
+                     "too short for them (EN 15461, 6.7 and 7)",
+                     fmt::join(short_of, ", "), answer.decay_distance.back())});
 }
 
 /// Of the line that the force moves most.

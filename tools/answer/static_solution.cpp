@@ -62,10 +62,9 @@ double force_at_start(const OuterForce& force) {
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
   for (const OuterForce& force : w.forces)
     if (force_at_start(force) != 0.)
-      throw InputError("E-STATIC-01",
-                       fmt::format("{}: static takes of wheelset {} its weight alone; accepted are "
-                                   "forces that are 0 at t = 0",
-                                   scene.file.string(), w.name));
+      throw InputError("E-STATIC-01", fmt::format("{}: static takes the weight alone of wheelset "
+                                                  "{}; expected forces that are 0 at t = 0",
+                                                  scene.file.string(), w.name));
   for (const int rail : {0, 1}) add_wheel(scene, problem, rail, w.start, -.5 * w.weight);
 }
 

@@ -25,8 +25,8 @@ std::string refused_number(std::string& text) {
   const bool whole = !text.empty() && text.front() != ' ' && *end == '\0';
   if (whole && value == 0.) text = "0";  // of -0.0 too
   if (whole && std::isfinite(value)) return {};
-  return fmt::format("'{}' is no {}number; accepted is a finite number", text.substr(0, 60),
-                     whole ? "finite " : "");
+  return fmt::format("'{}' is not a {}; expected a finite number", text.substr(0, 60),
+                     whole ? "finite number" : "number");
 }
 
 std::string refused_integer(std::string& text) {
@@ -34,7 +34,8 @@ std::string refused_integer(std::string& text) {
   const char* const last = text.data() + text.size();
   const auto [end, fault] = std::from_chars(text.data(), last, value);
   if (fault == std::errc{} && end == last) return {};
-  return fmt::format("'{}' is no number; accepted is a whole number", text.substr(0, 60));
+  return fmt::format("'{}' is not a whole number; expected a whole number such as 24",
+                     text.substr(0, 60));
 }
 
 /// Options of a command whose values are files that it writes.
@@ -95,11 +96,12 @@ void refuse_empty_words(int argc, const char* const* argv) {
     const bool no_value = word.starts_with("--") && word.find('=') == word.size() - 1;
     if (word.empty())
       throw InputError("E-CLI-01",
-                       fmt::format("the word after '{}' is empty; accepted is a value or a name",
+                       fmt::format("the word after '{}' is empty; expected a value or a name",
                                    std::string_view(argv[i - 1]).substr(0, 60)));
     if (no_value)
       throw InputError(
-          "E-CLI-02", fmt::format("{} has nothing behind it; accepted is a value or a name", word));
+          "E-CLI-02",
+          fmt::format("{} has no value; expected a value or a name after the equals sign", word));
   }
 }
 
@@ -121,7 +123,7 @@ Message usage_message(const CLI::App& app, const CLI::ParseError& error) {
   MessageId id = "E-CLI-10";
   if (chosen.empty() && !word.empty()) {
     id = "E-CLI-11";
-    said = fmt::format("'{}' is no command; did you mean '{}'?", shown,
+    said = fmt::format("'{}' is not a command; did you mean '{}'?", shown,
                        nearest(word, command_names(app)));
   } else if (!chosen.empty() && word.starts_with("-")) {
     id = "E-CLI-12";
@@ -144,18 +146,19 @@ void refuse_impossible_places(const CLI::App& command) {
     if (makes_folders(command, *option)) continue;
     if (std::filesystem::is_directory(file, ignored))
       throw InputError("E-CLI-03",
-                       fmt::format("{} {}: cannot be written: it is a folder; accepted is a file",
+                       fmt::format("{} {}: this is a folder; expected the name of a file",
                                    option->get_name(), file.string()));
     // To rename over /dev/stdout would take it from the whole machine, where the user may.
     if (folder == "/dev" && std::filesystem::is_regular_file(file, ignored))
-      throw InputError("E-CLI-04", fmt::format("{} {}: cannot be written: it stands for an open "
-                                               "file; accepted is that file's own name",
-                                               option->get_name(), file.string()));
+      throw InputError(
+          "E-CLI-04",
+          fmt::format("{} {}: this name stands for an open file; expected the file's own name",
+                      option->get_name(), file.string()));
     if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-      throw InputError("E-CLI-05",
-                       fmt::format("{} {}: cannot be written: there is no folder {}; accepted is a "
-                                   "file in a folder that is there",
-                                   option->get_name(), file.string(), folder.string()));
+      throw InputError(
+          "E-CLI-05",
+          fmt::format("{} {}: there is no folder {}; expected a file in a folder that exists",
+                      option->get_name(), file.string(), folder.string()));
   }
 }
 
@@ -170,8 +173,8 @@ void refuse_same_files(const CLI::App& command) {
       const bool taken = is_read(name) || (other < to && is_written(name));
       if (taken && !(*other)->empty() && same_file(file, (*other)->results().front()))
         throw InputError("E-CLI-06",
-                         fmt::format("{} and {} both name {}; accepted is a file of its own", name,
-                                     (*to)->get_name(), file));
+                         fmt::format("{} and {} both name {}; expected a file of its own for each",
+                                     name, (*to)->get_name(), file));
     }
   }
 }

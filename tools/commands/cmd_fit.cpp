@@ -46,8 +46,8 @@ FitTargets parse_targets(const std::string& text) {
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::size_t equals = part.find('=');
     if (equals == part.npos)
-      throw InputError("E-FIT-02",
-                       fmt::format("--target: '{}' is not of the form key=value", part));
+      throw InputError(
+          "E-FIT-02", fmt::format("--target: '{}' is not an assignment; expected key=value", part));
     const std::string key = part.substr(0, equals);
     double* place = nullptr;
     for (const auto& [name, value] : keys)
@@ -56,22 +56,26 @@ FitTargets parse_targets(const std::string& text) {
       throw InputError("E-FIT-03", fmt::format("--target: unknown key '{}'; did you mean '{}'?",
                                                key, nearest(key, names)));
     if (!std::isnan(*place))
-      throw InputError("E-FIT-04", fmt::format("--target: '{}' is given twice", key));
+      throw InputError("E-FIT-04",
+                       fmt::format("--target: '{}' is given twice; expected once", key));
     *place = target_value(key, part.substr(equals + 1));
   }
   for (const auto& [name, value] : keys)
     if (std::isnan(*value))
-      throw InputError("E-FIT-05", fmt::format("--target: '{}' is missing", name));
+      throw InputError(
+          "E-FIT-05", fmt::format("--target: '{}' is missing; expected all five properties", name));
   if (t.height > 1.0)
     throw InputError(
         "E-FIT-06",
-        fmt::format("--target: height_m = {:.6g} is over the limit of 1 m: are these millimetres?",
-                    t.height));
+        fmt::format(
+            "--target: height_m = {:.6g}; expected at most 1 m. Was it given in millimetres?",
+            t.height));
   if (t.area.centroid_height >= t.height)
     throw InputError(
         "E-FIT-07",
-        fmt::format("--target: centroid_height_m = {:.6g} is not below height_m = {:.6g}",
-                    t.area.centroid_height, t.height));
+        fmt::format(
+            "--target: centroid_height_m = {:.6g}; expected a value below height_m = {:.6g}",
+            t.area.centroid_height, t.height));
   return t;
 }
 
@@ -88,23 +92,29 @@ bool is_toml(const std::string& file) { return std::filesystem::path(file).exten
 
 void check(const FitOptions& o) {
   if (o.profile.empty() == o.target.empty())
-    throw InputError("E-FIT-08", "fit wants either a profile or --target; see railstep fit --help");
+    throw InputError("E-FIT-08", "fit needs a profile or --target; expected one of the two");
   if (!o.target.empty() && std::isnan(o.head_width))
     throw InputError("E-FIT-09",
-                     "--target wants --head-width-m, since four properties leave one width free");
+                     "--target alone leaves one width of the rectangles free; expected "
+                     "--head-width-m beside it");
   if (o.target.empty() && !std::isnan(o.head_width))
     throw InputError("E-FIT-10",
-                     "--head-width-m goes with --target; an outline decides its own head width");
+                     "--head-width-m is given without --target; expected it beside --target alone, "
+                     "since an outline has a head width of its own");
   const bool points = !o.profile.empty() && !is_toml(o.profile);
   if (points && o.unit.empty())
-    throw InputError("E-FIT-11",
-                     fmt::format("{}: a list of points wants --unit mm or --unit m", o.profile));
+    throw InputError(
+        "E-FIT-11",
+        fmt::format("{}: a list of points does not say its unit; expected --unit mm or --unit m",
+                    o.profile));
   if (!points && !o.unit.empty())
     throw InputError("E-FIT-12",
-                     "--unit goes with a list of points; a profile has its unit in its keys");
+                     "--unit is given without a list of points; expected it beside a list of "
+                     "points (CSV) alone, since a profile has its unit in its keys");
   if (!std::isnan(o.head_width) && !(o.head_width > 0.0 && std::isfinite(o.head_width)))
-    throw InputError("E-FIT-13", fmt::format("--head-width-m = {} is not a finite number above 0",
-                                             o.head_width));
+    throw InputError(
+        "E-FIT-13",
+        fmt::format("--head-width-m = {}; expected a finite number above 0", o.head_width));
 }
 
 Exit run_fit(const FitOptions& o) {

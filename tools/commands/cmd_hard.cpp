@@ -28,7 +28,7 @@ std::vector<HardCase> chosen(const std::vector<std::string>& ids) {
         std::find_if(all.begin(), all.end(), [&](const HardCase& own) { return id == own.id; });
     if (found == all.end())
       throw InputError("E-HARD-01",
-                       fmt::format("--case {}: there is no such case; accepted are {} to {}", id,
+                       fmt::format("--case {}: there is no such case; expected {} to {}", id,
                                    all.front().id, all.back().id));
     some.push_back(*found);
   }

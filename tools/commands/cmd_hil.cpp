@@ -70,7 +70,7 @@ std::int64_t slots_of(const HilOptions& o) {
   if (!(slots >= 1.) || !(slots <= 1e12))
     throw InputError(
         "E-HIL-01",
-        fmt::format("--duration {:g}: at --rate {:g} these are {:g} frames; accepted are 1 to 1e12",
+        fmt::format("--duration {:g}: at --rate {:g} the run has {:g} frames; expected 1 to 1e12",
                     o.duration, o.rate, slots));
   return static_cast<std::int64_t>(slots);
 }
@@ -94,8 +94,10 @@ HilPlan plan_of(const HilOptions& o) {
   plan.schedule = {1e9 / o.rate, slots_of(o), 0, policy_of(o.policy)};
   const double grace = o.grace.value_or(std::min(.1, .1 * o.duration));
   if (grace > o.duration)
-    throw InputError("E-HIL-02", fmt::format("--grace {:g}: accepted is up to --duration, {:g}",
-                                             grace, o.duration));
+    throw InputError(
+        "E-HIL-02",
+        fmt::format("--grace {:g} is longer than the run; expected at most --duration, {:g}", grace,
+                    o.duration));
   plan.schedule.grace = std::min<std::int64_t>(std::llround(grace * o.rate), plan.schedule.slots);
   plan.empty = empty_schedule(o, plan.schedule);
   // alone on its CPU and never asleep, it would shut out what runs there
@@ -111,25 +113,25 @@ HilPlan plan_of(const HilOptions& o) {
   if (o.cpu) {
     const std::vector<int> allowed = allowed_cpus();
     if (std::find(allowed.begin(), allowed.end(), *o.cpu) == allowed.end())
-      throw InputError("E-HIL-03",
-                       fmt::format("--cpu {}: this process may run on CPUs {} to {} alone, not all "
-                                   "of which need be there",
-                                   *o.cpu, allowed.empty() ? 0 : allowed.front(),
-                                   allowed.empty() ? 0 : allowed.back()));
+      throw InputError("E-HIL-03", fmt::format("--cpu {}: this process may not run on that CPU; "
+                                               "expected one that it may use, of {} to {}",
+                                               *o.cpu, allowed.empty() ? 0 : allowed.front(),
+                                               allowed.empty() ? 0 : allowed.back()));
   }
   if ((o.silence > 0. || o.wait > 0. || o.respond) && o.udp.empty() && o.shm.empty())
-    throw InputError(
-        "E-HIL-04",
-        "--silence, --wait and --response are about an exchange: they want --udp or --shm");
+    throw InputError("E-HIL-04",
+                     "--silence, --wait or --response is given without an exchange; expected --udp "
+                     "or --shm beside it");
   return plan;
 }
 
 std::unique_ptr<Simulation> simulation_of(const HilOptions& o) {
   if (!is_artefact(o.input)) return railstep::simulation_of(read_any_scene(o.input, o.overrides));
   if (!o.overrides.empty())
-    throw InputError(
-        "E-HIL-05",
-        fmt::format("--set changes a scene, and {} is a model; condense the scene anew", o.input));
+    throw InputError("E-RUN-03",
+                     fmt::format("--set changes a scene, and {} is a model; expected the scene. "
+                                 "Condense it again with --set",
+                                 o.input));
   return std::make_unique<Simulation>(std::filesystem::path(o.input));
 }
 
@@ -140,7 +142,8 @@ ExchangeLayout layout_of(const HilOptions& o, const HilPlan& plan, const Simulat
   if (run.model().external_wheels == 0)
     throw InputError(
         "E-HIL-06",
-        fmt::format("--response: {} has no [[external_wheel]], of which it tells", o.input));
+        fmt::format("--response: {} has no [[external_wheel]]; expected a scene with one",
+                    o.input));
   Response::add_names(run, layout.inputs, layout.outputs);
   return layout;
 }
@@ -161,10 +164,9 @@ std::string names_text(const ExchangeLayout& layout) {
 struct Exchanges {
   Exchanges(const HilOptions& o, const ExchangeLayout& layout) {
     if (!o.udp.empty() && std::max(layout.inputs.size(), layout.outputs.size()) > kMostInPacket)
-      throw InputError("E-HIL-07",
-                       fmt::format("--udp: {} outputs do not fit into a packet, which has {}; take "
-                                   "--shm, or fewer sensors",
-                                   layout.outputs.size(), kMostInPacket));
+      throw InputError("E-HIL-07", fmt::format("--udp: {} outputs do not fit into a packet; "
+                                               "expected at most {}. Use --shm, or fewer sensors",
+                                               layout.outputs.size(), kMostInPacket));
     if (!o.udp.empty()) udp.emplace(o.udp, layout);
     if (!o.shm.empty()) shm.emplace(o.shm, layout);
     if (udp) all.push_back(&*udp);
@@ -272,19 +274,24 @@ void print_table(const nlohmann::ordered_json& told) {
 void warn_of_refusals(const std::vector<Setting>& settings) {
   for (const Setting& each : settings)
     if (!each.done)
-      fmt::print(stderr, "warning: {} was refused ({}); the run goes on without\n", each.name,
-                 each.reason);
+      fmt::print(stderr, "warning: {}\n",
+                 Message("W-HIL-01", fmt::format("the system refused {} ({}); the run goes on "
+                                                 "without it",
+                                                 each.name, each.reason))
+                     .line());
 }
 
-/// Why others ended the run; empty where they did not.
-std::string ended_by_others(const HilRecord& record) {
+/// Why another process ended the run; nothing where none did.
+std::optional<Failed> ended_by_others(const HilRecord& record) {
   if (record.lost)
-    return "--shm: another process cut the shared memory short, or wrote over its first word; the "
-           "run ended";
-  return record.interrupted ? "the run was ended by a signal" : "";
+    return Failed("E-HIL-09",
+                  "--shm: another process cut the shared memory short or changed its first word, "
+                  "and the run ended");
+  if (record.interrupted) return Failed("E-HIL-16", "a signal ended the run");
+  return std::nullopt;
 }
 
-/// Says in words what the run met.
+/// Prints what the run met.
 Exit verdict(const HilRecord& record, const Simulation& run) {
   for (const std::string& name : status_names(record.status))
     if (name != "nonfinite_state")
@@ -296,15 +303,21 @@ Exit verdict(const HilRecord& record, const Simulation& run) {
   if (record.first_bad_unknown >= 0)
     return failed(nonfinite_sentence(run, record.first_bad_unknown));
   if (record.paced.stopped)
-    return failed(fmt::format("frame {} ended {:.1f} us after its slot, and the policy is to stop",
-                              record.paced.frames - 1,
-                              1e-3 * static_cast<double>(record.paced.most_behind_ns)));
-  if (const std::string ended = ended_by_others(record); !ended.empty()) return failed(ended);
+    return failed(named(fmt::format("frame {} ended {:.1f} us after its slot, and --policy stop "
+                                    "ended the run",
+                                    record.paced.frames - 1,
+                                    1e-3 * static_cast<double>(record.paced.most_behind_ns)),
+                        "E-HIL-17"));
+  if (const auto ended = ended_by_others(record)) return failed(ended->what());
   if (record.safe_stop_frame >= 0)
-    return failed(
-        fmt::format("nothing came any more: a safe stop from frame {} on", record.safe_stop_frame));
+    return failed(named(fmt::format("no inputs came for the time of --silence: the run stopped "
+                                    "safely from frame {} on",
+                                    record.safe_stop_frame),
+                        "E-HIL-18"));
   if (record.paced.overruns > 0)
-    fmt::print(stderr, "note: {} frames ended after their slot\n", record.paced.overruns);
+    fmt::print(
+        stderr, "note: {}\n",
+        named(fmt::format("{} frames ended after their slot", record.paced.overruns), "W-HIL-02"));
   return Exit::done;
 }
 
@@ -314,9 +327,9 @@ std::optional<Recording> begun_recording(const HilOptions& o, const HilPlan& pla
   if (o.record.empty()) return std::nullopt;
   constexpr double kMostInputs = 1e9;  // 8 GB
   if (static_cast<double>(plan.schedule.slots) * run.model().inputs > kMostInputs)
-    throw InputError("E-HIL-08",
-                     fmt::format("--record keeps {} inputs of {} frames, and at most {:g} numbers",
-                                 run.model().inputs, plan.schedule.slots, kMostInputs));
+    throw InputError("E-HIL-08", fmt::format("--record would keep {} inputs of {} frames; expected "
+                                             "at most {:g} numbers. Shorten the run",
+                                             run.model().inputs, plan.schedule.slots, kMostInputs));
   const std::int64_t numbers = plan.schedule.slots * run.model().inputs;
   want_recording_memory(numbers);
   Recording made = Recording::begin(run, plan.schedule.slots + 1);
@@ -346,8 +359,7 @@ Exit run(const HilOptions& o) {
   if (exchanges.udp) exchanges.udp->finish();
   warn_of_refusals(record.settings);
   if (record.unheard) {
-    const std::string ended = ended_by_others(record);
-    if (!ended.empty()) fail("E-HIL-09", ended);
+    if (const auto ended = ended_by_others(record)) throw Failed(*ended);
     fail("E-HIL-10",
          fmt::format("no inputs came within the {:g} s of --wait, and nothing was run", o.wait));
   }

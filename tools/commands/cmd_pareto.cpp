@@ -73,8 +73,9 @@ Exit run(const ParetoOptions& o) {
     print_front(result);
   for (const SettingRow& row : result.rows)
     if (row.failure.empty()) return Exit::done;
-  fmt::print(stderr, "error: no setting made a result; the first: {}\n",
-             result.rows.front().failure);
+  fmt::print(stderr, "error: {}\n",
+             named("no setting made a result; the first one failed: " + result.rows.front().failure,
+                   "E-STUDY-14"));
   return Exit::not_reached;
 }
 

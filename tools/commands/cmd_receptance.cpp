@@ -22,7 +22,7 @@ void run(ReceptanceOptions& o) {
   if (o.to_hz == 0.) o.to_hz = o.from_hz;
   if (!o.report.empty() && o.to_hz == o.from_hz)
     throw InputError("E-RECEPTANCE-21",
-                     "--report draws curves over frequency; accepted is --to-hz above --from");
+                     "--report draws curves over frequency; expected --to-hz above --from");
   o.condensed = o.model == "condensed";
   if (o.step > 0.) o.step_hz = o.step;
   if (!o.report.empty()) need_gnuplot();

@@ -56,9 +56,9 @@ AnyScene scene_of(const RunOptions& o) {
 void refuse_changes(const RunOptions& o) {
   const auto refuse = [&](bool given, const char* option) {
     if (given)
-      throw InputError("E-RUN-03",
-                       fmt::format("{} changes a scene, and {} is a model; condense the scene anew",
-                                   option, o.input));
+      throw InputError("E-RUN-03", fmt::format("{} changes a scene, and {} is a model; expected "
+                                               "the scene. Condense it again with the change",
+                                               option, o.input));
   };
   refuse(!o.overrides.empty(), "--set");
   refuse(o.step.has_value(), "--step");
@@ -71,10 +71,9 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
   if (!artefact || !o.duration) return model.steps / model.steps_per_frame;
   const double frames = *o.duration / frame;
   if (!(frames >= .5) || !(frames < 1e15) || std::abs(frames - std::round(frames)) > 1e-6)
-    throw InputError(
-        "E-RUN-04",
-        fmt::format("--duration {:g}: accepted is a whole number of the model's frames of {:g} s",
-                    *o.duration, frame));
+    throw InputError("E-RUN-04", fmt::format("--duration {:g}: this is not a whole number of the "
+                                             "model's frames; expected a multiple of {:g} s",
+                                             *o.duration, frame));
   return std::llround(frames);
 }
 
@@ -123,17 +122,17 @@ std::optional<Message> energy_note(const std::optional<EnergyBalance>& energy) {
   constexpr double kMuch = .05;
   if (!energy) return std::nullopt;
   if (energy->numerical_loss < -kMuch)
-    return Message("W-RUN-04", fmt::format("the scheme made energy, {:.2g} of all that was turned "
-                                           "over: the step is too long for this "
-                                           "motion; halve it, or take a scheme that keeps energy",
-                                           -energy->numerical_loss));
+    return Message(
+        "W-RUN-04",
+        fmt::format("the time scheme made energy, {:.2g} of all that was exchanged: the step is "
+                    "too long for this motion. Halve it, or use a scheme that keeps energy",
+                    -energy->numerical_loss));
   if (!(energy->error >= kMuch)) return std::nullopt;
-  return Message("W-RUN-05", fmt::format("the energy balance is off by {:.2g} of all that was "
-                                         "turned over, of which the scheme took "
-                                         "{:.2g}: the step is too long for this motion, or on a "
-                                         "condensed track for the sums of work "
-                                         "and heat; halve it",
-                                         energy->error, energy->numerical_loss));
+  return Message("W-RUN-05",
+                 fmt::format("the energy balance is off by {:.2g} of all that was exchanged, and "
+                             "the time scheme lost {:.2g}: the step is too long for this motion "
+                             "or, on a condensed track, for the sums of work and heat. Halve it",
+                             energy->error, energy->numerical_loss));
 }
 
 /// Says in words what the run met.
@@ -155,10 +154,10 @@ std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
   if (o.vtk.empty()) return std::nullopt;
   const Scene* const track = scene == nullptr ? nullptr : std::get_if<Scene>(scene);
   if (track == nullptr)
-    throw InputError("E-RUN-05", fmt::format("--vtk draws rails, sleepers and wheels; accepted is "
-                                             "a scene of a track without bodies, "
-                                             "and {} is none",
-                                             o.input));
+    throw InputError("E-RUN-05",
+                     fmt::format("--vtk draws rails, sleepers and wheels, and {} is not a scene "
+                                 "with them; expected a scene of a track without bodies",
+                                 o.input));
   return std::make_optional<VtkRecord>(*track, run, o.vtk, frames);
 }
 

@@ -42,10 +42,11 @@ void print_table(const StaticSolution& solution) {
 }
 
 void print_history(const std::string& scene, const StaticSolution& solution) {
-  fmt::print(stderr,
-             "{}: no equilibrium was found within static.most_iterations and "
-             "static.most_load_halvings\n{:>12} {:>9} {:>12}\n",
-             scene, "load factor", "iteration", "residual");
+  fmt::print(stderr, "error: {}\n{:>12} {:>9} {:>12}\n",
+             named(scene + ": no equilibrium was found within static.most_iterations and "
+                           "static.most_load_halvings",
+                   "E-STATIC-02"),
+             "load factor", "iteration", "residual");
   for (const NewtonStep& step : solution.history)
     fmt::print(stderr, "{:>12.6g} {:>9} {:>12.3e}\n", step.load_factor, step.iteration,
                step.residual);

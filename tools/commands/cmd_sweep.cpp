@@ -43,9 +43,11 @@ Exit run(const SweepOptions& o) {
   const SweepResult result = o.merge ? sweep.merge() : sweep.run(shard);
   print(result, o.json);
   if (result.failed.empty()) return Exit::done;
-  fmt::print(stderr, "error: {} of {} runs failed, the first is run {} ({}): {}\n",
-             result.failed.size(), result.runs.size(), result.failed.front(),
-             grid.words(result.failed.front()), result.first_error);
+  fmt::print(stderr, "error: {}\n",
+             named(fmt::format("{} of {} runs failed, the first is run {} ({}): {}",
+                               result.failed.size(), result.runs.size(), result.failed.front(),
+                               grid.words(result.failed.front()), result.first_error),
+                   "E-SWEEP-16"));
   return Exit::not_reached;
 }
 

@@ -105,7 +105,8 @@ Exit run(const TuneOptions& o) {
     fmt::print("the best found:\n");
     print_row(*result.best);
   }
-  fmt::print(stderr, "error: no setting does it; what binds is {}\n", result.binds);
+  fmt::print(stderr, "error: {}\n",
+             named("no setting reaches what is asked; the limit is " + result.binds, "E-STUDY-15"));
   return Exit::not_reached;
 }
 

@@ -29,8 +29,8 @@ std::vector<double> HardRun::column(const std::string& name) const {
   const std::vector<std::string>& names = run_->columns();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw InputError("E-HARD-02", fmt::format("the trace has no column {}; it has {}", name,
-                                              fmt::join(names, ", ")));
+    throw InputError("E-HARD-02", fmt::format("the trace has no column {}; expected one of {}",
+                                              name, fmt::join(names, ", ")));
   std::vector<double> values;
   values.reserve(record_.rows.size() / names.size());
   for (auto i = static_cast<std::size_t>(std::distance(names.begin(), found));

@@ -63,9 +63,10 @@ std::string path_of(const std::string& name) {
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") ==
       std::string::npos;
   if (name.empty() || name.size() > kLongestName || !plain || name.front() == '.')
-    throw InputError(
-        "E-HIL-11",
-        fmt::format("--shm {}: accepted are up to 200 letters, digits, '.', '_' and '-'", name));
+    throw InputError("E-HIL-11",
+                     fmt::format("--shm {}: this cannot name shared memory; expected 1 to 200 "
+                                 "letters, digits, '.', '_' and '-', not beginning with '.'",
+                                 name));
   return "/" + name;
 }
 

@@ -28,10 +28,9 @@ struct Endpoint {
 
 Endpoint endpoint_of(const std::string& address) {
   const auto refuse = [&] {
-    throw InputError(
-        "E-HIL-13",
-        fmt::format("--udp {}: accepted is HOST:PORT or [HOST]:PORT with a port from 1 to 65535",
-                    address));
+    throw InputError("E-HIL-13", fmt::format("--udp {}: this is not an address; expected HOST:PORT "
+                                             "or [HOST]:PORT with a port from 1 to 65535",
+                                             address));
   };
   const std::size_t colon = address.rfind(':');
   if (colon == std::string::npos || colon == 0) refuse();
@@ -55,15 +54,16 @@ int listening_socket(const std::string& address) {
   wanted.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
   const int looked_up = getaddrinfo(at.host.c_str(), at.port.c_str(), &wanted, &found);
   if (looked_up != 0)
-    throw InputError("E-HIL-14", fmt::format("--udp {}: no address of this name: {}", address,
+    throw InputError("E-HIL-14", fmt::format("--udp {}: the host has no address: {}", address,
                                              gai_strerror(looked_up)));
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(found, freeaddrinfo);
   const int socket = ::socket(found->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (socket >= 0 && bind(socket, found->ai_addr, found->ai_addrlen) == 0) return socket;
   const int reason = errno;
   if (socket >= 0) close(socket);
-  throw InputError(
-      "E-HIL-15", fmt::format("--udp {}: cannot listen there: {}", address, std::strerror(reason)));
+  throw InputError("E-HIL-15",
+                   fmt::format("--udp {}: the program cannot receive at this address: {}", address,
+                               std::strerror(reason)));
 }
 
 /// FNV-1a: one sender, one number.

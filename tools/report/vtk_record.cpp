@@ -142,7 +142,8 @@ VtkRecord::VtkRecord(const Scene& scene, const Simulation& run, std::filesystem:
   std::filesystem::create_directories(folder_, error);
   if (!std::filesystem::is_directory(folder_))
     throw InputError("E-REPORT-06",
-                     fmt::format("--vtk {}: accepted is a folder, or a name for a new one ({})",
+                     fmt::format("--vtk {}: no file can be written there ({}); expected a folder, "
+                                 "or a name for a new one",
                                  folder_.string(), error ? error.message() : "it is a file"));
   outline_ = {outline_of(scene, kLeftRail), outline_of(scene, kRightRail)};
   for (const VehicleScene& v : scene.vehicles) vehicles_.push_back(drawn_vehicle(v));

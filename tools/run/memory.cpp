@@ -42,11 +42,10 @@ double available_memory() {
 void want_recording_memory(std::int64_t numbers) {
   const double wanted = 2. * 8. * static_cast<double>(numbers), found = available_memory();
   if (wanted > found)
-    throw InputError(
-        "E-RUN-06",
-        fmt::format("--record keeps {} numbers, which take {:.0f} bytes of memory, and {:.0f} are "
-                    "available; accepted is a shorter --duration",
-                    numbers, wanted, found));
+    throw InputError("E-RUN-06",
+                     fmt::format("--record keeps {} numbers, which take {:.0f} bytes, and {:.0f} "
+                                 "bytes of memory are free; expected a shorter --duration",
+                                 numbers, wanted, found));
 }
 
 }  // namespace railstep

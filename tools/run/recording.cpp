@@ -68,22 +68,28 @@ void check_frame(const std::vector<std::byte>& bytes, const std::string& name) {
   if (bytes.size() < kHead + kSum || !same_bytes(at, kMagic, 8))
     throw InputError(
         "E-RECORDING-01",
-        fmt::format("{} is not a recording; accepted is what `railstep run --record` wrote", name));
+        fmt::format(
+            "{}: this is not a recording; expected a file that `railstep run --record` wrote",
+            name));
   if (get_word(at + 8) != static_cast<std::uint64_t>(kFormat))
-    throw InputError("E-RECORDING-02",
-                     fmt::format("{} is a recording of format {}; accepted is {}", name,
-                                 static_cast<std::int64_t>(get_word(at + 8)), kFormat));
+    throw InputError(
+        "E-RECORDING-02",
+        fmt::format("{}: the recording has format {}; expected format {}. Record the run again",
+                    name, static_cast<std::int64_t>(get_word(at + 8)), kFormat));
   if (get_word(at + 16) != bytes.size())
-    throw InputError("E-RECORDING-03",
-                     fmt::format("{} is a recording of {} bytes and holds {}; record it anew", name,
-                                 static_cast<std::int64_t>(get_word(at + 16)), bytes.size()));
+    throw InputError(
+        "E-RECORDING-03",
+        fmt::format(
+            "{}: the recording says that it has {} bytes, and it has {}; record the run again",
+            name, static_cast<std::int64_t>(get_word(at + 16)), bytes.size()));
   unsigned char sum[kSum];
   sha256(at, bytes.size() - kSum, sum);
   if (!same_bytes(at + (bytes.size() - kSum), sum, kSum))
     throw InputError(
         "E-RECORDING-04",
-        fmt::format("{} is a recording whose content does not match its SHA-256; record it anew",
-                    name));
+        fmt::format(
+            "{}: the content of the recording does not match its SHA-256; record the run again",
+            name));
 }
 
 }  // namespace
@@ -153,7 +159,8 @@ Recording Recording::read(const std::filesystem::path& file) {
   if (!counted || !reader.good())
     throw InputError(
         "E-RECORDING-05",
-        fmt::format("{} is a recording with a number out of range; record it anew", file.string()));
+        fmt::format("{}: the recording holds a number out of its range; record the run again",
+                    file.string()));
   return found;
 }
 
@@ -164,12 +171,9 @@ Replay replay(const Recording& recording, const std::string& name) {
   const bool fits = recording.inputs.size() == static_cast<std::size_t>(recording.frames) * width;
   if (!fits || restore_snapshot(model, recording.snapshot.data(), recording.snapshot.size(),
                                 run.state) != SnapshotStatus::ok)
-    throw InputError(
-        "E-RECORDING-06",
-        fmt::format(
-            "{} is a recording whose model, state and inputs do not belong together; record "
-            "it anew",
-            name));
+    throw InputError("E-RECORDING-06", fmt::format("{}: model, state and inputs of the recording "
+                                                   "do not belong together; record the run again",
+                                                   name));
   Outputs outputs{};
   publish_start(model, run.state, outputs);
   std::int64_t frame = 0;

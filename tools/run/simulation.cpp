@@ -23,34 +23,41 @@ std::uint16_t major_of(const std::vector<std::byte>& block) {
   return major;
 }
 
-std::string sentence(LoadStatus status, const std::vector<std::byte>& block) {
+/// Why a model file was refused.
+Message refusal(LoadStatus status, const std::string& file, const std::vector<std::byte>& block) {
+  const auto message = [&](MessageId id, const std::string& sentence) {
+    return Message(id, file + ": " + sentence);
+  };
+  constexpr const char* kAgain = "; write it again with `railstep condense`";
   switch (status) {
     case LoadStatus::ok:
     case LoadStatus::misaligned:
       break;
     case LoadStatus::not_a_model:
-      return "is not a model; accepted is what `railstep condense` wrote";
+      return message("E-MODEL-05",
+                     "this is not a model; expected one that `railstep condense` "
+                     "wrote");
     case LoadStatus::other_version:
-      return fmt::format(
-          "is a model of format {}, and this program reads format {}; write it anew with `railstep "
-          "condense`",
-          major_of(block), kBlockMajor);
+      return message("E-MODEL-08", fmt::format("the model has format {}; expected format {}{}",
+                                               major_of(block), kBlockMajor, kAgain));
     case LoadStatus::other_byte_order:
-      return "is a model of a machine with another byte order; write it anew with `railstep "
-             "condense`";
+      return message("E-MODEL-09",
+                     std::string("the model is from a machine with another byte order") + kAgain);
     case LoadStatus::wrong_size:
-      return "is a model that was cut short or run on; write it anew with `railstep condense`";
+      return message("E-MODEL-10",
+                     std::string("the model is shorter or longer than its header says") + kAgain);
     case LoadStatus::wrong_header:
-      return "is a model whose header does not match its CRC-32; write it anew with `railstep "
-             "condense`";
+      return message("E-MODEL-11",
+                     std::string("the header of the model does not match its CRC-32") + kAgain);
     case LoadStatus::wrong_sum:
-      return "is a model whose content does not match its SHA-256; write it anew with `railstep "
-             "condense`";
+      return message("E-MODEL-12",
+                     std::string("the content of the model does not match its SHA-256") + kAgain);
     case LoadStatus::bad_content:
-      return "is a model with a number that is not finite or out of its range; write it anew with "
-             "`railstep condense`";
+      return message(
+          "E-MODEL-06",
+          std::string("a number of the model is not finite or out of its range") + kAgain);
   }
-  return "cannot be placed in memory";
+  return message("E-MODEL-13", "the model cannot be placed in memory");
 }
 
 std::vector<std::string> lines_of(const char* text, std::size_t bytes) {
@@ -69,12 +76,14 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored) ||
       std::filesystem::is_character_file(file, ignored))  // which might never end
-    throw InputError("E-MODEL-01",
-                     fmt::format("{}: is a folder or a device; a file is accepted", file.string()));
+    throw InputError("E-MODEL-01", fmt::format("{}: this is a folder or a device; expected a file",
+                                               file.string()));
   std::ifstream in(file, std::ios::binary);
   if (!in)
-    throw InputError("E-MODEL-02", fmt::format("{}: cannot be opened; a readable file is accepted",
-                                               file.string()));
+    throw InputError(
+        "E-FILE-04",
+        fmt::format("{}: the file cannot be opened; expected a file that is there and may be read",
+                    file.string()));
   note_read_file(file);
   std::vector<std::byte> bytes;
   constexpr std::size_t kPiece = 1u << 20;
@@ -85,7 +94,8 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
     got = static_cast<std::size_t>(in.gcount());
     bytes.resize(before + got);
   }
-  if (in.bad()) throw InputError("E-MODEL-03", fmt::format("{}: cannot be read", file.string()));
+  if (in.bad())
+    throw InputError("E-FILE-05", fmt::format("{}: the file cannot be read", file.string()));
   return bytes;
 }
 
@@ -109,23 +119,22 @@ Simulation::Simulation(std::vector<std::byte> block, const std::string& name)
   std::vector<double> row(columns_.size());
   if (!self_check(model_, state, workspace, outputs, row.data()))
     throw InputError("E-MODEL-04",
-                     fmt::format("{} is a model that steps to other bits here than where it was "
-                                 "written; write it anew with `railstep condense`",
+                     fmt::format("{}: the model steps to other bits on this machine than on the "
+                                 "one that wrote it; write it again with `railstep condense`",
                                  name));
 }
 
 void Simulation::load(const std::string& name) {
   const LoadResult result = load_model(block_.data(), block_.size(), model_);
   if (result.status != LoadStatus::ok)
-    throw InputError("E-MODEL-05", fmt::format("{} {}", name, sentence(result.status, block_)));
+    throw InputError(std::vector{refusal(result.status, name, block_)});
   columns_ = lines_of(result.text, result.text_bytes);
   const auto end = std::find(columns_.begin(), columns_.end(), "");
   if (end != columns_.end()) inputs_.assign(end + 1, columns_.end());
   columns_.erase(end, columns_.end());
   if (columns_.size() != static_cast<std::size_t>(trace_columns(model_)) ||
       inputs_.size() != static_cast<std::size_t>(model_.inputs))
-    throw InputError("E-MODEL-06",
-                     fmt::format("{} {}", name, sentence(LoadStatus::bad_content, block_)));
+    throw InputError(std::vector{refusal(LoadStatus::bad_content, name, block_)});
   place();
 }
 
@@ -150,10 +159,10 @@ bool is_artefact(const std::filesystem::path& file) {
   const std::string_view text(start, static_cast<std::size_t>(in.gcount()));
   if (text.starts_with("railstep")) return true;
   if (text.find('\0') != std::string_view::npos)
-    throw InputError("E-MODEL-07", fmt::format("{}: begins neither as a model does nor as text; "
-                                               "accepted is a scene (TOML), or a model as "
-                                               "`railstep condense` wrote it",
-                                               file.string()));
+    throw InputError("E-MODEL-07",
+                     fmt::format("{}: the file begins neither as a model nor as text; expected a "
+                                 "scene (TOML), or a model that `railstep condense` wrote",
+                                 file.string()));
   return false;
 }
 

@@ -30,11 +30,9 @@ std::optional<Message> speed_note(const Scene& scene, const Track& track) {
   if (speed < kNear * slowest) return std::nullopt;
   return Message(
       "W-RUN-03",
-      fmt::format(
-          "traffic at {:.4g} m/s runs at {:.3g} of the track's critical speed of {:.4g} m/s: "
-          "deflections "
-          "depend on the dampers and on how far it has run",
-          speed, speed / slowest, slowest));
+      fmt::format("traffic at {:.4g} m/s runs at {:.3g} of the track's critical speed of {:.4g} "
+                  "m/s: deflections depend on the dampers and on how far it has run",
+                  speed, speed / slowest, slowest));
 }
 
 }  // namespace railstep

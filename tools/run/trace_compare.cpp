@@ -21,8 +21,9 @@ double trace_number(std::string_view field, const std::string& place) {
   double value = 0.;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size())
-    throw InputError("E-RUN-08",
-                     fmt::format("{}: '{}' is not a number", place, field.substr(0, 40)));
+    throw InputError("E-CSV-02",
+                     fmt::format("{}: '{}' is not a number; expected one such as 0.25 or 1e-3",
+                                 place, field.substr(0, 40)));
   return value;
 }
 
@@ -61,14 +62,14 @@ void refuse_other_rows(const TraceTable& a, const TraceTable& b, const std::stri
                        const std::string& name_b) {
   const double step_a = step_of(a), step_b = step_of(b);
   if (std::abs(step_a - step_b) > 1e-9 * std::abs(step_a) && step_a != 0. && step_b != 0.)
-    throw InputError("E-RUN-09", fmt::format("{} has a row each {:.9g} s and {} each {:.9g} s; "
-                                             "accepted are traces with the same step",
-                                             name_a, step_a, name_b, step_b));
+    throw InputError("E-TRACE-01", fmt::format("{} has a row each {:.9g} s, and {} each {:.9g} s; "
+                                               "expected traces with the same time between rows",
+                                               name_a, step_a, name_b, step_b));
   if (a.rows() != b.rows())
     throw InputError(
-        "E-RUN-10",
-        fmt::format("{} has {} rows and {} has {}; accepted are traces with as many rows", name_a,
-                    a.rows(), name_b, b.rows()));
+        "E-TRACE-02",
+        fmt::format("{} has {} rows, and {} has {}; expected traces with the same number of rows",
+                    name_a, a.rows(), name_b, b.rows()));
 }
 
 }  // namespace
@@ -78,20 +79,24 @@ TraceTable TraceTable::read(const std::filesystem::path& file) {
   const std::vector<CsvLine> lines = csv_lines(text, file.string());
   if (lines.empty() || !is_column_name(lines.front().fields.front()))
     throw InputError(
-        "E-RUN-11", fmt::format("{}: is not a trace; accepted is what `railstep run --trace` wrote",
-                                file.string()));
+        "E-TRACE-03",
+        fmt::format("{}: this is not a trace; expected a file that `railstep run --trace` wrote",
+                    file.string()));
   if (lines.size() < 2)
     throw InputError(
-        "E-RUN-12", fmt::format("{}: holds no rows; accepted are a line of names and rows under it",
-                                file.string()));
+        "E-CSV-05",
+        fmt::format(
+            "{}: the file has no rows of values; expected a line of names and rows below it",
+            file.string()));
   TraceTable table;
   table.columns.assign(lines.front().fields.begin(), lines.front().fields.end());
   table.values.reserve((lines.size() - 1) * table.columns.size());
   for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
     if (line->fields.size() != table.columns.size())
-      throw InputError("E-RUN-13",
-                       fmt::format("{}: {} values where the first line names {} columns",
-                                   line->place, line->fields.size(), table.columns.size()));
+      throw InputError(
+          "E-CSV-04",
+          fmt::format("{}: the row has {} values; expected {}, as many as the first line has names",
+                      line->place, line->fields.size(), table.columns.size()));
     for (const std::string_view field : line->fields)
       table.values.push_back(trace_number(field, line->place));
   }
@@ -102,16 +107,15 @@ TraceComparison compare(const TraceTable& a, const TraceTable& b, const std::str
                         const std::string& name_b) {
   if (a.columns.size() != b.columns.size())
     throw InputError(
-        "E-RUN-14",
-        fmt::format("{} has {} columns and {} has {}; accepted are traces with the same columns",
+        "E-TRACE-04",
+        fmt::format("{} has {} columns, and {} has {}; expected traces with the same columns",
                     name_a, a.columns.size(), name_b, b.columns.size()));
   for (std::size_t c = 0; c < a.columns.size(); ++c)
     if (a.columns[c] != b.columns[c])
       throw InputError(
-          "E-RUN-15",
-          fmt::format(
-              "column {} is {} in {} and {} in {}; accepted are traces with the same columns", c,
-              a.columns[c], name_a, b.columns[c], name_b));
+          "E-TRACE-05",
+          fmt::format("column {} is {} in {}, and {} in {}; expected traces with the same columns",
+                      c, a.columns[c], name_a, b.columns[c], name_b));
   refuse_other_rows(a, b, name_a, name_b);
   TraceComparison result{true, std::nullopt, 0.};
   const std::vector<double> peaks = peaks_of(a);

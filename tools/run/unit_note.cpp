@@ -14,9 +14,10 @@ std::optional<Message> depth_note(const RunRecord& record) {
   if (!(record.deepest < kDeep)) return {};
   return Message(
       "W-RUN-01",
-      fmt::format("a rail sank by {:.3g} mm under its traffic, and tracks sink by a few: "
-                  "are stiffnesses given in N/m, young_pa in Pa, second moments in m4?",
-                  -1e3 * record.deepest));
+      fmt::format(
+          "a rail sank by {:.3g} mm under its traffic, and tracks sink by a few millimetres: are "
+          "stiffnesses given in N/m, young_pa in Pa, second moments in m4?",
+          -1e3 * record.deepest));
 }
 
 std::optional<Message> constants_note(const Scene& scene) {
@@ -25,9 +26,8 @@ std::optional<Message> constants_note(const Scene& scene) {
     if (section == nullptr || section->area.inertia_y <= most_inertia(*section)) continue;
     return Message(
         "W-RUN-02",
-        fmt::format("inertia_y_m4 = {:g} of [rail.constants] is that of no shape of this area, "
-                    "height and centroid, which has at most A c (h - c) = {:.4g}: is it given in "
-                    "m4?",
+        fmt::format("inertia_y_m4 = {:g} of [rail.constants] is too large for this area, height "
+                    "and centroid, which allow at most A c (h - c) = {:.4g}: is it given in m4?",
                     section->area.inertia_y, most_inertia(*section)));
   }
   return std::nullopt;

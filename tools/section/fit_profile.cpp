@@ -30,7 +30,9 @@ void describe_outline(FitResult& r, const std::vector<Point>& points) {
   r.lopsided = {share, product_of_inertia(outline), -foot, shear.shear_centre_y - foot};
   if (!shear.missing.empty())
     r.warnings.push_back(
-        {"W-FIT-01", fmt::format("the outline has no shear factors: {}", shear.missing)});
+        {"W-FIT-01",
+         fmt::format("the outline has no shear factors, and those of the rectangles are used: {}",
+                     shear.missing)});
 }
 
 /// Says where the rectangles have the outline's four properties and little else of it.
@@ -40,16 +42,17 @@ void compare(FitResult& r, const std::vector<Point>& points) {
   if (widest > kWider * width_of(points))
     r.warnings.push_back(
         {"W-FIT-02",
-         fmt::format("the widest of the three rectangles has {:.1f} mm, the outline {:.1f} mm",
-                     1e3 * widest, 1e3 * width_of(points))});
+         fmt::format(
+             "the widest of the three rectangles is {:.1f} mm wide, and the outline {:.1f} mm",
+             1e3 * widest, 1e3 * width_of(points))});
   const double apart = r.fit.symmetric_difference / r.outline.area.area;
   if (apart > kMuchApart)
     r.warnings.push_back(
         {"W-FIT-03",
-         fmt::format("the symmetric difference is {:.2g} of the area: J, shear factors, "
-                     "shear centre and all "
-                     "that is made of the rectangles' shape are those of another shape",
-                     apart)});
+         fmt::format(
+             "the areas of rectangles and outline differ by {:.2g} of the area: J, the shear "
+             "factors and the shear centre are those of the rectangles, not of the outline",
+             apart)});
 }
 
 }  // namespace

@@ -23,16 +23,17 @@ std::optional<Message> lopsided_warning(const Lopsided& l, const Section& sectio
   if (!(sideways > kFelt) && !(twisting > kFelt)) return std::nullopt;
   std::string sentence = fmt::format(
       "the outline is lopsided, and its section of three rectangles is not: a vertical force bends "
-      "it sideways by Iyz/Iz = {:.2g} of its deflection",
+      "the outline sideways by Iyz/Iz = {:.2g} of its deflection",
       sideways);
   if (std::isfinite(twisting))
     sentence += fmt::format(
-        ", and at the middle of the foot, {:.1f} mm beside the shear centre, twists it like a "
-        "lateral force of {:.2g} of it at the crown",
+        "; at the middle of the foot, {:.1f} mm beside the shear centre, the force twists the "
+        "outline as a lateral force of {:.2g} times its size at the crown does",
         1e3 * std::abs(l.shear_centre_offset), twisting);
-  return Message("W-SECTION-01",
-                 sentence + fmt::format("; the centroid lies {:.1f} mm beside that middle",
-                                        1e3 * std::abs(l.centroid_offset)));
+  return Message(
+      "W-SECTION-01",
+      sentence + fmt::format("; the centroid lies {:.1f} mm beside the middle of the foot",
+                             1e3 * std::abs(l.centroid_offset)));
 }
 
 std::optional<Lopsided> read_lopsided(const std::filesystem::path& file) {

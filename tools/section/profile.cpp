@@ -51,8 +51,9 @@ std::vector<OutlineRow> rows_of(const std::string& text, const std::string& file
     if (header) continue;
     refuse_decimal_comma(line, 2);
     if (line.fields.size() != 2)
-      throw InputError("E-PROFILE-01", fmt::format("{}: {} values where two are wanted, y and z",
-                                                   line.place, line.fields.size()));
+      throw InputError("E-PROFILE-01",
+                       fmt::format("{}: the row has {} values; expected two, y and z", line.place,
+                                   line.fields.size()));
     rows.push_back({{metres * csv_number(line.fields[0], line.place),
                      metres * csv_number(line.fields[1], line.place)},
                     0.0,
@@ -76,12 +77,10 @@ bool is_points(const std::string& text, const std::string& file) {
 Table read_shape_file(const std::filesystem::path& file) {
   const std::string text = read_text(file);
   if (is_points(text, file.string()))
-    throw InputError(
-        "E-PROFILE-02",
-        fmt::format("{0}: is a list of points, of which `railstep fit {0} --unit mm --out FILE` "
-                    "makes a section; "
-                    "accepted are that FILE as section, and a profile (TOML) as profile",
-                    file.string()));
+    throw InputError("E-PROFILE-02",
+                     fmt::format("{0}: this is a list of points; expected a profile (TOML), or a "
+                                 "section that `railstep fit {0} --unit mm --out FILE` writes",
+                                 file.string()));
   return read_toml_text(text, file);
 }
 
@@ -90,8 +89,8 @@ Profile read_profile(const std::filesystem::path& file) {
   static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
   if (!root.has("half_outline_mm") && root.has("section"))
     root.refuse("section", "E-PROFILE-03",
-                "the file is a section, as `railstep fit --out` writes it; accepted as "
-                "section in the place of profile");
+                "the file holds a section, as `railstep fit --out` writes it; expected it under "
+                "the key section, and a profile under the key profile");
   Profile profile{root.string("name"), root.string("source"), {}, nothing_published()};
   const std::vector<double> values = root.rows("half_outline_mm", 3);
   if (const auto published = root.table_if("published"))

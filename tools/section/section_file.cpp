@@ -33,8 +33,8 @@ void check_shape(const Table& t, const Section& s) {
   const double most = most_inertia(s);
   if (!(s.area.inertia_y <= most))
     t.refuse("inertia_y_m4", "E-SECTION-28",
-             fmt::format("inertia_y_m4 = {:g} is that of no shape of this area, height and "
-                         "centroid; accepted is at most A c (h - c) = {:.4g}",
+             fmt::format("inertia_y_m4 = {:g} is too large for this area, height and centroid; "
+                         "expected at most A c (h - c) = {:.4g}",
                          s.area.inertia_y, most));
 }
 
@@ -49,8 +49,8 @@ OutlineShear outline_shear(const Outline& outline, double uneven) {
   double factor_y = kNone, factor_z = kNone;
   if (uneven > kMostAsymmetry) {
     missing = fmt::format(
-        "Cowper's are of forces along an axis of symmetry, and outline and mirror image differ by "
-        "{:.2g} of the area",
+        "Cowper's factors need a force along an axis of symmetry, and the outline and its mirror "
+        "image differ by {:.2g} of the area",
         std::min(uneven, 2.0));
   } else {
     try {
@@ -72,7 +72,8 @@ OutlineShear outline_shear(const Outline& outline, double uneven) {
 Section fitted_section(const SectionFit& fit, double height) try {
   return {properties(fit.section), saint_venant(polygon(fit.section), kFitPoisson), height};
 } catch (const Refused& error) {
-  throw NoSection(error.id(), "three rectangles fit, but not as a section: " + error.sentence());
+  throw NoSection(error.id(),
+                  "three rectangles fit, but they are not a section: " + error.sentence());
 }
 
 double most_inertia(const Section& section) {
@@ -101,8 +102,8 @@ Section read_section(const std::filesystem::path& file) {
   static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
   if (!root.has("section") && root.has("half_outline_mm"))
     root.refuse("half_outline_mm", "E-SECTION-29",
-                "the file is a profile; accepted as profile in the place of "
-                "section");
+                "the file holds a profile; expected it under the key profile, and a section under "
+                "the key section");
   static_cast<void>(root.string("name", "-"));
   static_cast<void>(root.string("source", "-"));
   static_cast<void>(root.number("symmetric_difference_m2", at_least(0.0), 0.0));

@@ -30,10 +30,9 @@ void refuse_empty(const std::vector<Rectangles<double>>& family, const FitTarget
   const RelativeErrors e = relative_errors(t, closest(t));
   throw NoSection(
       "E-FIT-14",
-      fmt::format("no three rectangles {:.6g} m high have the area {:.6g} m2, inertias {:.6g} and "
-                  "{:.6g} m4 and "
-                  "centroid height {:.6g} m; the closest found err by {:+.2e}, {:+.2e}, {:+.2e} "
-                  "and {:+.2e} of them",
+      fmt::format("no three rectangles {:.6g} m high have the area {:.6g} m2, the inertias {:.6g} "
+                  "and {:.6g} m4 and the centroid height {:.6g} m; the nearest that were found "
+                  "differ by {:+.2e}, {:+.2e}, {:+.2e} and {:+.2e} of these values",
                   t.height, t.area.area, t.area.inertia_y, t.area.inertia_z, t.area.centroid_height,
                   e.area, e.inertia_y, e.inertia_z, e.centroid_height));
 }
@@ -113,7 +112,9 @@ SectionFit fit_section(const Outline& outline, const std::optional<Rectangles<do
   int iterations = 0;
   bool from_start = false;
   if (!solve_exact(targets, true, best, iterations))
-    throw NoSection("E-FIT-15", "Ceres did not bring the section's four errors to round-off");
+    throw NoSection("E-FIT-15",
+                    "the search for three rectangles did not bring the four errors to round-off; "
+                    "expected the area, inertias and centroid height of a rail");
   // Downhill may lead past the end of a valley, or along a family that is all but a plain
   // rectangle's: then what it started from stands.
   Rectangles<double> lower = best;
@@ -162,11 +163,10 @@ SectionFit fit_targets(const FitTargets& targets, double head_width) {
       best = section;
   }
   if (!best)
-    throw NoSection(
-        "E-FIT-16",
-        fmt::format("no three rectangles have these properties with a head {:.6g} m wide; head "
-                    "widths of {:.6g} to {:.6g} m can be had",
-                    head_width, least, most));
+    throw NoSection("E-FIT-16",
+                    fmt::format("no three rectangles have these properties with a head {:.6g} m "
+                                "wide; expected a head width of {:.6g} to {:.6g} m",
+                                head_width, least, most));
   return describe(targets, *best, points, iterations);
 }
 

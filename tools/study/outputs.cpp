@@ -36,7 +36,10 @@ std::optional<OutputKind> kind_of(const std::string& column) {
 std::size_t column_of(const TraceTable& table, const std::string& name) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), name);
   if (found == table.columns.end())
-    throw InputError("E-STUDY-01", fmt::format("the reference has no column {}", name));
+    throw InputError(
+        "E-STUDY-01",
+        fmt::format("the reference has no column {}; expected a reference of the same scene",
+                    name));
   return static_cast<std::size_t>(found - table.columns.begin());
 }
 
@@ -87,12 +90,11 @@ void check_outputs(const TraceTable& got, const Judged& judged) {
       if (const auto kind = kind_of(column))
         found = found || own == column || own == name_of(*kind);
     if (!found)
-      throw InputError(
-          "E-STUDY-02",
-          fmt::format(
-              "output \"{}\" is not there; accepted are deflection, contact_force, support_force, "
-              "sensor, stress, or one of their columns, where the trace has them",
-              own));
+      throw InputError("E-STUDY-02",
+                       fmt::format("output \"{}\" is not in the trace; expected deflection, "
+                                   "contact_force, support_force, sensor, stress, or one of their "
+                                   "columns, as far as the trace has them",
+                                   own));
   }
 }
 
@@ -132,8 +134,10 @@ TraceErrors errors_of(const TraceTable& got, const TraceTable& reference, const 
   const double from = judged.from * (1. - 1e-9) - 1e-12;  // rounding of the rows' times
   const std::size_t row = row_at(got, from), reference_row = row_at(reference, from);
   if (reference_row >= reference.rows())
-    throw InputError("E-STUDY-03",
-                     fmt::format("the reference has no rows from {:g} s on", judged.from));
+    throw InputError(
+        "E-STUDY-03",
+        fmt::format("the reference has no rows from {:g} s on; expected an earlier --from",
+                    judged.from));
   if (got.rows() - row < reference.rows() - reference_row) return lost(reference);
   TraceErrors errors;
   for (const KindNames& own : kNames) {
@@ -154,10 +158,9 @@ TraceErrors errors_of(const TraceTable& got, const TraceTable& reference, const 
     if (any) errors.kinds.push_back(worst);
   }
   if (errors.kinds.empty())
-    throw InputError(
-        "E-STUDY-04",
-        "the trace has nothing to compare; accepted is a scene with a load, a wheel, a sensor or "
-        "output.supports = true");
+    throw InputError("E-STUDY-04",
+                     "the trace has nothing to compare; expected a scene with a load, a wheel, a "
+                     "sensor or output.supports = true");
   return errors;
 }
 

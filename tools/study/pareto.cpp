@@ -18,8 +18,8 @@ void check(const Studied& study, const std::vector<Setting>& settings) {
   if (settings.empty())
     throw InputError(
         "E-STUDY-05",
-        "no model goes with any of the schemes; accepted are held:RHO_INF and discrete-gradient "
-        "with condensed models, all others with full order");
+        "none of the models goes with any of the schemes; expected held:RHO_INF or "
+        "discrete-gradient with condensed models, and the other schemes with full order");
   for (const Setting& setting : settings) try {
       static_cast<void>(scene_with(study, setting));
     } catch (const InputError& error) {

@@ -33,23 +33,22 @@ Studied study_of(const std::filesystem::path& file, const std::vector<std::strin
   if (scene == nullptr)
     throw InputError(
         "E-STUDY-06",
-        fmt::format("{}: is a system of bodies and beams; accepted is a scene of a track",
+        fmt::format("{}: this is a system of bodies and beams; expected a scene of a track",
                     file.string()));
   refuse_unstepped(*scene);
   if (!scene->external_wheels.empty())
-    throw InputError(
-        "E-STUDY-07",
-        fmt::format(
-            "{}: has an [[external_wheel]], whose forces are made elsewhere; accepted is a scene "
-            "without",
-            file.string()));
+    throw InputError("E-STUDY-07",
+                     fmt::format("{}: the scene has an [[external_wheel]], whose forces another "
+                                 "program makes; expected a scene without one",
+                                 file.string()));
   const StepScene& step = *scene->step;
   Studied study{file, overrides, step.dt * static_cast<double>(step.steps_per_frame), judged};
   if (judged.from == 0. && step.start == Start::released)
     study.judged.from = .2 * scene->duration();
   if (study.judged.from >= scene->duration())
     throw InputError("E-STUDY-08",
-                     fmt::format("{}: nothing is left from {:g} s on; the run lasts {:g} s",
+                     fmt::format("{}: nothing is left to compare from {:g} s on; expected a time "
+                                 "before the end of the run at {:g} s",
                                  file.string(), judged.from, scene->duration()));
   return study;
 }

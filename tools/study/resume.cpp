@@ -46,12 +46,14 @@ ResumeFile::ResumeFile(std::filesystem::path file, const std::string& key)
   if (first.is_discarded() || !first.is_object() || !first.contains("study"))
     throw InputError(
         "E-STUDY-09",
-        fmt::format("{}: is not what a study leaves; accepted is such a file, or a new name",
-                    file_.string()));
+        fmt::format(
+            "{}: this is not a file of a study; expected one that --resume wrote, or a new name",
+            file_.string()));
   if (first.at("study") != key)
-    throw InputError("E-STUDY-10", fmt::format("{}: is of another scene, question or program; "
-                                               "accepted is one of the same, or a new name",
-                                               file_.string()));
+    throw InputError("E-STUDY-10",
+                     fmt::format("{}: this file is of another scene, question or program; expected "
+                                 "one of the same study, or a new name",
+                                 file_.string()));
   whole = text + "\n";
   while (std::getline(in, text)) {
     const Json line = Json::parse(text, nullptr, false);
@@ -74,7 +76,9 @@ void ResumeFile::append(const Json& line) const {
   if (file_.empty()) return;
   std::ofstream out(file_, std::ios::app);
   out << line.dump() << std::endl;
-  if (!out) fail("E-STUDY-11", fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+  if (!out)
+    fail("E-STUDY-11",
+         fmt::format("{}: the file cannot be written: {}", file_.string(), std::strerror(errno)));
 }
 
 void ResumeFile::keep(const Reference& reference) { append({{"reference", to_json(reference)}}); }

@@ -37,12 +37,11 @@ bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
 [[noreturn]] void refuse_model(const std::string& model) {
   throw InputError(
       "E-STUDY-12",
-      fmt::format(
-          "model \"{}\": accepted is KIND[:AMOUNT][:bare][:UNKNOWNS], KIND one of full, modal, "
-          "guyan, "
-          "irs, craig-bampton, krylov, complex-modes, AMOUNT modes (of guyan and irs nodes) a bay, "
-          "bare without residual flexibility, UNKNOWNS one of vertical, rigid-section",
-          model));
+      fmt::format("model \"{}\" is unknown; expected KIND[:AMOUNT][:bare][:UNKNOWNS]. KIND is "
+                  "full, modal, guyan, irs, craig-bampton, krylov or complex-modes; AMOUNT is the "
+                  "modes a bay (for guyan and irs the nodes a bay); bare leaves out the residual "
+                  "flexibility; UNKNOWNS is vertical or rigid-section",
+                  model));
 }
 
 void add_model(const std::string& model, std::vector<std::string>& overrides) {
@@ -87,11 +86,10 @@ void add_scheme(const std::string& scheme, std::vector<std::string>& overrides) 
   } else {
     throw InputError(
         "E-STUDY-13",
-        fmt::format(
-            "scheme \"{}\": accepted are own, generalised-alpha:RHO_INF, newmark, hht:ALPHA, "
-            "backward-euler, tr-bdf2 of full order, held:RHO_INF, discrete-gradient of condensed "
-            "models",
-            scheme));
+        fmt::format("scheme \"{}\" is unknown; expected own, generalised-alpha:RHO_INF, newmark, "
+                    "hht:ALPHA, backward-euler or tr-bdf2 in full order, held:RHO_INF or "
+                    "discrete-gradient for condensed models",
+                    scheme));
   }
 }
 

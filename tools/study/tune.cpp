@@ -45,13 +45,15 @@ class Search {
   std::string binds() const {
     if (least_mesh_ > share())
       return fmt::format(
-          "the mesh: its error is {:.1e} at best, accepted is a third of {:g}; finer ones can be "
-          "given by --meshes",
+          "the mesh: its error is {:.1e} at best, expected a third of {:g} or less; give finer "
+          "meshes by --meshes",
           least_mesh_, request_.max_error);
-    if (!best_ || !best_->failure.empty()) return "no model of a mesh that is fine enough runs";
+    if (!best_ || !best_->failure.empty())
+      return "the models: none runs on a mesh that is fine enough";
     const bool step = best_->parts.step > best_->parts.condensation;
     return fmt::format(
-        "the {}: its part of the error is {:.1e} at best, accepted is a third of {:g}",
+        "the {}: its part of the error is {:.1e} at best, expected a third of {:g} or "
+        "less",
         step ? "step" : "condensation", step ? best_->parts.step : best_->parts.condensation,
         request_.max_error);
   }
@@ -156,7 +158,7 @@ bool choose(const TuneRequest& request, const std::vector<SettingRow>& found, Ve
   for (const SettingRow& row : found) {
     if (request.deadline_us && row.cost.us > *request.deadline_us) {
       result.best = row;
-      result.binds = fmt::format("the deadline: {:.3g} us at least, accepted is {:g} us",
+      result.binds = fmt::format("the deadline: {:.3g} us at least, expected {:g} us or less",
                                  row.cost.us, *request.deadline_us);
       return true;
     }
@@ -166,9 +168,9 @@ bool choose(const TuneRequest& request, const std::vector<SettingRow>& found, Ve
       return true;
     }
     result.best = candidate.row;
-    result.binds =
-        fmt::format("{}: its error is {:.1e}, accepted is {:g}", candidate.verified.back().what,
-                    candidate.verified.back().error, request.max_error);
+    result.binds = fmt::format("{}: its error is {:.1e}, expected {:g} or less",
+                               candidate.verified.back().what, candidate.verified.back().error,
+                               request.max_error);
   }
   return false;
 }
@@ -214,8 +216,9 @@ TuneResult tune(const TuneRequest& request, const std::function<void(const std::
   result.frame = studied.frame;
   if (reference.error > .5 * request.max_error) {
     result.binds = fmt::format(
-        "the reference: after {} levels its own error is {:.1e}, accepted is half of {:g}", levels,
-        reference.error, request.max_error);
+        "the reference: after {} levels its own error is {:.1e}, expected half of {:g} "
+        "or less",
+        levels, reference.error, request.max_error);
     return result;
   }
   Study study(studied, std::move(reference), choices.steps.back() / 4.);

@@ -36,7 +36,7 @@ class SharedProgress {
   Progress bar_;
 };
 
-/// An error of a scene calls a varied key what it was given as, and says which run met it.
+/// Names a varied key by --vary in the error of a scene, and says which run met the error.
 [[noreturn]] void refuse_run(const InputError& error, const Grid& grid, std::int64_t run) {
   const std::vector<std::string> values = grid.values(run);
   std::vector<Message> messages = error.messages();
@@ -44,8 +44,7 @@ class SharedProgress {
     for (std::size_t k = 0; k < values.size(); ++k)
       if (message.text.starts_with(fmt::format("--set {}={}:", grid.varied()[k].key, values[k])))
         message.text.replace(0, 5, "--vary");
-  throw InputError("E-SWEEP-15", std::move(messages))
-      .met(fmt::format("run {}: {}", run, grid.words(run)));
+  throw InputError(std::move(messages)).met(fmt::format("run {}: {}", run, grid.words(run)));
 }
 
 }  // namespace
@@ -55,7 +54,7 @@ Sweep::Sweep(SweepPlan plan)
   if (is_artefact(plan_.scene))
     throw InputError(
         "E-SWEEP-02",
-        fmt::format("{}: is a model, of which no key can be varied; accepted is a scene",
+        fmt::format("{}: this is a model, whose keys cannot be varied; expected a scene",
                     plan_.scene.string()));
   key_.resize(static_cast<std::size_t>(plan_.grid.runs()));
   SharedProgress bar(key_.size());
@@ -70,9 +69,10 @@ std::string Sweep::key_of(std::int64_t run) try {
   const StepScene& step = stepped(scene);
   const double duration = static_cast<double>(step.steps) * step.dt;
   if (plan_.from > duration + 1e-6 * step.dt)  // rounding
-    throw InputError("E-SWEEP-03",
-                     fmt::format("--from {:g}: the run lasts {:g} s; accepted is up to that",
-                                 plan_.from, duration));
+    throw InputError(
+        "E-SWEEP-03",
+        fmt::format("--from {:g} s is after the end of the run; expected at most {:g} s",
+                    plan_.from, duration));
   return keys_.of(plan_.scene, plan_.grid.overrides(run));
 } catch (const InputError& error) {
   refuse_run(error, plan_.grid, run);
@@ -84,7 +84,9 @@ void Sweep::make(std::int64_t run) {
   if (keys_.of(plan_.scene, plan_.grid.overrides(run)) != key)
     throw InputError(
         "E-SWEEP-04",
-        fmt::format("{}: was changed while its runs were made; begin again", plan_.scene.string()));
+        fmt::format(
+            "{}: a file of the scene changed while its runs were made; begin the sweep again",
+            plan_.scene.string()));
   rows_.write(key,
               fmt::format("{} with {}, by railstep {}", plan_.scene.filename().string(),
                           plan_.grid.words(run), keys_.program()),
@@ -103,8 +105,8 @@ SweepResult Sweep::finish(const std::vector<std::int64_t>& runs, const std::stri
   const auto row = [&](std::int64_t run) {
     std::optional<SweepRow> found = rows_.find(key_[static_cast<std::size_t>(run)]);
     if (!found)
-      fail("E-SWEEP-05",
-           fmt::format("{}: the row of run {} was taken away", plan_.out.string(), run));
+      fail("E-SWEEP-05", fmt::format("{}: the row of run {} was removed while the sweep ran",
+                                     plan_.out.string(), run));
     return std::move(*found);
   };
   for (const std::int64_t run : runs) {
@@ -142,11 +144,11 @@ SweepResult Sweep::merge() {
   if (!missing.empty())
     throw InputError(
         "E-SWEEP-06",
-        fmt::format("--merge: {} of {} runs have no row of this scene and program in {}, the first "
-                    "is run {} "
-                    "({}); make them with --shard, or all that are missing without --merge",
-                    missing.size(), runs.size(), plan_.out.string(), missing.front(),
-                    plan_.grid.words(missing.front())));
+        fmt::format(
+            "--merge: {} of {} runs have no row of this scene and program in {}, the first is run "
+            "{} ({}); make them with --shard, or make all that are missing without --merge",
+            missing.size(), runs.size(), plan_.out.string(), missing.front(),
+            plan_.grid.words(missing.front())));
   return finish(runs, "table.csv");
 }
 

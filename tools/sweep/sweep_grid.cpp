@@ -63,8 +63,9 @@ VariedKey read_varied(const std::string& option) {
   if (equals == std::string::npos || varied.key.empty())
     throw InputError(
         "E-SWEEP-07",
-        fmt::format("--vary {}: cannot be understood; accepted is key.path=a,b,c with TOML values",
-                    option));
+        fmt::format(
+            "--vary {}: this is not a list of values; expected key.path=a,b,c with TOML values",
+            option));
   std::set<std::string> met;
   std::string_view rest = std::string_view(option).substr(equals + 1);
   while (true) {
@@ -72,12 +73,13 @@ VariedKey read_varied(const std::string& option) {
     const std::string value(trimmed(rest.substr(0, end)));
     if (value.empty())
       throw InputError("E-SWEEP-08",
-                       fmt::format("--vary {}: value {} is empty; accepted are TOML values", option,
+                       fmt::format("--vary {}: value {} is empty; expected a TOML value", option,
                                    varied.values.size() + 1));
     if (!met.insert(value).second)
-      throw InputError("E-SWEEP-09",
-                       fmt::format("--vary {}: {} stands there twice; accepted is each value once",
-                                   option, value));
+      throw InputError(
+          "E-SWEEP-09",
+          fmt::format("--vary {}: the value {} is given twice; expected each value once", option,
+                      value));
     varied.values.push_back(value);
     if (end == rest.size()) return varied;
     rest.remove_prefix(end + 1);
@@ -96,19 +98,17 @@ Grid::Grid(std::vector<std::string> set, const std::vector<std::string>& vary)
     const VariedKey& made = varied_.back();
     for (const std::string& other : before)
       if (covers(made.key, other))
-        throw InputError(
-            "E-SWEEP-10",
-            fmt::format(
-                "--vary {}: writes over {}, which is set or varied before it; accepted is either",
-                option, other));
+        throw InputError("E-SWEEP-10", fmt::format("--vary {}: this changes {}, which is set or "
+                                                   "varied before it; expected one of the two",
+                                                   option, other));
     before.push_back(made.key);
     runs *= static_cast<double>(made.values.size());
     if (runs <= static_cast<double>(kMostRuns)) runs_ = static_cast<std::int64_t>(runs);
   }
   if (runs > static_cast<double>(kMostRuns))
-    throw InputError("E-SWEEP-11",
-                     fmt::format("--vary: the values make {:.15g} runs; accepted are up to {}",
-                                 runs, kMostRuns));
+    throw InputError(
+        "E-SWEEP-11",
+        fmt::format("--vary: the values make {:.15g} runs; expected at most {}", runs, kMostRuns));
 }
 
 std::vector<std::string> Grid::values(std::int64_t run) const {
@@ -151,12 +151,10 @@ Shard read_shard(const std::string& text) {
   const auto of = parted ? std::from_chars(number.ptr + 1, end, shard.of) : number;
   if (!parted || of.ec != std::errc() || of.ptr != end || shard.of < 1 || shard.of > kMostRuns ||
       shard.number < 0 || shard.number > shard.of)
-    throw InputError(
-        "E-SWEEP-12",
-        fmt::format("--shard {}: accepted is I/N, the I-th of N shards, with I from 1 to N (or "
-                    "from 0 to N - 1) "
-                    "and N up to {}",
-                    text, kMostRuns));
+    throw InputError("E-SWEEP-12",
+                     fmt::format("--shard {}: this is not a shard; expected I/N, the I-th of N "
+                                 "shards, with I from 1 to N (or from 0 to N - 1) and N up to {}",
+                                 text, kMostRuns));
   if (shard.number == 0) shard.number = shard.of;
   return shard;
 }

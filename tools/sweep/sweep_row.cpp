@@ -68,10 +68,11 @@ void RowStore::create() const {
     std::error_code failed;
     if (std::filesystem::exists(folder, failed) && !std::filesystem::is_directory(folder, failed))
       throw InputError("E-SWEEP-13",
-                       fmt::format("--out {}: is a file; a folder is accepted", folder.string()));
+                       fmt::format("--out {}: this is a file; expected a folder", folder.string()));
     std::filesystem::create_directories(folder, failed);
     if (failed)
-      fail("E-SWEEP-14", fmt::format("{}: cannot be made: {}", folder.string(), failed.message()));
+      fail("E-SWEEP-14",
+           fmt::format("{}: the folder cannot be made: {}", folder.string(), failed.message()));
   }
 }
 

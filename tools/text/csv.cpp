@@ -54,11 +54,14 @@ double csv_number(std::string_view field, const std::string& place) {
   double value = 0.;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range || (error == std::errc() && !std::isfinite(value)))
-    throw InputError("E-CSV-01",
-                     fmt::format("{}: '{}' is not a finite number", place, field.substr(0, 40)));
+    throw InputError(
+        "E-CSV-01",
+        fmt::format("{}: '{}' is not a finite number; expected a number such as 0.25 or 1e-3",
+                    place, field.substr(0, 40)));
   if (error != std::errc() || end != digits.data() + digits.size())
     throw InputError("E-CSV-02",
-                     fmt::format("{}: '{}' is not a number", place, field.substr(0, 40)));
+                     fmt::format("{}: '{}' is not a number; expected one such as 0.25 or 1e-3",
+                                 place, field.substr(0, 40)));
   return value + 0.;  // -0.0 is 0.0
 }
 
@@ -67,9 +70,10 @@ void refuse_decimal_comma(const CsvLine& line, std::size_t wanted) {
   const std::string_view text = line.text;
   for (std::size_t i = 1; i + 1 < text.size(); ++i)
     if (text[i] == ',' && is_digit(text[i - 1]) && is_digit(text[i + 1]))
-      throw InputError("E-CSV-03",
-                       fmt::format("{}: '{}' seems to hold a decimal comma; write a decimal point",
-                                   line.place, text.substr(0, 40)));
+      throw InputError(
+          "E-CSV-03",
+          fmt::format("{}: '{}' seems to hold a decimal comma; expected a decimal point",
+                      line.place, text.substr(0, 40)));
 }
 
 }  // namespace railstep

@@ -29,10 +29,9 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 }
 
 [[noreturn]] void refuse(const std::string& written, const std::filesystem::path& read) {
-  throw InputError(
-      "E-FILE-01",
-      fmt::format("{}: would take the place of {}, which is read; accepted is a file of its own",
-                  written, read.string()));
+  throw InputError("E-FILE-01", fmt::format("{}: this output would replace {}, which the command "
+                                            "reads; expected another name for the output",
+                                            written, read.string()));
 }
 
 }  // namespace

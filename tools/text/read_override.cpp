@@ -15,10 +15,10 @@ struct Step {
 };
 
 [[noreturn]] void refuse_path(const std::string& option) {
-  throw InputError("E-SET-01", fmt::format("{}: cannot be understood; accepted is key.path=value "
-                                           "with bare keys, and name[i] for the "
-                                           "i-th entry of an array, counted from 0",
-                                           option));
+  throw InputError("E-SET-01",
+                   fmt::format("{}: this is not an assignment; expected key.path=value with bare "
+                               "keys, and name[i] for entry i of an array, counted from 0",
+                               option));
 }
 
 bool is_bare(std::string_view name) {
@@ -57,9 +57,8 @@ toml::table parse_entry(const std::string& name, const std::string& value,
   } catch (const InputError&) {
     throw InputError(
         "E-SET-02",
-        fmt::format("{}: '{}' is not a TOML value; accepted are for example 0.5, true, [1, 2], "
-                    "\"text\" (the "
-                    "quotes included)",
+        fmt::format("{}: '{}' is not a TOML value; expected one such as 0.5, true, [1, 2], or "
+                    "\"text\" with its quotes",
                     option, one_line(value.size() <= 60 ? value : value.substr(0, 57) + "...")));
   }
   if (entry.size() != 1) refuse_path(option);  // a newline in the value smuggled in a second key
@@ -71,12 +70,14 @@ toml::node& entry_of(toml::node& node, const Step& step, const std::string& opti
   for (const std::size_t index : step.indices) {
     toml::array* array = at->as_array();
     if (!array)
-      throw InputError("E-SET-03",
-                       fmt::format("{}: '{}' is not an array there", option, step.name));
+      throw InputError(
+          "E-SET-03", fmt::format("{}: '{}' is not an array in this scene; expected it without [i]",
+                                  option, step.name));
     if (index >= array->size())
-      throw InputError("E-SET-04", fmt::format("{}: '{}' has {} entries; accepted are 0 to {}",
-                                               option, step.name, array->size(),
-                                               static_cast<long long>(array->size()) - 1));
+      throw InputError(
+          "E-SET-04",
+          fmt::format("{}: '{}' has {} entries; expected an index from 0 to {}", option, step.name,
+                      array->size(), static_cast<long long>(array->size()) - 1));
     at = array->get(index);
   }
   return *at;
@@ -87,14 +88,20 @@ toml::table& descend(toml::table& table, const Step& step, const std::string& op
   toml::node* child = table.get(step.name);
   if (!child) {
     if (!step.indices.empty())
-      throw InputError("E-SET-05", fmt::format("{}: there is no array '{}'", option, step.name));
+      throw InputError(
+          "E-SET-05",
+          fmt::format("{}: the scene has no array '{}'; expected one of its arrays before [i]",
+                      option, step.name));
     toml::table made = parse_entry(step.name, "{}", option);
     table.insert(made.begin()->first, std::move(*made.begin()->second.as_table()));
     child = table.get(step.name);
   }
   toml::node& target = entry_of(*child, step, option);
   if (!target.is_table())
-    throw InputError("E-SET-06", fmt::format("{}: '{}' is not a table there", option, step.name));
+    throw InputError(
+        "E-SET-06",
+        fmt::format("{}: '{}' is not a table in this scene; expected a table before the point",
+                    option, step.name));
   return *target.as_table();
 }
 
@@ -130,7 +137,10 @@ void apply_override(toml::table& root, const std::string& text) {
   }
   toml::node* child = table->get(last.name);
   if (!child)
-    throw InputError("E-SET-07", fmt::format("{}: there is no array '{}'", option, last.name));
+    throw InputError(
+        "E-SET-05",
+        fmt::format("{}: the scene has no array '{}'; expected one of its arrays before [i]",
+                    option, last.name));
   const std::size_t index = last.indices.back();
   static_cast<void>(entry_of(*child, last, option));  // the whole path must exist
   last.indices.pop_back();

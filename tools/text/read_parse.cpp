@@ -69,10 +69,9 @@ void check_depth(std::string_view text, const std::string& name) {
       dots = 0;
     if (depth > kDeepest || dots > kDeepest) {
       const Position p = position_of(text, i);
-      throw InputError(
-          "E-FILE-02",
-          fmt::format("{}:{}:{}: nested deeper than {}; at most {} levels are accepted", name,
-                      p.line, p.column, kDeepest, kDeepest));
+      throw InputError("E-FILE-02", fmt::format("{}:{}:{}: the file nests arrays or tables deeper "
+                                                "than {} levels; expected at most {}",
+                                                name, p.line, p.column, kDeepest, kDeepest));
     }
     ++i;
   }
@@ -84,11 +83,13 @@ std::string read_text(const std::filesystem::path& file, std::size_t most) {
   const std::string name = file.string();
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
-    throw InputError("E-FILE-03", fmt::format("{}: is a folder; a file is accepted", name));
+    throw InputError("E-FILE-03", fmt::format("{}: this is a folder; expected a file", name));
   std::ifstream in(file, std::ios::binary);
   if (!in)
-    throw InputError("E-FILE-04",
-                     fmt::format("{}: cannot be opened; a readable file is accepted", name));
+    throw InputError(
+        "E-FILE-04",
+        fmt::format("{}: the file cannot be opened; expected a file that is there and may be read",
+                    name));
   note_read_file(file);
   std::string text;  // in pieces: what has no size in the file system is read too
   for (std::size_t got = 1; got > 0 && text.size() <= most;) {
@@ -99,13 +100,14 @@ std::string read_text(const std::filesystem::path& file, std::size_t most) {
     got = static_cast<std::size_t>(in.gcount());
     text.resize(before + got);
   }
-  if (in.bad()) throw InputError("E-FILE-05", fmt::format("{}: cannot be read", name));
+  if (in.bad()) throw InputError("E-FILE-05", fmt::format("{}: the file cannot be read", name));
   if (text.size() > most)
     throw InputError("E-FILE-06",
-                     fmt::format("{}: is longer than {} bytes; at most {} MiB is accepted", name,
-                                 most, most >> 20));
+                     fmt::format("{}: the file is longer than {} bytes; expected at most {} MiB",
+                                 name, most, most >> 20));
   if (text.empty())
-    throw InputError("E-FILE-07", fmt::format("{}: is empty; a file of text is accepted", name));
+    throw InputError("E-FILE-07",
+                     fmt::format("{}: the file is empty; expected a file of text", name));
   return text;
 }
 
@@ -125,14 +127,15 @@ std::string one_line(std::string text) {
 toml::table parse_toml(std::string_view text, const std::string& name) {
   if (const auto nul = text.find('\0'); nul != std::string_view::npos) {
     const Position p = position_of(text, nul);
-    throw InputError("E-FILE-08", fmt::format("{}:{}:{}: holds a NUL byte; UTF-8 text is accepted",
-                                              name, p.line, p.column));
+    throw InputError("E-FILE-08",
+                     fmt::format("{}:{}:{}: the file holds a NUL byte; expected text in UTF-8",
+                                 name, p.line, p.column));
   }
   check_depth(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    throw InputError("E-FILE-09", fmt::format("{}: {}; a TOML 1.0 document is accepted",
+    throw InputError("E-FILE-09", fmt::format("{}: {}; expected a TOML 1.0 document",
                                               place(error.source(), name),
                                               one_line(std::string(error.description()))));
   }

@@ -29,9 +29,9 @@ TEST_CASE("a step that is not a number, is negative or is beyond doubles is refu
   const BadInput bad("step");
   const std::string run = "run " + kMovingLoad + bad.old("--trace", "t.csv");
   for (const char* step : {"abc", "1e-3x", "1,5", "' 1'", "1e400", "-1e400", "nan", "inf"})
-    bad.refused(run + " --step " + step, {"--step", "accepted is a finite number"});
+    bad.refused(run + " --step " + step, {"--step", "finite number", "E-CLI-10"});
   for (const char* step : {"-1", "0", "1e-300", "0.2"})
-    bad.refused(run + " --step " + step, {"step.dt_s=", "accepted is at least 1e-07, at most 0.1"});
+    bad.refused(run + " --step " + step, {"step.dt_s=", "at least 1e-07, at most 0.1", "E-KEY-05"});
   bad.refused(run + " --step", {"--step"});
   bad.refused(run + " --step 1e-3 --step 1e-3", {"--step"});
 }
@@ -67,24 +67,24 @@ TEST_CASE("every option that takes a number refuses text that is not one", "[bad
 TEST_CASE("an empty word is refused", "[bad_input][cli]") {
   const BadInput bad("empty");
   const std::string run = "run " + kMovingLoad + " --duration 0.01";
-  bad.refused(run + " --step ''", {"after '--step' is empty"});
-  bad.refused(run + " --set ''", {"after '--set' is empty"});
-  bad.refused(run + " --trace ''", {"after '--trace' is empty"});
-  bad.refused(run + " --step=", {"--step= has nothing behind it"});
-  bad.refused("run ''", {"after 'run' is empty"});
-  bad.refused(run + " --set track.bays=", {"--set track.bays=", "not a TOML value"});
-  bad.refused(run + " --set =", {"--set =", "accepted is key.path=value"});
+  bad.refused(run + " --step ''", {"'--step'", "E-CLI-01"});
+  bad.refused(run + " --set ''", {"'--set'", "E-CLI-01"});
+  bad.refused(run + " --trace ''", {"'--trace'", "E-CLI-01"});
+  bad.refused(run + " --step=", {"--step= ", "E-CLI-02"});
+  bad.refused("run ''", {"'run'", "E-CLI-01"});
+  bad.refused(run + " --set track.bays=", {"--set track.bays=", "E-SET-02"});
+  bad.refused(run + " --set =", {"--set =", "E-SET-01"});
 }
 
 TEST_CASE("unknown words are refused with the nearest known ones", "[bad_input][cli]") {
   const BadInput bad("words");
   const std::string out = bad.old("--out", "section.toml");
   bad.refused("run " + kMovingLoad + " --stepp 1e-3",
-              {"unknown option '--stepp'", "'--step'", "railstep run --help"});
-  bad.refused("runn " + kMovingLoad, {"'runn' is no command", "'run'"});
+              {"'--stepp'", "'--step'", "railstep run --help", "E-CLI-12"});
+  bad.refused("runn " + kMovingLoad, {"'runn'", "'run'", "E-CLI-11"});
   bad.refused("", {"subcommand is required", "railstep --help"});
   bad.refused("run", {"SCENE is required"});
-  bad.refused("run " + kMovingLoad + " " + kMovingLoad, {"is one word too many"});
+  bad.refused("run " + kMovingLoad + " " + kMovingLoad, {"E-CLI-13"});
   bad.refused("run " + kMovingLoad + " --model fulll", {"--model", "fulll", "full,condensed"});
   bad.refused("fit " + kProfile + " --unit inch" + out, {"--unit", "inch", "mm"});
 }
@@ -93,16 +93,17 @@ TEST_CASE("a command overwrites no file that it reads or has already written", "
   const BadInput bad("same");
   const std::string scene = bad.file("scene.toml", text_of(kMovingLoad));
   const std::string run = "run " + scene + " --duration 0.01 ";
-  bad.refused(run + "--trace " + scene, {"SCENE and --trace both name", "scene.toml"});
+  bad.refused(run + "--trace " + scene, {"SCENE and --trace", "scene.toml", "E-CLI-06"});
   bad.refused(run + "--trace " + bad.path("../") +
                   std::filesystem::path(bad.path("")).parent_path().filename().string() +
                   "/scene.toml",
-              {"SCENE and --trace both name"});
+              {"SCENE and --trace", "E-CLI-06"});
   bad.refused(run + "--trace " + bad.path("x") + " --record " + bad.path("x"),
-              {"both name", "--trace", "--record"});
-  bad.refused("condense " + scene + " --skip-errors --out " + scene, {"SCENE and --out both name"});
+              {"--trace", "--record", "E-CLI-06"});
+  bad.refused("condense " + scene + " --skip-errors --out " + scene,
+              {"SCENE and --out", "E-CLI-06"});
   const std::string profile = bad.file("p.toml", text_of(kProfile));
-  bad.refused("fit " + profile + " --out " + profile, {"PROFILE and --out both name"});
+  bad.refused("fit " + profile + " --out " + profile, {"PROFILE and --out", "E-CLI-06"});
   CHECK(railstep_program(run + "--trace /dev/null --record /dev/null").code == 0);
 }
 
@@ -112,13 +113,13 @@ TEST_CASE("a full disk ends the program with exit code 1 and the message names t
   const std::string run = "run " + kMovingLoad + " --duration 0.05 ";
   for (const std::string option : {"--trace", "--record"})
     bad.refused(run + option + " /dev/full",
-                {"/dev/full: cannot be written: No space left on device"}, 1);
+                {"/dev/full: ", "No space left on device", "E-FILE-10"}, 1);
   bad.refused("condense " + kMovingLoad + " --skip-errors --out /dev/full", {"/dev/full"}, 1);
   bad.refused("fit " + kProfile + " --out /dev/full", {"/dev/full"}, 1);
   bad.refused("fit " + kProfile + " --report /dev/full", {"/dev/full"}, 1);
   const Ran told = railstep_program(run + "--json >/dev/full");
   CHECK(told.code == 1);
-  CHECK_THAT(told.err, Contains("standard output: No space left on device"));
+  CHECK_THAT(told.err, Contains("No space left on device") && Contains("E-FILE-20"));
 }
 
 TEST_CASE("a disk that fills up while tracing leaves the old trace whole", "[bad_input][cli]") {
@@ -131,7 +132,8 @@ TEST_CASE("a disk that fills up while tracing leaves the old trace whole", "[bad
     const Ran ran = behind("ulimit -f 8;", words);
     CAPTURE(words, ran.err);
     CHECK(ran.code == 1);
-    CHECK_THAT(ran.err, Contains(file + ": cannot be written: File too large"));
+    CHECK_THAT(ran.err,
+               Contains(file + ": ") && Contains("File too large") && Contains("E-FILE-10"));
     CHECK(std::count(ran.err.begin(), ran.err.end(), '\n') == 1);
     CHECK(bad.content() == before);
   };
@@ -160,9 +162,8 @@ TEST_CASE("an output path that is a folder or lies in no folder is refused befor
       "hard --report"};
   for (const std::string& writer : writers) {
     const std::string option = writer.substr(writer.rfind("--"));
-    bad.refused(writer + " " + bad.path("folder"), {option, "folder: cannot be written"});
-    bad.refused(writer + " " + bad.path("none/x"),
-                {option, "none/x: cannot be written: there is no folder"});
+    bad.refused(writer + " " + bad.path("folder"), {option, "folder: ", "E-CLI-03"});
+    bad.refused(writer + " " + bad.path("none/x"), {option, "none/x: ", "E-CLI-05"});
   }
 }
 
@@ -173,7 +174,7 @@ TEST_CASE("an option that has no effect without another is refused", "[bad_input
   bad.refused(hil + "--stall-us 100", {"--stall-us requires --stall-frame"});
   bad.refused(hil + "--stall-frame 3", {"--stall-frame requires --stall-us"});
   bad.refused(hil + "--ramp 0.2", {"--ramp requires --silence"});
-  bad.refused(hil + "--grace 0.2", {"--grace 0.2", "up to --duration, 0.1"});
+  bad.refused(hil + "--grace 0.2", {"--grace 0.2", "--duration, 0.1", "E-HIL-02"});
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these take all addresses
@@ -193,26 +194,26 @@ TEST_CASE("work that does not fit into memory is refused in one sentence", "[bad
       " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]' ";
   const std::string record = bad.old("--record", "r.bin");
   refused("hil " + kWheelset + input + "--rate 1e6 --duration 900" + record,
-          "--record keeps 900000000 numbers, which take 14400000000 bytes");
-  refused("run " + kWheelset + input + "--set step.duration_s=9e5" + record, "--record keeps");
+          "keeps 900000000 numbers, which take 14400000000 bytes");
+  refused("run " + kWheelset + input + "--set step.duration_s=9e5" + record, "E-RUN-06");
   refused("static " + kMovingLoad + " --set track.bays=1000 --set track.elements_per_bay=50" +
               bad.old("--shape", "s.csv"),
-          "there is not enough memory");
+          "E-RUN-90");
 }
 #endif
 
 TEST_CASE("a quoted word stays on one line of the message", "[bad_input][cli]") {
   const BadInput bad("lines");
   const std::string hil = "hil " + kWheelset + " --rate 100 --duration 0.1 ";
-  bad.refused(hil + "--udp \"$(printf 'a\\nb')\"", {"--udp a?b: accepted is HOST:PORT"});
-  bad.refused(hil + "--shm \"$(printf 'a\\nb')\"", {"--shm a?b: accepted are up to 200"});
+  bad.refused(hil + "--udp \"$(printf 'a\\nb')\"", {"--udp a?b: ", "E-HIL-13"});
+  bad.refused(hil + "--shm \"$(printf 'a\\nb')\"", {"--shm a?b: ", "E-HIL-11"});
 }
 
 TEST_CASE("a processor that is not there is refused", "[bad_input][cli]") {
   const BadInput bad("cpu");
   const std::string hil =
       "hil " + kWheelset + " --rate 100 --duration 0.1" + bad.old("--report", "h.html");
-  bad.refused(hil + " --cpu 9999", {"--cpu 9999", "may run on CPUs"});
+  bad.refused(hil + " --cpu 9999", {"--cpu 9999", "E-HIL-03"});
   bad.refused(hil + " --cpu -1", {"--cpu", "-1"});
   bad.refused(hil + " --cpu 99999999999", {"--cpu", "99999999999"});
 }
@@ -225,8 +226,7 @@ TEST_CASE("a run without the right to a priority warns and goes on", "[bad_input
       behind(before, "hil " + kWheelset + " --rate 100 --duration 0.1 --priority 90 --json");
   CAPTURE(ran.err);
   CHECK(ran.code == 0);
-  CHECK_THAT(ran.err,
-             Contains("warning: sched_fifo was refused") && Contains("the run goes on without"));
+  CHECK_THAT(ran.err, Contains("warning: ") && Contains("sched_fifo") && Contains("W-HIL-01"));
   const auto told = nlohmann::json::parse(ran.out);
   CHECK_THAT(told["realtime"]["sched_fifo"].get<std::string>(), Contains("refused: "));
   CHECK(told["frames"].get<int>() + told["skipped"].get<int>() == 10);

@@ -136,16 +136,16 @@ TEST_CASE("a trace or report that cannot be written is reported in one sentence"
   const Ran none =
       railstep_program("run " + kMovingLoad + " --trace " + (folder / "no_folder/t.csv").string());
   CHECK(none.code == 2);
-  CHECK_THAT(none.err, Contains("no_folder/t.csv: cannot be written"));
+  CHECK_THAT(none.err, Contains("no_folder/t.csv: ") && Contains("E-CLI-05"));
   const Ran full = railstep_program("run " + kMovingLoad + " --trace /dev/full");
   CHECK(full.code == 1);
-  CHECK_THAT(full.err, Contains("/dev/full: cannot be written"));
+  CHECK_THAT(full.err, Contains("/dev/full: ") && Contains("E-FILE-10"));
   // The path is one folder without gnuplot; the program itself is called by its full path.
   const Ran drawn =
       run_program("env", "PATH=" + folder.string() + " '" RAILSTEP_PROGRAM "' run " + kMovingLoad +
                              " --report " + (folder / "r.html").string());
   CHECK(drawn.code == 1);
-  CHECK_THAT(drawn.err, Contains("gnuplot, which is not installed"));
+  CHECK_THAT(drawn.err, Contains("E-REPORT-03"));
   CHECK(entries(folder) == 0);
 }
 
@@ -192,25 +192,25 @@ TEST_CASE("a load that leaves the rail is reported in words and the run succeeds
                                    " --set 'load[1].may_leave_rail=true'");
   CHECK(ran.code == 0);
   CHECK(nlohmann::json::parse(ran.out).at("status") == nlohmann::json::array({"off_rail"}));
-  CHECK_THAT(ran.err, Contains("lengthen the track"));
+  CHECK_THAT(ran.err, Contains("note: off_rail"));
 }
 
 TEST_CASE("a rail that sinks farther than real tracks do brings a note about units", "[run]") {
   const std::string short_run =
       "run " + kMovingLoad + " --json --duration 0.01 --set 'step.start=\"equilibrium\"'";
-  const std::string sank = "a rail sank by";
+  const std::string sank = "W-RUN-01";
   CHECK_THAT(railstep_program(short_run).err, !Contains(sank));
   const Ran kilonewtons = railstep_program(short_run + " --set support.stiffness_z_n_per_m=30e3");
   CHECK(kilonewtons.code == 0);
-  CHECK_THAT(kilonewtons.err, Contains("note: " + sank) && Contains("stiffnesses given in N/m"));
+  CHECK_THAT(kilonewtons.err, Contains("note: ") && Contains(sank));
   const auto warnings = nlohmann::json::parse(kilonewtons.out).at("warnings");
   REQUIRE(warnings.size() == 1);
-  CHECK_THAT(warnings[0].get<std::string>(), Contains(sank));
+  CHECK(warnings[0].at("id") == sank);
 }
 
 TEST_CASE("constants that no shape has bring a note about units", "[run]") {
   const std::string hammer = "run " + kScenes + "impact_hammer.toml --json --duration 1e-3";
-  const std::string asked = "is it given in m4?";
+  const std::string asked = "W-RUN-02";
   CHECK_THAT(railstep_program(hammer).err, !Contains(asked));
   const Ran hundredfold = railstep_program(hammer + " --set rail.constants.inertia_y_m4=3.0383e-3");
   CHECK(hundredfold.code == 0);

@@ -191,19 +191,19 @@ TEST_CASE("energy-momentum keeps the energy of a system, backward Euler damps it
 }
 
 TEST_CASE("run reports a step so long that the scheme makes energy", "[run]") {
-  const std::string noted = "the scheme made energy";
+  const std::string noted = "W-RUN-04";
   const Ran wild = railstep_program("run " + kPendulum +
                                     " --json --set step.dt_s=0.01 --set "
                                     "step.frame_s=0.01");
-  CHECK_THAT(wild.err, Contains("note: " + noted));
+  CHECK_THAT(wild.err, Contains("note: ") && Contains(noted));
   const auto told = nlohmann::json::parse(wild.out);
   CHECK(told["numerical_loss"].get<double>() < -.05);
-  CHECK_THAT(told["warnings"].at(0).get<std::string>(), Contains(noted));
+  CHECK(told["warnings"].at(0).at("id") == noted);
   CHECK_THAT(railstep_program("run " + kPendulum).err, !Contains(noted));
 }
 
 TEST_CASE("run reports an energy balance that is off for condensed tracks too", "[run]") {
-  const std::string noted = "note: the energy balance is off by 0.";
+  const std::string noted = "W-RUN-05";
   const std::string run = "run " + kScenes +
                           "moving_load.toml --set 'condense.kind=\"modal\"' --json "
                           "--set step.frame_s=0.005 --set step.dt_s=";
@@ -239,11 +239,11 @@ TEST_CASE("bad systems are refused in one sentence with exit code 2 and nothing 
     std::string words, said;
   } cases[] = {
       {kPendulum + " --set 'joint[0].between=[\"upper\", \"louwer\"]'", "accepted are \"ground\""},
-      {kPendulum + " --set 'joint[0].knid=\"fixed\"'", "unknown key 'knid'"},
+      {kPendulum + " --set 'joint[0].knid=\"fixed\"'", "'knid'"},
       {kPendulum + " --set 'sensor[1].position_m=[0.5, 0, 0]'", "0.5 m along beam \"upper\""},
       {kPendulum + " --set 'beam[0].material.young_pa=1'", "material"},
       {kPendulum + " --model condensed", "[condense] says something of a track"},
-      {kPendulum + " --set track.bays=1", "[track] key 'unknowns' is missing"},
+      {kPendulum + " --set track.bays=1", "[track] key 'unknowns'"},
       {kPendulum + " --step 7e-4", "not a whole number of steps"},
       {kCrank + " --set 'body[1].inertia_kg_m2=[1, 1, 3]'", "those of no mass"},
       {kCrank + " --set 'joint[4].polynomial_rad=[0.5, 1]'", "the motion begins at 0.5 rad"},

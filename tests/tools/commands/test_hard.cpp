@@ -87,8 +87,8 @@ TEST_CASE("`hard` ends with exit code 1 if a figure exceeds its bound", "[hard][
 TEST_CASE("`hard` refuses a case or a folder that does not exist", "[hard][cli]") {
   const Ran none = railstep_program("hard --case H0" + kFolder);
   CHECK(none.code == 2);
-  CHECK_THAT(none.err, Contains("--case H0") && Contains("H1 to H"));
+  CHECK_THAT(none.err, Contains("--case H0") && Contains("E-HARD-01"));
   const Ran lost = railstep_program("hard --case H1 --scenes nowhere");
   CHECK(lost.code == 2);
-  CHECK_THAT(lost.err, Contains("nowhere/h01_stiff_damper.toml") && Contains("cannot be opened"));
+  CHECK_THAT(lost.err, Contains("nowhere/h01_stiff_damper.toml") && Contains("E-FILE-04"));
 }

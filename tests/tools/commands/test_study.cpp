@@ -67,10 +67,9 @@ TEST_CASE("words of models and schemes are read to their last letter", "[study]"
                                  "step.dt_s=0.0001"});
   CHECK(overrides("irs:1", "discrete-gradient")[1] == "condense.nodes_per_bay=1");
   for (const char* model : {"", "modes", "full:2", "modal:", "modal:x", "modal:1:lateral"})
-    CHECK_THROWS_WITH(overrides(model, "newmark"), Contains("accepted is KIND"));
+    CHECK_THROWS_WITH(overrides(model, "newmark"), Contains("E-STUDY-12"));
   for (const char* scheme : {"", "held", "newmark:1", "hht", "rk4", "held:a"})
-    CHECK_THROWS_WITH(overrides("full", scheme),
-                      Contains("accepted are own, generalised-alpha:RHO"));
+    CHECK_THROWS_WITH(overrides("full", scheme), Contains("E-STUDY-13"));
 }
 
 TEST_CASE("errors are relative to each column's peak, from a chosen time on", "[study]") {
@@ -90,9 +89,9 @@ TEST_CASE("errors are relative to each column's peak, from a chosen time on", "[
   CHECK_THAT(errors_of(got, reference, {.from = 2., .outputs = {"contact_force"}}).judged,
              WithinRel(.2, 1e-12));
   CHECK_THROWS_WITH(errors_of(got, reference, {.from = 0., .outputs = {"sensor"}}),
-                    Contains("output \"sensor\" is not there"));
+                    Contains("\"sensor\"") && Contains("E-STUDY-02"));
   CHECK_THROWS_WITH(errors_of(got, reference, {.from = 3., .outputs = {}}),
-                    Contains("no rows from 3 s on"));
+                    Contains("3 s") && Contains("E-STUDY-03"));
 }
 
 TEST_CASE("a trace that ended early or is not finite has an infinite error", "[study]") {
@@ -102,7 +101,7 @@ TEST_CASE("a trace that ended early or is not finite has an infinite error", "[s
   CHECK(errors_of(table(names, {0., 1.}), reference, {}).judged == infinite);
   CHECK(errors_of(table(names, {0., 1., 1., std::nan("")}), reference, {}).judged == infinite);
   CHECK_THROWS_WITH(errors_of(reference, table({"time_s", "b.deflection_z_m"}, {0., 1.}), {}),
-                    Contains("the reference has no column a.deflection_z_m"));
+                    Contains("a.deflection_z_m") && Contains("E-STUDY-01"));
 }
 
 TEST_CASE("a reference's own error estimates its distance from a finer one", "[study]") {
@@ -196,9 +195,9 @@ TEST_CASE("a study's file returns what it was given, and only to the same study"
   CHECK(read.find(lost.setting)->failure == lost.failure);
   CHECK(std::isinf(read.find(lost.setting)->errors.judged));
   CHECK(read.find({"modal:1", 1, "held:0.6", 1e-4}) == nullptr);
-  CHECK_THROWS_WITH(ResumeFile(file, "another"), Contains("another scene, question or program"));
+  CHECK_THROWS_WITH(ResumeFile(file, "another"), Contains("E-STUDY-10"));
   std::ofstream(file) << "a,b\n";
-  CHECK_THROWS_WITH(ResumeFile(file, "key"), Contains("is not what a study leaves"));
+  CHECK_THROWS_WITH(ResumeFile(file, "key"), Contains("E-STUDY-09"));
 }
 
 TEST_CASE("a scene is verified at other speeds, loads and places", "[study]") {

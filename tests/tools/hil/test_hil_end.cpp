@@ -53,7 +53,7 @@ TEST_CASE("a signal ends a run between two frames and the program says so", "[hi
   const Ran ran = hil.end();
   CAPTURE(ran.out, ran.err);
   CHECK(ran.code == 1);
-  CHECK_THAT(ran.err, Contains("ended by a signal"));
+  CHECK_THAT(ran.err, Contains("E-HIL-16"));
   CHECK(nlohmann::json::parse(ran.out)["interrupted"] == true);
 }
 
@@ -65,7 +65,7 @@ TEST_CASE("a signal ends a run within a period of any length", "[hil][cli]") {
   hil.signal(SIGTERM);
   const Ran ran = hil.end();
   CHECK(ran.code == 1);
-  CHECK_THAT(ran.err, Contains("ended by a signal"));
+  CHECK_THAT(ran.err, Contains("E-HIL-16"));
   CHECK_FALSE(std::filesystem::exists(shared_file(name)));
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("a signal ends the wait for the first inputs and the program says so",
   hil.signal(SIGINT);
   const Ran ran = hil.end();
   CHECK(ran.code == 1);
-  CHECK_THAT(ran.err, Contains("ended by a signal"));
+  CHECK_THAT(ran.err, Contains("E-HIL-16"));
 }
 
 TEST_CASE("a second signal during a frame without end leaves no shared memory", "[hil][cli]") {
@@ -109,7 +109,7 @@ TEST_CASE("shared memory that another process cuts short ends the run with one s
     const Ran ran = hil.end();
     CAPTURE(ran.out, ran.err, left);
     CHECK(ran.code == 1);
-    CHECK_THAT(ran.err, Contains("cut the shared memory short"));
+    CHECK_THAT(ran.err, Contains("E-HIL-09"));
     CHECK(nlohmann::json::parse(ran.out)["frames"].get<int>() >= 3);
     CHECK_FALSE(std::filesystem::exists(shared_file(name)));
     CHECK(railstep_program("replay " + (folder / "recording").string()).code == 0);
@@ -123,6 +123,6 @@ TEST_CASE("shared memory that is cut short before the first inputs ends the wait
   std::filesystem::resize_file(shared_file(name), 0);
   const Ran ran = hil.end();
   CHECK(ran.code == 1);
-  CHECK_THAT(ran.err, Contains("cut the shared memory short"));
+  CHECK_THAT(ran.err, Contains("E-HIL-09"));
   CHECK_FALSE(std::filesystem::exists(shared_file(name)));
 }

@@ -39,16 +39,16 @@ void text_refused(const std::string& old, const std::string& fresh, const Words&
 }  // namespace
 
 TEST_CASE("an unknown key is refused with the nearest known one", "[bad_input][cli]") {
-  run_refuses(
-      kMovingLoad, {"support.stifness_z_n_per_m=1"},
-      {"[support] unknown key 'stifness_z_n_per_m'", "did you mean 'stiffness_z_n_per_m'?"});
-  run_refuses(kMovingLoad, {"suport.at=\"axis\""}, {"unknown key 'suport'", "'support'"});
+  run_refuses(kMovingLoad, {"support.stifness_z_n_per_m=1"},
+              {"[support]", "'stifness_z_n_per_m'", "'stiffness_z_n_per_m'", "E-KEY-02"});
+  run_refuses(kMovingLoad, {"suport.at=\"axis\""}, {"'suport'", "'support'", "E-KEY-02"});
   run_refuses(kMovingLoad, {"load[1].sped_m_per_s=1"},
-              {"[load[1]] unknown key 'sped_m_per_s'", "'speed_m_per_s'"});
+              {"[load[1]]", "'sped_m_per_s'", "'speed_m_per_s'", "E-KEY-02"});
   run_refuses(kPendulum, {"beam[0].youngs_pa=1e6"},
-              {"[beam[0]] unknown key 'youngs_pa'", "'young_pa'"});
-  run_refuses(kPendulum, {"joint[0].betwen=[]"}, {"unknown key 'betwen'", "'between'"});
-  text_refused("bay_m = 0.6", "bay = 0.6", {"bad.toml:9:1", "[track]", "'bay_m'", "'bay'"});
+              {"[beam[0]]", "'youngs_pa'", "'young_pa'", "E-KEY-02"});
+  run_refuses(kPendulum, {"joint[0].betwen=[]"}, {"'betwen'", "'between'", "E-KEY-02"});
+  text_refused("bay_m = 0.6", "bay = 0.6",
+               {"bad.toml:9:1", "[track]", "'bay_m'", "'bay'", "E-KEY-01"});
 }
 
 TEST_CASE("a key given twice is refused at its second place", "[bad_input][cli]") {
@@ -59,41 +59,36 @@ TEST_CASE("a key given twice is refused at its second place", "[bad_input][cli]"
 
 TEST_CASE("a number given as text is refused", "[bad_input][cli]") {
   text_refused("bays = 16", "bays = \"16\"",
-               {"bad.toml:8:8", "[track] bays = \"16\" is a string", "an integer is accepted"});
-  text_refused("dt_s = 25.0e-6", "dt_s = '25e-6'",
-               {"[step] dt_s = \"25e-6\" is a string", "a number is accepted"});
-  run_refuses(kMovingLoad, {"rail.young_pa=true"}, {"young_pa = true is a boolean", "a number"});
-  run_refuses(kMovingLoad, {"rail.young_pa=[210e9]"}, {"young_pa", "is an array", "a number"});
-  run_refuses(kMovingLoad, {"rail.young_pa=2020-01-01"}, {"is a date or time", "a number"});
-  run_refuses(kMovingLoad, {"track.bays=1.5"}, {"bays = 1.5 is a number", "an integer"});
-  run_refuses(kMovingLoad, {"load[0].may_leave_rail=1"}, {"may_leave_rail", "an integer"});
+               {"bad.toml:8:8", "[track] bays = \"16\"", "integer", "E-KEY-03"});
+  text_refused("dt_s = 25.0e-6", "dt_s = '25e-6'", {"[step] dt_s = \"25e-6\"", "E-KEY-03"});
+  run_refuses(kMovingLoad, {"rail.young_pa=true"}, {"young_pa = true", "E-KEY-03"});
+  run_refuses(kMovingLoad, {"rail.young_pa=[210e9]"}, {"young_pa", "array", "E-KEY-03"});
+  run_refuses(kMovingLoad, {"rail.young_pa=2020-01-01"}, {"young_pa", "date", "E-KEY-03"});
+  run_refuses(kMovingLoad, {"track.bays=1.5"}, {"bays = 1.5", "E-KEY-03"});
+  run_refuses(kMovingLoad, {"load[0].may_leave_rail=1"}, {"may_leave_rail", "integer", "E-KEY-03"});
 }
 
 TEST_CASE("impossible masses, stiffnesses and lengths are refused", "[bad_input][cli]") {
   const struct {
     std::string scene, override, said;
   } cases[] = {
-      {kMovingLoad, "rail.young_pa=0",
-       "young_pa = 0 is out of range; accepted is at least 1000000000"},
-      {kMovingLoad, "rail.density_kg_per_m3=-7850", "density_kg_per_m3 = -7850 is out of range"},
-      {kMovingLoad, "rail.rectangle.width_m=0", "width_m = 0 is out of range"},
-      {kMovingLoad, "track.bay_m=-0.6", "bay_m = -0.6 is out of range; accepted is at least 0.05"},
-      {kMovingLoad, "track.bays=0", "bays = 0 is out of range; accepted is 1 to"},
-      {kMovingLoad, "support.stiffness_z_n_per_m=-1", "stiffness_z_n_per_m = -1 is out of range"},
-      {kMovingLoad, "support.damping_z_n_s_per_m=-1", "damping_z_n_s_per_m = -1 is out of range"},
-      {kWheelset, "wheelset[0].mass_kg=0", "mass_kg = 0 is out of range; accepted is above 0"},
-      {kWheelset, "wheelset[0].mass_kg=-100", "mass_kg = -100 is out of range"},
-      {shipped("ballasted_track"), "sleeper.mass_kg=-1",
-       "mass_kg = -1 is out of range; accepted "
-       "is at least 0"},
-      {shipped("slider_crank"), "body[0].mass_kg=0",
-       "mass_kg = 0 is out of range; accepted is "
-       "above 0"},
-      {kPendulum, "beam[0].length_m=0", "length_m = 0 is out of range"},
-      {kPendulum, "beam[0].density_kg_per_m3=0", "density_kg_per_m3 = 0 is out of range"},
+      {kMovingLoad, "rail.young_pa=0", "young_pa = 0"},
+      {kMovingLoad, "rail.density_kg_per_m3=-7850", "density_kg_per_m3 = -7850"},
+      {kMovingLoad, "rail.rectangle.width_m=0", "width_m = 0"},
+      {kMovingLoad, "track.bay_m=-0.6", "bay_m = -0.6"},
+      {kMovingLoad, "track.bays=0", "bays = 0"},
+      {kMovingLoad, "support.stiffness_z_n_per_m=-1", "stiffness_z_n_per_m = -1"},
+      {kMovingLoad, "support.damping_z_n_s_per_m=-1", "damping_z_n_s_per_m = -1"},
+      {kWheelset, "wheelset[0].mass_kg=0", "mass_kg = 0"},
+      {kWheelset, "wheelset[0].mass_kg=-100", "mass_kg = -100"},
+      {shipped("ballasted_track"), "sleeper.mass_kg=-1", "mass_kg = -1"},
+      {shipped("slider_crank"), "body[0].mass_kg=0", "mass_kg = 0"},
+      {kPendulum, "beam[0].length_m=0", "length_m = 0"},
+      {kPendulum, "beam[0].density_kg_per_m3=0", "density_kg_per_m3 = 0"},
       {kPendulum, "beam[0].rectangle={height_m=0.02, width_m=-0.03}", "width_m = -0.03"},
   };
-  for (const auto& c : cases) run_refuses(c.scene, {c.override}, {c.override.substr(0, 8), c.said});
+  for (const auto& c : cases)
+    run_refuses(c.scene, {c.override}, {c.override.substr(0, 8), c.said, "E-KEY-05"});
   const BadInput good("massless");  // a sleeper may weigh nothing
   CHECK(railstep_program("run " + shipped("ballasted_track") + " --model full --duration 1e-3" +
                          set("sleeper.mass_kg=0"))
@@ -103,19 +98,18 @@ TEST_CASE("impossible masses, stiffnesses and lengths are refused", "[bad_input]
 TEST_CASE("millimetres given as metres are refused in a scene", "[bad_input][cli]") {
   for (const char* override : {"track.bay_m=600", "track.rail_spacing_m=1500",
                                "rail.rectangle.height_m=231.9", "support.half_spread_m=70"})
-    run_refuses(kMovingLoad, {override}, {"out of range", "was it given in millimetres?"});
+    run_refuses(kMovingLoad, {override}, {"E-KEY-05", "millimetres"});
   run_refuses(kWheelset, {"wheelset[0].radius_m=460"}, {"radius_m = 460", "millimetres"});
 }
 
 TEST_CASE("a rail's modulus given in N/mm2 is refused with the unit named", "[bad_input][cli]") {
-  run_refuses(kMovingLoad, {"rail.young_pa=210e3"},
-              {"young_pa = 210000 is out of range", "(Pa; was it given in N/mm2?)"});
+  run_refuses(kMovingLoad, {"rail.young_pa=210e3"}, {"young_pa = 210000", "N/mm2", "E-KEY-05"});
 }
 
 TEST_CASE("a stiffness out of range brings no question about millimetres", "[bad_input][cli]") {
   const Ran ran = railstep_program("run " + kMovingLoad + set("support.stiffness_z_n_per_m=3e13"));
   CHECK(ran.code == 2);
-  CHECK_THAT(ran.err, Catch::Contains("stiffness_z_n_per_m = 30000000000000 is out of range"));
+  CHECK_THAT(ran.err, Catch::Contains("stiffness_z_n_per_m = 30000000000000"));
   CHECK_THAT(ran.err, !Catch::Contains("millimetres"));
 }
 
@@ -131,9 +125,9 @@ TEST_CASE("a section file with constants that no shape has is refused", "[bad_in
     bad.refused("run " + kWheelset + set("rail={section=\"" + file + "\"}"), said);
   };
   refused("area_m2 = 7670.0", "inertia_y_m4 = 3.038e-5",
-          {"section.toml:3:", "area_m2 = 7670", "at most 1"});
+          {"section.toml:3:", "area_m2 = 7670", "E-KEY-05"});
   refused("area_m2 = 7.67e-3", "inertia_y_m4 = 3038e-6",  // cm4 times 1e-6 instead of 1e-8
-          {"section.toml:4:", "inertia_y_m4 = 0.003038", "accepted is at most", "5.645e-05"});
+          {"section.toml:4:", "inertia_y_m4 = 0.003038", "5.645e-05", "E-SECTION-28"});
 }
 
 TEST_CASE("a record that does not reach the track is refused with both ranges of places",
@@ -150,26 +144,26 @@ TEST_CASE("a record that does not reach the track is refused with both ranges of
 TEST_CASE("a step that is 0 or NaN or exceeds the duration is refused", "[bad_input][cli]") {
   for (const char* step : {"0", "-1e-3", "nan", "inf", "1", "1e-300"})
     run_refuses(kMovingLoad, {"step.dt_s=" + std::string(step)},
-                {"[step] dt_s = ", "accepted is at least 1e-07, at most 0.1"});
+                {"[step] dt_s = ", "at least 1e-07, at most 0.1"});
   run_refuses(kMovingLoad, {"step.dt_s=0.05", "step.frame_s=0.05", "step.duration_s=0.01"},
               {"dt_s = 0.05", "longer than duration_s = 0.01"});
   run_refuses(kMovingLoad, {"step.frame_s=7e-5"}, {"frame_s = 7e-05", "whole number of steps"});
   for (const char* duration : {"0", "-1", "nan", "1e300"})
     run_refuses(kMovingLoad, {"step.duration_s=" + std::string(duration)},
-                {"[step] duration_s = ", "accepted is above 0"});
+                {"[step] duration_s = ", "above 0"});
 }
 
 TEST_CASE("a spectral radius outside 0 to 1 is refused", "[bad_input][cli]") {
   for (const char* rho : {"-0.1", "1.1", "nan"})
     for (const std::string& scene : {kMovingLoad, kPendulum})
       run_refuses(scene, {"step.rho_inf=" + std::string(rho)},
-                  {"[step] rho_inf = " + std::string(rho), "accepted is at least 0, at most 1"});
+                  {"[step] rho_inf = " + std::string(rho), "at least 0, at most 1"});
 }
 
 TEST_CASE("a Poisson's ratio outside -1 to 0.5 or at either end is refused", "[bad_input][cli]") {
   for (const char* nu : {"-2", "-1", "0.5", "0.6", "nan"}) {
     run_refuses(kMovingLoad, {"rail.poisson=" + std::string(nu)},
-                {"[rail] poisson = " + std::string(nu), "accepted is above -1, below 0.5"});
+                {"[rail] poisson = " + std::string(nu), "above -1, below 0.5"});
     run_refuses(kPendulum, {"beam[0].poisson=" + std::string(nu)}, {"poisson", "above -1, below"});
   }
 }
@@ -198,7 +192,7 @@ TEST_CASE("a name given twice is refused with its owner", "[bad_input][cli]") {
   run_refuses(kPendulum, {"beam[1].name=\"upper\""}, {"[beam[1]] name = \"upper\" is taken by"});
   run_refuses(kPendulum, {"sensor[1].name=\"A\""}, {"[sensor[1]] name = \"A\" is taken by"});
   run_refuses(kPendulum, {"joint[0].name=\"lower\""}, {"name = \"lower\" is taken by [beam[1]]"});
-  run_refuses(kMovingLoad, {"load[0].name=\"\""}, {"name is an empty string"});
+  run_refuses(kMovingLoad, {"load[0].name=\"\""}, {"[load[0]] name", "E-KEY-09"});
   run_refuses(kMovingLoad, {"load[0].name=\"a,b\""}, {"name = \"a,b\" is no name", "accepted are"});
 }
 
@@ -250,22 +244,23 @@ TEST_CASE("a track of too many elements is refused with the bytes it would need"
   run_refuses(kMovingLoad, {"track.bays=1000000000"}, bytes);
   run_refuses(kMovingLoad, {"track.bays=100000", "track.elements_per_bay=1000"},
               {"200000000 elements", "bytes", "at most 100000"});
-  run_refuses(kPendulum, {"beam[0].elements=1000000000"}, {"[beam[0]] elements = 1000000000"});
+  run_refuses(kPendulum, {"beam[0].elements=1000000000"},
+              {"[beam[0]] elements = 1000000000", "E-KEY-05"});
 }
 
 TEST_CASE("integers over 2^63, NUL and text that is not UTF-8 are refused", "[bad_input][cli]") {
-  text_refused("bays = 16", "bays = 9223372036854775808", {"bad.toml:8:", "9223372036854775808"});
+  text_refused("bays = 16", "bays = 9223372036854775808", {"bad.toml:8:", "E-FILE-09"});
   run_refuses(kMovingLoad, {"track.bays=9223372036854775808"}, {"9223372036854775808"});
   run_refuses(kMovingLoad, {"track.bays=9223372036854775807"},
-              {"bays = 9223372036854775807 is out of range"});
-  text_refused("schema = 1", std::string("schema\0= 1", 10), {"bad.toml:3:7", "NUL", "UTF-8"});
-  text_refused("[step]", "# \xff\xfe\n[step]", {"bad.toml:41:", "utf-8"});
-  text_refused("[step]", "# \xc3(\n[step]", {"bad.toml:41:", "utf-8"});
-  run_refuses(kMovingLoad, {"load[0].name=\"\xff\""}, {"is not a TOML value"});
+              {"bays = 9223372036854775807", "E-KEY-05"});
+  text_refused("schema = 1", std::string("schema\0= 1", 10), {"bad.toml:3:7", "E-FILE-08"});
+  text_refused("[step]", "# \xff\xfe\n[step]", {"bad.toml:41:", "utf-8", "E-FILE-09"});
+  text_refused("[step]", "# \xc3(\n[step]", {"bad.toml:41:", "utf-8", "E-FILE-09"});
+  run_refuses(kMovingLoad, {"load[0].name=\"\xff\""}, {"E-SET-02"});
 }
 
 TEST_CASE("a hundred thousand nested arrays are refused", "[bad_input][cli]") {
-  const std::string deepest = "nested deeper than 32; at most 32 levels are accepted";
+  const std::string deepest = "E-FILE-02";
   const std::string text = moving_load();
   const auto many = [](const std::string& piece) {
     std::string all;
@@ -275,28 +270,27 @@ TEST_CASE("a hundred thousand nested arrays are refused", "[bad_input][cli]") {
   text_refused("deep = " + many("[") + many("]") + "\n" + text, {"bad.toml:1:40", deepest});
   text_refused("deep = " + many("{a=") + "\n" + text, {"bad.toml:1:", deepest});
   text_refused("[" + many("a.") + "a]\n", {"bad.toml:1:", deepest});
-  text_refused("wide = [" + many("[],") + "]\n" + text, {"bad.toml:1:", "unknown key 'wide'"});
+  text_refused("wide = [" + many("[],") + "]\n" + text, {"bad.toml:1:", "'wide'", "E-KEY-02"});
   // One word of a command line holds at most 128 KiB.
-  run_refuses(kMovingLoad, {"track.bays=" + many("[")},
-              {"--set track.bays=[[", "not a TOML value"});
-  run_refuses(kMovingLoad, {many("a").substr(0, 60'000) + "=1"}, {"--set aaa", "unknown key"});
+  run_refuses(kMovingLoad, {"track.bays=" + many("[")}, {"--set track.bays=[[", "E-SET-02"});
+  run_refuses(kMovingLoad, {many("a").substr(0, 60'000) + "=1"}, {"--set aaa", "E-KEY-02"});
 }
 
 TEST_CASE("a scene that is not a readable file is refused", "[bad_input][cli]") {
   const BadInput bad("no_scene");
   const std::string trace = bad.old("--trace", "t.csv");
   std::filesystem::create_directory(bad.path("folder"));
-  bad.refused("run " + bad.path("folder") + trace, {"folder: is a folder"});
-  bad.refused("run " + bad.path("none.toml") + trace, {"none.toml: cannot be opened"});
-  bad.refused("run " + bad.file("empty.toml", "") + trace, {"empty.toml: is empty"});
-  bad.refused("run /dev/zero" + trace, {"/dev/zero: is longer than 1048576 bytes"});
-  bad.refused("run /proc/self/mem" + trace, {"/proc/self/mem: cannot be read"});
+  bad.refused("run " + bad.path("folder") + trace, {"folder: ", "E-FILE-03"});
+  bad.refused("run " + bad.path("none.toml") + trace, {"none.toml: ", "E-FILE-04"});
+  bad.refused("run " + bad.file("empty.toml", "") + trace, {"empty.toml: ", "E-FILE-07"});
+  bad.refused("run /dev/zero" + trace, {"/dev/zero: ", "1048576", "E-FILE-06"});
+  bad.refused("run /proc/self/mem" + trace, {"/proc/self/mem: ", "E-FILE-05"});
   if (geteuid() != 0) {  // root may read every file
     std::filesystem::permissions(bad.file("closed.toml", "schema = 1\n"),
                                  std::filesystem::perms::none);
     const Ran ran = railstep_program("run " + bad.path("closed.toml"));
     CHECK(ran.code == 2);
-    CHECK_THAT(ran.err, Catch::Contains("closed.toml: cannot be opened"));
+    CHECK_THAT(ran.err, Catch::Contains("closed.toml: ") && Catch::Contains("E-FILE-04"));
   }
 }
 

@@ -35,41 +35,41 @@ nlohmann::json compared(const std::string& a, const std::string& b, int code,
 
 TEST_CASE("traces with different columns are refused", "[bad_input][cli]") {
   compare_refuses(kHead + "0,1\n", "time_s,w.y_m\n0,1\n",
-                  {"column 1 is w.z_m in", "a.csv", "w.y_m in", "b.csv", "the same columns"});
+                  {"column 1 is w.z_m in", "a.csv", "w.y_m in", "b.csv", "E-TRACE-05"});
   compare_refuses(kHead + "0,1\n", "time_s\n0\n",
-                  {"a.csv has 2 columns", "b.csv has 1", "the same columns"});
+                  {"a.csv has 2 columns", "b.csv has 1", "E-TRACE-04"});
   compare_refuses("w.z_m,time_s\n1,0\n", kHead + "0,1\n", {"column 0 is w.z_m in"});
 }
 
 TEST_CASE("traces with different rows are refused", "[bad_input][cli]") {
   compare_refuses(kHead + "0,1\n1,2\n2,3\n", kHead + "0,1\n1,2\n",
-                  {"a.csv has 3 rows", "b.csv has 2", "as many rows"});
+                  {"a.csv has 3 rows", "b.csv has 2", "E-TRACE-02"});
   compare_refuses(kHead + "0,1\n", kHead + "0,1\n1,2\n", {"a.csv has 1 rows", "b.csv has 2"});
-  compare_refuses(kHead + "0\n", kHead + "0,1\n", {"a.csv:2: 1 values", "2 columns"});
-  compare_refuses(kHead + "0,1,2\n", kHead + "0,1\n", {"a.csv:2: 3 values", "2 columns"});
+  compare_refuses(kHead + "0\n", kHead + "0,1\n", {"a.csv:2: ", "1 values", "E-CSV-04"});
+  compare_refuses(kHead + "0,1,2\n", kHead + "0,1\n", {"a.csv:2: ", "3 values", "E-CSV-04"});
 }
 
 TEST_CASE("traces with different steps are refused", "[bad_input][cli]") {
   compare_refuses(kHead + "0,1\n0.001,2\n0.002,3\n", kHead + "0,1\n0.002,2\n0.004,3\n",
-                  {"a.csv has a row each 0.001 s", "b.csv each 0.002 s", "the same step"});
-  compare_refuses(kHead + "0,1\n0.001,2\n0.002,3\n", kHead + "0,1\n0.002,2\n", {"the same step"});
+                  {"a.csv has a row each 0.001 s", "b.csv each 0.002 s", "E-TRACE-01"});
+  compare_refuses(kHead + "0,1\n0.001,2\n0.002,3\n", kHead + "0,1\n0.002,2\n", {"E-TRACE-01"});
   compared(kHead + "0,1\n0.001,2\n", kHead + "0,1\n0.0010000000000000002,2\n", 1);
 }
 
 TEST_CASE("empty traces and other files are refused", "[bad_input][cli]") {
   const std::string good = kHead + "0,1\n";
-  compare_refuses("", good, {"a.csv: is empty"});
-  compare_refuses(good, "", {"b.csv: is empty"});
-  compare_refuses("\n\n", good, {"a.csv: is not a trace", "railstep run --trace"});
-  compare_refuses(kHead, kHead, {"a.csv: holds no rows"});
-  compare_refuses(good, kHead, {"b.csv: holds no rows"});
-  compare_refuses("0,1\n", "0,1\n", {"a.csv: is not a trace"});
-  compare_refuses(kHead + "0,x\n", good, {"a.csv:2: 'x' is not a number"});
+  compare_refuses("", good, {"a.csv: ", "E-FILE-07"});
+  compare_refuses(good, "", {"b.csv: ", "E-FILE-07"});
+  compare_refuses("\n\n", good, {"a.csv: ", "railstep run --trace", "E-TRACE-03"});
+  compare_refuses(kHead, kHead, {"a.csv: ", "E-CSV-05"});
+  compare_refuses(good, kHead, {"b.csv: ", "E-CSV-05"});
+  compare_refuses("0,1\n", "0,1\n", {"a.csv: ", "E-TRACE-03"});
+  compare_refuses(kHead + "0,x\n", good, {"a.csv:2: 'x'", "E-CSV-02"});
   const BadInput bad("none");
   const std::string file = bad.file("a.csv", good);
   std::filesystem::create_directory(bad.path("folder"));
-  bad.refused("compare " + file + " " + bad.path("none.csv"), {"none.csv: cannot be opened"});
-  bad.refused("compare " + bad.path("folder") + " " + file, {"folder: is a folder"});
+  bad.refused("compare " + file + " " + bad.path("none.csv"), {"none.csv: ", "E-FILE-04"});
+  bad.refused("compare " + bad.path("folder") + " " + file, {"folder: ", "E-FILE-03"});
 }
 
 TEST_CASE("NaN equals only NaN of the same bits", "[bad_input][cli]") {

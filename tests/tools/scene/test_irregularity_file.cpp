@@ -74,7 +74,7 @@ TEST_CASE("a file that is not a record of irregularities is refused with its lin
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,x\n1.5,3\n"),
              Contains(":4:") && Contains("'x'"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,nan\n1,1\n1.5,3\n"), Contains(":3:"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n0.5;2,5\n1,1\n1.5,3\n"), Contains("decimal comma"));
+  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n0.5;2,5\n1,1\n1.5,3\n"), Contains("E-CSV-03"));
   CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5\n1,1\n1.5,3\n"), Contains("1 values"));
   // A spline through these numbers would overflow.
   CHECK_THAT(refusal("distance_m,vertical_m\n-8e307,0\n-2.7e307,0\n2.7e307,0\n8e307,0\n"),

@@ -135,7 +135,8 @@ TEST_CASE("an unknown key is refused with the nearest known one, in any opened t
   CHECK(sentence([&] { only.finish(); }) ==
         "bay.toml:2:1: [support] unknown key 'stifness'; did you mean 'stiffness_z_n_per_m'? "
         "[E-KEY-02]");
-  CHECK_THAT(parse_sentence("a = 1"), Contains("bay.toml:1:1: unknown key 'a'"));
+  CHECK_THAT(parse_sentence("a = 1"),
+             Contains("bay.toml:1:1: ") && Contains("'a'") && Contains("E-KEY-02"));
   CHECK(parse_sentence("a = 1\nb = 2\n[c]\n") ==
         "bay.toml:1:1: unknown key 'a'; expected no key here [E-KEY-02] (and 2 more errors)");
 }
@@ -160,7 +161,7 @@ TEST_CASE("a text that is not one TOML document is refused with line and column"
   CHECK_THAT(parse_sentence("a = 1\na = 2\n"), Contains("bay.toml:2:"));           // row 12
   CHECK_THAT(parse_sentence("a = 9223372036854775808"), Contains("bay.toml:1:"));  // row 24, 2^63
   CHECK_THAT(parse_sentence(std::string("a = 1\nb\0c = 2\n", 14)),
-             Contains("bay.toml:2:2: holds a NUL byte"));
+             Contains("bay.toml:2:2: ") && Contains("E-FILE-08"));
   CHECK_THAT(parse_sentence("a = \"\xff\xfe\""), Contains("bay.toml:1:"));
   CHECK(parse_sentence("a = tr\n").find('\n') == std::string::npos);  // one sentence, one line
   CHECK(parse_sentence("\"a\\nb\" = 1\n").find('\n') == std::string::npos);
@@ -175,13 +176,13 @@ TEST_CASE("a text that is not one TOML document is refused with line and column"
 TEST_CASE("deep nesting is refused without running out of stack, but not brackets in strings",
           "[read]") {
   const std::string deep(100'000, '[');  // row 25
-  CHECK_THAT(parse_sentence("a = " + deep), Contains("bay.toml:1:37: nested deeper than 32"));
+  CHECK_THAT(parse_sentence("a = " + deep), Contains("bay.toml:1:37: ") && Contains("E-FILE-02"));
   std::string dotted = "[a";
   for (int i = 0; i < 100'000; ++i) dotted += ".a";
-  CHECK_THAT(parse_sentence(dotted + "]\n"), Contains("nested deeper than 32"));
+  CHECK_THAT(parse_sentence(dotted + "]\n"), Contains("E-FILE-02"));
   std::string quoted;
   for (int i = 0; i < 100'000; ++i) quoted += "\"=\".";
-  CHECK_THAT(parse_sentence(quoted + "a = 1\n"), Contains("nested deeper than 32"));
+  CHECK_THAT(parse_sentence(quoted + "a = 1\n"), Contains("E-FILE-02"));
   const Table text = parse("a = \"" + deep + "\"\nb = '" + std::string(100, '.') +
                            "'\nc = \"\"\"\n" + deep + "\"\n\"\"\" # " + deep + "\n");
   CHECK(text.string("a").size() == 100'000);
@@ -191,13 +192,13 @@ TEST_CASE("deep nesting is refused without running out of stack, but not bracket
 
 TEST_CASE("a file that cannot be read whole is refused by name", "[read]") {
   CHECK_THAT(sentence([] { read_toml("nowhere/bay.toml"); }),
-             Contains("nowhere/bay.toml: cannot be opened"));
-  CHECK_THAT(sentence([] { read_toml(folder()); }), Contains("is a folder"));
-  CHECK_THAT(sentence([] { read_toml(file_with("empty.toml", "")); }), Contains("is empty"));
+             Contains("nowhere/bay.toml: ") && Contains("E-FILE-04"));
+  CHECK_THAT(sentence([] { read_toml(folder()); }), Contains("E-FILE-03"));
+  CHECK_THAT(sentence([] { read_toml(file_with("empty.toml", "")); }), Contains("E-FILE-07"));
   const std::string comment = "#" + std::string(kLargestFile - 1, 'x');
   CHECK(sentence([&] { read_toml(file_with("full.toml", comment)).finish(); }) == "accepted");
   CHECK_THAT(sentence([&] { read_toml(file_with("over.toml", comment + "x")); }),
-             Contains("over.toml: is longer than 1048576 bytes"));
+             Contains("over.toml: ") && Contains("1048576") && Contains("E-FILE-06"));
 }
 
 TEST_CASE("the option --set acts as if the key stood in the file", "[read]") {
@@ -227,17 +228,18 @@ TEST_CASE("an option --set that cannot be applied is named in the message", "[re
   const auto refusal = [&](const std::string& option) {
     return sentence([&] { parse(text, {option}); });
   };
-  CHECK_THAT(refusal("b.c"), Contains("--set b.c: cannot be understood"));
-  CHECK_THAT(refusal("b..c=1"), Contains("cannot be understood"));
-  CHECK_THAT(refusal("a[x]=1"), Contains("cannot be understood"));
-  CHECK_THAT(refusal("a[1=1"), Contains("cannot be understood"));
-  CHECK_THAT(refusal("b.c=paper"), Contains("--set b.c=paper: 'paper' is not a TOML value"));
-  CHECK_THAT(refusal("b.c=1\nd=2"), Contains("cannot be understood"));
-  CHECK_THAT(refusal("a[2]=1"), Contains("'a' has 2 entries; accepted are 0 to 1"));
-  CHECK_THAT(refusal("b[0]=1"), Contains("'b' is not an array"));
-  CHECK_THAT(refusal("z[0]=1"), Contains("there is no array 'z'"));
-  CHECK_THAT(refusal("b.c.d=1"), Contains("'c' is not a table"));
-  CHECK_THAT(refusal("b.c=" + std::string(100'000, '[')), Contains("is not a TOML value"));
+  CHECK_THAT(refusal("b.c"), Contains("--set b.c: ") && Contains("E-SET-01"));
+  CHECK_THAT(refusal("b..c=1"), Contains("E-SET-01"));
+  CHECK_THAT(refusal("a[x]=1"), Contains("E-SET-01"));
+  CHECK_THAT(refusal("a[1=1"), Contains("E-SET-01"));
+  CHECK_THAT(refusal("b.c=paper"), Contains("--set b.c=paper: 'paper'") && Contains("E-SET-02"));
+  CHECK_THAT(refusal("b.c=1\nd=2"), Contains("E-SET-01"));
+  CHECK_THAT(refusal("a[2]=1"),
+             Contains("'a' has 2 entries") && Contains("0 to 1") && Contains("E-SET-04"));
+  CHECK_THAT(refusal("b[0]=1"), Contains("'b'") && Contains("E-SET-03"));
+  CHECK_THAT(refusal("z[0]=1"), Contains("'z'") && Contains("E-SET-05"));
+  CHECK_THAT(refusal("b.c.d=1"), Contains("'c'") && Contains("E-SET-06"));
+  CHECK_THAT(refusal("b.c=" + std::string(100'000, '[')), Contains("E-SET-02"));
 }
 
 TEST_CASE("a file is written whole or not at all", "[write]") {

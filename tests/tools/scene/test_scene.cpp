@@ -128,19 +128,20 @@ TEST_CASE("rows 11 to 13: misspelt, doubled and mistyped keys are refused", "[sc
              Contains("bay.toml:24:1:") && Contains("[support]") &&
                  Contains("stifness_z_n_per_m") && Contains("'stiffness_z_n_per_m'"));
   CHECK_THAT(edited("moving_load", "stiffness_y_n_per_m", "stifness_y_n_per_m"),
-             Contains("bay.toml:22:1: [support] unknown key 'stifness_y_n_per_m'; did you mean "
-                      "'stiffness_y_n_per_m'?"));
+             Contains("bay.toml:22:1: [support]") && Contains("'stifness_y_n_per_m'") &&
+                 Contains("'stiffness_y_n_per_m'") && Contains("E-KEY-02"));
   CHECK_THAT(edited("moving_load", "bays = 16", "bays = 16\nbays = 17"),
              Contains("bay.toml:9:") && Contains("bays"));
   CHECK_THAT(edited("moving_load", "bay_m = 0.6", "bay_m = \"0.6\""),
-             Contains("bay.toml:9:9: [track] bay_m = \"0.6\" is a string; a number is accepted"));
+             Contains("bay.toml:9:9: [track] bay_m = \"0.6\"") && Contains("E-KEY-03"));
 }
 
 TEST_CASE("row 14: numbers that must be positive are checked", "[scene]") {
   CHECK_THAT(with("ballasted_track", {"wheelset[0].mass_kg=-1200"}),
              Contains("--set wheelset[0].mass_kg=-1200: [wheelset[0]] mass_kg = -1200") &&
-                 Contains("accepted is above 0"));
-  CHECK_THAT(with("ballasted_track", {"sleeper.mass_kg=-1"}), Contains("accepted is at least 0"));
+                 Contains("E-KEY-05"));
+  CHECK_THAT(with("ballasted_track", {"sleeper.mass_kg=-1"}),
+             Contains("mass_kg = -1") && Contains("E-KEY-05"));
   CHECK(with("ballasted_track", {"sleeper.mass_kg=0"}) == "accepted");
   CHECK_THAT(with("moving_load", {"rail.young_pa=0"}), Contains("young_pa = 0"));
   CHECK_THAT(with("moving_load", {"rail.rectangle.width_m=0"}), Contains("width_m = 0"));
@@ -230,11 +231,11 @@ TEST_CASE("row 23: a billion elements are refused with the bytes they would need
 }
 
 TEST_CASE("rows 24 and 25: huge integers and deep nesting in a scene are refused", "[scene]") {
-  CHECK_THAT(with("moving_load", {"track.bays=9223372036854775808"}), Contains("not a TOML value"));
+  CHECK_THAT(with("moving_load", {"track.bays=9223372036854775808"}), Contains("E-SET-02"));
   CHECK_THAT(edited("moving_load", "bays = 16", "bays = 9223372036854775808"),
              Contains("bay.toml:8:"));
   CHECK_THAT(edited("moving_load", "bays = 16", "bays = " + std::string(100'000, '[')),
-             Contains("bay.toml:8:") && Contains("nested deeper than 32"));
+             Contains("bay.toml:8:") && Contains("E-FILE-02"));
 }
 
 TEST_CASE("millimetres typed as metres are noticed", "[scene]") {
@@ -275,7 +276,7 @@ TEST_CASE("a table without another one that it needs is refused", "[scene]") {
   CHECK_THAT(with("moving_load", {"condense.modes_per_bay=2", "condense.highest_hz=900"}),
              Contains("one of them is accepted"));
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].guide={method=\"baumgarte\"}"}),
-             Contains("'alpha_per_s' is missing"));
+             Contains("'alpha_per_s'") && Contains("E-KEY-01"));
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].guide.alpha_per_s=1"}),
              Contains("Baumgarte's"));
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].force[0].table=[[1, 1], [1, 2]]"}),

@@ -121,7 +121,7 @@ TEST_CASE("scatter is even, follows its seed and is the same on every machine", 
 }
 
 TEST_CASE("bad changes are refused, each in one sentence", "[seats]") {
-  CHECK_THAT(with("seats=[41], missing=\"pad\""), Contains("accepted is at least 0, at most 40"));
+  CHECK_THAT(with("seats=[41], missing=\"pad\""), Contains("at least 0, at most 40"));
   CHECK_THAT(with("seats=[3.5], missing=\"pad\""), Contains("3.5 is no number of a seat"));
   CHECK_THAT(with("seats=[4, 3], missing=\"pad\""), Contains("3 does not rise"));
   CHECK_THAT(with("seats=[4], to=5, missing=\"pad\""), Contains("to is given beside seats"));
@@ -132,9 +132,9 @@ TEST_CASE("bad changes are refused, each in one sentence", "[seats]") {
   CHECK_THAT(with("rail=\"left\", sleeper={mass_kg=1}"), Contains("accepted with rail = \"both\""));
   CHECK_THAT(with("seats=[3], ballast={stiffness_factor=[1, 2]}"),
              Contains("stiffness_factor has two values, but the change has one seat"));
-  CHECK_THAT(with("support={stiffness_z_n_per_m=-1}"), Contains("accepted is at least 0"));
+  CHECK_THAT(with("support={stiffness_z_n_per_m=-1}"), Contains("E-KEY-05"));
   CHECK_THAT(with("support={stifness_z_n_per_m=1}"),
-             Contains("unknown key 'stifness_z_n_per_m'") && Contains("'stiffness_z_n_per_m'"));
+             Contains("'stifness_z_n_per_m'") && Contains("'stiffness_z_n_per_m'"));
   CHECK_THAT(with("ballast={stiffness_y_n_per_m=1e7}"), Contains("holds the sleeper along y"));
   CHECK_THAT(with("ballast={length_m=0.2}"), Contains("the sleeper does not pitch"));
   CHECK_THAT(with("ballast={stiffness_scatter=0.2}"), Contains("seed"));

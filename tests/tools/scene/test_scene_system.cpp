@@ -117,7 +117,7 @@ TEST_CASE("the keys of [joints] have their defaults and limits", "[scene]") {
              Contains("accepted with hold = \"augmented-lagrangian\""));
   CHECK_THAT(with(kPendulum, {"joints.kept_steps=5"}), Contains("tangent = \"kept\""));
   CHECK_THAT(with(kPendulum, {"joints.cap=0"}), Contains("cap = 0") && Contains("1 to 1000"));
-  CHECK_THAT(with(kPendulum, {"joints.pennalty=5"}), Contains("did you mean 'penalty'?"));
+  CHECK_THAT(with(kPendulum, {"joints.pennalty=5"}), Contains("'penalty'") && Contains("E-KEY-02"));
 }
 
 TEST_CASE("a body stands and turns as its keys say", "[scene]") {
@@ -145,7 +145,7 @@ TEST_CASE("a beam in the plane of x and z has the section's left at +y", "[scene
   CHECK((across.col(1) + Eigen::Vector3d::UnitX()).norm() < 1e-15);
   CHECK_THAT(across.determinant(), WithinAbs(1., 1e-15));
   CHECK_THAT(with(kPendulum, {"beam[0].direction=[0, 1, 0]"}),
-             Contains("[beam[0]]") && Contains("key 'up' is missing"));
+             Contains("[beam[0]]") && Contains("key 'up'"));
   CHECK_THAT(with(kPendulum, {"beam[0].up=[1, 0, 1]"}),
              Contains("up stands at 45 degrees to the beam's direction; accepted is 90 degrees"));
   CHECK_THAT(with(kPendulum, {"beam[0].direction=[0, 0, 0]"}), Contains("has no direction"));
@@ -153,8 +153,9 @@ TEST_CASE("a beam in the plane of x and z has the section's left at +y", "[scene
 
 TEST_CASE("numbers that no mass has are refused", "[scene]") {
   CHECK_THAT(with(kSpring, {"body[0].mass_kg=0"}),
-             Contains("[body[0]] mass_kg = 0 is out of range; accepted is above 0"));
-  CHECK_THAT(with(kSpring, {"body[0].mass_kg=nan"}), Contains("mass_kg = nan is not finite"));
+             Contains("[body[0]] mass_kg = 0") && Contains("E-KEY-05"));
+  CHECK_THAT(with(kSpring, {"body[0].mass_kg=nan"}),
+             Contains("mass_kg = nan") && Contains("E-KEY-04"));
   CHECK_THAT(with(kSpring, {"body[0].inertia_kg_m2=[1, 1, 2.1]"}),
              Contains("principal inertias 1, 1 and 2.1 are those of no mass"));
   CHECK(with(kSpring, {"body[0].inertia_kg_m2=[0.1, 0.2, 0.3]"}) == "accepted");  // a flat body
@@ -164,7 +165,8 @@ TEST_CASE("numbers that no mass has are refused", "[scene]") {
   CHECK_THAT(with(kSpring, {"body[0].inertia_kg_m2=[1, 1, 1, 2, 0, 0]"}),
              Contains("the least principal inertia is -1"));
   CHECK_THAT(with(kSpring, {"body[0].inertia_kg_m2=[1, 1, 1, 2]"}), Contains("has 4 entries"));
-  CHECK_THAT(with(kSpring, {"body[0].position_m=[0, 0]"}), Contains("position_m has 2 entries"));
+  CHECK_THAT(with(kSpring, {"body[0].position_m=[0, 0]"}),
+             Contains("position_m") && Contains("E-KEY-07"));
   CHECK_THAT(with(kPendulum, {"beam[0].length_m=-1"}), Contains("length_m = -1"));
   CHECK_THAT(with(kPendulum, {"beam[0].elements=0"}), Contains("elements = 0"));
   CHECK_THAT(with(kPendulum, {"beam[0].elements=1000000000"}), Contains("1 to 1000"));
@@ -174,7 +176,7 @@ TEST_CASE("numbers that no mass has are refused", "[scene]") {
   CHECK_THAT(with(kSpring, {"spring[0].stiffness_n_per_m=0", "spring[0].damping_n_s_per_m=0"}),
              Contains("neither stiffness_n_per_m nor damping_n_s_per_m"));
   CHECK_THAT(with(kSpring, {"spring[0].point_m=[0.3, 0, -0.9]"}), Contains("no direction"));
-  CHECK_THAT(with(kSpring, {"system.gravity_m_per_s2=[0, 0, inf]"}), Contains("not finite"));
+  CHECK_THAT(with(kSpring, {"system.gravity_m_per_s2=[0, 0, inf]"}), Contains("E-KEY-04"));
 }
 
 TEST_CASE("an unknown name or one given twice is refused", "[scene]") {
@@ -207,7 +209,7 @@ TEST_CASE("points must lie on their beam", "[scene]") {
              Contains("position_m is 0.04 m beside beam \"upper\"; accepted is at most 0.0360555"));
   CHECK(with(kPendulum, {"sensor[1].position_m=[0.4, 0.015, 0.01]"}) == "accepted");  // a corner
   CHECK_THAT(with(kPendulum, {"sensor[1]={name=\"B\", on=\"upper\"}"}),
-             Contains("'position_m' is missing"));
+             Contains("'position_m'") && Contains("E-KEY-01"));
 }
 
 TEST_CASE("a kind of joint refuses keys of other kinds", "[scene]") {
@@ -217,10 +219,10 @@ TEST_CASE("a kind of joint refuses keys of other kinds", "[scene]") {
   const std::string at = "point_m=[0, 0, 0], ";
   CHECK_THAT(joint(at + "kind=\"ball\""),
              Contains("kind = \"ball\" is unknown; accepted are \"spherical\", \"revolute\""));
-  CHECK_THAT(joint(at + "kind=\"revolute\""), Contains("'axis' is missing"));
+  CHECK_THAT(joint(at + "kind=\"revolute\""), Contains("'axis'") && Contains("E-KEY-01"));
   CHECK_THAT(joint(at + "kind=\"spherical\", axis=[0, 0, 1]"),
              Contains("a spherical joint has no axis"));
-  CHECK_THAT(joint("kind=\"spherical\""), Contains("'point_m' is missing"));
+  CHECK_THAT(joint("kind=\"spherical\""), Contains("'point_m'") && Contains("E-KEY-01"));
   CHECK_THAT(joint(at + "kind=\"distance\", other_point_m=[0, 0, 0]"),
              Contains("no distance is held at 0"));
   CHECK(joint(at + "kind=\"distance\", other_point_m=[0, 0, -1]") == "accepted");
@@ -237,7 +239,7 @@ TEST_CASE("a kind of joint refuses keys of other kinds", "[scene]") {
   CHECK_THAT(joint(at + "kind=\"prismatic\", axis=[1, 0, 0], polynomial_m=[0, 1]"),
              Contains("a prismatic joint has no polynomial_m"));
   CHECK_THAT(joint(at + "kind=\"translation\", axis=[1, 0, 0]"),
-             Contains("'polynomial_m' is missing"));
+             Contains("'polynomial_m'") && Contains("E-KEY-01"));
   CHECK_THAT(joint(at + "kind=\"rotation\", axis=[1, 0, 0], polynomial_m=[0, 1]"),
              Contains("a rotation joint has no polynomial_m"));
   CHECK_THAT(
@@ -265,7 +267,8 @@ TEST_CASE("forces and moments are constant or given over time", "[scene]") {
   CHECK(s.system.forces[0].factor.polynomial == std::vector<double>{-5.});
   CHECK_FALSE(s.system.forces[0].moment);
   CHECK(system_scene(kSpring, {force("table_n_m=[[0, 1], [2, 3]]")}).system.forces[0].moment);
-  CHECK_THAT(with(kSpring, {force("point_m=[0, 0, 0]")}), Contains("'polynomial_n' is missing"));
+  CHECK_THAT(with(kSpring, {force("point_m=[0, 0, 0]")}),
+             Contains("'polynomial_n'") && Contains("E-KEY-01"));
   CHECK_THAT(with(kSpring, {force("point_m=[0, 0, 0], moment_n_m=1")}),
              Contains("accepted is a force or a moment"));
   CHECK_THAT(with(kSpring, {force("point_m=[0, 0, 0], force_n=1, table_n=[[0, 1], [1, 1]]")}),
@@ -273,7 +276,7 @@ TEST_CASE("forces and moments are constant or given over time", "[scene]") {
   CHECK_THAT(with(kPendulum, {"force=[{on=\"upper\", direction=[0, 1, 0], moment_n_m=1}]"}),
              Contains("a moment acts on a beam; accepted is a body"));
   CHECK_THAT(with(kSpring, {"force=[{on=\"bob\", point_m=[0, 0, 0], force_n=1}]"}),
-             Contains("'direction' is missing"));
+             Contains("'direction'") && Contains("E-KEY-01"));
 }
 
 TEST_CASE("a planar system refuses everything that leaves its plane", "[scene]") {

@@ -79,8 +79,9 @@ TEST_CASE("bogies that overlap are refused", "[scene][vehicle]") {
       "wheel_mass_kg=600.0, wheelbase_m=3.0, primary_stiffness_n_per_m=1e6, " +
       kSpeed;
   CHECK(sentence(car + ", bogie_distance_m=3.1") == "accepted");
-  CHECK_THAT(sentence(car + ", bogie_distance_m=3.0"),
-             Contains("bogie_distance_m = 3 is out of range; accepted is above 3, at most 1000"));
+  CHECK_THAT(sentence(car + ", bogie_distance_m=3.0"), Contains("bogie_distance_m = 3 ") &&
+                                                           Contains("above 3, at most 1000") &&
+                                                           Contains("E-KEY-05"));
 }
 
 TEST_CASE("shipped vehicles are read and stand with their weight on their wheels",
@@ -124,7 +125,7 @@ TEST_CASE("invalid vehicles are refused with their file and key", "[scene][vehic
   const struct {
     std::string vehicle, told;
   } cases[] = {
-      {named + mass + "start_m=20.0", "key 'speed_m_per_s' is missing"},
+      {named + mass + "start_m=20.0", "key 'speed_m_per_s'"},
       {named + mass + kSpeed + ", speed_table=[[0, 1]]", "beside speed_m_per_s; one of them"},
       {named + mass + "start_m=20.0, speed_table=[[0, 1], [1, -1]]", "turns around"},
       {named + mass + "start_m=20.0, speed_table=[[0, 1], [0, 2]]", "does not rise"},
@@ -133,8 +134,7 @@ TEST_CASE("invalid vehicles are refused with their file and key", "[scene][vehic
       {named + "type=\"mass\", mass_kg=0.0, " + kSpeed, "mass_kg = 0"},
       {named + "type=\"tram\", " + kSpeed, "\"sprung_mass\""},
       {named + mass + kSpeed + ", contact=\"glue\"", "\"bonded\""},
-      {named + mass + kSpeed + ", contact=\"linear\"",
-       "key 'contact_stiffness_n_per_m' is missing"},
+      {named + mass + kSpeed + ", contact=\"linear\"", "key 'contact_stiffness_n_per_m'"},
       {named + mass + kSpeed + ", contact_damping_n_s_per_m=1.0", "is of a linear contact"},
       {named + "type=\"sprung_mass\", mass_kg=1.0, stiffness_n_per_m=1e6, contact=\"hertz\", " +
            kSpeed,
@@ -143,7 +143,7 @@ TEST_CASE("invalid vehicles are refused with their file and key", "[scene][vehic
       {named + mass + kSpeed + ", rail=\"both\"", "the track has one rail"},
       {named + mass + kSpeed + ", file=\"../vehicles/freight_bogie.toml\"", "beside file"},
       {named + "file=\"../vehicles/none.toml\", " + kSpeed, "none.toml"},
-      {named + mass + kSpeed + ", radius=1.0", "unknown key 'radius'"},
+      {named + mass + kSpeed + ", radius=1.0", "'radius'"},
       {"name=\"rail\", " + mass + kSpeed, "is taken by"},
       {named + mass + kSpeed + ", tread=[{wheel=2, kind=\"fresh_flat\", length_m=0.05}]",
        "wheel = 2"},
@@ -160,7 +160,7 @@ TEST_CASE("a vehicle's own file may have only known keys", "[scene][vehicle]") {
       << "schema = 1\n[vehicle]\ntype = \"mass\"\nmass_kg = 1.0\nmas_kg = 2.0\n";
   const std::string told =
       sentence("name=\"m\", file=\"" + (folder / "v.toml").string() + "\", " + kSpeed);
-  CHECK_THAT(told, Contains("v.toml:5") && Contains("unknown key 'mas_kg'"));
+  CHECK_THAT(told, Contains("v.toml:5") && Contains("'mas_kg'") && Contains("E-KEY-02"));
 }
 
 TEST_CASE("a swinging load and a table of speeds are read", "[scene]") {

@@ -161,7 +161,8 @@ TEST_CASE("shards made separately and merged give the whole sweep", "[sweep]") {
 
   const Ran early = sweep(kMovingLoad + kShort + kSix + " --merge", merged);
   CHECK(early.code == 2);
-  CHECK_THAT(early.err, Contains("2 of 6 runs have no row") && Contains("the first is run 2"));
+  CHECK_THAT(early.err,
+             Contains("2 of 6 runs") && Contains("the first is run 2") && Contains("E-SWEEP-06"));
   CHECK_FALSE(fs::exists(merged / "table.csv"));
 
   const auto elsewhere = fresh_folder("sweep_elsewhere");  // as on another machine
@@ -215,7 +216,8 @@ TEST_CASE("a run that fails has its reason in the table and the sweep goes on", 
                 " --vary rail.axial_force_n=0,-1e9 --vary output.supports=false,true --json",
             out);
   CHECK(ran.code == 1);
-  CHECK_THAT(ran.err, Contains("2 of 4 runs failed, the first is run 2 (rail.axial_force_n=-1e9"));
+  CHECK_THAT(ran.err, Contains("2 of 4 runs") && Contains("run 2 (rail.axial_force_n=-1e9") &&
+                          Contains("E-SWEEP-16"));
   CHECK(nlohmann::json::parse(ran.out)["failed"] == 2);
   auto rows = table_of(out / "table.csv");
   REQUIRE(rows.size() == 4);
@@ -254,25 +256,25 @@ TEST_CASE("a sweep refuses bad options with exit code 2, one sentence and no fil
   const std::string vary = " --vary track.bays=16,17";
   const std::vector<Case> cases = {
       {" --vary track.bay=16,17", "--vary track.bay=16"},
-      {" --vary track.bays=16,0", "--vary track.bays=0: [track] bays = 0 is out of range"},
-      {vary + " --vary step.dt_s=25e-6,x", "--vary step.dt_s=x: 'x' is not a TOML value"},
+      {" --vary track.bays=16,0", "--vary track.bays=0: [track] bays = 0"},
+      {vary + " --vary step.dt_s=25e-6,x", "--vary step.dt_s=x: 'x'"},
       {" --vary step.dt_s=25e-6,26e-6", "(run 1: step.dt_s=26e-6)"},
       {" --vary track.bays=", "value 1 is empty"},
       {" --vary track.bays=16,,17", "value 2 is empty"},
-      {" --vary track.bays=16,16", "16 stands there twice"},
-      {" --vary track.bays", "cannot be understood"},
-      {" --vary =1,2", "cannot be understood"},
-      {" --vary 'track.ends=[1,2'", "is not a TOML value"},
-      {vary + " --vary track.bays=18", "writes over track.bays"},
-      {vary + " --set track.bays=18", "writes over track.bays"},
-      {vary + " --vary track={}", "writes over track.bays"},
-      {vary + " --shard=-1/2", "accepted is I/N"},
-      {vary + " --shard 3/2", "accepted is I/N"},
-      {vary + " --shard 0/0", "accepted is I/N"},
-      {vary + " --shard 1", "accepted is I/N"},
-      {vary + " --shard 1/2/3", "accepted is I/N"},
-      {vary + " --from 0.4", "--from 0.4: the run lasts 0.3 s"},
-      {vary + " --merge", "2 of 2 runs have no row"},
+      {" --vary track.bays=16,16", "E-SWEEP-09"},
+      {" --vary track.bays", "E-SWEEP-07"},
+      {" --vary =1,2", "E-SWEEP-07"},
+      {" --vary 'track.ends=[1,2'", "E-SET-02"},
+      {vary + " --vary track.bays=18", "this changes track.bays"},
+      {vary + " --set track.bays=18", "this changes track.bays"},
+      {vary + " --vary track={}", "this changes track.bays"},
+      {vary + " --shard=-1/2", "E-SWEEP-12"},
+      {vary + " --shard 3/2", "E-SWEEP-12"},
+      {vary + " --shard 0/0", "E-SWEEP-12"},
+      {vary + " --shard 1", "E-SWEEP-12"},
+      {vary + " --shard 1/2/3", "E-SWEEP-12"},
+      {vary + " --from 0.4", "E-SWEEP-03"},
+      {vary + " --merge", "E-SWEEP-06"},
   };
   for (const auto& c : cases) {
     const auto out = fresh_folder("sweep_bad") / "out";
@@ -295,10 +297,10 @@ TEST_CASE("a sweep refuses bad options with exit code 2, one sentence and no fil
   std::ofstream(out / "file") << "text";
   const Ran file = sweep(kMovingLoad + vary, out / "file");
   CHECK(file.code == 2);
-  CHECK_THAT(file.err, Contains("is a file; a folder is accepted"));
+  CHECK_THAT(file.err, Contains("E-SWEEP-13"));
   std::string thousand = "0";
   for (int i = 1; i < 1001; ++i) thousand.append(",").append(std::to_string(i));
   const Ran many = sweep(kMovingLoad + " --vary a=" + thousand + " --vary b=" + thousand, out);
   CHECK(many.code == 2);
-  CHECK_THAT(many.err, Contains("make 1002001 runs; accepted are up to 1000000"));
+  CHECK_THAT(many.err, Contains("1002001 runs") && Contains("E-SWEEP-11"));
 }
