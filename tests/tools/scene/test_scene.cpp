@@ -189,7 +189,7 @@ TEST_CASE("rows 18 and 19: unknown and doubled names are refused", "[scene]") {
              Contains("has no [sleeper]"));
   CHECK_THAT(with("ballasted_track", {"sensor[0].sleeper=41"}), Contains("accepted is 0 to 40"));
   CHECK_THAT(with("ballasted_track", {"sensor[0].on=\"bogie\""}),
-             Contains("accepted are \"rail\", \"sleeper\", \"wheelset\""));
+             Contains("one of \"rail\", \"sleeper\", \"wheelset\""));
   CHECK_THAT(with("moving_load", {"load[1].name=\"load_left\""}),
              Contains("name = \"load_left\" is taken by [load[0]]"));
   CHECK_THAT(with("ballasted_track", {"sensor[1].name=\"wheel_left\""}),

@@ -109,8 +109,7 @@ TEST_CASE("the keys of [joints] have their defaults and limits", "[scene]") {
   CHECK(system_scene(kPendulum, {"joints={penalty=1e7, tangent=\"iteration\"}"}).options.penalty ==
         1e7);
   CHECK_THAT(with(kPendulum, {"joints.hold=\"lagrange\""}),
-             Contains("hold = \"lagrange\" is unknown; accepted are \"augmented-lagrangian\", "
-                      "\"baumgarte\""));
+             Contains("hold = \"lagrange\"") && Contains("\"baumgarte\"") && Contains("E-KEY-06"));
   CHECK_THAT(with(kPendulum, {"joints.alpha_per_s=5"}),
              Contains("[joints] alpha_per_s is not used here; accepted with hold = \"baumgarte\""));
   CHECK_THAT(with(kPendulum, {"joints={hold=\"direct\", penalty=5}"}),
@@ -218,7 +217,7 @@ TEST_CASE("a kind of joint refuses keys of other kinds", "[scene]") {
   };
   const std::string at = "point_m=[0, 0, 0], ";
   CHECK_THAT(joint(at + "kind=\"ball\""),
-             Contains("kind = \"ball\" is unknown; accepted are \"spherical\", \"revolute\""));
+             Contains("kind = \"ball\"") && Contains("\"revolute\"") && Contains("E-KEY-06"));
   CHECK_THAT(joint(at + "kind=\"revolute\""), Contains("'axis'") && Contains("E-KEY-01"));
   CHECK_THAT(joint(at + "kind=\"spherical\", axis=[0, 0, 1]"),
              Contains("a spherical joint has no axis"));
@@ -323,10 +322,10 @@ TEST_CASE("the [step] of a system has its schemes, starts and limits", "[scene]"
   CHECK(system_scene(kPendulum, {"step.scheme=\"energy-momentum\""}).step.scheme ==
         TimeScheme::energy_momentum);
   CHECK_THAT(with(kPendulum, {"step.scheme=\"rk4\""}),
-             Contains("accepted are \"generalised-alpha\", \"backward-euler\", "
+             Contains("one of \"generalised-alpha\", \"backward-euler\", "
                       "\"newmark\", \"hht\", \"energy-momentum\""));
   CHECK_THAT(with("moving_load", {"step.scheme=\"energy-momentum\""}),
-             Contains("accepted are \"generalised-alpha\", \"backward-euler\""));
+             Contains("one of \"generalised-alpha\", \"backward-euler\""));
   CHECK(system_scene(kPendulum).step.start == Start::released);
   CHECK(system_scene(kPendulum, {"step.start=\"equilibrium\""}).step.start == Start::equilibrium);
   CHECK_THAT(with(kPendulum, {"step.frame_s=0.003"}), Contains("whole frames"));
