@@ -24,8 +24,8 @@ namespace {
 using Value = std::complex<double>;
 constexpr double kPi = 3.14159265358979323846;
 
-/// Vertical receptances of rails' points, m/N: displacement there under a unit force e^(i omega t),
-/// of one line, ordered once for all frequencies.
+/// Vertical receptances of points of the rails by one line, m/N: the displacement of a point under
+/// a unit force e^(i omega t) on it. The matrix is ordered once for all frequencies.
 class LineReceptances {
  public:
   LineReceptances(const Track& track, const Line& line, const std::vector<RailPoint>& points)
@@ -54,7 +54,7 @@ class LineReceptances {
   Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor_;
 };
 
-/// The same of a condensed line: the sum of its modes.
+/// The same for a condensed line: the sum of its modes.
 class ModalReceptances {
  public:
   ModalReceptances(const Track& track, const PackedLine& own, const std::vector<RailPoint>& points)
@@ -79,8 +79,8 @@ class ModalReceptances {
   Eigen::MatrixXcd squares_;  // [modes][points] of the modes there
 };
 
-/// The line with rails that have no inertia along x: a vertical track does not say what would damp
-/// them there, and the strain of the section would make them ring.
+/// The line with rails that have no inertia along x. A vertical track has no dampers along x, and
+/// the strain of the section would make the rails ring there.
 void drop_inertia_along(const Track& track, Line& line) {
   std::vector<bool> along(static_cast<std::size_t>(line.unknowns()), false);
   for (int rail = 0; rail < track.rails; ++rail)
@@ -115,7 +115,7 @@ class TrackReceptances {
   std::vector<std::unique_ptr<LineReceptances>> each_;
 };
 
-/// What a model is measured against: a finer mesh about rest, with the section's strain.
+/// The reference of a model: a finer mesh, linear about rest, with the section's strain.
 Track refined(const Track& of, int times) {
   Track track = with_strain(linear_about_rest(of));
   track.elements_per_bay *= times;
@@ -137,7 +137,7 @@ struct Asked {
   }
 };
 
-/// Over the largest deflection, 0 where there is none.
+/// Largest error over the largest deflection; 0 without points.
 double largest_error(const Eigen::VectorXd& got, const Eigen::VectorXd& want) {
   double largest = 0., error = 0.;
   for (Eigen::Index i = 0; i < want.size(); ++i) {
@@ -147,7 +147,7 @@ double largest_error(const Eigen::VectorXd& got, const Eigen::VectorXd& want) {
   return largest > 0. ? error / largest : 0.;
 }
 
-/// Of the model as it is stepped, lines and residual flexibility.
+/// Receptances of the model as it is stepped: lines and residual flexibility.
 class ModelReceptances {
  public:
   ModelReceptances(const Track& track, const PackedModel& packed, const Asked& asked)
@@ -178,11 +178,11 @@ class ModelReceptances {
   Eigen::VectorXd residual_;
   std::vector<ModalReceptances> modal_;
   std::optional<ClosedPorts> closed_;  // of a condensed model
-  std::vector<Line> lines_;            // of one in full order, at rest
+  std::vector<Line> lines_;            // of a model in full order, at rest
   std::vector<std::unique_ptr<LineReceptances>> full_;
 };
 
-/// A model beside what it is measured against, at the middle of the middle bay and over its seat.
+/// A model and its reference, at the middle of the middle bay and over its seat.
 class Compared {
  public:
   Compared(const Track& track, const PackedModel& packed)
@@ -191,7 +191,7 @@ class Compared {
         reference_(refined(track, receptance_refinement(track)), asked_.points) {}
 
   bool empty() const { return asked_.points.empty(); }
-  /// [points][2] what the model errs by, and the reference
+  /// [points][2] the error of the model, and the reference
   Eigen::MatrixXcd at(double hz) {
     const double omega = 2. * kPi * hz;
     Eigen::MatrixXcd both(static_cast<Eigen::Index>(asked_.points.size()), 2);
@@ -210,7 +210,7 @@ class Compared {
 
 double static_error(const Track& track, const PackedModel& packed) {
   const int points = packed.model().residual.points > 0 ? packed.model().residual.points : 16;
-  // Exact at its end nodes, half-way of the tables.
+  // Exact at its end nodes, which lie half-way between the places of the tables.
   const Statics exact(refined(track, 2 * points));
   std::vector<double> places;
   const int intervals = track.elements() * points, count = std::min(kStaticPlaces, intervals);

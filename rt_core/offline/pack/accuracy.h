@@ -7,36 +7,37 @@
 
 namespace railstep {
 
-/// Largest error of the static deflection under a unit force of every kind of port, at
-/// kStaticPlaces places at equal steps along the track, each half-way between two of the tables'
-/// own, at all of these in the first and the last element, and at the ends, against a track of
-/// elements so fine that these are nodes; over the largest deflection. 0 without ports. Of a track
-/// with one-sided supports the larger of two: of the track at rest, in which those without a gap
-/// are springs and those with one open, and where under each force alone those are closed
-/// that it closes, gaps counting as nothing.
+/// Largest error of the static deflection under a unit force at each load point, over the largest
+/// deflection; 0 without load points. The reference is a track of elements so fine that all places
+/// are nodes. The places are kStaticPlaces at equal steps along the track, each half-way between
+/// two places of the tables; all of those half-way places in the first and the last element; and
+/// the ends. With one-sided supports it is the larger of two errors: of the track at rest, where
+/// supports without a gap are springs and supports with a gap are open; and of the track on which
+/// each force alone closes its own supports, without their gaps.
 double static_error(const Track& track, const PackedModel& packed);
 
 struct ReceptanceError {
-  std::optional<double> largest;      // none where nothing is asked, or the track is undamped
+  std::optional<double> largest;      // empty without load points, or if the track is undamped
   double hz = 0.;                     // where
-  std::optional<double> undamped_hz;  // where the track swings without damping
-  int solves = 0;                     // frequencies at which it was solved for
-  double unresolved = 0.;             // what may be larger still, over the largest
+  std::optional<double> undamped_hz;  // at which the track vibrates without damping
+  int solves = 0;                     // number of frequencies that were solved
+  double unresolved = 0.;             // bound of what the search left, over the largest
 };
 
-/// The same of the receptance, magnitude and phase together: the largest |H - H_ref| over a band in
-/// Hz over the largest |H_ref| in it, at receptance_places(), against a track of elements finer by
-/// receptance_refinement(). Found by a search (largest_over()), not on a grid. Both are at rest.
+/// The same for the receptance, magnitude and phase together: the largest |H - H_ref| in a band in
+/// Hz over the largest |H_ref| in it, at receptance_places(). The reference is a track with
+/// receptance_refinement() times the elements. A search finds it (largest_over()), not a grid. Both
+/// tracks are at rest.
 ReceptanceError receptance_error(const Track& track, const PackedModel& packed,
                                  const std::array<double, 2>& band);
 
-/// The middle of the track's middle bay, and over the seat where it begins, m.
+/// The middle of the track's middle bay, and the seat where this bay begins, m.
 std::vector<double> receptance_places(const Track& track);
 
-/// 2, or what makes kReceptanceElements a bay.
+/// 2, or the factor that gives kReceptanceElements elements a bay.
 int receptance_refinement(const Track& track);
 
-/// The same at each of these frequencies, over the largest |H_ref| of them all. [hz]
+/// |H - H_ref| at each of these frequencies, over the largest |H_ref| of them all. [hz]
 std::vector<double> receptance_errors(const Track& track, const PackedModel& packed,
                                       const std::vector<double>& hz);
 

@@ -56,7 +56,7 @@ class Writer {
   std::array<Bytes, kSections>& section_;
 };
 
-/// A check that is not made yet has no frames.
+/// First frames and their sum; no frames while the check has not been made.
 struct Check {
   std::int64_t frames = 0;
   std::uint64_t hash = 0;
@@ -68,7 +68,7 @@ Bytes bytes_of(const void* from, std::size_t count) {
   return {at, at + count};
 }
 
-/// Behind what is there, padded to 8 bytes.
+/// Appends a section to the block, padded to 8 bytes.
 BlockSection append(const Bytes& bytes, Bytes& block) {
   const BlockSection section{block.size(), bytes.size()};
   block.insert(block.end(), bytes.begin(), bytes.end());
@@ -122,7 +122,7 @@ Bytes assemble(const Model& model, const std::string& columns, const BlockNotes&
   return block;
 }
 
-/// What a block's first frames come to; of one that does not load, or does not stay finite, none.
+/// Steps the first frames of a block. No frames if it does not load or does not stay finite.
 Check checked(const Bytes& block) {
   Model model;
   if (load_model(block.data(), block.size(), model).status != LoadStatus::ok) return {};

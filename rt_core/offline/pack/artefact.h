@@ -8,15 +8,15 @@
 
 namespace railstep {
 
-/// What stands in a block's header of how the model was made; no step needs it.
+/// The part of a block's header that says how the model was made; no step needs it.
 struct BlockNotes {
   static constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-  std::string about = {};  // lines of text: units, scheme, where it comes from
+  std::string about = {};  // lines of text: units, scheme, origin
   double static_error = kNotKnown, receptance_error = kNotKnown, transient_error = kNotKnown;
 };
 
 /// A model and a text in one block, as online/model/block.h describes and load_model() reads it,
-/// with what its own first frames come to as a check. The same model gives the same bytes.
+/// with a check by its own first frames. The same model gives the same bytes.
 /// @param columns  of a trace, one a line, and the inputs behind an empty line
 std::vector<std::byte> to_block(const Model& model, const std::string& columns,
                                 const BlockNotes& notes = {});

@@ -15,7 +15,7 @@ using Block = std::array<double, kBlock>;  // row-major
 
 int at(int row, int column) { return row * kLanes + column; }
 
-/// The lower block band: block(i, j) for i - j = 0..wide, zero where A has nothing.
+/// The lower block band: block(i, j) for i - j = 0..wide, zero where A has no entry.
 struct BlockBand {
   int panels, wide;
   std::vector<Block> blocks;
@@ -111,7 +111,7 @@ void factor(BlockBand& band) {
     const int last = std::min(band.panels - 1, j + band.wide);
     std::vector<Block> L;
     for (int i = j + 1; i <= last; ++i) L.push_back(divide(band(i, j), G));
-    // Update the blocks to the right with A_ij D^-1 A_kj' = L_ij A_kj', while A_kj still stands.
+    // Update the blocks to the right with A_ij D^-1 A_kj' = L_ij A_kj', before A_kj is overwritten.
     for (int i = j + 1; i <= last; ++i)
       for (int k = j + 1; k <= i; ++k)
         subtract_product(band(i, k), L[static_cast<std::size_t>(i - j - 1)], band(k, j));

@@ -19,11 +19,12 @@ struct BandFactor {
 
 /// Block LDL' (8x8) of a symmetric positive definite matrix, for solve_band().
 ///
-/// Padded to a multiple of 8 by a unit diagonal; the band is as wide as the outermost entry asks,
-/// in whole blocks. Plain loops in a written order, so the bits are the same on every machine.
-/// @param A  both triangles may be stored, only the lower one (row >= column) is read
-/// @throws std::invalid_argument if A is empty, not square, or not positive definite (the sentence
-///   names the unknown whose pivot failed)
+/// A is padded to a multiple of 8 by a unit diagonal. The width of the band is that of the
+/// outermost entry, in whole blocks. Plain loops in a fixed order make the same bits on every
+/// machine.
+/// @param A  only the lower triangle (row >= column) is read; the upper one may be stored too
+/// @throws Refused if A is empty, not square, or not positive definite (the sentence names the
+///   unknown whose pivot failed)
 BandFactor factor_band(const Eigen::SparseMatrix<double>& A);
 
 }  // namespace railstep

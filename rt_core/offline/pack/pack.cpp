@@ -31,7 +31,7 @@ SignalModel PackedModel::keep(const Signal& signal) {
 
 namespace {
 
-/// Whether a force on a rail, at a place that is not a node, acts on a line.
+/// Whether a force on a rail at a place that is not a node acts on a line.
 bool acts_on(const Track& track, const Line& line, int rail, double y, double z, int direction) {
   const double x = .37 * track.element_length();
   return point_row(track, line, {rail, x, y, z, direction}).norm() > 0.;
@@ -72,7 +72,7 @@ bool is_moved(const Track& track, const Line& line, const Traffic& traffic, doub
 
 }  // namespace
 
-/// The number of a load point, a new one if no force has acted there yet.
+/// The index of a load point; a new one if no force has acted there yet.
 std::int32_t PackedModel::load_point_at(const LoadPoint& point) {
   for (std::size_t i = 0; i < load_points_.size(); ++i)
     if (load_points_[i].rail == point.rail && load_points_[i].z == point.z &&
@@ -86,7 +86,7 @@ std::int32_t PackedModel::load_point_at(const LoadPoint& point) {
   return static_cast<std::int32_t>(load_points_.size()) - 1;
 }
 
-/// Of a wheel on a rail at rest.
+/// The load point of a wheel on a rail at rest.
 std::int32_t PackedModel::load_point_of_wheel(int rail) {
   const CrownTop top = crown_top(model_.cant[rail], model_.head_z[rail], model_.crown_radius[rail]);
   return load_point_at({rail, top.z, top.y});
@@ -195,7 +195,7 @@ std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce*
   return static_cast<std::int32_t>(forces.size());
 }
 
-/// Of the wheelset that was added last. The face touches the gauge face, `clearance` further in.
+/// Adds flanges to the last wheelset. `clearance` further in, each face would touch the gauge face.
 void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
                              const std::array<Railhead, 2>& heads) {
   const Flange& flange = *wheelset.flange;
@@ -243,7 +243,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
            "the scheme averages contact forces over the step, but the track is in full order; "
            "expected a condensed track");
   model_.steps_per_frame = options.steps_per_frame;
-  // A model always has a run: of one frame where none is told.
+  // A model always has a run: one frame if no length is given.
   model_.steps = options.steps > 0 ? options.steps : options.steps_per_frame;
   take_inputs(traffic.input_limits, model_);
   model_.elements = track.elements();
@@ -301,7 +301,7 @@ void PackedModel::add_lines(const Track& track, const Traffic& traffic,
     refuse("E-PACK-21",
            "nothing moves the track; expected a load, a wheelset, a vehicle or an external wheel "
            "on it");
-  // Whatever the start: what runs on it would push the track away.
+  // This holds for every start: the traffic would push a free track away.
   refuse_free_modes(track, moved,
                     options.reduction ? std::vector<FixedPort>{} : fixed_ports(track));
   for (std::size_t i = 0; i < moved.size(); ++i) {

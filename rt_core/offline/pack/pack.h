@@ -14,45 +14,45 @@
 
 namespace railstep {
 
-/// A force that runs along a rail, as a scene gives it.
+/// A force that moves along a rail, as a scene gives it.
 struct MovingLoad {
   int rail = 0;
   double start = 0., speed = 0.;    // m, m/s
-  double stop = 0.;                 // m; taken off beyond it
+  double stop = 0.;                 // m; the load is removed beyond it
   double force = 0.;                // N along z, up positive
-  double z = 0.;                    // of the load's point over the axis, m
+  double z = 0.;                    // height of the load's point over the axis, m
   std::vector<double> table = {};   // t (s), factor, t, factor, ...; empty: constant
   std::vector<double> speeds = {};  // t (s), m/s, t, m/s, ...; empty: `speed`
-  /// Beside `force`: amplitude sin(2 pi (frequency t + phase)); N, Hz, turns.
+  /// Added to `force`: amplitude sin(2 pi (frequency t + phase)); N, Hz, cycles.
   double amplitude = 0., frequency = 0., phase = 0.;
 };
 
 /// Speed of a load at t = 0, m/s.
 double first_speed(const MovingLoad& load);
 
-/// How far below the railhead's top the gauge is measured, and flanges meet it, m.
+/// Depth below the railhead's top at which the gauge is measured and flanges touch it, m.
 inline constexpr double kGaugeDepth = .014;
 
 /// The flanges of a wheelset's wheels, as a scene gives them.
 struct Flange {
-  double clearance = 0.;      // m, of each along y in the middle of the track
-  double angle = 0.;          // rad, of the faces to the horizontal
-  double height = .028;       // m, of the tips below the treads
-  double corner_radius = 0.;  // m, of a gauge face in Hertz contact; 0: a spring and a damper
+  double clearance = 0.;                // m, of each wheel along y in the middle of the track
+  double angle = 0.;                    // rad, of the faces to the horizontal
+  double height = .028;                 // m, of the tips below the treads
+  double corner_radius = 0.;            // m, of a gauge face in Hertz contact; 0: spring and damper
   double stiffness = 0., damping = 0.;  // N/m, N s/m
 };
 
 /// A force from outside on a wheelset or a vehicle.
 struct OuterForce {
   int direction;  // 0 x, 1 y, 2 z of a wheelset; of a vehicle its coordinate (first_coordinates())
-  std::vector<double> table = {};  // t (s), N, t, N, ...; empty: given each frame
-  int input = -1;                  // of a given one, among Traffic::input_limits
+  std::vector<double> table = {};  // t (s), N, t, N, ...; empty: an input
+  int input = -1;                  // index among Traffic::input_limits, without a table
 };
 
-/// A rigid wheelset on both rails, as a scene gives it. Rolls without friction on cylinders.
+/// A rigid wheelset on both rails, as a scene gives it. Its treads are cylinders without friction.
 struct Wheelset {
   double mass = 0., inertia_roll = 0., inertia_spin = 0., inertia_yaw = 0.;  // kg, kg m2
-  double weight = 0.;               // N, down; own and carried
+  double weight = 0.;               // N, down; of the wheelset and what it carries
   double radius = kWheelRadius;     // m
   double tread_half_width = .065;   // m
   double start = 0., speed = 0.;    // m, m/s
@@ -66,9 +66,9 @@ struct Wheelset {
   std::optional<Flange> flange = std::nullopt;
 };
 
-/// How a vehicle comes down on an unloaded track: its springs at rest, and nothing under it.
+/// How a vehicle falls onto an unloaded track: without force in its springs or wheels.
 struct Falling {
-  double height = 0.;  // of its wheels over the level rail, m
+  double height = 0.;  // of its wheels above the level rail, m
   double speed = 0.;   // down, m/s
 };
 
@@ -86,7 +86,7 @@ struct RunningVehicle {
   std::optional<Falling> falling = std::nullopt;  // of a released start
 };
 
-/// Of a bonded contact, N/m: a millionth of what the stiffest rail gives way under a wheel.
+/// Stiffness of a bonded contact, N/m: it yields a millionth of what the stiffest rail does.
 inline constexpr double kBonded = 1e15;
 
 /// An irregularity or a defect of a rail.
@@ -98,38 +98,37 @@ struct RailIrregularity {
 
 /// The railhead that wheels meet.
 struct Railhead {
-  double top_z = 0.;               // of its middle over the axis, in the section, m
+  double top_z = 0.;               // of its middle above the axis, in the section, m
   double crown_radius = .3;        // m
   double half_width = .035;        // m; a contact beyond it is off the rail
   double gauge_half_width = .035;  // m, at kGaugeDepth below the top
 };
 
-/// A scalar that frames publish: rest + displacement * D(u) + velocity * D(v), with D a sum over
-/// the track or one coordinate of a wheelset.
+/// A scalar that frames publish: rest + displacement * D(u) + velocity * D(v). D is a sum over the
+/// track, or one coordinate of a wheelset or a vehicle.
 struct TrackSensor {
   double rest = 0.;
   double displacement = 0., velocity = 0.;  // factors
   Functional track = {};
   int wheelset = -1, coordinate = 0;  // of a track sensor on a wheelset; 0 x, 1 y, 2 z
-  int vehicle = -1;                   // of a track sensor on a vehicle, whose coordinate it is
-  double lever = 0.;                  // of a vehicle's next coordinate, beside it
-  double acceleration = 0.;           // factor, of a track sensor on a vehicle
+  int vehicle = -1;                   // of a track sensor on a vehicle; `coordinate` is its own
+  double lever = 0.;                  // factor of a vehicle's next coordinate, which is added
+  double acceleration = 0.;           // factor of it, of a track sensor on a vehicle
   struct PortForce {
     int port;       // among fixed_ports() of the track
     double factor;  // of its force
   };
   std::vector<PortForce> ports = {};
-  bool along = false;  // a place along the track, which traffic without end takes
-                       // with it
+  bool along = false;  // a place along the track, which moves with traffic without end
 };
 
-/// A wheel of a vehicle outside the model, whose place and force are inputs of their own.
+/// A wheel of a vehicle outside the model. Its place and force are inputs of the model.
 struct ExternalWheel {
   int rail = 0;
   double limit = 0.;  // N, of each component of its force
 };
 
-/// What acts on a track, and what is read from it.
+/// The loads and vehicles on a track, and the sensors that are read from it.
 struct Traffic {
   std::vector<MovingLoad> loads = {};
   std::vector<Wheelset> wheelsets = {};
@@ -138,25 +137,25 @@ struct Traffic {
   std::vector<TrackSensor> track_sensors = {};
   std::vector<RailIrregularity> irregularities = {};
   std::vector<double> input_limits = {};              // of each input, N or N m, above 0
-  std::vector<ExternalWheel> external_wheels = {};    // their inputs stand behind all others
-  std::vector<int> held = {};                         // rails that a multibody system holds on to
-  std::optional<Railhead> right_head = std::nullopt;  // of the right rail where it differs
+  std::vector<ExternalWheel> external_wheels = {};    // their inputs follow all others
+  std::vector<int> held = {};                         // rails that a multibody system is joined to
+  std::optional<Railhead> right_head = std::nullopt;  // of the right rail if it differs
 };
 
-/// A track without end under traffic of one speed, at least 0: a ring where lines are condensed
-/// (Track::ring), a window in full order. Places of loads and wheelsets count from the bay border
-/// `behind`; what else names a place of the track names one of its bays as they stand at the start,
-/// and follows the traffic by whole bays.
+/// A track without end under traffic of one speed, at least 0. It is a ring if its lines are
+/// condensed (Track::ring), and a window in full order. Places of loads and wheelsets count from
+/// the bay border `behind`. All other places belong to bays as they are at the start, and follow
+/// the traffic by whole bays.
 struct EndlessTrack {
-  int behind;  // bays of the track before x = 0
+  int behind;  // number of bays before x = 0
 };
 
-/// A track without end as a window, for full order. Its front end is clamped: the bay that comes in
-/// there is at rest and meets a node at rest, so that it comes in without strain (docs/endless.md).
+/// A track without end as a window, for full order. Its front end is clamped: a bay that enters
+/// there is at rest and meets a node at rest, so that it enters without strain (docs/endless.md).
 Track window_of(Track track);
 
-/// Writes limits of inputs into a model. Throws std::invalid_argument on too many, or a limit that
-/// is no finite number above 0.
+/// Writes limits of inputs into a model. Throws Refused if there are too many, or if a limit is not
+/// a finite number above 0.
 void take_inputs(const std::vector<double>& limits, Model& model);
 
 struct PackOptions {
@@ -164,9 +163,9 @@ struct PackOptions {
   int steps_per_frame = 1;
   bool residual_flexibility = true;
   int residual_points = 16;  // intervals per element
-  double gravity = 0.;       // m/s2 on rails and sleepers; 0: their weight is left off
-  std::optional<Reduction> reduction = std::nullopt;  // of each line; none: full order
-  std::int64_t steps = 0;                             // of the scene's run; 0: a frame
+  double gravity = 0.;       // m/s2 on rails and sleepers; 0: they have no weight
+  std::optional<Reduction> reduction = std::nullopt;  // of each line; empty: full order
+  std::int64_t steps = 0;                             // of the scene's run; 0: one frame
   std::optional<EndlessTrack> endless = std::nullopt;
 };
 
@@ -179,10 +178,10 @@ struct PackedLine {
   ModeGroups modes;                     // of a condensed line
 };
 
-/// A model with the memory its views look into. Not copied: the views would look into the original.
+/// A model and the memory that its views look into. Not copied: views would look into the original.
 ///
-/// Lines that neither a load, a wheel, the weight nor a one-sided support can move are left out.
-/// Lines with the same matrices (two rails that share nothing) share their factor or modes.
+/// Lines that no load, wheel, weight or one-sided support can move are left out. Lines with the
+/// same matrices (two rails that share nothing) share their factor or modes.
 class PackedModel {
  public:
   /// The start is set to rest, unloaded; set_start() gives another.
@@ -192,11 +191,11 @@ class PackedModel {
 
   const Model& model() const { return model_; }
   const std::vector<PackedLine>& lines() const { return lines_; }
-  /// Where vertical forces act.
+  /// Load points of all vertical forces.
   const std::vector<LoadPoint>& load_points() const { return load_points_; }
   /// @param state  state_doubles() values, from start.h
   void set_start(std::vector<double> state);
-  /// The most by which G_res was raised under a wheel so that W stays positive, m/N.
+  /// Largest amount by which G_res was raised under a wheel so that W stays positive, m/N.
   double clipped() const { return clipped_; }
 
  private:
@@ -216,8 +215,8 @@ class PackedModel {
   void add_load(const Track& track, const MovingLoad& load);
   SignalModel keep(const Signal& signal);
   /// @param force   [kMaxBodyForces] overwritten
-  /// @param body  what they are on, for errors
-  /// @returns their number
+  /// @param body  "wheelset" or "vehicle", for messages
+  /// @returns number of forces
   std::int32_t keep(const std::vector<OuterForce>& forces, BodyForce* force, const char* body);
   void add_fixed_ports(const Track& track);
   void add_port_rows();
@@ -245,7 +244,7 @@ class PackedModel {
   std::vector<PackedLine> lines_;
   std::vector<LoadPoint> load_points_;
   double clipped_ = 0.;
-  Elements met_{};  // by what runs, on a ring those it comes to, else all
+  Elements met_{};  // elements that the traffic visits (ring), else all
   std::vector<std::unique_ptr<std::vector<double>>> reals_;
   std::vector<std::unique_ptr<std::vector<std::int32_t>>> integers_;
 };

@@ -13,7 +13,7 @@ namespace railstep {
 
 namespace {
 
-/// The one speed of all that runs, m/s.
+/// The one speed of all traffic, m/s.
 double speed_of(const Traffic& traffic) {
   std::vector<double> speeds;
   const auto add = [&](double speed, const std::vector<double>& table) {
@@ -34,7 +34,7 @@ double speed_of(const Traffic& traffic) {
   return speeds.empty() ? 0. : speeds[0];
 }
 
-/// From the farthest place behind to that ahead, m, x = 0 included.
+/// Places of the traffic at the back and at the front, m, x = 0 included.
 std::pair<double, double> span_of(const Traffic& traffic) {
   std::pair<double, double> span{0., 0.};
   const auto take = [&](double x) {
@@ -70,8 +70,8 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   Endless& e = model_.endless;
   e = {track.bays, track.elements_per_bay, bay, options.endless->behind * bay,
        bay_progress(speed_of(traffic) * options.scheme.dt / bay)};
-  // What runs goes on by up to a bay before the track is passed on. The ends of a window are to
-  // stay at rest; on a ring the traffic is not to meet itself.
+  // The traffic moves by up to a bay before the track is shifted. The ends of a window must stay at
+  // rest; on a ring waves of the traffic must not reach it again.
   const double decay = decay_length(track), behind = e.origin + first,
                before = track.length() - (e.origin + last + bay);
   const bool room = track.ring ? behind + before >= decay && behind >= bay && before >= bay
@@ -80,8 +80,8 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
     refuse(track.ring ? MessageId("E-PACK-33") : MessageId("E-PACK-51"),
            too_short(track, (last - first + bay), decay));
   if (!track.ring || !traffic.external_wheels.empty() || !traffic.held.empty()) return;
-  // Of a ring's shapes and tables no more is ever read: from a bay before all that runs to one
-  // behind that to which it goes on, and the seats around a wheelset.
+  // A ring's shapes and tables are read only near the traffic: from a bay behind it to a bay ahead
+  // of where it moves to, and at the seats around a wheelset.
   const auto border = [&](double x) { return static_cast<int>(std::floor((e.origin + x) / bay)); };
   const bool rolls = track.unknowns != Unknowns::vertical && !traffic.wheelsets.empty();
   const int spare = 1 + (rolls ? kPDeltaSeats / 2 : 0);
@@ -110,7 +110,7 @@ BayShift PackedModel::ring_shift(const RingModes& ring, int padded) {
 
 namespace {
 
-/// The unknown a bay ahead of each of a line's, itself where there is none.
+/// For each unknown of a line the same one a bay ahead; itself in the last bay.
 std::vector<std::int32_t> next_bay(const Track& track, const Line& line, std::size_t padded) {
   std::vector<std::int32_t> from(padded);
   for (std::size_t i = 0; i < padded; ++i) from[i] = static_cast<std::int32_t>(i);
@@ -128,7 +128,7 @@ std::vector<std::int32_t> next_bay(const Track& track, const Line& line, std::si
   return from;
 }
 
-/// Where a line's weight leaves it; padded.
+/// Displacements of a line at rest under its weight; padded.
 Eigen::VectorXd rest_of(const Track& track, const Line& line, std::size_t padded, double gravity) {
   Eigen::VectorXd rest = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(padded));
   if (gravity == 0.) return rest;
@@ -139,7 +139,7 @@ Eigen::VectorXd rest_of(const Track& track, const Line& line, std::size_t padded
 
 }  // namespace
 
-/// Displacements from rest under the weight are passed on; the bay at the front comes in at rest.
+/// Displacements from rest under the weight are shifted; the bay that enters in front is at rest.
 BayShift PackedModel::window_shift(const Track& track, const Line& line, int padded,
                                    double gravity) {
   const auto n = static_cast<std::size_t>(padded);

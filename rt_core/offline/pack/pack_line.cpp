@@ -16,12 +16,12 @@ bool same(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double
   return a.rows() == 0 || a.cols() == 0 || (a - b).norm() == 0.;
 }
 
-/// Whether one table of unknowns stands for all that a line has of the rails.
+/// Whether one table of unknowns serves all rails of a line.
 bool has_one_table(const Line& line) {
   return line.mirrored || line.rail_factor[0] == 0. || line.rail_factor[1] == 0.;
 }
 
-/// Unknowns of a rail by element and node of it, [elements][3].
+/// Unknowns of a rail by element and node, [elements][3].
 Line::RailUnknowns table_of(const Line& line, int rail) {
   const int elements = static_cast<int>(line.unknown_of[0].size()) / 2;
   Line::RailUnknowns table;
@@ -44,7 +44,7 @@ bool same_but_for_the_rail(const Line& a, const Line& b) {
          same_tables && a.mirrored == b.mirrored;
 }
 
-/// Real, then imaginary parts, padded with zeros.
+/// Real parts, then imaginary parts, padded with zeros.
 std::vector<double> parts(const Eigen::VectorXcd& values, std::size_t padded) {
   std::vector<double> result(2 * padded, 0.);
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -54,7 +54,7 @@ std::vector<double> parts(const Eigen::VectorXcd& values, std::size_t padded) {
   return result;
 }
 
-/// (e^w - 1) / w and (e^w - 1 - w) / w^2, by their series where the difference would cancel.
+/// (e^w - 1) / w and (e^w - 1 - w) / w^2, by their series if the difference would cancel.
 std::pair<std::complex<double>, std::complex<double>> constant_and_linear(std::complex<double> w) {
   if (std::abs(w) > .5) {
     const std::complex<double> first = (std::exp(w) - 1.) / w;
@@ -89,7 +89,7 @@ Diagonals PackedModel::keep_diagonals(const Eigen::SparseMatrix<double>& A, int 
   return {padded, count, keep(std::move(offsets)), keep(std::move(values))};
 }
 
-/// @param number  of an unknown k of a node that is met, as the model has it
+/// @param number  index in the model of unknown k of a node that the traffic visits
 template <typename Number>
 void PackedModel::keep_tables(const Line& line, LineModel& packed, const Number& number) {
   const auto keep_table = [&](const Line::RailUnknowns& table) {
@@ -161,7 +161,7 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
   std::int32_t count = 0;
   std::map<int, int> row_of;  // elements share their borders' rows
   keep_tables(own.line, packed, [&](int unknown, std::size_t k) {
-    // The section's own strain (a_y, b_z) follows at once: it is in the residual flexibility.
+    // The section's own strain (a_y, b_z) has no inertia: it is in the residual flexibility.
     if (k == 4 || k == 8) return -1;
     if (const auto known = row_of.find(unknown); known != row_of.end()) return known->second;
     const Eigen::VectorXcd row = own.modes.project(own.basis.shapes.row(unknown));

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kLeverPoints = 4;  // intervals per element of the levers' table
 
-/// What a seat carries of a unit force on its rail: by reciprocity the shape that a unit force
-/// along its pad makes, for all places of the force at once. Lines that are free are left out.
+/// Share of a unit force on a rail that a seat carries. By reciprocity it is the shape under a unit
+/// force along the pad of this seat, which serves all places of the force. Free lines are left out.
 class SeatShares {
  public:
   SeatShares(const Track& track, const std::vector<Line>& lines)
@@ -21,7 +21,7 @@ class SeatShares {
       held_[l] = is_held(factor_[l], lines_[l].stiffness);
     }
   }
-  /// Height of the rail's axis over x, m/N, as a unit force opens the pad.
+  /// Height of the rail's axis over x under a unit force that opens the pad, m/N.
   class Shape {
    public:
     Shape(const SeatShares& shares, int rail, int seat) : shares_(shares), rail_(rail) {
@@ -60,7 +60,7 @@ bool pads_are_off_the_axis(const Track& track) {
   return false;
 }
 
-/// PDeltaModel::lever of one rail, 0 on elements that are not met.
+/// PDeltaModel::lever of one rail, 0 on elements that the traffic does not visit.
 std::vector<double> levers(const Track& track, const SeatShares& shares, int rail, Elements met) {
   const int per_bay = track.elements_per_bay;
   std::vector<double> lever(
@@ -88,12 +88,12 @@ std::vector<double> levers(const Track& track, const SeatShares& shares, int rai
 
 void PackedModel::add_p_delta(const Track& track) {
   if (track.unknowns == Unknowns::vertical) return;
-  if (model_.wheelsets == 0 && model_.external_wheels == 0) return;  // nothing pushes aside
+  if (model_.wheelsets == 0 && model_.external_wheels == 0) return;  // no lateral forces
   if (!pads_are_off_the_axis(track)) return;
   PDeltaModel& p_delta = model_.p_delta;
   p_delta.elements_per_bay = track.elements_per_bay;
   p_delta.points = kLeverPoints;
-  // What does not pull and has no gap is mostly closed, as a spring.
+  // A support that does not pull and has no gap is mostly closed: it is a spring here.
   const Track reference = linear_about_rest(track);
   const std::vector<Line> all = assemble(reference);
   std::vector<Line> lines;

@@ -30,7 +30,7 @@ void PackedModel::add_fixed_ports(const Track& track) {
     add_port_shapes();
   else
     add_port_rows();
-  // theta row response; the lower half stands for both, as rounding makes them differ.
+  // theta row response; the lower half is used for both, as they differ by rounding.
   const auto n = static_cast<std::size_t>(fixed.count);
   std::vector<double> compliance(n * n);
   const std::ptrdiff_t part = model_.line_unknowns, stride = parts(model_.form) * part;
@@ -44,7 +44,7 @@ void PackedModel::add_fixed_ports(const Track& track) {
   fixed.compliance = keep(std::move(compliance));
 }
 
-/// Of banded lines: sparse rows, and S^-1 row by the step's own factors.
+/// For banded lines: sparse rows, and S^-1 row by the step's own factors.
 void PackedModel::add_port_rows() {
   FixedPortModel& fixed = model_.fixed;
   const auto n = static_cast<std::size_t>(model_.line_unknowns);
@@ -71,8 +71,8 @@ void PackedModel::add_port_rows() {
   fixed.response = keep(std::move(response));
 }
 
-/// Of condensed lines: the modes' share in each row, and what a force held over a step makes of
-/// them.
+/// For condensed lines: the share of the modes in each row, and the response of the modes to a
+/// force that is held over a step.
 void PackedModel::add_port_shapes() {
   FixedPortModel& fixed = model_.fixed;
   const auto n = static_cast<std::size_t>(model_.line_unknowns);

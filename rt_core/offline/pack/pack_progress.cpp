@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::int64_t kMostSteps = std::int64_t{1} << 20;  // of a period
 
-/// Convergents of the continued fraction of x up to the first that has its value to rounding, or
-/// the last with a denominator of `most` and less.
+/// Convergents of the continued fraction of x: up to the first that equals x to rounding, or the
+/// last with a denominator of at most `most`.
 struct Convergents {
   WholeBays before{1, 0}, last{0, 1};
   bool exact = false;
@@ -54,7 +54,7 @@ BayProgress bay_progress(double bays_per_step) {
 
 std::vector<WholeBays> whole_bays_near(double bays_per_step, std::int64_t most) {
   const auto [before, last, exact] = convergents_of(bays_per_step, most);
-  // Up to the convergent after the last, before + k last draws near from the side of `before`.
+  // Up to the convergent after the last, before + k last approaches x from the side of `before`.
   const std::int64_t k = (most - before.steps) / last.steps;
   const WholeBays other{before.bays + k * last.bays, before.steps + k * last.steps};
   std::vector<WholeBays> near;

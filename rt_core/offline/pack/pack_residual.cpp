@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPairPoints = 4;  // intervals per element of tables between load points
 
-/// Places at the start of all forces at each load point, m along the model's elements.
+/// Places of all forces at the start, by load point, m along the model's elements.
 std::vector<std::vector<double>> places_of(const Model& model, std::size_t load_points) {
   std::vector<std::vector<double>> places(load_points);
   const auto add = [&](std::int32_t load_point, double place) {
@@ -26,12 +26,12 @@ std::vector<std::vector<double>> places_of(const Model& model, std::size_t load_
     add(wheel.load_point, model.vehicle[wheel.vehicle].start + wheel.place);
   }
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
-    add(model.external_wheel[i].load_point, 0.);  // where these are is not known before they run
+    add(model.external_wheel[i].load_point, 0.);  // their places are not known in advance
   return places;
 }
 
-/// How many elements two forces at these places are apart at most: on a track without end they stay
-/// as they are, within the element that a contact's search may find beside the wheel.
+/// Largest distance of two forces at these places, in elements. On a track without end distances
+/// stay as they are, but for the element beside the wheel that a contact's search may find.
 int farthest(const Model& model, const std::vector<double>& a, const std::vector<double>& b) {
   if (model.endless.bays == 0 || model.external_wheels > 0) return model.elements;
   double distance = 0.;
@@ -116,8 +116,8 @@ void PackedModel::add_track_sensors(const Track& track,
   model_.track_sensor.along = keep(std::move(along));
 }
 
-/// A contact needs a rail that gives way under it: where wheels stand, G_res takes no more than
-/// half of the lines' compliance within a step.
+/// A contact needs a rail that yields under it: at wheels, a negative G_res takes away at most half
+/// of the compliance of the lines within a step.
 void PackedModel::clip(int points, std::vector<double>& under) {
   if (wheel_count(model_) == 0) return;
   const StepCompliance compliance(model_, lines_);
@@ -136,8 +136,8 @@ void PackedModel::clip(int points, std::vector<double>& under) {
 
 namespace {
 
-/// A track sensor's response to unit forces at load points, as far as the model's unknowns leave it
-/// out.
+/// The part of a track sensor's response to unit forces at load points that the model's unknowns
+/// leave out.
 ResidualFlexibility::Near near_at_once(const ResidualFlexibility& residual,
                                        const std::vector<LoadPoint>& load_points,
                                        const TrackSensor& track_sensor, Elements met) {
@@ -156,9 +156,9 @@ ResidualFlexibility::Near near_at_once(const ResidualFlexibility& residual,
 void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor>& track_sensors,
                                int points) {
   if (load_points_.empty()) return;
-  // What is one-sided without a gap is mostly closed: tables are those of the track in which it is
-  // a spring. About it the model misses what is near a force alone, whatever then closes; about a
-  // track that is open there it would miss what the whole of its rail bends between other seats.
+  // A one-sided support without a gap is mostly closed: tables belong to the track in which it is a
+  // spring. About this track the model misses only what is near a force, whatever closes later.
+  // About a track that is open there it would miss how the whole rail bends between other seats.
   const Track reference = linear_about_rest(track);
   const std::vector<Line> all = assemble(reference);
   std::vector<Line> lines;

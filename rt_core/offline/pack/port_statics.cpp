@@ -62,9 +62,9 @@ void ClosedPorts::subtract(double omega, Eigen::VectorXcd& receptances) const {
 
 namespace {
 
-/// Adds one line's part.
+/// Adds the part of one line.
 /// @param rows   of the points, in the line's coordinates or unknowns
-/// @param solve  what forces there move
+/// @param solve  displacements under forces on these
 template <typename Rows, typename Solve>
 void add_line(const Rows& points, const Eigen::MatrixXd& ports, const Solve& solve,
               PortStatics& sum) {
@@ -79,7 +79,7 @@ PortStatics nothing(std::size_t ports, std::size_t points) {
   return {Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(points)), Eigen::MatrixXd::Zero(n, n)};
 }
 
-/// Rows of points and of what the track's ports close, over a line's unknowns.
+/// Rows of the points and of the closings of the track's ports, over a line's unknowns.
 struct Rows {
   Eigen::SparseMatrix<double> points;
   Eigen::MatrixXd ports;
@@ -141,11 +141,11 @@ PortStatics port_statics(const Track& track, const Track& at_rest,
 
 namespace {
 
-/// The part of a spring that is closed at rest which stays where all ports are open, so that a
-/// track that nothing else holds is held. Model and reference have it alike.
+/// Share of a spring, closed at rest, that remains when all ports are open, so that a track that
+/// nothing else holds is held. Model and reference have the same share.
 constexpr double kStays = 1e-5;
 
-/// Adds what goes down further where the springs that are closed at rest are all but away:
+/// Adds the deflection due to opening all but kStays of the springs that are closed at rest:
 ///   G + G_p s (1 - s G_pp s)^-1 s G_p',   s^2 = (1 - kStays) k.
 void open(const std::vector<FixedPort>& ports, PortStatics& statics, Eigen::VectorXd& under) {
   const auto n = static_cast<Eigen::Index>(ports.size());
@@ -179,7 +179,7 @@ Eigen::VectorXd deflection_under(const std::vector<FixedPort>& ports, const Port
   for (Eigen::Index i = 0; i < under.size(); ++i) {
     const Eigen::VectorXd closing = opened.points.col(i);
     const Eigen::VectorXd force = static_port_forces(opened.ports, stiffness, -kForce * closing);
-    // Down under a force down: G F, and closed ports lift by their share.
+    // Downwards under a force downwards: G F, less the lift by the closed ports.
     result[i] += closing.dot(force) / kForce;
   }
   return result;

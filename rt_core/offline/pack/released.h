@@ -5,12 +5,12 @@
 
 namespace railstep {
 
-/// The state at step 0 of a track at rest, unloaded: guided wheelsets have the speed of their guide
-/// (x and spin are free of forces), vehicles touch their rail without a force in their springs, and
-/// loads and weights act from then on.
+/// The state at step 0 of an unloaded track at rest. Guided wheelsets have the speed of their guide
+/// (no force acts on x and spin), vehicles touch their rail without a force in their springs, and
+/// loads and weights act from step 0 on.
 std::vector<double> start_released(const PackedModel& packed);
 
-/// Lets the vehicles that fall be where they begin to, with the acceleration of free fall.
+/// Puts falling vehicles at their height and speed, with the acceleration of free fall.
 /// @param memory  of the model's state
 void put_falling(const Model& model, const std::vector<RunningVehicle>& vehicles,
                  std::vector<double>& memory);

@@ -10,8 +10,8 @@ namespace railstep {
 
 Eigen::VectorXd static_port_forces(const Eigen::MatrixXd& compliance,
                                    const Eigen::VectorXd& stiffness, const Eigen::VectorXd& free) {
-  constexpr double kNothing = 1e-9;  // N/m of a damper alone: a law has a slope above 0
-  constexpr int kMostSolves = 20;    // of 8 iterations each, where a step's solve takes one
+  constexpr double kNothing = 1e-9;  // N/m, for a damper alone: a law needs a slope above 0
+  constexpr int kMostSolves = 20;    // each has 8 iterations; a step makes one such solve
   const auto n = static_cast<int>(free.size());
   std::array<PortLaw, kMaxFixedPorts> law;
   std::array<double, kMaxFixedPorts> force{}, depth{};

@@ -9,7 +9,7 @@
 namespace railstep {
 namespace {
 
-/// A vertical force of a load point at a place of an element.
+/// Row of a vertical force at a load point, at a place in an element.
 RailRow row_of(const Model& model, const LoadPoint& load_point, std::int32_t element, double xi) {
   RailRow row{load_point.rail, element, {}, 0, {}, {}};
   double shape[3];
@@ -18,7 +18,7 @@ RailRow row_of(const Model& model, const LoadPoint& load_point, std::int32_t ele
   return row;
 }
 
-/// row S^-1 row' of a banded line.
+/// row S^-1 row' for a banded line.
 double banded_compliance(const Line& own, const LineModel& line, const LocalInverse& inverse,
                          const RailRow& row) {
   Eigen::SparseVector<double> load(own.unknowns());
@@ -37,7 +37,7 @@ double banded_compliance(const Line& own, const LineModel& line, const LocalInve
   return sum;
 }
 
-/// Re row held_force row of a condensed line.
+/// Re row held_force row for a condensed line.
 double condensed_compliance(const LineModel& line, const RailRow& row, std::vector<double>& re,
                             std::vector<double>& im) {
   std::fill(re.begin(), re.end(), 0.);
@@ -66,7 +66,7 @@ StepCompliance::StepCompliance(const Model& model, const std::vector<PackedLine>
 std::vector<double> StepCompliance::table(const LoadPoint& load_point, int points) const {
   const auto n = static_cast<std::size_t>(model_.unknowns);
   std::vector<double> re(n), im(n), table;
-  // Tables of one bay, of the one that traffic on a ring stands in.
+  // The tables cover one bay: the one in which the traffic on a ring stands.
   const Endless& e = model_.endless;
   const auto first =
       model_.form == Form::condensed && e.bays > 0

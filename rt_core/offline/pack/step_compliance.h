@@ -7,7 +7,7 @@
 namespace railstep {
 
 /// Compliance of the lines of a packed model within a step, to forces at load points: theta row
-/// S^-1 row', or of condensed lines theta Re row held_force row.
+/// S^-1 row' for banded lines, theta Re row held_force row for condensed ones.
 class StepCompliance {
  public:
   StepCompliance(const Model& model, const std::vector<PackedLine>& lines);

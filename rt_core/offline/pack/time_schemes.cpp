@@ -21,8 +21,8 @@ void check_rho(double rho_inf) {
 }
 
 /// M a_{1-alpha_m} + C v_{1-alpha_f} + K u_{1-alpha_f} = f_{1-alpha_f}, all means of a step's ends,
-/// and Newmark's u1(a, a1), v1(a, a1). With g of equilibrium at both ends the means of C v, K u and
-/// f are that of M g, whatever acts:
+/// and Newmark's u1(a, a1), v1(a, a1). As g is in equilibrium at both ends, the mean of
+/// f - C v - K u is that of M g for all forces:
 ///   a1 = [(1 - alpha_f) g1 + alpha_f g - alpha_m a] / (1 - alpha_m).
 Scheme by_alphas(double dt, double alpha_m, double alpha_f, double beta, double gamma) {
   const double ag = (1. - alpha_f) / (1. - alpha_m), a0 = alpha_f / (1. - alpha_m);
@@ -122,7 +122,7 @@ Scheme held_mean_force(double dt) {
 }
 
 double radius_at_infinity(const Scheme& s) {
-  // A stiffness without bound leaves u1 = 0, hence g1 = -kg u*, whatever v, a and g were.
+  // An infinite stiffness gives u1 = 0, hence g1 = -kg u*, for all v, a and g.
   const Eigen::RowVector3d place(s.uv, s.ua, s.ug), speed(1., s.va, s.vg);  // u*, v* of [v, a, g]
   Eigen::Matrix3d step;
   step.row(0) = speed - s.kv * place;

@@ -12,7 +12,7 @@ namespace railstep {
 /// force and roll gives it. Velocities are those of the static shape moving along with loads and
 /// wheels, accelerations 0.
 /// @returns state_doubles() values
-/// Throws std::invalid_argument if the track has a free rigid mode, if a wheelset or a vehicle
+/// Throws Refused if the track has a free rigid mode, if a wheelset or a vehicle
 /// would lift a wheel, or if a force pushes a wheelset aside and no flange holds it, or lifts it
 /// over its flange, or it is not alone.
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
@@ -25,12 +25,12 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
 /// and a window then pass bays until each is as the one before to 1e-9. Traffic that stands is in
 /// equilibrium.
 /// @returns state_doubles() values
-/// Throws std::invalid_argument as start_in_equilibrium(), where the track has ends, where no whole
+/// Throws Refused as start_in_equilibrium(), where the track has ends, where no whole
 /// number of steps up to 2^20 is a whole number of bays, and where nothing settles.
 std::vector<double> start_moving(const Track& track, const PackedModel& packed, double gravity);
 
 /// Vertical force at t = 0 on a wheel of a wheelset on its rails, N: no force acts on roll, so both
-/// carry half. Throws std::invalid_argument where it has none.
+/// carry half. Throws Refused where it has none.
 double wheel_load(const WheelsetModel& wheelset);
 
 /// Coordinates of a wheelset that stands on its rails, pressed by its wheel_load().

@@ -17,7 +17,7 @@ struct SettledVehicles {
 /// depth the penetration that a contact needs for its force, by Newton's method.
 /// @param flexibility  [wheels][wheels] of the track under the wheels, m/N
 /// @param free         [wheels] height there without the vehicles, irregularities included, m
-/// Throws std::invalid_argument where springs and wheels leave a vehicle a free motion, or where
+/// Throws Refused where springs and wheels leave a vehicle a free motion, or where
 /// a wheel would leave its rail.
 SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexibility,
                                 const Eigen::VectorXd& free);
@@ -25,7 +25,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
 /// The vehicles of a model at rest on its track under what acts, `time` later than at the start,
 /// and adds the forces of their wheels to it. Where the track is one-sided the heights under the
 /// wheels are no linear function of the forces: Newton's method with their slopes by differences.
-/// Throws std::invalid_argument as settle_vehicles().
+/// Throws Refused as settle_vehicles().
 SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packed, double gravity,
                                 double time, Acting& acting);
 

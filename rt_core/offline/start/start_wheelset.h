@@ -10,7 +10,7 @@ namespace railstep {
 /// Force aside on a wheelset's centre at t = 0, N; over 0 to the left.
 double side_force(const WheelsetModel& wheelset);
 
-/// Throws std::invalid_argument, in one sentence, where a force pushes a wheelset aside at t = 0
+/// Throws Refused, in one sentence, where a force pushes a wheelset aside at t = 0
 /// and no flange holds it, and where one that leans on its flange is not alone on the track.
 void check_sides(const Model& model);
 
@@ -26,7 +26,7 @@ struct Stance {
 
 /// The contacts of wheelset b where it is, and the forces in them that balance its weight and what
 /// pushes it: sum of force row = -applied over the coordinates that follow.
-/// Throws std::invalid_argument where a wheel is off its rail or would have to pull.
+/// Throws Refused where a wheel is off its rail or would have to pull.
 Stance stance_of(const Model& model, std::int32_t b, const Configuration& at);
 
 /// How far along y takes a wheelset that no force pushes aside off a flange that its lean brings

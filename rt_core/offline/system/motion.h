@@ -11,7 +11,7 @@ struct MotionPieces {
   std::vector<double> start, coefficient;
 };
 
-/// Throws std::invalid_argument unless there is either a polynomial of 1 to 6 coefficients or a
+/// Throws Refused unless there is either a polynomial of 1 to 6 coefficients or a
 /// table of 2 rows or more with rising times.
 MotionPieces motion_pieces(const Motion& motion);
 

@@ -30,10 +30,10 @@ struct SystemParts {
   void pad();
 };
 
-/// Bodies and beams: unknowns, inertia, weight. Throws std::invalid_argument.
+/// Bodies and beams: unknowns, inertia, weight. Throws Refused.
 void add_parts(const System& system, SystemParts& parts);
 
-/// Motion, markers and rows of joints, springs, forces and sensors. Throws std::invalid_argument.
+/// Motion, markers and rows of joints, springs, forces and sensors. Throws Refused.
 /// @param track  beside which the system stands, or null
 void add_connections(const System& system, const Track* track, SystemParts& parts);
 

@@ -44,7 +44,7 @@ class PackedSystem {
  public:
   /// The start is that of the parts' positions and velocities; accelerations and joint forces are
   /// in balance with them. Velocities that the joints do not allow are taken out as by an impulse.
-  /// Throws std::invalid_argument on what cannot be built: parts without mass, joints of parts that
+  /// Throws Refused on what cannot be built: parts without mass, joints of parts that
   /// do not exist, points off their beam, motion out of a planar system; direct joints, or without
   /// projections, with rho_inf = 1; no equilibrium where one is asked for.
   PackedSystem(const System& system, const SystemOptions& options);

@@ -28,7 +28,7 @@ using StillSystem = std::function<std::unique_ptr<PackedSystem>(double dt, doubl
 /// while kinetic energy grows and dropped where it falls (kinetic damping, Cundall 1976), so that
 /// slow motions arrive too. Steps lengthen while Newton's method bears it. It ends where a step
 /// from rest has no acceleration over 1e-9 m/s2 (rad/s2), or moves by round-off alone. Throws
-/// std::invalid_argument, naming what moves most, where that is not found.
+/// Refused, naming what moves most, where that is not found.
 Rest find_rest(const StillSystem& make, const std::vector<PathOfLoad>& loads);
 
 }  // namespace railstep
