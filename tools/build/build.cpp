@@ -94,10 +94,9 @@ void add_right_rail(const Scene& scene, const RailSection& found, const HeatedJo
   if (!keep_moments) bar.section.moments.reset();
   bar.axial_force = axial_force_of(right, bar.section.area, 1, heated);
   if (scene.track.reference_line != ReferenceLine::centroid)
-    refuse(
-        "E-BUILD-01",
-        "rails that differ have their nodes on their centroids; accepted is track.reference_line = "
-        "\"centroid\"");
+    refuse("E-RAIL-13",
+           "rails that differ have their nodes on their centroids; expected "
+           "track.reference_line = \"centroid\"");
   track.right = bar;
   if (!scene.support) return;
   const double height = height_z(scene.support->at, found.section, track.axis_z);
@@ -114,9 +113,9 @@ PackOptions pack_options_of(const Scene& scene) {
   const StepScene& step = *scene.step;
   if (step.steps_per_frame > std::numeric_limits<int>::max())
     throw InputError(
-        "E-BUILD-02",
-        fmt::format("{}: a frame of {} steps is too long; accepted are {}", scene.file.string(),
-                    step.steps_per_frame, std::numeric_limits<int>::max()));
+        "E-STEP-10",
+        fmt::format("{}: a frame of {} steps is too long; expected at most {} steps",
+                    scene.file.string(), step.steps_per_frame, std::numeric_limits<int>::max()));
   PackOptions options{.scheme = scene.condense.kind ? held_scheme_of(step) : scheme_of(step),
                       .steps_per_frame = static_cast<int>(step.steps_per_frame),
                       .residual_flexibility = scene.condense.residual_flexibility,

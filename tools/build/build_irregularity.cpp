@@ -25,9 +25,10 @@ void check_record(const Scene& scene, const IrregularityScene& own, const RailSi
   for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
   if (2. * step >= 8. * speed * scene.step->dt * (1. - 1e-12)) return;
   throw InputError(
-      "E-BUILD-03",
-      fmt::format("{}: rows {:.6g} m apart hold waves of {:.6g} m, passed at {:.6g} m/s in {:.3g} "
-                  "steps of dt_s = {:.6g}; accepted are 8 steps or more: a shorter step.dt_s",
+      "E-SCENE-36",
+      fmt::format("{}: rows {:.6g} m apart hold waves of {:.6g} m, which are passed at "
+                  "{:.6g} m/s in {:.3g} steps of dt_s = {:.6g}; expected 8 steps or more, "
+                  "by a shorter step.dt_s",
                   own.file.string(), step, 2. * step, speed, 2. * step / (speed * scene.step->dt),
                   scene.step->dt));
 }
@@ -42,12 +43,11 @@ void check_place(const Scene& scene, const IrregularityScene& own, const RailSig
           signal.start + signal.step * static_cast<double>(signal.coefficient.size() - 3);
       if (last >= 0. && (scene.track.endless || signal.start <= length)) continue;
       throw InputError(
-          "E-BUILD-04",
-          fmt::format(
-              "{}: the record, with what its ends run out in, goes from distance {:.6g} m to "
-              "{:.6g} m, and the track from 0 to {:.6g} m; accepted are records of places on the "
-              "track",
-              own.file.string(), signal.start, last, length));
+          "E-SCENE-37",
+          fmt::format("{}: the record and the run-out at its ends go from distance {:.6g} m to "
+                      "{:.6g} m, but the track from 0 to {:.6g} m; expected a record of places "
+                      "on the track",
+                      own.file.string(), signal.start, last, length));
     }
 }
 

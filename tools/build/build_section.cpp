@@ -50,7 +50,7 @@ RailSection from(const SectionFile& file, const BarScene& bar) {
 
 SaintVenant shear_of(const Outline& outline) {
   const OutlineShear found = outline_shear(outline, 0.);
-  if (!found.missing.empty()) refuse("E-BUILD-05", found.missing);
+  if (!found.missing.empty()) refuse("E-RAIL-14", found.missing);
   return found.constants;
 }
 
@@ -71,11 +71,11 @@ RailSection bar_section(const BarScene& bar, bool nonlinear, const std::string& 
   shear.shear_factor_z = bar.shear_factor_z.value_or(shear.shear_factor_z);
   if ((nonlinear || bar.section_points > 0) && !found.moments)
     throw InputError(
-        "E-BUILD-06",
-        fmt::format(
-            "{} gives a section's constants, but {} wants its shape, of which moments of third "
-            "and fourth degree are taken; accepted are profile, rectangles and rectangle",
-            place, bar.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
+        "E-RAIL-15",
+        fmt::format("{} gives a section's constants, but {} needs its shape, for moments of "
+                    "third and fourth degree; expected profile, rectangles or rectangle",
+                    place,
+                    bar.section_points > 0 ? "rule.section_points" : "the nonlinear element"));
   return found;
 } catch (const Refused& error) {
   throw InputError(place, error);

@@ -152,9 +152,9 @@ void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
 void move_on(SensorScene& sensor, int behind, const Track& track) {
   const auto refuse = [&](const std::string& place) {
     railstep::refuse(
-        "E-BUILD-07",
-        fmt::format("sensor \"{}\" is at {}, beyond the {} bays of the ring or window that lie "
-                    "ahead of x = 0",
+        "E-SENSOR-07",
+        fmt::format("sensor \"{}\" is at {}, beyond the {} bays of the ring or window that "
+                    "lie ahead of x = 0; expected a place within them, or more track.bays",
                     sensor.name, place, track.bays - behind));
   };
   if (auto* rail = std::get_if<RailSensor>(&sensor.on)) {

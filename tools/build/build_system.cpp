@@ -51,9 +51,10 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
   if (!scene.track) return std::make_unique<PackedSystem>(system, options_of(scene));
   const Track track = track_of(*scene.track);
   if (!fixed_ports(track).empty())
-    refuse("E-BUILD-08",
-           "supports that do not pull, or have a gap, are not stepped beside bodies and beams; "
-           "accepted are a scene without gap_m and unilateral, or a track alone");
+    refuse("E-BODY-35",
+           "supports that do not pull, or have a gap, are not stepped beside bodies "
+           "and beams; expected a scene without gap_m and unilateral, or a track "
+           "alone");
   const TracedTraffic traced = traffic_of(*scene.track, track);
   names = traced.names;
   return std::make_unique<PackedSystem>(system, options_of(scene), track, traced.traffic,

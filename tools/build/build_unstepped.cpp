@@ -7,22 +7,22 @@
 namespace railstep {
 
 void refuse_unstepped(const Scene& scene) {
-  const auto refuse = [&](bool wanted, const char* what) {
-    if (wanted)
-      throw InputError("E-BUILD-09", fmt::format("{}: run {}", scene.file.string(), what));
+  const auto refuse = [&](bool unstepped, MessageId id, const char* sentence) {
+    if (unstepped) throw InputError(id, fmt::format("{}: {}", scene.file.string(), sentence));
   };
   refuse(scene.loads.empty() && scene.wheelsets.empty() && scene.vehicles.empty() &&
              scene.external_wheels.empty(),
-         "needs a [[load]], a [[wheelset]], a [[vehicle]] or an [[external_wheel]] and the scene "
-         "has none");
-  refuse(!scene.step, "and condense need a [step] and the scene has none");
-  refuse(scene.track.model != RailModel::linearised,
-         "and condense step the linearised rail; accepted is track.model = \"linearised\"");
-  refuse(scene.track.reference_line != ReferenceLine::centroid,
-         "and condense have the nodes on the centroid; accepted is track.reference_line = "
-         "\"centroid\"");
-  refuse(scene.step->steps % scene.step->steps_per_frame != 0,
-         "writes whole frames; accepted is a step.duration_s that is a multiple of step.frame_s");
+         "E-SCENE-38",
+         "nothing runs on the track; expected a [[load]], a [[wheelset]], a [[vehicle]] or an "
+         "[[external_wheel]]");
+  refuse(!scene.step, "E-STEP-11", "the scene has no [step]; expected one to run or condense it");
+  refuse(scene.track.model != RailModel::linearised, "E-SCENE-39",
+         "a run steps the linearised rail; expected track.model = \"linearised\"");
+  refuse(scene.track.reference_line != ReferenceLine::centroid, "E-SCENE-40",
+         "a run has the nodes on the centroid; expected track.reference_line = \"centroid\"");
+  refuse(scene.step->steps % scene.step->steps_per_frame != 0, "E-STEP-09",
+         "step.duration_s is not a multiple of step.frame_s, but a run is written in whole frames; "
+         "expected a multiple of step.frame_s");
 }
 
 }  // namespace railstep

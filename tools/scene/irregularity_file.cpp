@@ -18,9 +18,9 @@ constexpr std::size_t kLargestRecord = std::size_t{64} << 20;           // bytes
 constexpr std::size_t kOfRails = 4;                                     // the first of these
 const Range kPlace = between(-1e9, 1e9), kHeight = between(-10., 10.);  // m
 constexpr double kLeastStep = 1e-6;                                     // m
-constexpr std::string_view kAccepted =
-    "distance_m, and of the track vertical, alignment, cross_level, gauge, or of the rails "
-    "left_z, right_z, left_y, right_y, each ending in _m or _mm";
+constexpr std::string_view kExpected =
+    "distance_m with columns of the track (vertical, alignment, cross_level, gauge) or of the "
+    "rails (left_z, right_z, left_y, right_y), each name ending in _m or _mm";
 
 struct Column {
   std::size_t name;  // of kNames; their count: the distance
@@ -38,8 +38,8 @@ Column column_of(std::string_view field, const CsvLine& line) {
       if (name != std::end(kNames))
         return {static_cast<std::size_t>(name - std::begin(kNames)), metres};
     }
-  throw InputError("E-IRREGULARITY-12", fmt::format("{}: column '{}' is not known; accepted are {}",
-                                                    line.place, field.substr(0, 40), kAccepted));
+  throw InputError("E-IRREGULARITY-12", fmt::format("{}: column '{}' is unknown; expected {}",
+                                                    line.place, field.substr(0, 40), kExpected));
 }
 
 std::vector<Column> columns_of(const CsvLine& header) {
@@ -51,7 +51,8 @@ std::vector<Column> columns_of(const CsvLine& header) {
     for (const Column& other : columns)
       if (other.name == column.name)
         throw InputError("E-IRREGULARITY-13",
-                         fmt::format("{}: column '{}' is given twice", header.place, field));
+                         fmt::format("{}: column '{}' is given twice; expected each column once",
+                                     header.place, field));
     columns.push_back(column);
     if (column.name == std::size(kNames))
       ++distances;
@@ -61,13 +62,15 @@ std::vector<Column> columns_of(const CsvLine& header) {
   if (distances == 0 || of_track + of_rails == 0)
     throw InputError(
         "E-IRREGULARITY-14",
-        fmt::format("{}: '{}' lacks {}; accepted are {}", header.place, header.text.substr(0, 40),
-                    distances == 0 ? "the column distance_m" : "a geometry", kAccepted));
+        fmt::format("{}: '{}' lacks {}; expected {}", header.place, header.text.substr(0, 40),
+                    distances == 0 ? "the column distance_m" : "a column of a geometry",
+                    kExpected));
   if (of_track > 0 && of_rails > 0)
-    throw InputError("E-IRREGULARITY-15",
-                     fmt::format("{}: columns of the track and of its rails stand together; one "
-                                 "kind is accepted",
-                                 header.place));
+    throw InputError(
+        "E-IRREGULARITY-15",
+        fmt::format("{}: columns of the track and of its rails stand together; expected one "
+                    "kind",
+                    header.place));
   return columns;
 }
 
@@ -77,7 +80,7 @@ double metres_of(std::string_view field, const Column& column, const CsvLine& li
   const Range& accepted = column.name == std::size(kNames) ? kPlace : kHeight;
   if (accepted.holds(value)) return value;
   throw InputError("E-IRREGULARITY-16",
-                   fmt::format("{}: {} = {:.9g} m is out of range; accepted is {} m", line.place,
+                   fmt::format("{}: {} = {:.9g} m is out of range; expected {} m", line.place,
                                column.name == std::size(kNames) ? "distance" : kNames[column.name],
                                value, accepted.text()));
 }
@@ -89,9 +92,11 @@ std::vector<std::vector<double>> values_of(const std::vector<CsvLine>& lines,
   for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
     refuse_decimal_comma(*line, columns.size());
     if (line->fields.size() != columns.size())
-      throw InputError("E-IRREGULARITY-17",
-                       fmt::format("{}: {} values where the first line names {} columns",
-                                   line->place, line->fields.size(), columns.size()));
+      throw InputError(
+          "E-IRREGULARITY-17",
+          fmt::format("{}: {} values, but the first line names {} columns; expected one value "
+                      "for each column",
+                      line->place, line->fields.size(), columns.size()));
     for (std::size_t c = 0; c < columns.size(); ++c)
       values[c].push_back(metres_of(line->fields[c], columns[c], *line));
   }
@@ -116,7 +121,7 @@ std::size_t first_off(const std::vector<double>& distance, double much) {
 double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& lines) {
   if (distance.size() < 4)
     throw InputError("E-IRREGULARITY-18",
-                     fmt::format("{}: {} rows of numbers; at least 4 are accepted",
+                     fmt::format("{}: the file has {} rows of numbers; expected at least 4",
                                  lines.front().place, distance.size()));
   const double step =
       (distance.back() - distance.front()) / static_cast<double>(distance.size() - 1);
@@ -127,14 +132,13 @@ double step_of(const std::vector<double>& distance, const std::vector<CsvLine>& 
     const std::size_t one = first_off(distance, kMuch), off = one > 0 ? one : k;
     throw InputError(
         "E-IRREGULARITY-19",
-        fmt::format("{}: distance {:.9g} m behind one of {:.9g} m, where all rows want equal "
-                    "steps, of {:.6g} m on the average; rows at equal, rising distances are "
-                    "accepted",
+        fmt::format("{}: distance {:.9g} m follows {:.9g} m, but the average step of all "
+                    "rows is {:.6g} m; expected distances that rise by equal steps",
                     lines[off + 1].place, distance[off], distance[off - 1], step));
   }
   if (step < kLeastStep)
     throw InputError("E-IRREGULARITY-20",
-                     fmt::format("{}: rows {:.6g} m apart; at least {:g} m are accepted",
+                     fmt::format("{}: rows are {:.6g} m apart; expected at least {:g} m",
                                  lines[1].place, step, kLeastStep));
   return step;
 }
@@ -145,9 +149,8 @@ RailSignals read_irregularities(const std::filesystem::path& file) {
   const std::string text = read_text(file, kLargestRecord);
   const std::vector<CsvLine> lines = csv_lines(text, file.string());
   if (lines.empty())
-    throw InputError(
-        "E-IRREGULARITY-21",
-        fmt::format("{}: the file is empty; accepted are columns {}", file.string(), kAccepted));
+    throw InputError("E-IRREGULARITY-21",
+                     fmt::format("{}: the file is empty; expected {}", file.string(), kExpected));
   const std::vector<Column> columns = columns_of(lines.front());
   const std::vector<std::vector<double>> values = values_of(lines, columns);
   const auto distance = std::find_if(columns.begin(), columns.end(),

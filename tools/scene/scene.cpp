@@ -26,27 +26,32 @@ int read_end_zone(const Table& t, const TrackScene& track) {
   if (zones == 0) {
     if (t.has("end_zone_bays"))
       t.refuse("end_zone_bays", "E-SCENE-03",
-               "end_zone_bays, but no end is \"non-reflecting\"; accepted beside one that is");
+               "end_zone_bays is given, but no end is \"non-reflecting\"; expected ends "
+               "= \"non-reflecting\", or no end_zone_bays");
     return kEndZoneBays;
   }
   const auto bays = static_cast<int>(t.integer("end_zone_bays", 1, 10'000, kEndZoneBays));
   if (zones * bays > track.bays)
     t.refuse("end_zone_bays", "E-SCENE-04",
-             fmt::format("{} zone{} of {} bays before non-reflecting ends, but bays = {}; accepted "
-                         "is end_zone_bays = {} or less, or more bays",
-                         zones, zones > 1 ? "s" : "", bays, track.bays, track.bays / zones));
+             fmt::format("end_zone_bays = {} at {} non-reflecting end{} does not fit on bays = "
+                         "{}; expected end_zone_bays = {} or less, or more bays",
+                         bays, zones, zones > 1 ? "s" : "", track.bays, track.bays / zones));
   return bays;
 }
 
 /// A track without end is taken at rest, and has no ends.
 void check_endless(const Table& t, const TrackScene& track) {
   if (track.ends != RailEnds{})
-    t.refuse("ends", "E-SCENE-05", "a track without end has no ends to hold; accepted is \"free\"");
+    t.refuse("ends", "E-SCENE-05",
+             "a track without end has no ends to hold; expected ends = \"free\"");
   if (track.model != RailModel::linearised)
-    t.refuse("model", "E-SCENE-06", "accepted with length = \"endless\" is model = \"linearised\"");
+    t.refuse("model", "E-SCENE-06",
+             "length = \"endless\" needs a linearised rail; expected model = "
+             "\"linearised\"");
   if (track.linearised_under_weight)
     t.refuse("linearised_at", "E-SCENE-07",
-             "accepted with length = \"endless\" is linearised_at = \"rest\"");
+             "length = \"endless\" needs a rail that is linearised at rest; expected "
+             "linearised_at = \"rest\"");
 }
 
 TrackScene read_track(const Table& t) {
@@ -67,18 +72,18 @@ TrackScene read_track(const Table& t) {
   track.model = kModels[t.choice("model", {"linearised", "nonlinear", "timoshenko"}, 0)];
   if (track.model == RailModel::nonlinear && track.unknowns != Unknowns::full)
     t.refuse("model", "E-SCENE-08",
-             "model = \"nonlinear\" bends in space, where a rail shortens; accepted with "
+             "model = \"nonlinear\" bends in space, where a rail shortens; expected "
              "unknowns = \"full\"");
   track.linearised_under_weight = t.choice("linearised_at", {"rest", "weight"}, 0) == 1;
   if (track.linearised_under_weight && track.unknowns != Unknowns::full)
     t.refuse("linearised_at", "E-SCENE-09",
-             "linearised_at = \"weight\" couples sag and stretch; accepted with "
-             "unknowns = \"full\"");
+             "linearised_at = \"weight\" couples sag and stretch; expected unknowns = "
+             "\"full\"");
   track.reference_line = read_reference_line(t);
   if (track.reference_line != ReferenceLine::centroid && track.unknowns != Unknowns::full)
     t.refuse("reference_line", "E-SCENE-10",
-             "off the centroid nodes move along x as the rail bends; accepted is reference_line = "
-             "\"centroid\", or unknowns = \"full\"");
+             "nodes off the centroid move along x as the rail bends; expected "
+             "reference_line = \"centroid\", or unknowns = \"full\"");
   if (track.endless) check_endless(t, track);
   return track;
 }
@@ -94,8 +99,8 @@ void check_size(const Table& t, const TrackScene& track) {
   const double unknowns = elements * 2.0 * per_node;  // two nodes an element
   const double bandwidth = 6.0 * per_node;
   t.refuse("bays", "E-SCENE-11",
-           fmt::format("bays = {} makes {:.0f} elements, about {:.3g} bytes; accepted are "
-                       "at most {} elements",
+           fmt::format("bays = {} makes {:.0f} elements, about {:.3g} bytes; expected at most "
+                       "{} elements",
                        track.bays, elements, 4.0 * 8.0 * unknowns * bandwidth, kMostElements));
 }
 
@@ -113,10 +118,9 @@ void read_spring(const Table& t, std::size_t axis, bool required, std::array<dou
 void check_held(const Table& rail, const Scene& scene) {
   const auto& ends = scene.track.ends;
   if (scene.rail.temperature_rise != 0.0 && (ends[0] == RailEnd::free || ends[1] == RailEnd::free))
-    rail.refuse("temperature_rise_k", "E-SCENE-12",
+    rail.refuse("temperature_rise_k", "E-RAIL-08",
                 fmt::format("temperature_rise_k = {:.15g}, but a free end lets the rail grow; "
-                            "accepted is 0, or track.ends that are pinned, clamped or "
-                            "non-reflecting",
+                            "expected 0, or track.ends that are pinned, clamped or non-reflecting",
                             scene.rail.temperature_rise));
 }
 
@@ -125,23 +129,23 @@ void read_gauge(const Table& track, Scene& scene) {
   if (!track.has("gauge_m")) return;
   const double gauge = track.number("gauge_m", between(0.3, 3.0));
   if (track.has("rail_spacing_m"))
-    track.refuse("gauge_m", "E-SCENE-13", "gauge_m beside rail_spacing_m; one of them is accepted");
+    track.refuse("gauge_m", "E-RAIL-09",
+                 "gauge_m is given beside rail_spacing_m; expected one of them");
   if (scene.track.rails == 1)
-    track.refuse("gauge_m", "E-SCENE-14",
-                 "gauge_m, but the track has one rail; accepted with rails = 2");
+    track.refuse("gauge_m", "E-RAIL-10",
+                 "gauge_m is given, but the track has one rail; expected rails = 2");
   if (scene.rail.cant != 0.0)
-    track.refuse(
-        "gauge_m", "E-SCENE-15",
-        "gauge_m is measured between the heads of upright rails; accepted beside rail.cant "
-        "is rail_spacing_m, between the rails' axes");
+    track.refuse("gauge_m", "E-RAIL-11",
+                 "gauge_m is measured between the heads of upright rails, but rail.cant "
+                 "is not 0; expected rail_spacing_m, the distance between the rails' axes");
   scene.track.rail_spacing = spacing_of_gauge(track, scene, gauge);
 }
 
 /// A vertical force moves a rail that leans sideways too.
 void check_cant(const Table& rail, const Scene& scene) {
   if (scene.rail.cant != 0.0 && scene.track.unknowns == Unknowns::vertical)
-    rail.refuse("cant", "E-SCENE-16",
-                "cant makes a vertical force move the rail sideways too; accepted with "
+    rail.refuse("cant", "E-RAIL-12",
+                "cant makes a vertical force move the rail sideways too; expected "
                 "track.unknowns = \"rigid-section\" or \"full\"");
 }
 
@@ -167,10 +171,16 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   const std::optional<Table> ballast = root.table_if("ballast");
   if (!t && !ballast) return std::nullopt;
   if (!ballast)
-    t->refuse("", "E-SCENE-32", "there is a sleeper but no [ballast] under it; both or none");
+    t->refuse("", "E-SUPPORT-01",
+              "there is a [sleeper] but no [ballast] under it; expected both tables or "
+              "neither");
   if (!t)
-    ballast->refuse("", "E-SCENE-33", "there is ballast but no [sleeper] on it; both or none");
-  if (!scene.support) t->refuse("", "E-SCENE-34", "there is a sleeper but no [support] on it");
+    ballast->refuse("", "E-SUPPORT-02",
+                    "there is [ballast] but no [sleeper] on it; expected both tables or "
+                    "neither");
+  if (!scene.support)
+    t->refuse("", "E-SUPPORT-03",
+              "there is a [sleeper] but no [support] on it; expected a [support]");
   Sleeper s;
   s.mass = t->number("mass_kg", between(0.0, 1e5));  // 0: pad and ballast in series
   s.roll_inertia = scene.track.rails == 2 ? t->number("roll_inertia_kg_m2", between(0.0, 1e6))
@@ -181,17 +191,20 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   s.ballast_unilateral = ballast->boolean("unilateral", false);
   s.ballast_gap = ballast->number("gap_m", between(0.0, 0.1), 0.0);
   if (s.ballast_length > 0.0 && scene.support->length == 0.0)
-    ballast->refuse("length_m", "E-SCENE-20",
-                    "length_m makes the sleeper pitch, but pads that are points do not feel it; "
-                    "accepted with a support.length_m above 0");
+    ballast->refuse("length_m", "E-SUPPORT-09",
+                    "length_m makes the sleeper pitch, but pads that are points do not feel "
+                    "it; expected support.length_m above 0");
   for (const std::size_t axis : {0u, 1u})
     if (ballast->has(fmt::format("stiffness_{}_n_per_m", "xyz"[axis])) ||
         ballast->has(fmt::format("damping_{}_n_s_per_m", "xyz"[axis]))) {
       read_spring(*ballast, axis, true, s.ballast_stiffness, s.ballast_damping);
       if (s.ballast_stiffness[axis] == 0.0)
-        ballast->refuse(fmt::format("stiffness_{}_n_per_m", "xyz"[axis]), "E-SCENE-35",
-                        "0 would leave the sleeper free; accepted is above 0, or neither stiffness "
-                        "nor damping: then it is held");
+        ballast->refuse(
+            fmt::format("stiffness_{}_n_per_m", "xyz"[axis]), "E-SUPPORT-19",
+            fmt::format("stiffness_{0}_n_per_m = 0 leaves the sleeper free along {0}; expected a "
+                        "stiffness above 0, or neither stiffness nor damping along {0}, which "
+                        "holds the sleeper there",
+                        "xyz"[axis]));
     }
   return s;
 }
@@ -200,9 +213,9 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
 std::int64_t whole_steps(const Table& t, std::string_view key, double time, double dt) {
   const double steps = std::round(time / dt);
   if (!(steps >= 1.0) || std::fabs(time / dt - steps) > 1e-9 * steps)
-    t.refuse(key, "E-SCENE-22",
-             fmt::format("{} = {:.15g} is not a whole number of steps of dt_s = {:.15g}; "
-                         "accepted is a multiple of dt_s",
+    t.refuse(key, "E-STEP-06",
+             fmt::format("{} = {:.15g} is not a whole number of steps of dt_s = {:.15g}; expected "
+                         "a multiple of dt_s",
                          key, time, dt));
   return static_cast<std::int64_t>(steps);
 }
@@ -230,9 +243,9 @@ StepScene read_times(const Table& t) {
   s.dt = t.number("dt_s", between(1e-7, 0.1));
   const double duration = t.number("duration_s", above_upto(0.0, 1e7));
   if (s.dt > duration)
-    t.refuse("dt_s", "E-SCENE-23",
-             fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; accepted is "
-                         "at most the duration",
+    t.refuse("dt_s", "E-STEP-07",
+             fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; expected at most "
+                         "the duration",
                          s.dt, duration));
   const double frame = t.number("frame_s", above_upto(0.0, duration), s.dt);
   s.steps_per_frame = whole_steps(t, "frame_s", frame, s.dt);
@@ -246,21 +259,21 @@ StepScene read_track_step(const Table& t, const TrackScene& track) {
   constexpr Start kStarts[] = {Start::equilibrium, Start::released, Start::moving};
   s.start = kStarts[t.choice("start", {"equilibrium", "released", "moving"}, 0)];
   if (s.start == Start::moving && !track.endless)
-    t.refuse("start", "E-SCENE-24",
-             "start = \"moving\" wants a track that goes on as it is; accepted with "
-             "track.length = \"endless\"");
+    t.refuse("start", "E-STEP-08",
+             "start = \"moving\" needs a track without end; expected track.length = "
+             "\"endless\", or another start");
   return s;
 }
 
 void check_frames(const Table& t, const StepScene& s) {
   if (s.steps % s.steps_per_frame != 0)
-    t.refuse("duration_s", "E-SCENE-25",
-             "the run is written in whole frames; accepted is a duration_s that is a "
-             "multiple of frame_s");
+    t.refuse("duration_s", "E-STEP-09",
+             "duration_s is not a multiple of frame_s, but a run is written in whole "
+             "frames; expected a multiple of frame_s");
   if (s.steps_per_frame > std::numeric_limits<int>::max())
-    t.refuse("frame_s", "E-SCENE-26",
-             fmt::format("a frame of {} steps is too long; accepted are {}", s.steps_per_frame,
-                         std::numeric_limits<int>::max()));
+    t.refuse("frame_s", "E-STEP-10",
+             fmt::format("a frame of {} steps is too long; expected at most {} steps",
+                         s.steps_per_frame, std::numeric_limits<int>::max()));
 }
 
 Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -268,7 +281,7 @@ Table open_scene(const std::filesystem::path& file, const std::vector<std::strin
   const std::int64_t schema = root.integer("schema", 1, std::numeric_limits<std::int64_t>::max());
   if (schema > 1)
     root.refuse("schema", "E-SCENE-27",
-                fmt::format("schema = {} is newer than this program; accepted is 1", schema));
+                fmt::format("schema = {} is newer than this program; expected 1", schema));
   return root;
 }
 
@@ -283,7 +296,8 @@ void read_rails(const Table& root, Scene& scene) {
   if (const std::optional<Table> right = rail.table_if("right")) {
     if (scene.track.rails == 1)
       right->refuse("", "E-SCENE-28",
-                    "the track has one rail, the left one; accepted with track.rails = 2");
+                    "the track has one rail, the left one; expected track.rails = 2 beside "
+                    "[rail.right]");
     scene.right_rail = read_right_rail(*right, scene.rail);
   }
   root.attempt([&] { read_gauge(root.table("track"), scene); });
@@ -296,12 +310,12 @@ void read_rails(const Table& root, Scene& scene) {
   if (!scene.track.endless) return;
   if (scene.support && scene.support->length > 0.)
     root.table("support").refuse(
-        "length_m", "E-SCENE-29",
-        "the pads of a track without end are points; accepted is length_m = 0");
+        "length_m", "E-SUPPORT-20",
+        "the pads of a track without end are points; expected length_m = 0");
   if (!scene.seat_changes.empty())
-    root.table("track").refuse(
-        "length", "E-SCENE-30",
-        "the seats of a track without end are alike; accepted without [[support_change]]");
+    root.table("track").refuse("length", "E-SUPPORT-21",
+                               "the seats of a track without end are alike; expected no "
+                               "[[support_change]]");
 }
 
 Scene read_track_scene(const Table& root) {
@@ -328,8 +342,8 @@ Scene read_track_scene(const Table& root) {
   scene.trace_supports = output && output->boolean("supports", false);
   if (scene.trace_supports && scene.track.endless)
     output->refuse("supports", "E-SCENE-31",
-                   "the supports of a track without end pass under its traffic; accepted are "
-                   "sensors, which follow it bay by bay");
+                   "the supports of a track without end pass under its traffic; expected "
+                   "[[sensor]] tables instead, as sensors follow the traffic bay by bay");
   check_names(root, scene);
   return scene;
 }
@@ -337,10 +351,11 @@ Scene read_track_scene(const Table& root) {
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const Table root = open_scene(file, overrides);
   if (const char* key = key_of_system(root))
-    root.refuse(key, "E-SCENE-02",
-                fmt::format("the key {} makes this a scene of bodies and beams, which run and "
-                            "condense take; accepted here is the scene of a track",
-                            key));
+    root.refuse(
+        key, "E-SCENE-02",
+        fmt::format("the key {} makes this a scene of bodies and beams, which only `run` and "
+                    "`condense` take; expected a scene of a track alone",
+                    key));
   return root.whole(read_track_scene);
 }
 

@@ -10,37 +10,39 @@ namespace {
 void refuse_foreign(const Table& root) {
   if (root.has("wheelset"))
     root.refuse("wheelset", "E-BODY-01",
-                "[[wheelset]] is not stepped beside bodies and beams; accepted is a [[body]] with "
-                "[[spring]] or [[joint]] to the rails, and [[load]]");
+                "[[wheelset]] is not stepped beside bodies and beams; expected a "
+                "[[body]] with [[spring]] or [[joint]] to the rails, or [[load]]");
   if (root.has("stop"))
     root.refuse("stop", "E-BODY-02",
-                "[[stop]] is not stepped beside bodies and beams; accepted is a [[spring]] between "
-                "the rail and the ground");
+                "[[stop]] is not stepped beside bodies and beams; expected a [[spring]] "
+                "between the rail and the ground");
   if (root.has("vehicle"))
-    root.refuse("vehicle", "E-BODY-03",
-                "[[vehicle]] is not stepped beside bodies and beams; accepted is a [[body]] with "
-                "[[spring]] or [[joint]] to the rails, and [[load]]");
+    root.refuse("vehicle", "E-BODY-01",
+                "[[vehicle]] is not stepped beside bodies and beams; expected a [[body]] "
+                "with [[spring]] or [[joint]] to the rails, or [[load]]");
   for (const char* key : {"irregularity", "defect"})
     if (root.has(key))
       root.refuse(key, "E-BODY-04",
-                  fmt::format("{} is felt by wheels, which are not stepped beside bodies and "
-                              "beams; accepted is a scene without it",
+                  fmt::format("{} acts on wheels, which are not stepped beside bodies and beams; "
+                              "expected a scene without it",
                               key));
   if (root.has("static"))
     root.refuse("static", "E-BODY-05",
-                "[static] is of `railstep static`, which takes a track alone; accepted is "
-                "a scene of a track and bodies without it");
+                "[static] belongs to `railstep static`, which takes a track alone; "
+                "expected a scene of a track and bodies without it");
 }
 
 StepScene read_step(const Table& t, const TrackScene& track) {
   if (t.has("scheme") && t.string("scheme") == "energy-momentum")
     t.refuse("scheme", "E-BODY-06",
-             "scheme = \"energy-momentum\" is of bodies and beams without a track; "
-             "accepted are \"generalised-alpha\", \"backward-euler\", \"newmark\", \"hht\"");
+             "scheme = \"energy-momentum\" steps bodies and beams without a track; "
+             "expected \"generalised-alpha\", \"backward-euler\", \"newmark\" or "
+             "\"hht\" beside one");
   if (t.has("scheme") && t.string("scheme") == "tr-bdf2")
     t.refuse("scheme", "E-BODY-07",
-             "scheme = \"tr-bdf2\" has two stages, by which bodies and beams are not stepped; "
-             "accepted are \"generalised-alpha\", \"backward-euler\", \"newmark\", \"hht\"");
+             "scheme = \"tr-bdf2\" has two stages, which the step of bodies and beams "
+             "does not have; expected \"generalised-alpha\", \"backward-euler\", "
+             "\"newmark\" or \"hht\"");
   const StepScene step = read_track_step(t, track);
   check_frames(t, step);
   return step;
@@ -49,31 +51,29 @@ StepScene read_step(const Table& t, const TrackScene& track) {
 void check_model(const Table& t, const TrackScene& track) {
   if (track.endless)
     t.refuse("length", "E-BODY-08",
-             "bodies and beams stand still, and a track without end goes on under its "
-             "traffic; accepted beside them is a track with ends");
+             "bodies and beams stand still, but a track without end goes on under its "
+             "traffic; expected a track with ends beside them");
   if (track.model != RailModel::linearised)
     t.refuse("model", "E-BODY-09",
-             fmt::format("model = \"{}\" is not stepped; accepted beside bodies and beams "
-                         "is \"linearised\"",
+             fmt::format("model = \"{}\" is not stepped beside bodies and beams; expected "
+                         "\"linearised\"",
                          t.string("model")));
   if (track.reference_line != ReferenceLine::centroid)
     t.refuse("reference_line", "E-BODY-10",
-             fmt::format("reference_line = \"{}\" is not stepped; accepted beside bodies and beams "
-                         "is \"centroid\"",
+             fmt::format("reference_line = \"{}\" is not stepped beside bodies and beams; "
+                         "expected \"centroid\"",
                          t.string("reference_line")));
 }
 
 void check_system(const Table& root, const SystemScene& scene, const TrackScene& track) {
   if (scene.options.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
-    root.table("joints").refuse(
-        "hold", "E-BODY-11",
-        "hold = \"gear-gupta-leimkuhler\" does not hold joints on a track; accepted are "
-        "\"augmented-lagrangian\", \"baumgarte\", \"direct\"");
+    root.table("joints").refuse("hold", "E-BODY-11",
+                                "hold = \"gear-gupta-leimkuhler\" does not hold joints on a track; "
+                                "expected \"augmented-lagrangian\", \"baumgarte\" or \"direct\"");
   if (scene.system.planar && track.rails != 1)
-    root.table("system").refuse(
-        "planar", "E-BODY-12",
-        "planar = true is the plane y = 0, in which two rails have no part; accepted "
-        "is planar = false, or track.rails = 1");
+    root.table("system").refuse("planar", "E-BODY-12",
+                                "planar = true is the plane y = 0, where two rails have no place; "
+                                "expected planar = false, or track.rails = 1");
 }
 
 }  // namespace

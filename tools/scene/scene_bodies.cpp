@@ -21,8 +21,8 @@ int read_side(const Table& t, const Scene& scene) {
   const bool left = scene.track.rails == 1 ? t.choice("rail", {"left", "right"}, 0) == 0
                                            : t.choice("rail", {"left", "right"}) == 0;
   if (!left && scene.track.rails == 1)
-    t.refuse("rail", "E-RUNNER-20",
-             "rail = \"right\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-SCENE-01",
+             "rail = \"right\", but the track has one rail; expected \"left\"");
   return left ? kLeftRail : kRightRail;
 }
 
@@ -31,13 +31,13 @@ std::vector<double> read_time_table(const Table& t, std::string_view key, const 
   for (std::size_t i = 0; i < rows.size(); i += 2) {
     if (rows[i] < 0.0 || (i > 0 && rows[i] <= rows[i - 2]))
       t.refuse(key, "E-RUNNER-02",
-               fmt::format("{}: the time {:.15g} s of row {} does not rise; accepted are times "
-                           "from 0 on, each above the one before",
+               fmt::format("{}: the time {:.15g} s of row {} does not rise; expected times from 0 "
+                           "on, each above the one before",
                            key, rows[i], i / 2));
     if (!accepted.holds(rows[i + 1]))
       t.refuse(key, "E-RUNNER-21",
-               fmt::format("{}: {:.15g} in row {} is out of range; accepted is {}", key,
-                           rows[i + 1], i / 2, accepted.text()));
+               fmt::format("{}: {:.15g} in row {} is out of range; expected {}", key, rows[i + 1],
+                           i / 2, accepted.text()));
   }
   return rows;
 }
@@ -62,7 +62,7 @@ SpeedScene read_speed(const Table& t, std::optional<double> otherwise) {
             {}};
   if (t.has("speed_m_per_s"))
     t.refuse("speed_table", "E-RUNNER-22",
-             "speed_table is given beside speed_m_per_s; one of them is accepted");
+             "speed_table is given beside speed_m_per_s; expected one of them");
   std::vector<double> rows = read_time_table(t, "speed_table", kSpeed);
   double least = rows[1], most = rows[1];
   for (std::size_t i = 3; i < rows.size(); i += 2) {
@@ -71,8 +71,8 @@ SpeedScene read_speed(const Table& t, std::optional<double> otherwise) {
   }
   if (least < 0.0 && most > 0.0)
     t.refuse("speed_table", "E-RUNNER-23",
-             fmt::format("speed_table goes from {:.15g} to {:.15g} m/s and turns around; accepted "
-                         "are speeds of one sign",
+             fmt::format("speed_table goes from {:.15g} to {:.15g} m/s and so turns around; "
+                         "expected speeds of one sign",
                          least, most));
   const double first = rows[1];
   return {first, std::move(rows)};
@@ -89,14 +89,13 @@ void check_path(const Table& t, const Scene& scene, double start, const SpeedSce
   // A path may end exactly on the border; 1e-9 of the length forgives its rounding.
   if (end >= -1e-9 * length && end <= length * (1.0 + 1e-9)) return;
   if (!speed.speeds.empty())
-    t.refuse(
-        "speed_table", "E-RUNNER-06",
-        fmt::format("speed_table leads from x = {:.15g} to {:.6g} m, off the rail; accepted is "
-                    "0 to {:.6g} (or may_leave_rail = true)",
-                    start, end, length));
+    t.refuse("speed_table", "E-RUNNER-06",
+             fmt::format("speed_table leads from x = {:.15g} to {:.6g} m, off the rail; expected "
+                         "0 to {:.6g} m, or may_leave_rail = true",
+                         start, end, length));
   t.refuse("speed_m_per_s", "E-RUNNER-07",
-           fmt::format("speed_m_per_s = {:.15g} from start_m = {:.15g} leads to x = {:.6g} m, off "
-                       "the rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
+           fmt::format("speed_m_per_s = {:.15g} from start_m = {:.15g} leads to x = {:.6g} m, "
+                       "off the rail; expected 0 to {:.6g} m, or may_leave_rail = true",
                        speed.speed, start, end, length));
 }
 
@@ -107,8 +106,9 @@ void read_swing(const Table& t, const Scene& scene, LoadScene& load) {
   if (!t.has("amplitude_n")) {
     for (const char* key : {"frequency_hz", "phase_deg"})
       if (t.has(key))
-        t.refuse(key, "E-RUNNER-08",
-                 fmt::format("{} is of a force that swings; accepted with amplitude_n", key));
+        t.refuse(
+            key, "E-RUNNER-08",
+            fmt::format("{} belongs to a force that swings; expected amplitude_n beside it", key));
     return;
   }
   load.amplitude = t.number("amplitude_n", kForce);
@@ -117,7 +117,7 @@ void read_swing(const Table& t, const Scene& scene, LoadScene& load) {
   if (scene.step && load.frequency * scene.step->dt > .125 * (1.0 + 1e-12))
     t.refuse("frequency_hz", "E-RUNNER-09",
              fmt::format("frequency_hz = {:.15g} has {:.3g} steps of dt_s = {:.6g} a period; "
-                         "accepted are 8 or more: a shorter step.dt_s",
+                         "expected 8 or more, by a shorter step.dt_s",
                          load.frequency, 1.0 / (load.frequency * scene.step->dt), scene.step->dt));
 }
 
@@ -141,8 +141,8 @@ LoadScene read_load(const Table& t, const Scene& scene) {
     load.stop = t.number("stop_m", between(0.0, scene.track.endless ? 1e12 : length));
     if ((load.stop - load.start) * fastest(load) <= 0.0)
       t.refuse("stop_m", "E-RUNNER-24",
-               fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; accepted "
-                           "is a place the load moves to",
+               fmt::format("stop_m = {:.15g} is not ahead of start_m = {:.15g}; expected a place "
+                           "that the load moves to",
                            load.stop, load.start));
   }
   if (!load.may_leave_rail) check_path(t, scene, load.start, speed, load.stop);
@@ -158,7 +158,8 @@ void read_guide(const Table& wheelset, WheelsetScene& w) {
   w.tolerance = t->number("tolerance", between(1e-15, 1e-2), w.tolerance);
   if (!baumgarte && (t->has("alpha_per_s") || t->has("beta_per_s")))
     t->refuse(t->has("alpha_per_s") ? "alpha_per_s" : "beta_per_s", "E-RUNNER-11",
-              "alpha_per_s and beta_per_s are Baumgarte's; accepted with method = \"baumgarte\"");
+              "alpha_per_s and beta_per_s belong to Baumgarte's method; expected "
+              "method = \"baumgarte\" beside them");
   if (baumgarte) {
     w.alpha = t->number("alpha_per_s", above_upto(0.0, 1e6));
     w.beta = t->number("beta_per_s", above_upto(0.0, 1e6));
@@ -172,14 +173,13 @@ void check_start(const Table& t, const Scene& scene, const WheelsetScene& w) {
   if (on_rail || scene.track.endless || !scene.step || scene.step->start == Start::released) return;
   t.refuse("start_m", "E-RUNNER-12",
            fmt::format("start_m = {:.15g} is off the rail, where the wheelset has no "
-                       "equilibrium; accepted is 0 to {:.6g}, or step.start = "
-                       "\"released\"",
+                       "equilibrium; expected 0 to {:.6g} m, or step.start = \"released\"",
                        w.start, length));
 }
 
 WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<InputScene>& inputs) {
   if (scene.track.rails != 2)
-    t.refuse("", "E-RUNNER-13", "a wheelset needs two rails; accepted with rails = 2");
+    t.refuse("", "E-RUNNER-13", "a wheelset needs two rails; expected track.rails = 2");
   const Range inertia = above_upto(0.0, 1e6);
   WheelsetScene w{};
   w.name = checked_name(t, "name", t.string("name"));
@@ -223,12 +223,12 @@ std::string checked_name(const Table& t, std::string_view key, const std::string
   };
   if (!std::all_of(name.begin(), name.end(), is_letter) || name.size() > 64)
     t.refuse(key, "E-RUNNER-14",
-             fmt::format("{} = \"{}\" is no name; accepted are up to 64 of a-z, A-Z, 0-9, _ "
+             fmt::format("{} = \"{}\" is not a valid name; expected up to 64 of a-z, A-Z, 0-9, _ "
                          "and -",
                          key, name.substr(0, 64)));
   if (name.starts_with("support_"))
     t.refuse(key, "E-RUNNER-15",
-             fmt::format("{} = \"{}\" is a name of the trace's supports; accepted is one that "
+             fmt::format("{} = \"{}\" is kept for the supports in the trace; expected a name that "
                          "does not start with support_",
                          key, name));
   return name;
@@ -262,7 +262,7 @@ OuterForce read_body_force(const Table& t, int direction, bool moment,
                            std::vector<InputScene>& inputs) {
   if (!t.has("input")) return {direction, read_force_table(t, "table", kForce)};
   if (t.has("table"))
-    t.refuse("table", "E-RUNNER-25", "table is given beside input; one of them is accepted");
+    t.refuse("table", "E-RUNNER-25", "table is given beside input; expected one of them");
   return {direction, {}, read_input(t, moment, inputs)};
 }
 
@@ -271,10 +271,12 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
       checked_name(t, "input", t.string("input")) + (moment ? ".moment_n_m" : ".force_n");
   for (const InputScene& other : inputs)
     if (other.name == name)
-      t.refuse("input", "E-RUNNER-17",
-               fmt::format("{} is taken by another force; accepted is a name used once", name));
+      t.refuse(
+          "input", "E-RUNNER-17",
+          fmt::format("{} is taken by another force; expected a name that is used once", name));
   if (inputs.size() == static_cast<std::size_t>(kMaxInputs))
-    t.refuse("input", "E-RUNNER-18", fmt::format("more than {} inputs", kMaxInputs));
+    t.refuse("input", "E-RUNNER-18",
+             fmt::format("there are more than {0} inputs; expected at most {0}", kMaxInputs));
   inputs.push_back({name, t.number(moment ? "limit_n_m" : "limit_n", above_upto(0.0, 1e12))});
   return static_cast<int>(inputs.size()) - 1;
 }
@@ -287,8 +289,8 @@ void check_names(const Table& root, const Scene& scene) {
     const auto [first, is_new] = taken.emplace(name, t.name());
     if (!is_new)
       t.refuse(key, "E-RUNNER-19",
-               fmt::format("{} = \"{}\" is taken by [{}]; accepted is a name used once", key, name,
-                           first->second));
+               fmt::format("{} = \"{}\" is taken by [{}]; expected a name that is used once", key,
+                           name, first->second));
   };
   const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
              sensors = root.tables("sensor"), stops = root.tables("stop");

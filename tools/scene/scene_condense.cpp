@@ -23,7 +23,8 @@ std::array<double, 2> read_band(const Table& t, const std::array<double, 2>& oth
   if (!t.has("band_hz")) return otherwise;
   const std::vector<double> band = t.numbers("band_hz", above_upto(0.0, 1e5), 2, 2);
   if (!(band[0] < band[1]))
-    t.refuse("band_hz", "E-CONDENSE-25", "band_hz does not rise; accepted is [low, high]");
+    t.refuse("band_hz", "E-CONDENSE-25",
+             "band_hz does not rise; expected [low, high] with low below high");
   return {band[0], band[1]};
 }
 
@@ -38,18 +39,19 @@ CondenseScene read_condense(const Table& root, const TrackScene& track) {
   if (kind > 0) c.kind = static_cast<ReductionKind>(kind - 1);
   if (track.endless && kind > 1)
     t->refuse("kind", "E-CONDENSE-26",
-              "a track without end is condensed in Floquet modes; accepted with track.length = "
-              "\"endless\" are \"full\" and \"modal\"");
+              "a track without end is condensed in Floquet modes; expected \"full\" or "
+              "\"modal\" beside track.length = \"endless\"");
   if (t->has("modes_per_bay")) c.modes_per_bay = t->number("modes_per_bay", between(0.0, 1000.0));
   if (t->has("highest_hz")) c.highest_hz = t->number("highest_hz", above_upto(0.0, 1e6));
   if (c.modes_per_bay && c.highest_hz)
     t->refuse("highest_hz", "E-CONDENSE-27",
-              "highest_hz is given beside modes_per_bay; one of them is accepted");
+              "highest_hz is given beside modes_per_bay; expected one of them");
   c.nodes_per_bay = static_cast<int>(t->integer("nodes_per_bay", 1, 2000, 1));
   if (2 * track.elements_per_bay % c.nodes_per_bay != 0)
     t->refuse("nodes_per_bay", "E-CONDENSE-28",
-              "a bay's nodes are kept at equal steps; accepted is a divisor of 2 "
-              "track.elements_per_bay");
+              fmt::format("nodes_per_bay = {} does not keep a bay's nodes at equal steps; expected "
+                          "a divisor of 2 track.elements_per_bay = {}",
+                          c.nodes_per_bay, 2 * track.elements_per_bay));
   c.band_hz = read_band(*t, c.band_hz);
   c.expansion_hz = t->has("expansion_hz") ? t->numbers("expansion_hz", above_upto(0.0, 1e5), 1, 64)
                                           : expansion_points(c.band_hz);
@@ -65,20 +67,20 @@ CondenseScene read_full_order(const Table& root) {
   if (!t) return full;
   if (const std::string kind = t->string("kind", "full"); kind != "full")
     t->refuse("kind", "E-CONDENSE-29",
-              fmt::format("kind = \"{}\" is not stepped beside bodies and beams; accepted is "
-                          "\"full\"",
+              fmt::format("kind = \"{}\" is not stepped beside bodies and beams; expected \"full\"",
                           kind));
   for (const char* key : {"modes_per_bay", "highest_hz", "nodes_per_bay", "expansion_hz"})
     if (t->has(key))
-      t->refuse(key, "E-CONDENSE-30",
-                fmt::format("{} is of a condensed track, which is not stepped beside bodies "
-                            "and beams; accepted is kind = \"full\" without it",
-                            key));
+      t->refuse(
+          key, "E-CONDENSE-30",
+          fmt::format("{} belongs to a condensed track, which is not stepped beside bodies and "
+                      "beams; expected kind = \"full\" without this key",
+                      key));
   full.band_hz = read_band(*t, full.band_hz);
   if (t->boolean("residual_flexibility", false))
     t->refuse("residual_flexibility", "E-CONDENSE-31",
-              "residual_flexibility = true would leave out what joints and springs pull at the "
-              "rails; accepted beside bodies and beams is false");
+              "residual_flexibility = true would leave out the pull of joints and "
+              "springs at the rails; expected false beside bodies and beams");
   return full;
 }
 

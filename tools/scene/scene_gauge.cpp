@@ -48,8 +48,9 @@ double width_for_gauge(const Table& track, const BarScene& bar) {
   const std::optional<double> width = head_width(bar);
   if (!width)
     track.refuse("gauge_m", "E-RAIL-01",
-                 "gauge_m is measured between the heads, 14 mm below their tops, of which the "
-                 "section says nothing; accepted is rail_spacing_m, or a rail with a shape");
+                 "gauge_m is measured between the heads, 14 mm below their tops, but the "
+                 "section does not say how wide the head is there; expected "
+                 "rail_spacing_m, or a rail whose section has a shape");
   return *width;
 }
 

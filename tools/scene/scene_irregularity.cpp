@@ -30,7 +30,7 @@ std::array<bool, 2> read_sides(const Table& t, std::string_view key, const Scene
   const std::size_t side = t.choice(key, {"both", "left", "right"}, 0);
   if (scene.track.rails == 1 && side != 1)
     t.refuse(key, "E-IRREGULARITY-22",
-             fmt::format("the track has one rail; accepted is {} = \"left\"", key));
+             fmt::format("the track has one rail; expected {} = \"left\"", key));
   return {side != 2, side != 1};
 }
 
@@ -47,7 +47,7 @@ void check_wave(const Table& t, std::string_view key, double wavelength, double 
   if (!scene.step || wavelength >= 8. * speed * scene.step->dt * (1. - 1e-12)) return;
   t.refuse(key, "E-IRREGULARITY-23",
            fmt::format("a wave of {:.6g} m is passed at {:.6g} m/s in {:.3g} steps of dt_s = "
-                       "{:.6g}; accepted are 8 steps or more: a shorter step.dt_s, a longer "
+                       "{:.6g}; expected 8 steps or more, by a shorter step.dt_s or a longer "
                        "wave",
                        wavelength, speed, wavelength / (speed * scene.step->dt), scene.step->dt));
 }
@@ -61,9 +61,10 @@ void check_samples(const Table& t, std::string_view key, double half, double pat
   if (std::max(half, patch) < kMostDefectSteps * step) return;
   const bool of_patch = patch > 0. && step < shape / 50.;
   t.refuse(of_patch ? "contact_patch_m" : key, "E-IRREGULARITY-24",
-           fmt::format("{}: {:.6g} m in samples {:.3g} m apart, which a contact patch of {:.6g} m "
-                       "and a shape of {:.6g} m want, are too many; accepted are {:g}",
-                       of_patch ? "contact_patch_m" : key, 2. * half, step, patch, shape,
+           fmt::format("{}: a contact patch of {:.6g} m and a shape of {:.6g} m need samples "
+                       "{:.3g} m apart, which are too many over {:.6g} m; expected at most {:g} "
+                       "samples",
+                       of_patch ? "contact_patch_m" : key, patch, shape, step, 2. * half,
                        2. * kMostDefectSteps));
 }
 
@@ -89,13 +90,12 @@ std::vector<Geometry> read_geometries(const Table& t, const Scene& scene,
     const auto* const known = std::find(std::begin(kGeometryNames), std::end(kGeometryNames), name);
     if (known == std::end(kGeometryNames) || std::count(given.begin(), given.end(), name) == 0)
       t.refuse("geometries", "E-IRREGULARITY-25",
-               fmt::format("geometries: \"{}\" is none that {} has; accepted are "
-                           "\"{}\"",
+               fmt::format("geometries: \"{}\" is not a geometry of {}; expected names of \"{}\"",
                            name, spectra.name, fmt::join(given, "\", \"")));
     const auto geometry = static_cast<Geometry>(known - std::begin(kGeometryNames));
     if (std::count(found.begin(), found.end(), geometry) > 0)
       t.refuse("geometries", "E-IRREGULARITY-26",
-               fmt::format("geometries: \"{}\" is given twice", name));
+               fmt::format("geometries: \"{}\" is given twice; expected each name once", name));
     found.push_back(geometry);
   }
   return found;
@@ -108,7 +108,7 @@ void read_generated(const Table& t, const Scene& scene, IrregularityScene& own) 
     std::vector<std::string> names;
     for (const TrackSpectra& known : track_spectra()) names.push_back(known.name);
     t.refuse("spectrum", "E-IRREGULARITY-27",
-             fmt::format("spectrum = \"{}\" is unknown; accepted are \"{}\"", own.spectrum,
+             fmt::format("spectrum = \"{}\" is unknown; expected one of \"{}\"", own.spectrum,
                          fmt::join(names, "\", \"")));
   }
   own.geometries = read_geometries(t, scene, *spectra);
@@ -131,9 +131,12 @@ std::optional<IrregularityScene> read_irregularity(const Table& root, const Scen
   if (!t) return std::nullopt;
   if (scene.wheelsets.empty() && scene.vehicles.empty())
     t->refuse("", "E-IRREGULARITY-28",
-              "no wheel feels the irregularity; accepted with a [[wheelset]] or a [[vehicle]]");
+              "no wheel feels the irregularity; expected a [[wheelset]] or a "
+              "[[vehicle]]");
   if (t->has("file") == t->has("spectrum"))
-    t->refuse("", "E-IRREGULARITY-29", "exactly one of file and spectrum is accepted");
+    t->refuse("", "E-IRREGULARITY-29",
+              t->has("file") ? "file is given beside spectrum; expected exactly one of them"
+                             : "neither file nor spectrum is given; expected exactly one of them");
   IrregularityScene own;
   if (t->has("file"))
     own.file = t->path("file");
@@ -148,7 +151,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
   root.each("defect", [&](const Table& t) {
     if (scene.wheelsets.empty() && scene.vehicles.empty())
       t.refuse("", "E-IRREGULARITY-30",
-               "no wheel feels the defect; accepted with a [[wheelset]] or a [[vehicle]]");
+               "no wheel feels the defect; expected a [[wheelset]] or a [[vehicle]]");
     DefectScene d{};
     d.kind = t.choice("kind", {"dipped_joint", "corrugation"}) == 0 ? DefectKind::dipped_joint
                                                                     : DefectKind::corrugation;
@@ -210,10 +213,11 @@ std::vector<WheelTread> read_wheel_treads(const Table& vehicle, const Scene& sce
         t.integer("wheel", 1, static_cast<std::int64_t>(wheels.size())) - 1);
     for (const WheelTread& other : treads)
       if (other.wheel == wheel)
-        t.refuse("wheel", "E-IRREGULARITY-31",
-                 fmt::format("wheel {} has a [[vehicle.tread]] already; one of each wheel "
-                             "is accepted",
-                             wheel + 1));
+        t.refuse(
+            "wheel", "E-IRREGULARITY-31",
+            fmt::format("wheel {} has a [[vehicle.tread]] already; expected at most one for each "
+                        "wheel",
+                        wheel + 1));
     const double radius = wheels[wheel].radius;
     treads.push_back({wheel, read_tread(t, scene, radius, fastest(own)), radius});
   }
@@ -229,10 +233,11 @@ std::vector<TreadScene> read_treads(const Table& wheelset, const Scene& scene,
     d.on = read_sides(t, "wheel", scene);
     for (std::size_t side = 0; side < 2; ++side) {
       if (d.on[side] && taken[side])
-        t.refuse("wheel", "E-IRREGULARITY-32",
-                 fmt::format("the {} wheel has a [[wheelset.tread]] already; one of each "
-                             "wheel is accepted",
-                             side == 0 ? "left" : "right"));
+        t.refuse(
+            "wheel", "E-IRREGULARITY-32",
+            fmt::format("the {} wheel has a [[wheelset.tread]] already; expected at most one for "
+                        "each wheel",
+                        side == 0 ? "left" : "right"));
       taken[side] = taken[side] || d.on[side];
     }
     treads.push_back(d);

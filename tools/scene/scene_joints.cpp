@@ -46,7 +46,7 @@ std::array<Part, 2> read_between(const Table& t, const SystemScene& scene) {
   const Part b = read_part(t, "between", names[1], scene, Naming::held);
   if (names[0] == names[1])
     t.refuse("between", "E-JOINT-01",
-             fmt::format("between has \"{}\" twice; accepted are two parts", names[0]));
+             fmt::format("between names \"{}\" twice; expected two different parts", names[0]));
   return {a, b};
 }
 
@@ -57,7 +57,7 @@ std::vector<std::array<double, 2>> read_motion_table(const Table& t, const std::
   std::vector<std::array<double, 2>> table;
   for (std::size_t i = 0; i < rows.size(); i += 2) table.push_back({rows[i], rows[i + 1]});
   if (table.size() < 2)
-    t.refuse(key, "E-JOINT-04", fmt::format("{} has 1 row; accepted are 2 and more", key));
+    t.refuse(key, "E-JOINT-04", fmt::format("{} has 1 row; expected 2 or more", key));
   return table;
 }
 
@@ -66,7 +66,7 @@ Motion read_motion(const Table& t, const std::string& unit, const Range& accepte
   const std::string polynomial = "polynomial_" + unit, table = "table_" + unit;
   if (t.has(polynomial) && t.has(table))
     t.refuse(table, "E-JOINT-05",
-             fmt::format("{} is given beside {}; one of them is accepted", table, polynomial));
+             fmt::format("{} is given beside {}; expected one of them", table, polynomial));
   Motion motion;
   if (t.has(table))
     motion.table = read_motion_table(t, table, accepted);
@@ -82,8 +82,8 @@ Motion read_drive(const Table& t, const std::string& unit) {
   const double start = tabled ? motion.table[0][1] : motion.polynomial[0];
   if (start != 0.)
     t.refuse((tabled ? "table_" : "polynomial_") + unit, "E-JOINT-06",
-             fmt::format("the motion begins at {:.15g} {}, and the parts stand where it is 0; "
-                         "accepted is a motion that begins at 0",
+             fmt::format("the motion begins at {:.15g} {}, but the parts stand where it is 0; "
+                         "expected a motion that begins at 0",
                          start, unit));
   return motion;
 }
@@ -101,8 +101,8 @@ Motion around_length(const Table& t, Motion change, double length) {
   for (std::array<double, 2>& row : change.table)
     if ((row[1] += length) <= 0.)
       t.refuse("table_m", "E-JOINT-07",
-               fmt::format("table_m shortens a distance of {:.6g} m by {:.6g} m; accepted "
-                           "is what leaves some of it",
+               fmt::format("table_m shortens a distance of {:.6g} m by {:.6g} m; expected a "
+                           "distance that stays above 0",
                            length, length - row[1]));
   return change;
 }
@@ -112,7 +112,8 @@ void refuse_foreign(const Table& t, const JointForm& form) {
   const auto refuse = [&](const char* key, bool wanted) {
     if (!wanted && t.has(key))
       t.refuse(key, "E-JOINT-08",
-               fmt::format("a {} joint has no {}; accepted is one without it", form.name, key));
+               fmt::format("{} does not belong to a {} joint; expected the joint without it", key,
+                           form.name));
   };
   refuse("axis", form.axis != Axis::none);
   refuse("other_point_m", form.kind == JointKind::distance);
@@ -129,8 +130,8 @@ Joint read_joint(const Table& t, const SystemScene& scene) {
   const JointForm& form = read_form(t);
   if (planar && form.axis == Axis::both)
     t.refuse("kind", "E-JOINT-09",
-             fmt::format("a {} joint leaves the plane of x and z; accepted are the others, "
-                         "or system.planar = false",
+             fmt::format("a {} joint leaves the plane of x and z; expected another kind, or "
+                         "system.planar = false",
                          form.name));
   refuse_foreign(t, form);
   Joint j;
@@ -143,8 +144,8 @@ Joint read_joint(const Table& t, const SystemScene& scene) {
     j.other_point = read_point(t, "other_point_m", b, scene);
     if (j.other_point == j.point)
       t.refuse("other_point_m", "E-JOINT-10",
-               "other_point_m is point_m, and no distance is held at 0; accepted "
-               "is another point, or a spherical joint");
+               "other_point_m is the same as point_m, and a distance of 0 cannot be "
+               "held; expected another point, or a spherical joint");
   } else {
     static_cast<void>(read_point(t, "point_m", b, scene));  // it is on both
   }
@@ -171,14 +172,14 @@ SpringDamper read_spring_damper(const Table& t, const SystemScene& scene) {
   s.point_b = read_point(t, "other_point_m", b, scene);
   if (s.point_a == s.point_b)
     t.refuse("other_point_m", "E-JOINT-11",
-             "other_point_m is point_m, and a spring of no length has no "
-             "direction; accepted is another point");
+             "other_point_m is the same as point_m, and a spring of no length has no "
+             "direction; expected another point");
   s.stiffness = t.number("stiffness_n_per_m", between(0.0, 1e13), 0.0);
   s.damping = t.number("damping_n_s_per_m", between(0.0, 1e11), 0.0);
   if (s.stiffness == 0. && s.damping == 0.)
     t.refuse("stiffness_n_per_m", "E-JOINT-12",
-             "the spring has neither stiffness_n_per_m nor damping_n_s_per_m "
-             "above 0; accepted is one with either");
+             "the spring has neither stiffness_n_per_m nor damping_n_s_per_m above 0; "
+             "expected at least one of them");
   if (t.has("length_m")) s.length = t.number("length_m", above_upto(0.0, 1e4));
   return s;
 }
@@ -189,9 +190,8 @@ Motion read_force_over_time(const Table& t, const std::string& constant, const s
   if (!t.has(constant)) return read_motion(t, unit, accepted);
   for (const char* way : {"polynomial_", "table_"})
     if (t.has(way + unit))
-      t.refuse(
-          way + unit, "E-JOINT-13",
-          fmt::format("{}{} is given beside {}; one of them is accepted", way, unit, constant));
+      t.refuse(way + unit, "E-JOINT-05",
+               fmt::format("{}{} is given beside {}; expected one of them", way, unit, constant));
   Motion motion;
   motion.polynomial = {t.number(constant, accepted)};
   return motion;
@@ -208,8 +208,8 @@ void set_size(const Table& t, SystemScene& scene, SystemForce& force) {
   for (const std::string& key :
        {std::string(constant), fmt::format("polynomial_{}", unit), fmt::format("table_{}", unit)})
     if (t.has(key))
-      t.refuse(key, "E-JOINT-14",
-               fmt::format("{} is given beside input; one of them is accepted", key));
+      t.refuse(key, "E-JOINT-05",
+               fmt::format("{} is given beside input; expected one of them", key));
   force.input = read_input(t, force.moment, scene.inputs);
 }
 
@@ -222,10 +222,13 @@ void read_force(const Table& t, SystemScene& scene) {
   if (force.moment) {
     for (const char* key : {"force_n", "polynomial_n", "table_n", "limit_n", "point_m"})
       if (t.has(key))
-        t.refuse(key, "E-JOINT-15",
-                 fmt::format("{} is given beside a moment; accepted is a force or a moment", key));
+        t.refuse(
+            key, "E-JOINT-15",
+            fmt::format("{} is given beside a moment; expected the keys of a force or those of a "
+                        "moment",
+                        key));
     if (force.on.kind != Part::Kind::body)
-      t.refuse("on", "E-JOINT-16", "a moment acts on a beam; accepted is a body");
+      t.refuse("on", "E-JOINT-16", "a moment does not act on a beam; expected a body");
     force.direction = read_turn_axis(t, "direction", planar);
     set_size(t, scene, force);
     return;
@@ -252,8 +255,8 @@ void read_springs(const Table& root, SystemScene& scene, NameBook& names) {
     if (t.boolean("trace", false)) {
       if (!t.has("name"))
         t.refuse("trace", "E-JOINT-17",
-                 "trace = true wants a name for the spring's column, and key 'name' is "
-                 "missing");
+                 "trace = true needs a name for the spring's column, but key 'name' is "
+                 "missing; expected a name");
       scene.traced.springs.push_back(static_cast<int>(scene.system.springs.size()));
     }
     scene.system.springs.push_back(read_spring_damper(t, scene));

@@ -17,8 +17,8 @@ Eigen::Matrix3d read_inertia(const Table& t, bool planar) {
   const std::vector<double> i = t.numbers(key, between(-1e12, 1e12), 3, 6);
   if (i.size() != 3 && i.size() != 6)
     t.refuse(key, "E-BODY-13",
-             fmt::format("{} has {} entries; accepted are 3, Ixx Iyy Izz, or 6, with Ixy Ixz "
-                         "Iyz behind",
+             fmt::format("{} has {} entries; expected 3 (Ixx, Iyy, Izz) or 6 (Ixy, Ixz, Iyz "
+                         "behind them)",
                          key, i.size()));
   Eigen::Matrix3d inertia = Eigen::Vector3d(i[0], i[1], i[2]).asDiagonal();
   if (i.size() == 6) {
@@ -27,20 +27,21 @@ Eigen::Matrix3d read_inertia(const Table& t, bool planar) {
     inertia(1, 2) = inertia(2, 1) = i[5];
     if (planar && (i[3] != 0. || i[5] != 0.))
       t.refuse(key, "E-BODY-14",
-               "Ixy and Iyz turn a body out of the plane of x and z; accepted is 0 for both, "
-               "or system.planar = false");
+               "Ixy and Iyz turn a body out of the plane of x and z; expected 0 for "
+               "both, or system.planar = false");
   }
   const Eigen::Vector3d p =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(p[0] > 0.))
-    t.refuse(key, "E-BODY-15",
-             fmt::format("the least principal inertia is {:.6g}; accepted is above 0", p[0]));
+    t.refuse(
+        key, "E-BODY-15",
+        fmt::format("{} has a least principal inertia of {:.6g}; expected above 0", key, p[0]));
   // A flat body has equality, which decimals miss by their rounding.
   if (p[2] > (p[0] + p[1]) * (1. + 1e-9))
     t.refuse(key, "E-BODY-16",
-             fmt::format("principal inertias {:.6g}, {:.6g} and {:.6g} are those of no mass; "
-                         "accepted are three of which none is above the sum of the others",
-                         p[0], p[1], p[2]));
+             fmt::format("{} has principal inertias {:.6g}, {:.6g} and {:.6g}, which no mass can "
+                         "have; expected each at most the sum of the two others",
+                         key, p[0], p[1], p[2]));
   return inertia;
 }
 
@@ -64,16 +65,16 @@ Eigen::Matrix3d read_axes(const Table& t, bool planar) {
       t.has("direction") ? read_direction(t, "direction", planar) : Eigen::Vector3d::UnitX();
   if (!t.has("up") && along.y() != 0.)
     t.refuse("direction", "E-BODY-17",
-             "the beam leaves the plane of x and z, and key 'up' is missing; it has a "
-             "default in that plane alone");
+             "the beam leaves the plane of x and z, but key 'up' is missing; expected "
+             "up, which has a default only in that plane");
   const Eigen::Vector3d up = t.has("up") ? read_direction(t, "up", planar)
                                          : Eigen::Vector3d(along.cross(Eigen::Vector3d::UnitY()));
   check_square(t, "up", up, "the beam's direction", along);
   const Eigen::Vector3d lateral = up.cross(along).normalized();
   if (planar && lateral.y() < 0.)
     t.refuse("up", "E-BODY-18",
-             "up puts the section's left on the ground's right; in the plane the opposite "
-             "direction is accepted");
+             "up puts the section's left on the ground's right; expected the opposite "
+             "direction in the plane of x and z");
   Eigen::Matrix3d axes;
   axes << along, lateral, along.cross(lateral);
   return axes;
@@ -114,11 +115,12 @@ std::string NameBook::claim(const Table& t) {
   std::string name = checked_name(t, "name", t.string("name"));
   if (name == "ground")
     t.refuse("name", "E-BODY-19",
-             "name = \"ground\" is that of what does not move; accepted is another");
+             "name = \"ground\" is kept for the ground, which does not move; expected "
+             "another name");
   const auto [first, is_new] = owner_.emplace(name, t.name());
   if (!is_new)
-    t.refuse("name", "E-BODY-20",
-             fmt::format("name = \"{}\" is taken by [{}]; accepted is a name used once", name,
+    t.refuse("name", "E-RUNNER-19",
+             fmt::format("name = \"{}\" is taken by [{}]; expected a name that is used once", name,
                          first->second));
   return name;
 }
@@ -130,10 +132,9 @@ std::string claim_part(const Table& t, const SystemScene& scene, NameBook& names
   std::string name = names.claim(t);
   for (const char* kept : {"rail", "sleeper", "wheelset"})
     if (scene.track && name == kept)
-      t.refuse("name", "E-BODY-21",
-               fmt::format("name = \"{}\" is what a sensor of a track is on; accepted is "
-                           "another",
-                           name));
+      t.refuse(
+          "name", "E-BODY-21",
+          fmt::format("name = \"{}\" is kept for sensors on a track; expected another name", name));
   return name;
 }
 
@@ -153,9 +154,8 @@ void read_beams(const Table& root, SystemScene& scene, NameBook& names) {
     scene.bars.push_back({read_bar(t), read_reference_line(t)});
     if (std::holds_alternative<Section>(scene.bars.back().bar.shape))
       t.refuse("constants", "E-BODY-22",
-               "a beam that turns wants its section's shape, of which moments of third "
-               "and fourth degree are taken; accepted are profile, section, "
-               "rectangles and rectangle");
+               "a beam that turns needs its section's shape, for moments of third and "
+               "fourth degree; expected profile, section, rectangles or rectangle");
   }
 }
 
@@ -180,15 +180,16 @@ Part read_part(const Table& t, std::string_view key, const std::string& name,
         i >= 0)
       return rail(i);
   if (naming == Naming::sensed && rails > 0) known += ", \"rail\", \"sleeper\"";
-  const char* what = "unknown";
-  if (name.starts_with("rail "))
-    what = rails == 0                 ? "the rail of a track, and the scene has none"
-           : held                     ? "a rail that the track has not"
-           : naming == Naming::driven ? "a rail, on which a force is a [[load]]"
-                                      : "a rail, on which a sensor has on = \"rail\" and rail";
-  t.refuse(key, "E-BODY-23",
-           fmt::format("{} has \"{}\", which is {}; accepted are {}", key, name.substr(0, 64), what,
-                       known));
+  const auto sentence = [&](const char* what) {
+    return fmt::format("{} has \"{}\", which is {}; expected {}", key, name.substr(0, 64), what,
+                       known);
+  };
+  if (!name.starts_with("rail ")) t.refuse(key, "E-BODY-23", sentence("unknown"));
+  if (rails == 0) t.refuse(key, "E-BODY-36", sentence("a rail, but the scene has no track"));
+  if (held) t.refuse(key, "E-BODY-37", sentence("a rail that the track does not have"));
+  if (naming == Naming::driven)
+    t.refuse(key, "E-BODY-38", sentence("a rail, on which a force is a [[load]]"));
+  t.refuse(key, "E-BODY-39", sentence("a rail, on which a sensor has on = \"rail\" and rail"));
 }
 
 namespace {
@@ -199,14 +200,14 @@ void check_reach(const Table& t, std::string_view key, const std::string& bar,
   // 1e-9 of the length forgives the rounding of decimals.
   if (local.x() < -1e-9 * length || local.x() > length * (1. + 1e-9))
     t.refuse(key, "E-BODY-24",
-             fmt::format("{} is at {:.6g} m along {}; accepted is 0 to {:.6g} m", key, local.x(),
-                         bar, length));
+             fmt::format("{} is at {:.6g} m along {}; expected 0 to {:.6g} m", key, local.x(), bar,
+                         length));
   const double across = std::hypot(local.y(), local.z());
   const double most = extent(shape);
   if (across > most)
     t.refuse(key, "E-BODY-25",
-             fmt::format("{} is {:.6g} m beside {}; accepted is at most {:.6g} m, what its "
-                         "section measures",
+             fmt::format("{} is {:.6g} m beside {}; expected at most {:.6g} m, the size of its "
+                         "section",
                          key, across, bar, most));
 }
 

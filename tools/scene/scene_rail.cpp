@@ -19,9 +19,8 @@ RectangleSizes read_rectangles(const Table& t) {
   const double height = r.foot_height + r.web_height + r.head_height;
   if (!kSize.holds(height))
     t.refuse("foot_height_m", "E-RAIL-02",
-             fmt::format("foot, web and head are {:.6g} m high together; accepted "
-                         "is {}",
-                         height, kSize.text()));
+             fmt::format("foot, web and head are {:.6g} m high together; expected {} m", height,
+                         kSize.text()));
   return r;
 }
 
@@ -34,14 +33,15 @@ SectionSource read_shape(const Table& rail) {
     if (!rail.has(way)) continue;
     if (!found.empty())
       rail.refuse(way, "E-RAIL-03",
-                  fmt::format("{} is given beside {}; exactly one of profile, section, "
-                              "constants, rectangles, rectangle is accepted",
+                  fmt::format("{} is given beside {}; expected exactly one of profile, section, "
+                              "constants, rectangles, rectangle",
                               way, found));
     found = way;
   }
   if (found != "profile" && rail.has("outline"))
     rail.refuse("outline", "E-RAIL-04",
-                "outline says how a profile is taken; accepted beside profile");
+                "outline says how a profile is taken, but there is no profile; expected "
+                "profile beside it");
   if (found == "profile")
     return ProfileFile{rail.path("profile"), rail.choice("outline", {"fitted", "exact"}, 0) == 1};
   if (found == "section") return SectionFile{rail.path("section")};
@@ -52,8 +52,8 @@ SectionSource read_shape(const Table& rail) {
     return RectangleSize{t.number("height_m", kSize), t.number("width_m", kSize)};
   }
   rail.refuse("", "E-RAIL-05",
-              "no section is given; exactly one of profile, section, constants, rectangles, "
-              "rectangle is accepted");
+              "no section is given; expected exactly one of profile, section, "
+              "constants, rectangles, rectangle");
 }
 
 /// A shear factor that replaces the section's, from [rail] or [rail.rectangle].
@@ -62,7 +62,7 @@ std::optional<double> read_override(const Table& rail, std::string_view key) {
   const bool inside = rectangle && rectangle->has(key);
   if (inside && rail.has(key))
     rail.refuse(key, "E-RAIL-06",
-                fmt::format("{} is given in [{}] and in [{}]; one of them is accepted", key,
+                fmt::format("{} is given in [{}] and in [{}]; expected one of them", key,
                             rail.name(), rectangle->name()));
   if (inside) return rectangle->number(key, kShearFactor);
   if (rail.has(key)) return rail.number(key, kShearFactor);
@@ -87,8 +87,8 @@ int read_section_points(const Table& t, const SectionSource& shape) {
   const auto* profile = std::get_if<ProfileFile>(&shape);
   if (points > 0 && (std::holds_alternative<Section>(shape) || (profile && profile->exact)))
     t.refuse("section_points", "E-RAIL-07",
-             fmt::format("section_points = {}, but the section is not given by "
-                         "rectangles; accepted is 0",
+             fmt::format("section_points = {}, but the section is not given by rectangles; "
+                         "expected 0",
                          points));
   return points;
 }

@@ -21,8 +21,8 @@ void read_plates(const Table& t, const std::string& motion, bool turns, double o
   damping = t.number(key, between(0.0, 1e11), 0.0);
   if (damping > 0.0 && std::isinf(stiffness))
     t.refuse(key, "E-RAILJOINT-01",
-             fmt::format("{}, but the rail's ends share that motion; accepted beside "
-                         "{}_stiffness_{}",
+             fmt::format("{} is given, but the rail's ends share that motion; expected "
+                         "{}_stiffness_{} beside it",
                          key, motion, k));
 }
 
@@ -33,13 +33,14 @@ double read_place(const Table& t, const TrackScene& track) {
   const double border = std::round(x / element), last = std::round(track.length() / element);
   if (border < 1.0 || border > last - 1.0)
     t.refuse("x_m", "E-RAILJOINT-02",
-             fmt::format("x_m = {:.15g} is at an end of the rail; accepted are joints "
-                         "between its ends",
+             fmt::format("x_m = {:.15g} is at an end of the rail; expected a place between its "
+                         "ends",
                          x));
   if (std::fabs(x / element - border) > 1e-9)
     t.refuse("x_m", "E-RAILJOINT-03",
-             fmt::format("x_m = {:.15g} is inside an element; a joint stands where two meet: the "
-                         "nearest are {:.15g} and {:.15g}, with other elements_per_bay others",
+             fmt::format("x_m = {:.15g} is inside an element; expected a place where two elements "
+                         "meet: the nearest are {:.15g} and {:.15g}, and another elements_per_bay "
+                         "gives others",
                          x, std::floor(x / element) * element, std::ceil(x / element) * element));
   return x;
 }
@@ -55,7 +56,7 @@ JointGap read_gap(const Table& t) {
   for (const char* key : {"end_stiffness_n_per_m", "end_damping_n_s_per_m"})
     if (t.has(key) && !gap.cold)
       t.refuse(key, "E-RAILJOINT-04",
-               fmt::format("{} is of ends that meet; accepted beside gap_m", key));
+               fmt::format("{} belongs to rail ends that meet; expected gap_m beside it", key));
   if (t.has("end_stiffness_n_per_m"))
     gap.end_stiffness = t.number("end_stiffness_n_per_m", above_upto(0.0, 1e13));
   gap.end_damping = t.number("end_damping_n_s_per_m", between(0.0, 1e11), 0.0);
@@ -68,8 +69,8 @@ Jointed read_joint(const Table& t, const Scene& scene) {
   joint.x = read_place(t, scene.track);
   const std::size_t side = t.choice("rail", {"both", "left", "right"}, 0);
   if (scene.track.rails == 1 && side == 2)
-    t.refuse("rail", "E-RAILJOINT-05",
-             "rail = \"right\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-SCENE-01",
+             "rail = \"right\", but the track has one rail; expected \"left\"");
   joint.rails = {side != 2, side != 1};
   (void)t.number("bending_vertical_stiffness_n_m_per_rad", between(0.0, 1e13));  // required
   read_plates(t, "along", false, 0.0, joint.stiffness[0], joint.damping[0]);
@@ -98,10 +99,10 @@ bool closes_all(const std::vector<std::pair<double, std::size_t>>& cuts,
 /// Heat presses ends alone, without plates beside them.
 void check_plates(const Table& t, const RailJoint& joint) {
   if (joint.stiffness[0] > 0.0)
-    t.refuse(
-        "along_stiffness_n_per_m", "E-RAILJOINT-06",
-        "along_stiffness_n_per_m beside a gap that heat closes: plates that do not slip bear a "
-        "part of its force; accepted are wider gaps, colder rails, or 0");
+    t.refuse("along_stiffness_n_per_m", "E-RAILJOINT-06",
+             "along_stiffness_n_per_m is given, but heat closes the gap: plates that "
+             "do not slip bear a part of its force; expected 0, a wider gap or a "
+             "colder rail");
 }
 
 /// Warm rails grow into their gaps: each from its middle, those at the ends from there, where they
@@ -129,8 +130,8 @@ void check_gaps(const Table& root, const Scene& scene, int rail, std::vector<Joi
       t.refuse("gap_m", "E-RAILJOINT-07",
                fmt::format(
                    "{}, but at temperature_rise_k = {:.15g} the rails grow by {:.3g} m into "
-                   "it, which not all of the rail's gaps do; accepted are gaps in all "
-                   "joints that heat leaves all open or closes all",
+                   "it, and not all gaps of the rail close; expected gaps in all joints "
+                   "that all stay open or all close",
                    gap.cold ? fmt::format("gap_m = {:.15g}", *gap.cold) : "the joint has no gap_m",
                    own.temperature_rise, grown));
   }
@@ -139,7 +140,8 @@ void check_gaps(const Table& root, const Scene& scene, int rail, std::vector<Joi
 void check_force(const Table& rail, const Scene& scene) {
   const auto refuse = [](const Table& t) {
     t.refuse("axial_force_n", "E-RAILJOINT-08",
-             "axial_force_n, but the rails have joints, whose gaps carry no force; accepted is 0");
+             "axial_force_n is given, but the rails have joints, whose gaps carry no "
+             "force; expected 0");
   };
   if (scene.rail.axial_force != 0.0) refuse(rail);
   if (scene.right_rail && scene.right_rail->axial_force != 0.0) refuse(rail.table("right"));
@@ -153,8 +155,8 @@ void check_heat(const Table& rail, const Scene& scene, const std::vector<Jointed
     for (const std::size_t side : {0u, 1u}) cut[side] = cut[side] || one.joint.rails[side];
   if (cut[0] != cut[1])
     rail.refuse("temperature_rise_k", "E-RAILJOINT-09",
-                "temperature_rise_k presses the rail without joints alone; accepted with joints in "
-                "both rails, or with a [rail.right]");
+                "temperature_rise_k presses only the rail without joints; expected "
+                "joints in both rails, or a [rail.right]");
 }
 
 }  // namespace
@@ -167,8 +169,11 @@ void read_joints(const Table& root, const Table& rail, Scene& scene) {
       for (const std::size_t side : {0u, 1u})
         if (std::fabs(read[i].joint.x - read.back().joint.x) < 1e-6 && read[i].joint.rails[side] &&
             read.back().joint.rails[side])
-          t.refuse("x_m", "E-RAILJOINT-10",
-                   "x_m: the rail is cut there already; accepted is one joint at a place");
+          t.refuse(
+              "x_m", "E-RAILJOINT-10",
+              fmt::format("x_m = {:.15g}: the rail is cut there already; expected one joint at a "
+                          "place",
+                          read.back().joint.x));
   }
   if (read.empty()) return;
   check_force(rail, scene);

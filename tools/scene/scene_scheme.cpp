@@ -10,7 +10,8 @@ double number_of(const Table& t, const char* key, bool in_use, const char* schem
                  const Range& accepted, double otherwise) {
   if (t.has(key) && !in_use)
     t.refuse(key, "E-STEP-01",
-             fmt::format("{} is not used here; accepted with scheme = \"{}\"", key, scheme));
+             fmt::format("{} has no effect with this scheme; expected scheme = \"{}\" beside it",
+                         key, scheme));
   return t.number(key, accepted, otherwise);
 }
 
@@ -43,10 +44,10 @@ void read_contact(const Table& root, Scene& scene) {
   scene.step->mean_contact = t.choice("contact", {"penetration", "discrete-gradient"}, 0) == 1;
   if (!scene.step->mean_contact) return;
   if (!scene.condense.kind || *scene.condense.kind == ReductionKind::complex_modes)
-    t.refuse(
-        "contact", "E-STEP-02",
-        "contact = \"discrete-gradient\" keeps energy where forces are held over a step; accepted "
-        "with condense.kind = \"modal\", \"guyan\", \"irs\", \"craig-bampton\", \"krylov\"");
+    t.refuse("contact", "E-STEP-02",
+             "contact = \"discrete-gradient\" keeps energy only where forces are held "
+             "over a step; expected condense.kind = \"modal\", \"guyan\", \"irs\", "
+             "\"craig-bampton\" or \"krylov\"");
 }
 
 namespace {
@@ -72,21 +73,22 @@ void check_external_wheels(const Table& root, const Scene& scene) {
     root.tables("external_wheel")
         .front()
         .refuse("", "E-STEP-03",
-                fmt::format("an external wheel runs on a track that is linear, and the scene "
-                            "has a {}; accepted is one of the two",
+                fmt::format("an external wheel runs on a linear track, but the scene has a {}; "
+                            "expected one of the two",
                             other));
   if (!scene.step) return;
   const Table step = root.table("step");
   if (scene.step->scheme == TimeScheme::tr_bdf2 && !scene.condense.kind)
     step.refuse("scheme", "E-STEP-04",
-                "scheme = \"tr-bdf2\" has two stages, and an [[external_wheel]] presses at the "
-                "ends of steps; accepted are \"generalised-alpha\", \"backward-euler\", "
-                "\"newmark\", \"hht\"");
+                "scheme = \"tr-bdf2\" has two stages, but an [[external_wheel]] presses "
+                "at the ends of steps; expected \"generalised-alpha\", "
+                "\"backward-euler\", \"newmark\" or \"hht\"");
   if (scene.step->steps_per_frame != 1)
-    step.refuse("frame_s", "E-STEP-05",
-                fmt::format("an [[external_wheel]] wants a frame of one step, and this "
-                            "one has {}; accepted is frame_s = dt_s",
-                            scene.step->steps_per_frame));
+    step.refuse(
+        "frame_s", "E-STEP-05",
+        fmt::format("an [[external_wheel]] needs a frame of one step, but this frame has {}; "
+                    "expected frame_s = dt_s",
+                    scene.step->steps_per_frame));
 }
 
 }  // namespace railstep

@@ -78,19 +78,20 @@ std::vector<int> read_seats(const Table& t, const Scene& scene) {
   if (t.has("seats")) {
     for (const char* other : {"from", "to"})
       if (t.has(other))
-        t.refuse(other, "E-SUPPORT-04",
-                 fmt::format("{} is given beside seats; one of them is accepted", other));
+        t.refuse(
+            other, "E-SUPPORT-04",
+            fmt::format("{} is given beside seats; expected seats alone, or from and to", other));
     for (const double seat : t.numbers("seats", between(0.0, static_cast<double>(last)))) {
       const int number = static_cast<int>(seat);
       if (number != seat)
-        t.refuse("seats", "E-SUPPORT-05",
-                 fmt::format("seats: {:.15g} is no number of a seat; accepted are whole "
-                             "numbers from 0 to {}",
-                             seat, last));
+        t.refuse(
+            "seats", "E-SUPPORT-05",
+            fmt::format("seats: {:.15g} is not the number of a seat; expected whole numbers from "
+                        "0 to {}",
+                        seat, last));
       if (!seats.empty() && number <= seats.back())
         t.refuse("seats", "E-SUPPORT-06",
-                 fmt::format("seats: {} does not rise; accepted are numbers each above "
-                             "the one before",
+                 fmt::format("seats: {} does not rise; expected numbers each above the one before",
                              number));
       seats.push_back(number);
     }
@@ -104,8 +105,8 @@ std::vector<int> read_seats(const Table& t, const Scene& scene) {
 std::array<bool, 2> read_sides(const Table& t, const Scene& scene) {
   const std::size_t side = t.choice("rail", {"both", "left", "right"}, 0);
   if (scene.track.rails == 1 && side == 2)
-    t.refuse("rail", "E-SUPPORT-07",
-             "rail = \"right\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-SCENE-01",
+             "rail = \"right\", but the track has one rail; expected \"left\"");
   return {side != 2, side != 1};
 }
 
@@ -116,8 +117,8 @@ void add_value(const Table& t, const char* key, const Range& accepted, const std
   const std::array<double, 2> ends = t.number_or_pair(key, accepted);
   if (ends[0] != ends[1] && change.seats.size() < 2)
     t.refuse(key, "E-SUPPORT-08",
-             fmt::format("{} has two values, but the change has one seat; accepted is one "
-                         "value, or two of a range",
+             fmt::format("{} has two values, but the change has one seat; expected one value, or "
+                         "several seats",
                          key));
   for (const Of each : of) change.values.push_back({each, ends[0], ends[1], scales});
 }
@@ -144,13 +145,13 @@ void check_held(const Table& t, const Property& property, const Scene& scene) {
   if ((x && scene.sleeper->ballast_stiffness[0] == 0.0) ||
       (y && scene.sleeper->ballast_stiffness[1] == 0.0))
     t.refuse(key, "E-SUPPORT-18",
-             fmt::format("{}, but [ballast] holds the sleeper along {}; accepted where "
-                         "ballast.stiffness_{}_n_per_m is given",
+             fmt::format("{} is given, but [ballast] holds the sleeper along {}; expected "
+                         "ballast.stiffness_{}_n_per_m",
                          key, x ? "x" : "y", x ? "x" : "y"));
   if (key == "length_m" && scene.sleeper->ballast_length == 0.0)
     t.refuse(key, "E-SUPPORT-10",
-             "length_m, but the sleeper does not pitch; accepted where ballast.length_m and "
-             "support.length_m are given");
+             "length_m is given, but the sleeper does not pitch; expected "
+             "ballast.length_m and support.length_m");
 }
 
 void read_part(const Table& change_table, const char* name, const Scene& scene,
@@ -160,11 +161,11 @@ void read_part(const Table& change_table, const char* name, const Scene& scene,
   const Table& t = *given;
   const bool of_sleeper = std::string_view(name) != "support";
   if (of_sleeper && !scene.sleeper)
-    t.refuse("", "E-SUPPORT-11",
-             fmt::format("the scene has no [{}] to change; accepted is support", name));
+    t.refuse(
+        "", "E-SUPPORT-11",
+        fmt::format("the scene has no [{}] to change; expected a change of support alone", name));
   if (std::string_view(name) == "sleeper" && change.sides[0] != change.sides[1])
-    t.refuse("", "E-SUPPORT-12",
-             "a sleeper is one under both rails; accepted with rail = \"both\"");
+    t.refuse("", "E-SUPPORT-12", "one sleeper lies under both rails; expected rail = \"both\"");
   for (const Property& property : kProperties) {
     if (std::string_view(property.table) != name) continue;
     check_held(t, property, scene);
@@ -187,16 +188,18 @@ Missing read_missing(const Table& t, const Scene& scene, const SeatChange& chang
   constexpr Missing kParts[] = {Missing::pad, Missing::ballast, Missing::sleeper};
   const Missing missing = kParts[t.choice("missing", {"pad", "ballast", "sleeper"})];
   if (missing != Missing::pad && !scene.sleeper)
-    t.refuse("missing", "E-SUPPORT-13", "the scene has no [sleeper]; accepted is \"pad\"");
+    t.refuse("missing", "E-SUPPORT-13",
+             "the scene has no [sleeper] that could be missing; expected \"pad\"");
   if (missing == Missing::sleeper && change.sides[0] != change.sides[1])
     t.refuse("missing", "E-SUPPORT-14",
-             "missing = \"sleeper\" takes it from both rails; accepted with rail = \"both\"");
+             "missing = \"sleeper\" takes the sleeper from both rails; expected rail "
+             "= \"both\"");
   return missing;
 }
 
 SeatChange read_change(const Table& t, const Scene& scene) {
   if (!scene.support)
-    t.refuse("", "E-SUPPORT-15", "the scene has no [support] to change; accepted beside one");
+    t.refuse("", "E-SUPPORT-15", "the scene has no [support] to change; expected one");
   SeatChange change;
   change.seats = read_seats(t, scene);
   change.sides = read_sides(t, scene);
@@ -209,10 +212,12 @@ SeatChange read_change(const Table& t, const Scene& scene) {
         static_cast<std::uint64_t>(t.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
   else if (t.has("seed"))
     t.refuse("seed", "E-SUPPORT-16",
-             "a seed without scatter; accepted beside stiffness_scatter or damping_scatter");
+             "seed is given without scatter; expected stiffness_scatter or "
+             "damping_scatter beside it");
   if (!t.has("missing") && !t.has("support") && !t.has("sleeper") && !t.has("ballast"))
     t.refuse("", "E-SUPPORT-17",
-             "nothing is changed; accepted are missing, and numbers in support, sleeper, ballast");
+             "nothing is changed; expected missing, or numbers in support, sleeper or "
+             "ballast");
   return change;
 }
 

@@ -15,10 +15,11 @@ std::size_t index_of(const Table& t, std::string_view key, const std::string& na
     if (names[i] == name) return i;
     known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", names[i]);
   }
+  if (names.empty())
+    t.refuse(key, "E-SENSOR-02",
+             fmt::format("{0} = \"{1}\", but the scene has no {0}; expected a [[{0}]]", key, name));
   t.refuse(key, "E-SENSOR-01",
-           fmt::format(
-               "{} = \"{}\" is unknown; {}", key, name,
-               known.empty() ? fmt::format("the scene has no {}", key) : "accepted are " + known));
+           fmt::format("{} = \"{}\" is unknown; expected {}", key, name, known));
 }
 
 WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
@@ -37,7 +38,7 @@ VehicleSensor read_vehicle_sensor(const Table& t, const Scene& scene) {
   VehicleSensor sensor{vehicle, body, t.number("x_m", between(-100.0, 100.0), 0.0)};
   if (sensor.ahead != 0.0 && own.vehicle.bodies[body].pitch_inertia == 0.0)
     t.refuse("x_m", "E-SENSOR-06",
-             fmt::format("x_m = {:.15g}, but {} does not pitch; accepted is x_m = 0", sensor.ahead,
+             fmt::format("x_m = {:.15g}, but {} does not pitch; expected x_m = 0", sensor.ahead,
                          own.bodies[body]));
   return sensor;
 }
@@ -52,8 +53,8 @@ RailSensor read_rail_sensor(const Table& t, const Scene& scene) {
   const double half = 0.5 * *rail.gauge_length;
   if (!scene.track.endless && (rail.position < half || rail.position > scene.track.length() - half))
     t.refuse("gauge_length_m", "E-SENSOR-03",
-             fmt::format("gauge_length_m = {:.15g} at position_m = {:.15g} is not on the rail; "
-                         "accepted is up to twice the distance to its end",
+             fmt::format("gauge_length_m = {:.15g} at position_m = {:.15g} reaches beyond the "
+                         "rail; expected at most twice the distance to the rail's end",
                          *rail.gauge_length, rail.position));
   return rail;
 }
@@ -61,15 +62,16 @@ RailSensor read_rail_sensor(const Table& t, const Scene& scene) {
 SleeperSensor read_sleeper_sensor(const Table& t, const Scene& scene) {
   if (!scene.sleeper)
     t.refuse("on", "E-SENSOR-04",
-             "on = \"sleeper\", but the scene has no [sleeper]; accepted are \"rail\", "
-             "\"wheelset\", \"vehicle\"");
+             "on = \"sleeper\", but the scene has no [sleeper]; expected \"rail\", "
+             "\"wheelset\" or \"vehicle\"");
   SleeperSensor sleeper{t.integer("sleeper", 0, scene.track.bays), std::nullopt};
   for (const SeatChange& change : scene.seat_changes)
     if (change.missing == Missing::sleeper &&
         std::find(change.seats.begin(), change.seats.end(), sleeper.sleeper) != change.seats.end())
-      t.refuse(
-          "sleeper", "E-SENSOR-05",
-          fmt::format("sleeper = {} is missing; accepted is one that is there", sleeper.sleeper));
+      t.refuse("sleeper", "E-SENSOR-05",
+               fmt::format("sleeper = {} is missing by a [[support_change]]; expected a sleeper "
+                           "that is there",
+                           sleeper.sleeper));
   if (t.has("rail")) sleeper.rail = read_side(t, scene);
   return sleeper;
 }

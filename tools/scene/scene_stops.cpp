@@ -9,17 +9,18 @@ StopScene read_stop(const Table& t, const Scene& scene) {
   const bool left = t.choice("rail", {"left", "right"}, 0) == 0;
   if (scene.track.rails == 2 && !t.has("rail"))
     t.refuse("rail", "E-STOP-01",
-             "a stop of two rails says which; accepted are \"left\", \"right\"");
+             "the track has two rails, and key 'rail' is missing; expected \"left\" "
+             "or \"right\"");
   if (scene.track.rails == 1 && !left)
-    t.refuse("rail", "E-STOP-04",
-             "rail = \"right\", but the track has one rail; accepted is \"left\"");
+    t.refuse("rail", "E-SCENE-01",
+             "rail = \"right\", but the track has one rail; expected \"left\"");
   s.rail = left ? kLeftRail : kRightRail;
   s.x = t.number("position_m", between(0.0, scene.track.length()));
   s.direction = t.choice("direction", {"y", "z"}) == 0 ? 1 : 2;
   if (s.direction == 1 && scene.track.unknowns == Unknowns::vertical)
     t.refuse("direction", "E-STOP-03",
-             "direction = \"y\", but the track does not move sideways; accepted with "
-             "track.unknowns = \"full\"");
+             "direction = \"y\", but the track does not move sideways; expected "
+             "track.unknowns = \"full\" or \"rigid-section\"");
   // +y is left, +z up.
   const bool along = s.direction == 1 ? t.choice("side", {"left", "right"}) == 0
                                       : t.choice("side", {"above", "below"}) == 0;

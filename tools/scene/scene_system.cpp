@@ -19,10 +19,11 @@ void refuse_track_keys(const Table& root) {
   for (const char* key : {"rail", "support", "sleeper", "ballast", "load", "wheelset", "vehicle",
                           "condense", "static", "output"})
     if (root.has(key))
-      root.refuse(key, "E-BODY-26",
-                  fmt::format("[{}] says something of a track, and the scene has none; "
-                              "accepted is a scene of bodies and beams without it",
-                              key));
+      root.refuse(
+          key, "E-BODY-26",
+          fmt::format("[{}] belongs to a track, but the scene has none; expected a scene of "
+                      "bodies and beams without it",
+                      key));
 }
 
 void read_whole(const Table& root, System& system) {
@@ -45,7 +46,8 @@ StepScene read_step(const Table& t) {
 /// A key of one choice alone, so that it is not believed to act where it does not.
 void belongs(const Table& t, const char* key, bool in_use, const char* choice) {
   if (t.has(key) && !in_use)
-    t.refuse(key, "E-BODY-27", fmt::format("{} is not used here; accepted with {}", key, choice));
+    t.refuse(key, "E-BODY-27",
+             fmt::format("{} has no effect here; expected {} beside it", key, choice));
 }
 
 SystemOptions read_hold(const Table& root) {
@@ -79,11 +81,12 @@ void check_count(const Table& root, const System& system) {
   const std::size_t parts = system.bodies.size() + system.beams.size();
   if (parts == 0)
     root.refuse("", "E-BODY-28",
-                "there is neither a [[body]] nor a [[beam]]; accepted is a scene with one");
+                "there is neither a [[body]] nor a [[beam]]; expected at least one of "
+                "them");
   if (parts > kMaxSystemParts)
-    root.refuse(system.beams.empty() ? "body" : "beam", "E-BODY-29",
-                fmt::format("there are {} bodies and beams; accepted are up to {}", parts,
-                            kMaxSystemParts));
+    root.refuse(
+        system.beams.empty() ? "body" : "beam", "E-BODY-29",
+        fmt::format("there are {} bodies and beams; expected at most {}", parts, kMaxSystemParts));
 }
 
 SystemScene read_system_scene(const Table& root) {

@@ -10,8 +10,8 @@ namespace {
 void check_plane(const Table& t, std::string_view key, const Eigen::Vector3d& v, bool planar) {
   if (planar && v.y() != 0.)
     t.refuse(key, "E-BODY-30",
-             fmt::format("{} has y = {:.15g}, which leaves the plane of x and z; accepted is "
-                         "y = 0, or system.planar = false",
+             fmt::format("{} has y = {:.15g}, which leaves the plane of x and z; expected y = 0, "
+                         "or system.planar = false",
                          key, v.y()));
 }
 
@@ -19,7 +19,7 @@ Eigen::Vector3d unit(const Table& t, std::string_view key, const Eigen::Vector3d
   const double length = v.norm();
   if (!(length > 0.))
     t.refuse(key, "E-BODY-31",
-             fmt::format("{} = [0, 0, 0] has no direction; accepted is any other", key));
+             fmt::format("{} = [0, 0, 0] has no direction; expected a vector that is not 0", key));
   return v / length;
 }
 
@@ -49,7 +49,7 @@ Eigen::Vector3d read_turn(const Table& t, std::string_view key, const Range& acc
   if (planar && (v.x() != 0. || v.z() != 0.))
     t.refuse(key, "E-BODY-32",
              fmt::format("{} = [{:.15g}, {:.15g}, {:.15g}] turns out of the plane of x and z; "
-                         "accepted is one about y alone, or system.planar = false",
+                         "expected a turn about y alone, or system.planar = false",
                          key, v.x(), v.y(), v.z()));
   return v;
 }
@@ -63,8 +63,8 @@ Eigen::Vector3d read_turn_axis(const Table& t, std::string_view key, bool planar
   const Eigen::Vector3d axis = read_turn(t, key, any_number(), true, Eigen::Vector3d::UnitY());
   if (!(axis.y() > 0.))
     t.refuse(key, "E-BODY-33",
-             fmt::format("{} has y = {:.15g}; in the plane turns are about +y, accepted is "
-                         "[0, 1, 0]",
+             fmt::format("{} has y = {:.15g}, but turns in the plane are about +y; expected [0, "
+                         "1, 0]",
                          key, axis.y()));
   return Eigen::Vector3d::UnitY();
 }
@@ -73,7 +73,7 @@ void check_square(const Table& t, std::string_view key, const Eigen::Vector3d& a
                   std::string_view other, const Eigen::Vector3d& b) {
   if (std::fabs(a.dot(b)) <= 1e-9) return;
   t.refuse(key, "E-BODY-34",
-           fmt::format("{} stands at {:.6g} degrees to {}; accepted is 90 degrees", key,
+           fmt::format("{} stands at {:.6g} degrees to {}; expected 90 degrees", key,
                        std::acos(std::fmax(-1., std::fmin(1., a.dot(b)))) * 180. / M_PI, other));
 }
 

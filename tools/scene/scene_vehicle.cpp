@@ -87,7 +87,7 @@ void read_what(const Table& t, VehicleScene& v) {
   if (!t.has("file")) return read_kind(t, v);
   if (t.has("type"))
     t.refuse("type", "E-VEHICLE-03",
-             "type is given beside file, which has its own; one of them is accepted");
+             "type is given beside file, which has its own type; expected one of them");
   read_toml(t.path("file")).whole([&](const Table& root) {
     static_cast<void>(root.integer("schema", 1, 1));  // a newer one is refused
     read_kind(root.table("vehicle"), v);
@@ -102,8 +102,8 @@ void read_contact(const Table& t, VehicleScene& v) {
   if (v.contact == WheelContactKind::linear) {
     if (t.has("contact"))
       t.refuse("contact", "E-VEHICLE-04",
-               "a sprung mass without unsprung_mass_kg stands on its spring; accepted is no "
-               "contact, or an unsprung mass");
+               "a sprung mass without unsprung_mass_kg stands on its spring, which is "
+               "its contact; expected no key contact, or unsprung_mass_kg");
     return;
   }
   const std::size_t otherwise = v.contact == WheelContactKind::bonded ? 2 : 0;
@@ -119,7 +119,8 @@ void read_contact(const Table& t, VehicleScene& v) {
   for (const char* key : keys)
     if (t.has(key))
       t.refuse(key, "E-VEHICLE-05",
-               fmt::format("{} is of a linear contact; accepted with contact = \"linear\"", key));
+               fmt::format(
+                   "{} belongs to a linear contact; expected contact = \"linear\" beside it", key));
 }
 
 /// Refuses a vehicle of which a wheel leaves the rail before the end of the run.
@@ -129,8 +130,8 @@ void check_wheels(const Table& t, const Scene& scene, const VehicleScene& v,
     const double start = v.start + wheel.place;
     if (start < 0.0 || start > scene.track.length())
       t.refuse("start_m", "E-VEHICLE-11",
-               fmt::format("start_m = {:.15g} puts a wheel at x = {:.6g} m, off the "
-                           "rail; accepted is 0 to {:.6g} (or may_leave_rail = true)",
+               fmt::format("start_m = {:.15g} puts a wheel at x = {:.6g} m, off the rail; expected "
+                           "0 to {:.6g} m, or may_leave_rail = true",
                            v.start, start, scene.track.length()));
     check_path(t, scene, start, speed);
   }
@@ -142,13 +143,13 @@ OuterForce read_force(const Table& t, const VehicleScene& v, std::vector<InputSc
   const auto found = std::find(v.bodies.begin(), v.bodies.end(), name);
   if (found == v.bodies.end())
     t.refuse("body", "E-VEHICLE-12",
-             fmt::format("body = \"{}\" is no body of this vehicle; accepted are {}", name,
+             fmt::format("body = \"{}\" is not a body of this vehicle; expected one of {}", name,
                          fmt::join(v.bodies, ", ")));
   const auto body = static_cast<std::size_t>(found - v.bodies.begin());
   const int pitch = static_cast<int>(t.choice("direction", {"z", "pitch"}));
   if (pitch == 1 && v.vehicle.bodies[body].pitch_inertia == 0.)
     t.refuse("direction", "E-VEHICLE-13",
-             fmt::format("direction = \"pitch\", but {} does not pitch; accepted is \"z\"", name));
+             fmt::format("direction = \"pitch\", but {} does not pitch; expected \"z\"", name));
   return read_body_force(t, first_coordinates(v.vehicle)[body] + pitch, pitch == 1, inputs);
 }
 
@@ -158,13 +159,13 @@ std::optional<Falling> read_falling(const Table& t, const Scene& scene, const Ve
   for (const char* key : keys) {
     if (t.has(key) && v.contact != WheelContactKind::hertz)
       t.refuse(key, "E-VEHICLE-09",
-               fmt::format("{} is of a wheel that can leave the rail; accepted with contact = "
-                           "\"hertz\"",
+               fmt::format("{} belongs to a wheel that can leave the rail; expected contact = "
+                           "\"hertz\" beside it",
                            key));
     if (t.has(key) && scene.step && scene.step->start != Start::released)
       t.refuse(key, "E-VEHICLE-10",
-               fmt::format("{} is of a vehicle that does not stand on the track; accepted with "
-                           "step.start = \"released\"",
+               fmt::format("{} belongs to a vehicle that does not stand on the track at the start; "
+                           "expected step.start = \"released\"",
                            key));
   }
   if (!t.has(keys[0]) && !t.has(keys[1])) return std::nullopt;
@@ -180,7 +181,7 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
   const bool both = t.has("rail") && t.string("rail") == "both";
   if (both && scene.track.rails == 1)
     t.refuse("rail", "E-VEHICLE-14",
-             "rail = \"both\", but the track has one rail; accepted is \"left\"");
+             "rail = \"both\", but the track has one rail; expected \"left\"");
   v.rail = both ? kLeftRail : read_side(t, scene);
   read_what(t, v);
   read_contact(t, v);
