@@ -157,14 +157,14 @@ TEST_CASE("a track without end refuses keys that it cannot have, each with its m
   const auto refused = [](const std::vector<std::string>& changes, const char* why) {
     CHECK_THROWS_WITH(Built(read_scene(kScene, small(changes))), Contains(why));
   };
-  refused({"track.ends=\"pinned\""}, "has no ends to hold");
-  refused({"track.model=\"nonlinear\"", "track.unknowns=\"full\""}, "accepted with length");
-  refused({"support.length_m=0.1"}, "are points");
-  refused({"output.supports=true"}, "pass under its traffic");
+  refused({"track.ends=\"pinned\""}, "E-SCENE-05");
+  refused({"track.model=\"nonlinear\"", "track.unknowns=\"full\""}, "E-SCENE-06");
+  refused({"support.length_m=0.1"}, "E-SUPPORT-20");
+  refused({"output.supports=true"}, "E-SCENE-31");
   refused({"track.bays=8"}, "E-PACK-33");
   refused({"wheelset[0].speed_m_per_s=-30.0"}, "E-PACK-36");
   refused({"wheelset[0].speed_m_per_s=31.4159265"}, "E-START-06");
-  refused({"sensor[0].sleeper=20"}, "ahead of x = 0");
+  refused({"sensor[0].sleeper=20"}, "E-SENSOR-07");
   refused({R"(load=[{name="slow", rail="left", speed_m_per_s=20.0, force_z_n=-1e3, start_m=0.0}])"},
           "E-PACK-31");
   refused({R"(vehicle=[{name="slow", rail="left", start_m=0.0, type="mass", mass_kg=1e3, )"
@@ -172,5 +172,5 @@ TEST_CASE("a track without end refuses keys that it cannot have, each with its m
           "E-PACK-30");
   CHECK_THROWS_WITH(read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/moving_load.toml",
                                {"step.start=\"moving\""}),
-                    Contains("goes on as it is"));
+                    Contains("E-STEP-08"));
 }

@@ -268,18 +268,17 @@ TEST_CASE("a wrong flange is refused in one sentence", "[scene]") {
   CHECK_THAT(said("{clearance_m=7e-3, height_m=0.014}"), Contains("above 0.014"));
   CHECK_THAT(said("{clearance_m=7e-3, contact=\"linear\"}"), Contains("stiffness_n_per_m"));
   CHECK_THAT(said("{clearance_m=7e-3, damping_n_s_per_m=1.0}"),
-             Contains("a spring beside contact = \"hertz\""));
+             Contains("damping_n_s_per_m") && Contains("E-FLANGE-01"));
   CHECK_THAT(said("{clearance_m=7e-3, contact=\"linear\", stiffness_n_per_m=1e7, "
                   "corner_radius_m=0.01}"),
-             Contains("a corner's radius beside contact = \"linear\""));
-  CHECK_THAT(said("{clearance_m=7e-3}", "track.unknowns=\"vertical\""),
-             Contains("flanges push rails sideways"));
+             Contains("E-FLANGE-02"));
+  CHECK_THAT(said("{clearance_m=7e-3}", "track.unknowns=\"vertical\""), Contains("E-FLANGE-03"));
   CHECK_THAT(said("{clearance_m=7e-3}",
                   "rail={constants={area_m2=7.67e-3, inertia_y_m4=3e-5, "
                   "inertia_z_m4=5e-6, torsion_m4=2e-6, shear_factor_y=0.4, "
                   "shear_factor_z=0.4, centroid_height_m=0.08, "
                   "shear_centre_height_m=0.05, height_m=0.17}}"),
-             Contains("14 mm below their tops"));
+             Contains("E-FLANGE-04"));
   const std::string leans = "step.start=\"equilibrium\"' --set 'wheelset[0].force[0].table=[[0.0, ";
   CHECK_THAT(said("{clearance_m=7e-3}", leans + "3000.0]]"), Contains("E-START-14"));
   CHECK_THAT(said("{clearance_m=7e-3, stifness_n_per_m=1.0}"), Contains("E-KEY-02"));

@@ -162,11 +162,11 @@ TEST_CASE("a track refuses springs that do not pull where it cannot have them", 
   refused(run +
               "'stop=[{name=\"a\", rail=\"left\", position_m=9.0, direction=\"y\", "
               "side=\"left\", stiffness_n_per_m=1e8}]'",
-          "track.unknowns = \"full\"");
+          "E-STOP-03");
   refused(run +
               "'stop=[{name=\"rail\", rail=\"left\", position_m=9.0, direction=\"z\", "
               "side=\"below\", stiffness_n_per_m=1e8}]'",
-          "taken");
+          "E-RUNNER-19");
   refused("static " + kScene +
               " --set load[0].force_z_n=1e6 --set load[1].force_z_n=1e6 --set "
               "track.bays=4 --set support_change=[] --set "

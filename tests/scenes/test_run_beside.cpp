@@ -237,11 +237,11 @@ TEST_CASE("a scene with track and bodies reports its status with places", "[run]
   CHECK(told(scene.path())["state_hash"] == full["state_hash"]);
   const Ran condensed = railstep_program("run " + scene.path() + " --model condensed");
   CHECK(condensed.code == 2);
-  CHECK_THAT(condensed.err, Contains("kind = \"modal\" is not stepped beside bodies and beams"));
+  CHECK_THAT(condensed.err, Contains("E-CONDENSE-29"));
   for (const std::string command : {"static ", "modes "}) {
     const Ran ran = railstep_program(command + scene.path());
     CHECK(ran.code == 2);
-    CHECK_THAT(ran.err, Contains("run and condense take"));
+    CHECK_THAT(ran.err, Contains("E-SCENE-02"));
   }
   const auto page = fresh_folder("report") / "r.html";
   CHECK(railstep_program("run " + scene.path() + " --report " + page.string()).code == 0);

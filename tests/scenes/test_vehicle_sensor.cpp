@@ -102,11 +102,12 @@ TEST_CASE("a model file keeps a sensor on a vehicle", "[vehicle]") {
 }
 
 TEST_CASE("a sensor on an unknown vehicle or body is refused", "[scene][vehicle]") {
-  CHECK_THAT(told("vehicle=\"tram\""), Contains("\"tram\" is unknown; accepted are \"bogie\""));
+  CHECK_THAT(told("vehicle=\"tram\""),
+             Contains("\"tram\" is unknown; expected \"bogie\" [E-SENSOR-01]"));
   CHECK_THAT(told("vehicle=\"bogie\", body=\"boot\""),
-             Contains("accepted are \"frame\", \"wheel_1\", \"wheel_2\""));
+             Contains("expected \"frame\", \"wheel_1\", \"wheel_2\" [E-SENSOR-01]"));
   CHECK_THAT(told("vehicle=\"bogie\", body=\"wheel_1\", x_m=0.1"),
-             Contains("wheel_1 does not pitch; accepted is x_m = 0"));
+             Contains("wheel_1 does not pitch; expected x_m = 0 [E-SENSOR-06]"));
   CHECK_THAT(told("vehicle=\"bogie\", position_m=1.0"),
              Contains("'position_m'") && Contains("E-KEY-02"));
   CHECK_THAT(told("body=\"frame\""), Contains("'vehicle'") && Contains("E-KEY-01"));

@@ -344,10 +344,11 @@ TEST_CASE("the joints of a scene are checked", "[joint]") {
         "--set track.unknowns='\"full\"'");
     refused(words, "joints");
   }
-  refused("--set 'rail_joint=[{x_m=9.6, bending_vertical_stiffness_n_m_per_rad=1}]'", "at an end");
-  refused(kJoint + "--set rail.axial_force_n=1e5", "carry no force");
+  refused("--set 'rail_joint=[{x_m=9.6, bending_vertical_stiffness_n_m_per_rad=1}]'",
+          "E-RAILJOINT-02");
+  refused(kJoint + "--set rail.axial_force_n=1e5", "E-RAILJOINT-08");
   refused(kJoint + "--set 'track.ends=\"pinned\"' --set rail.temperature_rise_k=20",
-          "the joint has no gap_m");
+          "E-RAILJOINT-07");
   // 1.15e-5 x 20 K x 9.6 m = 2.2 mm.
   const std::string gap =
       "--set 'rail_joint=[{x_m=4.8, gap_m=0.0023, "

@@ -214,9 +214,9 @@ TEST_CASE("bad tables of inputs and bad inputs of scenes are refused in one sent
   CHECK_THAT(
       told("time_s,push.force_n\n0,1\n",
            "wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1, table=[[0, 1]]}]"),
-      Contains("table is given beside input"));
+      Contains("E-RUNNER-25"));
   CHECK_THAT(told("time_s,push.force_n\n0,1\n",
                   "wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1}, "
                   "{direction=\"z\", input=\"push\", limit_n=1}]"),
-             Contains("taken by another force"));
+             Contains("E-RUNNER-17"));
 }

@@ -153,16 +153,16 @@ TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio are checked", "[scen
   CHECK_THAT(with("moving_load", {"step.dt_s=0"}), Contains("dt_s = 0 is out of range"));
   CHECK_THAT(with("moving_load", {"step.dt_s=nan"}), Contains("dt_s = nan is not finite"));
   CHECK_THAT(with("moving_load", {"step.dt_s=0.05", "step.duration_s=0.01"}),
-             Contains("dt_s = 0.05 is longer than duration_s = 0.01"));
+             Contains("E-STEP-07"));
   CHECK_THAT(with("moving_load", {"step.dt_s=0.0007", "step.frame_s=0.0007"}),
              Contains("0.0007") && Contains("0.3"));
   CHECK_THAT(with("moving_load", {"step.frame_s=0.00101"}),
-             Contains("frame_s = 0.00101 is not a whole number of steps of dt_s = 2.5e-05"));
+             Contains("expected a multiple of dt_s [E-STEP-06]"));
   CHECK_THAT(with("moving_load", {"step.rho_inf=1.1"}),
              Contains("rho_inf = 1.1") && Contains("at least 0, at most 1"));
   CHECK(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_gamma=0.6"}) == "accepted");
   CHECK_THAT(with("moving_load", {"step.newmark_gamma=0.5"}),
-             Contains("newmark_gamma is not used here; accepted with scheme = \"newmark\""));
+             Contains("expected scheme = \"newmark\" beside it [E-STEP-01]"));
   CHECK_THAT(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_gamma=0.25"}),
              Contains("newmark_gamma = 0.25") && Contains("at least 0.5, at most 1"));
   CHECK_THAT(with("moving_load", {"step.scheme=\"newmark\"", "step.newmark_beta=0.125"}),
@@ -174,7 +174,7 @@ TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio are checked", "[scen
   CHECK(with("moving_load", {"step.scheme=\"tr-bdf2\""}) == "accepted");
   CHECK_THAT(with("moving_load", {"step.scheme=\"tr-bdf2\"",
                                   "external_wheel=[{name=\"w\", rail=\"left\", limit_n=1e6}]"}),
-             Contains("scheme = \"tr-bdf2\" has two stages") && Contains("external_wheel"));
+             Contains("E-STEP-04"));
   CHECK_THAT(with("moving_load", {"rail.poisson=0.5"}), Contains("above -1, below 0.5"));
   CHECK_THAT(with("moving_load", {"rail.poisson=-1"}), Contains("above -1, below 0.5"));
   CHECK(with("moving_load", {"rail.poisson=0.499"}) == "accepted");
@@ -182,34 +182,37 @@ TEST_CASE("rows 15 to 17: step, rho_inf and Poisson's ratio are checked", "[scen
 
 TEST_CASE("rows 18 and 19: unknown and doubled names are refused", "[scene]") {
   CHECK_THAT(with("wheelset_on_track", {"sensor[0].wheelset=\"bogie\""}),
-             Contains("wheelset = \"bogie\" is unknown; accepted are \"wheelset\""));
+             Contains("wheelset = \"bogie\" is unknown; expected \"wheelset\" [E-SENSOR-01]"));
   CHECK_THAT(with("moving_load", {"sensor=[{name=\"s\", on=\"wheelset\", wheelset=\"w\"}]"}),
-             Contains("the scene has no wheelset"));
+             Contains("E-SENSOR-02"));
   CHECK_THAT(with("moving_load", {"sensor=[{name=\"s\", on=\"sleeper\", sleeper=1}]"}),
-             Contains("has no [sleeper]"));
-  CHECK_THAT(with("ballasted_track", {"sensor[0].sleeper=41"}), Contains("accepted is 0 to 40"));
+             Contains("E-SENSOR-04"));
+  CHECK_THAT(with("ballasted_track", {"sensor[0].sleeper=41"}),
+             Contains("expected 0 to 40 [E-KEY-05]"));
   CHECK_THAT(with("ballasted_track", {"sensor[0].on=\"bogie\""}),
              Contains("one of \"rail\", \"sleeper\", \"wheelset\""));
   CHECK_THAT(with("moving_load", {"load[1].name=\"load_left\""}),
-             Contains("name = \"load_left\" is taken by [load[0]]"));
+             Contains("name = \"load_left\" is taken by [load[0]]; expected a name that is used "
+                      "once [E-RUNNER-19]"));
   CHECK_THAT(with("ballasted_track", {"sensor[1].name=\"wheel_left\""}),
              Contains("is taken by [wheelset[0]]"));
-  CHECK_THAT(with("moving_load", {"load[0].name=\"a,b\""}), Contains("is no name"));
-  CHECK_THAT(with("moving_load", {"load[0].name=\"support_1\""}), Contains("support_"));
+  CHECK_THAT(with("moving_load", {"load[0].name=\"a,b\""}), Contains("E-RUNNER-14"));
+  CHECK_THAT(with("moving_load", {"load[0].name=\"support_1\""}), Contains("E-RUNNER-15"));
 }
 
 TEST_CASE("row 20: a path must stay on the rail unless it may leave", "[scene]") {
   CHECK_THAT(with("moving_load", {"step.duration_s=0.4"}),
-             Contains("[load[0]] speed_m_per_s = 30") && Contains("x = 12.3 m, off the rail") &&
-                 Contains("0 to 9.6"));
+             Contains("[load[0]] speed_m_per_s = 30") && Contains("x = 12.3 m") &&
+                 Contains("0 to 9.6 m") && Contains("E-RUNNER-07"));
   CHECK(with("moving_load", {"step.duration_s=0.4", "load[0].stop_m=9.3", "load[1].stop_m=9.3"}) ==
         "accepted");
   CHECK(with("moving_load", {"step.duration_s=0.31"}) == "accepted");  // ends exactly at 9.6 m
   CHECK(with("moving_load", {"step.duration_s=0.4", "load[0].may_leave_rail=true",
                              "load[1].may_leave_rail=true"}) == "accepted");
   CHECK_THAT(with("moving_load", {"load[0].start_m=-0.1"}), Contains("at least 0, at most 9.6"));
-  CHECK_THAT(with("moving_load", {"load[0].stop_m=0.2"}), Contains("not ahead of start_m = 0.3"));
-  CHECK_THAT(with("ballasted_track", {"step.duration_s=1"}), Contains("x = 34.5 m, off the rail"));
+  CHECK_THAT(with("moving_load", {"load[0].stop_m=0.2"}), Contains("E-RUNNER-24"));
+  CHECK_THAT(with("ballasted_track", {"step.duration_s=1"}),
+             Contains("x = 34.5 m") && Contains("E-RUNNER-07"));
 }
 
 TEST_CASE("a wheelset in equilibrium must start on the rail", "[scene]") {
@@ -217,7 +220,7 @@ TEST_CASE("a wheelset in equilibrium must start on the rail", "[scene]") {
   Overrides released = beyond;
   released.emplace_back("step.start=\"released\"");
   CHECK_THAT(with("ballasted_track", beyond),
-             Contains("start_m = 24.5 is off the rail") && Contains("0 to 24, or step.start"));
+             Contains("start_m = 24.5") && Contains("0 to 24 m") && Contains("E-RUNNER-12"));
   CHECK(with("ballasted_track", released) == "accepted");
 }
 
@@ -225,7 +228,7 @@ TEST_CASE("row 23: a billion elements are refused with the bytes they would need
   // 2 rails * 1e9 bays * 1 element; 4 unknowns each, 4 bands of 12 doubles: 2e9 * 4 * 12 * 32
   // bytes.
   CHECK_THAT(with("moving_load", {"track.bays=1000000000"}),
-             Contains("makes 2000000000 elements, about 3.07e+12 bytes") && Contains("100000"));
+             Contains("2000000000 elements, about 3.07e+12 bytes") && Contains("E-SCENE-11"));
   CHECK(with("moving_load", {"track.bays=50000"}) == "accepted");
   CHECK_THAT(with("moving_load", {"track.bays=50001"}), Contains("100002 elements"));
 }
@@ -246,42 +249,42 @@ TEST_CASE("millimetres typed as metres are noticed", "[scene]") {
 
 TEST_CASE("the section is given in exactly one way", "[scene]") {
   CHECK_THAT(with("moving_load", {"rail.profile=\"a.toml\""}),
-             Contains("rectangle is given beside profile; exactly one"));
+             Contains("rectangle is given beside profile") && Contains("E-RAIL-03"));
   CHECK_THAT(edited("moving_load",
                     "[rail.rectangle]\nheight_m = 0.2319\nwidth_m = 0.0375\n"
                     "shear_factor_y = 0.8497\nshear_factor_z = 0.8497",
                     "[rail]"),
-             Contains("[rail] no section is given; exactly one"));
-  CHECK_THAT(with("moving_load", {"rail.shear_factor_z=0.4"}), Contains("one of them is accepted"));
+             Contains("E-RAIL-05"));
+  CHECK_THAT(with("moving_load", {"rail.shear_factor_z=0.4"}), Contains("E-RAIL-06"));
   CHECK_THAT(with("wheelset_on_track", {"rail.rectangles.web_height_m=0.98"}),
-             Contains("high together"));
+             Contains("E-RAIL-02"));
 }
 
 TEST_CASE("a table without another one that it needs is refused", "[scene]") {
-  CHECK_THAT(with("moving_load", {"sleeper.mass_kg=300"}), Contains("no [ballast]"));
-  CHECK_THAT(with("moving_load", {"ballast.stiffness_z_n_per_m=5e7"}), Contains("no [sleeper]"));
-  CHECK_THAT(with("ballasted_track", {"track.rails=1"}), Contains("a wheelset needs two rails"));
-  CHECK_THAT(with("moving_load", {"track.rails=1"}), Contains("rail = \"right\""));
+  CHECK_THAT(with("moving_load", {"sleeper.mass_kg=300"}), Contains("E-SUPPORT-01"));
+  CHECK_THAT(with("moving_load", {"ballast.stiffness_z_n_per_m=5e7"}), Contains("E-SUPPORT-02"));
+  CHECK_THAT(with("ballasted_track", {"track.rails=1"}), Contains("E-RUNNER-13"));
+  CHECK_THAT(with("moving_load", {"track.rails=1"}), Contains("E-SCENE-01"));
   CHECK(with("moving_load", {"condense.kind=\"modal\""}) == "accepted");
   CHECK_THAT(with("moving_load", {"condense.modes_per_bay=-1"}), Contains("modes_per_bay"));
   for (const char* kind : {"guyan", "irs", "craig-bampton", "krylov", "complex-modes"}) {
     CHECK(with("moving_load", {std::string("condense.kind=\"") + kind + "\""}) == "accepted");
     CHECK_THAT(with("endless_track", {std::string("condense.kind=\"") + kind + "\""}),
-               Contains("Floquet modes") && Contains("\"full\" and \"modal\""));
+               Contains("E-CONDENSE-26"));
   }
   CHECK_THAT(with("moving_load", {"condense.kind=\"guyen\""}), Contains("\"guyan\""));
-  CHECK_THAT(with("moving_load", {"condense.nodes_per_bay=3"}), Contains("divisor"));
-  CHECK_THAT(with("moving_load", {"condense.band_hz=[500, 20]"}), Contains("does not rise"));
+  CHECK_THAT(with("moving_load", {"condense.nodes_per_bay=3"}), Contains("E-CONDENSE-28"));
+  CHECK_THAT(with("moving_load", {"condense.band_hz=[500, 20]"}), Contains("E-CONDENSE-25"));
   CHECK_THAT(with("moving_load", {"condense.expansion_hz=[0]"}), Contains("expansion_hz"));
   CHECK_THAT(with("moving_load", {"condense.modes_per_bay=2", "condense.highest_hz=900"}),
-             Contains("one of them is accepted"));
+             Contains("E-CONDENSE-27"));
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].guide={method=\"baumgarte\"}"}),
              Contains("'alpha_per_s'") && Contains("E-KEY-01"));
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].guide.alpha_per_s=1"}),
-             Contains("Baumgarte's"));
+             Contains("E-RUNNER-11"));
   CHECK_THAT(with("wheelset_on_track", {"wheelset[0].force[0].table=[[1, 1], [1, 2]]"}),
-             Contains("does not rise"));
-  CHECK_THAT(with("moving_load", {"schema=2"}), Contains("schema = 2 is newer"));
+             Contains("E-RUNNER-02"));
+  CHECK_THAT(with("moving_load", {"schema=2"}), Contains("E-SCENE-27"));
 }
 
 namespace {
