@@ -47,7 +47,7 @@ void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
   }
 }
 
-/// The loads with everything that moves shifted by `time`.
+/// The forces of the loads, with everything that moves shifted by `time`.
 Acting loads_at(const Statics& statics, const PackedModel& packed, double time) {
   const Model& model = packed.model();
   Acting acting;
@@ -62,7 +62,7 @@ Acting loads_at(const Statics& statics, const PackedModel& packed, double time) 
   return acting;
 }
 
-/// Wheelsets where they touch rails at rest; one that a force pushes aside touches with its flange.
+/// Puts wheelsets where they touch rails at rest; a lateral force makes the flange touch.
 void put_wheelsets(const Model& model, double time, State& state) {
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
@@ -76,11 +76,11 @@ void put_wheelsets(const Model& model, double time, State& state) {
   }
 }
 
-/// What all stands on, by iteration: the forces that balance the wheelsets where they are, the
-/// rails and vehicles under these, and each wheelset's way to the depths that its forces want.
-/// Contacts are those that the step finds, so that it keeps the start. The forces hang on the rails
-/// by their small rolls alone, so each iteration leaves 1e-3 of the last or less, down to rounding.
-/// Everything that moves is shifted by `time`.
+/// Static equilibrium, by iteration: the forces that balance the wheelsets where they are, the
+/// rails and vehicles under these forces, and the shift of each wheelset to the depths that belong
+/// to its forces. Contacts are those that the step finds, so that it keeps the start. The forces
+/// depend on the rails only by their small rolls, so that each iteration leaves at most 1e-3 of the
+/// last error, down to rounding. Everything that moves is shifted by `time`.
 Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
   constexpr int kMostIterations = 30;
   constexpr double kNothing = 1e-15, kRounding = 1e-12;  // m, rad
@@ -131,9 +131,9 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
          "stand on the rails, or step.start = \"released\"");
 }
 
-/// What all stands on `time` later, for its rates alone: each wheel presses right over its place
-/// with its static force. A contact's own place does not pass the kink that a mesh has at the
-/// border of two elements under a force before the wheel is well over it.
+/// The equilibrium `time` later, for rates only: each wheel presses right over its place with its
+/// static force. Under a force a mesh has a kink at the border of two elements, and a contact's own
+/// place passes it only after the wheel.
 Pose passing(const Statics& statics, const PackedModel& packed, double gravity, double time) {
   const Model& model = packed.model();
   if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
@@ -168,7 +168,7 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
   return pose;
 }
 
-/// Forces of the fixed ports where the lines stand and move.
+/// Forces of the fixed ports from positions and velocities of the lines.
 void put_port_forces(const Model& model, State& state) {
   for (std::int32_t j = 0; j < model.fixed.count; ++j) {
     const double depth = closing(model, j, state.u, state.v) - model.fixed.gap[j];
@@ -178,13 +178,13 @@ void put_port_forces(const Model& model, State& state) {
   }
 }
 
-/// Times around 0, s, between which the static shape's velocity is taken: at an end of the rail
-/// only on the side where all that stands on it still does.
+/// Times around 0 between which the velocity of the static shape is taken, s. At an end of the rail
+/// only the side is used on which all traffic is on the rail.
 struct Window {
   double from, to;
 };
 Window window(const Model& model, double length) {
-  constexpr double dt = 1e-6;  // s; the shape's change over it is far above rounding, and linear
+  constexpr double dt = 1e-6;  // s; in it the shape changes linearly and far above rounding
   Window w{-dt, dt};
   const auto narrow = [&](double x, double speed) {
     const auto is_on = [&](double t) { return x + speed * t >= 0. && x + speed * t <= length; };
@@ -219,7 +219,7 @@ double wheel_load(const WheelsetModel& w) {
 
 namespace {
 
-/// Where a level wheel meets a rail at rest, beside the track's middle, m.
+/// Lateral place at which a level wheel touches a rail at rest, from the middle of the track, m.
 double contact_y(const Model& model, int rail) {
   const Cant& cant = model.cant[rail];
   const CrownTop top = crown_top(cant, model.head_z[rail], model.crown_radius[rail]);
@@ -234,7 +234,7 @@ std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel&
                           contact_depth({w.hertz[1], 0., 0.}, wheel_load(w))};
   const double roll =
       ((height[0] - height[1]) - (into[0] - into[1])) / (contact_y(model, 0) - contact_y(model, 1));
-  // An axle that rolls stands (r + crown) / cos(roll) over the crowns' centres.
+  // A rolled axle is (r + crown) / cos(roll) above the centres of the crowns.
   const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
   const double lifted = .5 * roll * roll * (w.radius + crown);
   const double z = .5 * (height[0] + height[1]) - .5 * (into[0] + into[1]) + lifted;
@@ -252,7 +252,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
   const Window w = window(model, track.length());
   const Pose later = passing(statics, packed, gravity, w.to);
   const Pose before = passing(statics, packed, gravity, w.from);
-  const double span = w.to > w.from ? w.to - w.from : 1.;  // s; without one there is no difference
+  const double span = w.to > w.from ? w.to - w.from : 1.;  // s; 1 if there is no window
   for (std::size_t l = 0; l < packed.lines().size(); ++l) {
     put(packed.lines()[l], model.line[l], at.lines[l], (later.lines[l] - before.lines[l]) / span,
         state);

@@ -10,7 +10,7 @@
 namespace railstep {
 namespace {
 
-/// How a line moves on from rest under a force, by backward Euler.
+/// Motion of a line from rest under a force, by backward Euler.
 struct Motion {
   Eigen::VectorXd u, v, a;
 };

@@ -3,17 +3,17 @@
 
 namespace railstep {
 
-/// The start that a model has, of an unloaded track at rest that loads and weight strike at once.
-/// Velocities and accelerations are what three steps dt of backward Euler come to, drawn back to
-/// t = 0 by the acceleration of the third: what is slow starts as it should to the second order,
-/// what dampers hold at rates far above 1 / dt has jumped to its velocity, and what swings within a
-/// step is left out, as it would ring.
+/// Start of a model whose track is unloaded and at rest when loads and weight suddenly act.
+/// Three steps dt of backward Euler give velocities and accelerations; the acceleration of the
+/// third step extrapolates them back to t = 0. Slow motions then start correctly to second order,
+/// motions that dampers hold at rates far above 1 / dt have jumped to their velocity, and
+/// vibrations within a step are left out, as they would ring.
 ///
-/// From zero accelerations a stiffly damped mass lags by half a step; from F / m generalised-alpha
-/// is thrown back by half of F / k. Second order means steps of 0.15 rad and less of a motion: of
-/// one that turns by more a step, up to 1 rad, the start from F / m errs by half as much.
+/// If it starts from zero accelerations, a stiffly damped mass lags by half a step; if it starts
+/// from F / m, generalised-alpha throws it back by half of F / k. Second order holds for motions of
+/// at most 0.15 rad a step. For 0.15 to 1 rad a step the start from F / m errs by half as much.
 ///
-/// For full order without one-sided springs; others are left as they are.
+/// For full order without one-sided springs; other models keep their start.
 /// @returns state_doubles() values
 std::vector<double> start_under_impact(const Track& track, const PackedModel& packed,
                                        double gravity);

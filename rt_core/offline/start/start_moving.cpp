@@ -20,10 +20,10 @@ namespace railstep {
 
 namespace {
 
-constexpr std::int64_t kMostSteps = std::int64_t{1} << 20;  // of a passage, and of all
+constexpr std::int64_t kMostSteps = std::int64_t{1} << 20;  // of one passage, and of all together
 constexpr double kSettled = 1e-9;  // of the largest displacement, from passage to passage
 
-/// Each wheel's force where the model stands on level, rigid rails, N.
+/// Force of each wheel when the model stands on level, rigid rails, N.
 std::vector<double> static_forces(const Model& model) {
   std::vector<double> force;
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
@@ -58,7 +58,7 @@ LoadModel load_of(const Model& model, int wheel, double force) {
   return load;
 }
 
-/// The model with forces that stay as they are at the start, on an even track.
+/// The model on an even track, with forces that keep their values at the start.
 Model evened(const Model& model) {
   Model even = model;
   even.steps_per_frame = 1;
@@ -79,7 +79,7 @@ Model evened(const Model& model) {
   return even;
 }
 
-/// The same with forces in place of wheels, behind its loads.
+/// The same with forces in place of wheels; they follow the loads.
 Model with_forces(const Model& even) {
   Model carried = even;
   if (carried.loads + wheel_count(even) > kMaxLoads)
@@ -94,7 +94,7 @@ Model with_forces(const Model& even) {
   return carried;
 }
 
-/// The model with its state, on the way of its forces.
+/// The model and its state while its forces pass bays.
 class Passage {
  public:
   Passage(const Model& model, const std::vector<double>& start)
@@ -110,9 +110,9 @@ class Passage {
     for (std::int64_t n = 0; n < steps; ++n)
       static_cast<void>(advance_frame(model_, state_, workspace_, outputs_));
   }
-  /// A state that is lost stays as it is, as a settled one does.
+  /// A lost state does not change any more, and so looks settled.
   bool is_lost() const { return has(state_.latched, Status::nonfinite_state); }
-  /// Displacements under all forces as the state stands, m.
+  /// Displacements under all forces in the present state, m.
   std::vector<double> heights() {
     publish_start(model_, state_, outputs_);
     return {outputs_.load_deflection, outputs_.load_deflection + model_.loads};
@@ -126,7 +126,7 @@ class Passage {
   Outputs outputs_{};
 };
 
-/// z0 of z0 = k^n z0 + r after `bays` bays, k^n turned by them; r stands in the passage's state.
+/// Solves z0 = k^n z0 + r after `bays` bays, k^n turned by these bays. r is in the passage's state.
 void close_wave(const LineModel& line, const BayProgress& progress, const State& r, State& z) {
   const BayShift& shift = line.shift;
   for (std::int32_t k = 0; k < line.size; ++k) {
@@ -158,9 +158,9 @@ void settle_ring(const Model& carried, std::vector<double>& memory) {
   }
 }
 
-/// Largest change of the model's displacements in a passage, and the largest of the lines, m. A
-/// wheelset's way along x is its guide's. Pitch counts in rad, which over a vehicle's few metres is
-/// as much.
+/// Largest change of the model's displacements in a passage, and the largest displacement of the
+/// lines, m. A wheelset's motion along x is that of its guide and left out. Pitch counts in rad,
+/// which is similar over the few metres of a vehicle.
 std::pair<double, double> change_of(const Model& model, const std::vector<double>& before,
                                     const std::vector<double>& after) {
   double change = 0., size = 0.;
@@ -179,7 +179,7 @@ std::pair<double, double> change_of(const Model& model, const std::vector<double
   return {change, size};
 }
 
-/// Passes bays until every passage is as the one before.
+/// Passes bays until every passage equals the one before.
 void settle(const Model& even, std::vector<double>& memory) {
   const std::int64_t period = even.endless.progress.period;
   Passage passage(even, memory);
@@ -197,8 +197,8 @@ void settle(const Model& even, std::vector<double>& memory) {
          "\"equilibrium\"");
 }
 
-/// Coordinates of what stands on rails whose heads are `height` over rest under each wheel, and the
-/// wheels' forces.
+/// Coordinates of wheelsets and vehicles on rails whose heads are `height` above rest under each
+/// wheel, and the forces of the wheels.
 struct Stand {
   std::vector<std::array<double, 6>> wheelsets;
   SettledVehicles vehicles;
@@ -216,7 +216,7 @@ Stand stand_on(const Model& model, const double* height) {
   return found;
 }
 
-/// Wheelsets and vehicles on the track as it moves; rates by differences over the first steps.
+/// Puts wheelsets and vehicles on the moving track; rates are differences over the first steps.
 void stand_up(const Model& model, const Model& carried, std::vector<double>& memory) {
   Passage passage(carried, memory);
   Stand at[3];
@@ -248,7 +248,7 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
     state.wheel_force[vehicle_contact(model, i)] = at[0].vehicles.force[i];
 }
 
-/// Names speeds that are accepted, to the digits that this takes.
+/// Names speeds that are possible, with all digits that they need.
 std::string no_whole_bays(const Model& model) {
   const Endless& e = model.endless;
   std::ostringstream text;
@@ -289,7 +289,7 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
   settle_ring(carried, memory);
   if (wheel_count(model) == 0) return memory;
   stand_up(even, carried, memory);
-  // Wheels press anew in every step; only loads were there before it.
+  // Wheels get new forces in each step; before it, only loads acted.
   State state = state_on(model, memory.data());
   forces(model, 0, state.a, state.g);
   settle(even, memory);

@@ -17,24 +17,24 @@ namespace railstep {
 
 namespace {
 
-constexpr int kIterations = 50;      // Newton's steps; a handful is enough where there is an answer
-constexpr double kSettled = 1e-10;   // of the largest force: Newton leaves its square
-constexpr double kLiftedOff = 1e-9;  // of what all wheels bear
-constexpr double kSoftest = 1e6;     // N/m, of springs whose stiffness scales the equations
+constexpr int kIterations = 50;      // of Newton's method; a few are enough if there is a solution
+constexpr double kSettled = 1e-10;   // of the largest force; the error left is its square
+constexpr double kLiftedOff = 1e-9;  // of the load of all wheels
+constexpr double kSoftest = 1e6;     // N/m, least stiffness that scales the equations
 
 using Rows =
     Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-/// The vehicles' matrices side by side.
+/// The matrices of all vehicles as one.
 struct Together {
   Eigen::MatrixXd stiffness, row;  // [all][all], [wheels][all]
-  Eigen::VectorXd weight;          // [all] N, less what forces at the start lift
+  Eigen::VectorXd weight;          // [all] N, less the forces upwards at the start
   double carried;                  // N, by all wheels together
-  double stiff;                    // N/m: forces over it keep the pivots alike
+  double stiff;                    // N/m: forces are divided by it, for pivots of one size
 };
 
-/// What the wheels carry: the weight along the way on which all heights rise alike, which stretches
-/// no spring.
+/// Load of the wheels: the weight along the motion in which all heights rise by the same amount,
+/// which stretches no spring.
 double carried(const Together& all) {
   const Eigen::Index n = all.weight.size(), wheels = all.row.rows();
   Eigen::MatrixXd A(n + wheels, n);
@@ -67,7 +67,7 @@ Together together(const Model& model) {
   return all;
 }
 
-/// Penetration under a force, and its slope over it.
+/// Penetration under a force, and its derivative by the force.
 struct Depth {
   double value, slope;  // m, m/N
 };
@@ -116,8 +116,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
     settled = iteration > 0;
     for (Eigen::Index i = 0; i < wheels; ++i) {
       const double next = force[i] + stiff * change[n + i];
-      // A wheel that presses less than nothing is set to a tenth of its last force and iterated
-      // again.
+      // A wheel with a negative force gets a tenth of its last force and is iterated again.
       const bool lifted = model.vehicle_wheel[i].contact.hertz > 0. && !(next > 0.);
       const double taken = lifted ? .1 * force[i] : next;
       if (lifted || std::abs(taken - force[i]) > kSettled * force.cwiseAbs().maxCoeff())
@@ -138,12 +137,12 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
 
 namespace {
 
-/// Where the vehicles' wheels stand, and what their rails are under them besides the lines.
+/// Places of the vehicles' wheels, and the part of the rails under them that is not of the lines.
 struct Wheels {
   std::vector<RailPoint> point;
   std::vector<RailForce> port;
   std::vector<bool> on_rail;
-  Eigen::VectorXd uneven;    // irregularities, and what other forces' residual moves, m
+  Eigen::VectorXd uneven;    // irregularities and residual displacements by other forces, m
   Eigen::MatrixXd residual;  // flexibility between the wheels, m/N
   std::size_t count() const { return point.size(); }
 };
@@ -179,7 +178,7 @@ Wheels wheels_of(const PackedModel& packed, const Track& track, double time, con
   return w;
 }
 
-/// The lines under the wheels as functions of the wheels' forces.
+/// Heights of the lines under the wheels as functions of the wheels' forces.
 struct Under {
   const Statics& statics;
   const PackedModel& packed;
@@ -213,7 +212,8 @@ struct Under {
   }
 
  private:
-  /// Of the largest force: heights' rounding is below 1e-8 of it, so slopes are good to 1e-5.
+  /// Of the largest force. Rounding of heights is below 1e-8 of it, so that slopes are good to
+  /// 1e-5.
   static constexpr double kPart = 1e-3;
 
   Eigen::VectorXd of(const std::vector<Eigen::VectorXd>& lines) const {
@@ -236,7 +236,7 @@ SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packe
   const Eigen::Index n = model.vehicle_wheels;
   const bool linear = model.fixed.count == 0;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
-  if (!linear)  // what they press on a level, rigid rail
+  if (!linear)  // forces on a level, rigid rail
     force = settle_vehicles(model, Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)).force;
   SettledVehicles settled;
   bool done = false;
@@ -245,7 +245,7 @@ SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packe
     const Eigen::MatrixXd slopes = under.slopes(force, height);
     settled =
         settle_vehicles(model, slopes + wheels.residual, wheels.uneven + height + slopes * force);
-    // What is left is the slopes' error of the last change.
+    // The remaining error is that of the slopes, times the last change.
     done = linear || (settled.force - force).cwiseAbs().maxCoeff() <=
                          1e-8 * settled.force.cwiseAbs().maxCoeff();
     force = settled.force;

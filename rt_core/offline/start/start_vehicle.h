@@ -6,25 +6,25 @@
 
 namespace railstep {
 
-/// Vehicles at rest on what gives way under their wheels.
+/// Vehicles at rest on a flexible track.
 struct SettledVehicles {
   Eigen::VectorXd force;                      // [vehicle wheels] on the wheel, up, N
   std::vector<Eigen::VectorXd> displacement;  // of each vehicle's coordinates
 };
 
-/// Equilibrium of all vehicles of a model with the track under them, wheel by wheel:
+/// Equilibrium of all vehicles of a model with the track under each wheel:
 ///   K q - B' f + weight = 0,   B q + flexibility f + depth(f) = free,
-/// depth the penetration that a contact needs for its force, by Newton's method.
+/// by Newton's method; depth is the penetration of a contact under its force.
 /// @param flexibility  [wheels][wheels] of the track under the wheels, m/N
 /// @param free         [wheels] height there without the vehicles, irregularities included, m
-/// Throws Refused where springs and wheels leave a vehicle a free motion, or where
-/// a wheel would leave its rail.
+/// Throws Refused if springs and wheels leave a vehicle a free motion, or if a wheel would leave
+/// its rail.
 SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexibility,
                                 const Eigen::VectorXd& free);
 
-/// The vehicles of a model at rest on its track under what acts, `time` later than at the start,
-/// and adds the forces of their wheels to it. Where the track is one-sided the heights under the
-/// wheels are no linear function of the forces: Newton's method with their slopes by differences.
+/// Settles the vehicles of a model on its track under the acting forces, `time` after the start,
+/// and adds the forces of their wheels to these. On a track with one-sided supports the heights
+/// under the wheels are not linear in the forces: Newton's method then takes slopes by differences.
 /// Throws Refused as settle_vehicles().
 SettledVehicles settle_on_track(const Statics& statics, const PackedModel& packed, double gravity,
                                 double time, Acting& acting);

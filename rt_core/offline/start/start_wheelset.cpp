@@ -18,7 +18,7 @@ double force_along(const WheelsetModel& w, int direction) {
   return sum;
 }
 
-/// Rows of the coordinates that follow, one column for each contact.
+/// Rows of the dependent coordinates, one column for each contact.
 Eigen::MatrixXd rows_of(const Stance& stance) {
   Eigen::MatrixXd rows(stance.count, stance.count);
   for (int i = 0; i < stance.count; ++i)

@@ -7,35 +7,34 @@
 
 namespace railstep {
 
-/// Force aside on a wheelset's centre at t = 0, N; over 0 to the left.
+/// Lateral force on a wheelset's centre at t = 0, N; above 0 to the left.
 double side_force(const WheelsetModel& wheelset);
 
-/// Throws Refused, in one sentence, where a force pushes a wheelset aside at t = 0
-/// and no flange holds it, and where one that leans on its flange is not alone on the track.
+/// Throws Refused if a lateral force acts on a wheelset at t = 0 and no flange holds it, or if a
+/// wheelset that leans on its flange is not alone on the track.
 void check_sides(const Model& model);
 
-/// How a wheelset stands: on both treads, where z and roll follow, and where a force aside leans it
-/// on a flange on that too, and y follows.
+/// Contacts of a wheelset at rest. On both treads, z and roll depend on the contacts; if a lateral
+/// force leans it on a flange, this is a third contact, and y depends on it too.
 struct Stance {
   int count;                                          // of contacts: 2 or 3
   std::array<std::int32_t, 3> number;                 // among the model's contacts
   std::array<WheelContact, 3> contact;                // as the step finds them
   Eigen::VectorXd force;                              // [count] N
-  int first_coordinate() const { return 4 - count; }  // that follows, up to roll
+  int first_coordinate() const { return 4 - count; }  // of the dependent ones, up to roll
 };
 
-/// The contacts of wheelset b where it is, and the forces in them that balance its weight and what
-/// pushes it: sum of force row = -applied over the coordinates that follow.
-/// Throws Refused where a wheel is off its rail or would have to pull.
+/// Contacts of wheelset b at its present place, and the forces in them that balance its weight and
+/// the applied forces: sum of force row = -applied over the dependent coordinates.
+/// Throws Refused if a wheel is off its rail or would have to pull.
 Stance stance_of(const Model& model, std::int32_t b, const Configuration& at);
 
-/// How far along y takes a wheelset that no force pushes aside off a flange that its lean brings
-/// into the rail, m; 0 where none touches. Its treads carry nothing sideways, so neither may a
-/// flange.
+/// Shift along y that takes a wheelset without lateral force off a flange that its roll pressed
+/// into the rail, m; 0 if no flange touches. Treads carry no lateral force, so that the flange must
+/// not either.
 double way_off_flanges(const Model& model, std::int32_t b, const Configuration& at);
 
-/// What of the coordinates that follow takes each contact to the depth that its force wants,
-/// [count].
+/// Change of the dependent coordinates that brings each contact to the depth of its force, [count].
 /// @param missed  [count] residual displacement of each contact's rail along its normal, m
 Eigen::VectorXd way_to_depths(const Model& model, const Stance& stance,
                               const Eigen::VectorXd& missed);
@@ -43,8 +42,8 @@ Eigen::VectorXd way_to_depths(const Model& model, const Stance& stance,
 /// Adds the forces of a wheelset on the rails.
 void add_forces(const Model& model, const Stance& stance, Acting& acting);
 
-/// Residual displacement of each contact's rail, [count]; a flange knows none.
-/// @param first  of the wheelset's forces among the acting ports
+/// Residual displacement of each contact's rail, [count]; 0 for a flange.
+/// @param first  index of the wheelset's first force among the acting ports
 Eigen::VectorXd missed_under(const Model& model, const Stance& stance, const Acting& acting,
                              std::size_t first);
 

@@ -8,13 +8,13 @@ namespace railstep {
 
 namespace {
 
-/// A point's row as ports see it: those of condensed lines leave out the section's own strain.
+/// Row of a point for ports: rows of condensed lines leave out the section's own strain.
 Eigen::SparseVector<double> row_of(const Track& track, const PackedModel& packed, const Line& line,
                                    const RailPoint& at) {
   return point_row(track, line, at, packed.model().form == Form::banded);
 }
 
-/// A contact's row, as the step spreads it.
+/// Row of a contact, as the step applies it.
 Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRow& row) {
   const bool strains = packed.model().form == Form::banded;
   const double factor = line.rail_factor[static_cast<std::size_t>(row.rail)];
@@ -32,11 +32,11 @@ Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRo
   return result;
 }
 
-/// Displacements of each line of a condensed model under its fixed ports' forces too.
+/// Adds the displacements of each line of a condensed model under the forces of its fixed ports.
 void apply_port_forces(const PackedModel& packed, std::vector<Eigen::VectorXd>& lines) {
   const FixedPortModel& fixed = packed.model().fixed;
   const Eigen::Index n = fixed.count;
-  // Rows over the lines' coordinates, and what they move: K = omega^2.
+  // Rows over the lines' coordinates, and displacements under unit forces on them: K = omega^2.
   std::vector<Eigen::MatrixXd> rows, moved;
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd free = -Eigen::Map<const Eigen::VectorXd>(fixed.gap, n);

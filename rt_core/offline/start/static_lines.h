@@ -8,30 +8,30 @@
 
 namespace railstep {
 
-/// A force along the row that a step has of a contact.
+/// A force along the row of a contact in the step.
 struct ContactForce {
   RailRow row;
   double force;  // N
 };
 
-/// Forces that act on the track at points and along rows, and those of them that the residual
-/// flexibility knows.
+/// Forces on the track at points and along rows, and those of them that have residual
+/// displacements.
 struct Acting {
   std::vector<PointForce> forces;
   std::vector<ContactForce> contacts;
   std::vector<RailForce> ports;
 };
 
-/// Static displacements of each line of the model, its unknowns or its coordinates if condensed,
-/// with those of the track's one-sided springs that are closed.
+/// Static displacements of each line of the model: its unknowns, or its coordinates if condensed.
+/// They include the effect of the one-sided springs that are closed.
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
                                           const Acting& acting, double gravity);
 
-/// Height of a rail's point as the model's lines have it, m; the rest is residual.
+/// Height of a point of a rail by the model's lines, m; without residual flexibility.
 double height_of(const Track& track, const PackedModel& packed,
                  const std::vector<Eigen::VectorXd>& lines, const RailPoint& at);
 
-/// Where the force at a load point acts at a place along the rail.
+/// Point at which a force at a load point acts, for a place along the rail.
 RailPoint point_of(const PackedModel& packed, std::int32_t load_point, double x);
 
 }  // namespace railstep
