@@ -310,8 +310,8 @@ Exit verdict(const HilRecord& record, const Simulation& run) {
                         "E-HIL-17"));
   if (const auto ended = ended_by_others(record)) return failed(ended->what());
   if (record.safe_stop_frame >= 0)
-    return failed(named(fmt::format("no inputs came for the time of --silence: the run stopped "
-                                    "safely from frame {} on",
+    return failed(named(fmt::format("no inputs came for the time of --silence: a safe stop "
+                                    "brought them to 0 from frame {} on",
                                     record.safe_stop_frame),
                         "E-HIL-18"));
   if (record.paced.overruns > 0)
