@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <iterator>
 #include <string_view>
 #include <vector>
 
+#include "commands/options.h"
 #include "text/files.h"
 #include "text/read.h"
 
@@ -36,25 +36,6 @@ std::string refused_integer(std::string& text) {
   if (fault == std::errc{} && end == last) return {};
   return fmt::format("'{}' is not a whole number; expected a whole number such as 24",
                      text.substr(0, 60));
-}
-
-/// Options of a command whose values are files that it writes.
-bool is_written(const std::string& name) {
-  constexpr std::string_view kWritten[] = {"--trace", "--report", "--record", "--vtk",
-                                           "--out",   "--emit-c", "--shape",  "--csv",
-                                           "--names", "--resume"};
-  return std::find(std::begin(kWritten), std::end(kWritten), name) != std::end(kWritten);
-}
-
-/// Whether the option names a folder that the command makes.
-bool makes_folders(const CLI::App& command, const CLI::Option& option) {
-  return option.get_name() == "--vtk" ||
-         (command.get_name() == "sweep" && option.get_name() == "--out");
-}
-
-bool is_read(const std::string& name) {
-  constexpr std::string_view kRead[] = {"SCENE", "PROFILE", "RECORDING", "--inputs", "--reference"};
-  return std::find(std::begin(kRead), std::end(kRead), name) != std::end(kRead);
 }
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -138,12 +119,12 @@ Message usage_message(const CLI::App& app, const CLI::ParseError& error) {
           fmt::format("{}{} see `railstep {}--help`", said, said.ends_with('?') ? "" : ";", name)};
 }
 
-void refuse_impossible_places(const CLI::App& command) {
+void refuse_impossible_places(CLI::App& command) {
   std::error_code ignored;
-  for (const CLI::Option* option : command.get_options()) {
-    if (!is_written(option->get_name()) || option->empty()) continue;
+  for (CLI::Option* option : command.get_options()) {
+    if (!is_written(*option) || option->empty()) continue;
     const std::filesystem::path file = option->results().front(), folder = file.parent_path();
-    if (makes_folders(command, *option)) continue;
+    if (is_folder(*option)) continue;
     if (std::filesystem::is_directory(file, ignored))
       throw InputError("E-CLI-03",
                        fmt::format("{} {}: this is a folder; expected the name of a file",
@@ -162,15 +143,15 @@ void refuse_impossible_places(const CLI::App& command) {
   }
 }
 
-void refuse_same_files(const CLI::App& command) {
-  const std::vector<const CLI::Option*> options = command.get_options();
+void refuse_same_files(CLI::App& command) {
+  const std::vector<CLI::Option*> options = command.get_options();
   for (auto to = options.begin(); to != options.end(); ++to) {
-    if (!is_written((*to)->get_name()) || (*to)->empty()) continue;
+    if (!is_written(**to) || (*to)->empty()) continue;
     const std::string file = (*to)->results().front();
-    if (!makes_folders(command, **to)) announce_output((*to)->get_name(), file);
+    if (!is_folder(**to)) announce_output((*to)->get_name(), file);
     for (auto other = options.begin(); other != options.end(); ++other) {
       const std::string name = (*other)->get_name();
-      const bool taken = is_read(name) || (other < to && is_written(name));
+      const bool taken = is_read(**other) || (other < to && is_written(**other));
       if (taken && !(*other)->empty() && same_file(file, (*other)->results().front()))
         throw InputError("E-CLI-06",
                          fmt::format("{} and {} both name {}; expected a file of its own for each",

@@ -18,11 +18,11 @@ Message usage_message(const CLI::App& app, const CLI::ParseError& error);
 
 /// Refuses, before anything is done, a file to be written that is a folder, or in none that is
 /// there. Throws InputError.
-void refuse_impossible_places(const CLI::App& command);
+void refuse_impossible_places(CLI::App& command);
 
 /// Refuses, before anything is done, a file to be written that an option has read, or that two
 /// options write, and announces the others: what the scene reads is not known yet (files.h). Throws
 /// InputError.
-void refuse_same_files(const CLI::App& command);
+void refuse_same_files(CLI::App& command);
 
 }  // namespace railstep

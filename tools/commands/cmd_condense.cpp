@@ -16,6 +16,7 @@
 #include "build/build.h"
 #include "build/build_system.h"
 #include "commands/command.h"
+#include "commands/options.h"
 #include "offline/pack/accuracy.h"
 #include "offline/pack/artefact.h"
 #include "report/emit_c.h"
@@ -258,12 +259,11 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
 Command add_condense(CLI::App& app) {
   auto o = std::make_shared<CondenseOptions>();
   CLI::App* sub = app.add_subcommand("condense", "Write a scene's model, ready to step");
-  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
-  sub->add_option("--out", o->out, "model file to write")->required();
-  sub->add_option("--emit-c", o->emit, "C file to write: the model for machines without files");
-  sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
+  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
+  sub->add_option("--out", o->out, "model file to write")->required()->check(writes_file());
+  sub->add_option("--emit-c", o->emit, "C file to write: the model for machines without files")
+      ->check(writes_file());
+  add_overrides(*sub, o->overrides);
   sub->add_option("--window", o->window,
                   "seconds of the scene of which the transient error is told, from its start; "
                   "without it all of them, or what of them takes some seconds")

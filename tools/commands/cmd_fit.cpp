@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "report/fit_report.h"
 #include "section/fit_profile.h"
 #include "section/section_file.h"
@@ -140,14 +141,16 @@ Command add_fit(CLI::App& app) {
   auto o = std::make_shared<FitOptions>();
   CLI::App* sub =
       app.add_subcommand("fit", "Three rectangles with the properties of a rail outline");
-  sub->add_option("PROFILE", o->profile, "profile (TOML), or outline points (CSV, with --unit)");
+  sub->add_option("PROFILE", o->profile, "profile (TOML), or outline points (CSV, with --unit)")
+      ->check(reads_file());
   sub->add_option("--unit", o->unit, "unit of a list of points")->check(CLI::IsMember({"mm", "m"}));
   sub->add_option("--target", o->target,
                   "properties instead of a profile: area_m2=..,inertia_y_m4=..,inertia_z_m4=..,"
                   "centroid_height_m=..,height_m=..");
   sub->add_option("--head-width-m", o->head_width, "head width, with --target");
-  sub->add_option("--out", o->out, "write the section as TOML");
-  sub->add_option("--report", o->report, "write a page with outline and rectangles (HTML)");
+  sub->add_option("--out", o->out, "write the section as TOML")->check(writes_file());
+  sub->add_option("--report", o->report, "write a page with outline and rectangles (HTML)")
+      ->check(writes_file());
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep fit config/profiles/60e1.toml --out 60e1_section.toml");
   return {sub, [o] { return run_fit(*o); }};

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "hard/hard_report.h"
 #include "report/drawing.h"
 #include "text/progress_bar.h"
@@ -97,7 +98,8 @@ Command add_hard(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   sub->add_option("--scenes", o->folder, "folder of their scenes")->capture_default_str();
-  sub->add_option("--report", o->report, "write a page with pictures (HTML; needs gnuplot)");
+  sub->add_option("--report", o->report, "write a page with pictures (HTML; needs gnuplot)")
+      ->check(writes_file());
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Exit code 1 where a figure is over its bound.\n\n"

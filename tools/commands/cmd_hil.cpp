@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "hil/hil_response.h"
 #include "hil/hil_run.h"
 #include "hil/hil_shm.h"
@@ -381,7 +382,8 @@ Exit run(const HilOptions& o) {
 void add_exchange_options(CLI::App& sub, HilOptions& o) {
   sub.add_option("--udp", o.udp, "listen for inputs on HOST:PORT; outputs go to who sends them");
   sub.add_option("--shm", o.shm, "shared memory of this name for inputs and outputs");
-  sub.add_option("--names", o.names, "write what inputs and outputs are called to this file");
+  sub.add_option("--names", o.names, "write what inputs and outputs are called to this file")
+      ->check(writes_file());
   sub.add_flag("--response", o.respond,
                "how the track gives way under external wheels in the next frame, in each output");
   sub.add_option("--wait", o.wait, "s to wait for the first inputs before the clock starts (0)")
@@ -400,7 +402,9 @@ void add_exchange_options(CLI::App& sub, HilOptions& o) {
 Command add_hil(CLI::App& app) {
   auto o = std::make_shared<HilOptions>();
   CLI::App* sub = app.add_subcommand("hil", "Run paced by the clock, with inputs and outputs");
-  sub->add_option("SCENE", o->input, "scene file (TOML) or model file")->required();
+  sub->add_option("SCENE", o->input, "scene file (TOML) or model file")
+      ->required()
+      ->check(reads_file());
   sub->add_option("--rate", o->rate, "frames a second")->required()->check(within(1e-3, 1e6));
   sub->add_option("--duration", o->duration, "s by the clock")
       ->required()
@@ -417,8 +421,10 @@ Command add_hil(CLI::App& app) {
                   "of SCHED_FIFO, 1 to 99 (50; free-run 0); 0: it is not asked for")
       ->check(within(0, 99));
   add_exchange_options(*sub, *o);
-  sub->add_option("--report", o->report, "write a page with histograms (HTML)");
-  sub->add_option("--record", o->record, "write model and inputs, for `railstep replay`");
+  sub->add_option("--report", o->report, "write a page with histograms (HTML)")
+      ->check(writes_file());
+  sub->add_option("--record", o->record, "write model and inputs, for `railstep replay`")
+      ->check(writes_file());
   CLI::Option* stall_frame = sub->add_option("--stall-frame", o->stall_frame,
                                              "a frame to be made late, to see what follows")
                                  ->check(within(std::int64_t{0}, std::int64_t{1} << 40));
@@ -426,9 +432,7 @@ Command add_hil(CLI::App& app) {
                               ->check(within(0., 1e8))
                               ->needs(stall_frame);
   stall_frame->needs(stall_us);
-  sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Example: railstep hil track.model --rate 1000 --duration 10 --cpu 1 --report hil.html");

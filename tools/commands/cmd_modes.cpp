@@ -9,6 +9,7 @@
 
 #include "build/build.h"
 #include "commands/command.h"
+#include "commands/options.h"
 #include "offline/analysis/damped.h"
 #include "offline/track/fixed_port.h"
 #include "run/unit_note.h"
@@ -44,12 +45,10 @@ void print_table(const NaturalModes& modes) {
 Command add_modes(CLI::App& app) {
   auto o = std::make_shared<ModesOptions>();
   CLI::App* sub = app.add_subcommand("modes", "Natural frequencies and damping of a track");
-  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
+  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--count", o->count, "how many, the lowest first (default 10)")
       ->check(within(1, 1000));
-  sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep modes config/scenes/free_rail.toml --count 12");
   return {sub, [o] {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "report/drawing.h"
 #include "report/pareto_report.h"
 #include "study/advice.h"
@@ -86,51 +87,28 @@ Command add_pareto(CLI::App& app) {
   ParetoRequest& asked = o->request;
   CLI::App* sub = app.add_subcommand(
       "pareto", "Speed against error of a scene over models, meshes, schemes and steps");
-  sub->add_option("SCENE", asked.scene, "scene file (TOML)")->required();
-  sub->add_option("--report", o->report, "HTML page to write");
-  sub->add_option("--csv", o->csv, "table to write");
+  sub->add_option("SCENE", asked.scene, "scene file (TOML)")->required()->check(reads_file());
+  sub->add_option("--report", o->report, "HTML page to write")->check(writes_file());
+  sub->add_option("--csv", o->csv, "table to write")->check(writes_file());
   sub->add_option("--resume", asked.resume,
-                  "file that keeps what is done; what it has is not run again");
-  sub->add_option("--set", asked.overrides,
-                  "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
-  sub->add_option("--models", asked.choices.models,
-                  "with commas; a model is KIND[:AMOUNT][:bare][:UNKNOWNS]")
-      ->delimiter(',')
-      ->type_name("MODEL,MODEL")
-      ->allow_extra_args(false);
-  sub->add_option("--meshes", asked.choices.meshes, "elements per bay, with commas")
-      ->delimiter(',')
-      ->type_name("INT,INT")
-      ->allow_extra_args(false)
-      ->check(within(1, 1000));
-  sub->add_option(
-         "--schemes", asked.choices.schemes,
-         "with commas: generalised-alpha:RHO_INF, newmark, hht:ALPHA, backward-euler, tr-bdf2; of "
-         "condensed models held:RHO_INF, discrete-gradient")
-      ->delimiter(',')
-      ->type_name("SCHEME,SCHEME")
-      ->allow_extra_args(false);
-  sub->add_option("--steps", asked.choices.steps, "s, with commas; each goes into a frame")
-      ->delimiter(',')
-      ->type_name("FLOAT,FLOAT")
-      ->allow_extra_args(false);
-  sub->add_option(
-         "--output", asked.judged.outputs,
-         "what counts as the error: deflection, contact_force, support_force, sensor, stress, or a "
-         "column; repeatable; by default the first that there is")
-      ->take_all()
-      ->allow_extra_args(false);
-  sub->add_option("--from", asked.judged.from, "leave out what comes before, s")
-      ->check(within(0., 1e7));
+                  "file that keeps what is done; what it has is not run again")
+      ->check(writes_file());
+  add_study(
+      *sub,
+      {"with commas; a model is KIND[:AMOUNT][:bare][:UNKNOWNS]",
+       "with commas: generalised-alpha:RHO_INF, newmark, hht:ALPHA, backward-euler, tr-bdf2; of "
+       "condensed models held:RHO_INF, discrete-gradient",
+       "what counts as the error: deflection, contact_force, support_force, sensor, stress, or a "
+       "column; repeatable; by default the first that there is"},
+      asked.overrides, asked.choices, asked.judged);
   sub->add_option("--reference-error", asked.reference_error,
                   "refine the reference until its own error is below")
       ->check(within(1e-15, 1.));
   sub->add_option("--reference-levels", asked.reference_levels, "levels of refinement at most")
       ->check(within(2, 10));
   CLI::Option* trace = sub->add_option("--reference", asked.reference,
-                                       "trace (CSV) to measure against, of the scene's frames");
+                                       "trace (CSV) to measure against, of the scene's frames")
+                           ->check(reads_file());
   sub->add_option("--own-error", asked.reference_own_error, "of that trace, as its maker states it")
       ->needs(trace)
       ->check(within(0., 1.));

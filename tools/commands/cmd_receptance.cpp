@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "report/drawing.h"
 #include "report/receptance_report.h"
 #include "text/write.h"
@@ -38,7 +39,7 @@ void run(ReceptanceOptions& o) {
 void add_options(CLI::App& sub, ReceptanceOptions& o) {
   const CLI::Validator hz = within(1e-3, 1e5);
   const auto directions = CLI::IsMember({"z", "y"});
-  sub.add_option("SCENE", o.scene, "scene file (TOML)")->required();
+  sub.add_option("SCENE", o.scene, "scene file (TOML)")->required()->check(reads_file());
   sub.add_option("--at", o.at, "sensor where the force acts")->required();
   sub.add_option("--to", o.to, "sensor where the displacement is read (default: the same)");
   sub.add_option("--direction", o.direction, "of the force: z (default) or y")->check(directions);
@@ -61,11 +62,9 @@ void add_options(CLI::App& sub, ReceptanceOptions& o) {
   sub.add_flag("--decay-rate", o.decay, "dB/m in one-third octaves along the rail (EN 15461)");
   sub.add_flag("--reflection", o.reflection,
                "what comes back of waves from the far end (ends = \"non-reflecting\" or \"free\")");
-  sub.add_option("--csv", o.csv, "write the curves (CSV)");
-  sub.add_option("--report", o.report, "write a page with plots (HTML)");
-  sub.add_option("--set", o.overrides, "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
+  sub.add_option("--csv", o.csv, "write the curves (CSV)")->check(writes_file());
+  sub.add_option("--report", o.report, "write a page with plots (HTML)")->check(writes_file());
+  add_overrides(sub, o.overrides);
   sub.add_flag("--json", o.json, "one JSON object on stdout");
   sub.footer(
       "Example: railstep receptance config/scenes/receptance_s1.toml --at mid_bay --from 30 "

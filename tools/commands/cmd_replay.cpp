@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "run/recording.h"
 
 namespace railstep {
@@ -41,7 +42,9 @@ Exit rerun(const ReplayOptions& o) {
 Command add_replay(CLI::App& app) {
   auto o = std::make_shared<ReplayOptions>();
   CLI::App* sub = app.add_subcommand("replay", "Make a recorded run again and compare its hashes");
-  sub->add_option("RECORDING", o->recording, "what `railstep run --record` wrote")->required();
+  sub->add_option("RECORDING", o->recording, "what `railstep run --record` wrote")
+      ->required()
+      ->check(reads_file());
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Exit code 1 where a hash differs.\n\nExample: railstep run config/scenes/wheel_flat.toml "

@@ -5,6 +5,7 @@
 
 #include "answer/rules_table.h"
 #include "commands/command.h"
+#include "commands/options.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -50,7 +51,7 @@ Command add_rules(CLI::App& app) {
   sub->add_option("--family", o->families, "only these choices, beside the default (repeatable)")
       ->check(CLI::IsMember(
           {"axial", "coupling-points", "section", "reference-line", "coupling", "shear"}));
-  sub->add_option("--csv", o->csv, "write every row as CSV");
+  sub->add_option("--csv", o->csv, "write every row as CSV")->check(writes_file());
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep rules --family axial --csv rules.csv");
   return {sub, [o] { return run_rules(*o); }};

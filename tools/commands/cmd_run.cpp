@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "online/beam/kernels.h"
 #include "report/drawing.h"
 #include "report/run_report.h"
@@ -249,27 +250,31 @@ Exit run(const RunOptions& o) {
 Command add_run(CLI::App& app) {
   auto o = std::make_shared<RunOptions>();
   CLI::App* sub = app.add_subcommand("run", "Simulate a scene, or a model of `railstep condense`");
-  sub->add_option("SCENE", o->input, "scene file (TOML) or model file")->required();
+  sub->add_option("SCENE", o->input, "scene file (TOML) or model file")
+      ->required()
+      ->check(reads_file());
   sub->add_option("--model", o->model, "full or condensed, instead of the scene's")
       ->check(CLI::IsMember({"full", "condensed"}));
   sub->add_option("--step", o->step, "time step, s, instead of the scene's");
   sub->add_option("--duration", o->duration, "simulated time, s, instead of the scene's");
-  sub->add_option("--trace", o->trace, "write a row a frame (CSV)");
-  sub->add_option("--report", o->report, "write a page with plots (HTML; needs gnuplot)");
+  sub->add_option("--trace", o->trace, "write a row a frame (CSV)")->check(writes_file());
+  sub->add_option("--report", o->report, "write a page with plots (HTML; needs gnuplot)")
+      ->check(writes_file());
   sub->add_option("--vtk", o->vtk,
-                  "write rails, sleepers and wheels at 101 times into this folder, for ParaView");
+                  "write rails, sleepers and wheels at 101 times into this folder, for ParaView")
+      ->check(makes_folder());
   sub->add_option(
-      "--inputs", o->inputs,
-      "what the scene's inputs are given (CSV: time_s, then inputs by name; a row holds "
-      "until the next)");
+         "--inputs", o->inputs,
+         "what the scene's inputs are given (CSV: time_s, then inputs by name; a row holds "
+         "until the next)")
+      ->check(reads_file());
   CLI::Option* record = sub->add_option("--record", o->record,
-                                        "write model, inputs and hashes, for `railstep replay`");
+                                        "write model, inputs and hashes, for `railstep replay`")
+                            ->check(writes_file());
   sub->add_option("--hash-every", o->hash_every, "frames from one hash of a recording to the next")
       ->check(within(std::int64_t{1}, std::int64_t{1} << 40))
       ->needs(record);
-  sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "The energies come from a second pass over the run; of a model file, which has no matrices,\n"

@@ -7,6 +7,7 @@
 
 #include "answer/static_solution.h"
 #include "commands/command.h"
+#include "commands/options.h"
 #include "run/unit_note.h"
 #include "text/write.h"
 
@@ -83,13 +84,12 @@ Exit run_static(const StaticOptions& o) {
 Command add_static(CLI::App& app) {
   auto o = std::make_shared<StaticOptions>();
   CLI::App* sub = app.add_subcommand("static", "Static equilibrium of a scene at t = 0");
-  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
+  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--model", o->model, "how the rail bends, in place of the scene's track.model")
       ->check(CLI::IsMember({"nonlinear", "linearised", "timoshenko"}));
-  sub->add_option("--shape", o->shape, "write the displaced neutral axis (CSV)");
-  sub->add_option("--set", o->overrides, "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
+  sub->add_option("--shape", o->shape, "write the displaced neutral axis (CSV)")
+      ->check(writes_file());
+  add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep static config/scenes/cantilever_rail.toml");
   return {sub, [o] { return run_static(*o); }};

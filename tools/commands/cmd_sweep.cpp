@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "sweep/sweep.h"
 
 namespace railstep {
@@ -56,7 +57,7 @@ Exit run(const SweepOptions& o) {
 Command add_sweep(CLI::App& app) {
   auto o = std::make_shared<SweepOptions>();
   CLI::App* sub = app.add_subcommand("sweep", "Run a scene over a grid of its keys, on all cores");
-  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required();
+  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--vary", o->vary,
                   "key.path=a,b,c: values of a key, as TOML; repeatable, all combinations are run")
       ->required()
@@ -64,7 +65,8 @@ Command add_sweep(CLI::App& app) {
       ->allow_extra_args(false);
   sub->add_option("--out", o->out,
                   "folder for a row per run and the table; what is there is not run again")
-      ->required();
+      ->required()
+      ->check(makes_folder());
   sub->add_option("--set", o->overrides, "key.path=value for all runs; repeatable")
       ->take_all()
       ->allow_extra_args(false);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands/command.h"
+#include "commands/options.h"
 #include "study/tune.h"
 #include "text/files.h"
 #include "text/write.h"
@@ -117,40 +118,18 @@ Command add_tune(CLI::App& app) {
   TuneRequest& asked = o->request;
   CLI::App* sub =
       app.add_subcommand("tune", "The cheapest setting of a scene that meets an error, verified");
-  sub->add_option("SCENE", asked.scene, "scene file (TOML)")->required();
+  sub->add_option("SCENE", asked.scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--max-error", asked.max_error, "largest error over peak that is accepted")
       ->required()
       ->check(within(1e-12, 1.));
   sub->add_option("--deadline-us", asked.deadline_us, "of a frame's median on this machine, us")
       ->check(within(1e-3, 1e9));
-  sub->add_option("--out", o->out, "scene to write; by default SCENE.tuned.toml here");
-  sub->add_option("--set", asked.overrides,
-                  "key.path=value, as if written in the scene; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
-  sub->add_option("--models", asked.choices.models, "with commas, as of pareto")
-      ->delimiter(',')
-      ->type_name("MODEL,MODEL")
-      ->allow_extra_args(false);
-  sub->add_option("--meshes", asked.choices.meshes, "elements per bay, with commas")
-      ->delimiter(',')
-      ->type_name("INT,INT")
-      ->allow_extra_args(false)
-      ->check(within(1, 1000));
-  sub->add_option("--schemes", asked.choices.schemes, "with commas, as of pareto")
-      ->delimiter(',')
-      ->type_name("SCHEME,SCHEME")
-      ->allow_extra_args(false);
-  sub->add_option("--steps", asked.choices.steps, "s, with commas; each goes into a frame")
-      ->delimiter(',')
-      ->type_name("FLOAT,FLOAT")
-      ->allow_extra_args(false);
-  sub->add_option("--output", asked.judged.outputs,
-                  "what counts as the error, as of pareto; repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
-  sub->add_option("--from", asked.judged.from, "leave out what comes before, s")
-      ->check(within(0., 1e7));
+  sub->add_option("--out", o->out, "scene to write; by default SCENE.tuned.toml here")
+      ->check(writes_file());
+  add_study(*sub,
+            {"with commas, as of pareto", "with commas, as of pareto",
+             "what counts as the error, as of pareto; repeatable"},
+            asked.overrides, asked.choices, asked.judged);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "Each part of the error, of step, condensation and mesh, is held to a third of it. Exit code "

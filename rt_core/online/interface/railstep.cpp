@@ -74,21 +74,6 @@ std::int32_t result_of(SnapshotStatus status) noexcept {
   return RAILSTEP_BAD_CONTENT;
 }
 
-constexpr const char* kResults[] = {
-    "all is well",
-    "a block or memory does not start at a multiple of 8 bytes",
-    "not a model; accepted is what `railstep condense` wrote",
-    "of another format; write it anew",
-    "cut short or run on; write it anew",
-    "the content does not match its check sums; write it anew",
-    "a number is out of its range",
-    "too little memory",
-    "not a snapshot",
-    "a snapshot of another model",
-    "of a machine with another byte order; write it anew",
-    "this machine steps the model to other bits than the one that wrote it",
-};
-
 std::size_t copy_name(const Names& names, std::int32_t index, char* to,
                       std::size_t bytes) noexcept {
   const Name found = name_at(names, index);
@@ -110,8 +95,34 @@ void begin(railstep_run& run) noexcept {
 std::int32_t railstep_version(void) noexcept { return RAILSTEP_VERSION; }
 
 const char* railstep_result_text(std::int32_t result) noexcept {
-  constexpr std::int32_t count = sizeof kResults / sizeof kResults[0];
-  return result >= 0 && result < count ? kResults[result] : "no result of this library";
+  switch (result) {
+    case RAILSTEP_OK:
+      return "all is well";
+    case RAILSTEP_MISALIGNED:
+      return "a block or memory does not start at a multiple of 8 bytes";
+    case RAILSTEP_NOT_A_MODEL:
+      return "not a model; accepted is what `railstep condense` wrote";
+    case RAILSTEP_OTHER_VERSION:
+      return "of another format; write it anew";
+    case RAILSTEP_WRONG_SIZE:
+      return "cut short or run on; write it anew";
+    case RAILSTEP_WRONG_SUM:
+      return "the content does not match its check sums; write it anew";
+    case RAILSTEP_BAD_CONTENT:
+      return "a number is out of its range";
+    case RAILSTEP_TOO_LITTLE_MEMORY:
+      return "too little memory";
+    case RAILSTEP_NOT_A_SNAPSHOT:
+      return "not a snapshot";
+    case RAILSTEP_OTHER_MODEL:
+      return "a snapshot of another model";
+    case RAILSTEP_OTHER_BYTE_ORDER:
+      return "of a machine with another byte order; write it anew";
+    case RAILSTEP_OTHER_BITS:
+      return "this machine steps the model to other bits than the one that wrote it";
+    default:
+      return "no result of this library";
+  }
 }
 
 const char* railstep_status_name(std::uint32_t status) noexcept {
