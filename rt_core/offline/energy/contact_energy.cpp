@@ -10,7 +10,7 @@
 namespace railstep {
 namespace {
 
-/// Where the forces act: of loads, and of wheels still without force.
+/// Places of the forces: of loads, and of wheels, whose forces are still 0.
 int ports_of(const Model& model, StandingContacts& c, RailForce* acting) {
   for (int i = 0; i < c.loads; ++i)
     acting[i] = {model.load[i].load_point, c.load[i].row.element, c.load[i].xi, c.load[i].force};
@@ -19,36 +19,36 @@ int ports_of(const Model& model, StandingContacts& c, RailForce* acting) {
   return c.loads + c.contacts;
 }
 
-/// Iterations after which a negative residual no longer matters: each leaves |G| dP/dd of it, 1e-2.
+/// Iterations for a negative residual: each leaves |G| dP/dd = 1e-2 of the last error.
 constexpr int kIterations = 10;
 
 bool stands(const WheelContact& at) { return at.on_rail || at.on_ground; }
 
-/// A linear contact is bilateral, and its damper's part is not in its penetration: its force is
-/// known.
+/// A linear contact is bilateral. Its force is known, and contains the damper's part, which the
+/// penetration does not show.
 bool is_linear(const Model& model, int wheel) {
   return !is_of_wheelset(model, wheel) && vehicle_wheel(model, wheel).contact.hertz == 0.;
 }
-/// Whether the residual flexibility has a part in how deep a contact is.
+/// Whether residual flexibility changes the depth of a contact.
 bool takes_residual(const Model& model, int wheel) {
   return !is_flange(model, wheel) && !is_linear(model, wheel);
 }
 double hertz_of(const Model& model, int wheel) {
-  if (!takes_residual(model, wheel)) return 1.;  // of a port that is never met
+  if (!takes_residual(model, wheel)) return 1.;  // not used: such a port stays open
   return is_of_wheelset(model, wheel)
              ? model.wheelset[wheelset_of(model, wheel)].hertz[rail_of(model, wheel)]
              : vehicle_wheel(model, wheel).contact.hertz;
 }
 
-/// Energy in a linear contact; one without a damper has it by its force, which says it better than
-/// the small penetration of a stiff one.
+/// Energy in a linear contact. Without a damper it follows from the force, which is more accurate
+/// than the small penetration of a stiff contact.
 double linear_energy(const ContactModel& contact, double force, double depth) {
   return contact.damping == 0. ? .5 * force * force / contact.stiffness
                                : .5 * contact.stiffness * depth * depth;
 }
 
-/// Forces of the wheels by d + W f = d_free, W = G between wheels. Where G is below 0, which it may
-/// be by itself, it acts through the force of the iteration before.
+/// Forces of the wheels by d + W f = d_free, W = G between wheels. If G is below 0, which it may be
+/// without the lines, it acts through the force of the iteration before.
 void solve_forces(const Model& model, StandingContacts& c, RailForce* acting, int ports) {
   double W[kMaxWheels * kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
   PortLaw law[kMaxWheels];
@@ -90,7 +90,7 @@ double flange_energy(const ContactModel& contact, double depth) {
                             : .5 * contact.stiffness * d * d;
 }
 
-/// Penetrations of all contacts, and the energy of those without a part in G, under known forces.
+/// Penetrations of all contacts under known forces, and the energy of contacts without part in G.
 void find_depths(const Model& model, const State& state, StandingContacts& c) {
   for (int i = 0; i < c.contacts; ++i) {
     c.depth[i] = c.approach[i] + c.moved[c.loads + i];

@@ -5,10 +5,11 @@
 
 namespace railstep {
 
-/// Contacts and residual flexibility in a state as it stands, whatever its step held frozen. With a
+/// Contacts and residual flexibility in a state, without quantities that its step held frozen. a is
 /// the approach of wheels and rails by lines and bodies, G the residual flexibility between all
-/// ports and F their vertical forces (loads P, wheels -f): w = G F, and d = a + w, f = C d^1.5 on
-/// wheels of Hertz contacts; f of the state on bilateral ones. Flanges have no part in G.
+/// ports, and F their vertical forces (loads P, wheels -f). Then w = G F. On wheels with Hertz
+/// contacts d = a + w and f = C d^1.5; on bilateral ones f is that of the state. Flanges have no
+/// part in G.
 struct StandingContacts {
   int loads, contacts;
   PlacedLoad load[kMaxLoads];
@@ -23,13 +24,14 @@ struct StandingContacts {
 
 StandingContacts standing_contacts(const Model& model, const State& state);
 
-/// What the dampers of vehicles' contacts and of flanges take of a step, (fbar - k dbar) dd, J.
+/// Energy that dampers of vehicles' contacts and of flanges dissipate in a step,
+/// (fbar - k dbar) dd, J.
 double contact_dissipation(const Model& model, const StandingContacts& before,
                            const StandingContacts& after, const double* mean_force);
 
-/// Work of the loads on what they move by G, and of whatever carries loads and wheels along, J. The
-/// change of place alone changes the energy by F' dG F / 2 under loads, and takes as much from
-/// where d = a + w under wheels:
+/// Work of the loads on residual displacements, and of the carriers that move loads and wheels
+/// along, J. The change of place alone changes the energy by F' dG F / 2 under loads, and by the
+/// opposite amount at wheels with d = a + w:
 ///   sum over loads of Fbar dw - (F0' w1 - F1' w0) / 2,
 /// where the second term is -F0' dG F1 / 2 by the symmetry of G. Without wheels it is the change of
 /// the residual energy.

@@ -94,12 +94,12 @@ void EnergyAccount::follow(const State& state) {
   for (std::int32_t j = 0; j < model_.fixed.count; ++j) add_port(now, j);
   for (std::int32_t b = 0; b < model_.vehicles; ++b) add_vehicle(now, b);
   if (first_ && model_.form == Form::banded) add_start(now);
-  last_ = std::move(now);  // its views stay: a vector's memory moves with it
+  last_ = std::move(now);  // its views stay valid: a vector's memory moves along
   first_ = false;
   note();
 }
 
-/// On a track without end, puts what stood at the step's start where it stands after a border.
+/// On a track without end, moves the state at the step's start to its bay after a border.
 void EnergyAccount::shift_bay(std::int64_t step) {
   const Endless& e = model_.endless;
   if (e.bays == 0 || bays_passed(e.progress, step).bays == bays_passed(e.progress, step - 1).bays)
@@ -184,8 +184,8 @@ double EnergyAccount::wheel_force(const Standing& now, int wheel) const {
   return model_.form == Form::condensed ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
 }
 
-/// Work of a wheelset's wheels by what its way along x alone changes of their approach: the mean of
-/// going before and of going after all else moved, J.
+/// Work of a wheelset's wheels by the change of approach due to its motion along x alone, J: the
+/// mean of moving before and of moving after everything else.
 double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
   const WheelsetModel& w = model_.wheelset[b];
   double sum = 0.;
@@ -275,7 +275,7 @@ void EnergyAccount::add_wheelset(const Standing& now, std::int32_t b) {
   flow_.guides += guide_work(now, b);
 }
 
-/// What the state at the start leaves out of balance, on the first step's way.
+/// Work in the first step of the forces that are out of balance at the start.
 void EnergyAccount::add_start(const Standing& now) {
   const State& s = last_.state;
   std::vector<double> f(static_cast<std::size_t>(model_.unknowns));

@@ -5,7 +5,7 @@ namespace {
 
 using ComplexSparse = Eigen::SparseMatrix<std::complex<double>>;
 
-/// [Re A, -Im A], which makes Re(A z) of [Re z, Im z].
+/// [Re A, -Im A], which turns [Re z, Im z] into Re(A z).
 Eigen::SparseMatrix<double> real_form(const ComplexSparse& A) {
   Eigen::SparseMatrix<double> both(A.rows(), 2 * A.cols());
   both.leftCols(A.cols()) = A.real();
@@ -13,7 +13,7 @@ Eigen::SparseMatrix<double> real_form(const ComplexSparse& A) {
   return both;
 }
 
-/// Diagonal as a sparse matrix.
+/// A diagonal as a sparse matrix.
 Eigen::SparseMatrix<double> diagonal(const Eigen::VectorXd& values) {
   return Eigen::SparseMatrix<double>(values.asDiagonal());
 }
@@ -39,7 +39,7 @@ LineEnergy::LineEnergy(const PackedLine& own, const Model& model, const LineMode
   shape_ = real_form(shape);
   rate_ = real_form(shape * own.modes.rate().asDiagonal());
   if (constant == nullptr) return;
-  // of the modal force q = shape' p: Re shape rate shape' = I gives p back
+  // From the modal force q = shape' p; Re shape rate shape' = I gives p back.
   Eigen::VectorXd q(2 * modes);
   q << Eigen::Map<const Eigen::VectorXd>(constant + first_, modes),
       Eigen::Map<const Eigen::VectorXd>(constant + model.unknowns + first_, modes);

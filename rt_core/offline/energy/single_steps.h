@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-/// A run again from its model's start, one step a frame.
+/// A run that is stepped again from its model's start, one step a frame.
 class SingleSteps {
  public:
   explicit SingleSteps(const Model& model)
@@ -26,12 +26,12 @@ class SingleSteps {
   /// @param account  follows the state after each step
   /// @param after    called after every frame of the model with the number of frames done; may be
   ///                 empty
-  /// @param inputs   what the run was given
+  /// @param inputs   the inputs of the run
   template <typename Account>
   void make(std::int64_t frames, Account& account, const std::function<void(std::int64_t)>& after,
             const FrameInputs& inputs) {
     for (std::int64_t frame = 0; frame < frames; ++frame) {
-      for (std::int32_t n = 0; n < steps_per_frame_; ++n) {  // the run told of the status
+      for (std::int32_t n = 0; n < steps_per_frame_; ++n) {  // the run reported the status
         static_cast<void>(make_frame(model_, n == 0 ? inputs : FrameInputs{}, frame, state_,
                                      workspace_, outputs_));
         account.follow(state_);

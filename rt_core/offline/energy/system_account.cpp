@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where the parts are and how they move; views into the state and `matrix`.
+/// Positions and velocities of the parts; views into the state and `matrix`.
 Motions motions_of(const SystemModel& s, const State& state, std::vector<double>& matrix) {
   matrix.resize(9 * static_cast<std::size_t>(s.bodies));
   for (std::int32_t b = 0; b < s.bodies; ++b)
@@ -24,7 +24,7 @@ Motions motions_of(const SystemModel& s, const State& state, std::vector<double>
 
 Vector3d point_of(const MarkerJet& jet) { return {jet.point[0].x, jet.point[1].x, jet.point[2].x}; }
 
-/// Of a body in ground axes, rad/s.
+/// Angular velocity of a body in ground axes, rad/s.
 Vector3d angular_velocity(const SystemModel& s, std::int32_t b, const Motions& at) {
   const RigidBodyModel& body = s.body[b];
   Vector3d own = Vector3d::Zero();
@@ -34,7 +34,7 @@ Vector3d angular_velocity(const SystemModel& s, std::int32_t b, const Motions& a
   return Eigen::Map<const Rows>(at.matrix + std::ptrdiff_t{9} * b) * own;
 }
 
-/// The same pose without its motion.
+/// The same pose without motion.
 MarkerJet held(MarkerJet jet) {
   for (int c = 0; c < 3; ++c) {
     jet.point[c] = {jet.point[c].x, 0., 0.};
@@ -132,7 +132,7 @@ class JoinedAccount {
     note();
   }
 
-  /// Of the largest size so far, over the largest energy turned over.
+  /// Largest imbalance so far, with its sign, over the largest energy turned over.
   double imbalance() const { return turned_over_ > 0. ? largest_ / turned_over_ : 0.; }
 
  private:

@@ -22,7 +22,7 @@ struct Matrices {
         row(v.row, v.wheels, v.size) {}
 };
 
-/// Of tables and inputs, along the coordinates.
+/// Forces of tables and inputs, along the coordinates.
 Eigen::VectorXd forces_on(const Model& model, const VehicleModel& vehicle, const State& at) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(vehicle.size);
   add_forces(vehicle, static_cast<double>(at.steps) * model.scheme.dt, at.input, sum.data());
