@@ -16,7 +16,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Puts markers and rows of a system together.
+/// Adds markers and rows of a system's joints, springs, forces and sensors.
 class Connector {
  public:
   Connector(const System& system, const Track* track, SystemParts& parts)
@@ -47,8 +47,8 @@ class Connector {
   std::int32_t joint_ = 0, a_ = 0, b_ = 0;  // of the rows that are being added
 };
 
-/// Columns: the axis, and two square to it. The second is as near to y as it can be, so that in the
-/// plane an axis in it gives the lateral one second.
+/// Columns: the axis and two perpendicular ones. The second is as near to y as possible, so that in
+/// a planar system it is the lateral axis if `axis` lies in the plane.
 Matrix3d around(const Vector3d& axis) {
   if (!axis.allFinite() || !(axis.norm() > 0.))
     refuse("E-SYSTEM-01", "its axis is 0 or not finite; expected a finite vector that is not 0");
@@ -67,7 +67,7 @@ void set_frame(MarkerModel& marker, const Matrix3d& axes, const Matrix3d& own) {
     for (int c = 0; c < 3; ++c) marker.frame[3 * k + c] = rows(k, c);
 }
 
-/// Where on a beam a point lies.
+/// Sets the place of a marker on a beam from a point.
 void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& marker) {
   const Vector3d local = beam.axes.transpose() * (point - beam.start);
   const double slack = 1e-9 * beam.length;
@@ -87,7 +87,7 @@ void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& m
   marker.position[2] = local.z();
 }
 
-/// A force beside the axis of a planar beam would press on its section alone.
+/// A force beside the axis of a planar beam would strain only its section.
 void Connector::check_in_plane(const Part& part, const Vector3d& point) const {
   const auto index = static_cast<std::size_t>(part.index);
   if (index < system_.beams.size() && point.y() != system_.beams[index].start.y())
@@ -283,7 +283,7 @@ void Connector::add_in_space(const Joint& joint) {
   }
 }
 
-/// Whether an axis of a planar system has to be its lateral one, or has to lie in its plane.
+/// In a planar system the axis of a joint must be the lateral one, or must lie in the plane.
 void check_plane(const Joint& joint) {
   const Vector3d n = joint.axis.normalized();
   const bool rotates = joint.kind == JointKind::revolute || joint.kind == JointKind::rotation;
@@ -365,7 +365,7 @@ void Connector::add(const SystemForce& force) {
   parts_.forces.push_back(packed);
 }
 
-/// Adds them one by one; an error says which.
+/// Adds items one by one; a message names the item.
 template <class Item, class Add>
 void each(const std::vector<Item>& items, const char* name, const Add& add) {
   for (std::size_t i = 0; i < items.size(); ++i) try {
@@ -375,7 +375,7 @@ void each(const std::vector<Item>& items, const char* name, const Add& add) {
     }
 }
 
-/// Part of a marker among bodies, then beams, then the track; -1 on the ground.
+/// Index of a marker's part among bodies, then beams, then the track; -1 on the ground.
 std::int32_t part_of(const SystemParts& parts, const MarkerModel& marker) {
   if (marker.kind == PartKind::ground) return -1;
   if (marker.kind == PartKind::rail)
@@ -384,7 +384,7 @@ std::int32_t part_of(const SystemParts& parts, const MarkerModel& marker) {
          (marker.kind == PartKind::beam ? static_cast<std::int32_t>(parts.bodies.size()) : 0);
 }
 
-/// Ends of all rows, part after part.
+/// Adds the ends of all rows, ordered by part.
 void add_ends(SystemParts& parts) {
   const auto count = static_cast<std::int32_t>(parts.bodies.size() + parts.beams.size()) + 1;
   for (RowModel& row : parts.rows) row.end[0] = row.end[1] = -1;

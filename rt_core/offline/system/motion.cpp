@@ -15,7 +15,7 @@ void add_piece(MotionPieces& pieces, double start, const std::vector<double>& co
     pieces.coefficient.push_back(k < coefficients.size() ? coefficients[k] : 0.);
 }
 
-/// Second derivatives at the knots of the natural cubic spline.
+/// Second derivatives of the natural cubic spline at its knots.
 Eigen::VectorXd bends(const std::vector<std::array<double, 2>>& table) {
   const auto n = static_cast<Eigen::Index>(table.size());
   Eigen::VectorXd diagonal = Eigen::VectorXd::Ones(n), beside = Eigen::VectorXd::Zero(n);

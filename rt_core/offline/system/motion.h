@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// A motion as pieces of polynomials, [pieces] starts and [pieces][kMotionCoefficients].
+/// A motion as pieces of polynomials: starts [pieces], coefficients [pieces][kMotionCoefficients].
 struct MotionPieces {
   std::vector<double> start, coefficient;
 };

@@ -10,7 +10,7 @@
 
 namespace railstep {
 
-/// A rigid body at rest, about its centre of mass.
+/// A rigid body at the start; inertia is about its centre of mass.
 struct RigidBody {
   double mass = 0.;                                                 // kg, > 0
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();                // kg m2, in body axes
@@ -30,7 +30,7 @@ struct FlexibleBeam {
   double axis_z = 0.;     // of the reference line above the centroid, m
   int elements = 1;
   double length = 0.;       // m
-  double half_height = 0.;  // of the section, m: what makes a slope comparable to a length
+  double half_height = 0.;  // of the section, m; it scales slopes to lengths
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  // of the reference line, m
   /// Columns: along the beam, lateral (a), up (b).
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -39,7 +39,7 @@ struct FlexibleBeam {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // as a rigid body, rad/s
 };
 
-/// What a joint holds on to.
+/// A part that a joint is fixed to.
 struct Part {
   enum class Kind { ground, body, beam, rail } kind = Kind::ground;
   int index = 0;  // among the system's bodies or beams; of rails 0 left, 1 right
@@ -50,36 +50,36 @@ inline Part beam(int index) { return {Part::Kind::beam, index}; }
 /// A rail of the linear track beside which the system stands.
 inline Part rail(int index) { return {Part::Kind::rail, index}; }
 
-/// s(t): a polynomial c0 + c1 t + ..., at most 6 coefficients, or a table, through which a natural
-/// cubic spline goes, constant outside.
+/// s(t): a polynomial c0 + c1 t + ... of at most 6 coefficients, or a natural cubic spline through
+/// a table, constant outside of it.
 struct Motion {
   std::vector<double> polynomial = {};
   std::vector<std::array<double, 2>> table = {};  // s, value; at least 2 rows, s rising
 };
 
-/// How two parts move together. Point and axes are those at rest, in ground axes.
+/// Kinds of joints between two parts. Point and axes are given at rest, in ground axes.
 enum class JointKind {
   spherical,       // the points coincide; a hinge in the plane
-  revolute,        // and turn about the axis alone
-  prismatic,       // slide along the axis, no turn
-  cylindrical,     // slide along and turn about the axis
+  revolute,        // the points coincide, and rotation is about the axis only
+  prismatic,       // slides along the axis, without rotation
+  cylindrical,     // slides along the axis and rotates about it
   fixed,           // no motion
   distance,        // point and other_point keep their distance
   point_on_line,   // B's point stays on A's line along the axis
-  point_on_plane,  // B's point stays in A's plane across the axis
-  universal,       // the points coincide; axis of A and second axis of B stay square
-  translation,     // driven: B's point is s(t) from A's along A's axis; nothing else is held
-  rotation,        // driven: B turns by s(t) (rad) about the axis against A; nothing else is held:
-                   // put it beside a revolute joint
+  point_on_plane,  // B's point stays in A's plane normal to the axis
+  universal,       // the points coincide; A's axis and B's stay perpendicular
+  translation,     // driven: distance s(t) from A's point to B's along A's axis
+  rotation,        // driven: B rotates by s(t) (rad) about the axis relative to A. It holds nothing
+  // else: use it together with a revolute joint
 };
 
 struct Joint {
   JointKind kind = JointKind::spherical;
   Part a = {}, b = {};
   Eigen::Vector3d point = Eigen::Vector3d::Zero();        // m
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();        // in planar systems of turns: y
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();        // y for rotations in planar systems
   Eigen::Vector3d other_point = Eigen::Vector3d::Zero();  // distance: on B, m; `point` is on A
-  Eigen::Vector3d other_axis = Eigen::Vector3d::UnitY();  // universal: of B
+  Eigen::Vector3d other_axis = Eigen::Vector3d::UnitY();  // universal: the axis of B
   Motion motion = {};                                     // of driven joints
 };
 
@@ -91,7 +91,7 @@ struct SpringDamper {
   double length = std::numeric_limits<double>::quiet_NaN();  // without force, m; NaN: as at rest
 };
 
-/// Direction (ground axes) times s(t), or times what is given each frame: N at a point, or N m on a
+/// Direction (ground axes) times s(t), or times an input of each frame: N at a point, or N m on a
 /// body.
 struct SystemForce {
   Part on = {};
@@ -99,17 +99,18 @@ struct SystemForce {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
   Motion factor = {};
   bool moment = false;
-  int input = -1;  // in the place of s(t), among System::input_limits
+  int input = -1;  // in place of s(t): index among System::input_limits
 };
 
-/// A point whose motion is read.
+/// A point whose motion is published.
 struct SystemSensor {
   Part on = {};
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
 };
 
-/// Bodies, beams and what joins them, as a scene gives them. A planar system moves in x and z: its
-/// parts' lateral axes are the ground's y, and it carries 3 unknowns per body, 5 per node.
+/// Bodies, beams and their joints, springs and forces, as a scene gives them. A planar system moves
+/// in x and z. The lateral axes of its parts are the ground's y. It has 3 unknowns per body and 5
+/// per node.
 struct System {
   bool planar = false;
   Eigen::Vector3d gravity = Eigen::Vector3d(0., 0., -kGravity);

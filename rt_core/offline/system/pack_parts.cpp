@@ -123,7 +123,7 @@ Eigen::Matrix<double, 9, 1> node_at_rest(const FlexibleBeam& beam, int node) {
   return q;
 }
 
-/// What a node's unknowns are worth of its nine.
+/// The values of those of a node's nine quantities that are unknowns.
 std::vector<double> carried(bool planar, const Eigen::Matrix<double, 9, 1>& q) {
   std::vector<double> out(planar ? kPlanarUnknowns : 9);
   for (std::size_t k = 0; k < out.size(); ++k)
@@ -141,7 +141,7 @@ std::vector<double> over_nodes(const FlexibleBeam& beam, bool planar, const Node
   return all;
 }
 
-/// 1 for unknowns that are free, 0 for held ones.
+/// 1 for free unknowns, 0 for held ones.
 Eigen::Matrix<double, 9, 1> free_of(const FlexibleBeam& beam, int node) {
   Eigen::Matrix<double, 9, 1> is_free = Eigen::Matrix<double, 9, 1>::Ones();
   if (node != 0 && node != 2 * beam.elements) return is_free;
@@ -151,7 +151,7 @@ Eigen::Matrix<double, 9, 1> free_of(const FlexibleBeam& beam, int node) {
   return is_free;
 }
 
-/// Held unknowns of a beam, which join those of the others.
+/// Adds the held unknowns of a beam to those of the others.
 void add_held(const FlexibleBeam& beam, BeamChainModel& packed, SystemParts& parts) {
   const std::vector<double> is_free =
       over_nodes(beam, packed.planar != 0, [&](int n) { return free_of(beam, n); });
@@ -182,7 +182,7 @@ void add_beam(const FlexibleBeam& beam, std::size_t index, bool planar, SystemPa
   parts.unknowns += packed.unknowns;
 }
 
-/// Weight of every unknown; forces comparable to each other.
+/// Adds the weight on every unknown, and the factors that make forces comparable to each other.
 void add_weight(const System& system, SystemParts& parts) {
   const Vector3d& g = system.gravity;
   for (const RigidBodyModel& body : parts.bodies)

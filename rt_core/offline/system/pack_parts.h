@@ -7,7 +7,7 @@
 
 namespace railstep {
 
-/// A system's model while it is put together; its arrays are what the model's views look into.
+/// A system's model while it is built. The model's views look into its arrays.
 struct SystemParts {
   std::vector<RigidBodyModel> bodies;
   std::vector<BeamChainModel> beams;
@@ -26,15 +26,15 @@ struct SystemParts {
   std::vector<double> constant_force, per_length, beam_rest;  // [unknowns]
   std::int32_t unknowns = 0;
 
-  /// Makes room for all unknowns, in whole panels.
+  /// Extends the arrays over all unknowns to whole panels.
   void pad();
 };
 
-/// Bodies and beams: unknowns, inertia, weight. Throws Refused.
+/// Adds unknowns, inertia and weight of bodies and beams. Throws Refused.
 void add_parts(const System& system, SystemParts& parts);
 
-/// Motion, markers and rows of joints, springs, forces and sensors. Throws Refused.
-/// @param track  beside which the system stands, or null
+/// Adds motions, markers and rows of joints, springs, forces and sensors. Throws Refused.
+/// @param track  the track beside the system, or null
 void add_connections(const System& system, const Track* track, SystemParts& parts);
 
 /// Velocity of every unknown at the start, [unknowns].

@@ -61,8 +61,8 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
            "\"augmented-lagrangian\" or \"direct\"");
 }
 
-/// Index 3 has -rho_inf as a double root: of a scheme that does not damp joint forces swing from
-/// step to step and grow (Cardona and Geradin 1989). Projections take that away, and so do rows of
+/// Index 3 has -rho_inf as a double root: with a scheme that does not damp, joint forces swing from
+/// step to step and grow (Cardona and Geradin 1989). Projections prevent this, and so do rows of
 /// velocities.
 void check_damping(const System& system, const SystemOptions& o, const Scheme& c) {
   const bool index_3 =
@@ -78,8 +78,8 @@ void check_damping(const System& system, const SystemOptions& o, const Scheme& c
            "another joints.hold");
 }
 
-/// By which the equilibrium is looked for: long steps of backward Euler, joints held without
-/// penalty, and all of it as near as round-off lets it.
+/// Options of the search for the equilibrium: long steps of backward Euler, joints held without
+/// penalty, tolerances near round-off.
 SystemOptions still_options(SystemOptions options, double dt) {
   options.scheme = backward_euler(dt);
   options.energy_momentum = options.at_rest = false;
@@ -92,7 +92,7 @@ SystemOptions still_options(SystemOptions options, double dt) {
   return options;
 }
 
-/// Loads where they are `shift` seconds later, with the force that they start with.
+/// The traffic with loads at their places `shift` seconds later, with their force at the start.
 Traffic shifted(Traffic traffic, double shift) {
   for (MovingLoad& load : traffic.loads) {
     load.start += first_speed(load) * shift;
@@ -108,7 +108,7 @@ std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
   return all;
 }
 
-/// Of things of which there are `count`.
+/// Checks indices of traced items against their number.
 std::vector<std::int32_t> indices(const std::vector<int>& traced, std::size_t count) {
   for (const int index : traced)
     if (index < 0 || static_cast<std::size_t>(index) >= count)
@@ -118,7 +118,7 @@ std::vector<std::int32_t> indices(const std::vector<int>& traced, std::size_t co
   return {traced.begin(), traced.end()};
 }
 
-/// A track's own start with the lines' part of a rest.
+/// The start of a track with the lines as they are in a rest.
 std::vector<double> lines_at(const Model& track, const Rest& rest) {
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(track)), 0.);
   const State state = state_on(track, memory.data());
@@ -135,7 +135,7 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
     : memory_(std::make_unique<Memory>()) {
   model_.scheme = options.scheme;
   model_.steps_per_frame = options.steps_per_frame;
-  // A model always has a run: of one frame where none is told.
+  // A model always has a run: one frame if no length is given.
   model_.steps = options.steps > 0 ? options.steps : options.steps_per_frame;
   std::optional<Rest> rest;
   if (options.at_rest)

@@ -10,12 +10,12 @@
 
 namespace railstep {
 
-/// Joints and springs whose forces a trace shows, by index.
+/// Indices of joints and springs whose forces the trace shows.
 struct TracedForces {
   std::vector<int> joints, springs;
 };
 
-/// How a system's joints are held and its steps are solved.
+/// Options for holding joints and solving steps.
 struct SystemOptions {
   Scheme scheme = {};
   bool energy_momentum = false;  // with the scheme energy_momentum()
@@ -30,28 +30,28 @@ struct SystemOptions {
   double penalty = 0.;
   double alpha = 0.;  // Baumgarte, 1/s; both 0: alpha = beta = 1 / (5 dt)
   double beta = 0.;
-  double tolerance = 1e-8;         // of the forces, over the largest kind of force
+  double tolerance = 1e-8;         // of forces, over the largest kind of force
   double joint_tolerance = 1e-10;  // m, and 1
   std::int64_t steps = 0;          // of the scene's run
-  /// The start is the static equilibrium under weight, springs, and forces and loads as they are at
-  /// t = 0, with drives at s(0) (rest.h); else all stands as it is given, rails unloaded.
+  /// true: the start is the static equilibrium under weight, springs, and forces and loads at t =
+  /// 0, with drives at s(0) (rest.h). false: all parts are as given and rails are unloaded.
   bool at_rest = false;
   TracedForces traced = {};
 };
 
-/// A model of a system alone, and the memory its views look into.
+/// A model of a system, with or without a track, and the memory that its views look into.
 class PackedSystem {
  public:
-  /// The start is that of the parts' positions and velocities; accelerations and joint forces are
-  /// in balance with them. Velocities that the joints do not allow are taken out as by an impulse.
-  /// Throws Refused on what cannot be built: parts without mass, joints of parts that
-  /// do not exist, points off their beam, motion out of a planar system; direct joints, or without
-  /// projections, with rho_inf = 1; no equilibrium where one is asked for.
+  /// The start has the parts' positions and velocities; accelerations and joint forces are in
+  /// balance with them. Velocities that the joints do not allow are removed as by an impulse.
+  /// Throws Refused if the system cannot be built: parts without mass, joints of parts that do not
+  /// exist, points off their beam, motion out of a planar system, direct joints or joints without
+  /// projections with rho_inf = 1, or at_rest without an equilibrium.
   PackedSystem(const System& system, const SystemOptions& options);
-  /// Beside a linear track in full order that carries no wheelsets, and that the system's joints,
-  /// springs and sensors may name; the track gives the scheme and the frames. A rail moves only in
-  /// what its track carries. The joint forces at the start are those of the first step's inertia,
-  /// as a track has unknowns without mass. Residual flexibility is not part of it.
+  /// A system beside a linear track in full order without wheelsets. Joints, springs and sensors of
+  /// the system may name its rails; the track gives the scheme and the frames. A rail moves only
+  /// along the unknowns of its track. The joint forces at the start are those of the first step's
+  /// inertia, as a track has unknowns without mass. Residual flexibility does not act at ports.
   PackedSystem(const System& system, const SystemOptions& options, const Track& track,
                const Traffic& traffic, const PackOptions& track_options);
   PackedSystem(const PackedSystem&) = delete;
@@ -59,7 +59,7 @@ class PackedSystem {
   ~PackedSystem();
 
   const Model& model() const { return model_; }
-  /// The track by itself, with its matrices; null without one.
+  /// The track alone, with its matrices; null without a track.
   const PackedModel* track() const;
 
  private:
@@ -71,7 +71,7 @@ class PackedSystem {
 };
 
 /// Energy-momentum: forces at the mean of a step's ends, elastic ones by the mean stress (Simo and
-/// Tarnow 1992), which makes and loses no energy; second order. For systems alone.
+/// Tarnow 1992). It neither makes nor loses energy; second order. For systems without a track.
 Scheme energy_momentum(double dt);
 
 }  // namespace railstep

@@ -10,15 +10,15 @@ namespace railstep {
 
 namespace {
 
-/// B' of one of a port's nine: its unit force on the lines' unknowns.
+/// B' of one of a port's nine unknowns: a unit force along it on the lines' unknowns.
 void add_unit_force(const Model& model, const RailPortModel& port, int k, double* force) {
   RailRow row{port.rail, port.element, {}, 0, {}, {}};
   for (int i = 0; i < 3; ++i) row.coefficient[i][k] = port.value[i];
   for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], row, 1., force);
 }
 
-/// What the forces that move the ports make of the lines: kg S^-1 B' f onto them, where kg C f is
-/// by how much the ports' own values differ from the lines'. @param g  rates of all unknowns
+/// Adds the motion of the lines by the forces that move the ports: kg S^-1 B' f, where kg C f is
+/// the difference of the ports' own values from those of the lines. @param g  rates of all unknowns
 void add_port_motion(const Model& model, double* g) {
   const SystemModel& s = model.system;
   const Eigen::Index n = 9 * s.ports;
@@ -62,7 +62,7 @@ void WidenedTrack::widen(std::int32_t own, Model& model) {
   TrackSensorModel& track_sensor = model.track_sensor;
   track_sensor_index_.assign(track_sensor.index, track_sensor.index + track_sensor.entries);
   for (std::int32_t& index : track_sensor_index_)
-    if (index >= model.unknowns) index += own;  // into v, which stands behind a longer u
+    if (index >= model.unknowns) index += own;  // into v, which follows a longer u
   track_sensor.index = track_sensor_index_.data();
 }
 

@@ -5,20 +5,20 @@
 
 namespace railstep {
 
-/// What the lines' step matrices S make of forces at the system's ports on rails.
+/// Responses of the lines, by their step matrices S, to forces at the system's ports on rails.
 struct TrackPorts {
   std::vector<double> shapes;      // [9 ports][lines' unknowns] S^-1 B', m/N
   std::vector<double> compliance;  // [9 ports][9 ports] B S^-1 B'
 };
 TrackPorts track_ports(const Model& model);
 
-/// A track's arrays that count all unknowns, once a system's stand behind them.
+/// Arrays of a track over all unknowns, extended by those of a system, which follow its own.
 class WidenedTrack {
  public:
   /// @param own  unknowns of the system
   void widen(std::int32_t own, Model& model);
-  /// Puts the track's own start into that of both; to velocities and accelerations of its lines
-  /// come those by which the ports already move. @param start  state of `both`
+  /// Puts the track's own start into that of both, and adds to velocities and accelerations of its
+  /// lines the present motion of the ports. @param start  state of `both`
   void put_start(const Model& track, const Model& both, std::vector<double>& start) const;
 
  private:

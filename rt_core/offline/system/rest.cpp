@@ -16,23 +16,23 @@ namespace railstep {
 namespace {
 
 constexpr double kFirstStep = 1e-2, kShortestStep = 1e-6, kLongestStep = 40.;  // s
-constexpr double kLonger = 4.;            // from one length of steps to the next
-constexpr int kPatience = 100;            // steps before longer ones are tried
-constexpr int kMostSteps = 40'000;        // of all lengths together
-constexpr double kNoAcceleration = 1e-9;  // m/s2: a ten billionth of weight
+constexpr double kLonger = 4.;            // factor from one step length to the next
+constexpr int kPatience = 100;            // number of steps before longer ones are tried
+constexpr int kMostSteps = 40'000;        // of all step lengths together
+constexpr double kNoAcceleration = 1e-9;  // m/s2: 1e-10 of the weight
 
-constexpr double kAway = 1e5;  // m: what has gone so far falls
+constexpr double kAway = 1e5;  // m: a part that moved so far is falling
 
 enum class Outcome { settled, slow, lost, away };
 
-/// The largest size among values.
+/// The largest magnitude.
 double largest(const double* values, std::int32_t count) {
   double most = 0.;
   for (std::int32_t i = 0; i < count; ++i) most = std::max(most, std::abs(values[i]));
   return most;
 }
 
-/// A system that is stepped with time held at 0.
+/// A system whose steps all end at t = 0.
 class Still {
  public:
   Still(std::unique_ptr<PackedSystem> packed, const std::optional<Rest>& from)
@@ -51,7 +51,7 @@ class Still {
     last_ = memory_;
   }
 
-  /// Up to `left` steps, which it counts down.
+  /// Makes up to `most` steps, and counts `left` down.
   Outcome settle(int most, int& left) {
     for (; most > 0 && left > 0; --most, --left) {
       const bool from_rest = at_rest_;
@@ -70,7 +70,7 @@ class Still {
     return Outcome::slow;
   }
 
-  /// As it stands, or as it stood before a step that was lost.
+  /// The present positions, or those before a lost step.
   Rest rest(bool before_last) {
     if (before_last) memory_ = last_;
     const auto n = static_cast<std::size_t>(model().unknowns);
@@ -82,7 +82,7 @@ class Still {
             {state_.row_force, state_.row_force + rows}};
   }
 
-  /// What accelerates most among bodies and beams; the track where all of these stand still.
+  /// Name of the body or beam that accelerates most; the track if none of these accelerates.
   std::string restless() const {
     const SystemModel& s = model().system;
     std::string name = "the track";
@@ -153,7 +153,7 @@ Rest settle(const StillSystem& make, double shift, std::optional<Rest> from) {
   }
 }
 
-/// Rates by which one rest becomes the other, body axes of turns as the state has them.
+/// Rates from one rest to another; of rotations in body axes, as in the state.
 std::vector<double> rates(const Model& model, const Rest& before, const Rest& after, double time) {
   const SystemModel& s = model.system;
   std::vector<double> v(before.u.size());

@@ -7,28 +7,28 @@ namespace railstep {
 
 class PackedSystem;
 
-/// Where a system and its track stand still.
+/// Positions and forces of a system and its track at rest.
 struct Rest {
-  std::vector<double> u;           // [unknowns] displacements; turns are in the quaternions
-  std::vector<double> v;           // [unknowns] of the shape that moving loads carry along
+  std::vector<double> u;           // [unknowns] displacements; rotations are in the quaternions
+  std::vector<double> v;           // [unknowns] of the shape that moves along with the loads
   std::vector<double> quaternion;  // [bodies][4]
   std::vector<double> row_force;   // [rows] N
 };
 
-/// A load of the track on its way: m, m/s, m.
+/// Path of a load of the track: m, m/s, m.
 struct PathOfLoad {
   double start, speed, length;
 };
 
-/// The same system by backward Euler with steps of dt, loads where they are `shift` seconds later.
+/// The same system by backward Euler with steps of dt, with loads at their places `shift` s later.
 using StillSystem = std::function<std::unique_ptr<PackedSystem>(double dt, double shift)>;
 
-/// Static equilibrium at t = 0, from where the parts are given: steps of backward Euler from rest
-/// with time held, whose fixed point is the equilibrium whatever the step; velocities are kept
-/// while kinetic energy grows and dropped where it falls (kinetic damping, Cundall 1976), so that
-/// slow motions arrive too. Steps lengthen while Newton's method bears it. It ends where a step
-/// from rest has no acceleration over 1e-9 m/s2 (rad/s2), or moves by round-off alone. Throws
-/// Refused, naming what moves most, where that is not found.
+/// Static equilibrium at t = 0, searched from the given positions. Steps of backward Euler with
+/// time held have the equilibrium as their fixed point, for every step length. Velocities are kept
+/// while kinetic energy grows and set to 0 when it falls (kinetic damping, Cundall 1976), so that
+/// slow motions arrive too. Steps get longer while Newton's method converges. The search ends when
+/// a step from rest has no acceleration above 1e-9 m/s2 (rad/s2), or moves by round-off only.
+/// Throws Refused with the name of the part that moves most if no equilibrium is found.
 Rest find_rest(const StillSystem& make, const std::vector<PathOfLoad>& loads);
 
 }  // namespace railstep

@@ -34,7 +34,8 @@ void add_bodies(const SystemModel& s, std::vector<Eigen::Triplet<double>>& entri
   }
 }
 
-/// Column by column: what the online inertia makes of unit accelerations of one node.
+/// Adds the mass of a beam, column by column: the online inertia under unit accelerations of a
+/// node.
 void add_beam(const SystemModel& s, const BeamChainModel& beam,
               std::vector<Eigen::Triplet<double>>& entries) {
   const int width = beam_width(beam), nodes = beam.unknowns / width;
@@ -52,7 +53,7 @@ void add_beam(const SystemModel& s, const BeamChainModel& beam,
   }
 }
 
-/// M, with ones where unknowns are held, pad, or are the track's.
+/// M, with ones for unknowns that are held, that pad, or that belong to the track.
 Sparse mass(const SystemModel& s) {
   std::vector<Eigen::Triplet<double>> entries;
   add_bodies(s, entries);
@@ -68,7 +69,7 @@ Sparse mass(const SystemModel& s) {
   return M;
 }
 
-/// M^-1; of the track what a step sees of it, kg times its ports' compliance.
+/// M^-1; for the track its effect in a step, kg times the compliance of its ports.
 class Mobility {
  public:
   explicit Mobility(const Model& model) : model_(model), inverse_(mass(model.system)) {
@@ -93,7 +94,7 @@ class Mobility {
   Eigen::SimplicialLDLT<Sparse> inverse_;
 };
 
-/// The system as it stands at the start, in the online workspace.
+/// The system at the start, in the online workspace.
 struct Standing {
   Model model;
   std::vector<double> memory, quaternion, zero, u, v;
@@ -122,7 +123,7 @@ struct Standing {
     outer_forces(model, 0., nullptr, w);
     for (std::int32_t r = 0; r < system_rows(model.system); ++r) w.force[r] = 0.;
     Model plain = model;
-    plain.scheme.kv = 1.;  // springs have no slope else; what rows want is not used
+    plain.scheme.kv = 1.;  // else springs have no slope; targets of rows are not used
     set_rows(plain, 0., false, w);
   }
   Jet jet(std::int32_t r) const {
@@ -169,14 +170,14 @@ std::vector<double> start_quaternions(const System& system, const Rest* rest) {
   return all;
 }
 
-/// Displacements of the system's unknowns.
+/// Displacements of the system's unknowns at the start.
 std::vector<double> start_places(const SystemModel& s, const Rest* rest) {
   std::vector<double> u(static_cast<std::size_t>(s.unknowns), 0.);
   if (rest != nullptr) std::copy_n(rest->u.begin() + s.first, s.unknowns, u.begin());
   return u;
 }
 
-/// As they are given, and as loads carry the rest along; joints are not asked yet.
+/// Velocities as given, plus those of the rest that moves with loads; joints do not act yet.
 std::vector<double> start_rates(const System& system, const SystemParts& parts,
                                 const SystemModel& s, const Rest* rest) {
   std::vector<double> v = start_velocities(system, parts);
@@ -218,7 +219,7 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
                                   "expected a drive that the other joints allow");
   }
   VectorXd spring_force = VectorXd::Zero(rows),
-           fresh_force = spring_force;  // that no rest balances
+           fresh_force = spring_force;  // the part that no rest balances
   for (std::int32_t r = joints; r < rows; ++r) {
     const Jet phi = at.jet(r);
     spring_force[r] = s.row[r].stiffness * phi.x + s.row[r].damping * phi.v;

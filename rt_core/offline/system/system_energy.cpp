@@ -16,7 +16,7 @@ using Eigen::Map;
 using Eigen::Vector3d;
 using Node = Eigen::Matrix<double, 9, 1>;
 
-/// Translation and turn of a body's unknowns, three each.
+/// Translation and rotation from a body's unknowns, three each.
 Eigen::Matrix<double, 6, 1> six(const RigidBodyModel& body, const double* x) {
   Eigen::Matrix<double, 6, 1> all = Eigen::Matrix<double, 6, 1>::Zero();
   for (int c = 0; c < 6; ++c)
@@ -28,7 +28,7 @@ Eigen::Matrix3d inertia(const RigidBodyModel& body) {
   return Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(body.inertia);
 }
 
-/// All nine of node n from what the beam carries.
+/// All nine quantities of node n from the beam's unknowns.
 Node nine(const BeamChainModel& beam, const double* x, int n) {
   const int width = beam.planar != 0 ? kPlanarUnknowns : 9;
   Node all = Node::Zero();
@@ -54,7 +54,7 @@ double point_energy(const StraightBeam& beam, const Vector3d (&V)[5]) {
   return sum;
 }
 
-/// @param rest, u  of the beam
+/// @param rest, u  unknowns of the beam
 double strain_energy(const BeamChainModel& beam, const double* rest, const double* u) {
   const double g = 1. / std::sqrt(3.), h = beam.element.per_length;
   double sum = 0.;
