@@ -25,7 +25,7 @@ inline ElementPlace place_from(const Track& track, double x, From from) {
 /// is in tension. It is exact for a rail bent by forces at its element borders: the rotation b_x is
 /// then quadratic in each element.
 /// @param displacement  of each line's unknowns, as Statics::solve() gives them
-/// Throws std::out_of_range off the rail.
+/// Throws Refused off the rail.
 inline double bending_moment(const Track& track, const std::vector<Line>& lines,
                              const std::vector<Eigen::VectorXd>& displacement, int rail, double x,
                              From from = From::behind) {

@@ -30,8 +30,8 @@ void factorise(const Eigen::SparseMatrix<double>& stiffness, Factor& factor) {
   factor.compute(lifted);
 }
 
-/// Whether a stiffness has a direction of negative energy. A pivot within 1e-12 of its diagonal is
-/// that of a free rigid mode (as Statics counts them), which is for others to refuse.
+/// Whether a stiffness has a direction of negative energy. A pivot within 1e-12 of its diagonal
+/// belongs to a free rigid mode (as Statics counts them), which is refused elsewhere.
 bool is_unstable(const Eigen::SparseMatrix<double>& stiffness) {
   Factor factor;
   factorise(stiffness, factor);
@@ -64,8 +64,8 @@ double critical_factor(const Track& track, double unstable) {
   return unstable;
 }
 
-/// Where the shape in which a track buckles is largest, m and rail; at the factor at which it does,
-/// where inverse iteration finds that shape at once.
+/// Place at which the buckled shape is largest, in words. The factor is the critical one, at which
+/// inverse iteration finds the shape at once.
 std::string place_of_buckling(const Track& given, double factor) {
   const Track track = compressed(given, factor);
   double most = -1., x = 0.;

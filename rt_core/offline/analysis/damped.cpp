@@ -24,7 +24,7 @@ constexpr double kSwings = 1e-6;                   // Im rate/|rate| of what is 
 constexpr double kConverged = 1e-10;               // of a Ritz value
 constexpr double kGood = 1e-10, kAccepted = 1e-8;  // residual: sought, and demanded
 constexpr int kMostUnknowns = 100'000;             // of a damped line: 400 vectors of it are 1.3 GB
-constexpr double kBeyond = 10.;  // of the highest undamped rate: over what dampers can raise
+constexpr double kBeyond = 10.;  // of the highest undamped rate: above the effect of dampers
 constexpr int kFirst = 60, kMore = 40, kMost = 800;  // vectors of the Krylov space
 
 /// The root nearest to `rate` of shape' Q(rate) shape = 0, plain transpose: as Q is symmetric, it
@@ -50,7 +50,8 @@ Eigen::VectorXcd inverse_step(const Line& line, Complex rate, const Eigen::Vecto
   return next.allFinite() && next.norm() > 0. ? Eigen::VectorXcd(next / next.norm()) : shape;
 }
 
-/// The residual that rounding of K x alone may leave: of modes far below the highest, the most.
+/// The residual that rounding of K x alone may leave; it is largest for modes far below the
+/// highest.
 double rounding(const Line& line, const Eigen::VectorXcd& shape) {
   const Eigen::VectorXd terms = line.stiffness.cwiseAbs() * shape.cwiseAbs();
   const double left = 10. * std::numeric_limits<double>::epsilon() * terms.norm();
@@ -68,7 +69,7 @@ void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
                            " Hz does not converge; ask for fewer modes or shorten the track");
 }
 
-/// The swinging Ritz pairs with |rate| <= radius, none where some are not yet sharp.
+/// The swinging Ritz pairs with |rate| <= radius; nothing if some are not yet sharp.
 std::optional<std::vector<Krylov::Ritz>> sharp(const Line& line, const Krylov& space, Complex shift,
                                                double radius) {
   // The quarter disc of that radius lies within this distance of its middle.
@@ -181,7 +182,8 @@ NaturalModes natural_modes(const Track& track, int count) {
   }
   keep_lowest(undamped, count);
   std::vector<Listed> found = sure;
-  // Dampers may raise rates (what they hold still stiffens) and take low modes out of the list.
+  // Dampers may raise rates (a part that they hold still is stiffer) and take low modes out of the
+  // list.
   double highest = undamped.empty() ? 1. : std::max(1.05 * undamped.back().first, 1.);
   for (bool all = damped.empty(); !all; highest *= 1.3) {
     found = sure;

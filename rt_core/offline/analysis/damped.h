@@ -11,17 +11,18 @@ namespace railstep {
 struct Oscillations {
   Eigen::VectorXcd rate;   // [modes] 1/s, by |rate|, lowest first
   Eigen::MatrixXcd shape;  // [unknowns][modes], each of Euclidean norm 1
-  bool all = false;        // there are none beyond what was asked for
+  bool all = false;        // the list holds all modes of the line or track
 };
 
-/// |Q(rate) shape| / (|rate^2 M shape| + |rate C shape| + |K shape|): what is left of the forces.
+/// |Q(rate) shape| / (|rate^2 M shape| + |rate C shape| + |K shape|): the relative residual of the
+/// forces.
 double residual(const Line& line, std::complex<double> rate, const Eigen::VectorXcd& shape);
 
 /// Those with |rate| <= radius, 1/s: every rate of that quarter disc is found by Arnoldi's method
 /// about its middle, until more vectors bring no more of them, then checked: residual() is at most
 /// 1e-8, or what rounding of K x leaves of modes far below the highest (f under 1e-4 of it), by
-/// inverse iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out.
-/// Throws std::runtime_error where they were not all found.
+/// inverse iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out. Throws
+/// Failed if they were not all found.
 Oscillations oscillations(const Line& line, double radius);
 
 /// Natural modes of a whole track, lowest frequency first.
@@ -31,9 +32,8 @@ struct NaturalModes {
 };
 
 /// The lowest `count` modes of all lines of a track together, or as many as there are. Motions that
-/// do not swing (over their critical damping) are no modes of this list.
-/// Throws std::invalid_argument on what makes no track, std::runtime_error where a line is too long
-/// or modes were not all found.
+/// do not swing (over their critical damping) are left out. Throws Refused on an invalid track,
+/// Failed if a line is too long or modes were not all found.
 NaturalModes natural_modes(const Track& track, int count);
 
 }  // namespace railstep

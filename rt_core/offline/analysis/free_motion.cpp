@@ -19,9 +19,9 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Factor = Eigen::SimplicialLDLT<Sparse>;
 
-constexpr double kNothing = 1e-6;  // of the largest: what of a shape counts as standing still
+constexpr double kNothing = 1e-6;  // of the largest: below it a point of a shape stands still
 
-/// Of a factor that does not hold, the first pivot that is none. @returns an unknown
+/// The unknown of the first pivot that is not positive, in a factor that does not hold.
 int loose_unknown(const Factor& factor, const Sparse& stiffness) {
   const Eigen::VectorXd pivots = factor.vectorD();
   const Eigen::VectorXd diagonal = factor.permutationP() * Eigen::VectorXd(stiffness.diagonal());
@@ -49,14 +49,14 @@ std::string place_of(const Line& line, int unknown) {
   return "a sleeper's motion";
 }
 
-/// Springs that a track lacks, and the motion that they would resist.
+/// Springs that a track does not have, and the motion that they would resist.
 struct Lacking {
   const char* motion;
   std::string remedy;
   std::vector<Functional> strains = {};
 };
 
-/// What strains a pad's spring k: along x, y, z, and its roll.
+/// Functional that strains a pad's spring k: along x, y, z, and its roll.
 Functional pad_strain(const Track& track, int rail, int seat, int k) {
   if (k == 2) return pad_gap(track, rail, seat);
   const double x = seat * track.bay_length;
@@ -69,7 +69,7 @@ double pad_stiffness(const Support& pad, int k) {
   return k == 3 ? pad.roll_stiffness : pad.stiffness[static_cast<std::size_t>(k)];
 }
 
-/// What strains springs k of pads that have a stiffness, or of those that have none.
+/// Functionals that strain springs k of pads with a stiffness, or of those without.
 std::vector<Functional> pad_strains(const Track& track, int k, bool stiff) {
   std::vector<Functional> strains;
   for (int rail = 0; rail < track.rails; ++rail)
@@ -94,8 +94,8 @@ std::vector<Functional> ballast_strains(const Track& track, int k, bool stiff) {
   return strains;
 }
 
-/// Springs of 0 N/m, those first that hold most: along z, y, x, and in roll. Apart where the
-/// track's seats have them and some that were changed do not.
+/// Springs of 0 N/m, the most important first: along z, y, x, and in roll. If only some changed
+/// seats are without a spring, the remedy says so.
 std::vector<Lacking> lacking_springs(const Track& track) {
   static const char* const motions[4] = {"along x", "along y", "along z", "in roll"};
   static const char* const keys[4] = {
@@ -148,7 +148,7 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> parted(const Track& track,
   return {rotated.leftCols(met), rotated.rightCols(shapes.cols() - met)};
 }
 
-/// Which nodes of a rail move, of the first to the last; none: {-1, -1}.
+/// The first and the last node of a rail that move; {-1, -1} if no node moves.
 std::pair<int, int> moving_nodes(const std::vector<Line>& lines, const JoinedLines& joined,
                                  const Eigen::MatrixXd& shapes, int rail) {
   const double least = kNothing * shapes.cwiseAbs().maxCoeff();
@@ -169,7 +169,7 @@ std::pair<int, int> moving_nodes(const std::vector<Line>& lines, const JoinedLin
   return nodes;
 }
 
-/// "the left rail, x = 0 to 3.6 m" of what moves.
+/// The rails that move, as in "the left rail (x = 0 to 3.6 m)".
 std::string moving_rails(const Track& track, const std::vector<Line>& lines,
                          const JoinedLines& joined, const Eigen::MatrixXd& shapes) {
   std::array<std::pair<int, int>, 2> nodes = {{{-1, -1}, {-1, -1}}};
@@ -196,7 +196,7 @@ std::string joined_words(const std::vector<std::string>& words, const char* last
   return text;
 }
 
-/// Of free shapes; empty where no spring would hold them.
+/// Sentence about free shapes; empty if no spring would hold them.
 std::string motion_and_remedy(const Track& track, const std::vector<Line>& lines,
                               const JoinedLines& joined, Eigen::MatrixXd shapes) {
   std::vector<std::string> motions, remedies;
@@ -216,8 +216,8 @@ std::string motion_and_remedy(const Track& track, const std::vector<Line>& lines
          "; expected " + joined_words(remedies, " and ");
 }
 
-/// Shapes of a stiffness that it does not strain, over its unknowns scaled by their own stiffness;
-/// where some have none at all, these alone.
+/// Shapes that do not strain a stiffness, over unknowns scaled by their own stiffness. If some
+/// unknowns have no stiffness at all, only these.
 Eigen::MatrixXd free_shapes(const Sparse& stiffness) {
   constexpr Eigen::Index kMost = 12;
   const Eigen::VectorXd size = stiffness.diagonal();
@@ -229,7 +229,7 @@ Eigen::MatrixXd free_shapes(const Sparse& stiffness) {
   return rigid_modes(stiffness, Sparse(size.asDiagonal()));
 }
 
-/// The first pivot that is none, in words.
+/// Sentence about the first pivot that is not positive.
 std::string loosest(const std::vector<Line>& lines, const JoinedLines& joined,
                     const Sparse& stiffness, const Factor& factor) {
   Eigen::Index unknown = factor.info() == Eigen::Success ? loose_unknown(factor, stiffness) : 0;
@@ -281,7 +281,8 @@ void refuse_free_modes(const Track& track, const std::vector<Line>& lines,
       joined.stiffness + Sparse(joined.closing * k.asDiagonal() * joined.closing.transpose());
   const Factor factor(stiffness);
   if (is_held(factor, stiffness)) return;
-  // What springs hold, as soft as they are, is not free: the rounding of stiff rails does not tell.
+  // Shapes that springs hold are not free, however soft these are; beside stiff rails rounding
+  // hides soft springs.
   Track bilateral = track;
   if (ports.empty()) bilateral = all_open(bilateral);
   const Eigen::MatrixXd shapes =

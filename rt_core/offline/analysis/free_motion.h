@@ -20,10 +20,10 @@ struct JoinedLines {
 JoinedLines join(const Track& track, const std::vector<Line>& lines,
                  const std::vector<FixedPort>& ports);
 
-/// Throws std::invalid_argument where lines of a track have a free rigid mode with all ports
-/// closed. Names the rails, how they move and where, and the keys of a scene that would hold them;
-/// where no key is found, the unknown that nothing holds.
-/// @param ports  none: what is one-sided is open, as a condensed track has it
+/// Throws Refused if lines of a track have a free rigid mode with all ports closed. Names the
+/// rails, how they move and where, and the keys of a scene that would hold them; if no key is
+/// found, the unknown that nothing holds.
+/// @param ports  empty: one-sided springs are open, as in a condensed track
 void refuse_free_modes(const Track& track, const std::vector<Line>& lines,
                        const std::vector<FixedPort>& ports);
 

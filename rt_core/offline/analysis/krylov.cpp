@@ -11,7 +11,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double kExhausted = 1e-13;  // what is left of a vector after rounding
+constexpr double kExhausted = 1e-13;  // part of a vector that is only rounding
 constexpr double kInfinite = 1e-12;   // of the largest |nu| = 1/|rate - shift|: rounding of 0
 
 }  // namespace

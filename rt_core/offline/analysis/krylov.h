@@ -23,14 +23,14 @@ class Krylov {
     double error;               // estimated, of the rate over its size
   };
 
-  /// Throws std::runtime_error where Q(shift) is singular.
+  /// Throws Failed if Q(shift) is singular.
   Krylov(const Line& line, std::complex<double> shift);
 
   /// Adds vectors up to `size` of them; fewer where the space is exhausted.
   void grow(Eigen::Index size);
-  /// It holds every finite rate there is.
+  /// Whether the space holds every finite rate.
   bool complete() const { return complete_; }
-  /// What the space knows of rates within `radius` of the shift.
+  /// Ritz pairs of the space with rates within `radius` of the shift.
   std::vector<Ritz> within(double radius) const;
 
  private:

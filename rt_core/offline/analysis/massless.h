@@ -15,8 +15,8 @@ struct MassiveLine {
   Eigen::SparseMatrix<double> follow;           // [unknowns of the line][unknowns kept]
 };
 
-/// Condenses unknowns without mass exactly: u_s = -K_ss^-1 K_sr u_r. A line without any comes back
-/// as it is. Throws std::invalid_argument where nothing holds such an unknown.
+/// Condenses unknowns without mass exactly: u_s = -K_ss^-1 K_sr u_r. A line without such unknowns
+/// is returned unchanged. Throws Refused if nothing holds such an unknown.
 MassiveLine without_massless(const Line& line);
 
 }  // namespace railstep

@@ -22,7 +22,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostDenseUnknowns = 4000;  // a dense solution takes some n^3 10 flops
 
-/// The first `rigid` of ascending eigenvalues are 0; a further one below it is no frequency.
+/// The first `rigid` of ascending eigenvalues are 0. Another eigenvalue below 0 has no frequency.
 Modes of_squares(const Eigen::VectorXd& squares, const Eigen::MatrixXd& shapes,
                  Eigen::Index rigid) {
   Modes result{Eigen::VectorXd(squares.size()), shapes};
@@ -79,7 +79,7 @@ class Inverse {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
-/// What is left of the forces of undamped modes, over their size; the largest.
+/// The largest relative residual of the forces of undamped modes.
 double largest_residual(const MassiveLine& line, const Eigen::VectorXd& squares,
                         const Eigen::MatrixXd& shapes) {
   const Eigen::MatrixXd elastic = line.stiffness * shapes;
@@ -89,8 +89,8 @@ double largest_residual(const MassiveLine& line, const Eigen::VectorXd& squares,
   return left.cwiseQuotient(size).maxCoeff();
 }
 
-/// Lanczos for `count` modes above the rigid ones, ascending; none where it does not converge or
-/// where the pivots show that it left one out. @param room dimension of the Krylov space
+/// Lanczos for `count` modes above the rigid ones, ascending; nothing if it does not converge or if
+/// the pivots show that it left one out. @param room dimension of the Krylov space
 std::optional<Modes> lanczos(const MassiveLine& line, const Eigen::MatrixXd& rigid, int count,
                              int room) {
   const Eigen::Index held = rigid.cols();

@@ -57,9 +57,9 @@ Eigen::VectorXd OneSided::gradient(const Eigen::VectorXd& u, const Eigen::Vector
   return joined_.stiffness * u + joined_.closing * force - load;
 }
 
-/// Where too few are closed to hold the track, those that are open hold it a little: the step goes
-/// as far as the next that closes. Where it buckles then, they hold it as if all were closed. Both
-/// go down.
+/// If too few springs are closed to hold the track, the open ones hold it a little, and the step
+/// goes as far as the next spring that closes. If the track then buckles, they hold it as if all
+/// were closed. Both steps lower E.
 Eigen::VectorXd OneSided::newton_step(const Closed& closed, const Eigen::VectorXd& g) const {
   for (const double open_fraction : {0., kLittle}) {
     const Sparse held = stiffness(closed, open_fraction);
@@ -111,9 +111,9 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
   Eigen::VectorXd f(joined_.first.back());
   for (std::size_t l = 0; l < load.size(); ++l)
     f.segment(joined_.first[l], load[l].size()) = load[l];
-  // All closed is where a track rests that carries what it is made for.
+  // A track under its usual load rests with all springs closed, so the search begins there.
   Eigen::VectorXd gaps(static_cast<Eigen::Index>(ports_.size()));
-  double largest_gap = 0.;  // m; what rests closed does not move at all
+  double largest_gap = 0.;  // m; a spring that rests closed does not move
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     gaps[static_cast<Eigen::Index>(p)] = ports_[p].stiffness * ports_[p].gap;
     largest_gap = std::max(largest_gap, std::abs(ports_[p].gap));
@@ -126,8 +126,8 @@ std::vector<Eigen::VectorXd> OneSided::solve(const std::vector<Eigen::VectorXd>&
     const double length = minimum_along(u, step, f);
     u += length * step;
     const Closed now = closed_at(u);
-    // A whole step that changes no spring's state solved the linear system of that state; one that
-    // flickers about 0 moves nothing any more.
+    // A whole step that changes no spring's state solved the linear system of that state; a spring
+    // that flickers about 0 no longer moves anything.
     const double nothing = std::max(1e-9 * u.norm(), 1e-12 * largest_gap);
     done = (now == closed && std::abs(length - 1.) < 1e-6) || step.norm() <= nothing;
     closed = now;

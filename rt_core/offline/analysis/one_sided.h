@@ -13,11 +13,11 @@ namespace railstep {
 /// steps.
 class OneSided {
  public:
-  /// Throws std::invalid_argument where the track has a free rigid mode with all springs closed.
+  /// Throws Refused if the track has a free rigid mode with all springs closed.
   OneSided(const Track& track, const std::vector<Line>& lines, std::vector<FixedPort> ports);
 
-  /// Displacements of each line's unknowns under a load of each, N.
-  /// Throws std::invalid_argument where there is no equilibrium.
+  /// Displacements of each line's unknowns under a load of each, N. Throws Refused if there is no
+  /// equilibrium.
   std::vector<Eigen::VectorXd> solve(const std::vector<Eigen::VectorXd>& load) const;
   /// stiffness max(0, d) of each port, N.
   std::vector<double> forces(const std::vector<Eigen::VectorXd>& displacement) const;

@@ -56,7 +56,7 @@ Eigen::MatrixXd rigid_modes(const Eigen::SparseMatrix<double>& stiffness,
   const double highest = Eigen::VectorXd(stiffness.diagonal())
                              .cwiseQuotient(Eigen::VectorXd(mass.diagonal()))
                              .maxCoeff();
-  // Above the rounding of K, below what is no rigid mode.
+  // Above the rounding of K, below all modes that are not rigid.
   const double shift = std::max(1e-12 * highest, 1e-300);
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(
       Eigen::SparseMatrix<double>(stiffness + shift * mass));

@@ -12,13 +12,13 @@ class TimoshenkoStatics {
  public:
   /// @param places  m along the rail, where nodes are needed beside the track's element borders:
   ///        under loads and wherever displacements are asked for
-  /// Throws std::invalid_argument on two rails, sleepers, axial force, a reference line off the
+  /// Throws Refused on two rails, sleepers, axial force, a reference line off the
   /// centroid, a rule that is not the default and a free rigid mode.
   TimoshenkoStatics(const Track& track, const std::vector<double>& places);
 
   /// Displacements [6 nodes] under the forces, and the rail's weight if gravity is not 0.
   Eigen::VectorXd solve(const std::vector<PointForce>& forces, double gravity = 0.) const;
-  /// Displacement of a point, m. Throws std::out_of_range where no node stands.
+  /// Displacement of a point, m. Throws Refused if no node is there.
   double at(const Eigen::VectorXd& displacement, const RailPoint& point) const;
   /// Norm of load less stiffness times displacement, over the load's; moments over `lever`, m.
   double residual(const Eigen::VectorXd& displacement, const std::vector<PointForce>& forces,

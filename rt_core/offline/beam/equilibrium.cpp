@@ -43,7 +43,7 @@ MomentShare shared(const Vector3d& moment, const Vector3d& a, const Vector3d& b)
   return {moment.dot(v) * v + along, moment.dot(u) * u + along};
 }
 
-/// What is asked of the free unknowns: load minus internal force.
+/// Residual of the free unknowns: load minus internal force.
 class Balance {
  public:
   Balance(const Structure& structure, const StructureLoad& load)

@@ -53,7 +53,8 @@ Equilibrium equilibrium(const Structure& structure, const StructureLoad& load,
                         const NewtonOptions& options = {}, const Eigen::VectorXd* start = nullptr);
 
 /// Whether the tangent at q is positive definite over the free unknowns (no pivot is negative):
-/// else the structure buckles out of this shape. Moments that turn with it are left out.
+/// else the structure buckles out of this shape. Moments that rotate with the structure are left
+/// out.
 bool is_stable(const Structure& structure, const Eigen::VectorXd& q);
 
 }  // namespace railstep

@@ -11,10 +11,9 @@ struct Linearised {
 };
 Linearised linearised(const Structure& structure, const Eigen::VectorXd& q_s);
 
-/// The track with its stiffness taken where it stands under its own weight and the preload of its
-/// rails, by the nonlinear element, rather than at rest.
-/// Throws std::invalid_argument where no such equilibrium is found (a free rigid mode, a buckled
-/// rail), and as TrackStructure does.
+/// The track with the stiffness of the nonlinear element in its equilibrium under its own weight
+/// and the preload of its rails, instead of that at rest. Throws Refused if no such equilibrium is
+/// found (a free rigid mode, a buckled rail), and as TrackStructure does.
 Track linearised_under_weight(Track track, double gravity);
 
 }  // namespace railstep

@@ -16,20 +16,20 @@ namespace railstep {
 /// lines.
 class TrackStructure {
  public:
-  /// Throws std::invalid_argument as assemble() does, and where the track's unknowns are not
-  /// Unknowns::full: a rail that shortens as it bends moves along x too. An axial force wants ends
-  /// that hold it, or the rail would not be in equilibrium at rest.
+  /// Throws Refused as assemble() does, and if the track's unknowns are not Unknowns::full: a rail
+  /// that shortens as it bends moves along x too. An axial force needs ends that hold it, or the
+  /// rail would not be in equilibrium at rest.
   explicit TrackStructure(const Track& track);
 
   const Structure& structure() const { return structure_; }
   /// Coefficients of the displacement of a material point, or of a weighted sum of them, over the
   /// changes of the unknowns from rest. Transposed, they spread a unit force.
-  /// Throws std::out_of_range off the rail.
+  /// Throws Refused off the rail.
   Eigen::SparseVector<double> row(const RailPoint& point) const;
   Eigen::SparseVector<double> row(const Functional& functional) const;
-  /// Where rails and sleepers stand. Of a track that is symmetric, both sides where the left one
-  /// stands; without a cant in its upright plane: sections sag straight down, and what round-off
-  /// makes beside it would tie vertical to lateral motion.
+  /// Positions of rails and sleepers. In a symmetric track both sides take those of the left one;
+  /// without a cant they stay in its upright plane. Sections sag straight down there, and a lateral
+  /// position by round-off would couple vertical and lateral motion.
   TrackState state(const Eigen::VectorXd& q) const;
   /// Nodal forces of the rails' and sleepers' own weight. @param gravity m/s2, > 0 down
   Eigen::VectorXd weight(double gravity = kGravity) const;

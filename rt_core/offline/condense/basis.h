@@ -32,14 +32,14 @@ struct Basis {
 /// @param basis    whose flexibility is omega^-2
 Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs);
 
-/// Throws std::invalid_argument where the lowest mode of a line is rigid (below 1e-3 Hz): it has no
+/// Throws Refused where the lowest mode of a line is rigid (below 1e-3 Hz): it has no
 /// static answer.
 void refuse_free_mode(double lowest_hz);
 
 /// Galerkin's coordinates over all that some shapes span; what nearly depends on others is dropped.
 /// Real shapes over symmetric matrices: no energy is made, whatever is left out.
 /// @param shapes [unknowns][any]
-/// Throws std::invalid_argument on a free rigid mode, and where nothing is left.
+/// Throws Refused on a free rigid mode, and where nothing is left.
 Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes);
 
 /// What the static shapes K^-1 f of forces add to shapes that are kept; orthonormal over the mass.

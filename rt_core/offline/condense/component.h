@@ -7,7 +7,7 @@ namespace railstep {
 /// those over seats among them, and all of the sleepers. Those without mass are left out; they
 /// follow at once.
 /// @param nodes_per_bay  a divisor of 2 elements_per_bay
-/// Throws std::invalid_argument where it is none.
+/// Throws Refused where it is none.
 std::vector<int> kept_unknowns(const Track& track, const Line& line, int nodes_per_bay);
 
 /// Static condensation (Guyan 1965): all else follows the kept unknowns without inertia,
@@ -23,7 +23,7 @@ Eigen::MatrixXd irs_shapes(const Line& line, const std::vector<int>& kept);
 /// the interface held.
 /// @param modes       of each part, at most
 /// @param highest_hz  of them
-/// Throws std::invalid_argument where parts are so large (kMostPartUnknowns) that seats do not cut.
+/// Throws Refused where parts are so large (kMostPartUnknowns) that seats do not cut.
 Eigen::MatrixXd craig_bampton_shapes(const Line& line, const std::vector<int>& interface, int modes,
                                      double highest_hz);
 

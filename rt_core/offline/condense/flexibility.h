@@ -31,14 +31,14 @@ struct PairTable {
 /// (a_y, b_z), so that the squeeze of the head is in G_res. G_exact has a slope jump of
 /// -1/(k_z G A) at equal places, G_res carries it.
 ///
-/// All queries skip lines that the load point does not move. They throw std::invalid_argument on a
+/// All queries skip lines that the load point does not move. They throw Refused on a
 /// rail that the track does not have, and on a free rigid mode of a line that the load point moves.
 class ResidualFlexibility {
  public:
   /// @param lines  of the track, as assemble() gives them
   /// @param bases  one per line, or none for the track as it stands
   /// @param points intervals per element, >= 3; tables are read by cubic interpolation
-  /// Throws std::invalid_argument on fewer points and on bases that are not the lines'.
+  /// Throws Refused on fewer points and on bases that are not the lines'.
   ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
                       const std::vector<Basis>& bases, int points);
   ~ResidualFlexibility();
@@ -67,7 +67,7 @@ class ResidualFlexibility {
                     int most = std::numeric_limits<int>::max()) const;
 
   /// What the model misses of the functional under a unit force of the load point at each place;
-  /// [elements][points + 1], m/N. Throws std::out_of_range if the functional is off the track.
+  /// [elements][points + 1], m/N. Throws Refused if the functional is off the track.
   std::vector<double> from(LoadPoint load_point, const Functional& functional) const;
   /// Velocity of a functional at once under a unit force of the load point, which the modes' rates
   /// do not show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.

@@ -23,7 +23,7 @@ struct RingModes {
 };
 
 /// @param limit  of the ring: of every k at most limit.most / track.bays modes, rounded
-/// Throws std::invalid_argument on a free rigid mode, and on a bay that is not its own mirror
+/// Throws Refused on a free rigid mode, and on a bay that is not its own mirror
 /// image.
 RingModes ring_modes(const Track& ring, const Line& line, const ModalLimit& limit);
 

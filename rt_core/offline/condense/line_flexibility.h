@@ -68,7 +68,7 @@ class DividedLine : public LineFlexibility {
  public:
   DividedLine(const Track& track, const Line& line, int parts);
 
-  /// These throw std::invalid_argument if the line has a free rigid mode.
+  /// These throw Refused if the line has a free rigid mode.
   Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
                         int points) const override;
   Strip between(const LoadPoint& a, const LoadPoint& b, int points, int range) const override;
@@ -114,10 +114,10 @@ class DividedLine : public LineFlexibility {
 /// element divided is assembled itself. Cost grows with the nodes of the divided track.
 class RefinedLine : public LineFlexibility {
  public:
-  /// Throws std::invalid_argument if the divided track has no such line.
+  /// Throws Refused if the divided track has no such line.
   RefinedLine(const Track& track, const Line& line, int parts);
 
-  /// These throw std::invalid_argument if the line has a free rigid mode.
+  /// These throw Refused if the line has a free rigid mode.
   Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
                         int points) const override;
   Strip between(const LoadPoint& a, const LoadPoint& b, int points, int range) const override;
@@ -144,7 +144,7 @@ class RefinedLine : public LineFlexibility {
 /// b_z), which few coordinates do not carry; functionals are read whole.
 class ReducedLine : public LineFlexibility {
  public:
-  /// Throws std::invalid_argument if the basis is not one of the line.
+  /// Throws Refused if the basis is not one of the line.
   ReducedLine(const Track& track, const Line& line, const Basis& basis);
 
   Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
@@ -177,7 +177,7 @@ class ReducedLine : public LineFlexibility {
 std::vector<int> carried_unknowns(const Line& line, int rail);
 
 /// The line of the same track on another mesh or with more unknowns: what carries all that this one
-/// does. Throws std::invalid_argument if there is none.
+/// does. Throws Refused if there is none.
 Line matching(const Track& other, const Line& line);
 
 /// The line as exactly as with that many parts of every element, and with the section's strain
@@ -188,7 +188,7 @@ std::unique_ptr<LineFlexibility> exact_line(const Track& track, const Line& line
 /// Whether two rails are one to a line: the same, or mirror images.
 bool same_rail(const Line& line, int a, int b);
 
-/// Element that holds a place of the rail. Throws std::out_of_range off the rail.
+/// Element that holds a place of the rail. Throws Refused off the rail.
 int element_at(const Track& track, double x);
 
 /// A functional's sleepers as forces on the line; [unknowns]. Directions in which a sleeper is held

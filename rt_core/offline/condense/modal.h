@@ -19,7 +19,7 @@ struct ModalLimit {
 /// The same shapes of `rows` are kept, so that the model answers a force along a row, and any force
 /// there, with the line's own statics.
 /// @param rows  [unknowns][rows] where local forces act; may have no columns
-/// Throws std::invalid_argument on a free rigid mode and on lines of more than kMostModalUnknowns.
+/// Throws Refused on a free rigid mode and on lines of more than kMostModalUnknowns.
 Basis modal_basis(const Line& line, const ModalLimit& limit,
                   const Eigen::SparseMatrix<double>& rows = {});
 
@@ -44,7 +44,7 @@ struct DampedModes {
   Eigen::VectorXcd from(const Eigen::VectorXd& force, const Eigen::VectorXd& velocity) const;
 };
 
-/// Throws std::invalid_argument where the check above misses by more than 1e-7, or a mode its
+/// Throws Refused where the check above misses by more than 1e-7, or a mode its
 /// equation by more than 1e-6: two modes at critical damping have one shape.
 DampedModes damped_modes(const Basis& basis, const Eigen::SparseMatrix<double>& damping);
 

@@ -13,7 +13,7 @@ namespace railstep {
 /// bound; a motion far softer than the expansion points holds little of it.
 /// @param hz    expansion points, above 0
 /// @param most  columns of the result, fewer where there are no more
-/// Throws std::invalid_argument where the line resonates without damping at an expansion point.
+/// Throws Refused where the line resonates without damping at an expansion point.
 Eigen::MatrixXd rational_krylov_shapes(const Track& track, const Line& line,
                                        const std::vector<double>& hz, int most);
 

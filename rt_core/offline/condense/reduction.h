@@ -34,7 +34,7 @@ int kept_coordinates(const Basis& basis, const ModeGroups& modes);
 /// All kinds but damped modes are Galerkin's, and keep the static shapes of every damper and of
 /// `rows` too.
 /// @param rows  [unknowns][rows] where local forces act; may have no columns
-/// Throws std::invalid_argument as ritz_basis() and damped_modes() do, and on lines of more than
+/// Throws Refused as ritz_basis() and damped_modes() do, and on lines of more than
 /// kMostModalUnknowns.
 ReducedLineModel reduce(const Track& track, const Line& line, const Reduction& reduction,
                         const Eigen::SparseMatrix<double>& rows = {});

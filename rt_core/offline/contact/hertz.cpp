@@ -15,7 +15,8 @@ void require(bool holds, MessageId id, double got, const char* what, const char*
     refuse(id, std::string(what) + " is " + std::to_string(got) + "; expected " + expected);
 }
 
-/// What the axes need of m; ratio = (E/k^2 - K)/(K - E) falls from infinity at k = 0 to 1 at k = 1.
+/// Functions of m that give the axes. ratio = (E/k^2 - K)/(K - E) falls from infinity at k = 0 to 1
+/// at k = 1.
 struct Shape {
   double K, K_less_E, ratio;
 };

@@ -28,7 +28,7 @@ EllipticIntegrals elliptic_integrals(double m);
 /// @param wheel_radius, crown_radius  m, > 0
 /// @param young, poisson              of both bodies: Pa, > 0; in (-1, 1/2]
 /// @param load                        N, > 0
-/// @throws std::invalid_argument if a number is out of its range, or the radii are so unlike
+/// @throws Refused if a number is out of its range, or the radii differ so much
 ///   (beyond 1 : 1e6) that this is a line contact, which has no C of its own
 HertzContact hertz_contact(double wheel_radius, double crown_radius, double young, double poisson,
                            double load);

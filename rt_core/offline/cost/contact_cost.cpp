@@ -45,7 +45,7 @@ Cost vehicles_cost(const Model& model, std::int64_t contacts) {
   return sum;
 }
 
-/// How far wheelsets and vehicles are, looked up a few times a step, and what pushes their bodies.
+/// Positions of wheelsets and vehicles, looked up a few times a step, and forces on their bodies.
 Cost tables_cost(const Model& model) {
   Cost sum{};
   const auto forces = [&sum](const BodyForce* force, std::int32_t count) {

@@ -5,19 +5,19 @@
 
 namespace railstep {
 
-/// What a frame of a model takes at most: loads all on, every wheel on its rail, every contact,
-/// port and iteration at its cap. Counted from the loops of the online sources, kernel by kernel;
-/// what depends on the model's sizes is exact, what does not is rounded up. Track sensors are read
-/// between frames and stand beside.
+/// Upper bound of the work of a frame: all loads act, every wheel is on its rail, and every
+/// contact, port and iteration is at its cap. It is counted from the loops of the online sources,
+/// kernel by kernel: terms that depend on the model's sizes are exact, others are rounded up. Track
+/// sensors are read between frames and are counted separately.
 Cost cost_of(const Model& model);
 
-/// Of one step of a system of bodies and beams, its part of the track's lines included.
+/// Cost of one step of a system of bodies and beams, including its part of the track's lines.
 Cost system_cost(const Model& model);
-/// Of one step's wheels, flanges and fixed ports, their rows and responses included.
+/// Cost of one step's wheels, flanges and fixed ports, including their rows and responses.
 Cost contact_cost(const Model& model);
 
-/// Of one way through solve_ports() with n ports: its start, its capped iterations, each with its
-/// steps shortened as often as they may be, and what is left at the cap.
+/// Cost of one call of solve_ports() with n ports: its start, its capped iterations, each with the
+/// most shortenings of its step, and the end at the cap.
 /// @param means  whether laws of contacts are means over the step
 Cost ports_cost(std::int64_t n, bool means = false);
 
@@ -28,22 +28,22 @@ inline constexpr Cost operator*(std::int64_t times, Cost a) {
   return {times * a.flops, times * a.bytes, times * a.instructions};
 }
 
-/// Arithmetic, and doubles that it reads and writes: an instruction for each of them at most, as a
-/// vector of two does two of either and what is left pays for the loop.
+/// Arithmetic, and doubles that are read and written. Each takes one instruction at most: a vector
+/// of two does two of either, and the rest pays for the loop.
 inline constexpr Cost work(std::int64_t flops, std::int64_t doubles) {
   return {flops, 8 * doubles, flops + doubles};
 }
-/// The same of unrolled code with more sums at once than a processor has registers: they go to
-/// memory and back.
+/// The same for unrolled code with more sums at once than a processor has registers, so that they
+/// go to memory and back.
 inline constexpr Cost spilling(std::int64_t flops, std::int64_t doubles) {
   return {flops, 8 * doubles, flops + flops / 4 + doubles};
 }
-/// The same of code that is scalar and short, with its choices, indices, copies and calls.
+/// The same for short scalar code, with its branches, indices, copies and calls.
 inline constexpr Cost branching(std::int64_t flops, std::int64_t doubles) {
   return {flops, 8 * doubles, 2 * flops + 3 * doubles};
 }
 
-/// Of finding the row of a time in a table by bisection, and the value there.
+/// Cost of finding the row of a time in a table by bisection, and the value there.
 inline constexpr Cost table_cost(std::int64_t rows) {
   std::int64_t halvings = 0;
   for (std::int64_t left = rows; left > 0; left /= 2) ++halvings;

@@ -8,7 +8,7 @@ namespace railstep {
 
 namespace {
 
-/// Unknowns of a rail's element that a line carries, at most.
+/// Most unknowns of a rail's element that a line carries.
 std::int64_t carried(const Model& model, const LineModel& line) {
   std::int64_t most = 0;
   for (int rail = 0; rail < 2; ++rail)

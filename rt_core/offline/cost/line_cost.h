@@ -3,29 +3,29 @@
 
 namespace railstep {
 
-// Kernels of the track's lines: what each takes once. Doubles are those of its operands and
+// Cost of one call of each kernel of the track's lines. Doubles are those of its operands and
 // results, each read or written once.
 
-/// Of a line, banded or condensed.
+/// Costs of a line, banded or condensed.
 struct LineCost {
   Cost value;      // an unknown's displacement
   Cost row;        // the displacement along a row, or a force along it onto the right-hand side
   Cost wheel_row;  // the same of a wheel's row, which the roll over its seats goes into
   Cost shape;      // a wheel's row among the modes
-  Cost unit;       // what a unit force under a wheel makes of the line, its row included
-  Cost read;       // that read under a wheel: an entry of W
+  Cost unit;       // response of the line to a unit force under a wheel, including its row
+  Cost read;       // that response read under a wheel: an entry of W
   Cost add;        // a multiple of such a response added to the line
   Cost node_roll;  // the roll of a section
 };
 LineCost line_cost(const Model& model, const LineModel& line);
 
-/// Solve of one right-hand side: solve_band() takes the same for each.
+/// Solve of one right-hand side; solve_band() costs the same for each.
 Cost solve_cost(const Band& band);
 
-/// The lines' own part of a step: its forces and responses apart.
+/// The lines' own part of a step, without forces and responses.
 Cost advance_cost(const Model& model, const LineModel& line);
 
-/// Of all loads once: where they are and what they apply.
+/// Cost of all loads once: their places and forces.
 Cost loads_cost(const Model& model);
 
 /// How many contacts act on a line.

@@ -9,7 +9,7 @@ constexpr Cost kBodySolve = branching(30, 30);  // S^-1 of six numbers
 constexpr Cost kMotion = branching(37, 8);      // s(t)
 constexpr Cost kSines = branching(80, 2);       // of an angle
 
-/// Of one marker: its pose, the same with rates, and a generalised force of it on its part. On
+/// Costs of one marker: its pose, its pose with rates, and its generalised force on its part. On
 /// beams and rails they are those in space.
 struct MarkerCost {
   Cost pose, jet, force;
@@ -20,7 +20,7 @@ MarkerCost marker_cost(PartKind kind) {
   return {branching(170, 90), branching(500, 150), branching(165, 70)};
 }
 
-/// Of a chain's kernels, in elements n and in groups g of four, as the tests count them.
+/// Costs of a chain's kernels for n elements and g groups of four, as the tests count them.
 struct BeamCost {
   Cost tangents, factor, inertia, solve_four, solve_one;
 };
@@ -44,7 +44,7 @@ BeamCost beam_cost(const SystemModel& s, const BeamChainModel& beam) {
           spilling(5112 * g + 153, factor + 2 * u)};
 }
 
-/// Rows and ends of the parts, and what stands of Newton's matrix.
+/// Rows and ends of the parts, and entries of Newton's matrix.
 class SystemCost {
  public:
   explicit SystemCost(const Model& model) : model_(model), s_(model.system) {}
@@ -56,7 +56,7 @@ class SystemCost {
  private:
   std::int64_t rows() const { return system_rows(s_); }
   MarkerCost at(std::int32_t marker) const { return marker_cost(s_.marker[marker].kind); }
-  /// Of all markers but the sensors', placed once.
+  /// Cost of placing all markers except the sensors' once.
   Cost poses() const {
     Cost sum{};
     for (std::int32_t m = 0; m < s_.markers - s_.sensors; ++m) sum = sum + at(m).pose;
@@ -105,7 +105,7 @@ class SystemCost {
            work(18 * u + 50 + 2 * rows(), 9 * u + rows());
   }
 
-  /// Its value, gradients and slopes, and what it wants.
+  /// Value, gradients, slopes and prescribed value of a row.
   Cost row(std::int32_t r) const {
     const RowModel& own = s_.row[r];
     const bool joint = r < s_.joint_rows;
@@ -160,7 +160,7 @@ class SystemCost {
     return work(2 * n * n + n, n * n + 5 * n);
   }
 
-  /// What forces in the rows move all parts by.
+  /// Motion of all parts by forces in the rows.
   Cost moved() const {
     Cost sum = track_ends() * 9 * s_.ports * work(2, 3);
     for (std::int32_t b = 0; b < s_.bodies; ++b) sum = sum + part_ends(s_, b) * work(12, 18);

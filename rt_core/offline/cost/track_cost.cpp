@@ -5,7 +5,7 @@ namespace railstep {
 
 namespace {
 
-/// What one external wheel takes of a step: placed, its force applied along three directions, read.
+/// Cost of one external wheel in a step: its place, its force along three directions, its reading.
 Cost external_cost(const Model& model) {
   Cost sum = work(300, 150) + kPDeltaSeats * (kLookUp + work(8, 4));
   for (std::int32_t l = 0; l < model.lines; ++l) {
@@ -18,7 +18,7 @@ Cost external_cost(const Model& model) {
   return sum;
 }
 
-/// Of a frame's end: places, deflections, the residual flexibility between all forces.
+/// Cost of a frame's end: places, deflections, the residual flexibility between all forces.
 Cost publish_cost(const Model& model) {
   const std::int64_t wheels = wheel_count(model);
   const std::int64_t forces = model.loads + wheels + model.external_wheels;
@@ -34,7 +34,7 @@ Cost publish_cost(const Model& model) {
   return sum;
 }
 
-/// Of a step, or of each of its stages.
+/// Cost of a step, or of each of its stages.
 Cost stage_cost(const Model& model) {
   Cost sum = work(20, 0) + loads_cost(model) + model.external_wheels * external_cost(model);
   for (std::int32_t l = 0; l < model.lines; ++l) {

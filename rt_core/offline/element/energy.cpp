@@ -209,7 +209,7 @@ void add_preload(BeamPoint& point, const BeamLaw& law, const StrainRow& e11,
     point.preload[k] += weight * stress * (e11[k] * determinant).over(law.moments);
 }
 
-/// Beyond an extent of half the radius of curvature the cut polynomials say little.
+/// Beyond an extent of half the radius of curvature the truncated polynomials are not accurate.
 void check_curvature(const RestPoint& p, const SectionMoments& m) {
   Matrix3d A;
   A << p.r, p.a, p.b;
@@ -225,7 +225,7 @@ void check_curvature(const RestPoint& p, const SectionMoments& m) {
 
 enum class Part { both, uncoupled, coupling };
 
-/// What a point adds of a part of the energy; `weight` holds that of its Gauss point.
+/// Contribution of a point to a part of the energy; `weight` holds that of its Gauss point.
 void add_energy(BeamPoint& point, const BeamLaw& law, const RestPoint& p, double weight,
                 Part part) {
   for (int k = 0; k < kProducts; ++k) {
@@ -239,7 +239,7 @@ void add_energy(BeamPoint& point, const BeamLaw& law, const RestPoint& p, double
   if (part != Part::coupling) add_uncoupled(sum, law, rows);
   if (part != Part::coupling) add_preload(point, law, rows[kE11], over.determinant, weight);
   if (part != Part::uncoupled) add_coupling(sum, law, rows);
-  for (int i = 0; i < kProducts; ++i)  // what round-off made of a symmetric form
+  for (int i = 0; i < kProducts; ++i)  // removes the round-off in a symmetric form
     for (int j = 0; j < i; ++j) point.stiffness[i][j] = point.stiffness[j][i];
 }
 

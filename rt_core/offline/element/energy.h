@@ -7,7 +7,7 @@
 
 namespace railstep {
 
-/// What the energy of an element needs of its section; z and moments about the reference line.
+/// Constants of the section in the energy of an element; z and moments about the reference line.
 struct BeamLaw {
   SectionMoments moments;      // as integrated: those of a rule with too few points are not exact
   double torsion = 0.;         // J of Saint-Venant, m4
@@ -33,7 +33,7 @@ Vector27 straight_nodes(double length);
 ///          + (Iz + Iys) m^2 + J t^2],
 /// with gradients at the centroid c, g12 at the shear centre s, t = (d_y g13 - d_z g12)/2 the
 /// twist, m = (d_y g13 + d_z g12)/2, Iys = Iy + A (z_s - z_c)^2. Only the twist carries J. 2E13 is
-/// taken at the centroid: the shear centre is on the axis of symmetry, so vertical shear knows no
+/// taken at the centroid: the shear centre is on the axis of symmetry, so vertical shear has no
 /// lever; with it there (Shear::offset) one element under an end load is not Timoshenko's beam.
 ///
 /// On a curved element strains are not polynomials over the section; they and their squares are
@@ -42,8 +42,8 @@ Vector27 straight_nodes(double length);
 /// 13 (h/R)^3 about its foot; energies of finite strain lose a term of first order, 2e-6 of them at
 /// h/R = 0.003 and strains of 0.1. A curve of 100 m errs by 1e-8.
 /// @param rest  nodes at rest, as the unknowns
-/// @throws std::invalid_argument on a rule out of its range, nodes that make no section (slopes of
-///         one direction, no length) and a curvature radius under twice the section's reach
+/// @throws Refused on a rule out of its range, nodes that do not form a section (slopes of
+///         one direction, no length) and a curvature radius under twice the section's extent
 Beam beam_element(const BeamLaw& law, const Vector27& rest);
 
 /// Rest, preload and stiffness at a point of a straight axis along x with unit slopes, free of the

@@ -19,13 +19,13 @@ struct BeamSection {
   double shear_factor_y = 1.;  // lateral, on 2E12
   double shear_factor_z = 1.;  // vertical, on 2E13
   double shear_centre_z = 0.;  // of the shear centre above the centroid, m
-  /// To degree 4, about the centroid, as the rule integrates them; the linear element at rest needs
-  /// none of the third and fourth.
+  /// To degree 4, about the centroid, as the rule integrates them. The linear element at rest does
+  /// not need degrees 3 and 4.
   std::optional<SectionMoments> moments = std::nullopt;
 };
 
-/// The law of an element whose reference line lies `axis_z` (m) above the centroid. Without
-/// moments of its own the section has none above the second: good for the linear element alone.
+/// The law of an element whose reference line lies `axis_z` (m) above the centroid. A section
+/// without moments of its own has none above degree 2, which suits the linear element only.
 BeamLaw beam_law(const BeamSection& section, const Material& material, const ElementRule& rule = {},
                  double axis_z = 0., double axial_force = 0.);
 

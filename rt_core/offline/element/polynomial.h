@@ -3,7 +3,7 @@
 
 namespace railstep {
 
-/// A polynomial in y and z of total degree 4; products drop what is higher.
+/// A polynomial in y and z of total degree 4; products drop higher terms.
 struct Polynomial {
   double of[kMomentDegree + 1][kMomentDegree + 1] = {};  // of y^i z^j, i + j <= 4
 

@@ -26,8 +26,8 @@ enum class Shear {
   published,  // as published: all factors 1
 };
 
-/// How an element's energy is integrated and which strains it holds apart. The default neither
-/// locks nor has spurious zero modes; the others are there to be compared.
+/// How an element's energy is integrated and which strains are separated. The default neither locks
+/// nor has spurious zero modes; the others serve comparisons.
 struct ElementRule {
   int axial_points = 2;     // Gauss points along xi for D0, 1 to 5
   int coupling_points = 0;  // for Dv, 1 to 5; 0: those of D0

@@ -27,8 +27,8 @@ Signal dipped_joint(double place, double depth, double ramp, const DefectGrid& g
 Signal corrugation(double from, double to, double wavelength, double amplitude,
                    const DefectGrid& grid);
 
-/// What a wheel's tread lacks of its radius, as a signal over its circumference, negative where
-/// the wheel sits lower; periodic, the defect in the middle of the turn.
+/// Deviation of a wheel's tread from its radius, as a signal over its circumference, negative where
+/// the wheel sits lower. It is periodic, with the defect in the middle of the turn.
 ///
 /// A fresh flat is a chord: the wheel turns about one of its corners, then about the other, and its
 /// centre falls by x^2 / (2 radius) from each, l^2 / (8 radius) in the middle. A rounded one is

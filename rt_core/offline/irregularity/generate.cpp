@@ -22,7 +22,7 @@ Waves waves_of(const GenerateOptions& o) {
     refuse("E-IRREGULARITY-06",
            "the wavelengths are out of order; expected 0 < shortest <= longest <= length, and a "
            "contact patch of 0 m or more");
-  // Whole numbers of waves are kept where rounding leaves a quotient beside them.
+  // A quotient that rounding moves off a whole number of waves still counts as that number.
   const double low = o.length / o.longest, high = o.length / o.shortest;
   if (!(high * kSamplesPerWave * (high - low) < kMostGenerated))
     refuse("E-IRREGULARITY-07",
@@ -38,7 +38,7 @@ Waves waves_of(const GenerateOptions& o) {
   return waves;
 }
 
-/// What a mean over the patch leaves of a wave.
+/// Factor by which the mean over the patch reduces a wave.
 double patch_factor(double wave_number, double patch) {
   const double half = .5 * wave_number * patch;
   return half > 0. ? cosine_sine(half / kTwoPi).sine / half : 1.;

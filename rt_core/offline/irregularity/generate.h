@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// Of a generated irregularity.
+/// Options of a generated irregularity.
 struct GenerateOptions {
   double shortest = 3., longest = 25.;  // wavelengths, m
   double length = 1000.;                // m, after which it repeats; the longest wave or more
@@ -14,7 +14,7 @@ struct GenerateOptions {
   std::uint64_t seed = 1;
 };
 
-/// Samples that the shortest wave has at least: the spline misses it by 6e-5 of its amplitude.
+/// Least number of samples in the shortest wave: the spline misses it by 6e-5 of its amplitude.
 inline constexpr int kSamplesPerWave = 16;
 
 /// Most samples times waves of one signal; a few seconds.
@@ -24,8 +24,8 @@ inline constexpr double kMostGenerated = 4e9;
 /// within the band, W = 2 pi n / length, of amplitude sqrt(2 S(W) 2 pi / length) and a random phase
 /// (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991), times sin(W patch / 2) / (W patch / 2).
 /// Its periodogram is the spectrum, wave by wave. The same bits on every machine.
-/// @param stream  tells signals of one seed apart
-/// Throws std::invalid_argument on a band without waves, and on more work than kMostGenerated.
+/// @param stream  tells signals of one seed apart Throws Refused on a band without waves, and on
+/// more work than kMostGenerated.
 Signal generate(const Spectrum& spectrum, const GenerateOptions& options, std::uint64_t stream);
 
 }  // namespace railstep

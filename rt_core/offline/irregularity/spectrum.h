@@ -6,8 +6,8 @@
 
 namespace railstep {
 
-/// What a track's geometry is measured by: mean height of both rails, mean of their sideways
-/// places, height of the left rail over the right one, and how much farther apart they are.
+/// Measures of a track's geometry: mean height of both rails, mean of their lateral positions,
+/// height of the left rail over the right one, and increase of their distance.
 enum class Geometry { vertical, alignment, cross_level, gauge };
 inline constexpr int kGeometries = 4;
 inline constexpr std::string_view kGeometryNames[kGeometries] = {"vertical", "alignment",
@@ -35,7 +35,7 @@ struct TrackSpectra {
 };
 const std::vector<TrackSpectra>& track_spectra();
 
-/// @returns null if there is none of that name
+/// @returns null if the name is unknown
 const TrackSpectra* find_spectra(std::string_view name);
 
 }  // namespace railstep

@@ -13,19 +13,19 @@ namespace {
 
 constexpr int kBetween = 24;      // places looked at between two samples
 constexpr double kWidth = 4e-11;  // of a gap's part, to which a top is narrowed
-constexpr int kAtOnce = 16;       // samples taken before the fits are made anew
-constexpr double kNoise = 1e-9;   // of the largest response: what its solve may be off by
+constexpr int kAtOnce = 16;       // samples taken before the fits are made again
+constexpr double kNoise = 1e-9;   // error of a solve, over the largest response
 
 double size_of(const Eigen::VectorXcd& functions) { return functions.cwiseAbs().maxCoeff(); }
 
-/// The top of a fit between two places: a peak may be far narrower than they are apart.
+/// The top of a fit between two places. A peak may be far narrower than their distance.
 Largest narrowed(const RationalFit& fit, double low, double high) {
   const auto [hz, size] = golden_section([&](double at) { return size_of(fit.at(at)); }, low, high,
                                          kWidth * (high - low));
   return {hz, size};
 }
 
-/// Where a sample is wanted, and how much.
+/// Where a sample is needed, and how much.
 struct Wanted {
   double hz, amount;
 };
@@ -61,7 +61,7 @@ class Search {
   int samples() const { return static_cast<int>(known_.size()); }
 
   void sample(double hz) {
-    // A frequency next to one that is known tells nothing new.
+    // A frequency next to a known one gives no new information.
     const auto next = known_.lower_bound(hz - kNarrowest * hz);
     if (next != known_.end() && next->first < hz + kNarrowest * hz) return;
     const Eigen::MatrixXcd values = responses_(hz);
@@ -77,7 +77,7 @@ class Search {
     }
   }
 
-  /// Fits all groups, and finds in which gaps between samples more is wanted.
+  /// Fits all groups, and finds the gaps between samples that need more of them.
   std::vector<Wanted> look() {
     std::vector<double> hz;
     for (const auto& [at, values] : known_) hz.push_back(at);

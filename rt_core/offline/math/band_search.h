@@ -7,7 +7,7 @@
 
 namespace railstep {
 
-/// Functions of a frequency, [functions][groups]; each wants a solve.
+/// Functions of a frequency, [functions][groups]; each call costs a solve.
 using Responses = std::function<Eigen::MatrixXcd(double hz)>;
 
 /// The largest magnitude of any function of a group over a band.
@@ -20,17 +20,17 @@ struct Largest {
 struct BandSearch {
   std::vector<Largest> largest;       // [groups]
   std::optional<double> undamped_hz;  // a peak narrower than kNarrowest: `largest` says nothing
-  double unresolved = 0.;  // what the search left open, over the largest; the worst group
+  double unresolved = 0.;  // uncertainty of the search, over the largest; of the worst group
   int solves = 0;
 };
 
-/// Looks for the largest magnitudes from a grid of logarithmic steps on, wherever they may hide.
+/// Finds the largest magnitudes in a band, beginning with a grid of logarithmic steps.
 ///
-/// Through the samples of a group go two rational functions, the one through every second, the
-/// other through those between; each fits the rest by least squares. Both know a peak between two
-/// samples from its flanks. Where they disagree, or where they are larger than all samples, the
-/// next are taken, until they agree to kAgree of the largest and it is met to kMet. At most
-/// kMostSolves.
+/// Two rational functions fit the samples of a group: one passes through every second sample, the
+/// other through those between, and each fits the rest by least squares. Both find a peak between
+/// two samples from its flanks. Where they disagree, or exceed all samples, the next samples are
+/// taken, until they agree to kAgree of the largest and it is met to kMet. At most kMostSolves
+/// solves.
 BandSearch largest_over(const Responses& responses, const std::array<double, 2>& band);
 
 inline constexpr int kFirstSolves = 40, kMostSolves = 800;

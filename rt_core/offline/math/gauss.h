@@ -8,7 +8,7 @@ struct GaussPoint {
 };
 
 /// Gauss-Legendre rules of 1 to 5 points on [-1, 1] (Abramowitz and Stegun, table 25.4). Throws
-/// std::invalid_argument on another number.
+/// Refused on another number.
 std::vector<GaussPoint> gauss(int points);
 
 }  // namespace railstep

@@ -8,7 +8,8 @@ namespace railstep {
 
 namespace {
 
-/// A vector that a matrix takes to nearly 0: inverse iteration on the triangle of its QR.
+/// A vector whose product with the matrix is nearly 0, by inverse iteration on the triangle of its
+/// QR.
 Eigen::VectorXcd null_vector(const Eigen::MatrixXcd& of) {
   const Eigen::Index n = of.cols();
   Eigen::MatrixXcd triangle = Eigen::HouseholderQR<Eigen::MatrixXcd>(of).matrixQR().topRows(n);

@@ -7,13 +7,13 @@
 namespace railstep {
 
 /// Receptance of the condensed track: every line that the force moves in its damped modes, the sum
-/// of shape shape' / (i omega - rate) / 2 and of the conjugates, and what the modes miss statically
+/// of shape shape' / (i omega - rate) / 2 and of the conjugates, and the static error of the modes
 /// (residual_statics()).
 class CondensedReceptance : public Receptance {
  public:
   /// @param reduction  of each line
-  /// @param residual  false leaves out what the modes miss
-  /// Throws std::invalid_argument as reduce() does.
+  /// @param residual  false leaves out this error
+  /// Throws Refused as reduce() does.
   CondensedReceptance(const Track& track, const Transfer& transfer, const Reduction& reduction,
                       bool residual = true);
   Eigen::VectorXcd at(double hz) override;

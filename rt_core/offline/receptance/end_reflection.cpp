@@ -22,7 +22,7 @@ using Matrix = Eigen::MatrixXcd;
 constexpr int kDoublings = 40;
 constexpr double kFar = 8.;  // bays over which waves sort themselves
 
-/// Leaves out what lies between the first and the last `d` rows, on which no force acts.
+/// Eliminates the rows between the first and the last `d`, on which no force acts.
 Matrix ends_of(const Matrix& chain, Eigen::Index d) {
   const Eigen::Index inner = chain.rows() - 2 * d;
   Matrix ends(2 * d, 2 * d), to(2 * d, inner);
@@ -33,7 +33,7 @@ Matrix ends_of(const Matrix& chain, Eigen::Index d) {
   return ends - to * within.partialPivLu().solve(to.transpose());
 }
 
-/// What a part shows at its first border when `beyond` follows the last one.
+/// Stiffness of a part at its first border if `beyond` follows its last one.
 Matrix before(const Matrix& part, const Matrix& beyond) {
   const Eigen::Index d = beyond.rows();
   const Matrix across = part.topRightCorner(d, d);
@@ -41,7 +41,7 @@ Matrix before(const Matrix& part, const Matrix& beyond) {
   return part.topLeftCorner(d, d) - across * last.partialPivLu().solve(across.transpose());
 }
 
-/// The same part for ever: doubled until the far end is not felt.
+/// The same part repeated without end: doubled until the far end has no effect.
 Matrix for_ever(Matrix part) {
   const Eigen::Index d = part.rows() / 2;
   for (int i = 0; i < kDoublings; ++i) {
@@ -165,7 +165,7 @@ Matrix EndReflection::half_seat(double omega) const {
   return .5 * on_rail;
 }
 
-/// What the zone and its end show at the zone's first border.
+/// Stiffness of the zone and its end at the zone's first border.
 Matrix EndReflection::end(double omega, const Matrix& half) const {
   const Eigen::Index d = half.rows();
   Matrix beyond = half;  // the last seat is a whole one

@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// What comes back of a wave that runs along a uniform track towards its far end.
+/// Reflection of a wave that runs along a uniform track towards its far end.
 struct Reflection {
   double decay;  // of the wave over a bay, |e^(-gamma bay)|, far from the end
   double back;   // amplitude that returns over amplitude that arrives, at the end's zone
@@ -22,11 +22,11 @@ struct Reflection {
 class EndReflection {
  public:
   /// @param direction  of the force that sends the wave: 1 y, 2 z
-  /// Throws std::invalid_argument on a track that is not uniform (seats, rails, pads with lengths)
+  /// Throws Refused on a track that is not uniform (seats, rails, pads with lengths)
   /// or bent by its weight, on a line that does not carry the direction, and on a far end that is
   /// held.
   EndReflection(const Track& track, const Line& line, int direction);
-  /// @param hz above 0. Throws std::runtime_error where waves run undamped.
+  /// @param hz above 0. Throws Failed if waves run undamped.
   Reflection at(double hz) const;
 
  private:

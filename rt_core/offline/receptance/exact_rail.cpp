@@ -109,7 +109,7 @@ ExactRailReceptance::Seat ExactRailReceptance::seat(const Part& part, double ome
   return {pad, ballast - omega * omega * part.sleeper_mass, rotation, true};
 }
 
-/// The rails' coefficients; a sleeper stands for what of it the rail at its seat feels.
+/// The rails' coefficients; a sleeper counts with the part of its motion that its rail follows.
 Eigen::VectorXcd ExactRailReceptance::row(const Functional& functional, const Part& part,
                                           const Seat& seat) const {
   Eigen::VectorXcd row = Eigen::VectorXcd::Zero(2 * static_cast<Eigen::Index>(x_.size()));

@@ -17,11 +17,11 @@ class ExactRailReceptance : public Receptance {
  public:
   /// @param endless  the track goes on for ever beyond both ends, whatever holds them; it always
   ///                 does beyond non-reflecting ones
-  /// Throws std::invalid_argument on directions other than z, axial force and a reference line off
-  /// the centroid; std::out_of_range on points off the track.
+  /// Throws Refused on directions other than z, axial force and a reference line off
+  /// the centroid; Refused on points off the track.
   ExactRailReceptance(const Track& track, const Transfer& transfer, BeamTheory theory,
                       bool endless = false);
-  /// Above 0 Hz. Throws std::runtime_error where an endless track lets waves run undamped.
+  /// Above 0 Hz. Throws Failed if an endless track lets waves run undamped.
   Eigen::VectorXcd at(double hz) override;
 
  private:
@@ -31,7 +31,7 @@ class ExactRailReceptance : public Receptance {
     std::array<double, 2> rail_factor;  // weight of the part in left, right
     double sleeper_mass;                // kg under one rail
   };
-  /// What stands under a rail at one frequency, N/m; without a sleeper the pad's foot stands still.
+  /// Stiffness under a rail at one frequency, N/m; without a sleeper the pad's foot stands still.
   struct Seat {
     Value pad, sleeper;
     Value rotation;  // N m/rad
@@ -58,10 +58,10 @@ class ExactRailReceptance : public Receptance {
   std::vector<Part> parts_;
 };
 
-/// Dynamic stiffness over [w, theta] of what follows a seat along +x: bays and seats for ever,
-/// joined in twos until nothing of the far end is felt.
+/// Dynamic stiffness over [w, theta] of the bays and seats that follow a seat along +x without end,
+/// joined in twos until the far end has no effect.
 /// @param bay  of the beam between two seats  @param seat  of a seat, over [w, theta]
-/// Throws std::runtime_error where 2^40 bays are not enough: waves run undamped.
+/// Throws Failed if 2^40 bays are not enough: waves run undamped.
 Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, const Eigen::Matrix2cd& seat);
 
 }  // namespace railstep

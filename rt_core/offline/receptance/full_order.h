@@ -8,12 +8,12 @@
 namespace railstep {
 
 /// Receptance of the track as it stands: (K + i omega C - omega^2 M) u = f solved for each line
-/// that the force moves, sparse and complex, ordered once; and what the elements miss of point
-/// forces inside them, statically (residual_statics()).
+/// that the force moves, sparse and complex, ordered once; and the static error of the elements at
+/// point forces inside them (residual_statics()).
 class FullOrderReceptance : public Receptance {
  public:
-  /// @param residual  false leaves that out
-  /// Throws std::invalid_argument on what makes no track, std::out_of_range on points off it.
+  /// @param residual  false leaves out this error Throws Refused on an invalid track and on points
+  /// off it.
   FullOrderReceptance(const Track& track, const Transfer& transfer, bool residual = true);
   Eigen::VectorXcd at(double hz) override;
 

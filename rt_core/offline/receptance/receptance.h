@@ -7,7 +7,7 @@
 
 namespace railstep {
 
-/// What is asked: the displacements `reads` under a force of 1 N spread by `force`.
+/// A transfer: the displacements `reads` under a force of 1 N spread by `force`.
 struct Transfer {
   Functional force;
   std::vector<Functional> reads;
@@ -21,7 +21,7 @@ class Receptance {
   Receptance(const Receptance&) = delete;
   Receptance& operator=(const Receptance&) = delete;
 
-  /// Of every read at a frequency of 0 Hz or more; [reads], m/N. Throws std::runtime_error at a
+  /// Receptance of every read at a frequency of 0 Hz or more; [reads], m/N. Throws Failed at a
   /// frequency at which the track swings without damping.
   virtual Eigen::VectorXcd at(double hz) = 0;
 };

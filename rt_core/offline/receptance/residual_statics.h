@@ -7,11 +7,11 @@
 
 namespace railstep {
 
-/// What one line of a model misses statically of a transfer: G_exact - G_model, [reads], m/N, as
-/// massless springs in series with the model. Exact is the line with every element divided so that
-/// the points of the transfer are at ends of the parts, where an element is exact, or into
-/// kMostParts where no division brings them there. The weights of rails in the line are in.
-/// 0 for a line that has a free rigid mode, which has no static answer.
+/// Static error of one line of a model in a transfer: G_exact - G_model, [reads], m/N, which acts
+/// as massless springs in series with the model. Exact is the line with every element divided so
+/// that the points of the transfer are at ends of the parts, where an element is exact, or into
+/// kMostParts if no division puts them there. The weights of rails in the line are in. 0 for a line
+/// that has a free rigid mode, which has no static answer.
 /// @param basis  of the condensed line; null: the line as it stands
 Eigen::VectorXd residual_statics(const Track& track, const Line& line, const Basis* basis,
                                  const Transfer& transfer);

@@ -7,11 +7,11 @@
 
 namespace railstep {
 
-/// What a track's driving-point receptance is expected to have, from one bay of rail and one seat.
+/// Resonances expected in a track's driving-point receptance, from one bay of rail and one seat.
 struct ExpectedResonance {
   const char* name;
   double hz;
-  bool peak;      // else a dip
+  bool peak;      // false: a dip
   double within;  // farthest ratio of frequencies at which an extremum is still taken for it
 };
 
@@ -42,7 +42,7 @@ std::vector<Extremum> extrema(Receptance& receptance, const std::vector<double>&
 struct Resonance {
   const char* name;
   double expected_hz;
-  std::optional<Extremum> found;  // none: no extremum of its kind near
+  std::optional<Extremum> found;  // empty: no extremum of its kind near
 };
 
 /// Names extrema: each expectation takes the nearest of its kind that is left.

@@ -50,8 +50,9 @@ int Delaunay::locate(const Point& p) const {
   return nearest(p);
 }
 
-/// A point on an edge, to rounding, may lie outside both of its triangles, between which the walk
-/// then goes to and fro. Of all triangles the one that it is the least outside of, by its own area.
+/// A point that lies on an edge to rounding may be outside both triangles of the edge, and the walk
+/// would go to and fro between them. Then this returns the triangle that the point is least outside
+/// of, relative to the area.
 int Delaunay::nearest(const Point& p) const {
   int best = -1;
   double inmost = 0.0;

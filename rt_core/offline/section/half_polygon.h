@@ -12,12 +12,12 @@ using HalfPolygon = std::vector<std::array<double, 2>>;
 /// Checks the outline of a symmetric section and cuts it along its axis y = 0.
 /// @param polygon  counter-clockwise (y, z), m; mirrored points agree to 1e-6 of its width plus
 ///                 height
-/// @throws std::invalid_argument with one sentence: fewer than three points, a number that is not
+/// @throws Refused: fewer than three points, a number that is not
 ///         finite, coinciding neighbours, clockwise, crossing itself, not symmetric, or not
 ///         meeting its axis exactly twice
 HalfPolygon right_half(const std::vector<std::array<double, 2>>& polygon);
 
-/// Throws as right_half(), but for the symmetry and the axis.
+/// Throws as right_half(), except for symmetry and axis.
 void check_polygon(const std::vector<std::array<double, 2>>& polygon);
 
 /// True when `point` is inside the closed polygon; either answer on its boundary.

@@ -30,7 +30,8 @@ void add_point(SectionMoments& m, double y, double z, double area) {
     for (int j = 0; i + j <= kN; ++j) at(m, i, j) += area * power(y, i) * power(z, j);
 }
 
-/// A section symmetric about y = 0: odd powers of y cancel, which round-off does not know.
+/// Sets the odd powers of y to exactly 0, as they are for a section symmetric about y = 0;
+/// round-off would leave a rest.
 void clear_odd(SectionMoments& m) {
   for (int i = 1; i <= kN; i += 2)
     for (int j = 0; i + j <= kN; ++j) at(m, i, j) = 0.;

@@ -9,7 +9,7 @@ namespace railstep {
 inline constexpr int kMomentDegree = 4;
 
 /// Moments int y^i z^j dA of a section, i + j <= 4, in m^(2+i+j). Green-Lagrange strain is
-/// quadratic over a section, so an element's energy needs no more of it.
+/// quadratic over a section, so an element's energy needs no higher moments.
 struct SectionMoments {
   std::array<std::array<double, kMomentDegree + 1>, kMomentDegree + 1> of{};  // [i][j]
 
@@ -23,7 +23,7 @@ SectionMoments raised(const SectionMoments& moments, double up);
 /// Exact moments of three rectangles about their centroid.
 SectionMoments moments(const Rectangles<double>& section);
 
-/// What `points` x `points` Gauss points (1 to 3) in each rectangle make of them. Three are exact.
+/// The same by `points` x `points` Gauss points (1 to 3) in each rectangle. Three are exact.
 SectionMoments moments(const Rectangles<double>& section, int points);
 
 /// Moments of one rectangle about its centroid, by `points` x `points` Gauss points; 3 are exact.

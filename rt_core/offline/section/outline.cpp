@@ -81,8 +81,8 @@ std::array<double, 2> extent(const std::vector<Segment>& segments, std::size_t a
     if (s.radius == 0.0) continue;
     const Arc a = arc_of(s);
     // The arc holds its circle's lowest or highest point if that lies within its half angle. A
-    // crown whose centre is off the axis by the drawing's rounding rises 0.2 nm above its middle:
-    // not meant.
+    // crown whose centre is off the axis by the rounding of the drawing rises 0.2 nm above its
+    // middle, which is neglected.
     const double bottom = a.centre[axis] - a.radius, top = a.centre[axis] + a.radius;
     if (-a.outwards[axis] > std::cos(a.half) && bottom < low - kRounding) low = bottom;
     if (a.outwards[axis] > std::cos(a.half) && top > high + kRounding) high = top;

@@ -43,8 +43,8 @@ struct Outline {
 
 /// Outline of half a symmetric profile mirrored about y = 0. Rows run from the middle of the foot
 /// to the middle of the head, or the other way. The first row's radius means nothing. Throws
-/// std::invalid_argument, in one sentence, for too few or repeated points, ends off the axis,
-/// points across it, NaN, a radius under half the chord, crossing segments, an absurd height.
+/// Refused for too few or repeated points, ends off the axis, points across it, NaN, a radius under
+/// half the chord, crossing segments, an absurd height.
 Outline mirrored_outline(std::span<const OutlineRow> half);
 
 /// Outline through points in either direction; the first may be repeated at the end. Throws as

@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-// What an outline must be. Each throws std::invalid_argument in one sentence that names the rows.
+// Checks of an outline. Each throws Refused and names the rows.
 
 /// At least `fewest` points, all finite, no two neighbours in the same place.
 void check_rows(std::span<const OutlineRow> rows, std::size_t fewest);
@@ -20,7 +20,7 @@ void check_closing(std::span<const OutlineRow> points);
 /// An arc's radius is at least half its chord and at most 10 m.
 void check_segment(const Segment& segment);
 
-/// At most 1 m, and the height at least 1 mm: else the unit is wrong.
+/// At most 1 m, and the height at least 1 mm; otherwise the unit is wrong.
 void check_size(double width, double height);
 
 /// No two segments cross or touch, save neighbours at the point they share. Arcs are tested as

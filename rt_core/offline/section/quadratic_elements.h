@@ -35,7 +35,7 @@ std::array<QuadraturePoint, 6> quadrature(const QuadraticElements& mesh, std::si
 Eigen::SparseMatrix<double> laplacian(const QuadraticElements& mesh);
 
 /// Solves K u = load with u = 0 at the fixed nodes (their rows are left out).
-/// @throws std::invalid_argument when the remaining matrix is singular
+/// @throws Refused when the remaining matrix is singular
 Eigen::MatrixXd solve_fixed(const Eigen::SparseMatrix<double>& K, const std::vector<bool>& fixed,
                             const Eigen::MatrixXd& load);
 

@@ -102,19 +102,20 @@ VectorXd flexure_load(const QuadraticElements& mesh, int p, double nu) {
   });
 }
 
-/// What is odd in y vanishes on the axis; nothing else is fixed.
+/// A function that is odd in y vanishes on the axis; nothing else is fixed.
 Eigen::MatrixXd solve_odd(const Discrete& d, const Eigen::MatrixXd& loads) {
   return solve_fixed(d.K, d.mesh.on_axis, loads);
 }
 
-/// What is even in y is free on the axis: a constant remains, taken out by one node.
+/// A function that is even in y is free on the axis; one node is fixed to remove the constant that
+/// remains.
 VectorXd solve_even(const Discrete& d, const VectorXd& load) {
   std::vector<bool> fixed(d.mesh.on_axis.size(), false);
   fixed[0] = true;
   return solve_fixed(d.K, fixed, load);
 }
 
-/// Of the half section: its mirror image has as much again.
+/// Bounds of the whole section from its half: the mirror image adds the same again.
 TorsionBounds bounds(const Discrete& d, const VectorXd& warping) {
   const VectorXd stress = solve_fixed(d.K, d.mesh.on_outline, d.stress_load);
   return {2.0 * d.stress_load.dot(stress),
@@ -124,7 +125,7 @@ TorsionBounds bounds(const Discrete& d, const VectorXd& warping) {
 bool are_close(const TorsionBounds& J) { return J.upper - J.lower <= kClosestGap * J.lower; }
 
 /// Cowper's factor from the whole section's integrals. Its denominator may vanish when the force is
-/// not along the axis of symmetry; a stiffness cannot be made of what then comes out.
+/// not along the axis of symmetry, and the result is then not a stiffness.
 double shear_factor(double nu, double area, double inertia_p, double inertia_q, double flexure) {
   const double k = 2.0 * (1.0 + nu) * inertia_p /
                    (0.5 * nu * (inertia_q - inertia_p) - area / inertia_p * flexure);

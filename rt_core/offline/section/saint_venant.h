@@ -43,13 +43,13 @@ struct TorsionBounds {
 /// @param polygon  counter-clockwise (y, z) in m, simple, symmetric about y = 0, which it meets
 ///                 twice; first point not repeated; re-entrant corners allowed
 /// @param poisson  nu of the material, -1 < nu <= 0.5
-/// @throws std::invalid_argument with one sentence when polygon or poisson is not as above;
+/// @throws Refused when polygon or poisson is not as above;
 ///         NoShearFactor when Cowper's lateral factor leaves (0, 1], as it can with nu > 0 for
 ///         sections far from symmetric about their horizontal axis (with nu = 0 it is the energy's
 ///         factor)
 SaintVenant saint_venant(const std::vector<std::array<double, 2>>& polygon, double poisson);
 
-/// What twists a section that need not be symmetric.
+/// Torsion of a section that may be unsymmetric.
 struct Twist {
   double torsion;              // J, m4
   double shear_centre_y;       // of the polygon's own coordinates, m
@@ -60,13 +60,13 @@ struct Twist {
 /// outline, on the whole section. With the warping w about the centroid, I_yz = int y z dA and
 /// I_y = int z^2 dA, the warping about the centre, w - z_s y + y_s z, has no moment with y nor z:
 ///   I_z z_s - I_yz y_s = int w y dA,   I_yz z_s - I_y y_s = int w z dA.
-/// Shear factors it has none: Cowper's are of forces along an axis of symmetry.
-/// @throws std::invalid_argument as saint_venant, but for the symmetry
+/// There are no shear factors, because Cowper's hold for forces along an axis of symmetry.
+/// @throws Refused as saint_venant, except for the symmetry
 Twist twist(const std::vector<std::array<double, 2>>& polygon);
 
 /// The two bounds of J from a mesh whose triangles are at most `size` times sqrt(A) wide, finer at
 /// re-entrant corners; to show convergence and to check saint_venant.
-/// @throws std::invalid_argument as saint_venant, and when size is not in (0, 1]
+/// @throws Refused as saint_venant, and when size is not in (0, 1]
 TorsionBounds torsion_bounds(const std::vector<std::array<double, 2>>& polygon, double size);
 
 }  // namespace railstep

@@ -19,7 +19,7 @@ struct SaintVenant {
   double shear_centre_height;  // above the foot, m; Trefftz's definition
 };
 
-/// All that a linear element needs of a section; the reference line is the centroid.
+/// Properties of a section that a linear element needs; the reference line is the centroid.
 struct Section {
   AreaProperties<double> area;
   SaintVenant shear;

@@ -47,7 +47,7 @@ std::vector<Point> reentrant_corners(const std::vector<Point>& whole) {
   return found;
 }
 
-/// Those on the axis are seen in the whole section.
+/// Angles on the axis are those of the whole section.
 std::vector<Point> reentrant_corners_of_half(const HalfPolygon& half) {
   const std::size_t n = half.size();
   std::vector<Point> found;

@@ -20,10 +20,10 @@ struct SectionMesh {
 /// @param half  from right_half
 /// @param size  widest triangle, m; shrinks to size/100 at re-entrant corners (over 200 degrees),
 ///              growing with 0.3 times the distance, because the gradients there are singular
-/// @throws std::invalid_argument when the outline is too fine for 200000 points of that size
+/// @throws Refused when the outline is too fine for 200000 points of that size
 SectionMesh mesh_half(const HalfPolygon& half, double size);
 
-/// The same of a whole outline that need not be symmetric: simple, counter-clockwise.
+/// The same for a whole outline, which may be unsymmetric: simple, counter-clockwise.
 SectionMesh mesh_whole(const std::vector<std::array<double, 2>>& polygon, double size);
 
 }  // namespace railstep

@@ -30,7 +30,7 @@ class SeatRows {
         share_(part.rails.size() == 2 ? std::sqrt(.5) : 1.),
         side_(rail == 0 ? 1. : -1.) {}
 
-  /// What the pad is strained by along d at one of its points, y beside the middle of the rail.
+  /// Strain of the pad along d at one of its points, y beside the middle of the rail.
   Row gap(const PadPoint& at, std::size_t d, double y) const {
     Row row = rail_moves(at, d, y);
     const double aside = cant_.cosine * y - cant_.sine * pad_.height_z;
@@ -40,7 +40,7 @@ class SeatRows {
       push(row, sleeper_[kAlongX], -share_);
       return row;
     }
-    // Of the sleeper's motion along y and z what lies along d.
+    // The part along d of the sleeper's motion along y and z.
     const double across = d == 1 ? cant_.cosine : -cant_.sine;
     const double up = d == 2 ? cant_.cosine : cant_.sine;
     push(row, sleeper_[kRoll], -share_ * (lever * up));
@@ -84,7 +84,7 @@ class SeatRows {
     const auto n = shape(at.xi);
     for (int i = 0; i < 3; ++i) visit(i, n[static_cast<std::size_t>(i)]);
   }
-  /// The left rail's unknowns stand for both in a mirror: none changes sign there.
+  /// In mirror coordinates the left rail's unknowns stand for both rails, so that no sign changes.
   void push_node(Row& row, int element, int node, int k, double coefficient) const {
     const int unknown = line_.element_unknown(rail_, element, node, k);
     push(row, unknown, sign_of(line_, 0, k) * coefficient);
@@ -122,7 +122,7 @@ void add_pad(const Track& track, Assembly& part, int border, int rail, const Sea
         Assembly::add(part.stiffness, gap, at.part * pad.stiffness[d] / 2.);
         Assembly::add(part.damping, gap, at.part * pad.damping[d] / 2.);
       }
-    // The section's squeeze takes its part of the mean, not of the turn.
+    // The squeeze of the section acts on the mean, not on the rotation.
     if (left < 1. && !pad.one_sided()) {
       const Row mean = rows.gap(at, 2, 0.);
       Assembly::add(part.stiffness, mean, at.part * pad.stiffness[2] * (left - 1.));

@@ -21,8 +21,8 @@ std::vector<int> carried(Unknowns unknowns) {
   return {0, 1, 2, 3, 4, 5, 6, 7, 8};
 }
 
-/// Numbers what a seat's sleeper does in a part. Mirrored lateral motions cancel in a rigid
-/// sleeper: it stands still in the symmetric part; a single rail's does not turn.
+/// Numbers the motions of a seat's sleeper in a part. Mirrored lateral motions cancel in a rigid
+/// sleeper: it stands still in the symmetric part; the sleeper of a single rail does not rotate.
 void number_sleeper(const Track& track, int border, Assembly& part) {
   const std::optional<SleeperBody> body = track.seat(border).sleeper;
   if (!body) return;
@@ -65,7 +65,7 @@ void number(const Track& track, Assembly& part) {
   part.line.sleeper_unknown_of.back() = part.line.sleeper_unknown_of.front();
 }
 
-/// K_r of Eq. 24 of one element where the track stands.
+/// K_r of Eq. 24 of one element in the track's state.
 Matrix27 stiffness_at(const Track& track, const TrackState& state, int rail, int element) {
   const Vector27 rest = straight_nodes(track.element_length());
   const Vector27 q = rest + state.rail[static_cast<std::size_t>(rail)].segment<27>(18 * element);
@@ -101,8 +101,8 @@ void add_elements(const Track& track, int rail, Assembly& part) {
   }
 }
 
-/// Of each piece between cuts its first node alone: were all held, what lengthens the rail under a
-/// force would push springs away, the more the longer the rail is.
+/// Only the first node of each piece between cuts is held. If all were, a rail that a force
+/// lengthens would strain these springs, the more the longer it is.
 void hold_along(const Track& track, int rail, Assembly& part) {
   for (int node = 0; node < track.nodes(); ++node) {
     const int own = part.line.unknown(rail, node, 0),
@@ -210,7 +210,7 @@ void split(const Assembly& part, std::array<double, 2> factor, std::vector<Line>
   }
 }
 
-/// What stands on one side of a seat, where any of it is one-sided.
+/// Checks the one-sided pad and ballast on one side of a seat.
 void check_one_sided(const Seat& seat, std::size_t side) {
   const Support& pad = seat.pad[side];
   const Ballast& ballast = seat.ballast[side];

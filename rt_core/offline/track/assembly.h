@@ -9,7 +9,8 @@
 
 namespace railstep {
 
-/// How a part stands to the rails: itself, or the symmetric or antisymmetric mirror coordinate.
+/// Relation of a part to the rails: the rails themselves, or the symmetric or antisymmetric mirror
+/// coordinate.
 enum class Mirror { none, symmetric, antisymmetric };
 
 /// Coefficients over the unknowns of a part.
@@ -37,7 +38,7 @@ struct Assembly {
       for (const auto& [j, b] : row)
         if (a * b != 0.) to.emplace_back(i, j, factor * a * b);
   }
-  /// Entries of 0: keeps in one line what a one-sided spring couples.
+  /// Entries of 0, which keep unknowns that a one-sided spring couples in one line.
   static void tie(Triplets& to, const Row& row) {
     for (const auto& [i, a] : row)
       for (const auto& [j, b] : row) to.emplace_back(i, j, 0.);

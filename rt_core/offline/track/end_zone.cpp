@@ -6,9 +6,10 @@ namespace railstep {
 
 namespace {
 
-constexpr double kNepers = 1.5;  // that the fastest bending wave loses there and back
+constexpr double kNepers = 1.5;  // of the fastest bending wave, lost there and back
 
-/// How far into the zone of length 1 before an end the middle of an element lies; 0: not in it.
+/// Distance of an element's middle from the start of a zone of length 1 before an end; 0 outside
+/// the zone.
 double depth(const Track& track, std::size_t end, int element) {
   if (track.ends[end] != RailEnd::non_reflecting) return 0.;
   const double from_end = end == 0 ? element + .5 : track.elements() - element - .5;

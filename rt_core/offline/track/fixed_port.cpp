@@ -9,7 +9,7 @@ namespace railstep {
 
 namespace {
 
-/// How far a rail comes down on its seat y beside its middle.
+/// Displacement of a rail towards its seat, y beside its middle.
 Functional pad_closing(const Track& track, int rail, int seat, double y) {
   Functional closing;
   add_underside(track, rail, seat, pad_points(track, seat, 0.).front().x, y, -1., closing);
@@ -50,7 +50,7 @@ void add_ballast(const Track& track, int rail, int seat, std::vector<FixedPort>&
 
 constexpr double kBehind = 1e-9;  // of an element: where the rail behind a joint ends
 
-/// The end behind a joint comes on and the one ahead stays.
+/// Displacement of the end behind a joint towards the end ahead.
 Functional ends_closing(const Track& track, int rail, double x) {
   return {.rail = {{{rail, x - kBehind * track.element_length(), 0., 0., 0}, 1.},
                    {{rail, x, 0., 0., 0}, -1.}},
@@ -76,7 +76,7 @@ void add_joints(const Track& track, std::vector<FixedPort>& ports) {
     }
 }
 
-/// Does `change` to the pad and the ballast of every side of every seat.
+/// Applies `change` to the pad and the ballast of each side of each seat.
 template <typename Change>
 void change_sides(Track& track, const Change& change) {
   for (int border = 0; border <= track.bays; ++border) {

@@ -5,9 +5,9 @@
 
 namespace railstep {
 
-/// A one-sided spring and damper of the track. With d = closing - gap it pushes what it stands
-/// between apart with max(0, stiffness d + damping d') while d > 0, and does not pull. One that is
-/// closed where the track stands (gap < 0) is balanced there by its preload, which stays.
+/// A one-sided spring and damper of the track. With d = closing - gap it pushes its two sides apart
+/// with max(0, stiffness d + damping d') while d > 0, and does not pull. A spring that is closed in
+/// the track's state (gap < 0) is balanced there by its constant preload.
 struct FixedPort {
   Functional closing;     // displacement towards it, from the unloaded straight track
   double stiffness = 0.;  // N/m
@@ -21,9 +21,9 @@ struct FixedPort {
   int joint = -1;  // number of a joint
 };
 
-/// What of a track is one-sided: of each rail, seat by seat, pad (two halves where it has a
-/// half_spread) and ballast, then the stops, then the ends of rails at joints where rails move
-/// along x. Without stiffness and damping there is none.
+/// The one-sided springs of a track: for each rail, seat by seat, the pad (two halves with a
+/// half_spread) and the ballast; then the stops; then the ends of rails at joints if rails move
+/// along x. Springs without stiffness and damping are left out.
 std::vector<FixedPort> fixed_ports(const Track& track);
 
 /// Its closing over the unknowns of one line.
@@ -33,14 +33,14 @@ Eigen::SparseVector<double> closing_row(const Track& track, const Line& line,
 /// The preloads of all ports over the unknowns of one line, N.
 Eigen::VectorXd preload(const Track& track, const Line& line);
 
-/// The track about its unloaded state: what has no gap and does not pull, and ends of rails that
-/// heat closes, are taken for bilateral springs; what has a gap, and stops, stay out of its lines.
+/// The track about its unloaded state: one-sided springs without a gap, and ends of rails that heat
+/// closes, count as bilateral springs. Springs with a gap, and stops, stay out of its lines.
 Track linear_about_rest(Track track);
 
-/// Whether the port is such a spring.
+/// Whether the port counts as bilateral there.
 bool is_closed_at_rest(const FixedPort& port);
 
-/// The track with everything one-sided away.
+/// The track without its one-sided springs.
 Track all_open(Track track);
 
 }  // namespace railstep

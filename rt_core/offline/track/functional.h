@@ -17,19 +17,19 @@ struct Functional {
   };
   std::vector<OnRail> rail = {};
   std::vector<OnSleeper> sleeper = {};
-  double part = 1.;  // of it that the track's unknowns have, where they lack the section's squeeze
+  double part = 1.;  // part that the unknowns have, if they do not have the squeeze
 };
 
-/// What the displacements of a track's unknowns count in a functional.
+/// Factor of the displacements of a track's unknowns in a functional.
 double part_in(const Track& track, const Functional& functional);
 
-/// What opens a pad: its rail's seat over the sleeper, or over the ground, along the pad's normal,
-/// which is the rail's own z; the mean of one that has a length. Where the unknowns lack the
-/// section's squeeze, their part of it is what part_of_pad() says.
+/// Opening of a pad: displacement of the rail's seat over the sleeper or the ground along the pad's
+/// normal, which is the rail's own z; for a pad with a length, its mean. If the unknowns do not
+/// have the squeeze of the section, part_of_pad() gives their part of the opening.
 Functional pad_gap(const Track& track, int rail, int seat);
 
 /// The two sides of a pad at a place y beside its rail's middle, along its normal: adds `factor`
-/// times what the rail's underside over x does, or the top of the sleeper under the seat.
+/// times the displacement of the rail's underside over x, or of the sleeper's top under the seat.
 void add_underside(const Track& track, int rail, int seat, double x, double y, double factor,
                    Functional& to);
 void add_sleeper_top(const Track& track, int rail, int seat, double y, double factor,

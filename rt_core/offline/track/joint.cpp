@@ -11,11 +11,11 @@ namespace railstep {
 
 namespace {
 
-constexpr double kOnBorder = 1e-9;  // of an element, what decimal lengths may miss it by
+constexpr double kOnBorder = 1e-9;  // of an element, tolerance for decimal lengths
 
 constexpr int kVertical = 6, kLateral = 3;  // b_x, a_x: slopes of bending
 
-/// What the rail's end ahead does over the one behind, in unknown k of the node.
+/// Motion of the rail's end ahead over the one behind, in unknown k of the node.
 Row jump(const Line& line, int rail, int node, int k, double factor) {
   Row row;
   const int behind = line.unknown(rail, node, k), ahead = line.unknown_ahead(rail, node, k);

@@ -6,10 +6,10 @@
 namespace railstep {
 
 /// A bolted joint: a rail is cut at a border of its elements, and fishplates hold its two ends by
-/// springs and dampers on what one end does over the other, at the rail's axis. A stiffness that is
-/// infinite lets both ends share that motion; all others of the section (its own strains) are free
-/// at both ends. Where its gap closes, the ends are in contact along x at the axis: a
-/// one-sided spring (fixed_port.h). Nothing of that in a rail that does not move along x.
+/// springs and dampers on the motion of one end over the other, at the rail's axis. A stiffness
+/// that is infinite lets both ends share that motion; all others of the section (its own strains)
+/// are free at both ends. Where its gap closes, the ends are in contact along x at the axis: a
+/// one-sided spring (fixed_port.h). A rail that does not move along x has no such spring.
 struct RailJoint {
   double x = 0.;                               // along the rail, m
   std::array<bool, 2> rails{true, true};       // cut: left, right
@@ -29,14 +29,14 @@ struct RailJoint {
 
 struct Track;
 
-/// The node at which a joint stands. Throws std::invalid_argument at a place that is no border of
-/// two elements, and at an end of the rail.
+/// The node at which a joint stands. Throws Refused at a place that is not a border of two
+/// elements, and at an end of the rail.
 int joint_node(const Track& track, const RailJoint& joint);
 
-/// The joint of a rail at a node; none: null. @param rail  0 left, 1 right
+/// The joint of a rail at a node, or null. @param rail  0 left, 1 right
 const RailJoint* joint_at(const Track& track, int rail, int node);
 
-/// Throws std::invalid_argument on joints that the track cannot have.
+/// Throws Refused on joints that the track cannot have.
 void check_joints(const Track& track);
 
 /// Compression, N, of rails that heat makes longer between two ends that hold them, where their
@@ -51,7 +51,7 @@ struct HeatedGap {
 };
 double compression_by_heat(double growth, double flexibility, const std::vector<HeatedGap>& joints);
 
-/// Each joint whose ends heat closes, with a spring of that stiffness in the place of the ends.
+/// The joints whose ends heat closes, each with a spring of that stiffness in place of the ends.
 void join_closed_ends(Track& track);
 
 }  // namespace railstep

@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-/// A point of a pad that is spread along the rail, and the part of the pad that stands there.
+/// A point of a pad that is spread along the rail, and the part of the pad at that point.
 struct PadPoint {
   int element;
   double xi;      // in it
@@ -15,7 +15,7 @@ struct PadPoint {
 };
 
 /// Points by which int k(x) N' N dx of an evenly spread pad is exact: three Gauss points in every
-/// element under it, k = 1/length. What is off an end of the rail is moved under it. A pad of
+/// element under it, k = 1/length. Points off an end of the rail are moved under it. A pad of
 /// length 0 is one point at the seat, or half of it stands under either end of a rail that is cut
 /// there.
 std::vector<PadPoint> pad_points(const Track& track, int border, double length);

@@ -4,7 +4,7 @@
 
 namespace railstep {
 
-/// Spring-dampers between one rail and what carries it, at a bay border.
+/// Spring-dampers between one rail and its sleeper or the ground, at a bay border.
 struct Support {
   std::array<double, 3> stiffness{};  // x, y, z, N/m
   std::array<double, 3> damping{};    // x, y, z, N s/m
@@ -23,7 +23,8 @@ struct Support {
 
 /// Rigid sleeper under both rails on ballast, alike at both ends; its height is neglected. It moves
 /// vertically and rolls; along x or y it moves only where its ballast has stiffness in that
-/// direction, and pitches only where its ballast and pads have lengths (else it is held there).
+/// direction, and pitches only where its ballast and pads have lengths (otherwise it is held
+/// there).
 struct Sleeper {
   double mass = 0.;                           // whole, kg
   double roll_inertia = 0.;                   // about x, also used about z, kg m2

@@ -46,7 +46,7 @@ struct TrackState {
   double gravity = 0.;                     // of that weight, m/s2
 };
 
-/// What a rail is made of, and the axial force in it.
+/// Section and material of a rail, and its axial force.
 struct RailBar {
   BeamSection section;
   Material material;
@@ -86,8 +86,8 @@ struct Track {
   /// The last bay border is the first: a track without ends, whatever runs on it runs round. Its
   /// seats are alike, its pads points; x goes from 0 to length() all the same.
   bool ring = false;
-  /// Of the first node of a rail, and of each piece of one that is cut, to the ground along x, N/m:
-  /// so soft that it holds only what nothing else does.
+  /// Spring from the first node of a rail, and of each piece of a cut rail, to the ground along x,
+  /// N/m. It is so soft that it matters only if nothing else holds the rail.
   double hold_along = 0.;
   std::optional<RailBar> right;  // the right rail, where it differs from section, material, force
   Support support;               // of every seat but those changed
@@ -95,11 +95,11 @@ struct Track {
   std::map<int, Seat> changed_seats;  // by bay border; whole, in place of support and sleeper
   std::vector<Stop> stops;
   std::vector<RailJoint> joints;  // where rails are cut
-  /// Rails that share sleepers and are alike are stepped in mirror coordinates; without them both
-  /// make one line, as those that differ do.
+  /// Equal rails that share sleepers are stepped in mirror coordinates. If this is false they make
+  /// one line together, as rails that differ do.
   bool mirror_coordinates = true;
-  /// Where the stiffness is taken (q_s of Eq. 24); none: at rest. linearised_under_weight() makes
-  /// one.
+  /// State at which the stiffness is taken (q_s of Eq. 24), from linearised_under_weight(); empty:
+  /// at rest.
   std::optional<TrackState> state;
 
   int elements() const { return bays * elements_per_bay; }
@@ -140,8 +140,8 @@ struct ElementPlace {
   double xi;
 };
 
-/// Where a place along the rail lies, x in m. Round-off of bay lengths (1e-12) beyond the far end
-/// is forgiven. Throws std::out_of_range off the rail.
+/// The element at a place x along the rail, m. Round-off of bay lengths (1e-12) beyond the far end
+/// is allowed. Throws Refused off the rail.
 ElementPlace place_on(const Track& track, double x);
 
 /// A material point of one rail.
@@ -156,22 +156,22 @@ struct RailPoint {
 /// unknowns of its element, in the rail's own axes.
 Vector27 rail_row(const Cant& cant, double xi, double y, double z, int direction);
 
-/// How a rigid sleeper moves; of the table of a line's unknowns.
+/// Motions of a rigid sleeper, in the order of a line's table of unknowns.
 enum SleeperMotion { kAlongX, kAlongY, kAlongZ, kRoll, kYaw, kPitch, kSleeperMotions };
 
-/// One independent part of the track: M a + C v + K u = f with banded matrices. What is one-sided
-/// (fixed_port.h) is in none of them, but what it would couple stays in one line.
+/// One independent part of the track: M a + C v + K u = f with banded matrices. One-sided springs
+/// (fixed_port.h) are not in these matrices, but unknowns that they couple stay in one line.
 ///
-/// Two alike rails that share sleepers are taken in mirror coordinates (left +- mirrored right)
-/// / sqrt 2; rails that differ make one line together; rails that share nothing stand for
-/// themselves. Whatever then does not couple (vertical and lateral motion of a section symmetric
-/// in y, say) becomes a line of its own.
+/// Two alike rails that share sleepers are taken in mirror coordinates (left +- mirrored right) /
+/// sqrt 2; rails that differ make one line together; rails that share nothing are lines of their
+/// own. Motions that then do not couple, such as vertical and lateral motion of a section symmetric
+/// in y, become separate lines.
 struct Line {
   /// [nodes] unknowns of one rail, along its own axes; -1 where not carried.
   using RailUnknowns = std::vector<std::array<int, 9>>;
 
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
-  Eigen::SparseMatrix<double> end_damping;  // what of damping is spread over zones at the ends
+  Eigen::SparseMatrix<double> end_damping;  // the part of damping in the zones at the ends
   std::array<RailUnknowns, 2> unknown_of;  // of left and right rail; the same in mirror coordinates
   /// Of each rail, by node where it is cut: the unknowns of the end ahead, which begins the next
   /// element; those of the end behind are the node's own.
@@ -179,7 +179,7 @@ struct Line {
   /// [seats] of each SleeperMotion, scaled: the ends' mean displacement, or half their difference,
   /// times sqrt 2 (of one rail, its end's displacement); -1 where held or on another line.
   std::vector<std::array<int, kSleeperMotions>> sleeper_unknown_of;
-  std::array<double, 2> rail_factor;  // weight of the line in left, right; 0: it lacks that rail
+  std::array<double, 2> rail_factor;  // weight of the line in left, right; 0: not in that rail
   bool mirrored;                      // right rail: lateral unknowns change sign
   bool rigid_section;                 // a_z and b_y are one unknown, the roll a_z
 
@@ -204,19 +204,19 @@ struct Line {
   int first_rail() const { return rail_factor[0] != 0. ? 0 : 1; }
 };
 
-/// Assembles the track and splits it into independent lines, each numbered along x.
-/// Throws std::invalid_argument on counts or lengths that make no track.
+/// Assembles the track and splits it into independent lines, each numbered along x. Throws Refused
+/// on counts or lengths that are out of range.
 std::vector<Line> assemble(const Track& track);
 
 /// Coefficients of the displacement of a material point over the unknowns of one line. Transposed,
-/// it spreads a unit force at that point. Throws std::out_of_range off the rail.
-/// @param strains  false: without what the section's own strain (a_y, b_z) adds
+/// it spreads a unit force at that point. Throws Refused off the rail.
+/// @param strains  false: without the part of the section's own strain (a_y, b_z)
 Eigen::SparseVector<double> point_row(const Track& track, const Line& line, const RailPoint& point,
                                       bool strains = true);
 
-/// What unknown k of a rail's node is per unknown of the line, before the rail's weight in it: -1
-/// for the y components (r_y, a_x, a_z, b_y) of a mirrored right rail; the other sign for b_y of a
-/// section that does not strain; else 1.
+/// Sign of unknown k of a rail's node relative to the line's unknown, without the rail's weight in
+/// it: -1 for the y components (r_y, a_x, a_z, b_y) of a mirrored right rail; the other sign for
+/// b_y of a section that does not strain; else 1.
 double sign_of(const Line& line, int rail, int k);
 
 /// Coefficients of the displacement of a sleeper's end over the unknowns of one line.
@@ -229,8 +229,8 @@ Eigen::SparseVector<double> sleeper_row(const Track& track, const Line& line, in
 Vector27 line_load(const Track& track, int rail);
 
 /// Nodal forces of the rails' and sleepers' own weight on one line. @param gravity m/s2, > 0 down.
-/// Of a track with a state, which is that under its weight: K_r q_s, the constant part of Eq. 24,
-/// f_s of which the weight balances; the linear answer to it is the state.
+/// If the track has a state under its weight: K_r q_s, the constant part of Eq. 24, whose f_s the
+/// weight balances. The linear answer to it is the state.
 Eigen::VectorXd weight(const Track& track, const Line& line, double gravity = kGravity);
 
 }  // namespace railstep

@@ -7,13 +7,13 @@
 
 namespace railstep {
 
-/// A vehicle and what its bodies are called, in its bodies' order.
+/// A vehicle and the names of its bodies, in their order.
 struct NamedVehicle {
   Vehicle vehicle;
   std::vector<std::string> bodies;
 };
 
-/// All of one rail: half of what a vehicle on two rails has.
+/// Values of one rail, which are half of those of a vehicle on two rails.
 struct BogieData {
   double frame_mass, frame_inertia;           // kg, about y kg m2
   double wheel_mass;                          // of half a wheelset, kg

@@ -50,12 +50,12 @@ struct VehicleMatrices {
   Eigen::MatrixXd wheels;                    // B [wheels][n]
 };
 
-/// Throws std::invalid_argument on no bodies or wheels, masses not above 0, names of bodies that
-/// are none, and on stiffness, damping or pitch inertia below 0.
+/// Throws Refused on no bodies or wheels, masses not above 0, bodies that are not there, and on
+/// stiffness, damping or pitch inertia below 0.
 VehicleMatrices vehicle_matrices(const Vehicle& vehicle, double gravity = kGravity);
 
 /// Where the vehicle stands on a level, rigid rail: q and the rail's forces on its wheels, N.
-/// Throws std::invalid_argument where springs and wheels leave a motion free.
+/// Throws Refused if springs and wheels leave a motion free.
 struct VehicleRest {
   Eigen::VectorXd displacement, force;
 };

@@ -216,14 +216,14 @@ TEST_CASE("the vibration of a rail on a foundation decays along it as in the clo
 TEST_CASE("exact rails refuse tracks and points that they cannot solve", "[exact-rail]") {
   Track track = s1(4);
   const Functional sideways = rail_point({0, .3, 0., 0., 1});
-  CHECK_THROWS_AS(ExactRailReceptance(track, {sideways, {sideways}}, BeamTheory::timoshenko),
-                  std::invalid_argument);
-  CHECK_THROWS_AS(ExactRailReceptance(track, driving(2.5), BeamTheory::timoshenko),
-                  std::out_of_range);
+  CHECK_THROWS_WITH(ExactRailReceptance(track, {sideways, {sideways}}, BeamTheory::timoshenko),
+                    Catch::Contains("E-RECEPTANCE-11"));
+  CHECK_THROWS_WITH(ExactRailReceptance(track, driving(2.5), BeamTheory::timoshenko),
+                    Catch::Contains("E-TRACK-05"));
   Track pressed = track;
   pressed.axial_force = -1e5;
-  CHECK_THROWS_AS(ExactRailReceptance(pressed, driving(.3), BeamTheory::timoshenko),
-                  std::invalid_argument);
+  CHECK_THROWS_WITH(ExactRailReceptance(pressed, driving(.3), BeamTheory::timoshenko),
+                    Catch::Contains("E-RECEPTANCE-09"));
   // Without damping, waves above the cut-on travel without end.
   track.sleeper.reset();
   track.support.damping[2] = 0.;

@@ -316,7 +316,9 @@ TEST_CASE("tables of bad size, basis or place are refused", "[flexibility]") {
   const ResidualFlexibility residual(t, lines, {}, 8);
   CHECK_THROWS_AS(residual.under({1, 0.}), std::invalid_argument);  // there is one rail
   CHECK_THROWS_WITH(residual.between({0, 0.}, {0, 0.}, 3), Catch::Contains("E-CONDENSE-12"));
-  CHECK_THROWS_AS(residual.from({0, 0.}, at_point({0, 9.7, 0., 0., 2})), std::out_of_range);
-  CHECK_THROWS_AS(residual.from({0, 0.}, at_point({1, 1., 0., 0., 2})), std::out_of_range);
-  CHECK_THROWS_AS(residual.from({0, 0.}, {.sleeper = {{0, 3, 2, 1.}}}), std::out_of_range);
+  CHECK_THROWS_WITH(residual.from({0, 0.}, at_point({0, 9.7, 0., 0., 2})),
+                    Catch::Contains("E-TRACK-05"));
+  CHECK_THROWS_WITH(residual.from({0, 0.}, at_point({1, 1., 0., 0., 2})),
+                    Catch::Contains("E-CONDENSE-07"));
+  CHECK_THROWS_AS(residual.from({0, 0.}, {.sleeper = {{0, 3, 2, 1.}}}), std::invalid_argument);
 }
