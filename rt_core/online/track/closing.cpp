@@ -24,7 +24,7 @@ double closing(const Model& model, std::int32_t port, const double* re, const do
 
 double closing_speed(const Model& model, std::int32_t port, const State& s) noexcept {
   if (model.form == Form::banded) return closing(model, port, s.v, nullptr);
-  // Re shape (rate z): what forces add to z' does not move the row (completeness).
+  // Re shape (rate z): the part of z' by forces does not move the row (completeness).
   const Complex shape = shape_of(model, port);
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) {

@@ -11,7 +11,7 @@ Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
 
 constexpr int kMostCarried = 3 * 9 + 2 * kPDeltaSeats;  // unknowns of a row
 
-/// Calls visit(unknown, weight) for what a line carries of a row.
+/// Calls visit(unknown, weight) for those unknowns of a row that a line has.
 template <typename Visit>
 void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcept {
   if (line.rail_factor[row.rail] == 0.) return;

@@ -10,22 +10,23 @@ namespace railstep {
 struct RailRow {
   std::int32_t rail, element;
   double coefficient[3][9];
-  std::int32_t seats;  // that matter, 0 to kPDeltaSeats; see track/p_delta.h
+  std::int32_t seats;  // in use, 0 to kPDeltaSeats; see track/p_delta.h
   std::int32_t seat[kPDeltaSeats];
   double lever[kPDeltaSeats];  // m
 };
 
-/// A node of a rail's element: its first, middle or last one.
+/// A node of a rail's element: its first, middle or last node.
 struct ElementNode {
   std::int32_t element;
   int node;  // 0 to 2
 };
-/// Of a node counted from 0 along the rail; one that two elements share is the last of the first.
+/// The element of a node that is counted from 0 along the rail. A node of two elements is the last
+/// node of the first one.
 constexpr ElementNode element_node(std::int32_t node) noexcept {
   const std::int32_t element = node > 0 ? (node - 1) / 2 : 0;
   return {element, node - 2 * element};
 }
-/// Place in a rail's table (LineModel::unknown_of) of a node's unknown k.
+/// Index in a rail's table (LineModel::unknown_of) of unknown k of a node.
 constexpr std::int32_t table_place(ElementNode at, int k) noexcept {
   return 27 * at.element + 9 * at.node + k;
 }
@@ -33,24 +34,24 @@ constexpr std::int32_t table_place(std::int32_t node, int k) noexcept {
   return table_place(element_node(node), k);
 }
 
-/// Displacements at which to look: u [unknowns] of banded lines and bodies, modes of condensed
-/// lines.
+/// Displacements at which rows are evaluated: u [unknowns] of banded lines and bodies, modes of
+/// condensed lines.
 struct Configuration {
   const double* u;
   Complex modes;
   double track_offset = 0.;  // m, from the elements' x to the distance along a track without end
 };
 
-/// Displacement of an unknown, as the line's tables number it.
+/// Displacement of an unknown by its number in the line's tables.
 double unknown_value(const LineModel& line, std::int32_t unknown, const Configuration& at) noexcept;
 
-/// The value of a node's unknown k on a line, before its weight in the rail; 0 if the line does not
-/// carry it.
+/// The value of unknown k of a node on a line, without its weight in the rail; 0 if the line does
+/// not have it.
 double nodal_value(const LineModel& line, std::int32_t rail, ElementNode node, int k,
                    const Configuration& at) noexcept;
 
-/// The weight of a line's unknown k in a rail: y components of the mirrored right rail (r_y, a_x,
-/// a_z, b_y) change sign, and so does b_y of a section that does not strain.
+/// The weight of a line's unknown k in a rail. The y components of the mirrored right rail (r_y,
+/// a_x, a_z, b_y) change sign, and so does b_y of a section that does not strain.
 inline double weight_of(const LineModel& line, std::int32_t rail, int k) noexcept {
   const bool flips = line.mirrored != 0 && rail == 1 && (k == 1 || k == 3 || k == 5 || k == 7);
   return flips != (line.rigid_section != 0 && k == 7) ? -line.rail_factor[rail]
@@ -71,16 +72,17 @@ inline void set_height_row(const Cant& cant, double y, double z, const double* s
 double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
                    const Configuration& at) noexcept;
 
-/// What a line adds to a row's displacement.
+/// The part of a row's displacement by a line.
 double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept;
 
-/// rhs += force * row of a banded line; rhs [unknowns] of all lines.
+/// rhs += force * row for a banded line; rhs [unknowns] of all lines.
 void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept;
 
-/// Shape of a row among a condensed line's modes; its part of re and im [unknowns] is overwritten.
+/// Shape of a row in the modes of a condensed line; the line's part of re and im [unknowns] is
+/// overwritten.
 void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept;
 
-/// shape += force * row of a condensed line: [unknowns] of all lines, complex.
+/// shape += force * row for a condensed line: [unknowns] of all lines, complex.
 void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,
                   double* im) noexcept;
 

@@ -6,9 +6,9 @@ namespace railstep {
 
 namespace {
 
-/// Roll of a node's section, rad; where the rail is cut, of the end behind.
-/// @param s       the node's seat among those around the point
-/// @param shared  `motions` holds the other rail's
+/// Roll of a node's section, rad; if the rail is cut there, of the end behind.
+/// @param s       index of the node's seat among those around the point
+/// @param shared  `motions` holds those of the other rail
 double node_roll(const Model& model, std::int32_t rail, std::int32_t node, const Configuration& at,
                  std::int32_t s, bool shared, SeatMotions& motions) noexcept {
   const ElementNode own = element_node(node);

@@ -8,7 +8,7 @@ namespace railstep {
 
 namespace {
 
-/// Entry of a table [load_points][elements][points + 1] under a force.
+/// Value of a table [load_points][elements][points + 1] under a force.
 double look_up(const Model& model, const double* table, std::int32_t elements,
                const RailForce& at) noexcept {
   if (table == nullptr || at.load_point == kNoLoadPoint) return 0.;
@@ -18,15 +18,15 @@ double look_up(const Model& model, const double* table, std::int32_t elements,
   return interpolate(table + row * (points + 1), points, at.xi);
 }
 
-/// Whether places are within an element's length of each other.
+/// Whether two places are less than an element's length apart.
 bool close(const RailForce& a, const RailForce& b) noexcept {
   const double distance = (b.element - a.element) + .5 * (b.xi - a.xi);
   return distance * distance < 1.;
 }
 
-/// No more than the geometric mean of what both have under themselves: else two opposite forces
-/// would find a flexibility below 0, and their wheels run away from each other. Tables between
-/// places round off the kink at the force, by some percent of what is under it.
+/// At most the geometric mean of the flexibilities under both forces. Otherwise two opposite forces
+/// would have a negative flexibility, and their wheels would diverge. Interpolation between places
+/// smooths the kink at the force, by some percent of the flexibility under it.
 double at_most_mean(const Model& model, const RailForce& a, const RailForce& b,
                     double between) noexcept {
   const double own = residual_under(model, a), other = residual_under(model, b);

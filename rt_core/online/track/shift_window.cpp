@@ -7,7 +7,7 @@ namespace railstep {
 namespace {
 
 /// @param scratch  [line.size]
-/// @param fill     null: none
+/// @param fill     null: 0
 void shift(const LineModel& line, const double* fill, double* x, double* scratch) noexcept {
   const BayShift& to = line.shift;
   for (std::int32_t i = 0; i < line.size; ++i) scratch[i] = x[i];
@@ -20,7 +20,7 @@ void shift(const LineModel& line, const double* fill, double* x, double* scratch
 
 void shift_window(const Model& model, std::int64_t step, State& s, Workspace& w) noexcept {
   const Endless& e = model.endless;
-  // A step goes less than a bay, so there is one border at most.
+  // Traffic moves by less than a bay in a step, so that it passes at most one border.
   if (e.bays == 0 || bays_passed(e.progress, step).bays == bays_passed(e.progress, step - 1).bays)
     return;
   for (std::int32_t l = 0; l < model.lines; ++l) {

@@ -3,9 +3,9 @@
 
 namespace railstep {
 
-/// On a track without end, where the traffic passes a bay border on its way to a step: what lines
-/// hold is passed on by a bay to the rear, and wheelsets count their way from the new border.
-/// Nothing elsewhere. Uses workspace.scaled.
+/// If the traffic on a track without end passes a bay border on its way to a step, shifts the state
+/// of the lines by a bay to the rear, and lets wheelsets count their way from the new border. Does
+/// nothing otherwise. Uses workspace.scaled.
 void shift_window(const Model& model, std::int64_t step, State& state,
                   Workspace& workspace) noexcept;
 

@@ -8,7 +8,7 @@ namespace railstep {
 
 namespace {
 
-/// Entry of u, then v, then the fixed ports' forces, then g.
+/// Value by its index in u, then v, then the fixed ports' forces, then g.
 double value_at(const Model& model, const State& state, std::int32_t at) noexcept {
   if (at < model.unknowns) return state.u[at];
   at -= model.unknowns;
@@ -17,7 +17,7 @@ double value_at(const Model& model, const State& state, std::int32_t at) noexcep
   return at < model.fixed.count ? state.port_force[at] : state.g[at - model.fixed.count];
 }
 
-// Never inlined: no arithmetic of it may leave the mode that its caller sets.
+// Never inlined: none of its arithmetic may move out of the mode that its caller sets.
 [[gnu::noinline]] void read(const Model& model, const State& state, const Outputs& outputs,
                             double* value) noexcept {
   RailForce forces[kMaxRailForces];

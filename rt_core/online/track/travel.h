@@ -8,8 +8,8 @@ struct Travelled {
   double distance, speed, acceleration;  // m since t = 0, m/s, m/s2
 };
 
-/// How far something is at a time, from the time alone: between two rows of a table the place is a
-/// parabola from the first of them.
+/// Distance, speed and acceleration at a time, from the time alone. Between two rows of a table the
+/// place is a parabola from the first of them.
 inline Travelled travelled(const TravelModel& travel, double time) noexcept {
   if (travel.rows == 0) return {travel.speed * time, travel.speed, 0.};
   const double* const row =
@@ -20,8 +20,8 @@ inline Travelled travelled(const TravelModel& travel, double time) noexcept {
   return {row[2] + since * (row[1] + .5 * rate * since), row[1] + rate * since, rate};
 }
 
-/// What a step finds gone along the model's elements, and the speed, `before` seconds ahead of its
-/// end; on a track without end from the last bay border before that end.
+/// Distance along the model's elements, and speed, `before` seconds before a step's end. On a track
+/// without end the distance is from the last bay border before that end.
 inline Travelled way_at(const Model& model, const TravelModel& travel, std::int64_t step,
                         double before = 0.) noexcept {
   if (model.endless.bays != 0)
