@@ -145,7 +145,9 @@ LoadScene read_load(const Table& t, const Scene& scene) {
                            "that the load moves to",
                            load.stop, load.start));
   }
-  if (!load.may_leave_rail) check_path(t, scene, load.start, speed, load.stop);
+  if (!load.may_leave_rail)
+    check_path(t, scene, load.start, speed,
+               t.has("stop_m") ? std::optional(load.stop) : std::nullopt);
   return load;
 }
 
