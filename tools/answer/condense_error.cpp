@@ -12,7 +12,7 @@
 namespace railstep {
 namespace {
 
-/// What rings at first where a scene starts released is not judged: no longer than this, s.
+/// The ringing at the start of a released scene is not judged, for at most this time, s.
 constexpr double kRinging = .02;
 
 /// Of a level of refinement: steps of elements, as many times as those of vertical unknowns. Some
@@ -46,7 +46,7 @@ bool stands_for_hertz(const VehicleScene& v) {
          (v.contact == WheelContactKind::linear && v.vehicle.bodies.size() > 1);
 }
 
-/// The scene with Hertz's law there; none where there is nothing of the kind.
+/// The scene with Hertz's law there; nothing where no wheel has another law.
 std::optional<Scene> with_hertz(Scene scene) {
   bool changed = false;
   for (VehicleScene& v : scene.vehicles) {

@@ -8,7 +8,7 @@
 
 namespace railstep {
 
-/// What a scene's model misses, and what of that is known.
+/// The errors of a scene's model, as far as they are known.
 struct TransientError {
   double from_s;    // what comes before is left out
   double window_s;  // from the start
@@ -16,7 +16,8 @@ struct TransientError {
   double reference_error;  // the reference's own, estimated
   ErrorParts parts;
   /// What the law of contact takes away: what wheels with a linear contact, or bonded to the rail,
-  /// do otherwise than by Hertz's law. In no other number here; none where all follow it.
+  /// do otherwise than by Hertz's law. It is in no other number here; nothing where all wheels
+  /// follow Hertz's law.
   std::optional<double> contact_law;
 };
 

@@ -16,7 +16,7 @@ struct NamedRule {
 /// Every rule of the study: each family varies one choice and leaves the others at the default.
 std::vector<NamedRule> study_rules();
 
-/// What one element costs. Counts follow from the rule alone; times are the general kernel's on
+/// The cost of one element. Counts follow from the rule alone; times are the general kernel's on
 /// this machine, the best of many.
 struct RuleCost {
   /// Strains a loop over Gauss points evaluates: 3 n^2 in the section for each axial point of D0,

@@ -4,7 +4,7 @@
 
 namespace railstep {
 
-/// How an element is integrated, the choices of the section included.
+/// The integration of an element, with the choices of the section.
 struct StudyRule {
   ElementRule element = {};
   int section_points = 0;  // Gauss points each way in each rectangle, 1 to 3; 0: exact moments
@@ -56,11 +56,11 @@ double twist_compliance(const BeamLaw& law, int elements);
 double exact_twist(const Material& material);
 
 /// Deflection (m, down positive) of the tip's centroid under F = kLargeLoad E Iy / L^2 which stays
-/// vertical. NaN where Newton's method finds none.
+/// vertical. NaN where Newton's method finds no solution.
 double large_deflection(const BeamLaw& law, int elements);
 
 /// Turn of the tip (rad) under T = kLargeTwist G J about x, mean of its two slopes'. NaN where
-/// Newton's method finds none.
+/// Newton's method finds no solution.
 double large_turn(const BeamLaw& law, int elements);
 
 /// Modes of one element, of its stiffness scaled by its mass.

@@ -50,7 +50,7 @@ std::string percent(double error) {
   return fmt::format("{:+.3g}", 100. * error);
 }
 
-/// The first rule's row among those from `first` on; null where there is none.
+/// The first rule's row among those from `first` on; null where it is not there.
 const StudyRow* at(const std::vector<StudyRow>& rows, std::size_t first, double poisson,
                    int elements, const char* load) {
   for (std::size_t i = first; i < rows.size() && rows[i].rule.name == rows[first].rule.name; ++i)

@@ -205,7 +205,7 @@ void add_decay(const ReceptanceRequest& request, const Scene& scene, const Track
                      fmt::join(short_of, ", "), answer.decay_distance.back())});
 }
 
-/// Of the line that the force moves most.
+/// Adds the reflection at the ends, for the line that the force moves most.
 void add_reflection(const Track& track, const Sensed& force, ReceptanceAnswer& answer) {
   const std::vector<Line> lines = assemble(track);
   const Line* moved = nullptr;

@@ -11,7 +11,7 @@
 
 namespace railstep {
 
-/// What is asked of a scene.
+/// A request for a receptance of a scene.
 struct ReceptanceRequest {
   std::string scene;
   std::vector<std::string> overrides;
@@ -48,8 +48,8 @@ struct ReceptanceAnswer {
 /// An end effect above this is a warning.
 inline constexpr double kMostEndEffect = .01;
 
-/// Throws InputError, in one sentence, on what the scene or the request do not allow, and
-/// std::runtime_error at a frequency at which the track swings undamped.
+/// Throws InputError, in one sentence, on what the scene or the request do not allow, and Failed at
+/// a frequency at which the track swings undamped.
 ReceptanceAnswer solve_receptance(const ReceptanceRequest& request);
 
 }  // namespace railstep

@@ -40,7 +40,7 @@ std::string refused_integer(std::string& text) {
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code ignored;
-  // A device or a pipe takes what both write, and a folder is refused where it is written.
+  // Two outputs may go to one device or pipe, and a folder is refused where it is written.
   if (std::filesystem::exists(a, ignored) && !std::filesystem::is_regular_file(a, ignored))
     return false;
   return std::filesystem::weakly_canonical(a, ignored) ==
@@ -48,7 +48,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
          std::filesystem::equivalent(a, b, ignored);
 }
 
-/// The first word that no one took; an option before others.
+/// The first word that was not read; an option before others.
 std::string unread_word(const CLI::App& app) {
   const std::vector<std::string> unread = app.remaining(true);
   for (const std::string& word : unread)
@@ -129,7 +129,8 @@ void refuse_impossible_places(CLI::App& command) {
       throw InputError("E-CLI-03",
                        fmt::format("{} {}: this is a folder; expected the name of a file",
                                    option->get_name(), file.string()));
-    // To rename over /dev/stdout would take it from the whole machine, where the user may.
+    // To rename a file over /dev/stdout would remove it for the whole machine, where the user has
+    // the right to.
     if (folder == "/dev" && std::filesystem::is_regular_file(file, ignored))
       throw InputError(
           "E-CLI-04",

@@ -43,7 +43,7 @@ int unknowns_of(const SystemModel& system) {
   return sum;
 }
 
-/// What is known of a model; what is not known is null.
+/// The known properties of a model; one that is not known is null.
 struct Condensed {
   const Model& model;
   std::pair<int, int> unknowns;  // full, kept
@@ -84,7 +84,7 @@ struct Condensed {
 
 std::int64_t in_bytes(std::int64_t doubles) { return doubles * std::int64_t{sizeof(double)}; }
 
-/// What a bay takes on the average; null of a system without a track.
+/// Bytes of a bay on the average; null for a system without a track.
 nlohmann::ordered_json per_bay(const Condensed& made, std::size_t block) {
   if (made.bays == 0) return nullptr;
   const auto share = [&](std::int64_t bytes) { return (bytes + made.bays - 1) / made.bays; };
@@ -153,7 +153,9 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
     if (!packed.load_points().empty()) made.static_error = static_error(built.track, packed);
     made.take(receptance_error(built.track, packed, scene.condense.band_hz), built.track);
   }
-  if (!o.skip_errors && scene.external_wheels.empty()) {  // what runs elsewhere is not known here
+  if (!o.skip_errors &&
+      scene.external_wheels
+          .empty()) {  // the motion of a vehicle in another program is not known here
     const TransientError transient = transient_error(scene, o.overrides, o.window);
     made.transient_error = transient.largest;
     made.window_s = transient.window_s;
@@ -169,8 +171,8 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
   return write(block_of(built, made.notes()), made, o);
 }
 
-/// Nothing of a system is left out: what errors there are, are those of the track beside it, and 0
-/// without one.
+/// Nothing of a system is left out: the errors are those of the track beside it, and 0 without a
+/// track.
 nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions& o) {
   const BuiltSystem built(scene);
   const Model& model = built.packed->model();
@@ -193,7 +195,7 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
   return write(block_of(built, made.notes()), made, o);
 }
 
-/// Of either kind of scene. What the errors' own models refuse is of the scene too.
+/// Of either kind of scene. A refusal by the models of the errors is one of the scene too.
 nlohmann::ordered_json condense(const CondenseOptions& o) try {
   return std::visit([&o](const auto& scene) { return condense(scene, o); },
                     read_any_scene(o.scene, o.overrides));

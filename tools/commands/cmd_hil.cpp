@@ -46,8 +46,8 @@ struct HilOptions {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-/// Ctrl-C ends the run between two frames, and what was met is told all the same. A second one
-/// kills, and leaves no shared memory behind.
+/// Ctrl-C ends the run between two frames, and its results are printed all the same. A second one
+/// kills the program, and leaves no shared memory behind.
 void end_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int number) {
@@ -76,13 +76,13 @@ std::int64_t slots_of(const HilOptions& o) {
   return static_cast<std::int64_t>(slots);
 }
 
-/// Whole frames of a time; of none 0, of any other at least 1.
+/// Whole frames of a time: 0 for a time of 0, at least 1 for any other.
 std::int64_t frames_of(double seconds, double rate) {
   return seconds <= 0. ? 0 : std::max<std::int64_t>(1, std::llround(seconds * rate));
 }
 
-/// Of the empty loop: a quarter of the run, half a second at most, at its rate or at 100 Hz where
-/// that is slower. It is there to be measured, and none of its overruns ends it.
+/// The schedule of the empty loop: a quarter of the run, half a second at most, at its rate or at
+/// 100 Hz where that is slower. It is there to be measured, and no overrun ends it.
 Schedule empty_schedule(const HilOptions& o, const Schedule& run) {
   constexpr double kSlowest = 100.;  // Hz
   const double rate = std::max(o.rate, kSlowest), seconds = std::min(.5, .25 * o.duration);
@@ -136,7 +136,8 @@ std::unique_ptr<Simulation> simulation_of(const HilOptions& o) {
   return std::make_unique<Simulation>(std::filesystem::path(o.input));
 }
 
-/// What is exchanged: the model's inputs and outputs, and where it is asked for the response.
+/// The names that are exchanged: the model's inputs and outputs, and the response where it is asked
+/// for.
 ExchangeLayout layout_of(const HilOptions& o, const HilPlan& plan, const Simulation& run) {
   ExchangeLayout layout{run.inputs(), run.columns(), plan.schedule.period_ns, o.cpu.value_or(-1)};
   if (!o.respond) return layout;
@@ -149,7 +150,7 @@ ExchangeLayout layout_of(const HilOptions& o, const HilPlan& plan, const Simulat
   return layout;
 }
 
-/// What the values are called, in their order, with the sums that packets carry.
+/// The names of the values, in their order, with the sums that packets carry.
 std::string names_text(const ExchangeLayout& layout) {
   std::string text;
   const auto add = [&text](const char* kind, const std::vector<std::string>& names) {
@@ -322,7 +323,7 @@ Exit verdict(const HilRecord& record, const Simulation& run) {
   return Exit::done;
 }
 
-/// A recording, its one hash behind the last frame: none is made while frames are timed.
+/// A recording with one hash, behind the last frame: no hash is made while frames are timed.
 std::optional<Recording> begun_recording(const HilOptions& o, const HilPlan& plan,
                                          const Simulation& run) {
   if (o.record.empty()) return std::nullopt;

@@ -25,7 +25,8 @@ struct ModesOptions {
 };
 
 NaturalModes solve(const ModesOptions& o) try {
-  // Eigen blocks its products by the processor's caches; by these, the bits are the same on all.
+  // Eigen blocks its products by the sizes of the caches; with fixed sizes the bits are the same on
+  // all processors.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   const Scene scene = read_scene(o.scene, o.overrides);
   print_note(lopsided_note(scene));

@@ -17,7 +17,7 @@ struct RulesOptions {
   bool json = false;
 };
 
-/// Those of the named families, the default always among them.
+/// Rules of the named families, the default always among them.
 std::vector<NamedRule> chosen(const std::vector<std::string>& families) {
   std::vector<NamedRule> rules = study_rules();
   if (families.empty()) return rules;

@@ -53,7 +53,7 @@ AnyScene scene_of(const RunOptions& o) {
   return read_any_scene(o.input, overrides);
 }
 
-/// A model file is what it is: only how long it runs can be chosen.
+/// A model file cannot be changed: only its duration can be chosen.
 void refuse_changes(const RunOptions& o) {
   const auto refuse = [&](bool given, const char* option) {
     if (given)
@@ -78,7 +78,7 @@ std::int64_t frames_of(const RunOptions& o, bool artefact, const Model& model) {
   return std::llround(frames);
 }
 
-/// What is not known is NaN, which JSON writes as null.
+/// A value that is not known is NaN, which JSON writes as null.
 nlohmann::ordered_json to_json(const Simulation& run, const RunRecord& record,
                                const std::optional<EnergyBalance>& energy) {
   const Model& model = run.model();
@@ -117,8 +117,8 @@ void print_table(const nlohmann::ordered_json& result) {
                result["numerical_loss"].get<double>());
 }
 
-/// Says so where the scheme made energy, more than a step that follows the motion, or where the
-/// balance is off by as much for another reason; else nothing.
+/// A note where the scheme made more energy than a step that follows the motion does, or where the
+/// balance is off by as much for another reason; nothing elsewhere.
 std::optional<Message> energy_note(const std::optional<EnergyBalance>& energy) {
   constexpr double kMuch = .05;
   if (!energy) return std::nullopt;
@@ -136,8 +136,8 @@ std::optional<Message> energy_note(const std::optional<EnergyBalance>& energy) {
                              energy->error, energy->numerical_loss));
 }
 
-/// Says in words what the run met.
-/// @param notes  what is to be said of speed, energy and depth
+/// Prints what the run met.
+/// @param notes  notes on speed, energy and depth
 Exit verdict(const Simulation& run, const RunRecord& record, const std::vector<Message>& notes) {
   for (const Message& note : notes) fmt::print(stderr, "note: {}\n", note.line());
   for (const std::string& name : status_names(record.status)) {
@@ -149,7 +149,7 @@ Exit verdict(const Simulation& run, const RunRecord& record, const std::vector<M
   return has(record.status, Status::nonfinite_state) ? Exit::not_reached : Exit::done;
 }
 
-/// What a run of a track leaves for ParaView, where it is asked for.
+/// The files of a run of a track for ParaView, where they are asked for.
 std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
                                     const Simulation& run, std::int64_t frames) {
   if (o.vtk.empty()) return std::nullopt;
@@ -162,7 +162,7 @@ std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
   return std::make_optional<VtkRecord>(*track, run, o.vtk, frames);
 }
 
-/// What frames are given: of --inputs, or nothing.
+/// The inputs of the frames, from --inputs; nothing without it.
 FrameInputs inputs_of(const RunOptions& o, const Simulation& run) {
   if (o.inputs.empty()) return {};
   const double frame_s = run.model().scheme.dt * run.model().steps_per_frame;

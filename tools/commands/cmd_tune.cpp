@@ -23,7 +23,7 @@ struct TuneOptions {
   bool json = false;
 };
 
-/// A line on stderr, when that is a terminal, that says what is being done.
+/// A line on stderr, when that is a terminal, that says what the program is doing.
 class Doing {
  public:
   void operator()(const std::string& what) const {
@@ -40,7 +40,7 @@ class Doing {
   bool shown_ = isatty(STDERR_FILENO) == 1;
 };
 
-/// Beside where the program runs, unless a name is given.
+/// The name of the scene that is written: in the current folder, unless a name is given.
 std::filesystem::path place_of(const TuneOptions& o) {
   return o.out.empty() ? std::filesystem::path(o.request.scene.stem().string() + ".tuned.toml")
                        : std::filesystem::path(o.out);

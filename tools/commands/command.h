@@ -18,7 +18,7 @@ struct Command {
   std::function<Exit()> run;
 };
 
-/// Accepts numbers from low to high, and says in short which they are.
+/// Takes numbers from low to high, and names the range in short.
 template <typename T>
 CLI::Validator within(T low, T high) {
   const std::string accepted =

@@ -29,7 +29,7 @@ Impact impact_of(const HardRun& run) {
   return {*peak, time[row(peak)], time[last], run.column("centre.vz_m_per_s")[last]};
 }
 
-/// What is known of a drop by another way.
+/// Results of a drop that are found in another way.
 struct KnownDrop {
   const char* name;
   std::vector<std::string> overrides;
@@ -76,7 +76,7 @@ void check_drop(HardResult& result, const KnownDrop& known, const HardRun& run, 
       off_by(at + "speed of the wheel then", found.wheel, known.impact.wheel, bound));
   result.checks.push_back(
       holds(at + "it says that the wheel was free, and no more", run.status() == "contact_lost"));
-  // Generalised-alpha is no discrete gradient: 1.0000 is printed of its rebound at 100 steps a
+  // Generalised-alpha is not a discrete gradient: its rebound is printed as 1.0000 at 100 steps a
   // contact, half a digit of which is 1e-4 of the energy; ten times that for 50 us.
   check_energy(result, run, at, coarse(dt) ? 1e-3 : 1e-4, 1e-6);
 }

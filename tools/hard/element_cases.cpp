@@ -182,7 +182,7 @@ HardResult preload(const std::filesystem::path& scene) {
 
 constexpr double kDown = 100e3;  // N, on the wheel of H23
 
-/// What a force aside does to the head over the seat in the middle.
+/// The effect of a lateral force on the head over the seat in the middle.
 struct Roll {
   double head, turn;  // m, rad
 };
@@ -245,7 +245,7 @@ HardResult rolling(const std::filesystem::path& scene) {
     const HardRun found = rolled(scene, aside);
     const Roll right = known.under(aside, true);
     const double head = found.last("head.dy_m");
-    // Of the linear rail: the web does not bend, so foot and head tell the turn.
+    // The web of the linear rail does not bend, so foot and head give the turn.
     const double turn = (found.last("foot.dy_m") - head) / .1857375;
     const std::string at = fmt::format("{:.1f} kN aside, {:.0f} mrad: ", 1e-3 * aside, 1e3 * -turn);
     if (std::abs(turn) < .055)

@@ -13,8 +13,8 @@
 namespace railstep {
 namespace {
 
-/// A number of the state that a step makes anew from the last state, and a small change of it: of
-/// all in the same unit, so that no eigenvalue drowns in the rounding of large numbers.
+/// A number of the state that a step makes from the last state, and a small change of it: of all in
+/// the same unit, so that no eigenvalue drowns in the rounding of large numbers.
 struct Change {
   Eigen::Index at;
   double by;

@@ -14,8 +14,8 @@ namespace railstep {
 /// A scene of the suite, run from its start to its end, and the trace of it.
 class HardRun {
  public:
-  /// @param overrides  as of `railstep run --set`
-  /// Throws InputError, at what is no column of the trace too.
+  /// @param overrides  as of `railstep run --set` Throws InputError, and for a name that is not a
+  /// column of the trace too.
   explicit HardRun(const std::filesystem::path& scene,
                    const std::vector<std::string>& overrides = {}, const FrameInputs& inputs = {});
 
@@ -34,7 +34,7 @@ class HardRun {
   /// Names of all bits that were set, with blanks between them; empty when all was well.
   [[nodiscard]] std::string status() const;
   [[nodiscard]] double frame_us() const { return quantile(record_.frame_us, .5); }
-  /// From a second run; none where energies are not known.
+  /// From a second run; nothing where energies are not known.
   [[nodiscard]] std::optional<EnergyBalance> energy() const;
   /// A curve of the picture: a column over time, times `scale`.
   [[nodiscard]] HardCurve curve(const std::string& name, const std::string& title,
@@ -51,7 +51,7 @@ std::string condensed_to(const char* kind);
 
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
 
-/// What the program says of a scene that it refuses; empty where it takes it.
+/// The message of the program where it refuses a scene; empty where it does not.
 std::string refusal(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
 
 }  // namespace railstep

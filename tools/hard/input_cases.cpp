@@ -28,7 +28,7 @@ FrameInputs given(int count, std::function<double(std::int64_t, int)> value) {
 
 // H26 ------------------------------------------------------------------------------------------
 
-/// What the car is pushed with, N; in some frames no number.
+/// The push on the car, N; in some frames it is not a number.
 double push(std::int64_t frame, bool bad) {
   const auto good = [](std::int64_t at) { return 5e3 * std::sin(.02 * static_cast<double>(at)); };
   if (300 <= frame && frame < 350) return bad ? kNan : good(299);

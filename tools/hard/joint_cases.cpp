@@ -52,7 +52,7 @@ double apart(const HardRun& a, const HardRun& b, const std::string& sensor) {
   return most;
 }
 
-/// Every so many points of a curve, as marks.
+/// Every n-th point of a curve, as marks.
 HardCurve marks(const HardCurve& curve, std::size_t every) {
   HardCurve some{curve.name, {}, {}, true};
   for (std::size_t i = 0; i < curve.x.size(); i += every) {

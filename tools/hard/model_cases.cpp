@@ -24,7 +24,7 @@ bool all_finite(const std::vector<double>& values) {
 
 // H33 ------------------------------------------------------------------------------------------
 
-/// A track of so many bays with its load and its sensor `ahead` of the seat in the middle.
+/// A track of `count` bays with its load and its sensor `ahead` of the seat in the middle.
 std::vector<std::string> bays(int count, double ahead) {
   const double middle = .3 * count + ahead;  // of an even number
   return {fmt::format("track.bays={}", count), fmt::format("load[0].start_m={:.17g}", middle),
@@ -88,7 +88,7 @@ Bytes saved(const Simulation& run) {
   return bytes;
 }
 
-/// Overwrites the state and all scratch by what is no number: nothing may be left in them.
+/// Overwrites the state and all scratch by NaN: nothing may be left in them.
 void foul(Simulation& run) {
   std::fill_n(run.state.numbers, state_doubles(run.model()), kNan);
   std::fill_n(run.workspace.u_star, workspace_doubles(run.model()), kNan);
@@ -179,7 +179,7 @@ bool refused(const std::function<void()>& what) {
   return false;
 }
 
-/// Of 1000 copies of a block, each with a bit of another byte changed, those that are taken.
+/// How many of 1000 copies of a block are taken, each with a bit of another byte changed.
 double taken(const std::vector<std::byte>& block) {
   double count = 0.;
   for (std::size_t i = 0; i < 1000; ++i) {
@@ -236,7 +236,7 @@ HardResult changed_model(const std::filesystem::path& scene) {
 
 // H47 ------------------------------------------------------------------------------------------
 
-/// A file that goes when it is no longer used.
+/// A file that is removed at the end of the scope.
 struct ModelFile {
   std::filesystem::path path;
   explicit ModelFile(const std::vector<std::byte>& block)

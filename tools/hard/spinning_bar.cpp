@@ -48,7 +48,7 @@ HardRun spun(const std::filesystem::path& scene, const char* scheme, double dt) 
                  {fmt::format("step.scheme=\"{}\"", scheme), fmt::format("step.dt_s={}", dt)});
 }
 
-/// By how much the middle leaves its place, m.
+/// Distance of the middle from its place, m.
 double off_middle(const HardRun& run) {
   double off = 0.;
   for (const char* column : {"middle.x_m", "middle.z_m"})
@@ -56,7 +56,7 @@ double off_middle(const HardRun& run) {
   return off;
 }
 
-/// What the scheme that keeps energies has to do: keep them, rate and ringing too.
+/// A scheme that keeps energies has to keep them, and the rate and the ringing too.
 void add_kept(const HardRun& run, HardResult& result) {
   const Spin spin = spin_of(run);
   const auto energy = run.energy();
@@ -72,7 +72,7 @@ void add_kept(const HardRun& run, HardResult& result) {
   result.checks.push_back(holds(at + "no status bit", run.status().empty()));
 }
 
-/// What one that damps has to do: lose the ringing, and of the spin what its order says.
+/// A scheme that damps has to lose the ringing, and the part of the spin that its order says.
 void add_damped(const HardRun& run, const HardRun& coarse, HardResult& result) {
   const Spin spin = spin_of(run), wide = spin_of(coarse);
   const auto off = [](const Spin& of) { return std::abs(tenth(of.rate, 9) - kRate) / kRate; };

@@ -18,7 +18,7 @@ HardCheck largest_growth(const std::vector<Growth>& map) {
           worst.factor - 1., worst.way->bound};
 }
 
-/// Of a wheel of 600 kg on pads of 1e8 N/m.
+/// Growth over the step, for a wheel of 600 kg on pads of 1e8 N/m.
 HardCurve over_steps(const std::vector<Growth>& map) {
   HardCurve curve{map.front().way->name, {}, {}};
   for (const Growth& at : map) {
@@ -29,7 +29,7 @@ HardCurve over_steps(const std::vector<Growth>& map) {
   return curve;
 }
 
-/// What lies outside of the schemes that are stable at every step.
+/// Parameters outside of the schemes that are stable at every step.
 HardCheck refused(const std::filesystem::path& scene, const char* scheme, const char* key,
                   double value) {
   const std::string said = refusal(

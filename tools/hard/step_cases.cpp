@@ -182,7 +182,7 @@ double swing(const std::vector<double>& time, const std::vector<double>& z, doub
   return 2. * std::abs(sum) / count;
 }
 
-/// The same of one mass by generalised-alpha, written anew: part of the closed form that it
+/// The same for one mass by generalised-alpha, written again: part of the closed form that it
 /// reaches.
 double reached_by_one_mass(double dt, double until) {
   constexpr double rho = .6, am = (2. * rho - 1.) / (rho + 1.), af = rho / (1. + rho);

@@ -13,7 +13,7 @@ constexpr const char* kDeflection = "axle.deflection_z_m";
 
 std::string support(int seat) { return fmt::format("support_{}.force_z_n", seat); }
 
-/// What stands still at t = 0: one frame with the load at x.
+/// The static state at t = 0: one frame with the load at x.
 HardRun standing(const std::filesystem::path& scene, double x, std::vector<std::string> overrides) {
   for (const char* still : {"load[0].speed_m_per_s=0.0", "step.duration_s=2e-4"})
     overrides.emplace_back(still);

@@ -217,7 +217,7 @@ HardResult cap_of_one(const std::filesystem::path& scene) {
       holds("it says that the cap was reached", capped.status() == "cap_reached"),
       holds("with 20 iterations there is nothing to say", free.status().empty()),
       holds("all finite", all_finite(capped)),
-      // What the force moves a free wheelset by in one step.
+      // The distance by which the force moves a free wheelset in one step.
       {"way off the guide, m", largest_from(0, violation.size()), 1e7 / 1200. * 5e-5 * 5e-5},
       {"way off the guide before the force, m", largest_from(0, kComes), 1e-10},
       {"way off the guide two steps after it has come, m", largest_from(kComes + 3, kGoes), 1e-10},

@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// What the step thread gives away of a frame.
+/// The outputs of a frame, as the step thread passes them on.
 struct FrameOutputs {
   std::int64_t frame = 0;  // from 0
   Status status = Status::ok;
@@ -22,11 +22,11 @@ class Exchange {
   Exchange& operator=(const Exchange&) = delete;
   virtual ~Exchange() = default;
 
-  /// What came since the last call, the newest; null where nothing did. Valid until the next call.
+  /// The newest inputs since the last call; null where none came. Valid until the next call.
   /// @param frame  that begins
   virtual const double* inputs(std::int64_t frame) noexcept = 0;
   virtual void outputs(const FrameOutputs& made) noexcept = 0;
-  /// Whether another process took away what it is made over.
+  /// Whether another process took the shared memory away.
   virtual bool lost() const noexcept { return false; }
 };
 

@@ -6,9 +6,9 @@
 
 namespace railstep {
 
-/// What frames are given when nothing comes from outside: the last inputs, and after a silence of
-/// `silence` frames a safe stop: from there on, for the rest of the run, the inputs go to 0 in
-/// equal steps over `ramp` frames and stay there, whatever comes; but places, which are no forces,
+/// The inputs of frames for which nothing comes from outside. They are the last inputs; after
+/// `silence` frames without inputs follows a safe stop: for the rest of the run the inputs go to 0
+/// in equal steps over `ramp` frames and stay there, whatever comes. Places, which are not forces,
 /// stay where they are. The silence counts from the first inputs on; before them all are 0.
 class HeldInputs {
  public:
@@ -22,7 +22,7 @@ class HeldInputs {
         value_(count, 0.),
         base_(count, 0.) {}
 
-  /// Of the next frame. @param fresh  [count], or null where nothing came
+  /// The inputs of the next frame. @param fresh  [count], or null where nothing came
   /// @param good   [count] what the model holds: its last good inputs within their limits
   /// @returns [count]
   const double* next(const double* fresh, const double* good) noexcept;

@@ -5,8 +5,8 @@
 
 namespace railstep {
 
-/// How often which time was met. All memory is taken, and touched, when it is made: add() does
-/// neither, and takes the same few instructions whatever it is told.
+/// Counts how often each time was met. The constructor takes and touches all memory: add() does
+/// neither, and takes the same few instructions for any time.
 ///
 /// Bins of 10 ns below 1 ms, of 1 us from there to 100 ms, and one for all that is longer.
 class Latency {

@@ -12,13 +12,13 @@ class NewestBox {
  public:
   explicit NewestBox(std::size_t count) : slot_{Slot(count), Slot(count), Slot(count)} {}
 
-  /// Of the producer: what to fill, then to put().
+  /// For the producer: the slot to fill, then to put().
   double* blank() noexcept { return slot_[back_].data(); }
   void put() noexcept {
     back_ = middle_.exchange(back_ | kNew, std::memory_order_acq_rel) & kIndex;
   }
-  /// Of the consumer: what was put last, or null where that was taken already. Valid until the next
-  /// call.
+  /// For the consumer: the last value that was put, or null where it was taken already. Valid until
+  /// the next call.
   const double* take() noexcept {
     if ((middle_.load(std::memory_order_relaxed) & kNew) == 0) return nullptr;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
@@ -36,14 +36,14 @@ class NewestBox {
 };
 
 /// From one thread to another, all in order: a ring of entries with a head and `count` values each.
-/// Full, it refuses; neither side waits.
+/// A full ring refuses; neither side waits.
 template <class Head>
 class Queue {
  public:
   Queue(std::size_t entries, std::size_t count)
       : entries_(entries), count_(count), head_(entries), value_(entries * count) {}
 
-  /// Of the producer. @param values  [count] @returns whether there was room
+  /// For the producer. @param values  [count] @returns whether there was room
   bool put(const Head& head, const double* values) noexcept {
     const std::size_t at = put_.load(std::memory_order_relaxed);
     if (at - taken_.load(std::memory_order_acquire) == entries_) return false;
@@ -53,7 +53,8 @@ class Queue {
     put_.store(at + 1, std::memory_order_release);
     return true;
   }
-  /// Of the consumer: hands the oldest entry to `use(head, values)`. @returns whether there was one
+  /// For the consumer: hands the oldest entry to `use(head, values)`. @returns whether there was
+  /// one
   template <class Use>
   bool take(Use&& use) {
     const std::size_t at = taken_.load(std::memory_order_relaxed);

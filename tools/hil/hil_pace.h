@@ -7,8 +7,8 @@
 
 namespace railstep {
 
-/// What is done about an overrun, a frame that ends after its slot does. Slot k begins at
-/// start + k periods and ends where slot k + 1 begins.
+/// The answer to an overrun, which is a frame that ends after its slot. Slot k begins at start + k
+/// periods and ends where slot k + 1 begins.
 enum class Policy : std::int32_t {
   stop,      // the run ends behind that frame
   skip,      // the next frame takes the next slot that has not begun; those before it stay empty
@@ -40,7 +40,7 @@ struct Schedule {
   }
 };
 
-/// What pacing met.
+/// Counts of a paced run.
 struct Paced {
   std::int64_t frames = 0;          // made
   std::int64_t overruns = 0;        // behind the grace
@@ -51,7 +51,7 @@ struct Paced {
   bool ended = false;               // by the frame itself or the clock, before the last slot
 };
 
-/// CLOCK_MONOTONIC, which no one can set: a jump of the time of day does not reach it.
+/// CLOCK_MONOTONIC, which cannot be set: a jump of the time of day does not change it.
 struct MonotonicClock {
   const std::atomic<bool>* interrupted = nullptr;  // ends a sleep within 0.1 s; or null
 

@@ -45,7 +45,7 @@ constexpr std::size_t packet_bytes(std::size_t count) noexcept {
 /// @param bytes   [packet_bytes(head.count)]
 void encode(const PacketHead& head, const double* values, unsigned char* bytes) noexcept;
 
-/// Of a packet that is whole, of this kind and of these names; none of any other.
+/// The head of a packet that is whole and has this kind and these names; nothing for any other.
 /// @param values  [count] overwritten where it is
 std::optional<PacketHead> decode(std::span<const unsigned char> bytes, PacketKind kind,
                                  std::uint32_t names, std::uint32_t count, double* values) noexcept;

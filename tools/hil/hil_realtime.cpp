@@ -18,7 +18,7 @@ Setting outcome(const char* name, int code) {
   return {name, code == 0, code == 0 ? std::string() : std::strerror(code)};
 }
 
-/// Of both what is there and what will come: no page of the run is missing when it is needed.
+/// Locks present and future pages: no page of the run is missing when it is needed.
 Setting lock_memory() {
   return outcome("memory_locked", mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno);
 }

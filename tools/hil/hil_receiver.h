@@ -8,8 +8,8 @@
 
 namespace railstep {
 
-/// What became of the packets with inputs. Every one that came is good, repeated, reordered or
-/// foreign; late ones are among the good.
+/// Counts of the packets with inputs. Every one that came is good, repeated, reordered or foreign;
+/// late ones are among the good.
 struct PacketCounts {
   std::int64_t good = 0;       // newer than all before: taken
   std::int64_t late = 0;       // taken, but meant for a frame that had begun
@@ -19,7 +19,7 @@ struct PacketCounts {
   std::int64_t foreign = 0;    // short, long, damaged, of another kind, version, model or sender
 };
 
-/// Tells new packets from others: the newest wins. A sender that starts its sequence numbers anew
+/// Tells new packets from others: the newest wins. A sender that starts its sequence numbers again
 /// or far ahead, and another sender, is taken after kPeerSilence without a good packet.
 class Receiver {
  public:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char kAxes[] = {'x', 'y', 'z'};
 
-/// What the external wheels are called.
+/// The names of the external wheels.
 std::vector<std::string> wheels_of(const Simulation& run) {
   std::vector<std::string> names;
   for (std::int32_t n = 0; n < run.model().external_wheels; ++n) {

@@ -8,9 +8,9 @@
 
 namespace railstep {
 
-/// What a vehicle outside the model needs to close its contacts in the next frame, as further
-/// values of an exchange. Behind the model's inputs stand the places that its wheels will have in
-/// that frame, two of each; behind the outputs
+/// The values that a vehicle outside the model needs to close its contacts in the next frame, as
+/// further values of an exchange. Behind the model's inputs stand the places that its wheels will
+/// have in that frame, two of each; behind the outputs
 ///   2 n           those places, as they were asked for
 ///   3 n           what the points there do without the wheels' forces in that frame, m
 ///   3 n (3n+1)/2  how they give way to those forces, m/N: rows of the lower triangle
@@ -30,7 +30,7 @@ class Response {
   void ask(const double* places) noexcept;
   /// @param given   [model.inputs] of the last frame
   /// @param values  [count()] overwritten
-  /// @returns what the places asked for met
+  /// @returns the status of the places asked for
   Status answer(Simulation& run, const double* given, double* values) noexcept;
 
  private:

@@ -17,7 +17,7 @@
 namespace railstep {
 namespace {
 
-/// Which inputs are places of external wheels.
+/// The inputs that are places of external wheels.
 std::vector<std::size_t> places_of(const Model& model) {
   std::vector<std::size_t> at;
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
@@ -45,7 +45,7 @@ class Stepper {
     trace_row(run.model(), run.state, outputs_, row_.data());
   }
 
-  /// @returns whether inputs came in time, or none are waited for
+  /// @returns whether inputs came in time, or need not be waited for
   bool wait() noexcept {
     constexpr std::int64_t kLook = 1'000'000;  // ns
     const std::int64_t end = clock_.now() + static_cast<std::int64_t>(1e9 * plan_.wait_s);

@@ -13,7 +13,7 @@
 
 namespace railstep {
 
-/// How a paced run goes.
+/// The plan of a paced run.
 struct HilPlan {
   Schedule schedule;
   Schedule empty;  // of the loop with an empty step, before the run
@@ -27,7 +27,7 @@ struct HilPlan {
   const std::atomic<bool>* interrupted = nullptr;  // ends the run; or null
 };
 
-/// What a paced run met.
+/// The counts and times of a paced run.
 struct HilRecord {
   std::vector<Setting> settings;
   Paced paced;

@@ -22,15 +22,15 @@ constexpr int kTries = 8;  // a bound on a frame's work, whatever the writer doe
 constexpr char kMagic[] = "railshm1";
 constexpr std::size_t kLongestName = 200;
 
-/// What handlers of signals need of the exchange.
+/// The part of the exchange that signal handlers need.
 struct Guarded {
   std::atomic<unsigned char*> memory{nullptr};
   std::atomic<std::size_t> bytes{0};
-  char file[sizeof "/dev/shm/" + kLongestName] = {};  // written before the memory is told
+  char file[sizeof "/dev/shm/" + kLongestName] = {};  // written before the memory is announced
 };
 Guarded guarded;
 
-/// What a process touches of a file that was cut short: zeros from here on, and no file.
+/// Replaces the pages of a file that was cut short by zeros.
 void replace_lost_pages(int, siginfo_t* met, void*) {
   unsigned char* const memory = guarded.memory.load();
   const auto* const at = static_cast<const unsigned char*>(met->si_addr);

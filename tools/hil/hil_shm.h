@@ -22,7 +22,7 @@ inline constexpr std::size_t kSharedHead = 8;  // words
 inline constexpr std::size_t kBlockHead = 3;   // words under a lock before the values
 inline constexpr std::size_t kBlockLock = 1;
 
-/// What became of inputs and outputs.
+/// Counts of the inputs and outputs.
 struct SharedCounts {
   std::int64_t fresh = 0;  // frames that found new inputs
   std::int64_t late = 0;   // of them meant for a frame that had begun
@@ -31,9 +31,9 @@ struct SharedCounts {
 
 /// Inputs and outputs of each frame in shared memory of that name; it is taken away at the end.
 /// Another process of the same user may cut the memory short at any time, and whoever touches it
-/// then gets SIGBUS. Its handler, of one exchange at a time, lays pages of zeros in the place of
-/// all of it: nothing waits for a look at its size, and what is lost shows by the missing first
-/// word.
+/// then gets SIGBUS. The handler of that signal, for one exchange at a time, replaces all of it by
+/// pages of zeros. So the step thread never has to ask for its size, and the missing first word
+/// shows the loss.
 class SharedExchange : public Exchange {
  public:
   /// Throws InputError where it cannot be made, or stands there already.

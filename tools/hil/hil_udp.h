@@ -14,14 +14,14 @@
 
 namespace railstep {
 
-/// What is exchanged, by name, and how often.
+/// The names and the period of an exchange.
 struct ExchangeLayout {
   std::vector<std::string> inputs, outputs;
   double period_ns = 0.;  // of a frame
   int keep_off = -1;      // CPU that the step thread has for itself; -1: none
 };
 
-/// What became of the outputs.
+/// Counts of the outputs.
 struct SentCounts {
   std::int64_t sent = 0;
   std::int64_t unheard = 0;  // made before anyone had sent inputs

@@ -3,11 +3,11 @@
 
 namespace railstep {
 
-/// Throws std::runtime_error, in one sentence, where gnuplot cannot be run.
+/// Throws Failed where gnuplot cannot be run.
 void need_gnuplot();
 
-/// What gnuplot draws of a script, from its <svg> on. The script's text stays out of the shell.
-/// Throws std::runtime_error where gnuplot fails.
+/// The drawing that gnuplot makes of a script, from its <svg> on. The script's text stays out of
+/// the shell. Throws Failed where gnuplot fails.
 std::string drawn(const std::string& script);
 
 /// Text as it may stand in HTML.

@@ -62,7 +62,7 @@ std::array<Error, 4> errors_of(const RelativeErrors& e) {
            {"centroid_height", e.centroid_height}}};
 }
 
-/// What only an outline that is not symmetric has; empty of others.
+/// Properties that only a lopsided outline has; empty for others.
 std::vector<Row> lopsided_rows(const FitResult& r) {
   const Lopsided& l = r.lopsided;
   if (!(l.share >= 1e-6)) return {};
@@ -209,7 +209,7 @@ std::string to_toml(const FitResult& r) {
       quoted(r.name), quoted(r.source));
   if (std::isfinite(r.fit.symmetric_difference))
     text += fmt::format("symmetric_difference_m2 = {:.17g}\n", r.fit.symmetric_difference);
-  // An exponent or a point in every number, so that TOML reads none as an integer.
+  // An exponent or a point in every number, so that TOML does not read it as an integer.
   const auto put = [&text](const char* key, double value) {
     if (std::isfinite(value)) text += fmt::format("{} = {:.16e}\n", key, value);
   };

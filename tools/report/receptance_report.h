@@ -18,7 +18,7 @@ std::string to_table(const ReceptanceAnswer& answer);
 std::string to_csv(const ReceptanceAnswer& answer);
 
 /// One self-contained HTML page with plots of magnitude and phase, and of decay rates. Throws
-/// std::runtime_error where gnuplot fails.
+/// Failed where gnuplot fails.
 std::string to_html(const ReceptanceAnswer& answer, const std::string& title);
 
 }  // namespace railstep

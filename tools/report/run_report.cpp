@@ -88,7 +88,7 @@ std::string paths_script(const Simulation& run, const RunRecord& record) {
       blocks, curves);
 }
 
-/// How far a system's joints are off, a logarithmic axis; empty where they never are.
+/// The residual of a system's joints, on a logarithmic axis; empty where it is always 0.
 std::string joints_script(const Simulation& run, const RunRecord& record) {
   constexpr std::size_t kPoints = 4000;
   const std::vector<double>& off = record.violations;

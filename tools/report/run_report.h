@@ -7,8 +7,8 @@ namespace railstep {
 
 /// One self-contained HTML page: rails under loads and wheels, wheel-rail forces and sensors over
 /// time, the deformed rails at a few times, and a histogram of the frames' wall times; of a system
-/// the paths of its sensors and the residual of its joints. Needs a
-/// record that kept its rows. Throws std::runtime_error where gnuplot fails.
+/// the paths of its sensors and the residual of its joints. Needs a record that kept its rows.
+/// Throws Failed where gnuplot fails.
 std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record);
 
 }  // namespace railstep

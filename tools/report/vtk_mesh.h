@@ -8,7 +8,7 @@
 
 namespace railstep {
 
-/// What a polygon belongs to; cell array "part" of the files.
+/// The part to which a polygon belongs; cell array "part" of the files.
 enum class VtkPart : std::int32_t { rail, sleeper, wheel, force, body };
 
 /// What stands at one time, in VTK's terms: points where they rest, what moves them, and the faces

@@ -28,7 +28,7 @@ class VtkRecord {
             std::int64_t frames);
   /// Writes the state as it stands where the time is one of the record's.
   void frame(std::int64_t done);
-  /// Writes the .pvd. Throws std::runtime_error where the disk is full, as all others.
+  /// Writes the .pvd. Throws Failed where the disk is full, as all others.
   void finish();
 
  private:

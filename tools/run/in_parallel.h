@@ -9,9 +9,9 @@
 
 namespace railstep {
 
-/// Calls work(i) for i = 0 .. count - 1 on up to `jobs` threads; each takes the next i that no one
-/// has. After a call that throws none begins any more, and the exception of the least i is thrown
-/// here: the same one for any number of threads, as all before it had begun.
+/// Calls work(i) for i = 0 .. count - 1 on up to `jobs` threads; each takes the next i that is
+/// free. After a call that throws, no further call begins, and the exception of the least i is
+/// thrown here. It is the same one for any number of threads, as all calls before it had begun.
 template <typename Work>
 void in_parallel(std::int64_t count, int jobs, const Work& work) {
   std::atomic<std::int64_t> next{0};

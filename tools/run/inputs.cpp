@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kTime = static_cast<std::size_t>(-1);
 constexpr std::size_t kLargestTable = std::size_t{256} << 20;  // bytes
 
-/// Which input each column is; kTime of the times.
+/// The input of each column; kTime for the times.
 std::vector<std::size_t> columns_of(const CsvLine& header, const std::vector<std::string>& names) {
   std::vector<std::size_t> columns;
   for (const std::string_view field : header.fields) {

@@ -8,8 +8,8 @@
 
 namespace railstep {
 
-/// What a run is given frame by frame: a table over time of some of its inputs. A row holds from
-/// its time on until the next one's; before the first row, and of inputs that have no column, 0.
+/// A table over time of some inputs of a run. A row holds from its time until the time of the next
+/// row. Before the first row, and for inputs without a column, the input is 0.
 class InputTable {
  public:
   /// Columns time_s and names of inputs, as the model has them (NAME.force_n, NAME.moment_n_m);
@@ -19,8 +19,8 @@ class InputTable {
   InputTable(const std::filesystem::path& file, const std::vector<std::string>& names,
              double frame_s);
 
-  /// Of the frame that begins at frame * frame_s; a row within 1e-6 of a frame of it counts.
-  /// Frames are asked for in any order. @returns [names]
+  /// The inputs of the frame that begins at frame * frame_s; a row within 1e-6 of a frame of it
+  /// counts. Frames are asked for in any order. @returns [names]
   const double* at(std::int64_t frame) const;
 
  private:

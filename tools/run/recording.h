@@ -31,25 +31,25 @@ struct Recording {
   void finish(const Simulation& run);
 
   std::vector<std::byte> bytes() const;
-  /// Throws InputError naming the file for what is no whole recording.
+  /// Throws InputError naming the file for a file that is not a whole recording.
   static Recording read(const std::filesystem::path& file);
 
-  /// How many hashes there are of so many frames.
+  /// Number of hashes for a number of frames.
   std::int64_t hash_count() const { return (frames + every - 1) / every; }
-  /// After which frame the n-th hash was taken.
+  /// The frame after which the n-th hash was taken.
   std::int64_t hashed_frame(std::int64_t n) const {
     return (n + 1) * every < frames ? (n + 1) * every : frames;
   }
 };
 
-/// A frame after which a run made again stood elsewhere.
+/// A frame after which the repeated run has another state.
 struct ReplayDifference {
   std::int64_t frame;  // from 1; it or one before it, back to the last hash that agreed
   std::uint64_t recorded, found;
 };
 
 /// Makes the run again and compares all hashes.
-/// @returns whether all agree: no difference; else the first one
+/// @returns no difference where all agree; else the first one
 struct Replay {
   bool identical;
   ReplayDifference first;

@@ -25,7 +25,7 @@ struct RailSnapshot {
   std::vector<double> z;  // [nodes] displacement by the lines alone, m
 };
 
-/// What a run of whole frames met and took.
+/// The results of a run of whole frames, and its times.
 struct RunRecord {
   Status status = Status::ok;           // of all frames together
   std::int32_t first_bad_unknown = -1;  // -1: all finite
@@ -42,7 +42,7 @@ struct RunRecord {
   std::vector<RailSnapshot> shapes;     // at kShapes times; only when asked for
 };
 
-/// What takes the rows of a trace, one after the other.
+/// Takes the rows of a trace, one after the other.
 using RowSink = std::function<void(std::span<const double>)>;
 
 /// Steps `frames` frames from the state as it stands; stops early when the state is not finite.
@@ -56,12 +56,12 @@ RunRecord simulate(Simulation& run, std::int64_t frames, const RowSink& sink, bo
 
 /// Names of the bits that are set, as in the JSON; empty when all is well.
 std::vector<std::string> status_names(Status status);
-/// What a status bit means and what to do about it, by its name; with the joints it is about.
+/// The meaning of a status bit and what to do, by its name; with the joints that it is about.
 std::string status_sentence(const std::string& name, const RunRecord& record);
 /// Says where and when a run stopped being finite, by Outputs::first_bad_unknown:
 /// "nonfinite_state: at step ...".
 std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown);
-/// Where an unknown of the state sits, in words.
+/// The place of an unknown of the state, in words.
 std::string unknown_place(const Simulation& run, std::int32_t unknown);
 
 /// Time of the q-th part of the frames (0 to 1), us: the smallest that this part does not exceed.

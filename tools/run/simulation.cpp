@@ -16,7 +16,7 @@
 namespace railstep {
 namespace {
 
-/// Of the format of a block that is long enough to say it.
+/// The format of a block that is long enough to have one.
 std::uint16_t major_of(const std::vector<std::byte>& block) {
   std::uint16_t major = 0;
   std::memcpy(&major, block.data() + offsetof(BlockHeader, major), sizeof major);
@@ -151,7 +151,7 @@ std::unique_ptr<Simulation> simulation_of(const AnyScene& scene) {
 }
 
 bool is_artefact(const std::filesystem::path& file) {
-  std::error_code ignored;  // what a pipe has given is gone, and a scene comes through one whole
+  std::error_code ignored;  // a pipe gives its bytes once, and a scene may come through one
   if (!std::filesystem::is_regular_file(file, ignored)) return false;
   std::ifstream in(file, std::ios::binary);
   char start[64] = {};

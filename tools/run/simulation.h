@@ -21,14 +21,15 @@ class Simulation {
   explicit Simulation(const SystemScene& scene);
   /// Of a block that `railstep condense` wrote. Throws InputError.
   explicit Simulation(const std::filesystem::path& artefact);
-  /// Of such a block, which `name` calls in errors. Throws InputError.
+  /// Of such a block; `name` is its name in errors. Throws InputError.
   Simulation(std::vector<std::byte> block, const std::string& name);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
   const Model& model() const { return model_; }
   const std::vector<std::byte>& block() const { return block_; }
-  /// What the block was made of, matrices and all; null for a model file, which carries none.
+  /// The packed model with all matrices, from which the block was made; null for a model file,
+  /// which carries none.
   const PackedModel* packed() const { return built_ ? built_->packed.get() : nullptr; }
   /// Of a scene of a track alone: where packed() is not null.
   const Track& track() const { return built_->track; }

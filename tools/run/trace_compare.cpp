@@ -34,7 +34,7 @@ bool same_bits(double a, double b) {
   return bits_a == bits_b;
 }
 
-/// Over the column's peak; infinite for what cannot be told.
+/// Over the column's peak; infinite where it is not known.
 double relative(double a, double b, double peak) {
   const double difference = std::abs(a - b);
   if (difference == 0.) return 0.;

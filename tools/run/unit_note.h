@@ -7,16 +7,17 @@
 
 namespace railstep {
 
-/// Asks about units where a rail sank farther than tracks do; else nothing.
+/// A question about units where a rail sank farther than tracks do; nothing where not.
 std::optional<Message> depth_note(const RunRecord& record);
 
-/// Asks about units where [rail.constants] are those of no shape; else nothing.
+/// A question about units where no shape has the [rail.constants]; nothing where a shape does.
 std::optional<Message> constants_note(const Scene& scene);
 
-/// Names a rail's section file whose outline is too lopsided for a symmetric section; else nothing.
+/// A note that names a rail's section file whose outline is too lopsided for a symmetric section;
+/// nothing where it is not.
 std::optional<Message> lopsided_note(const Scene& scene);
 
-/// On stderr, where there is one.
+/// Prints a note on stderr, where there is one.
 void print_note(const std::optional<Message>& note);
 
 }  // namespace railstep

@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// What is published of a profile, to compare with; a value that is not published is NaN.
+/// Published properties of a profile, to compare with; a value that is not published is NaN.
 struct Published {
   double area, centroid_height, inertia_y, inertia_z;    // m2, m, m4, m4
   double torsion, shear_factor_y, shear_factor_z;        // m4, 1, 1
@@ -24,7 +24,8 @@ struct Profile {
 
 class Table;
 
-/// A profile or a section file (TOML). Throws InputError, on a list of points with what to do.
+/// A profile or a section file (TOML). Throws InputError, and for a list of points it says what to
+/// do.
 Table read_shape_file(const std::filesystem::path& file);
 
 /// Reads a profile: TOML as in config/README.md, "Profiles". Throws InputError.

@@ -33,15 +33,15 @@ double lateral_excess(const FitTargets& t, double foot, double head) {
   return properties(with_heights(t, foot, head)).inertia_z / t.area.inertia_z - 1.0;
 }
 
-/// Of a plain rectangle every split in three is exact, so that nothing is left to bracket or to
-/// follow: thirds stand for all of them.
+/// Every split of a plain rectangle in three is exact, so that there is no root to bracket or
+/// branch to follow: thirds stand for all of them.
 std::optional<Rectangles<double>> plain_rectangle(const FitTargets& t) {
   const double width = t.area.area / t.height, third = t.height / 3.0;
   const Rectangles<double> thirds{{width, width, width}, {third, third, third}};
   return largest(relative_errors(t, thirds)) < kExact ? std::make_optional(thirds) : std::nullopt;
 }
 
-/// By halving between foot heights at which the error of Iz has two signs.
+/// Halves the interval between two foot heights at which the error of Iz has different signs.
 std::optional<Rectangles<double>> exact_between(const FitTargets& t, double low, double high,
                                                 double head) {
   const bool below = lateral_excess(t, low, head) < 0.0;
@@ -50,7 +50,7 @@ std::optional<Rectangles<double>> exact_between(const FitTargets& t, double low,
     ((lateral_excess(t, middle, head) < 0.0) == below ? low : high) = middle;
   }
   const Rectangles<double> section = with_heights(t, 0.5 * (low + high), head);
-  // A sign change over a pole of the widths is no root.
+  // A sign change over a pole of the widths is not a root.
   const bool exact = is_section(section) &&
                      std::abs(properties(section).inertia_z / t.area.inertia_z - 1.0) < 1e-6;
   return exact ? std::make_optional(section) : std::nullopt;

@@ -14,7 +14,7 @@ namespace railstep {
 std::vector<Rectangles<double>> section_family(const FitTargets& targets, int head_heights);
 
 /// The exact section of this head height, m, whose foot is next to that of a given one, within a
-/// twentieth of the height; nothing where there is none.
+/// twentieth of the height; nothing where no such section exists.
 std::optional<Rectangles<double>> section_beside(const FitTargets& targets,
                                                  const Rectangles<double>& section, double head);
 

@@ -28,7 +28,7 @@ constexpr std::initializer_list<const char*> kSectionKeys = {
 constexpr double kMostAsymmetry = 0.05;  // of the area, of halves whose mean says something
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Refuses what no shape has.
+/// Refuses constants that no shape has.
 void check_shape(const Table& t, const Section& s) {
   const double most = most_inertia(s);
   if (!(s.area.inertia_y <= most))

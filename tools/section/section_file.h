@@ -18,9 +18,10 @@ struct OutlineShear {
   std::string missing;    // why its shear factors are NaN, else empty
 };
 
-/// Those of a lopsided outline are Twist's, with shear factors that are the mean of both halves,
-/// each mirrored; NaN where it is too lopsided for that, or where Cowper's leave 0 to 1. Throws
-/// std::invalid_argument for one too thin or ragged. @param uneven  its asymmetry()
+/// Constants of an outline. A lopsided outline has those of Twist, and its shear factors are the
+/// mean of both halves, each mirrored; NaN where it is too lopsided for that, or where Cowper's
+/// factors lie outside of 0 to 1. Throws Refused for an outline that is too thin or ragged. @param
+/// uneven  its asymmetry()
 OutlineShear outline_shear(const Outline& outline, double uneven);
 
 /// All properties of the three rectangles; `height` of the profile, m. Throws NoSection where their

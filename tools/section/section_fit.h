@@ -8,13 +8,13 @@
 
 namespace railstep {
 
-/// What the three rectangles must have: four properties, and the height that theirs add up to.
+/// Targets of the three rectangles: four properties, and the sum of their heights.
 struct FitTargets {
   AreaProperties<double> area;
   double height;  // m
 };
 
-/// No three rectangles can be had, said in one sentence.
+/// Thrown where no three rectangles have the targets.
 struct NoSection : Failed {
   using Failed::Failed;
 };

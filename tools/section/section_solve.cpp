@@ -130,7 +130,7 @@ bool solve_slope(const FitTargets& targets, std::span<const Point> polygon, doub
                            nullptr, &head);
   problem.SetParameterLowerBound(&head, 0, low);
   problem.SetParameterUpperBound(&head, 0, high);
-  // Ceres differentiates between neighbours, and says so on stderr where there is none.
+  // Ceres takes differences between neighbours, and writes to stderr where a neighbour is missing.
   const double step = 2e-6 * head, below = head - step, above = head + step;
   if (residual(&below, &value) && residual(&above, &value) && residual(&head, &value)) {
     ceres::Solver::Summary summary;

@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// What a frame costs, by clock and by count.
+/// The cost of a frame, by clock and by count.
 struct FrameCost {
   double us = 0.;                     // median of the repeats' medians
   double least = 0., most = 0.;       // of these medians, us

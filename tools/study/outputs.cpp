@@ -62,7 +62,7 @@ struct Difference {
   double largest = 0., rms = 0., peak = 0.;
 };
 
-/// Of one column, from a row of each on.
+/// The error of one column, from a row of each trace on.
 Difference difference(const TraceTable& got, std::size_t column, std::size_t row,
                       const TraceTable& reference, std::size_t in_reference,
                       std::size_t reference_row) {

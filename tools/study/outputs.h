@@ -7,7 +7,7 @@
 
 namespace railstep {
 
-/// What is compared of traces, a kind of output each.
+/// The columns of traces that are compared, a kind of output each.
 enum class OutputKind { deflection, contact_force, support_force, sensor, stress };
 inline constexpr OutputKind kOutputKinds[] = {OutputKind::deflection, OutputKind::contact_force,
                                               OutputKind::support_force, OutputKind::sensor,
@@ -19,7 +19,8 @@ inline constexpr OutputKind kOutputKinds[] = {OutputKind::deflection, OutputKind
 /// "stress" of gauges (<sensor>.stress_x_pa).
 const char* name_of(OutputKind kind);
 
-/// What errors are told of: from when on, and which of the outputs count as the error.
+/// The part of a trace that is judged: the time from which on, and the outputs that count as the
+/// error.
 struct Judged {
   double from = 0.;                  // s; what comes before is left out
   std::vector<std::string> outputs;  // kinds or columns; empty: the first kind that there is
@@ -36,7 +37,7 @@ struct TraceErrors {
   std::vector<KindError> kinds;  // those that the traces have
 };
 
-/// Of a run's trace what is compared, and the time.
+/// The compared columns of a run's trace, and the time.
 TraceTable compared(const std::vector<std::string>& columns, const RunRecord& record);
 
 /// Infinite where the run ended early or is not finite. Throws InputError where the reference does

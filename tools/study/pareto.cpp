@@ -27,7 +27,7 @@ void check(const Studied& study, const std::vector<Setting>& settings) {
     }
 }
 
-/// What a study is of: the same key, the same numbers.
+/// The key of a study: studies with the same key have the same numbers.
 std::string key_of(const ParetoRequest& request, const Choices& choices, const Studied& study) {
   std::string question = fmt::format("{} from {:a}", program_identity(), study.judged.from);
   for (const std::string& output : study.judged.outputs) question += " " + output;
@@ -51,7 +51,7 @@ Reference reference_of(const ParetoRequest& request, const Studied& study, const
       after);
 }
 
-/// Of every model and mesh on the front.
+/// The steps of every model and mesh on the front.
 void add_receptances(const Studied& study, const Scene& scene, ParetoResult& result) {
   result.hz = receptance_frequencies(scene.condense.band_hz);
   std::set<std::pair<std::string, int>> known;

@@ -9,7 +9,7 @@
 
 namespace railstep {
 
-/// What `railstep pareto` is asked.
+/// The request to `railstep pareto`.
 struct ParetoRequest {
   std::filesystem::path scene;
   std::vector<std::string> overrides;
@@ -17,7 +17,7 @@ struct ParetoRequest {
   Judged judged;
   double reference_error = 1e-5;    // refined until its own error is below,
   int reference_levels = 3;         // or so often
-  std::filesystem::path reference;  // a trace instead; empty: none
+  std::filesystem::path reference;  // a trace that replaces it; empty: made here
   double reference_own_error = 0.;  // of that trace
   std::filesystem::path resume;     // empty: nothing is kept
 };

@@ -21,12 +21,12 @@ struct Studied {
 };
 
 /// Reads the scene. Where it starts released and no time is given, the first fifth of the run is
-/// left out. Throws InputError for what is not run, or is no track.
+/// left out. Throws InputError for a scene that cannot be run, or has no track.
 Studied study_of(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                  const Judged& judged);
 
-/// "key=value" over the scene that make one setting of it: the study's, the setting's, and of a
-/// ring in full order the bays that a window wants. Throws InputError.
+/// "key=value" over the scene that make one setting of it: those of the study, those of the
+/// setting, and for a ring in full order the bays that a window needs. Throws InputError.
 std::vector<std::string> overrides_of(const Studied& study, const Setting& setting);
 
 /// The scene with one setting. Throws InputError.
@@ -35,12 +35,12 @@ Scene scene_with(const Studied& study, const Setting& setting);
 /// All frames of the scene with one setting, of which it keeps what is compared.
 TraceTable run_of(const Studied& study, const Setting& setting);
 
-/// What others are measured against, and what is known of its own error.
+/// The trace against which others are measured, and an estimate of its own error.
 struct Reference {
   TraceTable trace;
   std::string how;  // words
-  /// Of the outputs that are judged: the change from the level before, over 2^p - 1 with p the
-  /// order seen over three levels, from 1 to 2; with two levels p = 1.
+  /// The own error, of the outputs that are judged: the change from the level before, over 2^p - 1
+  /// with p the order seen over three levels, from 1 to 2; with two levels p = 1.
   double error = 0.;
 };
 

@@ -9,8 +9,8 @@
 
 namespace railstep {
 
-/// What a study leaves in a file, a line of JSON each: its key, its reference, its rows. A line
-/// that was not written to its end is left out.
+/// The file of a study, a line of JSON each: its key, its reference, its rows. A line that was not
+/// written to its end is left out.
 class ResumeFile {
  public:
   /// Reads what is there. Without a name nothing is kept. Throws InputError where the file is of
@@ -18,7 +18,7 @@ class ResumeFile {
   ResumeFile(std::filesystem::path file, const std::string& key);
 
   const std::optional<Reference>& reference() const { return reference_; }
-  /// None where it is not there.
+  /// Null where it is not there.
   const SettingRow* find(const Setting& setting) const;
   void keep(const Reference& reference);
   void keep(const SettingRow& row);

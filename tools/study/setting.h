@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// What can be chosen of how a scene is stepped.
+/// The choices in stepping a scene.
 struct Setting {
   /// "KIND[:AMOUNT][:bare][:UNKNOWNS]": the kind of [condense] or "full", how much it keeps
   /// (modes_per_bay, of "guyan" and "irs" nodes_per_bay), without residual flexibility, and
@@ -37,8 +37,8 @@ struct Choices {
   std::vector<double> steps;  // s
 };
 
-/// What a user of the scene may choose among: models of both ends of the ladder, meshes and steps
-/// about the scene's own, the schemes that its contacts allow.
+/// The choices of a study: models of both ends of the ladder, meshes and steps about the scene's
+/// own, the schemes that its contacts allow.
 Choices default_choices(const Scene& scene);
 
 /// The same where a list is empty; steps the longest first.

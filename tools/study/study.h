@@ -20,7 +20,7 @@ class Study {
   /// With its failure where the setting makes no model, or its run is lost.
   SettingRow row_of(const Setting& setting);
 
-  /// Of the reference, and of a model with small steps; kept once they are known.
+  /// Errors of the reference, and of a model with small steps; kept once they are known.
   /// @returns the error against the reference of full order on a mesh by small steps
   double mesh_error(int elements_per_bay);
   /// @returns the difference of a model by small steps from full order on its mesh, by small steps

@@ -10,7 +10,7 @@
 namespace railstep {
 namespace {
 
-/// What a reference of the scene was refined to, for those of the variations.
+/// The refinement of the scene's reference, which those of the variations take too.
 struct Fine {
   int elements_per_bay;
   double step;
@@ -36,7 +36,7 @@ class Search {
     });
   }
 
-  /// Of the mesh that was looked at last, the cheapest first.
+  /// Rows of the last mesh, the cheapest first.
   const std::vector<SettingRow>& found() const { return found_; }
   const std::optional<SettingRow>& best() const { return best_; }
   std::int64_t looked_at() const { return looked_at_; }
@@ -122,7 +122,7 @@ class Verifier {
     }
   }
 
-  /// Of all, or up to the first that is above what is asked.
+  /// Errors of all variations, or up to the first that is above the error that is asked for.
   Candidate verify(SettingRow row, double max_error,
                    const std::function<void(const std::string&)>& after) {
     Candidate candidate{std::move(row), {}};
@@ -195,7 +195,7 @@ TuneResult tune(const TuneRequest& request, const std::function<void(const std::
   const Studied studied = study_of(request.scene, request.overrides, request.judged);
   const Scene scene = read_scene(request.scene, request.overrides);
   const Choices choices = choices_of(request, scene);
-  // names that are none are refused here; what this scene cannot have is passed over later
+  // unknown names are refused here; settings that this scene cannot have are left out later
   for (const Setting& each : settings_of(choices)) static_cast<void>(overrides_of(each));
   constexpr int kLevels = 4;
   Fine fine{*std::max_element(choices.meshes.begin(), choices.meshes.end()), choices.steps.back()};

@@ -9,7 +9,7 @@
 
 namespace railstep {
 
-/// What `railstep tune` is asked.
+/// The request to `railstep tune`.
 struct TuneRequest {
   std::filesystem::path scene;
   std::vector<std::string> overrides;
@@ -37,7 +37,7 @@ struct TuneResult {
   double frame = 0.;  // s
   std::optional<Candidate> choice;
   std::optional<SettingRow> best;  // without a choice: the least error, or the cheapest too slow
-  std::string binds;               // and why there is none, a sentence
+  std::string binds;               // why there is no choice, a sentence
   std::int64_t looked_at = 0;      // settings
 };
 

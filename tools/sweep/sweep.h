@@ -18,7 +18,7 @@ struct SweepPlan {
   int jobs;
 };
 
-/// What stands in the table.
+/// The content of the table.
 struct SweepResult {
   std::vector<std::int64_t> runs;    // which of the grid
   std::vector<std::int64_t> failed;  // of these

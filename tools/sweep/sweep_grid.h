@@ -13,7 +13,7 @@ struct VariedKey {
   std::vector<std::string> values;
 };
 
-/// Of "key.path=a,b,c". A comma within brackets, braces or quotes belongs to its value. Throws
+/// Reads "key.path=a,b,c". A comma within brackets, braces or quotes belongs to its value. Throws
 /// InputError.
 VariedKey read_varied(const std::string& option);
 
@@ -47,7 +47,7 @@ struct Shard {
   std::vector<std::int64_t> runs(std::int64_t all) const;
 };
 
-/// Of "I/N", 1/N to N/N; 0/N is N/N, so that numbers from 0 to N - 1 make all shards too. Throws
+/// Reads "I/N", 1/N to N/N; 0/N is N/N, so that numbers from 0 to N - 1 make all shards too. Throws
 /// InputError.
 Shard read_shard(const std::string& text);
 

@@ -88,7 +88,7 @@ std::optional<SweepRow> RowStore::find(const std::string& key) const try {
   if (whole.at("key") != key) return std::nullopt;
   return from_json(whole.at("row"));
 } catch (const Json::exception&) {
-  return std::nullopt;  // cut short or edited: made anew
+  return std::nullopt;  // cut short or edited: made again
 }
 
 }  // namespace railstep

@@ -15,8 +15,8 @@ struct ColumnSummary {
   double last;
 };
 
-/// What a run of a sweep leaves, nothing of which depends on the machine or the time it took. Of a
-/// run that failed only `error`, status and steps mean anything.
+/// The result of a run of a sweep. Nothing in it depends on the machine or on the time that the run
+/// took. Where a run failed, only `error`, status and steps have a meaning.
 struct SweepRow {
   std::string error;                // empty: the run was made
   std::vector<std::string> status;  // status_names()
@@ -36,7 +36,7 @@ class RowStore {
   /// Throws as write_file().
   /// @param about  words on the run, for who reads the file
   void write(const std::string& key, const std::string& about, const SweepRow& row) const;
-  /// None where there is no whole row of this key.
+  /// Nothing where there is no whole row of this key.
   std::optional<SweepRow> find(const std::string& key) const;
 
  private:

@@ -48,7 +48,7 @@ class Summary {
     }
   }
 
-  /// Of all but the first column, the time.
+  /// For all columns but the first, the time.
   std::vector<ColumnSummary> columns() const {
     std::vector<ColumnSummary> all(columns_.begin() + 1, columns_.end());
     for (ColumnSummary& column : all)

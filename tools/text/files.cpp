@@ -24,7 +24,7 @@ Files& files() {
 }
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code ignored;  // of what is not there: no file is the same
+  std::error_code ignored;  // a file that is not there is not the same
   return std::filesystem::is_regular_file(a, ignored) && std::filesystem::equivalent(a, b, ignored);
 }
 

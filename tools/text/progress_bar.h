@@ -6,8 +6,8 @@
 
 namespace railstep {
 
-/// How long what is left will take, from how long the last tenth took: work whose parts differ, and
-/// what is found done already, soon stop to count.
+/// Estimates the time that is left from the time that the last tenth took, so that earlier parts
+/// that took another time, or were done already, soon stop to count.
 class Pace {
  public:
   /// @param seconds since the start

@@ -5,7 +5,7 @@
 namespace railstep {
 
 /// An interval of accepted numbers. Infinite ends are never reached: no value read is infinite. An
-/// end that is NaN, as one that follows from a key that could not be read, bounds nothing.
+/// end is NaN where it follows from a key that could not be read; it bounds nothing.
 struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();

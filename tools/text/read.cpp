@@ -143,7 +143,7 @@ Table::Entry Table::look_up(std::string_view key) const {
 Table::Entry Table::need(std::string_view key) const {
   const Entry entry = look_up(key);
   if (entry.node) return entry;
-  // The likeliest reason is a misspelt key: name the nearest one nobody has asked for yet.
+  // The likeliest reason is a misspelt key: name the nearest one that no getter has asked for yet.
   const auto& known = view_->document->known[view_->table];
   std::vector<std::string> unread;
   for (const auto& [other, value] : *view_->table)

@@ -22,7 +22,7 @@ namespace railstep {
 class Table {
  public:
   [[nodiscard]] bool has(std::string_view key) const;  // also marks the key as known
-  /// An integer or a float, finite and in `accepted`; a string is refused.
+  /// An integer or a float, finite and within `accepted`; a string is refused.
   [[nodiscard]] double number(std::string_view key, const Range& accepted) const;
   [[nodiscard]] double number(std::string_view key, const Range& accepted, double otherwise) const;
   /// A number, or a slope as "1:n".
@@ -71,8 +71,9 @@ class Table {
   void finish() const;
 
   /// Calls `read` on this root, then finish(), and throws all errors of values together, in the
-  /// file's order; where there are none, all refusals kept by `attempt`, and the one that ended
-  /// `read`. A refusal may follow from what stands for a bad value: so values come first.
+  /// file's order; where no value is bad, it throws all refusals kept by `attempt`, and the one
+  /// that ended `read`. A refusal may follow from the number that replaces a bad value: so values
+  /// come first.
   template <typename Read>
   auto whole(Read read) const {
     collect();
@@ -101,7 +102,7 @@ class Table {
   void each(std::string_view key, Read read) const {
     for (const Table& entry : tables(key)) attempt([&] { read(entry); });
   }
-  /// Ends `whole` here where only refusals were kept: what follows needs what they refuse.
+  /// Ends `whole` here where only refusals were kept: the reading behind it needs what they refuse.
   void stop_if_refused() const;
 
   [[nodiscard]] std::string name() const;  // "rail.constants", "load[1]"; root: ""

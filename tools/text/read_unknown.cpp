@@ -29,7 +29,7 @@ std::string unknown(const std::string& word, const std::string& near) {
 void find_unknown(const Document& document, const toml::table& table, const std::string& name,
                   std::vector<Kept>& found) {
   const auto known = document.known.find(&table);
-  if (known == document.known.end()) return;  // never opened: its reader did not ask for it
+  if (known == document.known.end()) return;  // never opened: no reader asked for it
   if (document.doubtful.contains(&table)) return;
   for (const auto& [key, value] : table) {
     const std::string word(key.str());

@@ -64,7 +64,7 @@ void Table::throw_kept(const InputError* last) const {
   std::vector<Kept> refusals = std::exchange(document.refusals, {});
   if (last) {
     refusals.push_back(kept_of(*last));
-  } else if (refusals.empty()) {  // all was read: what no one asked for is unknown
+  } else if (refusals.empty()) {  // all was read: a key that no getter asked for is unknown
     std::vector<Kept> unknown = unknown_keys(document, *view_->table, view_->name);
     std::move(unknown.begin(), unknown.end(), std::back_inserter(bad_values));
   }

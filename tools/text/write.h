@@ -5,11 +5,11 @@
 
 namespace railstep {
 
-/// A file as it grows: written beside its place under a name of its own, and renamed into it once
-/// it is whole, so that a reader never sees half a file, a failed write leaves the old one, and of
-/// two programs that write one file the last to end has it. A device or a pipe is written in place.
-/// Throws std::runtime_error naming the file and the reason (no such folder, disk full), and
-/// InputError where it would take the place of a file that was read (files.h).
+/// A file as it grows. It is written beside its place under a name of its own, and gets its own
+/// name once it is whole. So a reader never sees half a file, a failed write leaves the old one,
+/// and where two programs write one file, that of the last to end stays. A device or a pipe is
+/// written in place. Throws Failed naming the file and the reason (no such folder, disk full), and
+/// InputError where it would replace a file that was read (files.h).
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path file);
