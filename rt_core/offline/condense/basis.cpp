@@ -89,7 +89,7 @@ Eigen::MatrixXd added_static_shapes(const Line& line, const Eigen::MatrixXd& kep
     const Eigen::VectorXd before = norms(line, shapes);
     shapes -= kept * (kept.transpose() * (line.mass * shapes));
     const Eigen::VectorXd after = norms(line, shapes);
-    for (Eigen::Index j = 0; j < shapes.cols(); ++j)  // what is left of a kept shape is rounding
+    for (Eigen::Index j = 0; j < shapes.cols(); ++j)  // a kept shape leaves only rounding
       shapes.col(j) *= after[j] > 1e-8 * before[j] ? 1. / after[j] : 0.;
   }
   return independent(line, shapes);

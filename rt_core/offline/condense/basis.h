@@ -12,37 +12,36 @@ namespace railstep {
 struct Basis {
   Eigen::VectorXd omega;  // [kept] rad/s, above 0, ascending
   Shapes shapes;          // [unknowns of the line][kept]
-  /// Static flexibility of the stepped model, [kept][kept]; empty where that is omega^-2, as of all
-  /// but truncated damped modes.
+  /// Static flexibility of the stepped model, [kept][kept]; empty if it is omega^-2, as for all
+  /// kinds except truncated damped modes.
   Eigen::MatrixXd flexibility = {};
-  /// Velocity that a force has at once beside the rate of the modes, [kept][kept], 1/kg; empty
-  /// beside an empty flexibility.
+  /// Velocity that a force causes at once, beyond the rate of the modes, [kept][kept], 1/kg; empty
+  /// if flexibility is empty.
   Eigen::MatrixXd at_once = {};
 
-  /// The y under forces shapes' f that stand still; [kept][any].
+  /// Static y under constant forces shapes' f; [kept][any].
   Eigen::MatrixXd static_response(const Eigen::MatrixXd& forces) const;
-  /// The stepped model's part of y = omega^-2 p, the static displacement in all coordinates: y
-  /// itself, or where modes are truncated static_response(p).
+  /// The stepped model's part of the static displacement y = omega^-2 p in all coordinates: y
+  /// itself, or static_response(p) if modes are truncated.
   Eigen::VectorXd modelled(const Eigen::VectorXd& y) const;
 };
 
-/// The same coordinates where springs are closed that were open as they were chosen: the
+/// The same coordinates with springs closed that were open when the coordinates were chosen: the
 /// flexibility is (omega^2 + shapes' springs shapes)^-1.
 /// @param springs  [unknowns][unknowns] of the line, N/m, symmetric, none below 0
 /// @param basis    whose flexibility is omega^-2
 Basis with_springs(Basis basis, const Eigen::SparseMatrix<double>& springs);
 
-/// Throws Refused where the lowest mode of a line is rigid (below 1e-3 Hz): it has no
-/// static answer.
+/// Throws Refused if the lowest mode of a line is rigid (below 1e-3 Hz): it has no static answer.
 void refuse_free_mode(double lowest_hz);
 
-/// Galerkin's coordinates over all that some shapes span; what nearly depends on others is dropped.
-/// Real shapes over symmetric matrices: no energy is made, whatever is left out.
-/// @param shapes [unknowns][any]
-/// Throws Refused on a free rigid mode, and where nothing is left.
+/// Galerkin's coordinates over the span of some shapes; shapes that nearly depend on others are
+/// dropped. Real shapes over symmetric matrices make no energy, whatever is left out.
+/// @param shapes [unknowns][any] Throws Refused on a free rigid mode, and if nothing is left.
 Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes);
 
-/// What the static shapes K^-1 f of forces add to shapes that are kept; orthonormal over the mass.
+/// Part of the static shapes K^-1 f of forces that kept shapes do not span; orthonormal over the
+/// mass.
 /// @param kept    [unknowns][kept], orthonormal over the mass
 /// @param forces  [unknowns][any]
 Eigen::MatrixXd added_static_shapes(const Line& line, const Eigen::MatrixXd& kept,
@@ -52,7 +51,7 @@ Eigen::MatrixXd added_static_shapes(const Line& line, const Eigen::MatrixXd& kep
 /// out, as they are many and each too weak to have a shape of its own.
 Eigen::MatrixXd damper_forces(const Line& line);
 
-/// Columns of a matrix that hold anything.
+/// Columns of a matrix that are not 0.
 /// @param rows  of the result, whose argument may have no entries at all
 Eigen::MatrixXd filled_columns(const Eigen::SparseMatrix<double>& A, Eigen::Index rows);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Rows and columns of a line's matrices by what is kept and what follows.
+/// Splits rows and columns of a line's matrices into unknowns that are kept and those that follow.
 struct Partition {
   std::vector<int> kept, following;  // unknowns, ascending
   Sparse pick_kept, pick_following;  // [unknowns][kept], [unknowns][following]
@@ -61,7 +61,7 @@ class Held {
   Eigen::SimplicialLDLT<Sparse> factor_;
 };
 
-/// Which part of a symmetric matrix's graph each row is in, numbered by their first rows.
+/// Connected part of a symmetric matrix's graph for each row, numbered by their first rows.
 std::vector<std::vector<int>> connected(const Sparse& A) {
   std::vector<std::vector<int>> parts;
   std::vector<bool> visited(static_cast<std::size_t>(A.cols()), false);

@@ -12,8 +12,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// By how much rates of a size may differ and be one: round-off of the fastest at least, and no
-/// more than a part of the rate itself, as slow rates beside very fast ones are their own.
+/// Largest difference of rates that count as equal: at least the round-off of the fastest, and at
+/// most a part of the rate itself, since slow rates beside very fast ones are distinct.
 struct OneRate {
   double fastest;
 
@@ -22,7 +22,7 @@ struct OneRate {
     const double round_off = 16. * std::numeric_limits<double>::epsilon() * fastest;
     return std::max(round_off, std::min(kOfFastest * fastest, kOfOwn * size));
   }
-  /// Real rates that are one may leave the solver as pairs with imaginary parts of round-off.
+  /// The solver may return equal real rates as pairs with imaginary parts of round-off.
   [[nodiscard]] bool real(Complex rate) const {
     return std::abs(rate.imag()) <= within(std::abs(rate));
   }

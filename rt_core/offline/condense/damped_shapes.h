@@ -13,9 +13,10 @@ struct DampedShapes {
 /// Damped modes of y'' + D y' + Omega^2 y = 0 from the eigenvalues and eigenvectors of its
 /// first-order form over (Omega y, y'), normalised, but not yet checked.
 ///
-/// Rates that lie within what an eigen solver leaves of them are one: they get their mean. Any
-/// mixture of their shapes is a shape as well; the solver's may be parallel, or have no product
-/// with themselves, and are made to have shape' (2 rate + D) shape = I or 2 I among them.
+/// Rates that differ by no more than the errors of an eigen solver count as equal and get their
+/// mean. Any mixture of their shapes is a shape as well. Those of the solver may be parallel, or
+/// have no product with themselves, and are combined to have shape' (2 rate + D) shape = I or 2 I
+/// among them.
 /// @param omega    [kept] 1/s
 /// @param damping  [kept][kept] D, 1/s, symmetric
 /// @param rates    [2 kept] 1/s

@@ -17,7 +17,7 @@ std::vector<int> end_unknowns(const Line& line, int rail, const Superelement& wh
   return result;
 }
 
-/// What a solution is at the given unknowns, 0 where held.
+/// A solution at the given unknowns, 0 if held.
 Eigen::VectorXd gather(const Stretch& from, const std::vector<int>& unknowns) {
   Eigen::VectorXd result(static_cast<Eigen::Index>(unknowns.size()));
   for (std::size_t i = 0; i < unknowns.size(); ++i)
@@ -25,7 +25,7 @@ Eigen::VectorXd gather(const Stretch& from, const std::vector<int>& unknowns) {
   return result;
 }
 
-/// Loads on the given unknowns; what is held takes them itself.
+/// Loads on the given unknowns; held unknowns carry theirs.
 Eigen::SparseVector<double> spread_over(const Line& line, const std::vector<int>& unknowns,
                                         const Eigen::VectorXd& loads) {
   Eigen::SparseVector<double> result(line.unknowns());

@@ -18,12 +18,12 @@ std::vector<double> to_vector(const Eigen::VectorXd& values) {
   return {values.data(), values.data() + values.size()};
 }
 
-/// What of a functional counts as nothing, as a part of the most that a force makes of it: outputs
-/// do not jump where their tables end.
+/// Part of a functional's largest value that counts as 0. It is so small that outputs do not jump
+/// where their tables end.
 constexpr double kFaded = 1e-8;
-/// Elements, and bays, to either side that are looked at first, of functionals and of pairs. Where
-/// the outer quarter of what is looked at counts as nothing, so does what lies beyond: in full
-/// order what a mesh misses fades with the distance.
+/// Elements, and bays, to either side at which functionals and pairs are evaluated first. If the
+/// outer quarter of these counts as 0, so do all places beyond: in full order the error of a mesh
+/// fades with the distance.
 struct FirstLook {
   int elements, bays;
 };
@@ -55,8 +55,8 @@ PairTable table_of(const LineFlexibility::Strip& strip, int elements, int points
   return table;
 }
 
-/// The distance, in elements, beyond which all values of strips stay below a limit. Nothing is kept
-/// of them: far apart, all pairs of elements would be their number squared.
+/// The distance, in elements, beyond which all values of strips stay below a limit. The strips are
+/// not stored, since all pairs of elements would be their number squared.
 int range_of(const LineFlexibility::Strip& strip, int elements, int points, int look,
              double limit) {
   int range = 0;
@@ -71,7 +71,7 @@ int range_of(const LineFlexibility::Strip& strip, int elements, int points, int 
   return range;
 }
 
-/// Whether a vertical force moves any of these, on y = 0 of an upright rail or anywhere.
+/// Whether a vertical force moves any of these unknowns, on y = 0 of an upright rail or anywhere.
 bool carries_any(const std::vector<int>& carried, bool upright) {
   return std::any_of(carried.begin(), carried.end(), [&](int k) {
     return k == 2 || k == 8 || (!upright && (k == 1 || k == 4 || k == 5 || k == 7));
@@ -136,7 +136,7 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
     const Line& line = lines_[i];
     const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
                                                      carried_unknowns(line, 1)};
-    // The others nothing here asks for.
+    // Lines that a vertical force does not move are not needed.
     const bool upright = track.cant == 0.;
     if (!carries_any(carried[0], upright) && !carries_any(carried[1], upright)) continue;
     Pair pair{&line, carried, exact_line(track_, line, points), nullptr};
@@ -208,7 +208,7 @@ ResidualFlexibility::Sums ResidualFlexibility::sums(LoadPoint load_point,
   return sum;
 }
 
-/// The first and the last that have more than nothing.
+/// The first and the last element with a value that does not count as 0.
 Elements ResidualFlexibility::filled(const Sums& sums, Elements at, double nothing) const {
   Elements found{at.last, at.first};
   for (int e = at.first; e < at.last; ++e) {
@@ -304,7 +304,7 @@ PairTable ResidualFlexibility::between(LoadPoint a, LoadPoint b, int points, int
   most = std::min(most, track_.elements() - 1);
   const double limit = kNegligible * std::max(largest_exact(a), largest_exact(b));
   const int elements = tabled_elements(track_);
-  // What a basis misses is not local.
+  // The error of a basis is not local.
   int look = std::min(most, bases_.empty() ? first_look(kPairLook, track_) : most);
   int range = range_of(strips(a, b, points, look), elements, points, look, limit);
   while (look < most && !has_faded(range, look)) {

@@ -16,13 +16,13 @@ struct PairTable {
   int range;                  // elements
   std::vector<double> value;  // [tabled e][e2 - e + range][p][q], m/N; 0 where e2 is off the rail
 
-  /// Of the first load point at place p of element e and the second at place q of element e2, both
-  /// on the rail; 0 beyond the range.
+  /// Value for the first load point at place p of element e and the second at place q of element
+  /// e2, both on the rail; 0 beyond the range.
   double at(int e, int p, int e2, int q) const;
 };
 
-/// Residual flexibility G_res(a, b) = G_exact(a, b) - G_model(a, b) of a track: what a model of it
-/// misses statically, between load points and from load points to all else.
+/// Residual flexibility G_res(a, b) = G_exact(a, b) - G_model(a, b) of a track: the static error of
+/// a model of it, between load points and from load points to other functionals.
 ///
 /// Exact is the same track with every element divided into `points` elements, taken at their ends,
 /// where the element is exact: each divided element is condensed to its two end nodes, its static
@@ -37,8 +37,8 @@ class ResidualFlexibility {
  public:
   /// @param lines  of the track, as assemble() gives them
   /// @param bases  one per line, or none for the track as it stands
-  /// @param points intervals per element, >= 3; tables are read by cubic interpolation
-  /// Throws Refused on fewer points and on bases that are not the lines'.
+  /// @param points intervals per element, >= 3; tables are read by cubic interpolation Throws
+  /// Refused on fewer points and on bases of other lines.
   ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
                       const std::vector<Basis>& bases, int points);
   ~ResidualFlexibility();
@@ -56,26 +56,26 @@ class ResidualFlexibility {
   /// G_exact(x, x); [tabled elements][points + 1], m/N.
   std::vector<double> exact_under(LoadPoint load_point) const;
 
-  /// G_res of all places of two load points of one or two rails; between(b, a) is its transpose.
-  /// `range` is the smallest number of elements beyond which all of it stays below 1e-4 of the
-  /// largest G_exact(x, x) of the load points. It is not 0 for the track as it stands: an element
-  /// reads a force inside it quadratically, and so moves others wrongly (5e-3 of G_exact next to it
-  /// with one element of 0.6 m per bay, 1e-3 with two).
+  /// G_res between all places of two load points of one or two rails; between(b, a) is its
+  /// transpose. `range` is the smallest number of elements beyond which all of it stays below 1e-4
+  /// of the largest G_exact(x, x) of the load points. It is not 0 for the track as it stands: an
+  /// element reads a force inside it quadratically, and so moves others wrongly (5e-3 of G_exact
+  /// next to it with one element of 0.6 m per bay, 1e-3 with two).
   /// @param points intervals per element, a divisor of the constructor's
   /// @param most   range at most, where load points are known to stand no farther apart
   PairTable between(LoadPoint a, LoadPoint b, int points,
                     int most = std::numeric_limits<int>::max()) const;
 
-  /// What the model misses of the functional under a unit force of the load point at each place;
-  /// [elements][points + 1], m/N. Throws Refused if the functional is off the track.
+  /// Static error of the model in the functional under a unit force of the load point at each
+  /// place; [elements][points + 1], m/N. Throws Refused if the functional is off the track.
   std::vector<double> from(LoadPoint load_point, const Functional& functional) const;
-  /// Velocity of a functional at once under a unit force of the load point, which the modes' rates
-  /// do not show; [elements][points + 1], m/(N s), 0 but for truncated damped modes.
+  /// Velocity of a functional at once under a unit force of the load point, beyond the modes'
+  /// rates; [elements][points + 1], m/(N s), 0 except for truncated damped modes.
   std::vector<double> at_once(LoadPoint load_point, const Functional& functional,
                               Elements at) const;
-  /// What from() gives of several load points at those of some elements that have something of it:
-  /// beyond, all stays below 1e-8 of the most that a force of any on the exact track makes of the
-  /// functional. Of a model in the coordinates of a basis, and of a ring, all of them.
+  /// from() for several load points, only for elements where it is not negligible: beyond them it
+  /// stays below 1e-8 of the functional's largest value under a force of any of these on the exact
+  /// track. For a model in the coordinates of a basis, and for a ring, all elements.
   struct Near {
     Elements at;
     std::vector<double> value;  // [load_points][elements][points + 1]

@@ -32,7 +32,7 @@ bool flips_along(SleeperMotion motion) {
   return motion == kAlongX || motion == kYaw || motion == kPitch;
 }
 
-/// Whether unknown k of a node is one of its own: b_y of a section that does not strain is its a_z.
+/// Whether unknown k of a node is a separate one: b_y of a section that does not strain is its a_z.
 bool is_own(const Line& line, int k) { return !(line.rigid_section && k == 7); }
 
 /// The unknowns of every bay, in the same order; [bays][unknowns of a bay].
@@ -97,7 +97,7 @@ class Blocks {
               A.coeff(cells[0][i], cells[bay[d]][j]);
     }
   }
-  /// T' A(k) T, real where T turns every vector until it is its own conjugate image.
+  /// T' A(k) T, which is real if T rotates every vector until it is its own conjugate image.
   Eigen::MatrixXd real(std::complex<double> step, const Eigen::MatrixXcd& T) const {
     const Eigen::MatrixXcd A =
         std::conj(step) * block_[0] + block_[1].cast<std::complex<double>>() + step * block_[2];
@@ -113,8 +113,8 @@ class Blocks {
   Eigen::MatrixXd block_[3];
 };
 
-/// Columns that mirroring and conjugating leave as they are, a unitary basis. At k = 0 and k = pi
-/// each is real or imaginary.
+/// Columns that do not change when they are mirrored and conjugated, a unitary basis. At k = 0 and
+/// k = pi each is real or imaginary.
 Eigen::MatrixXcd real_basis(const std::vector<CellUnknown>& cell, double m_over_n) {
   const std::complex<double> i(0., 1.), half = phase(.5 * m_over_n), whole = phase(m_over_n);
   const auto n = static_cast<Eigen::Index>(cell.size());
@@ -159,7 +159,7 @@ Eigen::VectorXd softness(const Line& line) {
       .eigenvalues();
 }
 
-/// How many modes each of the systems of one k keeps: the lowest of all together.
+/// Number of modes kept of each system of one k: the lowest of all together.
 std::vector<int> shares(const std::vector<Line>& systems, const ModalLimit& limit) {
   std::vector<std::pair<double, std::size_t>> all;
   const double least =

@@ -8,16 +8,16 @@ namespace railstep {
 /// A line of a ring in Floquet modes: waves x e^(i k b) over the bays b, k = 2 pi m/N, m = 0 to
 /// N/2.
 ///
-/// A bay is its own mirror image about its seat, so that x can be turned until mirroring and
-/// conjugating leaves it as it is: then M(k), C(k), K(k) are real and symmetric, and every wave
-/// stands. k and -k together are a cosine and a sine, Re and Im of x e^(i k b), with the same
-/// rates and coordinates; that fixes the phases of what would be a degenerate pair. Each k keeps
-/// its lowest modes and the static shapes of its dampers, as modal_basis() does of a line.
+/// A bay is its own mirror image about its seat, so that x can be rotated until mirroring and
+/// conjugating leave it unchanged: then M(k), C(k), K(k) are real and symmetric, and every wave is
+/// a standing one. k and -k together are a cosine and a sine, Re and Im of x e^(i k b), with the
+/// same rates and coordinates; that fixes the phases of what would be a degenerate pair. Each k
+/// keeps its lowest modes and the static shapes of its dampers, as modal_basis() does of a line.
 struct RingModes {
   Basis basis;       // shapes over the ring; per k those of the cosine, then of the sine
   ModeGroups modes;  // a group to each of those
-  /// How the modes look one bay further back, each in its own and its partner's coordinate:
-  /// z' = cosine z + sine z[partner]. That of k = 0 and k = pi is itself.
+  /// The modes one bay further back, each in its own and its partner's coordinate: z' = cosine z +
+  /// sine z[partner]. For k = 0 and k = pi the partner is the mode itself.
   std::vector<int> partner;  // [modes]
   Eigen::VectorXd cosine, sine;
 };

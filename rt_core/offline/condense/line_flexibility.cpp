@@ -39,8 +39,8 @@ Line matching(const Track& other, const Line& line) {
 
 namespace {
 
-/// A divided line of the track with the section's strain, which it keeps. Where the few unknowns do
-/// not carry a rail along x, what is read along x counts from its axis, and sleepers stay.
+/// A divided line of the track with the section's strain; it owns that track. If the track's
+/// unknowns do not carry a rail along x, readings along x count from its axis, and sleepers stay.
 class StrainedLine : public LineFlexibility {
  public:
   StrainedLine(const Track& track, const Line& line, int parts)

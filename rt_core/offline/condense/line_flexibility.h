@@ -35,8 +35,8 @@ struct Elements {
 };
 
 /// Static flexibility of one line between the places of load points, `points` intervals per element
-/// at equal steps of x, in the line's own coordinates: the weights of a load point's rail in the
-/// line are left to the caller, those of a functional are in.
+/// at equal steps of x, in the line's own coordinates: the caller adds the weights of a load
+/// point's rail in the line; those of a functional are included.
 class LineFlexibility {
  public:
   /// Displacements of load point b at the places of the elements within a range of one, under a
@@ -53,17 +53,17 @@ class LineFlexibility {
   /// all; [elements x (points + 1)].
   virtual Eigen::VectorXd from(const LoadPoint& load_point, const Functional& functional,
                                int points, Elements at) const = 0;
-  /// Each of `reads` under a unit force spread by `force`, whatever their directions; m/N. Weights
-  /// of rails are in.
+  /// Each of `reads` under a unit force spread by `force`, in any directions; m/N. Weights of rails
+  /// are included.
   virtual Eigen::VectorXd flexibility(const std::vector<Functional>& reads,
                                       const Functional& force) const = 0;
-  /// Whether the line has no free rigid mode; the queries want that.
+  /// Whether the line has no free rigid mode, which the queries need.
   virtual bool held() const { return true; }
 };
 
 /// The line with every element divided into `parts`, taken at their ends, where the element is
-/// exact; with one part it is the line itself. Cost grows with the line's own nodes only. Not for
-/// several threads at once.
+/// exact; with one part it is the line itself. Cost grows with the line's own nodes only. Not safe
+/// for several threads at once.
 class DividedLine : public LineFlexibility {
  public:
   DividedLine(const Track& track, const Line& line, int parts);
@@ -79,7 +79,7 @@ class DividedLine : public LineFlexibility {
   bool held() const override { return held_; }
 
  private:
-  /// A functional over the line: what reaches the elements' end nodes, and its points' own rows.
+  /// A functional over the line: its part at the elements' end nodes, and its points' own rows.
   struct Spread {
     struct OnElement {
       int rail, element;
@@ -106,12 +106,12 @@ class DividedLine : public LineFlexibility {
   std::optional<LocalInverse> local_;      // of a held track with ends
   std::vector<std::pair<int, int>> span_;  // of each element's end unknowns: the first, the last
   bool held_ = false;                      // no free rigid mode
-  /// Of each rail, made where it is first asked for: [tabled elements].
+  /// For each rail, made when it is first needed: [tabled elements].
   mutable std::array<std::vector<Eigen::MatrixXd>, 2> end_flexibility_;
 };
 
-/// The same of any track, pads with lengths too, which act on inner nodes: the track with every
-/// element divided is assembled itself. Cost grows with the nodes of the divided track.
+/// The same for any track, also with long pads, which act on inner nodes: the track with every
+/// element divided is assembled. Cost grows with the nodes of the divided track.
 class RefinedLine : public LineFlexibility {
  public:
   /// Throws Refused if the divided track has no such line.
@@ -128,7 +128,8 @@ class RefinedLine : public LineFlexibility {
   bool held() const override { return held_; }
 
  private:
-  /// Of a load point at the places of one element of the track; [unknowns][points + 1]
+  /// Displacements under a load point at the places of one element of the track; [unknowns][points
+  /// + 1]
   Eigen::SparseMatrix<double> columns(const LoadPoint& load_point, int element, int points) const;
   void refuse_free_modes() const;
 
@@ -141,10 +142,10 @@ class RefinedLine : public LineFlexibility {
 };
 
 /// The line in the coordinates of a basis. A load point leaves out the section's own strain (a_y,
-/// b_z), which few coordinates do not carry; functionals are read whole.
+/// b_z), which a few coordinates do not represent; functionals are read whole.
 class ReducedLine : public LineFlexibility {
  public:
-  /// Throws Refused if the basis is not one of the line.
+  /// Throws Refused if the basis does not fit the line.
   ReducedLine(const Track& track, const Line& line, const Basis& basis);
 
   Eigen::VectorXd under(const LoadPoint& load_point, const LoadPoint& other,
@@ -173,19 +174,20 @@ class ReducedLine : public LineFlexibility {
   const Basis& basis_;
 };
 
-/// Unknowns of a rail's node that a line carries, from an inner one: ends may hold some of theirs.
+/// Unknowns of a rail's node that a line carries, taken from an inner node because ends may hold
+/// some.
 std::vector<int> carried_unknowns(const Line& line, int rail);
 
-/// The line of the same track on another mesh or with more unknowns: what carries all that this one
-/// does. Throws Refused if there is none.
+/// The line of the same track on another mesh or with more unknowns that carries all motions of
+/// this one. Throws Refused if there is no such line.
 Line matching(const Track& other, const Line& line);
 
-/// The line as exactly as with that many parts of every element, and with the section's strain
-/// where the track's unknowns lack it; with one part the line as it stands. A pad with a length
-/// acts on the inner nodes of elements, which a divided line lets follow.
+/// The line with the accuracy of that many parts of every element, and with the section's strain if
+/// the track's unknowns do not have it; with one part it is the line itself. A pad with a length
+/// acts on the inner nodes of elements, which a divided line eliminates.
 std::unique_ptr<LineFlexibility> exact_line(const Track& track, const Line& line, int parts);
 
-/// Whether two rails are one to a line: the same, or mirror images.
+/// Whether a line does not distinguish two rails: the same rail, or mirror images.
 bool same_rail(const Line& line, int a, int b);
 
 /// Element that holds a place of the rail. Throws Refused off the rail.

@@ -18,8 +18,8 @@ LocalInverse::LocalInverse(const Sparse& matrix) : rows_(matrix.rows()) {
   invert(forward.vectorD());
 }
 
-/// Z = D^-1 L^-1 + (I - L') Z, from the last row to the first: a row asks of the later ones what is
-/// within the band.
+/// Z = D^-1 L^-1 + (I - L') Z, from the last row to the first: a row needs the entries of later
+/// rows within the band.
 void LocalInverse::invert(const Eigen::VectorXd& pivots) {
   inverse_.assign(static_cast<std::size_t>(rows_ * band_), 0.);
   for (Eigen::Index j = rows_ - 1; j >= 0; --j)
@@ -36,7 +36,7 @@ double LocalInverse::within(Eigen::Index i, Eigen::Index j) const {
   return inverse_[static_cast<std::size_t>(first * band_ + std::max(i, j) - first)];
 }
 
-/// Of loads whose rows are all within a band of one another.
+/// Solution for loads whose rows are all within a band of one another.
 void LocalInverse::add(const Eigen::SparseVector<double>& load, Stretch& to) const {
   const Eigen::Index lowest = load.innerIndexPtr()[0],
                      highest = load.innerIndexPtr()[load.nonZeros() - 1];

@@ -4,7 +4,7 @@
 
 namespace railstep {
 
-/// A stretch of a vector: its entries from `first` on; what lies beyond reads as 0.
+/// A part of a vector: its entries from `first` on; entries beyond are read as 0.
 struct Stretch {
   Eigen::Index first;
   Eigen::VectorXd value;
@@ -13,10 +13,10 @@ struct Stretch {
   }
 };
 
-/// Solutions of a banded, symmetric, positive definite system around few loads, exact and at the
-/// cost of the rows that are asked for: the inverse within the band by Takahashi's recurrence
-/// (Takahashi, Fagan and Chin, 1973; Erisman and Tinney, 1975), and from there out along the factor
-/// from either end, in the direction in which solutions fade.
+/// Solutions of a banded, symmetric, positive definite system around few loads, exact, at a cost
+/// that grows with the number of rows that are read: the inverse within the band by Takahashi's
+/// recurrence (Takahashi, Fagan and Chin, 1973; Erisman and Tinney, 1975), and from there out along
+/// the factor from either end, in the direction in which solutions fade.
 class LocalInverse {
  public:
   using Sparse = Eigen::SparseMatrix<double>;

@@ -19,13 +19,13 @@ namespace railstep {
 
 namespace {
 
-constexpr double kMostIncomplete = 1e-7;  // what is accepted
+constexpr double kMostIncomplete = 1e-7;  // largest accepted error
 constexpr double kMostResidual = 1e-6;    // of a mode's equation, over the sizes of its terms
 constexpr double kOrthogonal = 1e-9;      // beyond it the eigen solver's vectors are worked on
 constexpr int kMostIterations = 6;        // each squares what is missed: 1e-2 becomes 1e-16 in 3
 constexpr double kSquared = 1e-6;         // missed before the last turn
 
-/// What Re sum shape shape' = 0 and Re sum rate shape shape' = I are missed by.
+/// Error of Re sum shape shape' = 0 and Re sum rate shape shape' = I.
 double incompleteness(const DampedModes& modes) {
   const Eigen::MatrixXd position = (modes.shape * modes.shape.transpose()).real();
   const Eigen::MatrixXd velocity =
@@ -67,8 +67,8 @@ void orthogonalise(DampedModes& modes) {
     modes.shape.col(k) = V.col(k).head(m) / (modes.rate[k].imag() > 0. ? half : 1.);
 }
 
-/// Largest of what (rate^2 + rate D + Omega^2) shape = 0 is missed by, over its terms' sizes;
-/// round-off of the fastest rate, which any eigen solver leaves in the others, makes no part of it.
+/// Largest residual of (rate^2 + rate D + Omega^2) shape = 0 over its terms' sizes. It does not
+/// include the round-off of the fastest rate, which any eigen solver leaves in the others.
 double residual(const DampedModes& modes, const Eigen::VectorXd& omega) {
   const Eigen::MatrixXcd damped = modes.damping * modes.shape;
   const double round_off =
@@ -86,7 +86,7 @@ double residual(const DampedModes& modes, const Eigen::VectorXd& omega) {
   return most;
 }
 
-/// Throws where modes share a shape, so that the others cannot be all.
+/// Throws Refused if modes share a shape, so that they are not complete.
 void complete(DampedModes& modes, const Eigen::VectorXd& omega) {
   if (!(incompleteness(modes) < kOrthogonal) && modes.shape.allFinite()) orthogonalise(modes);
   const double error = incompleteness(modes), off = residual(modes, omega);

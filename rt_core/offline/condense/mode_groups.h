@@ -6,8 +6,9 @@
 
 namespace railstep {
 
-/// Damped modes of a line whose coordinates fall into groups that do not couple: of a ring its
-/// waves, of any other line all are one. Coordinates and modes of the groups follow one another.
+/// Damped modes of a line whose coordinates fall into groups that do not couple: the waves of a
+/// ring, or a single group for any other line. Coordinates and modes of the groups follow one
+/// another.
 class ModeGroups {
  public:
   ModeGroups() = default;
@@ -19,7 +20,7 @@ class ModeGroups {
   Eigen::VectorXcd project(const Eigen::VectorXd& force) const;
   /// y = Re shape z, [coordinates].
   Eigen::VectorXd displacement(const Eigen::VectorXcd& z) const;
-  /// The z of the y that forces hold and of y', as DampedModes has it.
+  /// The z of the static y under forces, and of y', as in DampedModes.
   Eigen::VectorXcd from(const Eigen::VectorXd& force, const Eigen::VectorXd& velocity) const;
   Eigen::SparseMatrix<std::complex<double>> shape() const;  // [coordinates][modes]
   Eigen::SparseMatrix<double> damping() const;              // [coordinates][coordinates] 1/s

@@ -13,8 +13,8 @@ namespace railstep {
 
 namespace {
 
-/// Up to so many unknowns damped modes are those of the line itself; of a longer line they are
-/// those of four times as many undamped modes and of its dampers.
+/// Up to this number of unknowns damped modes are those of the line itself. For a longer line they
+/// are those of four times as many undamped modes and of its dampers.
 constexpr int kWholeUnknowns = 600;
 constexpr int kRichness = 4;
 
@@ -31,16 +31,17 @@ Basis with_statics(const Line& line, const Eigen::MatrixXd& shapes, const Eigen:
   return ritz_basis(line, beside(own, added_static_shapes(line, own, forces)));
 }
 
-/// By how much a truncated model gives way more than the line under a force on some coordinate,
-/// over what the softest gives: one of two real modes that nearly share a shape is many times too
-/// soft without the other.
+/// Excess of a truncated model's compliance over the line's at some coordinate, over that of the
+/// softest coordinate. One of two real modes that nearly share a shape is many times too soft
+/// without the other.
 double excess(const Basis& basis) {
   const Eigen::ArrayXd whole = basis.omega.array().square().inverse();
   return (basis.flexibility.diagonal().array() - whole).maxCoeff() / whole.maxCoeff();
 }
 constexpr double kMostExcess = 1e-2;
 
-/// A damper on what has no mass makes a motion of first order, which no undamped mode shows.
+/// A damper on an unknown without mass makes a motion of first order, which undamped modes do not
+/// contain.
 void refuse_damped_massless(const Line& line) {
   for (int i = 0; i < line.unknowns(); ++i)
     if (!(line.mass.coeff(i, i) > 0.) && line.damping.coeff(i, i) > 0.)
@@ -49,7 +50,7 @@ void refuse_damped_massless(const Line& line) {
              "sleeper.mass_kg above 0, no damping there, or condense.kind = \"full\"");
 }
 
-/// Shapes of the kinds that are not made of modes of the whole line.
+/// Shapes of the kinds that do not use modes of the whole line.
 Eigen::MatrixXd own_shapes(const Track& track, const Line& line, const Reduction& reduction,
                            const ModalLimit& most) {
   if (reduction.kind == ReductionKind::krylov)
@@ -87,7 +88,7 @@ ReducedLineModel truncated(const Line& line, const ModalLimit& limit) {
 }  // namespace
 
 ModalLimit limit_of(const Line& line, const Reduction& reduction) {
-  // Of both rails in one line, each in unknowns of its own, as many as of two.
+  // A line with the unknowns of both rails keeps as many modes as two lines.
   const bool both = !line.mirrored && line.rail_factor[0] != 0. && line.rail_factor[1] != 0.;
   return {(both ? 2 : 1) * reduction.limit.most, reduction.limit.highest_hz};
 }

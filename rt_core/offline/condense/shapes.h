@@ -6,8 +6,8 @@
 
 namespace railstep {
 
-/// Shapes of a line's coordinates, a matrix S [unknowns][kept]: as it stands, or of a ring wave by
-/// wave, whose memory and work then grow with the bays and not with their square.
+/// Shapes of a line's coordinates, a matrix S [unknowns][kept]: stored as it is, or for a ring wave
+/// by wave, so that memory and work grow with the number of bays and not with its square.
 class Shapes {
  public:
   /// The real or the imaginary part of x e^(2 pi i number b / bays) over the bays b.
@@ -25,7 +25,7 @@ class Shapes {
 
   Eigen::Index rows() const;
   Eigen::Index cols() const;
-  /// Of one unknown, [kept].
+  /// Row of one unknown, [kept].
   Eigen::VectorXd row(int unknown) const;
   /// S' load, [kept].
   Eigen::VectorXd project(const Eigen::VectorXd& load) const;
