@@ -267,11 +267,11 @@ Command add_condense(CLI::App& app) {
       ->check(writes_file());
   add_overrides(*sub, o->overrides);
   sub->add_option("--window", o->window,
-                  "seconds of the scene of which the transient error is told, from its start; "
+                  "seconds from the start of the scene over which the transient error is found; "
                   "without it all of them, or what of them takes some seconds")
       ->check(CLI::Range(1e-9, 1e9));
   sub->add_flag("--skip-errors", o->skip_errors,
-                "write the model alone: its errors take longer to find than it takes to make");
+                "write the model alone: finding its errors takes longer than making it");
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep condense config/scenes/ballasted_track.toml --out track.model");
   return {sub, [o] {

@@ -381,19 +381,20 @@ Exit run(const HilOptions& o) {
 }
 
 void add_exchange_options(CLI::App& sub, HilOptions& o) {
-  sub.add_option("--udp", o.udp, "listen for inputs on HOST:PORT; outputs go to who sends them");
+  sub.add_option("--udp", o.udp, "listen for inputs on HOST:PORT; outputs go to the sender");
   sub.add_option("--shm", o.shm, "shared memory of this name for inputs and outputs");
-  sub.add_option("--names", o.names, "write what inputs and outputs are called to this file")
+  sub.add_option("--names", o.names, "write the names of inputs and outputs to this file")
       ->check(writes_file());
-  sub.add_flag("--response", o.respond,
-               "how the track gives way under external wheels in the next frame, in each output");
+  sub.add_flag(
+      "--response", o.respond,
+      "add the compliance of the track under external wheels in the next frame to each output");
   sub.add_option("--wait", o.wait, "s to wait for the first inputs before the clock starts (0)")
       ->check(within(0., 1e6));
   CLI::Option* silence =
       sub.add_option("--silence", o.silence,
-                     "s without inputs behind which they go to 0 for good; 0: they are held (0)")
+                     "s without inputs after which they go to 0 for good; 0: they are held (0)")
           ->check(within(0., 1e6));
-  sub.add_option("--ramp", o.ramp, "s that this takes (0.1)")
+  sub.add_option("--ramp", o.ramp, "s in which they go to 0 (0.1)")
       ->check(within(0., 1e6))
       ->needs(silence);
 }
@@ -411,24 +412,24 @@ Command add_hil(CLI::App& app) {
       ->required()
       ->check(within(1e-6, 1e9));
   sub->add_option("--policy", o->policy,
-                  "about frames that end late: stop, skip (default), "
+                  "for frames that end late: stop, skip (default), "
                   "catch-up or free-run")
       ->check(CLI::IsMember({"stop", "skip", "catch-up", "free-run"}));
   sub->add_option("--grace", o->grace, "s at the start that are not counted (0.1 or a tenth)")
       ->check(within(0., 1e9));
-  sub->add_option("--cpu", o->cpu, "which the stepping thread is pinned to")
+  sub->add_option("--cpu", o->cpu, "CPU to which the stepping thread is pinned")
       ->check(within(0, 1 << 20));
   sub->add_option("--priority", o->priority,
-                  "of SCHED_FIFO, 1 to 99 (50; free-run 0); 0: it is not asked for")
+                  "priority of SCHED_FIFO, 1 to 99 (50; free-run 0); 0: none is requested")
       ->check(within(0, 99));
   add_exchange_options(*sub, *o);
   sub->add_option("--report", o->report, "write a page with histograms (HTML)")
       ->check(writes_file());
   sub->add_option("--record", o->record, "write model and inputs, for `railstep replay`")
       ->check(writes_file());
-  CLI::Option* stall_frame = sub->add_option("--stall-frame", o->stall_frame,
-                                             "a frame to be made late, to see what follows")
-                                 ->check(within(std::int64_t{0}, std::int64_t{1} << 40));
+  CLI::Option* stall_frame =
+      sub->add_option("--stall-frame", o->stall_frame, "a frame that is made late, as a test")
+          ->check(within(std::int64_t{0}, std::int64_t{1} << 40));
   CLI::Option* stall_us = sub->add_option("--stall-us", o->stall_us, "us that it takes longer")
                               ->check(within(0., 1e8))
                               ->needs(stall_frame);

@@ -91,7 +91,7 @@ Command add_pareto(CLI::App& app) {
   sub->add_option("--report", o->report, "HTML page to write")->check(writes_file());
   sub->add_option("--csv", o->csv, "table to write")->check(writes_file());
   sub->add_option("--resume", asked.resume,
-                  "file that keeps what is done; what it has is not run again")
+                  "file that keeps the results; those that it has are not run again")
       ->check(writes_file());
   add_study(
       *sub,
@@ -109,7 +109,8 @@ Command add_pareto(CLI::App& app) {
   CLI::Option* trace = sub->add_option("--reference", asked.reference,
                                        "trace (CSV) to measure against, of the scene's frames")
                            ->check(reads_file());
-  sub->add_option("--own-error", asked.reference_own_error, "of that trace, as its maker states it")
+  sub->add_option("--own-error", asked.reference_own_error,
+                  "error of that trace, as its maker states it")
       ->needs(trace)
       ->check(within(0., 1.));
   sub->add_flag("--json", o->json, "one JSON object on stdout");

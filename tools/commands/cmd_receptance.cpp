@@ -60,8 +60,9 @@ void add_options(CLI::App& sub, ReceptanceOptions& o) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"full", "condensed", "euler", "endless"}));
   sub.add_flag("--decay-rate", o.decay, "dB/m in one-third octaves along the rail (EN 15461)");
-  sub.add_flag("--reflection", o.reflection,
-               "what comes back of waves from the far end (ends = \"non-reflecting\" or \"free\")");
+  sub.add_flag(
+      "--reflection", o.reflection,
+      "the part of waves that the far end reflects (ends = \"non-reflecting\" or \"free\")");
   sub.add_option("--csv", o.csv, "write the curves (CSV)")->check(writes_file());
   sub.add_option("--report", o.report, "write a page with plots (HTML)")->check(writes_file());
   add_overrides(sub, o.overrides);

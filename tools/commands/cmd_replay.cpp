@@ -42,7 +42,7 @@ Exit rerun(const ReplayOptions& o) {
 Command add_replay(CLI::App& app) {
   auto o = std::make_shared<ReplayOptions>();
   CLI::App* sub = app.add_subcommand("replay", "Make a recorded run again and compare its hashes");
-  sub->add_option("RECORDING", o->recording, "what `railstep run --record` wrote")
+  sub->add_option("RECORDING", o->recording, "recording that `railstep run --record` wrote")
       ->required()
       ->check(reads_file());
   sub->add_flag("--json", o->json, "one JSON object on stdout");

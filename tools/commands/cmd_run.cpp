@@ -263,10 +263,9 @@ Command add_run(CLI::App& app) {
   sub->add_option("--vtk", o->vtk,
                   "write rails, sleepers and wheels at 101 times into this folder, for ParaView")
       ->check(makes_folder());
-  sub->add_option(
-         "--inputs", o->inputs,
-         "what the scene's inputs are given (CSV: time_s, then inputs by name; a row holds "
-         "until the next)")
+  sub->add_option("--inputs", o->inputs,
+                  "values of the scene's inputs (CSV: time_s, then inputs by name; a row holds "
+                  "until the next)")
       ->check(reads_file());
   CLI::Option* record = sub->add_option("--record", o->record,
                                         "write model, inputs and hashes, for `railstep replay`")

@@ -63,8 +63,9 @@ Command add_sweep(CLI::App& app) {
       ->required()
       ->take_all()
       ->allow_extra_args(false);
-  sub->add_option("--out", o->out,
-                  "folder for a row per run and the table; what is there is not run again")
+  sub->add_option(
+         "--out", o->out,
+         "folder for a row per run and the table; runs whose rows it has are not made again")
       ->required()
       ->check(makes_folder());
   sub->add_option("--set", o->overrides, "key.path=value for all runs; repeatable")

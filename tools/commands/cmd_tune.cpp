@@ -119,10 +119,11 @@ Command add_tune(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("tune", "The cheapest setting of a scene that meets an error, verified");
   sub->add_option("SCENE", asked.scene, "scene file (TOML)")->required()->check(reads_file());
-  sub->add_option("--max-error", asked.max_error, "largest error over peak that is accepted")
+  sub->add_option("--max-error", asked.max_error, "largest error over peak")
       ->required()
       ->check(within(1e-12, 1.));
-  sub->add_option("--deadline-us", asked.deadline_us, "of a frame's median on this machine, us")
+  sub->add_option("--deadline-us", asked.deadline_us,
+                  "largest median time of a frame on this machine, us")
       ->check(within(1e-3, 1e9));
   sub->add_option("--out", o->out, "scene to write; by default SCENE.tuned.toml here")
       ->check(writes_file());
@@ -134,7 +135,7 @@ Command add_tune(CLI::App& app) {
   sub->footer(
       "Each part of the error, of step, condensation and mesh, is held to a third of it. Exit code "
       "1\n"
-      "where nothing meets it, with the best found and what binds.\n\n"
+      "where nothing meets it, with the best found and the limit that binds.\n\n"
       "Example: railstep tune config/scenes/moving_load.toml --max-error 1e-3 --deadline-us 50");
   return {sub, [o] { return run(*o); }};
 }

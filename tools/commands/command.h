@@ -27,7 +27,7 @@ CLI::Validator within(T low, T high) {
             T value{};
             const bool read = CLI::detail::lexical_cast(text, value);
             if (read && value >= low && value <= high) return std::string();
-            return fmt::format("{} is out of range; accepted is {}", text.substr(0, 60), accepted);
+            return fmt::format("{} is out of range; expected {}", text.substr(0, 60), accepted);
           },
           accepted};
 }
