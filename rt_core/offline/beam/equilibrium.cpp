@@ -21,7 +21,7 @@ Matrix3d cross_matrix(const Vector3d& v) {
   return m;
 }
 
-/// A moment on a slope s turns it: force (M x s)/(s's).
+/// A moment M on a slope s acts as the force (M x s)/(s's).
 Vector3d moment_force(const Vector3d& moment, const Vector3d& slope) {
   return moment.cross(slope) / slope.squaredNorm();
 }
@@ -31,8 +31,9 @@ Matrix3d moment_tangent(const Vector3d& moment, const Vector3d& slope) {
   return cross_matrix(moment) / s2 - 2. / (s2 * s2) * moment.cross(slope) * slope.transpose();
 }
 
-/// How much of a moment each slope of a node carries: about a the slope b turns, about b the slope
-/// a, about the normal each turns by half. Frozen in the tangent, as sections stay nearly square.
+/// Part of a moment that each slope of a node carries: b carries the moment about a, a that about
+/// b, and each carries half about the normal. Frozen in the tangent, as sections stay nearly
+/// square.
 struct MomentShare {
   Vector3d on_a, on_b;
 };
@@ -121,8 +122,7 @@ bool newton(const Structure& structure, const Balance& balance, double factor, d
     const Sparse K = balance.stiffness(q, factor);
     idle = size > .5 * previous ? idle + 1 : 0;
     previous = size;
-    // A load may be below what round-off of the first shape leaves: it moves the shape all the
-    // same.
+    // A load may be below the round-off of the first shape; it still moves the shape.
     const Eigen::VectorXd noise = balance.noise(K, q);
     const bool in_all = (residual.cwiseAbs() - kRounded * noise).maxCoeff() <= 0.;
     const bool in_vain = idle >= 2 && size * load_size <= kIdle * balance.size(noise);

@@ -71,9 +71,9 @@ bool spread(Eigen::MatrixXcd X) {
   return qr.rank() == X.cols();
 }
 
-/// Q with Q' P Q = I, the plain transpose, of a symmetric P. What has the largest product with
-/// itself is taken first, or the sum of two that have a larger one with each other; the rest is
-/// freed of it.
+/// Q with Q' P Q = I, the plain transpose, of a symmetric P. The column with the largest product
+/// with itself is taken first, or the sum of two with a larger product with each other; it is then
+/// removed from the rest.
 Eigen::MatrixXcd unit_congruence(Eigen::MatrixXcd P) {
   const Eigen::Index n = P.rows();
   Eigen::MatrixXcd Q = Eigen::MatrixXcd::Identity(n, n);

@@ -119,7 +119,7 @@ Superelement::Rows DividedLine::load_rows(const LoadPoint& load_point, int point
   return own.condense(rows);
 }
 
-/// What moves the ends of some elements, on a ring of all.
+/// Displacements under a load that contain the ends of some elements, on a ring of all.
 Stretch DividedLine::moved(const Eigen::SparseVector<double>& load, Elements around) const {
   if (!local_) return {0, factor_.solve(Eigen::VectorXd(load))};
   int first = line_.unknowns(), last = -1;
@@ -131,7 +131,7 @@ Stretch DividedLine::moved(const Eigen::SparseVector<double>& load, Elements aro
   return local_->solve(load, std::min(first, last + 1), last + 1);
 }
 
-/// Of an element's end unknowns under unit forces on one another; [2d][2d].
+/// Displacements of an element's end unknowns under unit forces on them; [2d][2d].
 const Eigen::MatrixXd& DividedLine::end_flexibility(int rail, int at) const {
   auto& known = end_flexibility_[line_.mirrored ? 0 : static_cast<std::size_t>(rail)];
   known.resize(static_cast<std::size_t>(tabled_elements(track_)));

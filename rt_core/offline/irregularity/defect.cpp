@@ -24,7 +24,7 @@ int whole_steps(double length, double step) {
 /// A shape over [-half, half] around a place. Its ends and its middle are samples.
 template <class Shape>
 Signal around(double place, double half, const DefectGrid& grid, const Shape& shape) {
-  // What lies within the patch of an end is beyond it after the mean.
+  // The mean over the patch spreads the shape beyond its ends.
   const int steps = whole_steps(half, grid.step);
   const double step = half / steps;
   if (!(grid.patch / step < kMostDefectSteps))

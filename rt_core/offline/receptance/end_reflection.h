@@ -13,9 +13,9 @@ struct Reflection {
 };
 
 /// Reflection at the far end of one line of a track, by the line's own matrices: bays far from the
-/// end are joined for ever to the dynamic stiffness Z of an endless track, seen by its border nodes
-/// (a half seat at each border), the bays of the zone to that of the end, Z_e. Displacements u that
-/// arrive and v that go back have one sum and forces that balance,
+/// end are joined without end to the dynamic stiffness Z of an endless track, seen by its border
+/// nodes (a half seat at each border), the bays of the zone to that of the end, Z_e. Displacements
+/// u that arrive and v that go back have one sum and forces that balance,
 ///   (Z_e + S Z S) v = (Z - Z_e) u,   S the mirror along x,
 /// and the waves are the eigenvectors of what one bay makes of u. Of these the one that a point
 /// force sends farthest is taken.

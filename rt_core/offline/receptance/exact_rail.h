@@ -15,8 +15,8 @@ namespace railstep {
 /// still in that direction.
 class ExactRailReceptance : public Receptance {
  public:
-  /// @param endless  the track goes on for ever beyond both ends, whatever holds them; it always
-  ///                 does beyond non-reflecting ones
+  /// @param endless  the track goes on without end beyond both ends, whatever holds them; it
+  ///                 always does beyond non-reflecting ones
   /// Throws Refused on directions other than z, axial force and a reference line off
   /// the centroid; Refused on points off the track.
   ExactRailReceptance(const Track& track, const Transfer& transfer, BeamTheory theory,

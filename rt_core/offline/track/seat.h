@@ -53,15 +53,15 @@ struct SleeperBody {
   double mass = 0.;             // whole, kg
   double roll_inertia = 0.;     // about x, also used about z, kg m2
   double pitch_inertia = 0.;    // about y, kg m2
-  std::array<bool, 3> moves{};  // along x (and about z), along y, about y; else it is held there
+  std::array<bool, 3> moves{};  // along x (and about z), along y, about y; false: held
 
   bool operator==(const SleeperBody&) const = default;
 };
 
-/// What carries the rails at one bay border: pads on a sleeper, or on the ground.
+/// Support of the rails at one bay border: pads on a sleeper, or on the ground.
 struct Seat {
   std::array<Support, 2> pad{};        // under the left and the right rail
-  std::optional<SleeperBody> sleeper;  // none: the pads stand on the ground
+  std::optional<SleeperBody> sleeper;  // empty: the pads stand on the ground
   std::array<Ballast, 2> ballast{};    // under the sleeper's left and right end
 
   bool operator==(const Seat&) const = default;

@@ -14,10 +14,10 @@
 
 namespace railstep {
 
-/// Which unknowns a node carries: all nine; six, of a section that turns but does not strain
+/// Which unknowns a node carries: all nine; six, for a section that rotates but does not strain
 /// (a_y = b_z = 0, roll a_z = -b_y, and no Poisson coupling, which would then stiffen the rail);
-/// [r_z, b_x] for vertical bending alone; or [r_x, r_z, a_y, b_x, b_z], all that a vertical force
-/// in the plane y = 0 moves of nine, which `vertical` is measured against (squeeze.h).
+/// [r_z, b_x] for vertical bending alone; or [r_x, r_z, a_y, b_x, b_z], those of the nine that a
+/// vertical force in the plane y = 0 moves, the reference for `vertical` (squeeze.h).
 enum class Unknowns { full, rigid_section, vertical, in_plane };
 inline bool strains_section(Unknowns unknowns) {
   return unknowns == Unknowns::full || unknowns == Unknowns::in_plane;
@@ -26,20 +26,20 @@ inline bool moves_sideways(Unknowns unknowns) {
   return unknowns == Unknowns::full || unknowns == Unknowns::rigid_section;
 }
 
-/// What holds a rail's end node. Pinned: its position (all three), so that the rail carries axial
-/// force, and its roll (a_z and b_y); the slopes a_x and b_x of bending stay free. Clamped: all
-/// nine. Non-reflecting: nothing, but the rail's last bays are damped (end_zone.h) so that waves
-/// which run towards the end do not come back.
+/// Constraint of a rail's end node. Pinned: its position (all three), so that the rail carries
+/// axial force, and its roll (a_z and b_y); the slopes a_x and b_x of bending stay free. Clamped:
+/// all nine. Non-reflecting: none, but the rail's last bays are damped (end_zone.h) so that waves
+/// do not return from the end.
 enum class RailEnd { free, pinned, clamped, non_reflecting };
 
 /// The ends of every rail, at x = 0 and at x = length.
 using RailEnds = std::array<RailEnd, 2>;
 
-/// Bays of the zone before a non-reflecting end, where nothing else is said.
+/// Default number of bays of the zone before a non-reflecting end.
 inline constexpr int kEndZoneBays = 16;
 
-/// Where a track stands under its own weight. Of one that is symmetric both sides are the same, and
-/// nothing moves sideways.
+/// State of a track under its own weight. In a symmetric track both sides are equal, and nothing
+/// moves sideways.
 struct TrackState {
   std::array<Eigen::VectorXd, 2> rail;     // [9 nodes] change of its unknowns, in its own axes
   std::array<Eigen::VectorXd, 2> sleeper;  // [4 seats] x, y, z of the ends, m, and turn about y
@@ -53,8 +53,8 @@ struct RailBar {
   double axial_force = 0.;  // at rest, N, tension positive
 };
 
-/// A spring and damper that a rail's point meets once it has gone `gap` towards it, and that does
-/// not pull.
+/// A spring and damper that a rail's point meets after a displacement of `gap` towards it, and that
+/// does not pull.
 struct Stop {
   int rail = 0;
   double x = 0., z = 0.;  // of the point, along the rail and above the axis, m
