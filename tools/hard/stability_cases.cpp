@@ -35,7 +35,7 @@ HardCheck refused(const std::filesystem::path& scene, const char* scheme, const 
   const std::string said = refusal(
       scene, {fmt::format("step.scheme=\"{}\"", scheme), fmt::format("step.{}={}", key, value)});
   return holds(fmt::format("{} = {:g} is refused", key, value),
-               said.find(key) != std::string::npos && said.find("accepted") != std::string::npos);
+               said.find(key) != std::string::npos && said.find("E-KEY-05") != std::string::npos);
 }
 
 HardResult stability(const std::filesystem::path& scene) {
