@@ -5,8 +5,8 @@
 
 namespace railstep {
 
-/// What a model file says of itself in words, a line each: program, scene with its SHA-256 (of the
-/// scene file and, a line each, what was set over it), units, axes, scheme and step. No date.
+/// Words of a model file about itself, a line each: program, scene with its SHA-256 (of the scene
+/// file and of the overrides, a line each), units, axes, scheme and step. There is no date.
 std::string about(const Scene& scene);
 std::string about(const SystemScene& scene);
 

@@ -14,28 +14,28 @@
 
 namespace railstep {
 
-/// A rail's section, and its moments to degree 4 about the centroid as the scene's rule integrates
-/// them, where the scene gives its shape.
+/// A rail's section. Where the scene gives its shape: its moments up to degree 4 about the
+/// centroid, as the scene's rule integrates them.
 struct RailSection {
   Section section;
   std::optional<SectionMoments> moments;
 };
 
-/// Section of a bar. Throws InputError at `place`, "FILE: [table]", and where `nonlinear` (or the
-/// bar's rule) wants moments that it does not have.
+/// Section of a bar. Throws InputError that begins with `place`, "FILE: [table]"; also where
+/// `nonlinear` or the bar's rule needs moments that the section does not have.
 RailSection bar_section(const BarScene& bar, bool nonlinear, const std::string& place);
 
-/// A section about its centroid, with its moments where there are any.
+/// A section about its centroid, with its moments where it has them.
 BeamSection beam_section(const RailSection& bar);
 
-/// The section that a scene names, whichever way it does; shear factors given in [rail] replace the
-/// section's. Those of rectangles are at the scene's Poisson ratio, those of a profile or a section
-/// file at kFitPoisson. Throws InputError, std::runtime_error where no rectangles fit the profile.
-/// Throws InputError too where the rail's model or rule wants moments and the scene gives none.
+/// The section that a scene gives in one of the five ways. Shear factors given in [rail] replace
+/// the section's. Those of rectangles are at the scene's Poisson ratio, those of a profile or a
+/// section file at kFitPoisson. Throws InputError; also where the rail's model or rule needs
+/// moments and the scene gives none. Throws Failed where no rectangles fit the profile.
 RailSection rail_section_of(const Scene& scene, int rail = kLeftRail);
 
-/// Height over the reference line, m, of a place on the section.
-/// @param axis_z  of that line above the centroid, m
+/// Height of a place on the section over the reference line, m.
+/// @param axis_z  height of that line above the centroid, m
 double height_z(Height at, const Section& section, double axis_z = 0.);
 
 Section section_of(const Scene& scene);
@@ -55,8 +55,7 @@ double rail_z(const Scene& scene, const RailSections& sections, const Track& tra
 /// Height of a reference line above the centroid, m.
 double axis_z_of(ReferenceLine line, const Section& section);
 
-/// The track of a scene. Throws InputError, for rails under so much compression that they buckle
-/// too.
+/// The track of a scene. Throws InputError; also for rails that buckle under their compression.
 Track track_of(const Scene& scene);
 Track track_of(const Scene& scene, const RailSection& rail);
 
@@ -68,7 +67,7 @@ void change_seats(const std::vector<SeatChange>& changes, Track& track);
 double scatter_factor(std::uint64_t seed, std::uint64_t stream, int seat, std::size_t side,
                       double width);
 
-/// What acts on a track, what is read from it, and what a trace's columns are named after.
+/// The traffic on a track with its sensors, and the names of the trace's columns.
 struct TracedTraffic {
   Traffic traffic;
   TraceNames names;
@@ -77,12 +76,12 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track);
 /// Throws InputError.
 PackOptions pack_options_of(const Scene& scene);
 
-/// How a scene's lines are condensed and how much they keep; of a scene of full order what
-/// kind = "modal" would.
+/// How a scene's lines are condensed and how much they keep. A scene of full order gets the
+/// reduction of kind = "modal".
 Reduction reduction_of(const Scene& scene);
 
-/// A scene's model, and the columns of its trace. Throws InputError, in one sentence, for what
-/// makes no model (a free rigid mode, say) and for what `railstep run` does not step.
+/// A scene's model, and the columns of its trace. Throws InputError where no model can be made (for
+/// example with a free rigid mode) and for scenes that `railstep run` does not step.
 struct Built {
   explicit Built(const Scene& scene);
   Track track;
@@ -92,7 +91,7 @@ struct Built {
   std::unique_ptr<PackedModel> packed;
 };
 
-/// A block's text: columns of a trace, then, behind an empty line, inputs.
+/// A block's text: columns of a trace, an empty line, then inputs.
 std::string block_text(const std::vector<std::string>& columns,
                        const std::vector<std::string>& inputs);
 

@@ -12,7 +12,7 @@ namespace railstep {
 
 namespace {
 
-/// Bays up to the foremost of the traffic.
+/// Bays up to the foremost load or wheel of the traffic.
 std::int64_t bays_taken(const Scene& scene) {
   double last = 0.;  // m; all starts are at 0 or ahead
   for (const LoadScene& load : scene.loads) last = std::max(last, load.start);
@@ -33,7 +33,7 @@ std::vector<std::string> longer_window(const Scene& scene) {
   if (!scene.track.endless) return {};
   const double decay = decay_length(track_of(scene)) / scene.track.bay;  // bays
   if (!(decay < 1e6)) return {};  // nothing holds the track, which is refused elsewhere
-  // Behind the traffic, before it, and a bay on either side that it shares.
+  // A decay length behind the traffic and before it, and a bay on either side that it shares.
   const std::int64_t wanted =
       bays_taken(scene) + 2 * (static_cast<std::int64_t>(std::ceil(decay)) + 1);
   if (wanted <= scene.track.bays) return {};

@@ -10,8 +10,8 @@ namespace railstep {
 /// middle.
 int bays_behind(const Scene& scene);
 
-/// "track.bays=N" of a window in full order that has room for a scene's traffic, where it is a ring
-/// that is shorter; else empty. (A ring wants one decay length, a window one on either side.)
+/// "track.bays=N" for a window in full order that has room for a scene's traffic, where the scene's
+/// ring is shorter; else empty. (A ring needs one decay length, a window one on either side.)
 std::vector<std::string> longer_window(const Scene& scene);
 
 }  // namespace railstep

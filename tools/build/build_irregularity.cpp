@@ -33,7 +33,7 @@ void check_record(const Scene& scene, const IrregularityScene& own, const RailSi
                   scene.step->dt));
 }
 
-/// A record that no place of the track lies in says nothing of it: chainage is not a scene's x.
+/// Refuses a record that covers no place of the track: chainage is not a scene's x.
 void check_place(const Scene& scene, const IrregularityScene& own, const RailSignals& rails) {
   const double length = scene.track.length();
   for (const auto* pair : {&rails.y, &rails.z})

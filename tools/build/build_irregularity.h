@@ -7,14 +7,14 @@
 
 namespace railstep {
 
-/// Irregularities and defects of a scene's rails. Reads the scene's record where it names one, and
-/// generates where it names a spectrum. Throws InputError.
+/// Irregularities and defects of a scene's rails. They are read from the scene's record, or
+/// generated from its spectrum. Throws InputError.
 std::vector<RailIrregularity> irregularities_of(const Scene& scene);
 
-/// What the left and the right wheel lack of being round, over the distance rolled.
+/// How much lower than a round wheel the left and the right wheel sit, over the distance rolled, m.
 std::array<Signal, 2> treads_of(const WheelsetScene& wheelset);
 
-/// The same of each wheel of a vehicle; none where all are round.
+/// The same for each wheel of a vehicle; empty where all wheels are round.
 std::vector<Signal> treads_of(const VehicleScene& vehicle);
 
 }  // namespace railstep

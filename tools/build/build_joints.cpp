@@ -3,8 +3,8 @@
 namespace railstep {
 namespace {
 
-/// With what heat presses a rail, N: every joint of it, or none. What lies between is refused where
-/// the scene is read.
+/// Compression of a rail by heat, N. Heat closes all joints of a rail or none:
+/// scene_rail_joints.cpp refuses the cases between.
 double compression_of(const Scene& scene, std::size_t side, double area,
                       const std::vector<RailJoint>& joints) {
   const RailScene& own = side == 1 && scene.right_rail ? *scene.right_rail : scene.rail;

@@ -7,16 +7,16 @@
 
 namespace railstep {
 
-/// A scene's joints at its temperature: with the gaps that heat leaves of each, or pressed where it
-/// closes them; and the compression of each rail by that, N.
+/// A scene's joints at its temperature. Heat leaves a part of each gap, or closes all gaps and
+/// presses the ends. `compression` is the force in each rail by that, N.
 struct HeatedJoints {
   std::vector<RailJoint> joints;
   std::array<double, 2> compression;
 };
 
-/// @param areas, heights  of left and right rail's section, m2, m. Ends that press give way by E
-/// A/h
-///                        where the scene says nothing else.
+/// @param areas, heights  of the left and the right rail's section, m2, m. Rail ends in contact
+/// have
+///                        the stiffness E A / h unless the scene gives another.
 HeatedJoints heated_joints(const Scene& scene, const std::array<double, 2>& areas,
                            const std::array<double, 2>& heights);
 

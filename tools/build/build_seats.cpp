@@ -16,7 +16,7 @@ void take_away(Missing what, std::size_t side, Seat& seat) {
   }
 }
 
-/// @param place  of the seat among the change's, 0 to 1
+/// @param place  of the seat among the seats of the change, 0 to 1
 void change_side(const SeatChange& change, int border, std::size_t side, double place, Seat& seat) {
   for (const SeatValue& value : change.values) {
     const double now = value.first + place * (value.last - value.first);
@@ -53,7 +53,7 @@ void change_seats(const std::vector<SeatChange>& changes, Track& track) {
         if (change.sides[side]) change_side(change, border, side, place, seat);
       track.changed_seats[border] = seat;
     }
-  // Last, as what came before may still have changed them.
+  // Sleepers are removed last, as the loop above may still change them.
   for (const SeatChange& change : changes)
     if (change.missing == Missing::sleeper)
       for (const int border : change.seats) track.changed_seats[border].sleeper.reset();

@@ -40,7 +40,7 @@ RailSection from(const RectangleSize& r, const BarScene& bar) {
 
 RailSection from(const Section& given, const BarScene&) { return {given, std::nullopt}; }
 
-/// As the file has them: its shear factors are those at kFitPoisson, like a profile's.
+/// The constants of the file. Its shear factors are those at kFitPoisson, like a profile's.
 RailSection from(const SectionFile& file, const BarScene& bar) {
   const std::optional<Rectangles<double>> shape = read_dimensions(file.path);
   RailSection result{read_section(file.path), std::nullopt};

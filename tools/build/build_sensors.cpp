@@ -12,16 +12,16 @@
 namespace railstep {
 namespace {
 
-/// One direction of a sensor: where it rests and what moves it.
+/// One direction of a sensor: its place at rest and the functional that moves it.
 struct Direction {
   double rest = 0.;   // m; x along the track's elements
-  double moved = 0.;  // of what the traffic takes along, at the start
+  double moved = 0.;  // at the start, of a sensor that moves with the traffic
   Functional track;
   int wheelset = -1;
 };
 using Point = std::array<Direction, 3>;
 
-/// @param axis_z  of the sensor's rail over the left rail's axis, m
+/// @param axis_z  height of the sensor's rail over the left rail's axis, m
 Point point_of(const RailSensor& sensor, const Track& track, double z, double axis_z) {
   const int rail = sensor.rail;
   const double y = track.rails == 1 ? 0. : (rail == 0 ? .5 : -.5) * track.rail_spacing;
@@ -65,7 +65,7 @@ Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Track& tr
   return point;
 }
 
-/// What a point of a vehicle's body does: z as its body's columns have it, and its rates.
+/// Motion of a point of a vehicle's body: z as in its body's columns, and the rates of z.
 void add_vehicle_point(const std::string& name, const VehicleSensor& sensor, const Scene& scene,
                        Sensors& sensors) {
   const std::vector<int> first = first_coordinates(scene.vehicles[sensor.vehicle].vehicle);
@@ -106,8 +106,8 @@ void add_point(const std::string& name, const Point& point, Sensors& sensors) {
   }
 }
 
-/// What a strain gauge on a rail reads, times Young's modulus: the mean strain along x over its
-/// length, of what the rail does from rest on.
+/// Reading of a strain gauge on a rail times Young's modulus: the mean strain along x over its
+/// length, by the motion of the rail from rest.
 void add_gauge(const std::string& name, const RailSensor& sensor, double z, double young,
                Sensors& sensors) {
   const int rail = sensor.rail;
@@ -120,7 +120,7 @@ void add_gauge(const std::string& name, const RailSensor& sensor, double z, doub
   sensors.track_sensors.push_back(std::move(track_sensor));
 }
 
-/// The forces of a track's one-sided springs that `chosen` picks.
+/// Forces of those one-sided springs of a track that `chosen` picks.
 template <typename Chosen>
 TrackSensor press_of(const Track& track, const Chosen& chosen) {
   const std::vector<FixedPort> ports = fixed_ports(track);
@@ -148,7 +148,8 @@ void add_support(int rail, int seat, const Track& track, Sensors& sensors) {
   sensors.track_sensors.push_back(std::move(track_sensor));
 }
 
-/// From a scene's places to those of a ring or window, whose x = 0 lies some bays on.
+/// Moves a sensor from the scene's places to those of a ring or window, where x = 0 of the scene
+/// lies some bays ahead.
 void move_on(SensorScene& sensor, int behind, const Track& track) {
   const auto refuse = [&](const std::string& place) {
     railstep::refuse(
@@ -167,7 +168,7 @@ void move_on(SensorScene& sensor, int behind, const Track& track) {
   }
 }
 
-/// Heights of a vehicle's bodies from where they stand on a level rail without weight, and pitches.
+/// Heights of a vehicle's bodies over their places on a level rail without weight, and pitches.
 void add_bodies(const VehicleScene& scene, int vehicle, Sensors& sensors) {
   const std::vector<int> first = first_coordinates(scene.vehicle);
   for (std::size_t b = 0; b + 1 < first.size(); ++b)

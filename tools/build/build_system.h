@@ -9,11 +9,10 @@
 
 namespace railstep {
 
-/// The system of a scene, its beams with their sections. Throws InputError.
+/// The system of a scene; its beams have their sections. Throws InputError.
 System system_of(const SystemScene& scene);
 
-/// A system's model, and the columns of its trace. Throws
-/// InputError, in one sentence, for what makes no model.
+/// A system's model, and the columns of its trace. Throws InputError where no model can be made.
 struct BuiltSystem {
   explicit BuiltSystem(const SystemScene& scene);
   SystemNames names;

@@ -3,8 +3,8 @@
 
 namespace railstep {
 
-/// Refuses what a scene may say but a run does not step, so that nothing is left out in silence.
-/// Throws InputError.
+/// Refuses scenes that can be read but that a run does not step, so that nothing is left out in
+/// silence. Throws InputError.
 void refuse_unstepped(const Scene& scene);
 
 }  // namespace railstep

@@ -9,10 +9,10 @@ namespace railstep {
 /// The coefficients of a scene's scheme, in full order.
 Scheme scheme_of(const StepScene& step);
 
-/// The same of a condensed track.
+/// The coefficients for a condensed track.
 Scheme held_scheme_of(const StepScene& step);
 
-/// In words.
+/// The scheme in words.
 std::string scheme_text(const StepScene& step);
 std::string held_scheme_text(const StepScene& step);
 

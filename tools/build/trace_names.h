@@ -6,10 +6,10 @@
 
 namespace railstep {
 
-/// What the columns of a trace are named after, each list in the model's order.
+/// Names that the columns of a trace begin with, each list in the model's order.
 struct TraceNames {
   std::vector<std::string> loads, wheels;
-  std::vector<std::string> flanges;  // the wheels that have them
+  std::vector<std::string> flanges;  // names of the wheels that have one
   std::vector<std::string> external_wheels;
   std::vector<std::string> track_sensors;    // whole names of columns
   std::vector<std::string> sensors;          // of a system

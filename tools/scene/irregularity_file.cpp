@@ -23,7 +23,7 @@ constexpr std::string_view kExpected =
     "rails (left_z, right_z, left_y, right_y), each name ending in _m or _mm";
 
 struct Column {
-  std::size_t name;  // of kNames; their count: the distance
+  std::size_t name;  // index into kNames; their number stands for the distance
   double metres;     // of its unit
 };
 
@@ -74,7 +74,7 @@ std::vector<Column> columns_of(const CsvLine& header) {
   return columns;
 }
 
-/// A number in metres. What lies farther than any rail would overflow in a spline.
+/// A number in metres. Numbers beyond any rail are refused: they would overflow in a spline.
 double metres_of(std::string_view field, const Column& column, const CsvLine& line) {
   const double value = column.metres * csv_number(field, line.place);
   const Range& accepted = column.name == std::size(kNames) ? kPlace : kHeight;
@@ -103,8 +103,8 @@ std::vector<std::vector<double>> values_of(const std::vector<CsvLine>& lines,
   return values;
 }
 
-/// The first row whose distance from the one before is off by `much` of what most rows have, if
-/// that is above 0, so that a row that is missing is found where it is.
+/// The first row whose step from the row before differs by `much` from the median step; 0 if there
+/// is none. Compared with the median, a missing row is found at its own place.
 std::size_t first_off(const std::vector<double>& distance, double much) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < distance.size(); ++k) steps.push_back(distance[k] - distance[k - 1]);

@@ -19,7 +19,7 @@ RailEnds read_ends(const Table& t) {
   return {kEnds[ends[0]], kEnds[ends[1]]};
 }
 
-/// Bays of the zone before a non-reflecting end; the zones of both ends lie on the track.
+/// Bays of the zone before a non-reflecting end. The zones of both ends must lie on the track.
 int read_end_zone(const Table& t, const TrackScene& track) {
   const std::int64_t zones =
       std::count(track.ends.begin(), track.ends.end(), RailEnd::non_reflecting);
@@ -39,7 +39,7 @@ int read_end_zone(const Table& t, const TrackScene& track) {
   return bays;
 }
 
-/// A track without end is taken at rest, and has no ends.
+/// A track without end is linearised at rest and has no ends.
 void check_endless(const Table& t, const TrackScene& track) {
   if (track.ends != RailEnds{})
     t.refuse("ends", "E-SCENE-05",
@@ -88,8 +88,8 @@ TrackScene read_track(const Table& t) {
   return track;
 }
 
-/// Refuses a size that no machine steps, before anything of that size exists. The bytes are those
-/// of four banded matrices of doubles (M, C, K and the factored step matrix).
+/// Refuses a track that is too large for any machine before it takes memory. The bytes are those of
+/// four banded matrices of doubles (M, C, K and the factored step matrix).
 void check_size(const Table& t, const TrackScene& track) {
   const double elements = static_cast<double>(track.rails) * static_cast<double>(track.bays) *
                           static_cast<double>(track.elements_per_bay);
@@ -114,7 +114,7 @@ void read_spring(const Table& t, std::size_t axis, bool required, std::array<dou
       t.number(fmt::format("damping_{}_n_s_per_m", "xyz"[axis]), between(0.0, 1e11), 0.0);
 }
 
-/// Heat makes force only in a rail that cannot grow.
+/// Heat presses only a rail that cannot grow.
 void check_held(const Table& rail, const Scene& scene) {
   const auto& ends = scene.track.ends;
   if (scene.rail.temperature_rise != 0.0 && (ends[0] == RailEnd::free || ends[1] == RailEnd::free))
@@ -124,7 +124,7 @@ void check_held(const Table& rail, const Scene& scene) {
                             scene.rail.temperature_rise));
 }
 
-/// gauge_m in the place of rail_spacing_m.
+/// Reads gauge_m, which replaces rail_spacing_m.
 void read_gauge(const Table& track, Scene& scene) {
   if (!track.has("gauge_m")) return;
   const double gauge = track.number("gauge_m", between(0.3, 3.0));
@@ -141,7 +141,7 @@ void read_gauge(const Table& track, Scene& scene) {
   scene.track.rail_spacing = spacing_of_gauge(track, scene, gauge);
 }
 
-/// A vertical force moves a rail that leans sideways too.
+/// A leaning rail moves sideways too under a vertical force.
 void check_cant(const Table& rail, const Scene& scene) {
   if (scene.rail.cant != 0.0 && scene.track.unknowns == Unknowns::vertical)
     rail.refuse("cant", "E-RAIL-12",
@@ -209,7 +209,7 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   return s;
 }
 
-/// The whole number of `dt` in `time`; 1e-9 forgives the rounding of decimal numbers, no more.
+/// Number of steps `dt` in `time`, a whole number within 1e-9 for the rounding of decimal numbers.
 std::int64_t whole_steps(const Table& t, std::string_view key, double time, double dt) {
   const double steps = std::round(time / dt);
   if (!(steps >= 1.0) || std::fabs(time / dt - steps) > 1e-9 * steps)
@@ -334,7 +334,7 @@ Scene read_track_scene(const Table& root) {
   root.attempt([&] { scene.vehicles = read_vehicles(root, scene, scene.inputs); });
   root.attempt([&] { scene.external_wheels = read_external_wheels(root, scene); });
   root.attempt([&] { scene.irregularity = read_irregularity(root, scene); });
-  root.stop_if_refused();  // what follows asks what runs
+  root.stop_if_refused();  // the readers below ask what runs on the track
   check_external_wheels(root, scene);
   root.attempt([&] { scene.defects = read_defects(root, scene); });
   root.attempt([&] { scene.sensors = read_sensors(root, scene); });

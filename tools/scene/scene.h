@@ -45,12 +45,12 @@ struct SectionFile {
 using SectionSource =
     std::variant<ProfileFile, SectionFile, Section, RectangleSizes, RectangleSize>;
 
-/// Which rails there are and how they are cut up. x runs from 0 to length().
+/// The rails and their mesh. x runs from 0 to length().
 struct TrackScene {
   Unknowns unknowns;
   int rails;          // 1 (on y = 0) or 2 (left on y = +rail_spacing / 2)
   std::int64_t bays;  // per rail; supports stand at the bays + 1 bay borders
-  bool endless;       // bays are those of the ring or window under the traffic
+  bool endless;       // `bays` then counts the ring or window under the traffic
   double bay;         // m
   int elements_per_bay;
   double rail_spacing;  // between the rails' centres, m
@@ -58,7 +58,7 @@ struct TrackScene {
   int end_zone_bays;  // damped bays before each non-reflecting end
   bool gravity;       // on the rails
   RailModel model;
-  bool linearised_under_weight;  // the stiffness is taken where weight and preload leave the track
+  bool linearised_under_weight;  // linearised in equilibrium under weight and preload
   ReferenceLine reference_line;
   [[nodiscard]] double length() const { return static_cast<double>(bays) * bay; }
 };
@@ -74,10 +74,10 @@ struct BarScene {
 
 struct RailScene : BarScene {
   double crown_radius;      // m
-  double axial_force;       // N, tension positive, beside what the temperature makes
-  double temperature_rise;  // K, over that without force
+  double axial_force;       // N, tension positive, without the force by temperature
+  double temperature_rise;  // K, over the temperature without force
   double expansion;         // 1/K
-  double cant;              // by how much both rails lean inwards, tangent
+  double cant;              // tangent of the angle by which both rails lean inwards
 };
 
 /// The pad at each bay border of each rail. Its height_z follows from `at` and the section.
@@ -85,25 +85,25 @@ struct SupportScene : Support {
   Height at;  // foot or axis
 };
 
-/// What a change takes away of a seat.
+/// The part that a change takes away from a seat.
 enum class Missing { nothing, pad, ballast, sleeper };
 
 /// A number of a seat that becomes another one, or a multiple of itself.
 struct SeatValue {
   double& (*of)(Seat& seat, std::size_t side);
   double first, last;  // at the first and the last of the seats, linear between
-  bool scales;         // it is a factor on what is there, else it stands in its place
+  bool scales;         // a factor on the present value; else it replaces the value
 };
 
-/// Factors drawn evenly from 1 - width to 1 + width: one for each seat and side, on all of `of`.
+/// Random factors, uniform from 1 - width to 1 + width: one for each seat and side, on all of `of`.
 struct SeatScatter {
   std::vector<double& (*)(Seat& seat, std::size_t side)> of;
   double width;
-  std::uint64_t stream;  // tells draws of one seed apart
+  std::uint64_t stream;  // makes draws of one seed independent
 };
 
-/// How some seats differ from [support], [sleeper] and [ballast]. Values, scatter, what is missing,
-/// in this order.
+/// How some seats differ from [support], [sleeper] and [ballast]. First the values are applied,
+/// then the scatter, then the missing part.
 struct SeatChange {
   std::vector<int> seats;
   std::array<bool, 2> sides;  // left, right
@@ -114,15 +114,16 @@ struct SeatChange {
   Missing missing = Missing::nothing;
 };
 
-/// Between the ends of rails at a joint.
+/// The gap between the rail ends at a joint.
 struct JointGap {
-  std::optional<double> cold;           // without heat, m; none: the ends never meet
-  std::optional<double> end_stiffness;  // N/m; none: by the section
+  std::optional<double> cold;           // gap without heat, m; nullopt: the ends never meet
+  std::optional<double> end_stiffness;  // N/m; nullopt: found from the section
   double end_damping = 0.0;             // N s/m
-  std::array<double, 2> grown{};        // what heat takes of it at left and right rail, m
+  std::array<double, 2> grown{};        // growth of left and right rail into it by heat, m
 };
 
-/// What a rail's point meets and does not pull at. Its z follows from `at` and the section.
+/// A spring that a point of a rail meets and that does not pull. Its z follows from `at` and the
+/// section.
 struct StopScene : Stop {
   std::string name;
   Height at;
@@ -132,10 +133,10 @@ struct StopScene : Stop {
 struct LoadScene : MovingLoad {
   std::string name;
   Height at;            // axis or head
-  bool may_leave_rail;  // then it is simply gone past the end
+  bool may_leave_rail;  // its force is 0 past the end
 };
 
-/// A force from outside that is given frame by frame.
+/// A force that is given from outside, frame by frame.
 struct InputScene {
   std::string name;  // NAME.force_n or NAME.moment_n_m
   double limit;      // N or N m
@@ -163,7 +164,7 @@ struct VehicleScene : RunningVehicle {
   std::vector<WheelTread> treads;
 };
 
-/// The speed of the largest size that a load, a wheelset or a vehicle has, m/s.
+/// The speed of largest magnitude of a load, a wheelset or a vehicle, m/s.
 template <typename Runner>
 double fastest(const Runner& runner) {
   return travel_table(runner.speed, runner.speeds).speed;
@@ -174,7 +175,7 @@ struct StepScene {
   std::int64_t steps_per_frame;
   std::int64_t steps;  // of the whole run
   TimeScheme scheme;
-  double rho_inf;                      // of generalised-alpha, and of held contact forces
+  double rho_inf;                      // of generalised-alpha and of held contact forces
   double newmark_gamma, newmark_beta;  // of Newmark
   double hht_alpha;                    // of Hilber, Hughes and Taylor
   bool mean_contact;                   // of condensed tracks: contact by the discrete gradient
@@ -182,11 +183,11 @@ struct StepScene {
 };
 
 struct CondenseScene {
-  std::optional<ReductionKind> kind = {};  // none: full order
+  std::optional<ReductionKind> kind = {};  // nullopt: full order
   std::optional<double> modes_per_bay = {}, highest_hz = {};
   int nodes_per_bay = 1;
   std::vector<double> expansion_hz = {};
-  std::array<double, 2> band_hz = {20., 1500.};  // in which the model is to be right
+  std::array<double, 2> band_hz = {20., 1500.};  // the model has to be right in it
   bool residual_flexibility = true;
 };
 
@@ -194,11 +195,11 @@ struct RailSensor {
   int rail;
   double position;  // m
   Height at;
-  std::optional<double> gauge_length = {};  // of a strain gauge along the rail, m; none: no gauge
+  std::optional<double> gauge_length = {};  // of a strain gauge along the rail, m; else no gauge
 };
 struct SleeperSensor {
   std::int64_t sleeper;     // from 0 along x
-  std::optional<int> rail;  // the end under that rail; none: its centre
+  std::optional<int> rail;  // the end under that rail; nullopt: the centre
 };
 struct WheelsetSensor {
   std::size_t wheelset;  // index into Scene::wheelsets; its centre
@@ -219,12 +220,12 @@ struct Scene {
   std::string sum;  // Table::sum() of it
   TrackScene track;
   RailScene rail;                       // of both rails
-  std::optional<RailScene> right_rail;  // of the right one, where it differs
-  std::optional<SupportScene> support;  // none: only the ends hold the rails, or nothing
+  std::optional<RailScene> right_rail;  // of the right rail, where it differs
+  std::optional<SupportScene> support;  // nullopt: only the ends can hold the rails
   std::optional<Sleeper> sleeper;
-  std::vector<SeatChange> seat_changes;  // one after the other
+  std::vector<SeatChange> seat_changes;  // applied one after the other
   std::vector<StopScene> stops;
-  std::vector<RailJoint> joints;     // without what their gaps do
+  std::vector<RailJoint> joints;     // without their gaps
   std::vector<JointGap> joint_gaps;  // [joints]
   std::vector<LoadScene> loads;
   std::vector<WheelsetScene> wheelsets;
@@ -233,12 +234,12 @@ struct Scene {
   std::vector<VehicleScene> vehicles;
   std::optional<IrregularityScene> irregularity;
   std::vector<DefectScene> defects;
-  std::optional<StepScene> step;  // none: the scene is not run
+  std::optional<StepScene> step;  // nullopt: the scene is not run
   CondenseScene condense;
   NewtonOptions statics;
   std::vector<SensorScene> sensors;
   bool trace_supports;
-  /// Of the run, s; 0 without one.
+  /// Duration of the run, s; 0 without [step].
   [[nodiscard]] double duration() const {
     return step ? static_cast<double>(step->steps) * step->dt : 0.0;
   }
@@ -247,11 +248,11 @@ struct Scene {
 /// Whether a wheelset has flanges.
 bool has_flanges(const Scene& scene);
 
-/// Width of a railhead where the gauge is measured, m; none: the section says nothing of it.
+/// Width of a railhead where the gauge is measured, m; nullopt where the section has no shape.
 std::optional<double> head_width(const BarScene& rail);
 
-/// Reads and checks a scene of a track; nothing of its size is allocated. Throws InputError, also
-/// at a scene of bodies and beams, which scene_system.h reads.
+/// Reads and checks a scene of a track. It allocates nothing of the track's size. Throws
+/// InputError; also for a scene of bodies and beams, which scene_system.h reads.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 }  // namespace railstep

@@ -6,7 +6,7 @@
 namespace railstep {
 namespace {
 
-/// What a track alone has.
+/// Refuses tables that only a track alone may have.
 void refuse_foreign(const Table& root) {
   if (root.has("wheelset"))
     root.refuse("wheelset", "E-BODY-01",

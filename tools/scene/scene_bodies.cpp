@@ -101,7 +101,7 @@ void check_path(const Table& t, const Scene& scene, double start, const SpeedSce
 
 namespace {
 
-/// amplitude_n, frequency_hz and phase_deg of a force that swings.
+/// Reads amplitude_n, frequency_hz and phase_deg of a force that swings.
 void read_swing(const Table& t, const Scene& scene, LoadScene& load) {
   if (!t.has("amplitude_n")) {
     for (const char* key : {"frequency_hz", "phase_deg"})
@@ -168,7 +168,7 @@ void read_guide(const Table& wheelset, WheelsetScene& w) {
   }
 }
 
-/// Equilibrium is that of rails and wheels: one that nothing bears has none.
+/// A wheelset that stands on no rail has no equilibrium.
 void check_start(const Table& t, const Scene& scene, const WheelsetScene& w) {
   const double length = scene.track.length();
   const bool on_rail = w.start >= 0.0 && w.start <= length;
@@ -284,7 +284,7 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
 }
 
 void check_names(const Table& root, const Scene& scene) {
-  // A sensor may bear its wheelset's name: only wheels, not wheelsets, have columns of their own.
+  // A sensor may have its wheelset's name: only wheels, not wheelsets, have columns of their own.
   std::map<std::string, std::string> traced, wheelsets;  // name -> where it was given first
   const auto claim = [](auto& taken, const Table& t, std::string_view key,
                         const std::string& name) {

@@ -8,9 +8,9 @@
 namespace railstep {
 namespace {
 
-constexpr int kExpansionPoints = 4;  // over the band, unless a scene names its own
+constexpr int kExpansionPoints = 4;  // over the band, unless the scene gives expansion_hz
 
-/// Logarithmic steps over the band, both ends among them.
+/// Frequencies at logarithmic steps over the band, both ends included.
 std::vector<double> expansion_points(const std::array<double, 2>& band) {
   std::vector<double> hz;
   hz.reserve(kExpansionPoints);
@@ -59,7 +59,7 @@ CondenseScene read_condense(const Table& root, const TrackScene& track) {
   return c;
 }
 
-/// A track beside bodies is in full order, and its step sees no flexibility but its own.
+/// A track beside bodies is in full order, and its step has no residual flexibility.
 CondenseScene read_full_order(const Table& root) {
   CondenseScene full;
   full.residual_flexibility = false;

@@ -25,7 +25,7 @@ std::optional<double> width_of(const std::array<double, 3>& widths,
   return std::nullopt;
 }
 
-/// head_width() of each way to a section.
+/// head_width() for each way to give a section.
 struct HeadWidth {
   std::optional<double> operator()(const ProfileFile& file) const {
     return width_of(read_profile(file.path).outline);

@@ -16,7 +16,7 @@ constexpr double kTwoPi = 6.28318530717958647692;
 const Range kPatch = between(0.0, 0.5);
 const Range kHeight = between(-0.1, 0.1);
 
-/// Of a cosine wave: nowhere steeper than 45 degrees.
+/// Range of a cosine wave's amplitude, so that it is nowhere steeper than 45 degrees.
 Range wave_height(double wavelength) {
   const double most = std::min(0.1, wavelength / kTwoPi);
   return between(-most, most);
@@ -24,7 +24,7 @@ Range wave_height(double wavelength) {
 
 constexpr double kEndlessPeriod = 1000.;  // m
 
-/// One of the two, or both.
+/// Reads which of the two sides, or both.
 std::array<bool, 2> read_sides(const Table& t, std::string_view key, const Scene& scene) {
   if (scene.track.rails == 1 && !t.has(key)) return {true, false};
   const std::size_t side = t.choice(key, {"both", "left", "right"}, 0);
@@ -52,10 +52,10 @@ void check_wave(const Table& t, std::string_view key, double wavelength, double 
                        wavelength, speed, wavelength / (speed * scene.step->dt), scene.step->dt));
 }
 
-/// Refuses a defect of more samples than a signal may hold.
-/// @param key    of its length
-/// @param half   of what it spans, m
-/// @param shape  what its samples have to resolve beside the contact patch, m
+/// Refuses a defect with more samples than a signal may hold.
+/// @param key    the key of its length
+/// @param half   half of its span, m
+/// @param shape  length that its samples have to resolve beside the contact patch, m
 void check_samples(const Table& t, std::string_view key, double half, double patch, double shape) {
   const double step = defect_grid(patch, shape).step;
   if (std::max(half, patch) < kMostDefectSteps * step) return;
@@ -178,7 +178,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
 
 namespace {
 
-/// What a wheel of a radius at a speed lacks of being round; which wheel stands elsewhere.
+/// Reads how a wheel of this radius and speed deviates from round. The caller reads which wheel.
 TreadScene read_tread(const Table& t, const Scene& scene, double radius, double speed) {
   TreadScene d{};
   constexpr TreadKind kKinds[] = {TreadKind::fresh_flat, TreadKind::rounded_flat,

@@ -10,8 +10,7 @@
 
 namespace railstep {
 
-inline constexpr double kContactPatch =
-    .012;  // m, the length that irregularities are averaged over
+inline constexpr double kContactPatch = .012;  // m, length over which irregularities are averaged
 
 /// [irregularity]: a track's record, or a signal made of a named spectrum.
 struct IrregularityScene {
@@ -34,18 +33,18 @@ struct DefectScene {
 
 enum class TreadKind { fresh_flat, rounded_flat, out_of_round };
 
-/// [[wheelset.tread]]: what a wheel lacks of being round, on one wheel or on both.
+/// [[wheelset.tread]]: deviation from round, of one wheel or of both.
 struct TreadScene {
   TreadKind kind;
   std::array<bool, 2> on;  // left, right
-  double first;            // distance rolled when its middle first is below, m
+  double first;            // distance rolled until its middle is below for the first time, m
   double length, depth;    // of a flat, m
   int order;               // of an out-of-round wheel, waves a turn
   double amplitude;        // of it, m
   double patch;            // m
 };
 
-/// [[vehicle.tread]]: the same of one wheel of a vehicle.
+/// [[vehicle.tread]]: the same for one wheel of a vehicle.
 struct WheelTread {
   std::size_t wheel;  // from 0, the foremost
   TreadScene shape;

@@ -11,13 +11,13 @@ namespace {
 
 enum class Axis { none, turn, slide, both };  // turn: about +y in the plane; both: not in the plane
 
-/// What the keys of a kind of joint are.
+/// The keys that a kind of joint has.
 struct JointForm {
   const char* name;
   JointKind kind;
   Axis axis;
-  const char* motion = nullptr;  // unit of what drives it
-  bool may_stand = false;        // without being driven
+  const char* motion = nullptr;  // unit of its drive
+  bool may_stand = false;        // may be without a drive
 };
 constexpr JointForm kForms[] = {
     {"spherical", JointKind::spherical, Axis::none},
@@ -75,7 +75,7 @@ Motion read_motion(const Table& t, const std::string& unit, const Range& accepte
   return motion;
 }
 
-/// A drive begins where the parts stand.
+/// Reads a drive, which begins at 0.
 Motion read_drive(const Table& t, const std::string& unit) {
   Motion motion = read_motion(t, unit, between(-1e6, 1e6));
   const bool tabled = !motion.table.empty();
@@ -88,14 +88,14 @@ Motion read_drive(const Table& t, const std::string& unit) {
   return motion;
 }
 
-/// Of a joint that may be driven: whether it is.
+/// Whether a joint has a drive.
 bool is_driven(const Table& t, const JointForm& form) {
   if (form.motion == nullptr) return false;
   const std::string unit = form.motion, polynomial = "polynomial_" + unit, table = "table_" + unit;
   return !form.may_stand || t.has(polynomial) || t.has(table);
 }
 
-/// How far two points are apart where that changes from where they stand by a motion.
+/// The distance of two points over time: their distance at the start and its change.
 Motion around_length(const Table& t, Motion change, double length) {
   if (change.table.empty()) change.polynomial[0] = length;
   for (std::array<double, 2>& row : change.table)
@@ -107,7 +107,7 @@ Motion around_length(const Table& t, Motion change, double length) {
   return change;
 }
 
-/// Keys that other kinds of joint have.
+/// Refuses keys that only other kinds of joint have.
 void refuse_foreign(const Table& t, const JointForm& form) {
   const auto refuse = [&](const char* key, bool wanted) {
     if (!wanted && t.has(key))
@@ -197,7 +197,7 @@ Motion read_force_over_time(const Table& t, const std::string& constant, const s
   return motion;
 }
 
-/// How large it is, over time or given frame by frame.
+/// Sets the magnitude of a force, over time or frame by frame.
 void set_size(const Table& t, SystemScene& scene, SystemForce& force) {
   const char* const constant = force.moment ? "moment_n_m" : "force_n";
   const char* const unit = force.moment ? "n_m" : "n";

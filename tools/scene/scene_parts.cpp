@@ -11,7 +11,8 @@
 namespace railstep {
 namespace {
 
-/// The tensor of [Ixx, Iyy, Izz] or of these with [Ixy, Ixz, Iyz] behind, as mass can have it.
+/// Reads the tensor [Ixx, Iyy, Izz], with or without [Ixy, Ixz, Iyz] behind. Refuses one that no
+/// mass has.
 Eigen::Matrix3d read_inertia(const Table& t, bool planar) {
   const char* const key = "inertia_kg_m2";
   const std::vector<double> i = t.numbers(key, between(-1e12, 1e12), 3, 6);
@@ -99,8 +100,8 @@ FlexibleBeam read_beam(const Table& t, bool planar) {
   return b;
 }
 
-/// The largest distance of two points of a section, m; of a shape that stands in a file the largest
-/// that is accepted there.
+/// The largest distance between two points of a section, m; for a shape in a file the largest that
+/// such a file may have.
 double extent(const SectionSource& shape) {
   if (const auto* r = std::get_if<RectangleSize>(&shape)) return std::hypot(r->height, r->width);
   if (const auto* r = std::get_if<RectangleSizes>(&shape))
@@ -127,7 +128,7 @@ std::string NameBook::claim(const Table& t) {
 
 namespace {
 
-/// A body's or a beam's. Beside a track a sensor's `on` tells it from rails and sleepers.
+/// Name of a body or a beam. Beside a track it differs from the words for `on` of a sensor.
 std::string claim_part(const Table& t, const SystemScene& scene, NameBook& names) {
   std::string name = names.claim(t);
   for (const char* kept : {"rail", "sleeper", "wheelset"})
@@ -194,7 +195,7 @@ Part read_part(const Table& t, std::string_view key, const std::string& name,
 
 namespace {
 
-/// Where a point lies in a bar: along it, and beside its line.
+/// Refuses a point beyond a bar's ends or outside its section's reach.
 void check_reach(const Table& t, std::string_view key, const std::string& bar,
                  const Eigen::Vector3d& local, double length, const SectionSource& shape) {
   // 1e-9 of the length forgives the rounding of decimals.

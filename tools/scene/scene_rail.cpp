@@ -6,10 +6,10 @@
 namespace railstep {
 namespace {
 
-// A rail's section is under a metre in every direction; what is larger was given in millimetres.
+// A rail's section is under a metre in every direction; a larger one was given in millimetres.
 const Range kSize = between(1e-4, 1.0);
 const Range kShearFactor = above_upto(0.0, 1.2);
-// A beam may be of rubber; a rail of under 1 GPa was given in N/mm2.
+// A beam may be of rubber; a rail's modulus under 1 GPa was given in N/mm2.
 const Range kRailYoung = between(1e9, 1e13), kBeamYoung = between(1e5, 1e13);  // Pa
 
 RectangleSizes read_rectangles(const Table& t) {
@@ -81,7 +81,7 @@ ElementRule read_rule(const Table& t) {
   return rule;
 }
 
-/// Points per rectangle want rectangles.
+/// Points in each rectangle need a section of rectangles.
 int read_section_points(const Table& t, const SectionSource& shape) {
   const int points = static_cast<int>(t.integer("section_points", 0, 3, 0));
   const auto* profile = std::get_if<ProfileFile>(&shape);
@@ -97,7 +97,7 @@ BarScene read_bar_of(const Table& bar, const Range& young) {
   BarScene r;
   r.shape = read_shape(bar);
   r.young = bar.number("young_pa", young, 210e9);
-  // Beyond these a material makes work out of nothing; at 0.5 it cannot be compressed at all.
+  // Beyond these bounds a material would create energy; at 0.5 it cannot be compressed.
   r.poisson = bar.number("poisson", {-1.0, 0.5, false, false}, 0.3);
   r.density = bar.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
   r.section_points = 0;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kRigid = std::numeric_limits<double>::infinity();
 
-/// A stiffness and the damping beside it; one that may be left out is rigid without.
+/// Reads a stiffness and the damping beside it.
+/// @param otherwise  stiffness where the key is absent; kRigid: the ends share the motion
 void read_plates(const Table& t, const std::string& motion, bool turns, double otherwise,
                  double& stiffness, double& damping) {
   const char* k = turns ? "n_m_per_rad" : "n_per_m";
@@ -26,7 +27,7 @@ void read_plates(const Table& t, const std::string& motion, bool turns, double o
                          key, motion, k));
 }
 
-/// On a border of two elements.
+/// Reads x_m, the border of two elements.
 double read_place(const Table& t, const TrackScene& track) {
   const double x = t.number("x_m", between(0.0, track.length()));
   const double element = track.bay / track.elements_per_bay;
@@ -85,7 +86,7 @@ Jointed read_joint(const Table& t, const Scene& scene) {
   return read;
 }
 
-/// Whether heat closes all gaps of a rail, and presses it; `cuts` by place.
+/// Whether heat closes all gaps of a rail and presses it. `cuts` are sorted by place.
 bool closes_all(const std::vector<std::pair<double, std::size_t>>& cuts,
                 const std::vector<Jointed>& joints, double growth) {
   double gaps = 0.0;
@@ -96,7 +97,7 @@ bool closes_all(const std::vector<std::pair<double, std::size_t>>& cuts,
   return growth > gaps;
 }
 
-/// Heat presses ends alone, without plates beside them.
+/// Heat presses the ends alone: no plates may carry a part of the force.
 void check_plates(const Table& t, const RailJoint& joint) {
   if (joint.stiffness[0] > 0.0)
     t.refuse("along_stiffness_n_per_m", "E-RAILJOINT-06",
@@ -105,8 +106,9 @@ void check_plates(const Table& t, const RailJoint& joint) {
              "colder rail");
 }
 
-/// Warm rails grow into their gaps: each from its middle, those at the ends from there, where they
-/// are held. Where they have room in all together, none is closed.
+/// Warm rails grow into their gaps: each piece from its middle, the first and the last from the
+/// held ends. Where all gaps together have room for the growth, each gap must have room for its
+/// part.
 void check_gaps(const Table& root, const Scene& scene, int rail, std::vector<Jointed>& joints) {
   const RailScene& own = rail == 1 && scene.right_rail ? *scene.right_rail : scene.rail;
   std::vector<std::pair<double, std::size_t>> cuts;
@@ -147,7 +149,8 @@ void check_force(const Table& rail, const Scene& scene) {
   if (scene.right_rail && scene.right_rail->axial_force != 0.0) refuse(rail.table("right"));
 }
 
-/// Heat makes force in a rail without gaps alone: then the rails differ.
+/// Heat presses only a rail without gaps. Where one rail has gaps and the other has none, they
+/// differ.
 void check_heat(const Table& rail, const Scene& scene, const std::vector<Jointed>& joints) {
   if (scene.track.rails == 1 || scene.right_rail || scene.rail.temperature_rise == 0.0) return;
   std::array<bool, 2> cut{};

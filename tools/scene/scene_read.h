@@ -10,7 +10,7 @@
 
 namespace railstep {
 
-/// Parses, and checks the schema. Throws InputError.
+/// Parses a scene and checks its schema. Throws InputError.
 Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 Scene read_track_scene(const Table& root);
 /// [track], [rail], [support], [sleeper] and [ballast].
@@ -21,41 +21,41 @@ const char* key_of_system(const Table& root);
 /// Section, material and rule of [rail] or of a beam.
 BarScene read_bar(const Table& bar);
 RailScene read_rail(const Table& rail);
-/// [rail.right]: what it does not say is as in [rail].
+/// [rail.right]; keys that it does not have are as in [rail].
 RailScene read_right_rail(const Table& right, const RailScene& left);
 /// [[support_change]], in the file's order.
 std::vector<SeatChange> read_seat_changes(const Table& root, const Scene& scene);
 std::vector<StopScene> read_stops(const Table& root, const Scene& scene);
-/// [[rail_joint]] of a scene whose rails are read. Refuses force that a gap does not carry.
+/// [[rail_joint]] of a scene whose rails are read. Refuses axial force that a gap cannot carry.
 void read_joints(const Table& root, const Table& rail, Scene& scene);
 /// Distance of the rails' centres whose heads' inner faces are `gauge` apart, 14 mm below the
 /// running surface, m. Throws InputError where a rail's section has no head.
 double spacing_of_gauge(const Table& track, const Scene& scene, double gauge);
 /// [condense].
 CondenseScene read_condense(const Table& root, const TrackScene& track);
-/// The same beside bodies and beams, where a track is in full order.
+/// [condense] beside bodies and beams, where a track is in full order.
 CondenseScene read_full_order(const Table& root);
-/// dt, frame and duration of [step]; the scheme and the start are its reader's.
+/// dt, frame and duration of [step]. The callers read the scheme and the start.
 StepScene read_times(const Table& step);
 /// [step] of a scene with a track.
 StepScene read_track_step(const Table& step, const TrackScene& track);
 /// The scheme of [step] and its numbers.
-/// @param rho_inf    where the scene does not say it
-/// @param of_bodies  whether they are those of bodies and beams
+/// @param rho_inf    its default
+/// @param of_bodies  whether the schemes are those of bodies and beams
 void read_scheme(const Table& step, double rho_inf, bool of_bodies, StepScene& read);
-/// How contact forces of [step] follow the penetration; of a scene whose [condense] is read.
+/// Reads how contact forces follow the penetration, for a scene whose [condense] is read.
 void read_contact(const Table& root, Scene& scene);
-/// Refuses what external wheels cannot stand beside: what is not linear, frames of several steps,
-/// a scheme of two stages.
+/// Refuses scenes with external wheels and something nonlinear, frames of several steps, or a
+/// scheme of two stages.
 void check_external_wheels(const Table& root, const Scene& scene);
-/// Refuses a run that is no whole number of frames.
+/// Refuses a run that is not a whole number of frames.
 void check_frames(const Table& step, const StepScene& read);
-/// How a track's nodes lie in its section: reference_line, the centroid by default.
+/// Where a track's nodes lie in its section: key reference_line, the centroid by default.
 ReferenceLine read_reference_line(const Table& t);
-/// A name that can stand in the trace's header. Throws InputError where it cannot.
+/// `name`, if it can stand in the trace's header. Throws InputError where it cannot.
 std::string checked_name(const Table& t, std::string_view key, const std::string& name);
 std::vector<LoadScene> read_loads(const Table& root, const Scene& scene);
-/// @param inputs  gets those that forces on them name
+/// @param inputs  the inputs of their forces are added to it
 std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
                                           std::vector<InputScene>& inputs);
 std::optional<IrregularityScene> read_irregularity(const Table& root, const Scene& scene);
@@ -64,7 +64,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
 std::vector<TreadScene> read_treads(const Table& t, const Scene& scene, const WheelsetScene& own);
 /// [wheelset.flange].
 Flange read_flange(const Table& t, const Scene& scene);
-/// @param inputs  gets those that forces on them name
+/// @param inputs  the inputs of their forces are added to it
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
                                         std::vector<InputScene>& inputs);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
@@ -80,19 +80,19 @@ struct SpeedScene {
   std::vector<double> speeds;  // t (s), m/s, t, m/s, ...; empty without a table
 };
 SpeedScene read_speed(const Table& t, std::optional<double> otherwise);
-/// Refuses a path that runs off the rail before the end of the run, or before `stop`.
+/// Refuses a path that leaves the rail before the end of the run, or before `stop`.
 void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
                 const std::optional<double>& stop = std::nullopt);
 std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene);
-/// `input` and `limit_n`, or of a moment `limit_n_m`. @returns its index
+/// Reads `input` and `limit_n`, or `limit_n_m` for a moment. @returns the index of the input
 int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
-/// A force by `table`, [[t_s, N or N m], ...], or given frame by frame.
+/// A force by `table`, [[t_s, N or N m], ...], or by an input of each frame.
 OuterForce read_body_force(const Table& t, int direction, bool moment,
                            std::vector<InputScene>& inputs);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// On a rail, a sleeper, a wheelset or a vehicle.
 SensorScene read_sensor(const Table& t, const Scene& scene);
-/// Every name of the trace is there once. Throws InputError at the second.
+/// Throws InputError where a name of the trace stands twice.
 void check_names(const Table& root, const Scene& scene);
 
 }  // namespace railstep

@@ -5,7 +5,8 @@
 namespace railstep {
 namespace {
 
-/// A key of one scheme alone, so that it is not believed to act where it does not.
+/// A key that only one scheme has. It is refused beside other schemes, where it would have no
+/// effect.
 double number_of(const Table& t, const char* key, bool in_use, const char* scheme,
                  const Range& accepted, double otherwise) {
   if (t.has(key) && !in_use)
@@ -52,8 +53,8 @@ void read_contact(const Table& root, Scene& scene) {
 
 namespace {
 
-/// What a scene has whose forces follow from its own motion, and which an external wheel's, held
-/// over a step, would not meet; null: nothing.
+/// The first part of a scene whose force depends on the motion within a step. It would not meet the
+/// forces of an external wheel, which are held over a step. nullptr: there is none.
 const char* contact_beside(const Scene& scene) {
   if (!scene.wheelsets.empty()) return "[[wheelset]]";
   if (!scene.vehicles.empty()) return "[[vehicle]]";

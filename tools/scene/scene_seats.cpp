@@ -13,7 +13,7 @@ using Of = double& (*)(Seat&, std::size_t);
 
 enum class Kind { stiffness, damping, other };
 
-/// A key of a seat's table: where its number is, and what is accepted there.
+/// A key of a seat's table: the place of its number and its range.
 struct Property {
   const char* table;
   const char* key;
@@ -71,7 +71,7 @@ const Property kProperties[] = {
      [](Seat& s, std::size_t i) -> double& { return s.ballast[i].gap; }},
 };
 
-/// `from` to `to`, or a list; without either all of them.
+/// Seats `from` to `to`, or a list; all seats without these keys.
 std::vector<int> read_seats(const Table& t, const Scene& scene) {
   const std::int64_t last = scene.track.bays;
   std::vector<int> seats;
@@ -110,7 +110,7 @@ std::array<bool, 2> read_sides(const Table& t, const Scene& scene) {
   return {side != 2, side != 1};
 }
 
-/// Of several seats, [first, last] is a transition along them.
+/// Adds a value. For several seats [first, last] is a transition along them.
 void add_value(const Table& t, const char* key, const Range& accepted, const std::vector<Of>& of,
                bool scales, SeatChange& change) {
   if (!t.has(key)) return;
@@ -136,7 +136,7 @@ void add_scatter(const Table& t, const char* key, const std::vector<Of>& of, std
   if (width > 0.0) change.scatter.push_back({of, width, stream});
 }
 
-/// Ballast along x or y changes only where there is some: without, the sleeper is held there.
+/// Ballast along x or y can change only where the scene has it: without, the sleeper is held there.
 void check_held(const Table& t, const Property& property, const Scene& scene) {
   if (std::string_view(property.table) != "ballast" || !t.has(property.key)) return;
   const std::string_view key = property.key;

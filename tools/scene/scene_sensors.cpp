@@ -7,7 +7,7 @@
 namespace railstep {
 namespace {
 
-/// Which of the names the key gives; refused if none.
+/// Index of `name` in `names`. Refuses an unknown name.
 std::size_t index_of(const Table& t, std::string_view key, const std::string& name,
                      const std::vector<std::string>& names) {
   std::string known;

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kSystemKeys[] = {"body",  "beam",   "joint", "spring",
                                        "force", "system", "joints"};
 
-/// Refuses what says something of a track alone.
+/// Refuses tables that belong to a track.
 void refuse_track_keys(const Table& root) {
   for (const char* key : {"rail", "support", "sleeper", "ballast", "load", "wheelset", "vehicle",
                           "condense", "static", "output"})
@@ -43,7 +43,7 @@ StepScene read_step(const Table& t) {
   return s;
 }
 
-/// A key of one choice alone, so that it is not believed to act where it does not.
+/// Refuses a key beside other choices than its own, where it would have no effect.
 void belongs(const Table& t, const char* key, bool in_use, const char* choice) {
   if (t.has(key) && !in_use)
     t.refuse(key, "E-BODY-27",

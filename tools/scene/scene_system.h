@@ -10,13 +10,13 @@
 
 namespace railstep {
 
-/// What a beam of a system is made of.
+/// Section, material and reference line of a system's beam.
 struct BeamBar {
   BarScene bar;
   ReferenceLine line;
 };
 
-/// Names of a system's things, in the order in which it has them. A spring may be without.
+/// Names of a system's parts, in its order. The name of a spring may be empty.
 struct SystemNames {
   std::vector<std::string> bodies, beams, joints, springs, sensors;
 };
@@ -28,7 +28,7 @@ struct SystemScene {
   std::string sum;             // Table::sum() of it
   std::optional<Scene> track;  // with loads, sensors on rails and sleepers, and the step
   System system;               // beams without section, material, rule and axis
-  std::vector<BeamBar> bars;   // [beams] of which these come
+  std::vector<BeamBar> bars;   // [beams] their sections and materials
   SystemNames names;
   TracedForces traced;
   std::vector<InputScene> inputs;

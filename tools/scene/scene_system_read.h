@@ -9,34 +9,34 @@
 
 namespace railstep {
 
-/// Names of a scene, each given once.
+/// The names of a scene; each is given once.
 class NameBook {
  public:
-  /// The key `name` of a table; throws InputError where it is no name, or taken.
+  /// The key `name` of a table. Throws InputError where it is not a valid name, or is taken.
   std::string claim(const Table& t);
 
  private:
   std::map<std::string, std::string> owner_;  // name -> the table that gave it first
 };
 
-/// The track of a scene that has a system too, its loads and its step. Throws InputError at what is
-/// not stepped beside bodies.
+/// The track of a scene that has a system too, with its loads and its step. Throws InputError for
+/// tables that are not stepped beside bodies.
 Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names);
 
 void read_bodies(const Table& root, SystemScene& scene, NameBook& names);
 void read_beams(const Table& root, SystemScene& scene, NameBook& names);
 
-/// What a key names.
+/// The use of a name, which says what it may name.
 enum class Naming {
   held,    // of joints and springs: the ground, bodies, beams and rails
   driven,  // of forces: bodies and beams
-  sensed   // of sensors: the same; what is on a track has other keys
+  sensed   // of sensors: bodies and beams; sensors on a track have other keys
 };
-/// The part of that name. Throws InputError, naming all there are.
+/// The part of that name. Throws InputError with the names of all parts.
 Part read_part(const Table& t, std::string_view key, const std::string& name,
                const SystemScene& scene, Naming naming);
-/// A point of a part, at rest; on a beam or a rail within its length and not farther from its line
-/// than the section is large.
+/// A point of a part at rest, m. On a beam or a rail it lies within the length, and not farther
+/// from the line than the size of the section.
 Eigen::Vector3d read_point(const Table& t, std::string_view key, const Part& part,
                            const SystemScene& scene);
 

@@ -50,8 +50,8 @@ NamedVehicle read_car(const Table& t) {
   return car(c);
 }
 
-/// Its bodies and springs, by type. A sprung mass without an unsprung one is a mass whose contact
-/// is its spring.
+/// Bodies and springs of a vehicle by its type. The spring of a sprung mass without an unsprung
+/// mass is its contact.
 NamedVehicle read_bodies(const Table& t, VehicleScene& v) {
   switch (t.choice("type", {"mass", "sprung_mass", "bogie", "vehicle"})) {
     case 0:
@@ -82,7 +82,7 @@ void read_kind(const Table& t, VehicleScene& v) {
   v.bodies = std::move(kind.bodies);
 }
 
-/// What is known of the vehicle itself, here or in a file of its own.
+/// Reads the vehicle itself, here or from a file of its own.
 void read_what(const Table& t, VehicleScene& v) {
   if (!t.has("file")) return read_kind(t, v);
   if (t.has("type"))
@@ -97,7 +97,7 @@ void read_what(const Table& t, VehicleScene& v) {
   });
 }
 
-/// How its wheels hold on to the rail, unless its type says so.
+/// Reads the contact of its wheels, unless its type says it.
 void read_contact(const Table& t, VehicleScene& v) {
   if (v.contact == WheelContactKind::linear) {
     if (t.has("contact"))
@@ -123,7 +123,7 @@ void read_contact(const Table& t, VehicleScene& v) {
                    "{} belongs to a linear contact; expected contact = \"linear\" beside it", key));
 }
 
-/// Refuses a vehicle of which a wheel leaves the rail before the end of the run.
+/// Refuses a vehicle with a wheel that leaves the rail before the end of the run.
 void check_wheels(const Table& t, const Scene& scene, const VehicleScene& v,
                   const SpeedScene& speed) {
   for (const Vehicle::Wheel& wheel : v.vehicle.wheels) {
@@ -153,7 +153,7 @@ OuterForce read_force(const Table& t, const VehicleScene& v, std::vector<InputSc
   return read_body_force(t, first_coordinates(v.vehicle)[body] + pitch, pitch == 1, inputs);
 }
 
-/// How it comes down on the track, where it does.
+/// Reads how a vehicle falls onto the track, if it does.
 std::optional<Falling> read_falling(const Table& t, const Scene& scene, const VehicleScene& v) {
   const char* const keys[] = {"drop_height_m", "drop_speed_m_per_s"};
   for (const char* key : keys) {
