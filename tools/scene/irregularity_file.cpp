@@ -103,8 +103,8 @@ std::vector<std::vector<double>> values_of(const std::vector<CsvLine>& lines,
   return values;
 }
 
-/// The first row whose step from the row before differs by `much` from the median step; 0 if there
-/// is none. Compared with the median, a missing row is found at its own place.
+/// The first row whose step from the row before is not above 0, or differs from the median step by
+/// more than `much` of it; 0 if there is none. So a missing row is found at its own place.
 std::size_t first_off(const std::vector<double>& distance, double much) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < distance.size(); ++k) steps.push_back(distance[k] - distance[k - 1]);
