@@ -4,9 +4,9 @@
 
 namespace railstep {
 
-// A beam of a system by its kind: in space or in the plane.
+// A beam of a system, in space or in the plane.
 
-/// @param held  of the beam; null where none is asked for
+/// @param held  of the beam; null if they are not needed
 inline Chain chain_of(const BeamChainModel& b, const std::int32_t* held = nullptr) noexcept {
   return {b.element, {b.mass[0], b.mass[1], b.mass[2], b.mass[3]}, held, b.held, b.elements};
 }

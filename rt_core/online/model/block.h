@@ -7,30 +7,30 @@ namespace railstep {
 // A model in one block of bytes, the model file of `railstep condense`: a header, then the payload.
 // docs/model-file.md has it as a table.
 
-/// Where something stands in a block, bytes from its start. What it leaves of its last word is 0.
+/// A section of a block, bytes from its start. The rest of its last word is 0.
 struct BlockSection {
   std::uint64_t at, bytes;
 };
 
-/// The payload's, in this order and without a gap.
+/// The sections of the payload, in this order and without a gap.
 enum SectionName : std::size_t {
-  kColumns,     // names of a trace's columns, one a line; behind an empty line those of the inputs
+  kColumns,     // names of a trace's columns, one a line; after an empty line those of the inputs
   kWords,       // int64: every count, integer and length of an array
   kReals,       // doubles, of scalars and arrays
-  kStructures,  // of a system, as they stand in memory, without gaps or pointers
+  kStructures,  // of a system, as in memory, without gaps or pointers
   kIntegers,    // int32, of arrays
   kCheck,       // doubles: what a step must publish, see self_check.h
   kSections
 };
 
-/// Largest of the loops in a step.
+/// Caps of the loops in a step.
 struct BlockCaps {
   std::int32_t locate, ports;   // of this library: caps.h
   std::int32_t guides, system;  // iterations of a wheelset's guide; Newton's of a system
 };
 
-/// The first bytes of a block, as they stand in memory: fields without gaps, little-endian. Behind
-/// them stands the text `about`, which a reader may show and never needs; the CRC covers it.
+/// The first bytes of a block, as in memory: fields without gaps, little-endian. The text `about`
+/// follows, which a reader may show and never needs; the CRC covers it.
 struct BlockHeader {
   char magic[8];               // "railstep"
   std::uint32_t byte_order;    // kByteOrder in the writer's order
@@ -55,13 +55,13 @@ static_assert(sizeof(BlockHeader) == 8 + 4 + 2 + 2 + 4 + 4 + 8 + 16 * (1 + kSect
                                          16 + 3 * 8 + 2 * 8 + 3 * 8 + 3 * 8);
 
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
-/// Another major one is refused. A larger minor one adds behind what is there: it is read.
+/// Another major version is refused. A larger minor version only appends fields, and is read.
 inline constexpr std::uint16_t kBlockMajor = 12, kBlockMinor = 0;
 inline constexpr std::int64_t kMostCheckFrames = 1000;
 inline constexpr std::size_t kSumAt = offsetof(BlockHeader, sum);
 inline constexpr std::size_t kCrcAt = offsetof(BlockHeader, crc);
 
-/// Of a block's first `header_bytes`, which hold a header.
+/// CRC of a block's first `header_bytes`, which hold a header.
 std::uint32_t header_crc(const unsigned char* block, std::size_t header_bytes) noexcept;
 
 }  // namespace railstep

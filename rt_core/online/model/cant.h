@@ -2,7 +2,7 @@
 
 namespace railstep {
 
-/// How a rail leans: the axes y', z' of its section, turned about x against those of the track,
+/// Lean of a rail: the axes y', z' of its section, rotated about x against those of the track,
 ///   e_y' = (0, cosine, sine),   e_z' = (0, -sine, cosine).
 /// Rails lean inwards: sine > 0 on the left (+y), below 0 on the right. Unknowns of a rail's nodes
 /// and places in its section count along its own axes.
@@ -24,7 +24,7 @@ inline void to_track(const Cant& cant, const double* own, double* track) noexcep
   track[2] = cant.cosine * own[2] + cant.sine * own[1];
 }
 
-/// Height of the section's point (y, z) over a node's unknowns [r, a, b] in the rail's axes.
+/// Row of the height of the section's point (y, z) in a node's unknowns [r, a, b], rail axes.
 inline void height_row(const Cant& cant, double y, double z, double* row) noexcept {
   const double lever[3] = {1., y, z};
   for (int i = 0; i < 3; ++i) {
@@ -34,8 +34,8 @@ inline void height_row(const Cant& cant, double y, double z, double* row) noexce
   }
 }
 
-/// The highest point of a railhead, which level wheels meet: in the section, and its height over
-/// the rail's axis, m. The crown is a circle of that radius about a point below z = top on y = 0.
+/// The highest point of a railhead, which level wheels touch: in the section, and its height above
+/// the rail's axis, m. The crown is a circle about a point below z = top on y = 0.
 struct CrownTop {
   double y, z, height;
 };

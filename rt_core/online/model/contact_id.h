@@ -26,7 +26,7 @@ constexpr ContactId tread_of(std::int32_t wheelset, std::int32_t side) noexcept 
 }
 /// The tread on the other side of the same wheelset.
 constexpr ContactId other_tread(ContactId tread) noexcept { return tread ^ 1; }
-/// A wheel's contact, of its number among the wheels of all vehicles.
+/// The contact of a wheel by its number among the wheels of all vehicles.
 inline ContactId vehicle_contact(const Model& model, std::int32_t vehicle_wheel) noexcept {
   return tread_count(model) + vehicle_wheel;
 }
@@ -53,24 +53,24 @@ inline bool is_flange(const Model& model, ContactId contact) noexcept {
 inline bool is_of_wheelset(const Model& model, ContactId contact) noexcept {
   return contact < tread_count(model) || is_flange(model, contact);
 }
-/// The flanges of which a contact is one.
+/// The pair of flanges that a contact belongs to.
 inline const FlangeModel& flange_of(const Model& model, ContactId contact) noexcept {
   return model.flange[among_flanges(model, contact) / 2];
 }
-/// The vehicle's wheel that a contact is.
+/// The vehicle's wheel at a contact.
 inline const VehicleWheel& vehicle_wheel(const Model& model, ContactId contact) noexcept {
   return model.vehicle_wheel[among_vehicle_wheels(model, contact)];
 }
-/// The number of the wheelset of which a contact is a tread or a flange.
+/// The number of the wheelset to which a tread or flange belongs.
 inline std::int32_t wheelset_of(const Model& model, ContactId contact) noexcept {
   return is_flange(model, contact) ? flange_of(model, contact).wheelset : contact / 2;
 }
-/// The rail that a contact is on: 0 left, 1 right. Of a wheelset's it is the contact's side.
+/// The rail that a contact is on: 0 left, 1 right. On a wheelset it is the contact's side.
 inline std::int32_t rail_of(const Model& model, ContactId contact) noexcept {
   if (is_flange(model, contact)) return among_flanges(model, contact) % 2;
   return is_of_wheelset(model, contact) ? contact % 2 : vehicle_wheel(model, contact).rail;
 }
-/// Rail and height at which a contact's vertical force acts; kNoLoadPoint of a flange.
+/// Rail and height at which a contact's vertical force acts; kNoLoadPoint for a flange.
 inline std::int32_t load_point_of(const Model& model, ContactId contact) noexcept {
   if (is_flange(model, contact)) return kNoLoadPoint;
   return is_of_wheelset(model, contact)

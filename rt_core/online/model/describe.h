@@ -6,8 +6,7 @@
 
 namespace railstep {
 
-// The order of a model's numbers in a block, for the one who writes and the one who reads. An
-// Archive has
+// The order of a model's numbers in a block, for writing and for reading. An Archive has
 //   count(int32&, most)          0 to most
 //   integer(int32 or int64&)     any
 //   real(double&)                any finite one
@@ -15,7 +14,7 @@ namespace railstep {
 //   reals(const double*&, n)     n of them, or none and a null pointer
 //   integers(const int32*&, n)   n of them
 //   structures(const T*&, n)     n of them, T flat (describe_system.h)
-// and what describe() makes may be read only where the counts have passed.
+// and the results of describe() may be read only if the counts were valid.
 
 template <typename Archive>
 void describe(Archive& a, Scheme& s) {
@@ -72,7 +71,7 @@ void describe(Archive& a, Endless& e) {
   for (std::int64_t* i : {&e.progress.period, &e.progress.bays, &e.progress.advance}) a.integer(*i);
 }
 
-/// Line `at`; one with a twin has its matrices or modes.
+/// Line `at`; a line with a twin has the twin's matrices or modes.
 template <typename Archive>
 void describe(Archive& a, Model& m, std::int32_t at) {
   LineModel& line = m.line[at];
@@ -137,7 +136,7 @@ void describe(Archive& a, SignalModel& s) {
   a.reals(s.coefficient, s.intervals == 0 ? 0 : std::int64_t{s.intervals} + 3);
 }
 
-/// @param directions  the last one
+/// @param directions  the largest direction
 template <typename Archive>
 void describe(Archive& a, BodyForce& f, std::int32_t directions) {
   a.count(f.direction, directions);
@@ -273,7 +272,7 @@ void describe(Archive& a, FixedPortModel& p, const Model& m) {
   a.reals(p.compliance, std::int64_t{p.count} * p.count);
 }
 
-/// A track with what runs on it, and the unknowns of a system beside it in its arrays.
+/// A track and its traffic; its arrays include the unknowns of a system beside it.
 template <typename Archive>
 void describe_track(Archive& a, Model& m) {
   a.real(m.element_length);
@@ -311,7 +310,7 @@ void describe_track(Archive& a, Model& m) {
   describe(a, m.fixed, m);
 }
 
-/// All but the start. A system alone has no lines, and nothing of a track.
+/// All but the start. A system alone has no lines and no other parts of a track.
 template <typename Archive>
 void describe(Archive& a, Model& m) {
   describe(a, m.scheme);
@@ -337,7 +336,7 @@ void describe(Archive& a, Model& m) {
   if (m.system.unknowns > 0) describe(a, m.system, m.line_unknowns);
 }
 
-/// The start, behind a model that holds: its length follows from what the model is made of.
+/// The start, after a valid model, which determines its length.
 template <typename Archive>
 void describe_start(Archive& a, Model& m) {
   a.reals(m.start, start_doubles(m));

@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-/// Whether a structure has these fields and no gap, so that it is the same wherever it is read.
+/// Whether a structure has these fields and no gap, so that it is the same on every machine.
 template <typename T>
 constexpr bool is_flat(std::size_t words_of_4, std::size_t words_of_8) noexcept {
   return std::is_trivially_copyable_v<T> && words_of_4 % 2 == 0 &&

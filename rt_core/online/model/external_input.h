@@ -11,7 +11,7 @@ inline constexpr std::int32_t kExternalPlaces = 2;  // x and y, which come first
 inline constexpr std::int32_t kExternalForce = 2;   // on the rail along x, then along y and z, N
 inline constexpr std::int32_t kExternalInputs = 5;
 
-/// What the names of these inputs end with.
+/// Ends of the names of these inputs.
 inline constexpr const char* kExternalInputNames[kExternalInputs] = {"x_m", "y_m", "force_x_n",
                                                                      "force_y_n", "force_z_n"};
 

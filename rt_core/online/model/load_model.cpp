@@ -15,13 +15,13 @@ namespace railstep {
 
 namespace {
 
-/// What of a section has not been read.
+/// Bytes of a section that have not been read yet.
 struct Rest {
   const unsigned char* at;
   std::uint64_t left;
 };
 
-/// Reads a payload in the order of describe.h; after the first thing that does not fit, all counts
+/// Reads a payload in the order of describe.h. After the first number that does not fit, all counts
 /// are 0.
 class Reader {
  public:
@@ -30,7 +30,7 @@ class Reader {
       rest_[s] = {block + header.section[s].at, header.section[s].bytes};
   }
 
-  /// Whether all was as it should be so far, and whether nothing is left.
+  /// Whether all numbers so far were valid, and whether no bytes are left.
   bool good() const noexcept { return good_; }
   bool at_end() const noexcept {
     return rest_[kWords].left == 0 && rest_[kReals].left == 0 && rest_[kStructures].left == 0 &&
@@ -99,7 +99,7 @@ class Reader {
 
 std::uint64_t padded(std::uint64_t bytes) noexcept { return (bytes + 7) / 8 * 8; }
 
-/// Whether one section behind the other fills the block, each no longer than what is left.
+/// Whether the sections fill the block one after another, each within the bytes that are left.
 bool sections_are_valid(const BlockHeader& h) noexcept {
   if (h.about.at != sizeof(BlockHeader) || h.about.bytes > h.header_bytes - sizeof(BlockHeader) ||
       sizeof(BlockHeader) + padded(h.about.bytes) != h.header_bytes)
@@ -112,7 +112,7 @@ bool sections_are_valid(const BlockHeader& h) noexcept {
   return at == h.bytes;
 }
 
-/// What fills a block up between its sections is 0, so that a model has one form.
+/// Whether the padding between sections is 0, so that a model has one form.
 bool gaps_are_zero(const unsigned char* at, const BlockHeader& h) noexcept {
   const auto zero_behind = [at](const BlockSection& s) {
     for (std::uint64_t i = s.at + s.bytes; i < s.at + padded(s.bytes); ++i)
@@ -124,7 +124,7 @@ bool gaps_are_zero(const unsigned char* at, const BlockHeader& h) noexcept {
   return zero_behind(h.about);
 }
 
-/// Of a block as it was given, up to its sums.
+/// Checks the header of a block as it was given, and its sums.
 LoadStatus check_header(const unsigned char* at, std::size_t bytes, BlockHeader& h) noexcept {
   if (bytes < 8 || !same_bytes(at, "railstep", 8)) return LoadStatus::not_a_model;
   if (bytes < offsetof(BlockHeader, real_bytes)) return LoadStatus::wrong_size;
@@ -152,7 +152,7 @@ bool states(const BlockHeader& h, const Model& m) noexcept {
          h.state_bytes == state_doubles(m) * 8 && h.workspace_bytes == workspace_doubles(m) * 8;
 }
 
-/// A check compares a row of the trace, or there is none.
+/// Whether the check compares a row of the trace, or there is no check.
 bool check_is_valid(const BlockHeader& h) noexcept {
   const std::uint64_t doubles = h.section[kCheck].bytes / 8;
   if (h.check_frames == 0) return doubles == 0;
@@ -160,8 +160,8 @@ bool check_is_valid(const BlockHeader& h) noexcept {
          h.section[kCheck].bytes % 8 == 0;
 }
 
-/// A step of two stages is of a track alone in full order, whose forces the model has at any time;
-/// contact forces that are means are held over the step.
+/// A step of two stages needs a track alone in full order, whose forces the model knows at any
+/// time. Mean contact forces are held over the step.
 bool scheme_is_valid(const Model& m) noexcept {
   if (m.scheme.mean != 0 && (m.form == Form::banded || m.scheme.theta != 1.)) return false;
   if (!(m.scheme.stage_fraction >= 0.) || !(m.scheme.stage_fraction < 1.)) return false;
@@ -169,14 +169,15 @@ bool scheme_is_valid(const Model& m) noexcept {
          (m.form == Form::banded && m.system.unknowns == 0 && m.external_wheels == 0);
 }
 
-/// Flops that a step has in any model of these sizes at its caps, most of them of a track alone
-/// (offline/cost counts them all): what a model states is no less, or it bounds nothing.
+/// Flops that a step of any model of these sizes has at its caps, most of them of a track alone
+/// (offline/cost counts them all). The number that a model states must not be less, else it bounds
+/// nothing.
 std::int64_t least_step_flops(const Model& m) noexcept {
   std::int64_t sum = 21 * (std::int64_t{m.unknowns} - m.line_unknowns);
   for (std::int32_t l = 0; l < m.lines; ++l) {
     const LineModel& line = m.line[l];
     const std::int64_t n = line.size, left = line.step.left, panels = line.step.panels;
-    // Of a panel's columns to the left those before the first unknown are no work.
+    // Columns of a panel before the first unknown take no work.
     const std::int64_t first = left / kLanes < panels ? left / kLanes : panels;
     const std::int64_t columns = kLanes * (first * (first - 1) / 2) + (panels - first) * left;
     sum += m.form == Form::condensed ? 22 * n : 22 * n + 4 * kLanes * columns + 160 * panels;
@@ -188,18 +189,18 @@ std::int64_t least_step_flops(const Model& m) noexcept {
   return sum + (std::int64_t{m.system.cap} + 1) * (27 * std::int64_t{m.system.unknowns} + elements);
 }
 
-/// A frame takes at least the work of its steps.
+/// The stated work of a frame is at least that of its steps.
 bool cost_is_valid(const Model& m) noexcept {
   return m.cost.flops / m.steps_per_frame >= least_step_flops(m) && m.cost.flops >= 1 &&
          m.cost.bytes >= 1 && m.cost.instructions >= m.cost.flops;
 }
 
-/// A run is of whole frames.
+/// A run has whole frames.
 bool frames_are_valid(const Model& m) noexcept {
   return m.steps_per_frame >= 1 && m.steps >= 1 && m.steps % m.steps_per_frame == 0;
 }
 
-/// What a step takes for granted beyond the counts.
+/// Checks all that a step relies on beyond the counts.
 bool is_valid(const Model& m) noexcept {
   if (!is_above_zero(m.scheme.dt) || !frames_are_valid(m) || !inputs_are_valid(m)) return false;
   if (!scheme_is_valid(m)) return false;

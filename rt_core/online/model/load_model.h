@@ -11,10 +11,10 @@ enum class LoadStatus : std::uint8_t {
   misaligned,        // the block does not start at a multiple of 8 bytes
   not_a_model,       // it does not begin as a block does
   other_version,     // of the format
-  other_byte_order,  // written where the bytes of a number stand the other way round
-  wrong_size,        // cut short or run on
-  wrong_header,      // the header's bytes are not those that were written
-  wrong_sum,         // the payload's are not
+  other_byte_order,  // written on a machine with the other byte order
+  wrong_size,        // too short or too long
+  wrong_header,      // the header's bytes are not the ones that were written
+  wrong_sum,         // the payload's bytes are not the ones that were written
   bad_content,       // a number in it is out of its range
 };
 
@@ -24,16 +24,16 @@ struct LoadResult {
   std::size_t text_bytes;  // of it
 };
 
-/// Views over a block (block.h), which must outlive the model. Sizes are checked before they are
-/// used, every number must be finite where it may not be infinite, and every number that a step
-/// uses as a size, an index or for its solve be in its range, so that a wrong block gives a status
-/// and no harm whatever its sums are. No heap.
+/// Makes a model of views over a block (block.h), which must outlive the model. Sizes are checked
+/// before they are used. Numbers must be finite where infinity has no meaning. Sizes, indices and
+/// numbers of a step's solves must be in their range. So a wrong block gives a status and does no
+/// harm, even with right sums. No heap.
 [[nodiscard]] LoadResult load_model(const void* block, std::size_t bytes, Model& model) noexcept;
 
-/// What a block of the model states of its loops.
+/// The caps of its loops that a block of the model states.
 BlockCaps caps_of(const Model& model) noexcept;
 
-/// The header of a block that load_model() took.
+/// The header of a block that load_model() accepted.
 BlockHeader header_of(const void* block) noexcept;
 
 }  // namespace railstep

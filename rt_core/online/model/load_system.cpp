@@ -33,7 +33,7 @@ bool solve_is_valid(const Scheme& c, const SystemModel& s) noexcept {
          is_above_zero(s.joint_tolerance) && s.rank_tolerance >= 0. && s.rank_tolerance < 1.;
 }
 
-/// Compliances of its ports on rails are not negative.
+/// Whether compliances of the ports on rails are not negative.
 bool compliances_are_valid(const SystemModel& s) noexcept {
   const std::int64_t n = std::int64_t{9} * s.ports;
   for (std::int64_t i = 0; i < n; ++i)
@@ -41,7 +41,8 @@ bool compliances_are_valid(const SystemModel& s) noexcept {
   return true;
 }
 
-/// What of a track is not stepped beside a system; without a track nothing of one is there.
+/// Whether a track beside the system has only parts that are stepped there; without a track,
+/// whether there are no parts of one.
 bool stands_alone_or_beside(const Model& m) noexcept {
   const SystemModel& s = m.system;
   if (s.first != m.line_unknowns || s.unknowns != m.unknowns - m.line_unknowns) return false;
@@ -54,7 +55,7 @@ bool stands_alone_or_beside(const Model& m) noexcept {
   return s.ports == 0 && m.line_unknowns == 0 && m.elements == 0 && m.loads == 0 && m.signals == 0;
 }
 
-/// Its unknowns are each of one direction or rotation.
+/// Whether each unknown belongs to one direction or rotation.
 bool columns_are_valid(const RigidBodyModel& b) noexcept {
   if (b.unknowns != 3 && b.unknowns != 6) return false;
   std::uint32_t carried = 0;
@@ -91,7 +92,7 @@ bool port_is_valid(const Model& m, const RailPortModel& p) noexcept {
          are_moderate(p.rest);
 }
 
-/// Parts stand one behind the other: bodies, beams, ports, less than a panel of padding.
+/// Whether parts follow each other: bodies, beams, ports, then less than a panel of padding.
 bool parts_are_valid(const Model& m) noexcept {
   const SystemModel& s = m.system;
   if (s.bodies + s.beams < 1 || s.unknowns % kLanes != 0) return false;
@@ -125,7 +126,7 @@ bool marker_is_valid(const SystemModel& s, const MarkerModel& m) noexcept {
   return false;
 }
 
-/// Of a marker that holds: its part among bodies, beams, the track; -1 on the ground.
+/// Part of a valid marker among bodies, beams, the track; -1 on the ground.
 std::int32_t part_of(const SystemModel& s, const MarkerModel& m) noexcept {
   switch (m.kind) {
     case PartKind::body:
@@ -149,7 +150,7 @@ bool motions_are_valid(const SystemModel& s) noexcept {
   return s.pieces == 0 || (s.piece_start && s.piece);
 }
 
-/// Its law alone; what it names is looked at beside.
+/// Checks the law of a row only; its markers and motions are checked elsewhere.
 bool law_is_valid(const SystemModel& s, std::int32_t r) noexcept {
   const RowModel& row = s.row[r];
   for (const double x : {row.offset, row.compliance, row.stiffness, row.damping})
@@ -162,7 +163,7 @@ bool law_is_valid(const SystemModel& s, std::int32_t r) noexcept {
          (row.kind != RowKind::distance || is_above_zero(row.offset));
 }
 
-/// What a step places: all markers but those of sensors, which are the last.
+/// Number of markers that a step places: all but those of sensors, which come last.
 std::int32_t placed(const SystemModel& s) noexcept { return s.markers - s.sensors; }
 
 bool row_is_valid(const SystemModel& s, std::int32_t r) noexcept {
@@ -181,7 +182,7 @@ bool row_is_valid(const SystemModel& s, std::int32_t r) noexcept {
   return true;
 }
 
-/// Every end is that of its row, on the part under which it stands. Rows hold.
+/// Whether every end belongs to its row and to the part that lists it. Rows must be valid.
 bool ends_are_valid(const SystemModel& s) noexcept {
   const std::int32_t parts = s.bodies + s.beams + 1;
   if (s.part_end[0] != 0 || s.part_end[parts] != s.ends) return false;

@@ -28,7 +28,7 @@ bool are_not_negative(const double* values, std::int64_t n) noexcept {
   return true;
 }
 
-/// Of a matrix [n][n].
+/// Whether the diagonal of a matrix [n][n] is above 0.
 bool diagonal_is_above_zero(const double* matrix, std::int64_t n) noexcept {
   for (std::int64_t i = 0; i < n; ++i)
     if (!(matrix[i * n + i] > 0.)) return false;
@@ -41,7 +41,7 @@ bool diagonal_is_not_negative(const double* matrix, std::int64_t n) noexcept {
   return true;
 }
 
-/// A force that grows with the penetration.
+/// Whether the force grows with the penetration.
 bool contact_is_valid(const ContactModel& c) noexcept {
   return c.hertz > 0. || (c.stiffness > 0. && c.damping >= 0.);
 }
@@ -77,7 +77,7 @@ bool line_is_valid(const Model& m, const LineModel& line) noexcept {
          diagonals_are_valid(line.mass) && diagonals_are_valid(line.damping);
 }
 
-/// Whether it is a rotation, to its rounding.
+/// Whether it is a rotation, to rounding.
 bool is_rotation(const Cant& cant) noexcept {
   const double off = (cant.cosine * cant.cosine + cant.sine * cant.sine) - 1.;
   return off > -1e-14 && off < 1e-14 && cant.cosine > 0.;
@@ -93,15 +93,14 @@ bool force_is_valid(const Model& m, const BodyForce& f) noexcept {
   return f.input >= 0 ? f.input < m.inputs : f.points > 0 && f.table != nullptr;
 }
 
-/// A load is not taken off before it has begun, on the side that it comes from
-/// (track/moving_load.cpp).
+/// Whether a load does not stop before its start, seen along its motion (track/moving_load.cpp).
 bool load_is_valid(const LoadModel& l) noexcept {
   if (l.table_points > 0 && l.table == nullptr) return false;
   const bool ahead = l.travel.speed >= 0. ? l.stop > -kMostNumber : l.stop < kMostNumber;
   return ahead && travel_is_valid(l.travel);
 }
 
-/// External wheels stand on a track alone with loads, a step a frame; each has its own inputs.
+/// External wheels need a track with loads only and one step a frame; each has its own inputs.
 bool external_wheels_are_valid(const Model& m) noexcept {
   if (m.external_wheels == 0) return true;
   if (m.wheelsets > 0 || m.vehicles > 0 || m.fixed.count > 0 || m.steps_per_frame != 1)
@@ -119,7 +118,7 @@ bool wheelset_is_valid(const Model& m, const WheelsetModel& w) noexcept {
   return travel_is_valid(w.travel) && signal_is_valid(w.tread[0]) && signal_is_valid(w.tread[1]);
 }
 
-/// Flanges come by rising wheelset, one pair each, and count as wheels among the ports.
+/// Flanges are in the order of their wheelsets, one pair each, and count as wheels among the ports.
 bool flanges_are_valid(const Model& m) noexcept {
   if (contact_count(m) > kMaxWheels) return false;
   for (std::int32_t i = 0; i < m.flanges; ++i) {
@@ -142,7 +141,7 @@ bool vehicle_is_valid(const Model& m, const VehicleModel& v) noexcept {
          diagonal_is_above_zero(v.compliance, v.wheels);
 }
 
-/// A wheel is one of its vehicle's, whose matrices have a row for it.
+/// Whether a wheel belongs to its vehicle, whose matrices have a row for it.
 bool wheel_is_valid(const Model& m, std::int32_t i) noexcept {
   const VehicleWheel& wheel = m.vehicle_wheel[i];
   if (wheel.vehicle >= m.vehicles) return false;
@@ -151,9 +150,9 @@ bool wheel_is_valid(const Model& m, std::int32_t i) noexcept {
          contact_is_valid(wheel.contact);
 }
 
-/// Its values may be a little below 0, where elements give way more than a rail does. What they add
-/// to is above 0 where pack_residual.cpp made them; where it is not, the solve of the ports says so
-/// and gives no force.
+/// Values may be a little below 0, where elements yield more than a rail does. Their sum with the
+/// lines' compliance is above 0 if pack_residual.cpp made them; if it is not, the solve of the
+/// ports says so and gives no force.
 bool residual_is_valid(const Model& m) noexcept {
   const ResidualModel& r = m.residual;
   const bool tables = r.under != nullptr || r.axis != nullptr || m.track_sensor.residual != nullptr;
@@ -179,7 +178,7 @@ bool p_delta_is_valid(const PDeltaModel& t) noexcept {
          (t.elements_per_bay > 0 && t.points >= 3);
 }
 
-/// Every table lies within the track and behind the one before it.
+/// Whether every table lies within the track and after the one before it.
 bool tables_are_valid(const Model& m) noexcept {
   const TrackSensorModel& p = m.track_sensor;
   if (p.tables == 0) return true;
@@ -206,7 +205,7 @@ bool fixed_ports_are_valid(const Model& m) noexcept {
   const FixedPortModel& p = m.fixed;
   if (p.count == 0) return true;
   if (!p.stiffness || !p.damping || !p.gap || !p.response || !p.compliance) return false;
-  // One on what is held has no compliance.
+  // A port on a held place has no compliance.
   if (!are_not_negative(p.stiffness, p.count) || !are_not_negative(p.damping, p.count) ||
       !diagonal_is_not_negative(p.compliance, p.count))
     return false;

@@ -3,9 +3,9 @@
 
 namespace railstep {
 
-/// Whether a track with what runs on it that was read from a block, its counts within their caps
-/// and its arrays as long as they say, can be stepped: every index is of something there, every
-/// mass, stiffness and compliance has the sign that makes the solve safe.
+/// Whether a track and its traffic that were read from a block can be stepped: every index is in
+/// range, and every mass, stiffness and compliance has the sign that makes the solve safe. Counts
+/// must be within their caps, and arrays as long as the counts say.
 bool track_is_valid(const Model& model) noexcept;
 
 /// Whether every input has a limit above 0.

@@ -12,20 +12,20 @@
 
 namespace railstep {
 
-inline constexpr int kMaxLines = 16;  // independent systems a track falls into
+inline constexpr int kMaxLines = 16;  // independent systems that a track splits into
 inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxVehicles = 16;
 inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
 inline constexpr int kMaxBodyForces = 4;        // on one wheelset or vehicle
-inline constexpr int kMaxInputs = 96;           // forces and places given each frame
+inline constexpr int kMaxInputs = 96;           // forces and places of each frame
 inline constexpr int kMaxExternalWheels = 16;
 inline constexpr int kMaxSignals = 32;    // irregularities and defects of the rails
 inline constexpr int kPDeltaSeats = 6;    // around a wheel, half of them on each side of its bay
 inline constexpr int kMaxLoadPoints = 4;  // rails and heights at which vertical forces act
-inline constexpr int kNoLoadPoint = -1;   // of what has no part in the residual flexibility
+inline constexpr int kNoLoadPoint = -1;   // without part in the residual flexibility
 
-// What a model may not exceed; a block that claims more is refused.
+// Upper bounds of a model; a block that exceeds them is refused.
 inline constexpr std::int64_t kMostElements = 100'000;
 inline constexpr std::int64_t kMostUnknowns = 1 << 26;
 inline constexpr std::int64_t kMostRows = 1 << 22;  // of tables, track sensors and shapes
@@ -34,33 +34,33 @@ inline constexpr std::int64_t kMostPairPoints = 64;
 inline constexpr std::int64_t kMostSamples = 1 << 26;  // of an irregularity
 inline constexpr std::int64_t kMostGuideIterations = 1000;
 
-/// How far the traffic of a track without end has gone at a step, exactly. Fractions count bays by
-/// 2^-62: n steps are n / period times `bays` whole ones, and n % period steps of `advance`.
+/// Exact progress of the traffic of a track without end at a step. Fractions count in 2^-62 of a
+/// bay: n steps are n / period times `bays` whole bays, and n % period steps of `advance`.
 struct BayProgress {
-  std::int64_t period;   // steps after which it has gone whole bays, or more steps than are made
-  std::int64_t bays;     // gone in a period
+  std::int64_t period;   // steps that take whole bays, or more steps than are made
+  std::int64_t bays;     // whole bays in a period
   std::int64_t advance;  // of a step, below a bay
 };
 
-/// A track without end. Whatever moves along it goes at one speed; the model's elements stand still
-/// under it for a bay, then what they hold is passed on by one bay to the rear.
+/// A track without end. All traffic has one speed. The model's elements stand still under it for a
+/// bay; then their state is shifted by one bay to the rear.
 struct Endless {
   std::int32_t bays;          // of the model's elements; 0: the track has ends
   std::int32_t bay_elements;  // elements of a bay
   double bay_length;          // m
-  double origin;              // of the elements' x, over which x = 0 stands at the start, m
+  double origin;              // place along the elements at which x = 0 is at the start, m
   BayProgress progress;
 };
 
-/// What a line is one bay further on, of every unknown i: x[i] becomes
-/// own[i] x[i] + other[i] x[from[i]], in u, v, a and g alike, and in u `fill[i]` more.
+/// Shift of a line by one bay: each unknown x[i] becomes own[i] x[i] + other[i] x[from[i]], in u,
+/// v, a and g; in u `fill[i]` is added.
 struct BayShift {
   const std::int32_t* from;  // [size]
   const double *own, *other, *fill;
 };
 
-/// A condensed line: complex modes z' = rate z + q, with q = shape' f of the forces on it and
-/// displacement Re shape z (both without conjugation), stepped exactly:
+/// A condensed line: complex modes z' = rate z + q, with q = shape' f for the forces f on it, and
+/// displacement Re shape z (both without conjugation). They are stepped exactly:
 ///   z1 = keep z0 + old_force q0 + new_force q1   for q linear in time,
 ///   z1 = keep z0 + held_force q                  for q constant over the step.
 struct Modal {
@@ -72,15 +72,15 @@ struct Modal {
   const double* shape;  // [rows][2][count] real and imaginary parts, kg^-1/2
 };
 
-/// The two forms of a track's lines in the step; all lines of a model have the same.
+/// The two forms of a track's lines in the step; all lines of a model have the same form.
 enum class Form : std::int32_t { banded, condensed };
 
-/// Real numbers for each unknown of a line: 1 of a banded one, 2 of the complex modes of a
+/// Real numbers for each unknown of a line: 1 in a banded line, 2 for the complex modes of a
 /// condensed one.
 constexpr std::int32_t parts(Form form) noexcept { return form == Form::condensed ? 2 : 1; }
 
-/// One independent linear system of the track; views into the model's block. Banded or condensed.
-/// The state of a condensed line is Re z in u, Im z in v, and in a, g those of the last q.
+/// One independent linear system of the track, banded or condensed; views into the model's block.
+/// The state of a condensed line is Re z in u, Im z in v, and the last Re q and Im q in a and g.
 struct LineModel {
   std::int32_t first, size;  // its unknowns among the state's, padded to whole panels
   std::int32_t twin;         // the first line that shares its matrices or modes; itself if none
@@ -88,48 +88,48 @@ struct LineModel {
   Diagonals mass, damping;   // padded to whole panels
   Modal modal;
   BayShift shift;  // of a track without end
-  /// Of left and right rail, [elements][3][9]: unknown, or row of modal.shape; -1: not carried. One
-  /// table for both where they are mirror images and where the line has one rail. Elements share
-  /// their border's unknowns where the rail is not cut.
+  /// For left and right rail, [elements][3][9]: unknown, or row of modal.shape; -1: not in the
+  /// line. Both rails have one table if they are mirror images, or if the line has one rail.
+  /// Elements share the unknowns of their border if the rail is not cut there.
   const std::int32_t* unknown_of[2];
   double rail_factor[2];       // weight of the line in left and right rail; 0: it lacks that rail
   std::int32_t mirrored;       // right rail: y components change sign
   std::int32_t rigid_section;  // a_z and b_y are one unknown, the roll a_z
 };
 
-/// How something goes along the rails: at one speed, or by a table of speeds, linear between its
-/// rows and constant outside them.
+/// Motion along the rails: at one speed, or by a table of speeds, linear between its rows and
+/// constant outside them.
 struct TravelModel {
-  double speed;         // m/s; with a table its speed of the largest size
+  double speed;         // m/s; with a table the one of the largest size
   std::int32_t rows;    // 0: one speed
-  const double* table;  // [rows][3]  s, m/s, m gone since t = 0
+  const double* table;  // [rows][3]  s, m/s, m since t = 0
 };
 
-/// A prescribed force that runs along a rail: force * table + amplitude sin(2 pi (frequency t +
+/// A prescribed force that moves along a rail: force * table + amplitude sin(2 pi (frequency t +
 /// phase)).
 struct LoadModel {
-  double row[9];              // of a node: position, y slope, z slope, along the rail's own axes;
-                              // gives the loaded point's height
-  std::int32_t rail;          // 0 left, 1 right
-  double start, stop;         // m; taken off beyond stop; start of a track without end: of the
-                              // elements' x
+  double row[9];  // of a node: position, y slope, z slope, along the rail's own axes:
+  // height of the loaded point
+  std::int32_t rail;   // 0 left, 1 right
+  double start, stop;  // m; removed beyond stop; on a track without end `start` is along
+  // the elements
   TravelModel travel;         // from start
   double force;               // N along z, up positive
   std::int32_t table_points;  // 0: constant
   const double* table;        // [table_points][2]  s, factor; linear between, constant outside
   double amplitude;           // N along z
-  double frequency, phase;    // Hz, turns
+  double frequency, phase;    // Hz, cycles
   std::int32_t load_point;    // rail and height at which its vertical force acts
 };
 
-/// A force on a wheelset's centre or along a vehicle's coordinate, over time or given each frame.
+/// A force on a wheelset's centre or along a vehicle's coordinate: a table over time, or an input.
 struct BodyForce {
-  std::int32_t direction, points;  // 0 x, 1 y, 2 z, or the coordinate; rows of the table, 0: given
+  std::int32_t direction, points;  // 0 x, 1 y, 2 z, or coordinate; rows of the table, 0: input
   const double* table;             // [points][2]  s, N; linear between, constant outside
-  std::int32_t input;              // of a given one; -1
+  std::int32_t input;              // index of the input, or -1
 };
 
-/// How far a railhead lies off its straight line, over the place along it.
+/// Deviation of a railhead from its straight line over the place along it.
 struct RailSignal {
   std::int32_t rail, direction;  // 0 left, 1 right; 1 y, 2 z
   SignalModel signal;
@@ -138,16 +138,16 @@ struct RailSignal {
 enum class Guide : std::int32_t { augmented_lagrangian, baumgarte };
 inline constexpr int kGuideRows = 2;  // coordinates that a wheelset's guide holds: x and yaw
 
-/// A rigid wheelset on both rails: coordinates x, y, z of its centre from its start, then roll,
-/// spin and yaw, the spin beyond speed / radius; cylinders of one radius roll on circular railhead
-/// crowns without friction. The guide holds x on its travel and yaw = 0.
+/// A rigid wheelset on both rails. Coordinates are x, y, z of its centre from its start, then roll,
+/// spin (beyond speed / radius) and yaw. Cylinders of one radius roll on circular railhead crowns
+/// without friction. The guide holds x on its travel and yaw = 0.
 struct WheelsetModel {
   std::int32_t first;  // of its six coordinates among the state's unknowns
   double mass[6];      // kg, kg, kg, roll, spin, yaw inertia kg m2
   double weight;       // N, down; of the wheelset and what it carries
   double radius, tread_half_width;
-  double start;  // of the centre, m; on a track without end of the elements' x, from which the
-                 // coordinate x then counts the way within a bay
+  double start;  // of the centre, m; on a track without end along the elements, from which
+  // coordinate x then counts the way within a bay
   TravelModel travel;
   double rest_z;    // height of the centre over the left rail's axis when it touches, m
   double hertz[2];  // C of P = C d^1.5 on left and right rail, N/m^1.5
@@ -158,45 +158,45 @@ struct WheelsetModel {
   std::int32_t forces;
   BodyForce force[kMaxBodyForces];
   std::int32_t load_point[2];  // on left and right rail: height at which its vertical force acts
-  SignalModel tread[2];        // of the left and right wheel: radius more than `radius`, over the
-                               // distance rolled
+  SignalModel tread[2];        // of the left and right wheel: deviation from `radius` over the
+  // distance rolled
 };
 
-/// How a vehicle's wheel holds on to what is under it, d the penetration:
-///   hertz d^1.5 above 0   of a Hertz contact (hertz > 0), else
-///   stiffness d + damping d'   at any d: it pulls too (bilateral).
+/// Contact law of a vehicle's wheel, d the penetration:
+///   hertz d^1.5 for d > 0      for a Hertz contact (hertz > 0), else
+///   stiffness d + damping d'   for any d: it pulls too (bilateral).
 struct ContactModel {
   double hertz;               // N/m^1.5
   double stiffness, damping;  // N/m, N s/m
 };
 
-/// The flanges of a wheelset. Each face is straight across the rail and turns with the wheelset;
-/// the gauge face is a point of the rail's section, at which both are loaded. The law is that of
-/// ContactModel above d = 0, and it never pulls.
+/// The flanges of a wheelset. Each face is straight across the rail and rotates with the wheelset.
+/// The gauge face is a point of the rail's section, at which both are loaded. The law is that of
+/// ContactModel for d > 0; a flange never pulls.
 struct FlangeModel {
   std::int32_t wheelset;
   ContactModel contact;
   double normal[2];    // of the left face at rest, from the rail to the wheel: y, z; right: -y, z
   double point[2][2];  // of left and right face, from the wheelset's centre: y, z, m
   double gauge[2][2];  // gauge face of left and right rail, from the rail's axis: y, z, m
-  double tip;          // z of the flanges' tips from the centre, m: rails below it are passed over
+  double tip;          // z of the flanges' tips from the centre, m: no contact with rails below it
 };
 
-/// A wheel of a vehicle. Off the rail it rolls on level, rigid ground in line with the rail's axis
-/// at rest.
+/// A wheel of a vehicle. Beyond the rail's ends it rolls on level, rigid ground in line with the
+/// rail at rest.
 struct VehicleWheel {
   std::int32_t vehicle, rail;  // rail: 0 left, 1 right
   double place;                // from the vehicle's origin, m
   ContactModel contact;
   std::int32_t load_point;  // rail and height at which its vertical force acts
-  SignalModel tread;        // radius more than its own, over the distance rolled
+  SignalModel tread;        // deviation of its radius over the distance rolled
 };
 
 /// Rigid bodies on springs and dampers that bounce and pitch over one rail,
 ///   M q'' + C q' + K q = B' f + forces - weight,
-/// q from where they stand when the wheels touch a rail at rest without a force in any spring, B q
-/// the height of the wheels and f the rail's forces on them. Its equation holds at s of the step: 1
-/// at its end, as of banded lines; 1/2 where forces are held over it, as of condensed ones.
+/// q counts from where the wheels touch a rail at rest without a force in any spring, B q is the
+/// height of the wheels, and f the rail's forces on them. The equation holds at the fraction s of
+/// the step: 1, its end, with banded lines; 1/2 if forces are held over it, with condensed ones.
 struct VehicleModel {
   std::int32_t first, size;          // its unknowns among the state's
   std::int32_t first_wheel, wheels;  // among the vehicles' wheels
@@ -210,32 +210,31 @@ struct VehicleModel {
   const double* response;             // [wheels][size] inverse B'
   const double* compliance;           // [wheels][wheels] B inverse B', m/N
   std::int32_t forces;
-  BodyForce force[kMaxBodyForces];  // N, and N m on what pitches
+  BodyForce force[kMaxBodyForces];  // N; N m on pitch
 };
 
-/// Residual flexibility between ports of two kinds: of the first in element e at point p, of the
-/// second in element e + shift at point q, -range <= shift <= range; zero beyond, or on a track
-/// without end nowhere.
+/// Residual flexibility between ports of two kinds: the first in element e at point p, the second
+/// in element e + shift at point q, -range <= shift <= range. It is zero beyond this range, which
+/// on a track without end never happens.
 struct PairModel {
   std::int32_t points, range;  // intervals per element; elements to either side
   const double* value;         // [elements][2 range + 1][points + 1][points + 1] m/N, or null
 };
 
-/// What the model's unknowns miss of the static deflection under vertical forces, tabled over
-/// elements at equal steps of xi. Null pointers: not modelled.
+/// The part of the static deflection under vertical forces that the model's unknowns miss, tabled
+/// over elements at equal steps of xi. Null pointers: not modelled.
 struct ResidualModel {
   std::int32_t load_points;  // rails and heights at which vertical forces act
   std::int32_t points;       // intervals per element
-  std::int32_t elements;  // of the tables, which repeat after them: the model's, of a ring a bay's
-  const double* under;    // [load_points][elements][points + 1] m/N, of the force's own point
-  const double* axis;     // the same of the rail's axis under it
+  std::int32_t elements;     // of the tables, which repeat then: the model's; of a ring a bay's
+  const double* under;       // [load_points][elements][points + 1] m/N, of the force's own point
+  const double* axis;        // the same for the rail's axis under it
   PairModel pair[kMaxLoadPoints][kMaxLoadPoints];  // [force][displacement]
 };
 
-/// Levers of a vertical force on a railhead over the seats around it, bays to the left and right of
-/// it alike: the part of the force that a seat carries times the height of its pad over the axis (a
-/// foot: below 0). Where the rail rolls over its seats the force goes down. Null pointers: not
-/// modelled.
+/// Levers of a vertical force on a railhead at the seats around it, as many behind as ahead: the
+/// share of the force that a seat carries, times the height of its pad above the axis (below 0 for
+/// a foot). If the rail rolls over its seats, the force goes down. Null pointers: not modelled.
 struct PDeltaModel {
   std::int32_t elements_per_bay;
   std::int32_t points;     // intervals per element
@@ -250,52 +249,51 @@ struct TrackSensorModel {
   const std::int32_t* index;  // [entries] into the state's u, v, fixed ports' forces, then g
   const double* value;        // [entries] per m, per m/s, per N or per m/s2
   const double* rest;         // [count]
-  const std::int32_t* along;  // [count] 1: a place along the rail, which the traffic takes with it
+  const std::int32_t* along;  // [count] 1: a place along the rail that moves with the traffic
   const std::int32_t* table;  // [count] of its residual, -1: none
-  /// Each table over the elements that have something of it, 0 on all others.
+  /// Each table covers the elements where it is not 0.
   std::int32_t tables, elements;
-  const std::int32_t* first;  // [tables] the model's element that it begins with
-  const std::int32_t* ends;   // [tables + 1] of their elements in a row, 0 before the first
+  const std::int32_t* first;  // [tables] first element of the model in it
+  const std::int32_t* ends;   // [tables + 1] ends in the row of their elements, from 0
   const double* residual;     // [tables][load_points][its elements][points + 1] per N, or null
 };
 
-/// One-sided springs and dampers that stand still: supports that do not pull, gaps, stops. Of each
-/// a row gives how far the lines close it, and its force acts on them along the negative row.
+/// One-sided springs and dampers at fixed places: supports that do not pull, gaps, stops. The row
+/// of each gives its closing by the lines; its force acts on them along the negative row.
 struct FixedPortModel {
   std::int32_t count;
   const double* stiffness;  // [count] N/m
   const double* damping;    // [count] N s/m
   const double* gap;        // [count] m
-  /// Of banded lines, over their unknowns.
+  /// For banded lines, over their unknowns.
   std::int32_t entries;
   const std::int32_t* start;  // [count + 1] of each row among index and value
   const std::int32_t* index;  // [entries]
   const double* value;        // [entries]
-  /// Of condensed lines: row' shape, real and imaginary parts; null otherwise.
+  /// For condensed lines: row' shape, real and imaginary parts; null otherwise.
   const double* shape;  // [count][2][line_unknowns] kg^-1/2
-  /// What a unit force along the row makes of the lines at the step's end, S^-1 row; of condensed
+  /// Response of the lines at the step's end to a unit force along the row: S^-1 row; for condensed
   /// lines held_force shape, real and imaginary parts.
   const double* response;    // [count][parts(form)][line_unknowns]
   const double* compliance;  // [count][count] theta row response, m/N
 };
 
-/// A wheel of a vehicle outside the model, as it acts on a rail. Its place and force are inputs
-/// from `input` on (external_input.h); they are those of the step, which is a frame.
+/// A wheel of a vehicle outside the model, which acts on a rail. Its place and force are inputs
+/// from `input` on (external_input.h), and hold for the step, which is a frame.
 struct ExternalWheelModel {
   std::int32_t rail, input;
   std::int32_t load_point;  // rail and height at which its vertical force acts
 };
 
-/// What a step must come to wherever it runs, of a model from a block: see self_check.h.
+/// Results that the first frames of a model from a block must have on every machine: self_check.h.
 struct CheckModel {
-  std::int32_t frames;   // 0: not known
+  std::int32_t frames;   // 0: no check
   std::int32_t columns;  // of `row`
   std::uint64_t hash;    // of the state
   const double* row;     // [columns] of the trace
 };
 
-/// What a frame takes in the worst case: loads all on, contacts, ports and iterations at their
-/// caps.
+/// Cost of a frame in the worst case: all loads act, contacts, ports and iterations at their caps.
 struct Cost {
   std::int64_t
       flops;  // additions, subtractions, multiplications, divisions, square roots, each one
@@ -308,19 +306,19 @@ struct Model {
   Scheme scheme;
   std::int32_t lines, loads, wheelsets, vehicles, signals, elements;
   std::int32_t vehicle_wheels;  // of all vehicles
-  std::int32_t flanges;         // wheelsets that have them
+  std::int32_t flanges;         // number of wheelsets with flanges
   std::int32_t unknowns;  // of all lines, padded, 8 per wheelset, of vehicles, and the system's
   Form form;              // of all lines
   std::int32_t line_unknowns;  // of all lines together: bodies and systems follow
   std::int32_t steps_per_frame;
-  std::int32_t inputs;             // forces given each frame
-  double input_limit[kMaxInputs];  // N or N m, above 0: what they saturate at, on both sides
+  std::int32_t inputs;             // numbers of each frame
+  double input_limit[kMaxInputs];  // N or N m, above 0: they saturate at both signs of it
   double element_length;           // m
   Endless endless;
   double rail_y[2];  // of the rails' axes, m
-  double rail_z[2];  // of the rails' axes over the left one, m: their heads are level
+  double rail_z[2];  // of the rails' axes above the left one, m: heads are level
   Cant cant[2];
-  double head_z[2];              // of each railhead's middle over its rail's axis in the section, m
+  double head_z[2];              // height of a railhead's middle above the axis in the section, m
   double crown_radius[2];        // m
   double head_half_width[2];     // m
   const double* constant_force;  // [parts(form)][unknowns] N, or null: the track's weight
@@ -330,7 +328,7 @@ struct Model {
   FixedPortModel fixed;
   const double* start;  // [start_doubles] state at step 0
   std::int64_t steps;   // of the scene's run
-  Cost cost;            // of a frame, most
+  Cost cost;            // largest cost of a frame
   LineModel line[kMaxLines];
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];
@@ -342,10 +340,10 @@ struct Model {
   ExternalWheelModel external_wheel[kMaxExternalWheels];
   SystemModel system;
   CheckModel check;
-  unsigned char sum[32];  // SHA-256 of the payload it was loaded from; zeros of one that has none
+  unsigned char sum[32];  // SHA-256 of the payload it was loaded from; zeros without one
 };
 
-/// How many unknowns of a state, from the first on, are modes: those of condensed lines.
+/// Number of unknowns of a state, from the first on, that are modes of condensed lines.
 inline std::int32_t modal_unknowns(const Model& model) noexcept {
   return model.form == Form::condensed ? model.line_unknowns : 0;
 }

@@ -12,7 +12,7 @@ Name first_of(const char* text, std::size_t bytes) noexcept {
   return {text, length};
 }
 
-/// Calls visit(index, name) for each until one returns true.
+/// Calls visit(index, name) for each name until one call returns true.
 template <typename Visit>
 void for_names(const Names& names, Visit visit) noexcept {
   const char* at = names.text;
@@ -36,7 +36,7 @@ bool is_plain(Name name) noexcept {
   return name.bytes > 0;
 }
 
-/// FNV-1a, its last step mixed, as the lowest bits alone find a place.
+/// FNV-1a with a mixed last step, as only the lowest bits choose a place.
 std::uint64_t hash_of(Name name) noexcept {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (std::size_t i = 0; i < name.bytes; ++i)
@@ -44,8 +44,8 @@ std::uint64_t hash_of(Name name) noexcept {
   return (hash ^ hash >> 32) | 1u;  // never 0, which is an empty place
 }
 
-/// Whether no two names are equal, by their hashes. Without memory for all of them: share after
-/// share of the names, each in a table that it fills by half.
+/// Whether no two names are equal, by their hashes. There is no memory for all of them: it takes
+/// one share of the names after another, each in a table that it half fills.
 bool are_distinct(const Names& names) noexcept {
   constexpr std::uint64_t kPlaces = 1024, kShare = kPlaces / 2;
   const auto shares = static_cast<std::uint64_t>(names.count) / (kShare / 2) + 1;
@@ -57,7 +57,7 @@ bool are_distinct(const Names& names) noexcept {
       if ((hash >> 32) % shares != share) return false;
       std::uint64_t at = hash / 2 % kPlaces;
       while (place[at] != 0 && place[at] != hash) at = (at + 1) % kPlaces;
-      // A share of twice what falls to it is no work of chance.
+      // A share of twice its expected size does not happen by chance.
       distinct = place[at] != hash && ++held <= kShare;
       place[at] = hash;
       return !distinct;
@@ -106,7 +106,7 @@ std::int32_t find_name(const Names& names, const char* name) noexcept {
   std::int32_t wanted = -1;
   for_names(names, [&](std::int32_t i, Name own) noexcept {
     std::size_t k = 0;
-    while (k < own.bytes && name[k] == own.text[k]) ++k;  // a zero in `name` ends it too
+    while (k < own.bytes && name[k] == own.text[k]) ++k;  // a zero in `name` ends the loop too
     if (k == own.bytes && name[k] == 0) wanted = i;
     return wanted >= 0;
   });

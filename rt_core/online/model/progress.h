@@ -5,13 +5,13 @@ namespace railstep {
 
 inline constexpr std::int64_t kBay = std::int64_t{1} << 62;  // a bay in a BayProgress's fractions
 
-/// Whole bays gone at a step, and the part of the next one in 2^-62.
+/// Whole bays passed at a step, and the part of the next one in 2^-62.
 struct BaysPassed {
   std::int64_t bays, part;
 };
 
-/// a b / 2^62 and what it leaves, both below 2^62 each; by halves, since not every machine has
-/// numbers of 128 bits.
+/// a b / 2^62 and its remainder, a and b below 2^62. It multiplies by halves, since not every
+/// machine has numbers of 128 bits.
 inline BaysPassed split_product(std::uint64_t a, std::uint64_t b) noexcept {
   const std::uint64_t half = 0xffffffffu;
   const std::uint64_t low = (a & half) * (b & half);
@@ -23,8 +23,8 @@ inline BaysPassed split_product(std::uint64_t a, std::uint64_t b) noexcept {
           static_cast<std::int64_t>(rest & static_cast<std::uint64_t>(kBay - 1))};
 }
 
-/// Of a step >= 0; without rounding. Cannot overflow: a remainder of 2^62 steps at most, each less
-/// than a bay, is below 2^124.
+/// Bays passed at a step >= 0, without rounding. It cannot overflow: the remainder has at most 2^62
+/// steps, each less than a bay, which is below 2^124.
 inline BaysPassed bays_passed(const BayProgress& progress, std::int64_t step) noexcept {
   const std::int64_t periods = step / progress.period, rest = step % progress.period;
   const BaysPassed within =
@@ -32,7 +32,7 @@ inline BaysPassed bays_passed(const BayProgress& progress, std::int64_t step) no
   return {periods * progress.bays + within.bays, within.part};
 }
 
-/// Of the traffic within its bay at a step, m: 0 to below bay_length, or 0 on a track with ends.
+/// Place of the traffic within its bay at a step, m: 0 to below bay_length; 0 on a track with ends.
 inline double within_bay(const Model& model, std::int64_t step) noexcept {
   if (model.endless.bays == 0) return 0.;
   // The leading 53 bits, so that the quotient is below 1.
@@ -40,7 +40,7 @@ inline double within_bay(const Model& model, std::int64_t step) noexcept {
   return static_cast<double>(part) * 0x1p-53 * model.endless.bay_length;
 }
 
-/// What to add to a place along the model's elements for the distance along the track, m.
+/// Distance along the track less the place along the model's elements, m.
 inline double track_offset(const Model& model, std::int64_t step) noexcept {
   const Endless& e = model.endless;
   if (e.bays == 0) return 0.;

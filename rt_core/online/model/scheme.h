@@ -12,17 +12,17 @@ struct Scheme {
   double dt;  // s
   double uv, ua, ug, va, vg, kv, kg, ag, a0, aa;
   double theta;  // contact forces follow the penetration theta d1 + (1 - theta) d0; 1: at the end
-  /// Of two stages with the same matrix the first, as above, ends at `stage_fraction` of the
-  /// step (0: there is one stage); from the values 0 and p at its ends the second goes on with
+  /// With two stages of the same matrix, the first, as above, ends at `stage_fraction` of the step
+  /// (0: there is one stage). From the values 0 and p at its ends the second continues with
   ///   v* = v0 + w (vp - v0),   u* = u0 + w (up - u0) + v* / kv,   w = stage_weight.
   double stage_fraction, stage_weight;
-  /// 1: the force of a Hertz contact is the mean of its law over the way that the penetration goes
-  /// in the step (PortLaw::mean), of forces held over the step with theta = 1.
+  /// 1: the force of a Hertz contact is the mean of its law over the change of penetration in the
+  /// step (PortLaw::mean); forces are then held over the step with theta = 1.
   std::int32_t mean;
 };
 
-/// What of a step is solved for at once: up to `before` seconds ahead of the end of `step`, from a
-/// state `span` seconds earlier.
+/// One solve within a step: it covers `span` seconds and ends `before` seconds before the end of
+/// `step`.
 struct Stage {
   std::int64_t step;
   double before, span;  // s

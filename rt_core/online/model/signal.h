@@ -19,7 +19,7 @@ struct SignalValue {
 
 namespace signal {
 
-/// x less the multiple of n that leaves it in [0, n); 0 where x is too large to have a rest.
+/// x modulo n, in [0, n); 0 if x is too large to have a remainder.
 inline double wrapped(double x, double n) noexcept {
   const double periods = x / n;
   if (!(periods > -1e15 && periods < 1e15)) return 0.;
@@ -30,7 +30,7 @@ inline double wrapped(double x, double n) noexcept {
 
 }  // namespace signal
 
-/// Fixed work, whatever the place. A place that is not finite gives the start's value.
+/// Takes the same work for every place. A place that is not finite gives the value at the start.
 inline SignalValue signal_at(const SignalModel& s, double place) noexcept {
   if (s.intervals == 0) return {0., 0., 0.};
   const double n = s.intervals;

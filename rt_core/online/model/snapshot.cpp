@@ -12,10 +12,10 @@ constexpr char kMagic[8] = {'r', 'a', 'i', 'l', 's', 'n', 'a', 'p'};
 constexpr std::size_t kFormatAt = 8, kSizeAt = 16, kModelAt = 24, kStepsAt = 56, kLatchedAt = 64,
                       kCountAt = 72;
 static_assert(kCountAt + 8 == kSnapshotHead);
-// A step's time is a double. Far from where one more step would overflow.
+// The time of a step is a double. This is far below the overflow of the count.
 constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;
 
-/// Whether the order of a factored matrix's rows names each of them once.
+/// Whether the order of the rows of a factored matrix names each row once.
 bool names_each(const unsigned char* order, std::int32_t rows) noexcept {
   const auto at = [order](std::int32_t i) {
     return static_cast<std::int32_t>(get_word(order + 8 * (i / 2)) >> (32 * (i % 2)));
@@ -28,8 +28,8 @@ bool names_each(const unsigned char* order, std::int32_t rows) noexcept {
   return true;
 }
 
-/// Whether the matrix that a state keeps, if it keeps one, can be solved with.
-/// @param numbers  the state's, in bytes
+/// Whether the matrix that a state keeps, if it keeps one, is usable.
+/// @param numbers  bytes of the state's numbers
 bool kept_is_valid(const Model& model, const State& state, const unsigned char* numbers) noexcept {
   const SystemModel& system = model.system;
   if (system.unknowns == 0 || system.renew != Renew::kept) return true;

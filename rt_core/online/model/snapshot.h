@@ -7,10 +7,10 @@ namespace railstep {
 
 enum class SnapshotStatus : std::uint8_t {
   ok,
-  not_a_snapshot,  // it does not begin as one does
+  not_a_snapshot,  // it does not begin as a snapshot does
   other_version,   // of the format
-  wrong_size,      // cut short, run on, or of a model with another number of unknowns
-  wrong_sum,       // its bytes are not those that were written
+  wrong_size,      // too short, too long, or of a model with another number of unknowns
+  wrong_sum,       // its bytes are not the ones that were written
   other_model,     // it was taken of another model
   bad_content,     // steps below 0 or above 2^53, status bits that do not stay set, a kept matrix
                    // that cannot be solved with
@@ -29,11 +29,11 @@ inline std::size_t snapshot_bytes(const Model& model) noexcept {
          kSnapshotSum;
 }
 
-/// Whatever the state holds, numbers that are not finite too. No heap.
+/// Writes any state, also with numbers that are not finite. No heap.
 /// @param bytes  [snapshot_bytes(model)]
 void save_snapshot(const Model& model, const State& state, unsigned char* bytes) noexcept;
 
-/// Of the same model, to the bit. Nothing of the state changes unless all of the bytes are as they
+/// Restores a state of the same model to the bit. The state changes only if all bytes are as they
 /// were written. No heap.
 [[nodiscard]] SnapshotStatus restore_snapshot(const Model& model, const void* bytes,
                                               std::size_t count, State& state) noexcept;

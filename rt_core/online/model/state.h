@@ -7,8 +7,8 @@
 
 namespace railstep {
 
-/// All a replay needs, nothing else. The caller owns the memory: state_doubles() of it. What u, v,
-/// a and g hold of a condensed line stands at LineModel.
+/// All numbers that a replay needs, and no others. The caller owns the memory, state_doubles() of
+/// it. LineModel says what u, v, a and g of a condensed line are.
 struct State {
   std::int64_t steps;   // time = steps * dt, so it never drifts
   double* numbers;      // [state_doubles] all of these arrays in one row
@@ -16,19 +16,19 @@ struct State {
   double* v;            // [unknowns] velocity
   double* a;            // [unknowns] the scheme's acceleration
   double* g;            // [unknowns] true acceleration
-  double* wheel_force;  // [contacts] N, of the last step: where the contact solve starts
-  double* port_force;   // [fixed ports] N, the same of what stands still; 0: open
+  double* wheel_force;  // [contacts] N, of the last step: start of the contact solve
+  double* port_force;   // [fixed ports] N, the same; 0: open
   double* multiplier;   // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
                         // the force on the wheelset is its negative
   double* quaternion;   // [system.bodies][4] body axes to ground
   double* row_force;    // [rows] of the system's joints and springs, N; the force on its parts is
                         // -G' of it, so a tensile force of a joint or spring is positive
-  double* kept;         // Newton's matrix of the system where it is kept over steps, or null
+  double* kept;         // Newton's matrix of the system if it is kept over steps, or null
   double* input;        // [inputs] N or N m: the last good ones
   Status latched;       // kLatched bits that were met since the reset
 };
 
-/// What stays set until reset(): a frame that was lost or distorted.
+/// Status bits that stay set until reset(): a frame was lost or distorted.
 inline constexpr Status kLatched =
     Status::nonfinite_input | Status::nonfinite_state | Status::force_saturated;
 
@@ -39,26 +39,26 @@ struct Workspace {
   double* scaled;  // [unknowns]
   double* solved;  // [unknowns] right-hand side of the track without wheels; after the solve, the
                    // displacements
-  double* imaginary;  // the same of condensed lines; solved is their real part
+  double* imaginary;  // the same for condensed lines; `solved` is the real part
   double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
   double* system;     // see system_workspace.h
-  double* external;   // [state_doubles] of models with external wheels: a state tried
+  double* external;   // [state_doubles] of models with external wheels: a trial state
   double* start;      // [2][unknowns] of schemes of two stages: u and v at the step's start
-  double* unit;       // [contacts][unknowns] as solved, of a unit force at each contact
+  double* unit;       // [contacts][unknowns] as `solved`, for a unit force at each contact
   double* unit_imaginary;
 };
 
-/// What an input holds; 0 where there is no state yet.
-/// @param input  State::input, or null before there is one
+/// Value of an input; 0 if there is no state yet.
+/// @param input  State::input, or null before there is a state
 inline double held_input(const double* input, std::int32_t at) noexcept {
   return input == nullptr ? 0. : input[at];
 }
 
-/// What a frame publishes.
+/// Results that a frame publishes.
 struct Outputs {
   Status status;
   std::int32_t first_bad_unknown;       // -1: all finite
-  double load_x[kMaxLoads];             // m; where the load is, or was when taken off
+  double load_x[kMaxLoads];             // m; where the load is, or was when it was removed
   double load_place[kMaxLoads];         // the same along the model's elements, m
   double load_deflection[kMaxLoads];    // of the loaded point, m, up positive
   double load_force[kMaxLoads];         // N, up positive
@@ -85,11 +85,11 @@ struct Outputs {
   double constraint_violation;                          // largest of the frame, m or rad
   std::int32_t iterations;      // largest of the frame, of contact, joint and Newton solves
   double force_residual;        // of the system: largest of the frame, over its largest force
-  std::int32_t redundant_rows;  // of the system's joints, in the frame's last step that met any
+  std::int32_t redundant_rows;  // of the system's joints, in the last step of the frame with any
   std::int32_t redundant_row[kMostNamedRows];  // the first of them, among the system's rows
 };
 
-/// Coordinates that guides hold, of all wheelsets.
+/// Number of coordinates that guides hold, of all wheelsets.
 inline std::int64_t guide_rows(const Model& model) noexcept {
   return std::int64_t{kGuideRows} * model.wheelsets;
 }
@@ -102,7 +102,7 @@ inline std::int64_t state_doubles(const Model& model) noexcept {
   return 4LL * model.unknowns + contact_count(model) + model.fixed.count + guide_rows(model) +
          system_state_doubles(model.system) + model.inputs;
 }
-/// Of the model's start: all of a state but Newton's matrix, which is not made yet.
+/// Size of the model's start: all of a state but Newton's matrix, which is not made yet.
 inline std::int64_t start_doubles(const Model& model) noexcept {
   return 4LL * model.unknowns + contact_count(model) + model.fixed.count + guide_rows(model) +
          system_start_doubles(model.system);
@@ -158,14 +158,14 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           imaginary + (condensed ? n : 0)};
 }
 
-/// A state on other memory, equal but for what is latched.
+/// Copies a state to other memory, without the latched status.
 State copied_state(const Model& model, const State& from, double* memory) noexcept;
 
 /// Puts the model's start into a state: step 0, with no matrix kept yet.
 void reset(const Model& model, State& state) noexcept;
 
-/// FNV-1a over the step count, what is latched and the bits of all fields: equal states have equal
-/// hashes.
+/// FNV-1a over the step count, the latched status and the bits of all fields: equal states have
+/// equal hashes.
 std::uint64_t state_hash(const Model& model, const State& state) noexcept;
 
 }  // namespace railstep

@@ -3,7 +3,7 @@
 
 namespace railstep {
 
-/// What a frame met; several can be true, the step goes on.
+/// Events of a frame; several bits can be set, and stepping continues.
 enum class Status : std::uint32_t {
   ok = 0,
   off_rail = 1u << 0,         // a load or wheel left the rail, its force is 0: lengthen the track
@@ -11,11 +11,11 @@ enum class Status : std::uint32_t {
   cap_reached = 1u << 2,      // contact, joint or projection hit its cap: shorten dt
   nonfinite_state = 1u << 3,  // the state is no longer finite: Outputs name the first bad unknown
   contact_unresolved = 1u << 4,  // a wheel struck its rail for fewer than 10 steps: shorten dt
-  redundant_joint = 1u << 5,     // a joint row hung on others: it carries no force of its own
+  redundant_joint = 1u << 5,     // a joint row depended on others: it has no force of its own
   large_turn = 1u << 6,          // a rail under a wheel rolled so far that its linear form is off
   nonfinite_input = 1u << 7,     // an input was not finite: its last good value was held
   force_saturated = 1u << 8,     // an input was beyond its limit, and cut to it
-  contact_ill_posed = 1u << 9,   // compliances of contacts that no track and vehicle have
+  contact_ill_posed = 1u << 9,   // compliances of contacts that are impossible
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {
@@ -28,7 +28,7 @@ constexpr bool has(Status status, Status bit) noexcept {
   return (static_cast<std::uint32_t>(status) & static_cast<std::uint32_t>(bit)) != 0u;
 }
 
-/// A bit's name, as JSON and traces have it, and what it means and what to do about it.
+/// A bit's name in JSON and traces, its meaning and what to do about it.
 struct StatusText {
   Status bit;
   const char* name;
@@ -60,7 +60,7 @@ inline constexpr StatusText kStatusTexts[] = {
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 
-/// Of the first bit of these that is set; null: none.
+/// Text of the first of these bits that is set; null if none is.
 const StatusText* text_of(Status status) noexcept;
 
 }  // namespace railstep

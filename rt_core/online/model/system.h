@@ -5,13 +5,14 @@
 
 namespace railstep {
 
-// Rigid bodies and nonlinear beams, what holds and drives them. Their unknowns stand in the state's
-// u, v, a, g behind the track's and the wheelsets'.
-//   beam   displacement from rest of its nodes, 9 each (r, a, b), planar 5 (r_x, r_z, a_y, b_x,
-//   b_z) body   displacement of its centre from rest, then the rotation of the step in body axes,
-//   which the
-//          end of the step folds into the state's quaternion: between steps 0; planar x, z, about y
-// Structures hold no pointers and no gaps, so that arrays of them stand in a block as they do here:
+// Rigid bodies and nonlinear beams, with their joints, springs and forces. Their unknowns are in
+// the state's u, v, a, g after those of the track and the wheelsets.
+//   beam   displacement from rest of its nodes, 9 each (r, a, b),
+//          planar 5 (r_x, r_z, a_y, b_x, b_z)
+//   body   displacement of its centre from rest, then the rotation of the step in body axes, which
+//          the end of the step adds to the state's quaternion: between steps it is 0;
+//          planar x, z, about y
+// Structures have no pointers and no gaps, so that arrays of them are in a block as they are here:
 // fields of 4 bytes come first and are even in number.
 
 inline constexpr int kMaxSystemRows = 512;
@@ -23,8 +24,8 @@ inline constexpr int kMostPorts = 1 << 12;        // on rails
 inline constexpr int kMostIterations = 1000;      // of Newton, or of a projection
 inline constexpr int kMostKeptSteps = 1'000'000;
 inline constexpr int kMotionCoefficients = 6;
-inline constexpr int kMostNamedRows = 16;     // redundant ones that a frame names
-inline constexpr int kMostNodeUnknowns = 27;  // that one row touches in one part
+inline constexpr int kMostNamedRows = 16;     // redundant rows that a frame names
+inline constexpr int kMostNodeUnknowns = 27;  // of one part that one row acts on
 
 /// A rigid body about its centre of mass.
 struct RigidBodyModel {
@@ -39,7 +40,7 @@ struct RigidBodyModel {
   double radius;   // of gyration, m: a moment over it compares with a force
 };
 
-/// A nonlinear beam: a chain of alike straight elements, beam_chain.h.
+/// A nonlinear beam: a chain of equal straight elements, beam_chain.h.
 struct BeamChainModel {
   std::int32_t first;
   std::int32_t unknowns;  // of all its nodes
@@ -62,20 +63,20 @@ struct RailPortModel {
 
 enum class PartKind : std::int32_t { ground, body, beam, rail };
 
-/// A point with three directions that a part carries. Directions are rows of `frame`, over the
-/// ground's axes, the body's axes, or the section's a x b, a, b.
+/// A point with three directions on a part. Directions are rows of `frame` in the ground's axes,
+/// the body's axes, or the section's a x b, a, b.
 struct MarkerModel {
   PartKind kind;
   std::int32_t part;  // body, beam, or port on a rail
-  std::int32_t node;  // of a beam: the first of the three it lies on
+  std::int32_t node;  // of a beam: first of the three nodes of its element
   std::int32_t unused;
   double position[3];  // on the ground; in body axes from the centre; of a beam or rail 0, y, z, m
   double frame[9];
   double value[3];  // of a beam: shape functions of its three nodes
 };
 
-/// What a row asks of its markers A and B, its value Phi; each a sum of products of linear
-/// functions of points and directions, so that its mean gradient is exact (energy-momentum).
+/// Value Phi of a row between its markers A and B. Each is a sum of products of linear functions of
+/// points and directions, so that its mean gradient is exact (energy-momentum).
 enum class RowKind : std::int32_t {
   along_ground,  // axis k of the ground . (p_B - p_A) - s(t), m
   along_a,       // e_k of A . (p_B - p_A) - s(t), m
@@ -97,17 +98,16 @@ struct RowModel {
   double stiffness, damping;  // of springs, N/m, N s/m
 };
 
-/// s(t), piece by piece a polynomial in t - start; before the first and behind the last piece these
-/// go on.
+/// s(t), piece by piece a polynomial in t - start; the first and the last piece continue outside.
 struct MotionModel {
   std::int32_t first, pieces;  // among the system's
 };
 
-/// A force on a marker's point, or a moment on its body: direction (ground axes) times s(t) or what
-/// is given each frame.
+/// A force on a marker's point, or a moment on its body: direction (ground axes) times s(t), or
+/// times an input.
 struct PointForceModel {
   std::int32_t marker;
-  std::int32_t motion;  // s(t); -1: an input in its place
+  std::int32_t motion;  // s(t); -1: an input instead
   std::int32_t input;   // -1: none
   std::int32_t moment;  // 1: N m on a body
   double direction[3];
@@ -120,7 +120,7 @@ enum class ConstraintMethod : std::int32_t {
   direct
 };
 
-/// When Newton's matrix is made anew; always where it stops to bring the residual down.
+/// When Newton's matrix is made again. It always is when it no longer reduces the residual.
 enum class Renew : std::int32_t { every_iteration, every_step, kept };
 
 /// A row's end A (side 0) or B (side 1) on a body, a beam or the track.
@@ -128,10 +128,11 @@ struct EndModel {
   std::int32_t row, side;
 };
 
-/// All of it. Rows of joints, then those of springs; parts are bodies, then beams, then the track.
+/// A whole system. Rows of joints come first, then those of springs. Parts are bodies, then beams,
+/// then the track.
 struct SystemModel {
   std::int32_t bodies, beams, markers, joint_rows, spring_rows, motions, forces, sensors, ends;
-  std::int32_t ports;            // on rails; their unknowns are the last
+  std::int32_t ports;            // on rails; their unknowns come last
   std::int32_t first, unknowns;  // in the state, padded to whole panels; parts count from `first`
   std::int32_t held, pieces;     // unknowns of all beams that are 0, pieces of all motions
   std::int32_t traced_joints, traced_springs;  // whose forces a trace shows
@@ -140,11 +141,11 @@ struct SystemModel {
   std::int32_t mean;         // 1: forces at the mean of both ends of a step (energy-momentum)
   std::int32_t cap;          // Newton iterations a step
   std::int32_t projections;  // most iterations of a projection
-  std::int32_t keep_steps;   // Renew::kept: made anew after so many steps
+  std::int32_t keep_steps;   // Renew::kept: number of steps for which it is kept
   double alpha, beta;        // Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0, 1/s
-  double tolerance;          // of the forces, over the largest kind of force
+  double tolerance;          // of forces, over the largest kind of force
   double joint_tolerance;    // m, and 1
-  double rank_tolerance;     // a rigid row's pivot below it times its own diagonal is redundant
+  double rank_tolerance;  // a rigid row is redundant if its pivot is below this times its diagonal
   const RigidBodyModel* body;
   const BeamChainModel* beam;
   const MarkerModel* marker;
@@ -158,14 +159,14 @@ struct SystemModel {
   const double* beam_rest;            // [unknowns] of beams: positions and slopes
   const std::int32_t* held_unknown;   // [held]
   const std::int32_t* sensor;         // [sensors] markers, the last of all
-  const double* sensor_rest;          // [sensors][3] m: what displacements count from
+  const double* sensor_rest;          // [sensors][3] m: origin of displacements
   const std::int32_t* traced_joint;   // [traced_joints]
   const std::int32_t* traced_spring;  // [traced_springs] from the first spring row on
   const double* constant_force;       // [unknowns] N: weight
   const RailPortModel* port;
   const double* port_compliance;  // [9 ports][9 ports] B S^-1 B', m/N
   const double* port_shapes;      // [9 ports][lines' unknowns] S^-1 B', m/N
-  const double* per_length;       // [unknowns] what makes their forces comparable: 1, or 1/m
+  const double* per_length;       // [unknowns] factors that make forces comparable: 1, or 1/m
 };
 
 }  // namespace railstep

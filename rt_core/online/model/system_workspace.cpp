@@ -7,7 +7,7 @@ namespace railstep {
 
 namespace {
 
-/// Hands out a block piece by piece, each a multiple of 8 doubles; on null it counts alone.
+/// Hands out a block piece by piece, each a multiple of 8 doubles; on null it only counts.
 struct Cursor {
   double* at;
   std::int64_t used = 0;

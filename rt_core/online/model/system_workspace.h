@@ -6,35 +6,35 @@
 
 namespace railstep {
 
-/// Where a marker is: its point, then its three directions, in ground axes.
+/// Pose of a marker: its point, then its three directions, in ground axes.
 struct MarkerPose {
   double point[3];
   double axis[3][3];
 };
 
-/// Gradient of a row's value in the point and in the directions e_k of the marker at one end: per
-/// unit of the row's force the force on the point, and one on each direction (for a body the moment
-/// e_k x f).
+/// Gradient of a row's value by the point and by the directions e_k of the marker at one end. Per
+/// unit of the row's force it is the force on the point, and the force f on each direction (for a
+/// body the moment e_k x f).
 struct MarkerGradient {
   double point[3];
   double axis[3][3];
   bool has_axes;  // else all of `axis` is 0
 };
 
-/// What Newton's matrix is made of. Stands in the state where it is kept over steps, else in the
+/// Parts of Newton's matrix. They are in the state if the matrix is kept over steps, else in the
 /// workspace.
 struct SystemTangent {
   double* factor;       // of every beam, one after another
   double* solved;       // S^-1 g: per end of a body [6], per beam
                         // [groups][unknowns][kEndGroup], per end of the track [9 ports]
-  double* compliance;   // [rows][rows] of the rows' own, factored
+  double* compliance;   // [rows][rows] between rows, factored
   double* scale;        // [rows]
   std::int32_t* order;  // [rows]
   double* rank;         // [1] of the joint rows
   double* age;          // [1] steps since it was made; 0: never
 };
 
-/// Scratch of a system's step, one block of the caller's.
+/// Scratch of a system's step, in one block of the caller.
 struct SystemWorkspace {
   double* x;               // [unknowns] displacements at the step's end, the iterate
   double* shift;           // [unknowns] Gear, Gupta, Leimkuhler: the part of x without velocity
@@ -55,7 +55,7 @@ struct SystemWorkspace {
   MarkerPose* pose;        // [markers] at the step's end
   MarkerPose* start_pose;  // [markers]
   MarkerPose* force_pose;  // [markers] where forces are taken: the end, or the mean of both
-  double* gradient;        // [ends][kMostNodeUnknowns] of a row in the unknowns that its end moves
+  double* gradient;        // [ends][kMostNodeUnknowns] of a row by the unknowns of its end
   double* ahead;           // [unknowns] Baumgarte: displacements ahead of the step's end
   double* ahead_matrix;    // [bodies][9]
   MarkerPose* ahead_pose;  // [markers]
@@ -63,7 +63,7 @@ struct SystemWorkspace {
   double* value;           // [rows] Phi at the end
   double* start_value;     // [rows] of springs, energy-momentum
   double* wanted;          // [rows]
-  double* spring_lack;     // [rows] of springs: their law less their force, N
+  double* spring_lack;     // [rows] of springs: force by their law less their force, N
   double* velocity_part;   // [rows] of `wanted`, Gear, Gupta, Leimkuhler
   double* rate[2];         // [rows] of joints: first and second derivative of Phi; of springs 0
   double* force;           // [rows] the iterate
@@ -75,7 +75,7 @@ struct SystemWorkspace {
 inline std::int32_t system_rows(const SystemModel& s) noexcept {
   return s.joint_rows + s.spring_rows;
 }
-/// Whether what a step asks of a row changes with x otherwise than by the gradient of its force.
+/// Whether `wanted` of a row has another derivative by x than the gradient of the row's force.
 inline bool has_slopes(const SystemModel& s) noexcept {
   return s.mean != 0 || s.constraint_method == ConstraintMethod::baumgarte;
 }
@@ -86,8 +86,8 @@ inline std::int32_t beam_width(const BeamChainModel& beam) noexcept {
 inline std::int32_t part_ends(const SystemModel& s, std::int32_t part) noexcept {
   return s.part_end[part + 1] - s.part_end[part];
 }
-/// S^-1 g of a beam's ends stands in groups of kEndGroup ends, [groups][unknowns][kEndGroup], which
-/// one solve takes together.
+/// S^-1 g of a beam's ends is in groups of kEndGroup ends, [groups][unknowns][kEndGroup]; one solve
+/// serves a group.
 inline constexpr std::int32_t kEndGroup = 4;
 inline std::int32_t beam_groups(const SystemModel& s, std::int32_t beam) noexcept {
   return (part_ends(s, s.bodies + beam) + kEndGroup - 1) / kEndGroup;
@@ -95,7 +95,7 @@ inline std::int32_t beam_groups(const SystemModel& s, std::int32_t beam) noexcep
 inline std::int64_t end_group_doubles(const BeamChainModel& beam) noexcept {
   return std::int64_t{kEndGroup} * beam.unknowns;
 }
-/// Where an unknown of the beam's end number `end` stands in its groups.
+/// Index of an unknown for end number `end` of a beam in these groups.
 inline std::int64_t end_group_place(const BeamChainModel& beam, std::int32_t end,
                                     std::int32_t unknown) noexcept {
   return end_group_doubles(beam) * (end / kEndGroup) + std::int64_t{kEndGroup} * unknown +
@@ -103,11 +103,11 @@ inline std::int64_t end_group_place(const BeamChainModel& beam, std::int32_t end
 }
 
 std::int64_t system_tangent_doubles(const SystemModel& system) noexcept;
-/// Quaternions and row forces.
+/// Size of quaternions and row forces.
 inline std::int64_t system_start_doubles(const SystemModel& system) noexcept {
   return system.unknowns == 0 ? 0 : 4LL * system.bodies + system_rows(system);
 }
-/// Quaternions, row forces, and the tangent where it is kept.
+/// Size of quaternions, row forces, and the tangent if it is kept.
 std::int64_t system_state_doubles(const SystemModel& system) noexcept;
 std::int64_t system_workspace_doubles(const SystemModel& system) noexcept;
 

@@ -3,11 +3,12 @@
 
 namespace railstep {
 
-// What a linear rail misses when it rolls (P-delta). A section that rolls by phi = (a_z - b_y)/2
-// about x keeps its shape: the nonlinear element shortens its slopes, b_z = a_y = -phi^2/2 to
-// second order, and by that a vertical force V on the head, z above the axis, does work: V z phi
-// rolls the rail on, and so does each seat's reaction R, at the foot, by R |z_foot| phi. A linear
-// rail has neither. They are added where the force acts, on the row of its displacement.
+// The effect that a linear rail misses when it rolls (P-delta). A section that rolls by
+// phi = (a_z - b_y)/2 about x keeps its shape: the nonlinear element shortens its slopes,
+// b_z = a_y = -phi^2/2 to second order. By this a vertical force V on the head, z above the axis,
+// does work: the moment V z phi rolls the rail further, and so does each seat's reaction R at the
+// foot, by R |z_foot| phi. A linear rail has neither. Both are added at the force, on the row of
+// its displacement.
 
 /// Shortens a section's slopes by its roll. @param q  [9] r, a, b; or their change from rest
 inline void keep_section(double* q) noexcept {
@@ -16,26 +17,26 @@ inline void keep_section(double* q) noexcept {
   q[8] -= shorter;
 }
 
-/// Motions of the nodes over seats by each line, for their roll: where a line moves both rails
-/// alike, the other rail takes them from here.
+/// Motions of the nodes over seats by each line, for their roll. If a line moves both rails alike,
+/// the other rail takes them from here.
 struct SeatMotions {
   std::int32_t first = -kPDeltaSeats;        // seat; none yet
   double value[kMaxLines][kPDeltaSeats][2];  // a_z and b_y, before their weights in the rail
 };
 
-/// Adds to the row of the point (y, z) along a normal what the section's roll under it, and those
-/// over the seats around, make of it; without a roll nothing.
-/// @param roll    of the section under the point, rad
-/// @param xi      of the point in row.element
-/// @param normal  [3] unit, in the track's axes
+/// Adds to the row of the point (y, z) along a normal the effect of the section's roll under it and
+/// of the rolls over the seats around; without roll it adds nothing.
+/// @param roll     of the section under the point, rad
+/// @param xi       of the point in row.element
+/// @param normal   [3] unit, in the track's axes
 /// @param motions  of one configuration
-/// @returns by how much the point lies higher along the normal for the roll over the seats, m; the
-///          one under the point itself is in places of which keep_section() was made
+/// @returns rise of the point along the normal by the rolls over the seats, m. The effect of the
+///          roll under the point itself is in places to which keep_section() was applied
 double add_p_delta(const Model& model, const Configuration& at, double roll, double xi, double y,
                    double z, const double* normal, RailRow& row, SeatMotions& motions) noexcept;
 
-/// Square of a roll from which on the row's second order itself is off by more than 1 % of it: half
-/// of phi^2, from the series of its sine and cosine.
+/// Square of the roll above which the row's second order is off by more than 1 %: half of phi^2,
+/// from the series of its sine and cosine.
 inline constexpr double kLargeRollSquared = .02;
 
 }  // namespace railstep
