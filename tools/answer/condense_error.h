@@ -15,8 +15,8 @@ struct TransientError {
   double largest;   // of loads' deflections and rails' heights under wheels, over each one's peak
   double reference_error;  // the reference's own, estimated
   ErrorParts parts;
-  /// What the law of contact takes away: what wheels with a linear contact, or bonded to the rail,
-  /// do otherwise than by Hertz's law. It is in no other number here; nothing where all wheels
+  /// The error of the law of contact: the difference that wheels with a linear contact, or bonded
+  /// to the rail, make against Hertz's law. It is in no other number here; nothing where all wheels
   /// follow Hertz's law.
   std::optional<double> contact_law;
 };

@@ -27,8 +27,8 @@ BeamSection study_section(int section_points);
 
 BeamLaw study_law(const StudyRule& rule, const Material& material);
 
-/// Which unknowns are free: those of motion symmetric about y = 0 (bending down) or the others.
-/// A section symmetric about y = 0 does not couple them.
+/// The free unknowns: those of motion symmetric about y = 0 (bending down) or the others. A section
+/// symmetric about y = 0 does not couple them.
 enum class Motion { vertical, lateral };
 
 /// The cantilever of `elements` alike elements.

@@ -195,7 +195,7 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
   return write(block_of(built, made.notes()), made, o);
 }
 
-/// Of either kind of scene. A refusal by the models of the errors is one of the scene too.
+/// Condenses either kind of scene. A refusal by the models of the errors is one of the scene too.
 nlohmann::ordered_json condense(const CondenseOptions& o) try {
   return std::visit([&o](const auto& scene) { return condense(scene, o); },
                     read_any_scene(o.scene, o.overrides));

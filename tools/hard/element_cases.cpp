@@ -224,7 +224,7 @@ class RollingRail {
 };
 
 /// A run under 100 kN and a force aside, to rest. Both grow over half of it, so that the rail is
-/// not looked for beyond where it comes to stand.
+/// not looked for beyond its final place.
 HardRun rolled(const std::filesystem::path& scene, double aside) {
   std::vector<double> given = {3.6, 0., 0., 0., 0.};  // x, y and force of the wheel
   return HardRun(scene, {}, [given, aside](std::int64_t frame) mutable {

@@ -9,7 +9,7 @@
 namespace railstep {
 namespace {
 
-/// How far a check is on its way to its bound; over 1 beyond it.
+/// The figure of a check over its bound; above 1 it is beyond the bound.
 double way(const HardCheck& check) {
   constexpr double kWorst = std::numeric_limits<double>::infinity();
   if (!check.passed()) return std::isnan(check.figure) ? kWorst : 1. + std::abs(check.figure);

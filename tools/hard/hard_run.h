@@ -19,7 +19,7 @@ class HardRun {
   explicit HardRun(const std::filesystem::path& scene,
                    const std::vector<std::string>& overrides = {}, const FrameInputs& inputs = {});
 
-  /// Of each row, the start's first.
+  /// A value for each row; the start's is the first.
   [[nodiscard]] std::vector<double> column(const std::string& name) const;
   [[nodiscard]] std::vector<double> time() const { return column("time_s"); }
   [[nodiscard]] double first(const std::string& name) const { return column(name).front(); }

@@ -14,9 +14,9 @@ struct NamedLatency {
   const Latency* times;
 };
 
-/// How often which time was met: bins of 1 us, both axes logarithmic, so that what is rare and what
-/// is late show. One colour each, drawn one over the other; what is 100 ms or longer stands in one
-/// bin at the right end.
+/// Histogram of times: bins of 1 us, both axes logarithmic, so that what is rare and what is late
+/// show. One colour each, drawn one over the other; what is 100 ms or longer stands in one bin at
+/// the right end.
 std::string histogram_svg(const std::vector<NamedLatency>& shown);
 
 /// A page with what `railstep hil --json` prints, and histograms of frame time and wake-up latency,

@@ -11,8 +11,8 @@ namespace railstep {
 /// The part to which a polygon belongs; cell array "part" of the files.
 enum class VtkPart : std::int32_t { rail, sleeper, wheel, force, body };
 
-/// What stands at one time, in VTK's terms: points where they rest, what moves them, and the faces
-/// between them.
+/// The mesh of one time, in VTK's terms: points at rest, their displacements, and the faces between
+/// them.
 class VtkMesh {
  public:
   using Vector = std::array<float, 3>;

@@ -27,7 +27,7 @@ Polygon box(double width, double height) {
   return {{-.5 * width, 0.}, {.5 * width, 0.}, {.5 * width, height}, {-.5 * width, height}};
 }
 
-// What a scene gives of a section's shape, from the foot's underside up.
+// The shape of a section as the scene gives it, from the foot's underside up.
 Polygon shape_of(const ProfileFile& file, const Section&) {
   return polygon(read_profile(file.path).outline, kChord);
 }

@@ -8,7 +8,7 @@
 namespace railstep {
 namespace {
 
-// Of blocks, m: beyond the outermost springs, over what bears them, across the track.
+// Sizes of blocks, m: beyond the outermost springs, over what bears them, across the track.
 constexpr double kOverhang = .6, kGap = .1, kWidth = .9;
 constexpr double kHeight[] = {.3, 1.8};  // of what stands on wheels, of what stands on that
 

@@ -31,7 +31,7 @@ class Reader {
     const auto* const at = reinterpret_cast<const std::byte*>(take(count));
     return at == nullptr ? std::vector<std::byte>{} : std::vector<std::byte>(at, at + count);
   }
-  /// Of 8 bytes each.
+  /// Numbers of 8 bytes each.
   template <typename T, typename Get>
   std::vector<T> values(std::int64_t count, Get get) {
     if (count < 0 || static_cast<std::uint64_t>(count) > left_ / 8) good_ = false;

@@ -27,7 +27,7 @@ struct Recording {
   static Recording begin(const Simulation& run, std::int64_t every);
   /// A frame that was made. @param given  [inputs], or null without inputs
   void frame(const Simulation& run, const double* given);
-  /// Behind the last frame.
+  /// Call it after the last frame.
   void finish(const Simulation& run);
 
   std::vector<std::byte> bytes() const;

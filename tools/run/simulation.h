@@ -15,13 +15,13 @@ namespace railstep {
 /// A model in its block, the state at its start, and scratch: ready to step.
 class Simulation {
  public:
-  /// Of a scene, condensed where it says so. Throws InputError.
+  /// Builds a scene, condensed where it says so. Throws InputError.
   explicit Simulation(const Scene& scene);
-  /// Of a scene of bodies and beams. Throws InputError.
+  /// Builds a scene of bodies and beams. Throws InputError.
   explicit Simulation(const SystemScene& scene);
-  /// Of a block that `railstep condense` wrote. Throws InputError.
+  /// Loads a block that `railstep condense` wrote. Throws InputError.
   explicit Simulation(const std::filesystem::path& artefact);
-  /// Of such a block; `name` is its name in errors. Throws InputError.
+  /// Loads such a block; `name` is its name in errors. Throws InputError.
   Simulation(std::vector<std::byte> block, const std::string& name);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -31,13 +31,13 @@ class Simulation {
   /// The packed model with all matrices, from which the block was made; null for a model file,
   /// which carries none.
   const PackedModel* packed() const { return built_ ? built_->packed.get() : nullptr; }
-  /// Of a scene of a track alone: where packed() is not null.
+  /// The built scene of a track alone: where packed() is not null.
   const Track& track() const { return built_->track; }
   /// The system that is stepped, with its names; null where it is a track, and for a model file.
   const BuiltSystem* system() const { return system_.get(); }
-  /// Of a trace: time_s, then those of every load, wheel, sensor and support.
+  /// Columns of a trace: time_s, then those of every load, wheel, sensor and support.
   const std::vector<std::string>& columns() const { return columns_; }
-  /// Of the model's inputs, in its order: NAME.force_n or NAME.moment_n_m.
+  /// Names of the model's inputs, in its order: NAME.force_n or NAME.moment_n_m.
   const std::vector<std::string>& inputs() const { return inputs_; }
 
   State state;
@@ -55,7 +55,7 @@ class Simulation {
   std::vector<double> memory_, scratch_;
 };
 
-/// Of either kind of scene. Throws InputError.
+/// Builds either kind of scene. Throws InputError.
 std::unique_ptr<Simulation> simulation_of(const AnyScene& scene);
 
 /// All of a file. Throws InputError.

@@ -29,8 +29,8 @@ struct TraceComparison {
   double largest;  // of |a - b| over its column's largest |a|; infinite where one is NaN
 };
 
-/// Of two traces with the same columns, time step and rows. Throws InputError, naming the files, of
-/// others.
+/// Compares two traces with the same columns, time step and rows. Throws InputError, naming the
+/// files, for others.
 TraceComparison compare(const TraceTable& a, const TraceTable& b, const std::string& name_a,
                         const std::string& name_b);
 

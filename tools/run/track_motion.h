@@ -8,7 +8,7 @@
 
 namespace railstep {
 
-/// How rails and sleepers stand in a state, by the lines alone.
+/// Displacements of rails and sleepers in a state, by the lines alone.
 class TrackMotion {
  public:
   TrackMotion(const Track& track, const PackedModel& packed, const Model& model,

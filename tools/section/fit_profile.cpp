@@ -12,8 +12,8 @@
 namespace railstep {
 namespace {
 
-// Of the area. Rails with a broad foot are 0.15 to 0.17 apart from their rectangles, whose J is
-// then 0.80 to 0.87 of their own.
+// Part of the area. Rails with a broad foot are 0.15 to 0.17 apart from their rectangles, whose J
+// is then 0.80 to 0.87 of their own.
 constexpr double kMuchApart = 0.25;
 constexpr double kWider = 1.01;  // than the outline: more than round-off and chords
 

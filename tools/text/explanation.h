@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-/// What a message or a status bit means, and what to do.
+/// The meaning of a message or a status bit, and the advice on it.
 struct Explanation {
   std::string_view id;    // "E-SUPPORT-03", "W-RUN-01", "off_rail"
   std::string_view text;  // Markdown

@@ -20,7 +20,7 @@ class InputError : public std::runtime_error {
  public:
   InputError(MessageId id, const std::string& sentence)
       : InputError(std::vector{Message(id, sentence)}) {}
-  /// What the offline side refused, with its place: "place: sentence".
+  /// A refusal of the offline side with its place: "place: sentence".
   template <typename Standard>
   InputError(const std::string& place, const WithId<Standard>& refused)
       : InputError(refused.id(), place + ": " + refused.sentence()) {}

@@ -172,7 +172,7 @@ TEST_CASE("every plain rectangle is three rectangles of its width", "[fit]") {
     const Outline outline = random.rectangle();
     const FitResult r = fit(outline);
     CAPTURE(outline.height, r.outline.area.area / outline.height, refused(r));
-    REQUIRE_FALSE(r.refusal);
+    REQUIRE_FALSE(r.refusal.has_value());
     CHECK(r.warnings.empty());
     CHECK(largest(r.fit.errors) < 1e-14);
     for (const double width : r.fit.section.width)
