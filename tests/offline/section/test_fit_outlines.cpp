@@ -9,7 +9,6 @@
 #include "support/random_outlines.h"
 
 using namespace railstep;
-using Catch::Contains;
 using Catch::WithinRel;
 
 namespace {
