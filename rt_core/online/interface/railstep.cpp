@@ -16,7 +16,7 @@ struct railstep_model {
   Names outputs, inputs;
 };
 
-/// The arrays stand behind it in the caller's memory.
+/// Its arrays follow it in the caller's memory.
 struct railstep_run {
   const railstep_model* of;
   State state;

@@ -10,8 +10,8 @@ namespace railstep {
 /// Factors of a symmetric positive definite band matrix A = L D L', L unit lower in 8x8 blocks,
 /// made by factor_band() (offline/pack/band_factor.h). Views only; n = 8 panels unknowns.
 ///
-/// `forward` and `backward` are full panels; the columns that would lie before the first or behind
-/// the last unknown hold zeros and are never multiplied, so no vector needs padding.
+/// `forward` and `backward` are full panels. Columns that would lie before the first or after the
+/// last unknown hold zeros and are never multiplied, so that no vector needs padding.
 struct Band {
   std::int32_t panels;     // n / 8
   std::int32_t left;       // columns of L left of a panel, a multiple of 8
@@ -24,9 +24,9 @@ namespace band_detail {
 
 /// x_p -= A[k][.] x[k] for k < width (a multiple of 8), for R right-hand sides.
 ///
-/// Even and odd k are summed apart, then added: two chains hide the latency of the additions. The
-/// right-hand sides follow each other panel by panel, so that one's last sums overlap with the next
-/// one's first; keeping all their sums at once spills registers on g++ 12 and was slower.
+/// Even and odd k are summed separately, then added: two chains hide the latency of additions. The
+/// right-hand sides follow each other panel by panel, so that the last sums of one overlap with the
+/// first of the next. Keeping all sums at once spills registers on g++ 12 and was slower.
 template <int R>
 inline void subtract_panel(const double* __restrict A, int width, const double* x, double* x_p,
                            std::ptrdiff_t stride) noexcept {
@@ -63,7 +63,7 @@ inline void multiply_block(const double* __restrict D, double* x_p,
 
 /// Solves A x = b in place for R right-hand sides at once: L y = b, z = D^-1 y, L' x = z.
 ///
-/// Every right-hand side gets the bits it would get alone.
+/// Every right-hand side gets the same bits as alone.
 /// @param x  [R] vectors of 8 panels entries, `stride` doubles apart; b in, x out
 /// Cannot fail: NaN in, NaN out. Work: R * panels * (32 left + 128) flops.
 template <int R>

@@ -26,7 +26,7 @@ inline double get_double(const unsigned char* at) noexcept {
   return value;
 }
 
-/// Whether `n` bytes are the same, in a time that does not tell where they are not.
+/// Whether `n` bytes are the same, in a time that does not depend on where they differ.
 inline bool same_bytes(const unsigned char* a, const void* b, int n) noexcept {
   int different = 0;
   for (int i = 0; i < n; ++i) different |= a[i] ^ static_cast<const unsigned char*>(b)[i];

@@ -4,14 +4,14 @@
 
 namespace railstep {
 
-/// A complex vector as two real ones. n of it is a multiple of 8 throughout.
+/// A complex vector as two real ones. Its length n is always a multiple of 8.
 struct Complex {
   const double* re;
   const double* im;
 };
 
-/// Re sum a_k z_k, the displacement that modes z give a point of complex shape a: lane k mod 8 adds
-/// its products in order, then lane_sum().
+/// Re sum a_k z_k, the displacement of a point of complex shape a by modes z. Lane k mod 8 adds its
+/// products in order, then lane_sum().
 inline double modes_dot(Complex a, Complex z, int n) noexcept {
   double sum[kLanes] = {};
   for (int k = 0; k < n; k += kLanes) {
@@ -32,7 +32,7 @@ inline void modes_add(double factor, Complex a, double* __restrict re, double* _
   }
 }
 
-/// y = a b, entry by entry; y may not overlap with them.
+/// y = a b, entry by entry; y must not overlap with a or b.
 inline void modes_multiply(Complex a, Complex b, double* __restrict re, double* __restrict im,
                            int n) noexcept {
 #pragma omp simd

@@ -2,7 +2,7 @@
 
 namespace railstep {
 
-/// sum of x_i y_i, in order.
+/// Sum of x_i y_i, in order.
 inline double dot(const double* x, const double* y, int n) noexcept {
   double sum = 0.;
   for (int i = 0; i < n; ++i) sum += x[i] * y[i];
@@ -24,7 +24,7 @@ enum class SmallSolve : unsigned char {
 [[nodiscard]] inline SmallSolve solve_small(double* A, double* b, int n) noexcept {
   for (int j = 0; j < n; ++j) {
     double* row = A + j * n;
-    // Row j of L still times D; dividing it as the pivot is taken saves a pass.
+    // Row j of L is still multiplied by D; it is divided with the pivot, which saves a pass.
     for (int k = 0; k < j; ++k)
       for (int m = 0; m < k; ++m) row[k] -= row[m] * A[k * n + m];
     for (int k = 0; k < j; ++k) {

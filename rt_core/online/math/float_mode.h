@@ -13,9 +13,9 @@
 
 namespace railstep {
 
-/// Round to nearest, subnormals flushed to zero (results and operands), no exception traps, for as
-/// long as it lives; then the caller's mode again. Subnormals cost up to 95 times a normal number,
-/// and a caller's rounding mode would change the bits.
+/// While it lives: round to nearest, subnormals flushed to zero (results and operands), no
+/// exception traps. Then the caller's mode is restored. Subnormals cost up to 95 times a normal
+/// number, and a caller's rounding mode would change the bits.
 ///
 /// The control word is written through volatile code, but a compiler may still move plain
 /// arithmetic across it: keep the guarded arithmetic in functions of another file.
@@ -57,8 +57,7 @@ class FloatMode {
 
  private:
   // FPSCR: bits 22-23 rounding, 8-12 and 15 traps, 24 FZ, 25 NaNs without payload, 26 another half
-  // precision; its sticky flags 0-4 and 7 are not the caller's to lose, they come back with the
-  // rest.
+  // precision. The caller must not lose its sticky flags 0-4 and 7: they are restored too.
   static constexpr Word kCleared = 0xc00000u | 0x9f00u | 0x6000000u, kSet = 0x1000000u;
   static void write(Word word) noexcept { asm volatile("vmsr fpscr, %0" : : "r"(word) : "memory"); }
 #endif

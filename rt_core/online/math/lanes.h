@@ -2,8 +2,8 @@
 
 namespace railstep {
 
-/// Rows of a panel: every kernel keeps this many sums side by side, whatever the vector width of
-/// the machine, so that each sum is taken in the same written order everywhere.
+/// Rows of a panel. Every kernel keeps this many sums side by side for every vector width, so that
+/// each sum is taken in the same written order on all machines.
 inline constexpr int kLanes = 8;
 
 /// Sum of the 8 lanes, halves first: ((0+4)+(2+6)) + ((1+5)+(3+7)).

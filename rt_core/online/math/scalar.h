@@ -6,7 +6,7 @@ namespace railstep {
 inline double square_root(double x) noexcept { return __builtin_sqrt(x); }
 inline double magnitude(double x) noexcept { return __builtin_fabs(x); }
 
-/// The larger one; `a` where `b` is not a number.
+/// The larger one; `a` if `b` is not a number.
 inline double larger(double a, double b) noexcept { return b > a ? b : a; }
 
 }  // namespace railstep

@@ -4,9 +4,9 @@
 
 namespace railstep {
 
-/// The last of `rows` rows, each of `width` numbers, whose first number is not above `value`; the
-/// first row where all are above it. First numbers rise; rows >= 1. By bisection, so that a long
-/// table costs as much at its end as at its start: at most 31 iterations.
+/// The last of `rows` rows of `width` numbers whose first number is not above `value`; the first
+/// row if all are above it. First numbers rise; rows >= 1. It uses bisection, so that a long table
+/// costs the same at its end as at its start: at most 31 iterations.
 inline std::int32_t row_at(const double* table, std::int32_t width, std::int32_t rows,
                            double value) noexcept {
   std::int32_t low = 0, high = rows;  // the row is in [low, high)

@@ -5,11 +5,11 @@
 
 namespace railstep {
 
-/// SHA-256 (FIPS 180-4) of bytes given in pieces: start, add.., finish.
+/// SHA-256 (FIPS 180-4) of bytes in pieces: start, add, ..., finish.
 class Sha256 {
  public:
   void add(const void* bytes, std::size_t count) noexcept;
-  /// Writes the 32 bytes of the digest and starts anew.
+  /// Writes the 32 bytes of the digest and starts again.
   void finish(std::uint8_t* digest) noexcept;
 
  private:

@@ -3,7 +3,7 @@
 
 namespace railstep {
 
-// Sines and cosines that are the same everywhere: the C library's differ between machines.
+// Sines and cosines that are the same on all machines; those of C libraries differ.
 
 /// cos x by Taylor's series up to x^order. @param square  x^2; order  even
 inline double cosine_series(double square, int order) noexcept {
@@ -11,15 +11,15 @@ inline double cosine_series(double square, int order) noexcept {
   for (int n = order; n > 0; n -= 2) sum = 1. - square / (n * (n - 1.)) * sum;
   return sum;
 }
-/// sin(x) / x, the same.
+/// sin(x) / x in the same way.
 inline double sinc_series(double square, int order) noexcept {
   double sum = 1.;
   for (int n = order; n > 0; n -= 2) sum = 1. - square / (n * (n + 1.)) * sum;
   return sum;
 }
 
-/// sin(2 pi turns) within 4e-16 of what the rounded `turns` say; 0 where they are too many to have
-/// a rest, or are no number.
+/// sin(2 pi turns) within 4e-16 for the rounded `turns`; 0 if these are too large to have a
+/// fraction, or not a number.
 inline double sine_of_turns(double turns) noexcept {
   if (!(turns > -1e15 && turns < 1e15)) return 0.;
   double rest = turns - static_cast<double>(static_cast<std::int64_t>(turns));  // -1 to 1

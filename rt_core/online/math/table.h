@@ -16,7 +16,8 @@ inline double table_value(const double* table, std::int32_t points, double time)
   return row[1] + (time - row[0]) / (next[0] - row[0]) * (next[1] - row[1]);
 }
 
-/// Weights of the four points around a place, of intervals + 1 equally spaced ones over [-1, 1].
+/// Weights of the four points around a place, out of intervals + 1 equally spaced ones over [-1,
+/// 1].
 struct Cubic {
   std::int32_t first;
   double weight[4];

@@ -3,8 +3,8 @@
 
 namespace railstep {
 
-/// Copies what frames publish of loads, wheels and flanges; what tells of the frame itself (status,
-/// iterations, residuals) stays.
+/// Copies the published outputs of loads, wheels and flanges; those of the frame itself (status,
+/// iterations, residuals) are left.
 void copy_published(const Model& model, const Outputs& from, Outputs& to) noexcept;
 
 }  // namespace railstep

@@ -9,7 +9,7 @@ Status take_inputs(const Model& model, const double* value, State& state) noexce
   for (std::int32_t i = 0; i < model.inputs; ++i) {
     const double limit = model.input_limit[i];
     double given = value[i];
-    if (!(given - given == 0.)) {  // 0 for finite numbers alone
+    if (!(given - given == 0.)) {  // 0 only for finite numbers
       met = met | Status::nonfinite_input;
       continue;
     }

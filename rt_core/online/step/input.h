@@ -3,10 +3,10 @@
 
 namespace railstep {
 
-/// Takes a frame's inputs into the state: one that is not finite leaves the last good one, one
-/// beyond its limit is cut to it.
+/// Takes a frame's inputs into the state. For an input that is not finite the last good value
+/// stays; an input beyond its limit is cut to it.
 /// @param value  [inputs] N or N m
-/// @returns what was met
+/// @returns status bits of these events
 Status take_inputs(const Model& model, const double* value, State& state) noexcept;
 
 }  // namespace railstep

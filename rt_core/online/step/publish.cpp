@@ -14,19 +14,19 @@ namespace railstep {
 
 namespace {
 
-/// What a rail's or sleeper's displacement does not come near, m, nor its rotation, rad: it is at
-/// most a few times a section's height where the linear track means anything. A run that grows from
-/// bay to bay or step to step ends here, long before its numbers overflow.
+/// Far above every displacement of a rail or sleeper, m, and every rotation, rad: a linear track is
+/// valid up to a few times a section's height. A run that grows from bay to bay or step to step
+/// ends here, long before its numbers overflow.
 constexpr double kMostSag = 0x1p10;
 
-/// Its highest bit is set where |x| is `most` and more, or x is no number: but for the sign, bits
-/// rise with the numbers they stand for. In integers, so that several are looked at together.
+/// The highest bit is set if |x| >= `most` or x is NaN: without the sign, IEEE patterns sort like
+/// magnitudes. It uses integers, so that several can be tested together.
 std::uint64_t lifted(double x, double most) noexcept {
   constexpr std::uint64_t sign = std::uint64_t{1} << 63;
   return (std::bit_cast<std::uint64_t>(x) & ~sign) + (sign - std::bit_cast<std::uint64_t>(most));
 }
 
-/// First unknown of a range whose displacement is `most` and more, or whose velocity is too large;
+/// First unknown of a range whose displacement is at least `most`, or whose velocity is too large;
 /// or -1.
 std::int32_t first_beyond(const State& s, std::int32_t first, std::int32_t last,
                           double most) noexcept {
@@ -40,15 +40,15 @@ std::int32_t first_beyond(const State& s, std::int32_t first, std::int32_t last,
   return first;
 }
 
-/// First unknown of the wheelset or vehicle that has a contact.
+/// First unknown of the wheelset or vehicle to which a contact belongs.
 std::int32_t first_unknown_of(const Model& model, ContactId contact) noexcept {
   return is_of_wheelset(model, contact)
              ? model.wheelset[wheelset_of(model, contact)].first
              : model.vehicle[vehicle_wheel(model, contact).vehicle].first;
 }
 
-/// First unknown of what has a contact, an orientation or a joint whose numbers are too large, or
-/// -1: they take high powers of unknowns, which overflow long before these do.
+/// First unknown of a body whose contact, orientation or joint has too large numbers, or -1. They
+/// are high powers of unknowns, which overflow long before the unknowns do.
 std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) noexcept {
   for (ContactId i = 0; i < contact_count(model); ++i) {
     const double gap =
@@ -69,7 +69,7 @@ std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) 
 
 /// First unknown that is too large, or -1.
 std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) noexcept {
-  // Of a condensed track these are modes, and no displacements.
+  // In a condensed track these are modes, not displacements.
   const std::int32_t banded = model.line_unknowns - modal_unknowns(model);
   const std::int32_t track = first_beyond(s, 0, banded, kMostSag);
   if (track >= 0) return track;

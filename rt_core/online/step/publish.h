@@ -6,29 +6,29 @@
 
 namespace railstep {
 
-// What a frame publishes. Of another file than the public calls, which set the floating-point mode:
-// no arithmetic of it may leave that mode.
+// The outputs of a frame. In another file than the public calls, which set the floating-point mode:
+// none of this arithmetic may move out of that mode.
 
-/// The state's displacements, as the lines read them.
+/// The state's displacements for the lines.
 inline Configuration standing(const Model& model, const State& s) noexcept {
   return {s.u, {s.u, s.v}, track_offset(model, s.steps)};
 }
 
-/// Before the first step of a frame.
+/// Prepares the outputs before the first step of a frame.
 void start_frame(const Model& model, const State& state, Outputs& outputs) noexcept;
 
-/// Adds how a coupled solve went to the frame's outputs.
+/// Adds the results of a coupled solve to the frame's outputs.
 void collect_solve(const CoupleResult& met, Outputs& outputs) noexcept;
 
-/// Adds what a step met to the frame's outputs.
+/// Adds the results of a step to the frame's outputs.
 void collect(const Model& model, const State& state, const CoupleResult& met,
              Outputs& outputs) noexcept;
 void collect(const SystemResult& met, Outputs& outputs) noexcept;
 
-/// Loads and health of a state as it stands, on what a frame has collected.
+/// Publishes loads and checks of the present state, on top of the collected results.
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept;
 
-/// All of the outputs of a state from which no step was made.
+/// Sets all outputs of a state from which no step was made.
 void start_outputs(const Model& model, const State& state, Outputs& outputs) noexcept;
 
 }  // namespace railstep

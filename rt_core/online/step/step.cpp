@@ -17,7 +17,7 @@ namespace railstep {
 
 namespace {
 
-/// u*, v*: where the scheme goes without this step's acceleration, of bodies and banded lines.
+/// u*, v* of bodies and banded lines: the scheme's prediction without this step's acceleration.
 void predict(const Model& model, const State& s, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
@@ -27,7 +27,7 @@ void predict(const Model& model, const State& s, Workspace& w) noexcept {
   }
 }
 
-/// The same of a scheme's second stage, from where the first came to.
+/// The same for a scheme's second stage, from the end of the first.
 void predict_last(const Model& model, const State& s, Workspace& w) noexcept {
   const double weight = model.scheme.stage_weight, per_kv = 1. / model.scheme.kv;
   const double *u0 = w.start, *v0 = w.start + model.unknowns;
@@ -38,7 +38,7 @@ void predict_last(const Model& model, const State& s, Workspace& w) noexcept {
   }
 }
 
-/// M kg u* + C (kv u* - v*) of every banded line onto the right-hand side.
+/// Adds M kg u* + C (kv u* - v*) of every banded line to the right-hand side.
 void add_inertia(const Model& model, Workspace& w) noexcept {
   const Scheme c = model.scheme;
 #pragma omp simd
@@ -56,18 +56,18 @@ void add_inertia(const Model& model, Workspace& w) noexcept {
   }
 }
 
-/// Whether anything but wheels and ports applies forces to the track.
+/// Whether there are forces on the track other than those of wheels and ports.
 bool has_forces(const Model& model) noexcept {
   return model.loads > 0 || model.constant_force != nullptr;
 }
 
-/// The track's displacements without wheels, for loads that stand on the right-hand side.
+/// The track's displacements without wheels, from the loads on the right-hand side.
 void solve_bands(const Model& model, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l)
     solve_band<1>(model.line[l].step, w.solved + model.line[l].first, 0);
 }
 
-/// Modes without wheels at the step's end; the forces q1 in `solved` pass into the state.
+/// Modes without wheels at the step's end; the forces q1 in `solved` are stored in the state.
 void advance_modes(const LineModel& line, State& s, Workspace& w) noexcept {
   const Modal& m = line.modal;
   const double *keep_re = m.keep.re, *keep_im = m.keep.im;
@@ -88,7 +88,7 @@ void advance_modes(const LineModel& line, State& s, Workspace& w) noexcept {
   }
 }
 
-/// The same of modes without forces: q1 is 0, and was. Leaves bodies without a force.
+/// The same for modes without forces: q1 is 0 and was 0. Leaves bodies without a force.
 void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
@@ -98,7 +98,7 @@ void keep_modes(const Model& model, const State& s, Workspace& w) noexcept {
   for (std::int32_t i = model.line_unknowns; i < model.unknowns; ++i) w.solved[i] = 0.;
 }
 
-/// Right-hand sides of banded lines, and condensed ones without wheels at the step's end.
+/// Right-hand sides of banded lines, and condensed lines without wheels at the step's end.
 void advance_track(const Model& model, const Stage& stage, State& s, Workspace& w) noexcept {
   if (model.form == Form::condensed && !has_forces(model)) return keep_modes(model, s, w);
   forces(model, stage.step, w.solved, w.imaginary, stage.before);
@@ -135,7 +135,7 @@ bool has_ports(const Model& model) noexcept {
   return wheel_count(model) > 0 || model.fixed.count > 0;
 }
 
-/// The first of two stages: the state is where it leads to, the step's start in `w.start`.
+/// The first of two stages: afterwards the state is at its end, and the step's start in `w.start`.
 void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
   const Stage stage = first_stage(model.scheme, state.steps + 1);
 #pragma omp simd
@@ -196,7 +196,7 @@ void forces(const Model& model, std::int64_t step, double* re, double* im, doubl
 
 namespace {
 
-// Never inlined: no arithmetic of theirs may leave the mode that their callers set.
+// Never inlined: none of their arithmetic may move out of the mode that their callers set.
 [[gnu::noinline]] void make_frame(const Model& model, State& state, Workspace& workspace,
                                   Outputs& outputs) noexcept {
   Outputs last;

@@ -6,10 +6,10 @@
 
 namespace railstep {
 
-// The columns of a trace behind time_s. These tables and for_each_column() alone know their order:
+// The columns of a trace after time_s. Only these tables and for_each_column() know their order:
 // names, count and values follow from them.
 
-/// A column of a load, a wheel or a flange: the end of its name, and where frames publish it.
+/// A column of a load, a wheel or a flange: the end of its name, and its place in the outputs.
 template <int most>
 struct OutputColumn {
   const char* name;
@@ -55,7 +55,7 @@ inline constexpr SensorColumn kSensorColumns[] = {
     {"dy_m", SensorQuantity::displacement, 1},  {"dz_m", SensorQuantity::displacement, 2},
     {"vz_m_per_s", SensorQuantity::velocity, 2}};
 
-/// A column of a traced joint: what it does to its part B at its point, ground axes.
+/// A column of a traced joint: its force or moment on part B at its point, ground axes.
 struct JointColumn {
   const char* name;
   double (JointForce::*value)[3];
@@ -72,7 +72,7 @@ struct SpringColumn {
 };
 inline constexpr SpringColumn kSpringColumns[] = {{"force_n"}};
 
-/// What a column belongs to, beside track sensors, whose names are whole.
+/// Owner of a column, other than track sensors, whose names are complete.
 enum class ColumnOf { load, wheel, flange, external_wheel, sensor, joint, spring };
 
 /// Visits the columns in their order: visit(of, i, columns) for load, wheel, ... number i, with

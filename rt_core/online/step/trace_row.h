@@ -6,9 +6,9 @@ namespace railstep {
 /// Numbers in a row of a trace.
 std::int32_t trace_columns(const Model& model) noexcept;
 
-/// A row of a trace: time_s, then the columns of trace_columns.h. It is left as it is where the
-/// state is latched as not finite.
-/// @param outputs  that the state's frame published
+/// A row of a trace: time_s, then the columns of trace_columns.h. It is left as it is if the state
+/// is latched as not finite.
+/// @param outputs  published by the state's frame
 /// @param row      [trace_columns()]
 void trace_row(const Model& model, const State& state, const Outputs& outputs,
                double* row) noexcept;
