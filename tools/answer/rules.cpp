@@ -13,7 +13,7 @@ namespace {
 constexpr int kElements[] = {1, 2, 4, 8, 16};
 constexpr double kPoissons[] = {0., .3, .45, .49, .499};
 constexpr int kReferenceElements = 64;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();
 
 /// Floating-point operations of beam_force() at one point whose stiffness has this many entries.
 int point_flops(int entries) {
@@ -87,7 +87,7 @@ void add_rows(StudyRow row, const Material& material, const LargeReference& larg
     add("large bending", tip, large_deflection(law, row.elements) / large.deflection - 1.);
   if (of_section(row.rule)) {
     const bool singular = std::isnan(row.twist_error);
-    add("large twist", tip, singular ? kNone : large_turn(law, row.elements) / large.turn - 1.);
+    add("large twist", tip, singular ? kNoAnswer : large_turn(law, row.elements) / large.turn - 1.);
   }
 }
 

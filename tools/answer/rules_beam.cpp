@@ -64,7 +64,7 @@ BeamLaw study_law(const StudyRule& rule, const Material& material) {
                   rule.reference_height);
 }
 
-Structure study_cantilever(const BeamLaw& law, int elements, Motion motion) {
+Structure study_cantilever(const BeamLaw& law, int elements, BendingPlane motion) {
   const double length = study::kLength / elements;
   const int nodes = 2 * elements + 1;
   Structure s;
@@ -77,7 +77,7 @@ Structure study_cantilever(const BeamLaw& law, int elements, Motion motion) {
   }
   constexpr bool vertical[9] = {true, false, true, false, true, false, true, false, true};
   for (int i = 0; i < 9 * nodes; ++i)
-    s.held.push_back(i < 9 || vertical[i % 9] != (motion == Motion::vertical));
+    s.held.push_back(i < 9 || vertical[i % 9] != (motion == BendingPlane::vertical));
   return s;
 }
 
@@ -87,7 +87,7 @@ double between_nodes(int elements) {
 }
 
 Compliance vertical_compliance(const BeamLaw& law, int elements) {
-  const Structure s = study_cantilever(law, elements, Motion::vertical);
+  const Structure s = study_cantilever(law, elements, BendingPlane::vertical);
   const Flexibility flexibility(s);
   return {flexibility(centroid_row(law, elements, study::kLength)),
           flexibility(centroid_row(law, elements, between_nodes(elements)))};
@@ -100,7 +100,7 @@ double exact_compliance(const Material& material, double x) {
 }
 
 double twist_compliance(const BeamLaw& law, int elements) {
-  const Structure s = study_cantilever(law, elements, Motion::lateral);
+  const Structure s = study_cantilever(law, elements, BendingPlane::lateral);
   Eigen::VectorXd row = Eigen::VectorXd::Zero(s.unknowns());
   const int tip = s.unknowns() - 9;
   row[tip + 5] = .5;  // (a_z - b_y)/2
@@ -113,7 +113,7 @@ double exact_twist(const Material& material) {
 }
 
 double large_deflection(const BeamLaw& law, int elements) {
-  const Structure s = study_cantilever(law, elements, Motion::vertical);
+  const Structure s = study_cantilever(law, elements, BendingPlane::vertical);
   const Eigen::VectorXd tip = centroid_row(law, elements, study::kLength);
   const double force = study::kLargeLoad * law.material.young * study_section(0).inertia_y /
                        (study::kLength * study::kLength);
@@ -122,7 +122,7 @@ double large_deflection(const BeamLaw& law, int elements) {
 }
 
 double large_turn(const BeamLaw& law, int elements) {
-  Structure s = study_cantilever(law, elements, Motion::lateral);
+  Structure s = study_cantilever(law, elements, BendingPlane::lateral);
   for (std::size_t i = 9; i < s.held.size(); ++i) s.held[i] = false;
   const double torque = study::kLargeTwist * law.material.shear_modulus() * law.torsion;
   const StructureLoad load{.force = Eigen::VectorXd::Zero(s.unknowns()),

@@ -29,10 +29,10 @@ BeamLaw study_law(const StudyRule& rule, const Material& material);
 
 /// The free unknowns: those of motion symmetric about y = 0 (bending down) or the others. A section
 /// symmetric about y = 0 does not couple them.
-enum class Motion { vertical, lateral };
+enum class BendingPlane { vertical, lateral };
 
 /// The cantilever of `elements` alike elements.
-Structure study_cantilever(const BeamLaw& law, int elements, Motion motion);
+Structure study_cantilever(const BeamLaw& law, int elements, BendingPlane motion);
 
 /// A place halfway between two nodes, whatever the number of elements: a quarter along the element
 /// that begins at mid-length (of one element, along itself), m.

@@ -203,7 +203,7 @@ nlohmann::ordered_json condense(const CondenseOptions& o) try {
   throw InputError(o.scene, error);
 }
 
-std::string error_text(const nlohmann::ordered_json& error) {
+std::string error_or_unknown(const nlohmann::ordered_json& error) {
   return error.is_null() ? "not known" : fmt::format("{:.2e}", error.get<double>());
 }
 
@@ -211,7 +211,7 @@ void print_receptance_error(const nlohmann::ordered_json& r) {
   const auto& hz = r["receptance_error_hz"];
   const auto& undamped = r["receptance_undamped_hz"];
   const auto& places = r["receptance_places_m"];
-  fmt::print("receptance error  {}{}, {:g} to {:g} Hz", error_text(r["receptance_error"]),
+  fmt::print("receptance error  {}{}, {:g} to {:g} Hz", error_or_unknown(r["receptance_error"]),
              hz.is_null() ? "" : fmt::format(" at {:.5g} Hz", hz.get<double>()),
              r["receptance_band_hz"][0].get<double>(), r["receptance_band_hz"][1].get<double>());
   if (!places.is_null())
@@ -225,7 +225,7 @@ void print_receptance_error(const nlohmann::ordered_json& r) {
   fmt::print("\n");
 }
 
-void print_table(const nlohmann::ordered_json& r, const std::string& file) {
+void print_errors_table(const nlohmann::ordered_json& r, const std::string& file) {
   fmt::print("{}: {} of {} unknowns, {} bytes, state {}, workspace {}\n", file,
              r["kept_unknowns"].get<int>(), r["full_unknowns"].get<int>(),
              r["bytes"].get<std::int64_t>(), r["state_bytes"].get<std::int64_t>(),
@@ -234,14 +234,14 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
   fmt::print("a frame, at most  {} flops, {} bytes, {} instructions\n",
              r["flops_per_frame"].get<std::int64_t>(), r["bytes_per_frame"].get<std::int64_t>(),
              r["instructions_per_frame"].get<std::int64_t>());
-  fmt::print("static error      {}\n", error_text(r["static_error"]));
+  fmt::print("static error      {}\n", error_or_unknown(r["static_error"]));
   if (const int ports = r["one_sided_supports"].get<int>(); ports > 0)
     fmt::print(
         "  one-sided       {} supports: as springs, or where each force alone presses them\n",
         ports);
   print_receptance_error(r);
   const auto& window = r["transient_window_s"];
-  fmt::print("transient error   {}{}\n", error_text(r["transient_error"]),
+  fmt::print("transient error   {}{}\n", error_or_unknown(r["transient_error"]),
              window.is_null()
                  ? ""
                  : fmt::format(" from {:g} to {:g} of {:g} s", r["transient_from_s"].get<double>(),
@@ -250,10 +250,10 @@ void print_table(const nlohmann::ordered_json& r, const std::string& file) {
   if (parts.is_null()) return;
   fmt::print(
       "  of the mesh     {}\n  condensation    {}\n  step            {}\n  reference       {}\n",
-      error_text(parts["mesh"]), error_text(parts["condensation"]), error_text(parts["step"]),
-      error_text(r["transient_reference_error"]));
+      error_or_unknown(parts["mesh"]), error_or_unknown(parts["condensation"]),
+      error_or_unknown(parts["step"]), error_or_unknown(r["transient_reference_error"]));
   if (!parts["contact_law"].is_null())
-    fmt::print("contact law       {}, against Hertz's\n", error_text(parts["contact_law"]));
+    fmt::print("contact law       {}, against Hertz's\n", error_or_unknown(parts["contact_law"]));
 }
 
 }  // namespace
@@ -279,7 +279,7 @@ Command add_condense(CLI::App& app) {
             if (o->json)
               fmt::print("{}\n", result.dump(2));
             else
-              print_table(result, o->out);
+              print_errors_table(result, o->out);
             return Exit::done;
           }};
 }

@@ -21,7 +21,7 @@ struct HardOptions {
   bool json = false;
 };
 
-std::vector<HardCase> chosen(const std::vector<std::string>& ids) {
+std::vector<HardCase> chosen_cases(const std::vector<std::string>& ids) {
   std::vector<HardCase> all = hard_cases(), some;
   if (ids.empty()) return all;
   for (const std::string& id : ids) {
@@ -64,7 +64,7 @@ void print_table(const std::vector<HardOutcome>& outcomes) {
 }
 
 Exit run_hard(const HardOptions& o) {
-  const std::vector<HardCase> cases = chosen(o.cases);
+  const std::vector<HardCase> cases = chosen_cases(o.cases);
   if (!o.report.empty()) need_gnuplot();
   std::vector<HardOutcome> outcomes;
   outcomes.reserve(cases.size());

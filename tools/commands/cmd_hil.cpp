@@ -179,9 +179,9 @@ struct Exchanges {
   std::vector<Exchange*> all;
 };
 
-nlohmann::ordered_json settings_json(const std::vector<Setting>& settings) {
+nlohmann::ordered_json settings_json(const std::vector<RealtimeSetting>& settings) {
   nlohmann::ordered_json told = nlohmann::ordered_json::object();
-  for (const Setting& each : settings)
+  for (const RealtimeSetting& each : settings)
     told[each.name] = each.done ? "done" : "refused: " + each.reason;
   return told;
 }
@@ -245,7 +245,7 @@ void print_quantiles(const char* name, const nlohmann::ordered_json& us) {
              us["max"].get<double>());
 }
 
-void print_table(const nlohmann::ordered_json& told) {
+void print_paced_table(const nlohmann::ordered_json& told) {
   fmt::print("rate                      {:g} Hz, a frame simulates {:g} s: {:g} of real time\n",
              told["rate_hz"].get<double>(), told["frame_length_s"].get<double>(),
              told["real_time_factor"].get<double>());
@@ -273,8 +273,8 @@ void print_table(const nlohmann::ordered_json& told) {
              told["allocations"].get<std::int64_t>(), told["state_hash"].get<std::string>());
 }
 
-void warn_of_refusals(const std::vector<Setting>& settings) {
-  for (const Setting& each : settings)
+void warn_of_refusals(const std::vector<RealtimeSetting>& settings) {
+  for (const RealtimeSetting& each : settings)
     if (!each.done)
       fmt::print(stderr, "warning: {}\n",
                  Message("W-HIL-01", fmt::format("the system refused {} ({}); the run goes on "
@@ -376,7 +376,7 @@ Exit run(const HilOptions& o) {
   if (o.json)
     fmt::print("{}\n", told.dump(2));
   else
-    print_table(told);
+    print_paced_table(told);
   return verdict(record, *simulation);
 }
 

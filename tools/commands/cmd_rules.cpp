@@ -18,7 +18,7 @@ struct RulesOptions {
 };
 
 /// Rules of the named families, the default always among them.
-std::vector<NamedRule> chosen(const std::vector<std::string>& families) {
+std::vector<NamedRule> chosen_rules(const std::vector<std::string>& families) {
   std::vector<NamedRule> rules = study_rules();
   if (families.empty()) return rules;
   const auto unwanted = [&](const NamedRule& rule) {
@@ -30,7 +30,7 @@ std::vector<NamedRule> chosen(const std::vector<std::string>& families) {
 }
 
 Exit run_rules(const RulesOptions& o) {
-  const std::vector<StudyRow> rows = study_rows(chosen(o.families));
+  const std::vector<StudyRow> rows = study_rows(chosen_rules(o.families));
   if (!o.csv.empty()) write_file(o.csv, to_csv(rows));
   if (!o.json) {
     fmt::print("{}", to_table(rows));

@@ -100,7 +100,7 @@ nlohmann::ordered_json to_json(const Simulation& run, const RunRecord& record,
           {"allocations", record.allocations}};
 }
 
-void print_table(const nlohmann::ordered_json& result) {
+void print_run_table(const nlohmann::ordered_json& result) {
   const auto& us = result["frame_us"];
   fmt::print("steps            {}\nfinal time       {:.9g} s\nstate hash       {}\n",
              result["steps"].get<std::int64_t>(), result["final_time_s"].get<double>(),
@@ -241,7 +241,7 @@ Exit run(const RunOptions& o) {
   if (o.json)
     fmt::print("{}\n", result.dump(2));
   else
-    print_table(result);
+    print_run_table(result);
   return verdict(*simulation, record, notes);
 }
 

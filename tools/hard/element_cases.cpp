@@ -101,7 +101,7 @@ HardResult slender(const std::filesystem::path& scene) {
 
 // H13 ------------------------------------------------------------------------------------------
 
-constexpr double kCritical = 8.703979e6;  // N, of vertical bending
+constexpr double kCriticalForce = 8.703979e6;  // N, of vertical bending
 /// P/(4 m L^2), 1/s2.
 double per_half_wave(double force) { return force / (4. * 7850. * 8.7e-3 * 9.); }
 std::string pressed(double force) { return fmt::format("rail.axial_force_n={:.17g}", -force); }
@@ -124,7 +124,7 @@ double off_law(const std::vector<double>& free, const std::vector<double>& under
 }
 
 void add_refusal(const std::filesystem::path& scene, HardResult& result) {
-  const std::string said = refusal(scene, {pressed(1.01 * kCritical)});
+  const std::string said = refusal(scene, {pressed(1.01 * kCriticalForce)});
   result.checks.push_back(holds("1.01 of the critical force is refused, with that force",
                                 said.find("8791019 N") != std::string::npos));
   result.checks.push_back(holds("and with the force at which the rail buckles",
@@ -137,17 +137,18 @@ HardResult preload(const std::filesystem::path& scene) {
   const std::vector<double> free = frequencies(scene, {pressed(0.)}, kModes);
   const std::vector<double> wide = frequencies(scene, {pressed(0.), space}, kInSpace);
   // Sideways the rail is softer than upwards, and buckles first.
-  const double lateral = kCritical * std::pow(wide[0] / free[0], 2);
+  const double lateral = kCriticalForce * std::pow(wide[0] / free[0], 2);
   HardResult result;
   result.checks.push_back(off_by("first frequency without force", free[0], 59.49949, 1e-3));
   for (const auto& [part, first] : {std::pair{.9, 18.81539}, std::pair{.99, 5.94995}}) {
-    const std::vector<double> under = frequencies(scene, {pressed(part * kCritical)}, kModes);
+    const std::vector<double> under = frequencies(scene, {pressed(part * kCriticalForce)}, kModes);
     const std::string at = fmt::format("{} of the critical force: ", part);
     result.checks.push_back(off_by(at + "first frequency", under[0], first, 1e-3));
     double most = 0.;
     for (int n = 1; n <= kModes; ++n) {
       const auto i = static_cast<std::size_t>(n - 1);
-      const double known = std::sqrt(free[i] * free[i] - n * n * per_half_wave(part * kCritical));
+      const double known =
+          std::sqrt(free[i] * free[i] - n * n * per_half_wave(part * kCriticalForce));
       most = std::max(most, std::abs(under[i] / known - 1.));
     }
     result.checks.push_back({at + "frequencies 1 to 8 by the law", most, 1e-3});
@@ -164,13 +165,14 @@ HardResult preload(const std::filesystem::path& scene) {
     for (int k = 0; k <= 100; ++k) {
       const double f = free[static_cast<std::size_t>(n - 1)];
       law.x.push_back(.01 * k);
-      law.y.push_back(std::sqrt(std::max(0., f * f - n * n * per_half_wave(.01 * k * kCritical))));
+      law.y.push_back(
+          std::sqrt(std::max(0., f * f - n * n * per_half_wave(.01 * k * kCriticalForce))));
     }
     result.picture.curves.push_back(law);
   }
   HardCurve found{"railstep", {}, {}, true};
   for (const double part : {0., .3, .6, .9, .99})
-    for (const double f : frequencies(scene, {pressed(part * kCritical)}, 3)) {
+    for (const double f : frequencies(scene, {pressed(part * kCriticalForce)}, 3)) {
       found.x.push_back(part);
       found.y.push_back(f);
     }

@@ -70,6 +70,10 @@ HardCurve HardRun::curve(const std::string& name, const std::string& title, doub
 
 std::string condensed_to(const char* kind) { return fmt::format("condense.kind=\"{}\"", kind); }
 
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
 }

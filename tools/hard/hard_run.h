@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,8 @@
 #include "run/simulate.h"
 
 namespace railstep {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A scene of the suite, run from its start to its end, and the trace of it.
 class HardRun {
@@ -49,6 +52,7 @@ class HardRun {
 /// `condense.kind=...`, as an override.
 std::string condensed_to(const char* kind);
 
+bool all_finite(const std::vector<double>& values);
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
 
 /// The message of the program where it refuses a scene; empty where it does not.

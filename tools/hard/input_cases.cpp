@@ -10,12 +10,7 @@
 namespace railstep {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-bool all_finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
 
 /// Inputs frame by frame, by a function of the frame and of the input.
 FrameInputs given(int count, std::function<double(std::int64_t, int)> value) {

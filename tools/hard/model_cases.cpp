@@ -16,12 +16,6 @@
 namespace railstep {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-bool all_finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
-
 // H33 ------------------------------------------------------------------------------------------
 
 /// A track of `count` bays with its load and its sensor `ahead` of the seat in the middle.

@@ -14,7 +14,7 @@
 namespace railstep {
 namespace {
 
-constexpr const char* kDeflection = "axle.deflection_z_m";
+constexpr const char* kAxle = "axle.deflection_z_m";
 
 // H3 -------------------------------------------------------------------------------------------
 
@@ -23,7 +23,7 @@ double under(const std::filesystem::path& scene, double x, int elements) {
   return HardRun(scene,
                  {fmt::format("load[0].start_m={}", x), "load[0].speed_m_per_s=0.0",
                   fmt::format("track.elements_per_bay={}", elements), "step.duration_s=2.5e-4"})
-      .first(kDeflection);
+      .first(kAxle);
 }
 
 /// The same by exact Timoshenko beams, which want a node under the load.
@@ -38,7 +38,7 @@ double exact_under(const std::filesystem::path& scene, double x) {
 /// Deflection under the load at 30 m/s, in steps of 25 us.
 std::vector<double> moving_over(const std::filesystem::path& scene, int elements) {
   return HardRun(scene, {fmt::format("track.elements_per_bay={}", elements), "step.dt_s=2.5e-5"})
-      .column(kDeflection);
+      .column(kAxle);
 }
 
 /// Largest error of a mesh under the moving load, over the deflection. The static deflection is
@@ -97,7 +97,7 @@ HardResult over_borders(const std::filesystem::path& scene) {
 
 // H14 ------------------------------------------------------------------------------------------
 
-constexpr double kCritical = 754.04;  // m/s, R9
+constexpr double kCriticalSpeed = 754.04;  // m/s, R9
 
 /// A force that grows by half a cosine over a time.
 std::string soft_table(double time) {
@@ -126,14 +126,14 @@ HardResult near_critical(const std::filesystem::path& scene) {
   const HardRun stands(
       scene, {"load[0].speed_m_per_s=0.0", "load[0].start_m=65.05", "load[0].table=[[0.0,1.0]]",
               "step.start=\"equilibrium\"", "step.duration_s=1e-4"});
-  const double still = stands.first(kDeflection), way = 110.;
+  const double still = stands.first(kAxle), way = 110.;
   HardResult result;
   result.picture = {"place of the load, m", "deflection over the static one", {}};
   for (const auto& [part, ratio] : {std::pair(.25, 1.0329), std::pair(.5, 1.1553),
                                     std::pair(.75, 1.5138), std::pair(.9, 2.2986)}) {
-    const HardRun run = at_speed(scene, part * kCritical, way);
+    const HardRun run = at_speed(scene, part * kCriticalSpeed, way);
     HardCurve curve{fmt::format("{:g} of critical", part), run.column("axle.x_m"),
-                    run.column(kDeflection)};
+                    run.column(kAxle)};
     double sum = 0., count = 0.;
     for (std::size_t i = 0; i < curve.y.size(); ++i) {
       curve.y[i] /= still;
@@ -147,12 +147,12 @@ HardResult near_critical(const std::filesystem::path& scene) {
     result.picture.curves.push_back(curve);
     result.frame_us = run.frame_us();
   }
-  const HardRun critical = at_speed(scene, kCritical, way);
+  const HardRun critical = at_speed(scene, kCriticalSpeed, way);
   result.checks.push_back(holds("at critical speed: finite", critical.status().empty()));
   result.checks.push_back(
-      holds("at critical speed: warned of", !speed_note_of(scene, kCritical).empty()));
+      holds("at critical speed: warned of", !speed_note_of(scene, kCriticalSpeed).empty()));
   result.checks.push_back(
-      holds("at half of it: not warned of", speed_note_of(scene, .5 * kCritical).empty()));
+      holds("at half of it: not warned of", speed_note_of(scene, .5 * kCriticalSpeed).empty()));
   return result;
 }
 
@@ -204,13 +204,13 @@ HardResult a_million_bays(const std::filesystem::path& scene) {
   const HardRun run(scene);
   constexpr std::size_t kSettled =
       1000;  // bays: from equilibrium the load must first make its waves
-  const std::vector<double> z = run.column(kDeflection);  // a row a bay, at the same place of it
+  const std::vector<double> z = run.column(kAxle);  // a row a bay, at the same place of it
   double apart = 0., most = 0.;
   for (std::size_t i = kSettled + 1; i < z.size(); ++i) {
     apart = std::max(apart, std::abs(z[i] / z[i - 1] - 1.));
     most = std::max(most, std::abs(z[i] / z[kSettled] - 1.));
   }
-  HardCurve first = run.curve(kDeflection, "each bay", 1e3);
+  HardCurve first = run.curve(kAxle, "each bay", 1e3);
   for (std::vector<double>* values : {&first.x, &first.y}) values->resize(kSettled);
   return {
       {{"a bay against the one before", apart, 1e-9},

@@ -14,17 +14,17 @@ namespace railstep {
 namespace {
 
 /// @param code  0 or what errno says
-Setting outcome(const char* name, int code) {
+RealtimeSetting outcome(const char* name, int code) {
   return {name, code == 0, code == 0 ? std::string() : std::strerror(code)};
 }
 
 /// Locks present and future pages: no page of the run is missing when it is needed.
-Setting lock_memory() {
+RealtimeSetting lock_memory() {
   return outcome("memory_locked", mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno);
 }
 
 /// Twice what a frame may need, a write to each page.
-[[gnu::noinline]] Setting touch_stack() {
+[[gnu::noinline]] RealtimeSetting touch_stack() {
   constexpr std::size_t kPage = 4096;
   volatile unsigned char stack[2 * kStepStack];
   for (std::size_t at = 0; at < sizeof stack; at += kPage) stack[at] = 1;
@@ -32,18 +32,18 @@ Setting lock_memory() {
 }
 
 /// Threads of ordinary priority are else woken up to 50 us late, to save power.
-Setting drop_timer_slack() {
+RealtimeSetting drop_timer_slack() {
   return outcome("timer_slack_1ns", prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL) == 0 ? 0 : errno);
 }
 
-Setting pin(int cpu) {
+RealtimeSetting pin(int cpu) {
   cpu_set_t only;
   CPU_ZERO(&only);
   CPU_SET(static_cast<std::size_t>(cpu), &only);
   return outcome("cpu_pinned", sched_setaffinity(0, sizeof only, &only) == 0 ? 0 : errno);
 }
 
-Setting take_priority(int priority) {
+RealtimeSetting take_priority(int priority) {
   sched_param wanted{};
   wanted.sched_priority = priority;
   return outcome("sched_fifo", sched_setscheduler(0, SCHED_FIFO, &wanted) == 0 ? 0 : errno);
@@ -61,8 +61,8 @@ std::vector<int> allowed_cpus() {
   return cpus;
 }
 
-std::vector<Setting> become_realtime(const RealtimeWish& wish) {
-  std::vector<Setting> made = {lock_memory(), touch_stack(), drop_timer_slack()};
+std::vector<RealtimeSetting> become_realtime(const RealtimeWish& wish) {
+  std::vector<RealtimeSetting> made = {lock_memory(), touch_stack(), drop_timer_slack()};
   if (wish.cpu) made.push_back(pin(*wish.cpu));
   if (wish.priority > 0) made.push_back(take_priority(wish.priority));
   return made;

@@ -6,7 +6,7 @@
 namespace railstep {
 
 /// A request to the system for the thread that steps, and its outcome.
-struct Setting {
+struct RealtimeSetting {
   std::string name;    // as in the JSON
   bool done;           // else refused
   std::string reason;  // why it was refused
@@ -24,7 +24,7 @@ std::vector<int> allowed_cpus();
 /// For the calling thread, in the order in which they stand: memory locked (mlockall), stack
 /// touched, timers without slack, pinned to a CPU, SCHED_FIFO. Nothing throws: a request that the
 /// system refuses is returned as such, and the others are done all the same.
-std::vector<Setting> become_realtime(const RealtimeWish& wish);
+std::vector<RealtimeSetting> become_realtime(const RealtimeWish& wish);
 
 /// Unlocks the memory: locked pages count against a limit, which later work may exceed.
 void unlock_memory();

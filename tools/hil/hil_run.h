@@ -29,7 +29,7 @@ struct HilPlan {
 
 /// The counts and times of a paced run.
 struct HilRecord {
-  std::vector<Setting> settings;
+  std::vector<RealtimeSetting> settings;
   Paced paced;
   Latency frame, wakeup, empty_frame, empty_wakeup;
   Status status = Status::ok;

@@ -19,7 +19,7 @@ namespace {
 
 using Word = SeqLock::Word;
 constexpr int kTries = 8;  // a bound on a frame's work, whatever the writer does
-constexpr char kMagic[] = "railshm1";
+constexpr char kShmMagic[] = "railshm1";
 constexpr std::size_t kLongestName = 200;
 
 /// The part of the exchange that signal handlers need.
@@ -52,7 +52,7 @@ void guard(const std::string& name, void* memory, std::size_t bytes) {
 
 std::uint64_t magic_word() noexcept {
   std::uint64_t word = 0;
-  std::memcpy(&word, kMagic, sizeof word);
+  std::memcpy(&word, kShmMagic, sizeof word);
   return word;
 }
 

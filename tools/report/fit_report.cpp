@@ -108,7 +108,7 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-std::string escaped(const std::string& text) {
+std::string html_text(const std::string& text) {
   std::string out;
   for (const char c : text) {
     if (c == '&')
@@ -239,14 +239,14 @@ std::string to_html(const FitResult& r) {
     table += fmt::format("<tr><td>{}</td><td>{:.4f}</td></tr>\n", d.label, 1e3 * d.metres);
   std::string warnings;
   for (const Message& warning : r.warnings)
-    warnings += fmt::format("<p>Warning: {}.</p>\n", escaped(warning.line()));
+    warnings += fmt::format("<p>Warning: {}.</p>\n", html_text(warning.line()));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}: three "
       "rectangles</title>\n<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n<p>{2}</p>\n{3}<p>Area "
       "of the symmetric difference: {4}. Grey: outline; red: rectangles.</p>\n{6}{5}</table>\n"
       "</body>\n</html>\n",
-      escaped(r.name), kStyle, escaped(r.source), drawing(r), area_of(r.fit.symmetric_difference),
-      table, warnings);
+      html_text(r.name), kStyle, html_text(r.source), drawing(r),
+      area_of(r.fit.symmetric_difference), table, warnings);
 }
 
 }  // namespace railstep

@@ -121,7 +121,7 @@ std::string table(const ParetoResult& result) {
       rows);
 }
 
-constexpr const char* kStyle =
+constexpr const char* kTableStyle =
     "table{border-collapse:collapse;font-size:13px}th{cursor:pointer;vertical-align:bottom}"
     "tr.front td{font-weight:bold}tbody tr:nth-child(even){background:#f4f4f4}"
     "td,th{padding:.1em .8em .1em 0}";
@@ -160,7 +160,7 @@ std::string pareto_report(const std::string& title, const ParetoResult& result) 
       "<p>Of the receptance under a wheel at mid-bay and over a seat, over its largest value, "
       "against twice the elements. Models on the front.</p>{12}<h2>All settings</h2><p>Sorts by a "
       "click; bold: on the front.</p>{13}<script>{14}</script></body></html>\n",
-      escaped(title), kReportStyle, kStyle, escaped(judged_text(result)), result.judged.from,
+      escaped(title), kReportStyle, kTableStyle, escaped(judged_text(result)), result.judged.from,
       escaped(result.reference.how), result.reference.error, result.frame, Timing::kRepeats, words,
       cost_plot(result, "time", "median of a frame, us", by_time),
       cost_plot(result, "flops", "flops of a frame, bound", by_flops), frequency_plot(result),

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
 const Range kPatch = between(0.0, 0.5);
-const Range kHeight = between(-0.1, 0.1);
+const Range kDefectHeight = between(-0.1, 0.1);
 
 /// Range of a cosine wave's amplitude, so that it is nowhere steeper than 45 degrees.
 Range wave_height(double wavelength) {
@@ -160,7 +160,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
     const Range on_rail = between(0.0, scene.track.endless ? 1e9 : scene.track.length());
     if (d.kind == DefectKind::dipped_joint) {
       d.at = t.number("at_m", on_rail);
-      d.depth = t.number("depth_m", kHeight);
+      d.depth = t.number("depth_m", kDefectHeight);
       d.ramp = t.number("ramp_m", between(1e-4, 100.0));
       check_samples(t, "ramp_m", d.ramp, d.patch, d.ramp);
     } else {

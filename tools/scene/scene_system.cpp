@@ -34,7 +34,7 @@ void read_whole(const Table& root, System& system) {
       read_in_plane(*t, "gravity_m_per_s2", between(-1e4, 1e4), system.planar, system.gravity);
 }
 
-StepScene read_step(const Table& t) {
+StepScene read_system_step(const Table& t) {
   StepScene s = read_times(t);
   s.start =
       t.choice("start", {"equilibrium", "released"}, 1) == 0 ? Start::equilibrium : Start::released;
@@ -101,7 +101,7 @@ SystemScene read_system_scene(const Table& root) {
     scene.track = read_track_beside(root, scene, names);
     scene.step = *scene.track->step;
   } else {
-    scene.step = read_step(root.table("step"));
+    scene.step = read_system_step(root.table("step"));
   }
   read_bodies(root, scene, names);
   read_beams(root, scene, names);

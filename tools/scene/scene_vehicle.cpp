@@ -11,11 +11,11 @@
 namespace railstep {
 namespace {
 
-const Range kMass = above_upto(0.0, 1e7);        // kg
-const Range kInertia = above_upto(0.0, 1e9);     // kg m2
-const Range kStiffness = above_upto(0.0, 1e13);  // N/m
-const Range kDamping = between(0.0, 1e11);       // N s/m
-const Range kRadius = between(0.02, 3.0);        // m
+const Range kMass = above_upto(0.0, 1e7);              // kg
+const Range kInertia = above_upto(0.0, 1e9);           // kg m2
+const Range kSpringStiffness = above_upto(0.0, 1e13);  // N/m
+const Range kSpringDamping = between(0.0, 1e11);       // N s/m
+const Range kRadius = between(0.02, 3.0);              // m
 
 BogieData read_bogie(const Table& t) {
   BogieData b{};
@@ -24,8 +24,8 @@ BogieData read_bogie(const Table& t) {
   b.wheel_mass = t.number("wheel_mass_kg", kMass);
   b.wheelbase = t.number("wheelbase_m", above_upto(0.0, 100.0));
   b.axles = static_cast<int>(t.integer("axles", 2, 3, 2));
-  b.primary_stiffness = t.number("primary_stiffness_n_per_m", kStiffness);
-  b.primary_damping = t.number("primary_damping_n_s_per_m", kDamping, 0.0);
+  b.primary_stiffness = t.number("primary_stiffness_n_per_m", kSpringStiffness);
+  b.primary_damping = t.number("primary_damping_n_s_per_m", kSpringDamping, 0.0);
   b.radius = t.number("radius_m", kRadius, kWheelRadius);
   return b;
 }
@@ -33,8 +33,8 @@ BogieData read_bogie(const Table& t) {
 NamedVehicle read_sprung(const Table& t) {
   const double mass = t.number("mass_kg", kMass);
   const double unsprung = t.number("unsprung_mass_kg", kMass);
-  const double stiffness = t.number("stiffness_n_per_m", kStiffness);
-  const double damping = t.number("damping_n_s_per_m", kDamping, 0.0);
+  const double stiffness = t.number("stiffness_n_per_m", kSpringStiffness);
+  const double damping = t.number("damping_n_s_per_m", kSpringDamping, 0.0);
   return sprung_mass(mass, unsprung, stiffness, damping,
                      t.number("radius_m", kRadius, kWheelRadius));
 }
@@ -45,8 +45,8 @@ NamedVehicle read_car(const Table& t) {
   c.body_mass = t.number("body_mass_kg", kMass);
   c.body_inertia = t.number("body_inertia_kg_m2", kInertia);
   c.bogie_distance = t.number("bogie_distance_m", above_upto(c.bogie.wheelbase, 1000.0));
-  c.secondary_stiffness = t.number("secondary_stiffness_n_per_m", kStiffness);
-  c.secondary_damping = t.number("secondary_damping_n_s_per_m", kDamping, 0.0);
+  c.secondary_stiffness = t.number("secondary_stiffness_n_per_m", kSpringStiffness);
+  c.secondary_damping = t.number("secondary_damping_n_s_per_m", kSpringDamping, 0.0);
   return car(c);
 }
 
@@ -62,8 +62,8 @@ NamedVehicle read_bodies(const Table& t, VehicleScene& v) {
       {
         const double mass = t.number("mass_kg", kMass);
         v.contact = WheelContactKind::linear;
-        v.stiffness = t.number("stiffness_n_per_m", kStiffness);
-        v.damping = t.number("damping_n_s_per_m", kDamping, 0.0);
+        v.stiffness = t.number("stiffness_n_per_m", kSpringStiffness);
+        v.damping = t.number("damping_n_s_per_m", kSpringDamping, 0.0);
         return point_mass(mass);
       }
     case 2: {
@@ -112,8 +112,8 @@ void read_contact(const Table& t, VehicleScene& v) {
   v.contact = kContacts[t.choice("contact", {"hertz", "linear", "bonded"}, otherwise)];
   const char* const keys[] = {"contact_stiffness_n_per_m", "contact_damping_n_s_per_m"};
   if (v.contact == WheelContactKind::linear) {
-    v.stiffness = t.number(keys[0], kStiffness);
-    v.damping = t.number(keys[1], kDamping, 0.0);
+    v.stiffness = t.number(keys[0], kSpringStiffness);
+    v.damping = t.number(keys[1], kSpringDamping, 0.0);
     return;
   }
   for (const char* key : keys)

@@ -26,7 +26,7 @@ constexpr std::initializer_list<const char*> kSectionKeys = {
     "torsion_m4", "shear_factor_y", "shear_factor_z",    "shear_centre_height_m"};
 
 constexpr double kMostAsymmetry = 0.05;  // of the area, of halves whose mean says something
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 /// Refuses constants that no shape has.
 void check_shape(const Table& t, const Section& s) {
@@ -46,7 +46,7 @@ OutlineShear outline_shear(const Outline& outline, double uneven) {
     return saint_venant(mirrored_side(points, side, 0.5 * kChordTolerance), kFitPoisson);
   };
   std::string missing;
-  double factor_y = kNone, factor_z = kNone;
+  double factor_y = kNotGiven, factor_z = kNotGiven;
   if (uneven > kMostAsymmetry) {
     missing = fmt::format(
         "Cowper's factors need a force along an axis of symmetry, and the outline and its mirror "

@@ -13,9 +13,9 @@
 namespace railstep {
 namespace {
 
-constexpr int kHeadHeights = 400;         // levels of the search over the family
-constexpr double kChordTolerance = 1e-8;  // m; the difference's area errs by under 1e-8 m2
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr int kHeadHeights = 400;   // levels of the search over the family
+constexpr double kFitChord = 1e-8;  // m; the difference's area errs by under 1e-8 m2
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 /// Fewest and most of a family's head widths, m.
 std::array<double, 2> head_widths(const std::vector<Rectangles<double>>& family) {
@@ -71,8 +71,8 @@ SectionFit describe(const FitTargets& targets, const Rectangles<double>& section
                     std::size_t family_points, int iterations) {
   return {.section = section,
           .errors = relative_errors(targets, section),
-          .symmetric_difference = kNone,
-          .stationarity = kNone,
+          .symmetric_difference = kNotKnown,
+          .stationarity = kNotKnown,
           .family_points = static_cast<int>(family_points),
           .iterations = iterations,
           .from_start = false,
@@ -100,7 +100,7 @@ double symmetric_difference(std::span<const Point> polygon, double area,
 
 SectionFit fit_section(const Outline& outline, const std::optional<Rectangles<double>>& start) {
   const FitTargets targets{properties(outline), outline.height};
-  const std::vector<Point> points = polygon(outline, kChordTolerance);
+  const std::vector<Point> points = polygon(outline, kFitChord);
   const auto difference = [&](const Rectangles<double>& section) {
     return symmetric_difference(points, targets.area.area, section);
   };
@@ -140,7 +140,7 @@ SectionFit fit_section(const Outline& outline, const std::optional<Rectangles<do
   SectionFit fit = describe(targets, best, family.size(), iterations);
   fit.from_start = from_start;
   fit.symmetric_difference = difference(best);
-  fit.stationarity = flat ? slope(targets, points, best) : kNone;
+  fit.stationarity = flat ? slope(targets, points, best) : kNotKnown;
   return fit;
 }
 

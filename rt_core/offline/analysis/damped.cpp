@@ -19,7 +19,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kTwoPi = 6.28318530717958647692;
 constexpr double kSwings = 1e-6;                   // Im rate/|rate| of what is not overdamped
 constexpr double kConverged = 1e-10;               // of a Ritz value
 constexpr double kGood = 1e-10, kAccepted = 1e-8;  // residual: sought, and demanded
@@ -65,7 +65,7 @@ void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
     rate = improved(line, rate, shape);
   }
   if (!(residual(line, rate, shape) <= std::max(kAccepted, rounding(line, shape))))
-    fail("E-MODES-02", "a damped mode near " + std::to_string(std::abs(rate) / (2. * kPi)) +
+    fail("E-MODES-02", "a damped mode near " + std::to_string(std::abs(rate) / (kTwoPi)) +
                            " Hz does not converge; ask for fewer modes or shorten the track");
 }
 
@@ -91,7 +91,7 @@ std::optional<std::vector<Krylov::Ritz>> sharp(const Line& line, const Krylov& s
 /// shape/(shape* M shape), never over its square where all unknowns carry mass.
 double highest_rate(const Line& line) {
   const Modes all = modes(line);
-  return all.frequency.size() == 0 ? 0. : 2. * kPi * all.frequency.maxCoeff();
+  return all.frequency.size() == 0 ? 0. : kTwoPi * all.frequency.maxCoeff();
 }
 
 struct Search {
@@ -113,7 +113,7 @@ Search search(const Line& line, double radius) {
     before = found ? std::optional(found->size()) : std::nullopt;
   }
   fail("E-MODES-03",
-       "the damped modes up to " + std::to_string(radius / (2. * kPi)) +
+       "the damped modes up to " + std::to_string(radius / (kTwoPi)) +
            " Hz lie too close to be told apart; ask for fewer modes or shorten the track");
 }
 
@@ -159,9 +159,9 @@ void keep_lowest(std::vector<Listed>& modes, int count) {
 bool add_damped(const std::vector<Line>& damped, double frequency, std::vector<Listed>& to) {
   bool all = true;
   for (const Line& line : damped) {
-    const Oscillations found = oscillations(line, 2. * kPi * frequency);
+    const Oscillations found = oscillations(line, kTwoPi * frequency);
     for (const Complex rate : found.rate)
-      to.emplace_back(std::abs(rate) / (2. * kPi), -rate.real() / std::abs(rate));
+      to.emplace_back(std::abs(rate) / (kTwoPi), -rate.real() / std::abs(rate));
     all = all && found.all;
   }
   return all;

@@ -219,11 +219,11 @@ std::string motion_and_remedy(const Track& track, const std::vector<Line>& lines
 /// Shapes that do not strain a stiffness, over unknowns scaled by their own stiffness. If some
 /// unknowns have no stiffness at all, only these.
 Eigen::MatrixXd free_shapes(const Sparse& stiffness) {
-  constexpr Eigen::Index kMost = 12;
+  constexpr Eigen::Index kMostLoose = 12;
   const Eigen::VectorXd size = stiffness.diagonal();
-  Eigen::MatrixXd loose = Eigen::MatrixXd::Zero(size.size(), kMost);
+  Eigen::MatrixXd loose = Eigen::MatrixXd::Zero(size.size(), kMostLoose);
   Eigen::Index found = 0;
-  for (Eigen::Index i = 0; i < size.size() && found < kMost; ++i)
+  for (Eigen::Index i = 0; i < size.size() && found < kMostLoose; ++i)
     if (!(size[i] > 0.)) loose(i, found++) = 1.;
   if (found > 0) return loose.leftCols(found);
   return rigid_modes(stiffness, Sparse(size.asDiagonal()));

@@ -7,16 +7,16 @@ namespace {
 
 using Vector27 = Eigen::Matrix<double, 27, 1>;
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
+std::size_t as_index(int i) { return static_cast<std::size_t>(i); }
 
 Vector27 gathered(const Structure::Element& element, const Eigen::VectorXd& q) {
   Vector27 local;
-  for (int i = 0; i < 3; ++i) local.segment<9>(9 * i) = q.segment<9>(9 * element.node[index(i)]);
+  for (int i = 0; i < 3; ++i) local.segment<9>(9 * i) = q.segment<9>(9 * element.node[as_index(i)]);
   return local;
 }
 
 int place(const Structure::Element& element, int i) {
-  return 9 * element.node[index(i / 9)] + i % 9;
+  return 9 * element.node[as_index(i / 9)] + i % 9;
 }
 
 /// Number of each unknown among those that are not held, -1 for these.
@@ -50,7 +50,7 @@ Eigen::VectorXd internal_force(const Structure& s, const Eigen::VectorXd& q) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(s.unknowns());
   Vector27 local;
   for (const Structure::Element& e : s.elements) {
-    beam_force(s.laws[index(e.law)], gathered(e, q).data(), local.data());
+    beam_force(s.laws[as_index(e.law)], gathered(e, q).data(), local.data());
     for (int i = 0; i < 27; ++i) force[place(e, i)] += local[i];
   }
   for (const Structure::Spring& spring : s.springs)
@@ -64,7 +64,7 @@ Eigen::SparseMatrix<double> tangent(const Structure& s, const Eigen::VectorXd& q
   Vector27 force;
   Eigen::Matrix<double, 27, 27> K;
   for (const Structure::Element& e : s.elements) {
-    beam_tangent(s.laws[index(e.law)], gathered(e, q).data(), force.data(), K.data());
+    beam_tangent(s.laws[as_index(e.law)], gathered(e, q).data(), force.data(), K.data());
     for (int j = 0; j < 27; ++j)
       for (int i = 0; i < 27; ++i) entries.emplace_back(place(e, i), place(e, j), K(i, j));
   }
@@ -86,7 +86,7 @@ Eigen::SparseMatrix<double> free_part(const Structure& s,
   entries.reserve(static_cast<std::size_t>(matrix.nonZeros()));
   for (int column = 0; column < matrix.outerSize(); ++column)
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, column); it; ++it) {
-      const int i = number[index(static_cast<int>(it.row()))], j = number[index(column)];
+      const int i = number[as_index(static_cast<int>(it.row()))], j = number[as_index(column)];
       if (i >= 0 && j >= 0) entries.emplace_back(i, j, it.value());
     }
   const int n = static_cast<int>(std::count(s.held.begin(), s.held.end(), false));
@@ -99,7 +99,7 @@ Eigen::VectorXd free_part(const Structure& s, const Eigen::VectorXd& vector) {
   const std::vector<int> number = numbering(s);
   Eigen::VectorXd result(std::count(s.held.begin(), s.held.end(), false));
   for (int i = 0; i < s.unknowns(); ++i)
-    if (number[index(i)] >= 0) result[number[index(i)]] = vector[i];
+    if (number[as_index(i)] >= 0) result[number[as_index(i)]] = vector[i];
   return result;
 }
 

@@ -10,15 +10,15 @@
 namespace railstep {
 namespace {
 
-using Sparse = Eigen::SparseVector<double>;
+using SparseRow = Eigen::SparseVector<double>;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 using Entries = std::vector<std::pair<int, double>>;  // unknown, -1 where held; coefficient
 
 /// A row of coefficients; what is held is left out.
-Sparse row_of(int unknowns, const Entries& entries) {
-  Sparse row(unknowns);
+SparseRow row_of(int unknowns, const Entries& entries) {
+  SparseRow row(unknowns);
   for (const auto& [unknown, factor] : entries)
     if (unknown >= 0 && factor != 0.) row.coeffRef(unknown) += factor;
   return row;
@@ -165,17 +165,17 @@ void TrackStructure::add_ballast(int seat) {
     }
 }
 
-Sparse TrackStructure::row(const RailPoint& point) const {
+SparseRow TrackStructure::row(const RailPoint& point) const {
   const auto [element, xi] = place_on(track_, point.x);
   const Vector27 local = rail_row(track_.lean(point.rail), xi, point.y, point.z, point.direction);
-  Sparse row(structure_.unknowns());
+  SparseRow row(structure_.unknowns());
   for (int i = 0; i < 27; ++i)
     if (local[i] != 0.) row.coeffRef(place(point.rail, 2 * element + i / 9, i % 9)) += local[i];
   return row;
 }
 
-Sparse TrackStructure::row(const Functional& functional) const {
-  Sparse sum(structure_.unknowns());
+SparseRow TrackStructure::row(const Functional& functional) const {
+  SparseRow sum(structure_.unknowns());
   for (const Functional::OnRail& term : functional.rail) sum += term.factor * row(term.at);
   for (const Functional::OnSleeper& term : functional.sleeper) {
     const int unknown = sleeper_[index(term.rail)][index(term.seat)][index(term.direction)];

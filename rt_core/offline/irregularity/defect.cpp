@@ -11,8 +11,6 @@ namespace railstep {
 
 namespace {
 
-constexpr double kTwoPi = 6.28318530717958647692;
-
 int whole_steps(double length, double step) {
   if (!(length > 0.) || !(step > 0.) || !(length / step < kMostDefectSteps))
     refuse("E-IRREGULARITY-01",

@@ -10,8 +10,6 @@ namespace railstep {
 
 namespace {
 
-constexpr double kTwoPi = 6.28318530717958647692;
-
 struct Waves {
   std::int64_t first, last, samples;
 };

@@ -14,7 +14,7 @@ namespace {
 
 using Value = std::complex<double>;
 using Entries = std::vector<Eigen::Triplet<Value>>;
-constexpr int kDoublings = 40;
+constexpr int kBayDoublings = 40;
 constexpr double kSameNode = 1e-9;  // m
 
 void add(Entries& entries, std::size_t node, const Eigen::MatrixXcd& block) {
@@ -28,7 +28,7 @@ void add(Entries& entries, std::size_t node, const Eigen::MatrixXcd& block) {
 Eigen::Matrix2cd endless_stiffness(const Eigen::Matrix4cd& bay, const Eigen::Matrix2cd& seat) {
   Eigen::Matrix2cd near = bay.topLeftCorner<2, 2>(), far = bay.bottomRightCorner<2, 2>(),
                    across = bay.topRightCorner<2, 2>();
-  for (int i = 0; i < kDoublings; ++i) {
+  for (int i = 0; i < kBayDoublings; ++i) {
     const Eigen::Matrix2cd inverse = (far + seat + near).inverse();
     const Eigen::Matrix2cd change = across * inverse * across.transpose();
     far -= (across.transpose() * inverse * across).eval();

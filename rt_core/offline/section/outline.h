@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,11 @@
 namespace railstep {
 
 using Point = std::array<double, 2>;  // y (lateral), z (up), m
+
+/// Of two points, m.
+inline double distance(const Point& a, const Point& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
 
 /// One row of an outline: the end point of a segment that starts at the previous row's point.
 struct OutlineRow {

@@ -21,8 +21,6 @@ std::string millimetres(double metres) {
   return text;
 }
 
-double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
-
 /// A straight piece of a segment.
 struct Chord {
   Point a, b;

@@ -8,20 +8,17 @@
 
 #include "offline/math/refuse.h"
 #include "offline/section/delaunay.h"
+#include "offline/section/outline.h"
 
 namespace railstep {
 namespace {
-
-using Point = std::array<double, 2>;
 
 constexpr double kFlattest = 1.5;               // circumradius over shortest edge, 19.5 degrees
 constexpr double kGrowth = 0.3;                 // of the triangle size with the distance
 constexpr double kFinest = 0.01;                // of the triangle size, at a re-entrant corner
 constexpr double kShortest = 1e-6;              // of the outline's size: never halved below
 constexpr double kReentrant = 20.0 / 57.29578;  // rad beyond straight, more than any chorded arc
-constexpr std::size_t kMostPoints = 200000;
-
-double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
+constexpr std::size_t kMostMeshPoints = 200000;
 
 Point middle(const Point& a, const Point& b) { return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])}; }
 
@@ -188,10 +185,10 @@ class Refiner {
   }
 
   void check_count() const {
-    if (mesh_.points().size() > kMostPoints)
+    if (mesh_.points().size() > kMostMeshPoints)
       refuse("E-SECTION-27",
              "the outline of the section is too fine: its triangles need more than " +
-                 std::to_string(kMostPoints) + " points; use fewer points in the outline");
+                 std::to_string(kMostMeshPoints) + " points; use fewer points in the outline");
   }
 
   std::vector<Point> outline_, corners_;

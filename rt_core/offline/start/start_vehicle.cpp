@@ -17,10 +17,10 @@ namespace railstep {
 
 namespace {
 
-constexpr int kIterations = 50;      // of Newton's method; a few are enough if there is a solution
-constexpr double kSettled = 1e-10;   // of the largest force; the error left is its square
-constexpr double kLiftedOff = 1e-9;  // of the load of all wheels
-constexpr double kSoftest = 1e6;     // N/m, least stiffness that scales the equations
+constexpr int kIterations = 50;  // of Newton's method; a few are enough if there is a solution
+constexpr double kForceSettled = 1e-10;  // of the largest force; the error left is its square
+constexpr double kLiftedOff = 1e-9;      // of the load of all wheels
+constexpr double kSoftest = 1e6;         // N/m, least stiffness that scales the equations
 
 using Rows =
     Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
@@ -119,7 +119,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
       // A wheel with a negative force gets a tenth of its last force and is iterated again.
       const bool lifted = model.vehicle_wheel[i].contact.hertz > 0. && !(next > 0.);
       const double taken = lifted ? .1 * force[i] : next;
-      if (lifted || std::abs(taken - force[i]) > kSettled * force.cwiseAbs().maxCoeff())
+      if (lifted || std::abs(taken - force[i]) > kForceSettled * force.cwiseAbs().maxCoeff())
         settled = false;
       force[i] = taken;
       if (taken < kLiftedOff * std::abs(all.carried) && lifted) lifted_off = true;

@@ -48,8 +48,6 @@ void add_ballast(const Track& track, int rail, int seat, std::vector<FixedPort>&
                    .seat = seat});
 }
 
-constexpr double kBehind = 1e-9;  // of an element: where the rail behind a joint ends
-
 /// Displacement of the end behind a joint towards the end ahead.
 Functional ends_closing(const Track& track, int rail, double x) {
   return {.rail = {{{rail, x - kBehind * track.element_length(), 0., 0., 0}, 1.},

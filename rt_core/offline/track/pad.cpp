@@ -6,12 +6,6 @@
 
 namespace railstep {
 
-namespace {
-
-constexpr double kBehind = 1e-9;  // of an element: where the rail behind a joint ends
-
-}  // namespace
-
 std::vector<PadPoint> pad_points(const Track& track, int border, double length) {
   const double seat = border * track.bay_length, step = track.element_length();
   const int first_after = border * track.elements_per_bay;  // element right of the seat

@@ -5,6 +5,8 @@
 
 namespace railstep {
 
+inline constexpr double kBehind = 1e-9;  // of an element: where the rail behind a joint ends
+
 /// A point of a pad that is spread along the rail, and the part of the pad at that point.
 struct PadPoint {
   int element;
