@@ -18,7 +18,7 @@ std::vector<PadCase> pads() {
       for (const bool over_seat : {false, true}) all.push_back({stiffness, damping, over_seat});
   return all;
 }
-constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 1e-2};
+constexpr double kStepSizes[] = {1e-5, 1e-4, 1e-3, 1e-2};
 
 struct Offered {
   std::string name;
@@ -68,7 +68,7 @@ TEST_CASE("no scheme offered with contact lets the motion of a wheel over its pa
   for (const Offered& own : kOffered) {
     const double rounding = own.name == "generalised-alpha 1" ? 1e-4 : 1e-5;
     for (const PadCase& pad : pads())
-      for (const double dt : kSteps) {
+      for (const double dt : kStepSizes) {
         CAPTURE(own.name, pad.stiffness, pad.damping, pad.over_seat, dt);
         CHECK(spectral_radius(contact_step(pad, own.options(dt))) <= 1. + rounding);
       }

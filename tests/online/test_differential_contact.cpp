@@ -38,7 +38,7 @@ Real mean_of(Real C, Real d, Real e) {
 }
 
 /// A port's law, as ports.h states it.
-Real force_of(const PortLaw& law, Real d) {
+Real law_force(const PortLaw& law, Real d) {
   if (law.mean) return mean_of(law.hertz, d, law.from);
   if (law.bilateral) return law.slope * d + law.jump;
   if (!(d > 0.L)) return 0.L;
@@ -49,11 +49,11 @@ Real force_of(const PortLaw& law, Real d) {
 
 /// Solves d + w f(d) = free by halving: f rises, so d lies between free and free - w f(free).
 Real depth_by_bisection(const PortLaw& law, Real w, Real free) {
-  const Real there = free - w * force_of(law, free);
+  const Real there = free - w * law_force(law, free);
   Real low = std::fmin(free, there), high = std::fmax(free, there);
   for (int i = 0; i < 80; ++i) {
     const Real middle = .5L * (low + high);
-    (middle + w * force_of(law, middle) > free ? high : low) = middle;
+    (middle + w * law_force(law, middle) > free ? high : low) = middle;
   }
   return .5L * (low + high);
 }

@@ -13,7 +13,7 @@ using namespace railstep;
 
 namespace {
 
-constexpr double kLength = .6;  // m
+constexpr double kElement = .6;  // m
 
 BeamLaw random_law(Draw& draw, bool two_points, int section_points) {
   BeamSection f = section_f();
@@ -64,14 +64,14 @@ struct Kernel {
 
 Kernel general(const BeamLaw& law, const Vector27& q) {
   Kernel k;
-  beam_tangent(beam_element(law, straight_nodes(kLength)), q.data(), k.force.data(),
+  beam_tangent(beam_element(law, straight_nodes(kElement)), q.data(), k.force.data(),
                k.tangent.data());
   return k;
 }
 
 Kernel straight(const BeamLaw& law, const Vector27& q) {
   Kernel k;
-  straight_tangent(straight_beam(law, kLength), q.data(), k.force.data(), k.tangent.data());
+  straight_tangent(straight_beam(law, kElement), q.data(), k.force.data(), k.tangent.data());
   return k;
 }
 
@@ -81,7 +81,7 @@ Kernel planar(const BeamLaw& law, const Vector27& q) {
   std::vector<double> tangent(kPlanarGroup);
   const auto spatial = [](int i) { return i / W * 9 + kPlanarOf[i % W]; };
   for (int i = 0; i < 3 * W; ++i) flat[i] = q[spatial(i)];
-  planar_tangents(straight_beam(law, kLength), 1, flat, nullptr, force, tangent.data());
+  planar_tangents(straight_beam(law, kElement), 1, flat, nullptr, force, tangent.data());
   Kernel k;
   for (int i = 0; i < 3 * W; ++i) {
     k.force[spatial(i)] = force[i];
@@ -125,13 +125,13 @@ void compare(std::uint64_t first, int states, bool two_points, bool flat, const 
     Draw draw(seed);
     const int points = draw.whole(1, 3);
     const BeamLaw law = random_law(draw, two_points, points);
-    const Vector27 q = random_state(draw, kLength, draw.of_any_size(1e-4, .1), flat);
+    const Vector27 q = random_state(draw, kElement, draw.of_any_size(1e-4, .1), flat);
     Vector27 w;
     for (int i = 0; i < 27; ++i) {
       const bool in = i % 9 == 0 || i % 9 == 2 || i % 9 == 4 || i % 9 == 6 || i % 9 == 8;
       w[i] = !flat || in ? draw.between(-1., 1.) : 0.;
     }
-    const Off found = off(NaiveElement(law, kLength, points), kernel(law, q), q, w);
+    const Off found = off(NaiveElement(law, kElement, points), kernel(law, q), q, w);
     CAPTURE(seed, points, law.rule.axial_points, law.rule.coupling_points,
             static_cast<int>(law.rule.coupling), static_cast<int>(law.rule.shear),
             found.strain_energy);

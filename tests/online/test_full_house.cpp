@@ -75,18 +75,18 @@ namespace {
 
 /// Largest difference between the contacts' forces and their laws at the published gaps, the
 /// largest force, and which contacts bore a force at some time.
-struct Laws {
+struct HouseLaws {
   double off = 0., largest = 0.;
   std::vector<bool> wheel_bore, flange_bore, port_bore;
 };
 
-double hertz(double C, double gap) { return gap < 0. ? C * -gap * std::sqrt(-gap) : 0.; }
+double hertz_force(double C, double gap) { return gap < 0. ? C * -gap * std::sqrt(-gap) : 0.; }
 
-Laws laws_of(ModelRun& run, int steps) {
+HouseLaws laws_of(ModelRun& run, int steps) {
   const Model& m = run.model();
-  Laws found{0., 0., std::vector<bool>(static_cast<std::size_t>(wheel_count(m))),
-             std::vector<bool>(static_cast<std::size_t>(flange_count(m))),
-             std::vector<bool>(static_cast<std::size_t>(m.fixed.count))};
+  HouseLaws found{0., 0., std::vector<bool>(static_cast<std::size_t>(wheel_count(m))),
+                  std::vector<bool>(static_cast<std::size_t>(flange_count(m))),
+                  std::vector<bool>(static_cast<std::size_t>(m.fixed.count))};
   const auto note = [&](double force, double want) {
     found.off = std::max(found.off, std::abs(force - want));
     found.largest = std::max(found.largest, want);
@@ -97,7 +97,7 @@ Laws laws_of(ModelRun& run, int steps) {
     for (int i = 0; i < wheel_count(m); ++i) {
       const double C = is_of_wheelset(m, i) ? m.wheelset[wheelset_of(m, i)].hertz[rail_of(m, i)]
                                             : vehicle_wheel(m, i).contact.hertz;
-      if (note(run.state.wheel_force[i], hertz(C, run.outputs.wheel_gap[i])))
+      if (note(run.state.wheel_force[i], hertz_force(C, run.outputs.wheel_gap[i])))
         found.wheel_bore[static_cast<std::size_t>(i)] = true;
     }
     for (int i = 0; i < flange_count(m); ++i) {
@@ -126,7 +126,7 @@ TEST_CASE("every contact of a model with all contacts in use follows its law, co
   PackOptions options = options_of(modal, house.track, dt);
   options.residual_flexibility = false;
   ModelRun run(house.track, house.traffic, options);
-  const Laws found = laws_of(run, static_cast<int>(std::lround(.04 / dt)));
+  const HouseLaws found = laws_of(run, static_cast<int>(std::lround(.04 / dt)));
   CAPTURE(modal, dt, found.off, found.largest);
   CHECK(!has(run.seen, Status::cap_reached));
   CHECK(!has(run.seen, Status::contact_ill_posed));
@@ -153,7 +153,7 @@ TEST_CASE("wheelsets with flanges, bogies and hanging sleepers can use all conta
   ModelRun run(house.track, house.traffic, options);
   REQUIRE(contact_count(run.model()) == kMaxWheels);
   REQUIRE(run.model().fixed.count == kMaxFixedPorts);
-  const Laws found = laws_of(run, static_cast<int>(std::lround(.04 / dt)));
+  const HouseLaws found = laws_of(run, static_cast<int>(std::lround(.04 / dt)));
   CAPTURE(modal, dt, found.off, found.largest);
   CHECK(!has(run.seen, Status::contact_ill_posed));
   CHECK(!has(run.seen, Status::cap_reached));

@@ -7,12 +7,12 @@
 
 #include "online/interface/railstep.h"
 #include "run/simulate.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 
 namespace {
 
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const char* const kPushed = "wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]";
 
 /// A model and a run of it through the C interface, in memory of their own.
@@ -40,7 +40,7 @@ struct Held {
 TEST_CASE("a run through the C interface has the bits of a run of the program", "[interface]") {
   for (const char* name : {"wheelset_on_track", "wheelset_flange", "hanging_sleeper",
                            "bogie_at_speed", "double_pendulum", "spring_pendulum"}) {
-    const auto run = simulation_of(read_any_scene(kFolder + name + ".toml"));
+    const auto run = simulation_of(read_any_scene(kScenes + name + ".toml"));
     const Held held(run->block());
     CAPTURE(name);
     REQUIRE(static_cast<std::size_t>(railstep_outputs(held.model)) == run->columns().size());
@@ -58,7 +58,7 @@ TEST_CASE("a run through the C interface has the bits of a run of the program", 
 }
 
 TEST_CASE("inputs and outputs have names", "[interface]") {
-  const Simulation run(read_scene(kFolder + "wheelset_on_track.toml", {kPushed}));
+  const Simulation run(read_scene(kScenes + "wheelset_on_track.toml", {kPushed}));
   const Held held(run.block());
   REQUIRE(railstep_inputs(held.model) == 1);
   CHECK(railstep_find_input(held.model, "push.force_n") == 0);
@@ -79,7 +79,7 @@ TEST_CASE("inputs and outputs have names", "[interface]") {
 }
 
 TEST_CASE("inputs act, a bad one is reported, and a reset goes back to the start", "[interface]") {
-  const Simulation run(read_scene(kFolder + "wheelset_on_track.toml", {kPushed}));
+  const Simulation run(read_scene(kScenes + "wheelset_on_track.toml", {kPushed}));
   const Held held(run.block()), other(run.block());
   const auto y = static_cast<std::size_t>(railstep_find_output(held.model, "wheelset.y_m"));
   double force = 500.;
@@ -102,7 +102,7 @@ TEST_CASE("inputs act, a bad one is reported, and a reset goes back to the start
 
 TEST_CASE("a response without inputs is that to the held inputs", "[interface]") {
   const Simulation run(
-      read_scene(kFolder + "open_track.toml", {"step.dt_s=1e-3", "step.frame_s=1e-3"}));
+      read_scene(kScenes + "open_track.toml", {"step.dt_s=1e-3", "step.frame_s=1e-3"}));
   const Held held(run.block());
   REQUIRE(railstep_external_wheels(held.model) == 1);
   const std::vector<double> inputs = {3.1, .001, 10., 200., -5e4};  // place and forces
@@ -116,7 +116,7 @@ TEST_CASE("a response without inputs is that to the held inputs", "[interface]")
 }
 
 TEST_CASE("a snapshot of one run is restored into another", "[interface]") {
-  const Simulation run(read_scene(kFolder + "wheelset_flange.toml", {}));
+  const Simulation run(read_scene(kScenes + "wheelset_flange.toml", {}));
   const Held held(run.block()), other(run.block());
   for (int n = 0; n < 20; ++n) static_cast<void>(railstep_step(held.run, nullptr));
   std::vector<unsigned char> bytes(railstep_snapshot_bytes(held.model));
@@ -135,7 +135,7 @@ TEST_CASE("a snapshot of one run is restored into another", "[interface]") {
 
 TEST_CASE("unfit blocks and unfit memory are refused, and every result has a sentence",
           "[interface]") {
-  const Simulation run(read_scene(kFolder + "moving_load.toml", {}));
+  const Simulation run(read_scene(kScenes + "moving_load.toml", {}));
   std::vector<std::byte> block = run.block();
   std::vector<double> memory(railstep_model_bytes() / 8 + 2);
   const railstep_model* model = nullptr;

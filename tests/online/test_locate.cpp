@@ -14,7 +14,7 @@ using namespace railstep;
 namespace {
 
 using Real = long double;
-constexpr double kEps = 0x1p-52;
+constexpr double kUlp = 0x1p-52;
 
 struct Rail {
   std::vector<double> nodes;
@@ -118,7 +118,7 @@ const std::vector<Rail> kRails{arc(6, 0.0), arc(3, 1.5707963), arc(3, -1.5707963
 TEST_CASE("a point of the rail is found where it was made, over every element border", "[locate]") {
   int most = 0;
   double worst = 0.0, worst_section = 0.0;
-  const double ulp_in = 1.0 - kEps / 2.0;
+  const double ulp_in = 1.0 - kUlp / 2.0;
   for (const Rail& rail : kRails) {
     const int elements = rail.shape().elements;
     for (int element = 0; element < elements; ++element)
@@ -241,14 +241,14 @@ TEST_CASE("the crown point nearest to the axle agrees with golden section and wi
           size += got.normal[k] * got.normal[k];
           square_to_axle += got.normal[k] * axle.e[k];
         }
-        CHECK(std::abs(size - 1.0) <= 8 * kEps);
-        CHECK(std::abs(square_to_axle) <= 8 * kEps);
+        CHECK(std::abs(size - 1.0) <= 8 * kUlp);
+        CHECK(std::abs(square_to_axle) <= 8 * kUlp);
         // c + distance n is the axle's point at `along`.
         Real c[3];
         evaluate(rail, got.place.element, got.place.xi, 0, z_crown, c, slope);
         for (int k = 0; k < 3; ++k)
           CHECK(std::abs(static_cast<double>(c[k]) + got.distance * got.normal[k] -
-                         (axle.p[k] + got.along * axle.e[k])) <= 20 * kEps);
+                         (axle.p[k] + got.along * axle.e[k])) <= 20 * kUlp);
       }
     }
   }
@@ -256,7 +256,7 @@ TEST_CASE("the crown point nearest to the axle agrees with golden section and wi
              << other_side << " stand across a kink from the nearest");
   CHECK(cases > 2000);
   CHECK(other_side < cases / 50);      // only beside the borders of the rails bent upwards
-  CHECK(worst_distance <= 20 * kEps);  // twenty roundings of numbers up to 3.6 m and below
+  CHECK(worst_distance <= 20 * kUlp);  // twenty roundings of numbers up to 3.6 m and below
 }
 
 TEST_CASE("an axle over a kink stands on the border", "[locate]") {

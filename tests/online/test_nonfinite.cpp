@@ -9,6 +9,7 @@
 #include "online/step/step.h"
 #include "run/simulate.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -16,9 +17,8 @@ using Catch::Contains;
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-const std::string kFlanged = kFolder + "wheelset_flange.toml";
-const std::string kCrank = kFolder + "slider_crank.toml";
+const std::string kFlanged = kScenes + "wheelset_flange.toml";
+const std::string kCrank = kScenes + "slider_crank.toml";
 
 Simulation system_run(const std::string& scene) {
   return Simulation(std::get<SystemScene>(read_any_scene(scene, {})));

@@ -38,7 +38,7 @@ std::vector<double> half_of(const std::vector<double>& q0, const std::vector<dou
   return half;
 }
 
-double largest(const std::vector<double>& x) {
+double largest_entry(const std::vector<double>& x) {
   double peak = 0.;
   for (const double v : x) peak = std::max(peak, std::abs(v));
   return peak;
@@ -85,7 +85,7 @@ TEST_CASE("the planar element agrees with the spatial one in the plane", "[plana
     const Row want(false, beam, n, in_space(q), half ? in_space(d).data() : nullptr);
 
     // The same products in another order: some ten roundings of 1e-16 of the largest terms.
-    const double force_peak = largest(want.force), tolerance = 1e-14;
+    const double force_peak = largest_entry(want.force), tolerance = 1e-14;
     std::vector<double> embedded = in_space(got.force);
     for (std::size_t i = 0; i < embedded.size(); ++i)
       REQUIRE(std::abs(embedded[i] - want.force[i]) <= tolerance * force_peak);

@@ -16,7 +16,7 @@ namespace {
 
 using Real = long double;
 
-struct Case {
+struct PortCase {
   int n;
   std::vector<double> W;
   std::vector<PortLaw> law;
@@ -33,10 +33,10 @@ double log_uniform(double low, double high, std::mt19937& random) {
 /// W = B B' of a random rank (so often singular) plus, half the time, a small diagonal; sizes are
 /// about 1e-11 m/N to `softest`. A wheel on a rail has w C sqrt(d) of 0.1 to 10; here it runs from
 /// 1e-5 to 1e3 for 1e-8 m/N and to 1e4 for 1e-7 m/N.
-Case random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::contacts) {
+PortCase random_case(int n, double softest, std::mt19937& random, Laws laws = Laws::contacts) {
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<int> coin(0, 1), rank(std::min(n, 1), n);
-  Case c{n, std::vector<double>(static_cast<std::size_t>(n * n), 0.0), {}, {}};
+  PortCase c{n, std::vector<double>(static_cast<std::size_t>(n * n), 0.0), {}, {}};
   const int columns = rank(random);
   std::vector<double> B(static_cast<std::size_t>(n * columns));
   for (double& b : B) b = normal(random);
@@ -88,7 +88,7 @@ Real bisect(Real w, const PortLaw& law, Real d_free) {
 
 /// Gauss-Seidel on the convex function: each port in turn is solved by bisection, which converges
 /// for every semidefinite W. Returns no forces if 20000 sweeps did not settle them.
-std::vector<Real> gauss_seidel(const Case& c) {
+std::vector<Real> gauss_seidel(const PortCase& c) {
   const auto n = static_cast<std::size_t>(c.n);
   std::vector<Real> f(n, 0);
   for (int sweep = 0; sweep < 20000; ++sweep) {
@@ -114,7 +114,7 @@ TEST_CASE("a single port agrees with bisection in long double", "[ports]") {
   int most = 0;
   double worst = 0.0;
   for (int i = 0; i < 3000; ++i) {
-    const Case c = random_case(1, 1e-7, random);
+    const PortCase c = random_case(1, 1e-7, random);
     double f = 0.0, d = 0.0;
     const PortResult got = solve_ports(1, c.W.data(), c.law.data(), c.d_free.data(), &f, &d);
     REQUIRE(got.status == PortStatus::converged);
@@ -129,7 +129,7 @@ TEST_CASE("a single port agrees with bisection in long double", "[ports]") {
 }
 
 /// max |d + W f - d_free| of an answer, in long double; checks the laws on the way.
-Real true_residual(const Case& c, const std::vector<double>& f, const std::vector<double>& d) {
+Real true_residual(const PortCase& c, const std::vector<double>& f, const std::vector<double>& d) {
   const auto n = static_cast<std::size_t>(c.n);
   Real worst = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -142,7 +142,7 @@ Real true_residual(const Case& c, const std::vector<double>& f, const std::vecto
 
 /// The length that residuals are measured against: max |d_free_i| + sum_j |W_ij| f_j.
 template <typename T>
-double length(const Case& c, const std::vector<T>& f) {
+double length(const PortCase& c, const std::vector<T>& f) {
   const auto n = static_cast<std::size_t>(c.n);
   Real scale = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -159,7 +159,7 @@ TEST_CASE("coupled ports agree with Gauss-Seidel in long double", "[ports]") {
   int most = 0, compared = 0, histogram[kPortSweeps + 1] = {};
   double worst = 0.0;
   for (int i = 0; i < 9600; ++i) {
-    const Case c = random_case(1 + i % 8, 1e-8, random, laws);
+    const PortCase c = random_case(1 + i % 8, 1e-8, random, laws);
     const auto n = static_cast<std::size_t>(c.n);
     std::vector<double> f(n, 0.0), d(n);
     const PortResult got =
@@ -198,7 +198,7 @@ TEST_CASE("any number of ports up to the cap is solved: the laws hold and no res
   std::mt19937 random(7);
   int most = 0;
   for (int i = 0; i < 3 * (kPorts + 1); ++i) {
-    const Case c = random_case(i % (kPorts + 1), 1e-8, random, laws);
+    const PortCase c = random_case(i % (kPorts + 1), 1e-8, random, laws);
     const auto n = static_cast<std::size_t>(c.n);
     std::vector<double> f(n, 0.0), d(n);
     const PortResult got =
@@ -233,7 +233,7 @@ TEST_CASE("an extreme case is solved or reports its residual", "[ports]") {
   std::mt19937 random(3);
   int capped = 0;
   for (int i = 0; i < 9600; ++i) {
-    const Case c = random_case(1 + i % 8, 1e-7, random);
+    const PortCase c = random_case(1 + i % 8, 1e-7, random);
     const auto n = static_cast<std::size_t>(c.n);
     for (int cap : {0, 2, 8}) {
       std::vector<double> f(n, 0.0), d(n);
@@ -257,7 +257,7 @@ TEST_CASE("a start from the answer needs no iteration, and a start near it needs
   std::mt19937 random(4);
   int cold = 0, warm = 0;
   for (int i = 0; i < 2000; ++i) {
-    Case c = random_case(1 + i % 8, 1e-8, random);
+    PortCase c = random_case(1 + i % 8, 1e-8, random);
     const auto n = static_cast<std::size_t>(c.n);
     std::vector<double> f(n, 0.0), d(n), again;
     const auto solve = [&] {
@@ -280,7 +280,7 @@ TEST_CASE("a single spring and damper is solved in one iteration from zero, in f
           "[ports]") {
   std::mt19937 random(5);
   for (int i = 0; i < 3000; ++i) {
-    const Case c = random_case(1, 1e-7, random, Laws::springs);
+    const PortCase c = random_case(1, 1e-7, random, Laws::springs);
     for (const double start : {0.0, 1e2, 1e6}) {
       double f = start, d = 0.0;
       const PortResult got = solve_ports(1, c.W.data(), c.law.data(), c.d_free.data(), &f, &d);
@@ -296,7 +296,7 @@ TEST_CASE("bonded ports hold their penetration at zero and pull where they must"
   // W f = d_free except for 1e15 N/m, which is 1e-6 of the softest W and 1e-4 of the hardest here.
   std::mt19937 random(6);
   for (int i = 0; i < 1000; ++i) {
-    Case c = random_case(1 + i % 8, 1e-8, random);
+    PortCase c = random_case(1 + i % 8, 1e-8, random);
     const auto n = static_cast<std::size_t>(c.n);
     for (std::size_t k = 0; k < n; ++k) {
       c.law[k] = {0.0, 1e15, 0.0, true};

@@ -13,14 +13,13 @@
 #include "online/model/system_workspace.h"
 #include "online/step/step.h"
 #include "run/simulation.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 
 Bytes saved(const Model& model, const State& state) {
   Bytes bytes(snapshot_bytes(model));
@@ -131,7 +130,7 @@ TEST_CASE("every scene goes on from a snapshot with the same bits, with a worksp
           "[snapshot]") {
   Instants met;
   int scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
     const std::string name = entry.path().stem().string();
     AnyScene scene = read_any_scene(entry.path());
     const Scene* const track = std::get_if<Scene>(&scene);
@@ -158,7 +157,7 @@ TEST_CASE("a scene condensed the other way goes on from a snapshot too", "[snaps
        {std::pair{"wheel_flat", "full"}, std::pair{"hanging_sleeper", "modal"},
         std::pair{"endless_track", "full"}}) {  // a window, which shifts by a bay after 400 steps
     const auto run = simulation_of(
-        read_any_scene(kFolder + name + ".toml", {std::string("condense.kind=\"") + kind + "\""}));
+        read_any_scene(kScenes + name + ".toml", {std::string("condense.kind=\"") + kind + "\""}));
     Model single = run->model();
     single.steps_per_frame = 1;
     CAPTURE(name);
@@ -168,7 +167,7 @@ TEST_CASE("a scene condensed the other way goes on from a snapshot too", "[snaps
 
 /// Checks runs of a wheelset on the paper's track that go on from their hardest steps.
 Instants resumed(const std::vector<std::string>& overrides, std::int64_t steps) {
-  const auto run = simulation_of(read_any_scene(kFolder + "wheelset_on_track.toml", overrides));
+  const auto run = simulation_of(read_any_scene(kScenes + "wheelset_on_track.toml", overrides));
   Model single = run->model();
   single.steps_per_frame = 1;
   Instants own = instants_of(single, steps);
@@ -193,7 +192,7 @@ TEST_CASE("in the air, mid-impact and at a cap a run goes on with the same bits"
 }
 
 TEST_CASE("a snapshot with a flipped bit or another length is refused", "[snapshot]") {
-  const auto run = simulation_of(read_any_scene(kFolder + "spring_pendulum.toml"));
+  const auto run = simulation_of(read_any_scene(kScenes + "spring_pendulum.toml"));
   const Model& model = run->model();
   const Bytes bytes = saved(model, run->state);
   const std::uint64_t before = state_hash(model, run->state);
@@ -217,7 +216,7 @@ TEST_CASE("a snapshot with a flipped bit or another length is refused", "[snapsh
 }
 
 TEST_CASE("latched status and a state that is not finite come back to the bit", "[snapshot]") {
-  const auto run = simulation_of(read_any_scene(kFolder + "moving_load.toml"));
+  const auto run = simulation_of(read_any_scene(kScenes + "moving_load.toml"));
   const Model& model = run->model();
   Outputs outputs{};
   publish_start(model, run->state, outputs);
@@ -234,7 +233,7 @@ TEST_CASE("latched status and a state that is not finite come back to the bit", 
 
 TEST_CASE("a snapshot whose kept matrix is invalid is refused", "[snapshot]") {
   const auto run =
-      simulation_of(read_any_scene(kFolder + "slider_crank.toml", {"joints.tangent=\"kept\""}));
+      simulation_of(read_any_scene(kScenes + "slider_crank.toml", {"joints.tangent=\"kept\""}));
   const Model& model = run->model();
   const std::int32_t rows = system_rows(model.system);
   REQUIRE(rows > 1);
@@ -266,7 +265,7 @@ TEST_CASE("a snapshot whose kept matrix is invalid is refused", "[snapshot]") {
 }
 
 TEST_CASE("a snapshot whose number of steps is too large to count on is refused", "[snapshot]") {
-  const auto run = simulation_of(read_any_scene(kFolder + "spring_pendulum.toml"));
+  const auto run = simulation_of(read_any_scene(kScenes + "spring_pendulum.toml"));
   const Model& model = run->model();
   for (const std::int64_t last :
        {std::int64_t{1} << 53, std::numeric_limits<std::int64_t>::max()}) {
@@ -278,7 +277,7 @@ TEST_CASE("a snapshot whose number of steps is too large to count on is refused"
 }
 
 TEST_CASE("a snapshot of another model is refused", "[snapshot]") {
-  const std::string scene = kFolder + "moving_load.toml";
+  const std::string scene = kScenes + "moving_load.toml";
   const auto one = simulation_of(read_any_scene(scene, {"load[0].force_z_n=-50e3"}));
   const auto two = simulation_of(read_any_scene(scene, {"load[0].force_z_n=-51e3"}));
   const Bytes bytes = saved(one->model(), one->state);

@@ -17,7 +17,7 @@ using namespace railstep;
 namespace {
 
 constexpr std::size_t kStack = std::size_t{1} << 21;
-constexpr unsigned char kPaint = 0xa5;
+constexpr unsigned char kStackPaint = 0xa5;
 
 void* call(void* work) {
   (*static_cast<const std::function<void()>*>(work))();
@@ -26,7 +26,7 @@ void* call(void* work) {
 
 /// Bytes of stack that some work writes to, on a thread whose stack was painted before.
 std::size_t stack_of(const std::function<void()>& work) {
-  std::vector<unsigned char> memory(kStack + 4096, kPaint);
+  std::vector<unsigned char> memory(kStack + 4096, kStackPaint);
   auto* const from =
       memory.data() + (4096 - reinterpret_cast<std::uintptr_t>(memory.data()) % 4096);
   pthread_attr_t attributes;
@@ -38,9 +38,9 @@ std::size_t stack_of(const std::function<void()>& work) {
   REQUIRE(pthread_join(thread, nullptr) == 0);
   pthread_attr_destroy(&attributes);
   const auto* const end = from + (kStack - 4096);  // the stack grows down from here
-  return static_cast<std::size_t>(end -
-                                  std::find_if(static_cast<const unsigned char*>(from), end,
-                                               [](unsigned char byte) { return byte != kPaint; }));
+  return static_cast<std::size_t>(
+      end - std::find_if(static_cast<const unsigned char*>(from), end,
+                         [](unsigned char byte) { return byte != kStackPaint; }));
 }
 
 }  // namespace

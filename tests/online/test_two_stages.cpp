@@ -28,7 +28,7 @@ double apart(const Traced& a, const Traced& b, const std::string& column) {
   return worst / most;
 }
 
-struct Case {
+struct StageCase {
   std::string scene, column;
   std::vector<std::string> changes;
 };
@@ -52,18 +52,18 @@ TEST_CASE("two stages and generalised-alpha converge to the same motion", "[sche
   // The cases have all that a track in full order has: wheelsets with guides and flanges, vehicles,
   // supports that do not pull. Elements are so short that their borders excite no thickness modes,
   // which have 10 to 40 kHz and are not resolved at these steps.
-  const Case c = GENERATE(
-      Case{"ballasted_track",
-           "wheel_left.force_z_n",
-           {"track.bays=24", "track.elements_per_bay=4", "step.duration_s=0.02",
-            "step.frame_s=2e-4"}},
-      Case{"bogie_at_speed",
-           "bogie.wheel_1.force_z_n",
-           {"step.duration_s=0.02", "step.frame_s=2e-4"}},
-      Case{"hanging_sleeper",
-           "front_left.deflection_z_m",
-           {"step.duration_s=0.04", "step.frame_s=4e-4"}},
-      Case{"wheelset_flange", "wheelset.dy_m", {"step.duration_s=1.5", "step.frame_s=1e-3"}});
+  const StageCase c = GENERATE(
+      StageCase{"ballasted_track",
+                "wheel_left.force_z_n",
+                {"track.bays=24", "track.elements_per_bay=4", "step.duration_s=0.02",
+                 "step.frame_s=2e-4"}},
+      StageCase{"bogie_at_speed",
+                "bogie.wheel_1.force_z_n",
+                {"step.duration_s=0.02", "step.frame_s=2e-4"}},
+      StageCase{"hanging_sleeper",
+                "front_left.deflection_z_m",
+                {"step.duration_s=0.04", "step.frame_s=4e-4"}},
+      StageCase{"wheelset_flange", "wheelset.dy_m", {"step.duration_s=1.5", "step.frame_s=1e-3"}});
   const auto difference = [&](const std::string& dt) {
     std::vector<std::string> changes = c.changes;
     changes.insert(changes.end(), {kFull, "step.dt_s=" + dt});

@@ -15,7 +15,7 @@ namespace {
 
 const std::string kBallasted = kScenes + "ballasted_track.toml";
 
-Scene with(const std::string& cant, const std::string& unknowns = "full") {
+Scene canted(const std::string& cant, const std::string& unknowns = "full") {
   return read_scene(kBallasted, {"rail.cant=" + cant, "track.unknowns=\"" + unknowns + "\""});
 }
 
@@ -31,37 +31,37 @@ const std::string kLeaning = "--set 'rail.cant=\"1:20\"' --duration 0.05 ";
 }  // namespace
 
 TEST_CASE("the cant of the rails is a slope", "[cant]") {
-  CHECK(with("\"1:20\"").rail.cant == .05);
-  CHECK(with("\"1:40\"").rail.cant == .025);
-  CHECK(with("0.05").rail.cant == .05);
-  CHECK(with("0").rail.cant == 0.);
+  CHECK(canted("\"1:20\"").rail.cant == .05);
+  CHECK(canted("\"1:40\"").rail.cant == .025);
+  CHECK(canted("0.05").rail.cant == .05);
+  CHECK(canted("0").rail.cant == 0.);
   CHECK(read_scene(kBallasted).rail.cant == 0.);
-  const Track t = track_of(with("\"1:20\""));
+  const Track t = track_of(canted("\"1:20\""));
   CHECK(t.lean(0).sine > 0.);
   CHECK(t.lean(1).sine == -t.lean(0).sine);
   for (const char* bad : {"\"1:0\"", "\"1:2\"", "\"2:40\"", "\"1:20x\"", "\"1:-20\""})
-    CHECK_THROWS_WITH(with(bad), Contains("E-KEY-08"));
-  CHECK_THROWS_WITH(with("0.3"), Contains("[rail] cant"));
+    CHECK_THROWS_WITH(canted(bad), Contains("E-KEY-08"));
+  CHECK_THROWS_WITH(canted("0.3"), Contains("[rail] cant"));
 }
 
 TEST_CASE("features without leaning rails refuse them", "[cant]") {
-  CHECK_THROWS_WITH(with("\"1:20\"", "vertical"), Contains("rigid-section"));
+  CHECK_THROWS_WITH(canted("\"1:20\"", "vertical"), Contains("rigid-section"));
   CHECK_THROWS_WITH(read_scene(kBallasted, {"rail.cant=0.05", "track.gauge_m=1.435"}),
                     Contains("rail_spacing_m"));
   const std::string lean = " --set 'rail.cant=\"1:20\"' --set 'track.unknowns=\"full\"' ";
-  const Ran beam = railstep_program("static " + shipped("cantilever_rectangle") +
+  const Ran beam = railstep_program("static " + shipped_word("cantilever_rectangle") +
                                     "--set rail.cant=0.05 --set 'track.model=\"timoshenko\"'");
   CHECK(beam.code == 2);
   CHECK_THAT(beam.err, Contains("E-TIMOSHENKO-02"));
   const Ran exact =
-      railstep_program("receptance " + shipped("receptance_s1") + lean +
+      railstep_program("receptance " + shipped_word("receptance_s1") + lean +
                        "--at mid_bay --from 100 --to-hz 200 --points 2 --beside endless");
   CHECK(exact.code == 2);
   CHECK_THAT(exact.err, Contains("upright"));
-  const Ran flanged = railstep_program("run " + shipped("wheelset_flange") + lean);
+  const Ran flanged = railstep_program("run " + shipped_word("wheelset_flange") + lean);
   CHECK(flanged.code == 2);
   CHECK_THAT(flanged.err, Contains("upright"));
-  const Ran machine = railstep_program("run " + shipped("exciter_on_track") + lean);
+  const Ran machine = railstep_program("run " + shipped_word("exciter_on_track") + lean);
   CHECK(machine.code == 2);
   CHECK_THAT(machine.err, Contains("upright"));
 }

@@ -16,7 +16,7 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-const std::string kScene = std::string(RAILSTEP_SOURCE) + "/config/scenes/endless_track.toml";
+const std::string kRing = std::string(RAILSTEP_SOURCE) + "/config/scenes/endless_track.toml";
 
 /// The shipped scene on a vertical track of few bays, past a joint at 6 m.
 std::vector<std::string> small(std::vector<std::string> more = {}) {
@@ -38,7 +38,7 @@ std::vector<std::string> on_bogies(std::vector<std::string> more) {
   return small(std::move(more));
 }
 
-struct Ran {
+struct RingRun {
   std::vector<std::string> columns;
   RunRecord record;
   double at(std::size_t row, const std::string& column) const {
@@ -49,8 +49,8 @@ struct Ran {
   }
 };
 
-Ran ran(const std::vector<std::string>& changes) {
-  const Scene scene = read_scene(kScene, changes);
+RingRun ran(const std::vector<std::string>& changes) {
+  const Scene scene = read_scene(kRing, changes);
   Simulation run(scene);
   return {run.columns(),
           simulate(run, scene.step->steps / scene.step->steps_per_frame, nullptr, true)};
@@ -59,7 +59,7 @@ Ran ran(const std::vector<std::string>& changes) {
 }  // namespace
 
 TEST_CASE("sensors follow the traffic by whole bays, and their x is the distance along the track") {
-  const Ran got =
+  const RingRun got =
       ran(small({R"(sensor=[{name="sleeper", on="rail", rail="left", position_m=0.9}])"}));
   CHECK(status_names(got.record.status).empty());
   // At 30 m/s the traffic has gone 0.03 n m after n ms, and the sensor has moved to the last border
@@ -72,8 +72,8 @@ TEST_CASE("sensors follow the traffic by whole bays, and their x is the distance
 }
 
 TEST_CASE("a wheelset's sensor moves the true distance") {
-  const Ran got = ran(small({R"(sensor=[{name="centre", on="wheelset", wheelset="wheelset"}])",
-                             "wheelset[0].start_m=1.2"}));
+  const RingRun got = ran(small({R"(sensor=[{name="centre", on="wheelset", wheelset="wheelset"}])",
+                                 "wheelset[0].start_m=1.2"}));
   for (const std::size_t ms : {0u, 10u, 21u, 299u}) {
     // The guide's tolerance is 1e-10 m.
     CHECK_THAT(got.at(ms, "centre.x_m"), WithinAbs(1.2 + .03 * static_cast<double>(ms), 1e-9));
@@ -88,7 +88,7 @@ TEST_CASE("a ring and a window agree at a joint") {
     return small({std::string("condense.kind=\"") + kind + "\"", "step.dt_s=0.000025",
                   "step.duration_s=0.15", "defect[0].at_m=3.0"});
   };
-  const Ran ring = ran(fine("modal")), window = ran(fine("full"));
+  const RingRun ring = ran(fine("modal")), window = ran(fine("full"));
   double peak = 0., worst = 0.;
   for (std::size_t ms = 0; ms <= 150; ++ms) {
     const double a = ring.at(ms, "wheel_left.force_z_mean_n"),
@@ -109,7 +109,7 @@ TEST_CASE("energy balances from bay to bay on a ring and in a window") {
       const std::vector<std::string> changes = {std::string("condense.kind=\"") + kind + "\"",
                                                 "defect[0].at_m=30.0"};
       const Simulation run(
-          read_scene(kScene, on == std::string("bogie") ? on_bogies(changes) : small(changes)));
+          read_scene(kRing, on == std::string("bogie") ? on_bogies(changes) : small(changes)));
       const EnergyBalance balance = balance_of(*run.packed(), run.model(), 200);
       CAPTURE(kind, on, balance.error, balance.numerical_loss);
       CHECK(balance.error < 1e-3);
@@ -117,7 +117,7 @@ TEST_CASE("energy balances from bay to bay on a ring and in a window") {
 }
 
 TEST_CASE("a bogie meets a joint at the joint's place") {
-  const Ran got = ran(on_bogies({})), even = ran(on_bogies({"defect[0].at_m=60.0"}));
+  const RingRun got = ran(on_bogies({})), even = ran(on_bogies({"defect[0].at_m=60.0"}));
   CHECK(status_names(got.record.status).empty());
   double first = 0., last = 0.;  // place of the leading wheel while the joint has an effect, m
   for (std::size_t ms = 0; ms <= 300; ++ms) {
@@ -135,7 +135,7 @@ TEST_CASE("a bogie meets a joint at the joint's place") {
 TEST_CASE("a moving start refuses a speed and names the next possible ones on either side") {
   std::string said;
   try {
-    Built(read_scene(kScene, small({"wheelset[0].speed_m_per_s=31.4159265"})));
+    Built(read_scene(kRing, small({"wheelset[0].speed_m_per_s=31.4159265"})));
   } catch (const std::exception& error) {
     said = error.what();
   }
@@ -155,7 +155,7 @@ TEST_CASE("a moving start refuses a speed and names the next possible ones on ei
 
 TEST_CASE("a track without end refuses keys that it cannot have, each with its message") {
   const auto refused = [](const std::vector<std::string>& changes, const char* why) {
-    CHECK_THROWS_WITH(Built(read_scene(kScene, small(changes))), Contains(why));
+    CHECK_THROWS_WITH(Built(read_scene(kRing, small(changes))), Contains(why));
   };
   refused({"track.ends=\"pinned\""}, "E-SCENE-05");
   refused({"track.model=\"nonlinear\"", "track.unknowns=\"full\""}, "E-SCENE-06");

@@ -15,9 +15,9 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-const std::string kScene = RAILSTEP_SOURCE "/config/scenes/hanging_sleeper.toml";
+const std::string kHanging = RAILSTEP_SOURCE "/config/scenes/hanging_sleeper.toml";
 
-Scene with(const std::vector<std::string>& changes) { return read_scene(kScene, changes); }
+Scene with(const std::vector<std::string>& changes) { return read_scene(kHanging, changes); }
 
 const std::string kStop =
     "stop=[{name=\"tie\", rail=\"left\", position_m=9.0, direction=\"z\", side=\"below\", "
@@ -26,7 +26,7 @@ const std::string kStop =
 }  // namespace
 
 TEST_CASE("loads that stand over hanging sleepers rest where `static` finds them", "[supports]") {
-  std::string words = kScene + " --set step.duration_s=0.04 --set '" + kStop + "'";
+  std::string words = kHanging + " --set step.duration_s=0.04 --set '" + kStop + "'";
   const char* const x[] = {"9.0", "9.0", "6.6", "6.6"};
   for (int i = 0; i < 4; ++i) {
     const std::string load = " --set load[" + std::to_string(i) + "].";
@@ -57,7 +57,7 @@ TEST_CASE("loads that stand over hanging sleepers rest where `static` finds them
 }
 
 TEST_CASE("two axles over hanging sleepers keep the balance of energy", "[supports]") {
-  const auto found = told(kScene);
+  const auto found = told(kHanging);
   CHECK(found["status"].empty());
   CHECK(found["energy_balance_error"].get<double>() < 1e-3);
   CHECK(found["max_iterations"].get<int>() <= 8);
@@ -67,7 +67,7 @@ TEST_CASE("two axles over hanging sleepers keep the balance of energy", "[suppor
 TEST_CASE("the trace has the force of pads that do not pull", "[supports]") {
   // The weight of 0.6 m of rail presses a pad with 350 N, and 2 kN lift it by at most 60 N
   // (rail-data.md: 1.5 % of each axle). Pads that do not pull therefore act as springs.
-  std::string both = kScene + " --set track.gravity=true --set step.duration_s=0.05";
+  std::string both = kHanging + " --set track.gravity=true --set step.duration_s=0.05";
   for (int i = 0; i < 4; ++i) both += " --set load[" + std::to_string(i) + "].force_z_n=-2e3";
   const std::string pads =
       " --set 'support_change=[{from=14, to=16, ballast.gap_m=0.5e-3}, "
@@ -153,7 +153,7 @@ TEST_CASE("a track refuses springs that do not pull where it cannot have them", 
     CHECK(ran.code == 2);
     CHECK_THAT(ran.err, Catch::Contains(sentence));
   };
-  const std::string run = "run " + kScene + " --set ";
+  const std::string run = "run " + kHanging + " --set ";
   refused(run + "ballast.unilateral=true", "accepted are 32");
   refused(run + "ballast.gap_m=-1e-3", "gap_m");
   refused(run + "support_change[0].ballast.gap_m=0.2", "gap_m");
@@ -167,7 +167,7 @@ TEST_CASE("a track refuses springs that do not pull where it cannot have them", 
               "'stop=[{name=\"rail\", rail=\"left\", position_m=9.0, direction=\"z\", "
               "side=\"below\", stiffness_n_per_m=1e8}]'",
           "E-RUNNER-19");
-  refused("static " + kScene +
+  refused("static " + kHanging +
               " --set load[0].force_z_n=1e6 --set load[1].force_z_n=1e6 --set "
               "track.bays=4 --set support_change=[] --set "
               "ballast.unilateral=true --set load[2].start_m=1.0 --set "
@@ -179,7 +179,7 @@ TEST_CASE("a track refuses springs that do not pull where it cannot have them", 
 TEST_CASE("modes and receptance take a gap as open and a pad without gap as a spring",
           "[supports]") {
   const auto lowest = [](const std::string& set) {
-    const Ran ran = railstep_program("modes " + kScene + " --count 2 --json " + set);
+    const Ran ran = railstep_program("modes " + kHanging + " --count 2 --json " + set);
     CAPTURE(ran.err);
     REQUIRE(ran.code == 0);
     return nlohmann::json::parse(ran.out)["frequencies_hz"];

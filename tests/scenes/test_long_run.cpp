@@ -9,12 +9,12 @@ using namespace railstep;
 
 namespace {
 
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/";
+const std::string kConfig = std::string(RAILSTEP_SOURCE) + "/config/";
 
 }  // namespace
 
 TEST_CASE("the times that are kept are spread over the whole run", "[run]") {
-  Simulation simulation(read_scene(kScenes + "hard/h34_ten_million_steps.toml",
+  Simulation simulation(read_scene(kConfig + "hard/h34_ten_million_steps.toml",
                                    {"step.frame_s=1e-3", "step.duration_s=3000.0"}));
   const auto frames = static_cast<std::int64_t>(2 * kMostTimes + 10);
   const RunRecord record = simulate(simulation, frames, {}, false);
@@ -26,7 +26,7 @@ TEST_CASE("the times that are kept are spread over the whole run", "[run]") {
 TEST_CASE("the double pendulum runs for a minute", "[run]") {
   // After 50 s the lower beam is bent so hard that a step needs more than one matrix.
   const auto run = simulation_of(
-      read_any_scene(kScenes + "scenes/double_pendulum.toml", {"step.duration_s=60.0"}));
+      read_any_scene(kConfig + "scenes/double_pendulum.toml", {"step.duration_s=60.0"}));
   const RunRecord record = simulate(*run, 60000, {}, false);
   CHECK(record.status == Status::ok);
   CHECK(run->state.steps == 60000);

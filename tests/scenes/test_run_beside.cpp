@@ -41,7 +41,7 @@ class OwnScene {
   std::filesystem::path file_;
 };
 
-constexpr double kPlace = 3.4, kMass = 120.;
+constexpr double kPlace = 3.4, kBesideMass = 120.;
 
 OwnScene carried_mass(const std::string& start) {
   return OwnScene("carried", 1,
@@ -70,13 +70,13 @@ Moved by_matrices(const SystemScene& scene, bool at_rest) {
   const Line& line = lines[0];
   const auto row = [&](double x) { return VectorXd(point_row(track, line, {0, x, 0., 0., 2})); };
   const VectorXd b = row(kPlace);
-  const MatrixXd M = MatrixXd(line.mass) + kMass * b * b.transpose(), C = line.damping,
+  const MatrixXd M = MatrixXd(line.mass) + kBesideMass * b * b.transpose(), C = line.damping,
                  K = line.stiffness;
   const double dt = scene.step.dt;
   const Scheme s = generalised_alpha(dt, scene.step.rho_inf);
   const Eigen::LDLT<MatrixXd> S(K + s.kv * C + s.kg * M), stiff(K);
   const auto force = [&](double t) {
-    return VectorXd(-5e4 * row(2. + 20. * t) - kMass * 9.81 * b);
+    return VectorXd(-5e4 * row(2. + 20. * t) - kBesideMass * 9.81 * b);
   };
   VectorXd u = VectorXd::Zero(b.size()), v = u, g = u;
   if (at_rest) {
@@ -84,7 +84,7 @@ Moved by_matrices(const SystemScene& scene, bool at_rest) {
     v = stiff.solve(force(1e-5) - force(-1e-5)) / 2e-5;
   } else {
     // A track has no acceleration at the start except from the fall of the mass on it.
-    g = s.kg * S.solve(VectorXd(-kMass * 9.81 * b));
+    g = s.kg * S.solve(VectorXd(-kBesideMass * 9.81 * b));
   }
   VectorXd a = g;
   Moved moved{{b.dot(u)}, {row(2.).dot(u)}};
@@ -148,14 +148,15 @@ TEST_CASE("a clamp carries the weight and inertia of its mass", "[run]") {
   const Rows trace = traced(carried_mass("equilibrium").path() + " --set step.rho_inf=1.0");
   const std::size_t force = trace.column("clamp.force_z_n"),
                     speed = trace.column("mass_centre.vz_m_per_s");
-  CHECK_THAT(trace.row[0][force], WithinAbs(kMass * 9.81, 1e-6));
+  CHECK_THAT(trace.row[0][force], WithinAbs(kBesideMass * 9.81, 1e-6));
   double worst = 0., most = 0.;
   for (std::size_t r = 1; r < trace.row.size(); ++r) {
     // Trapezoidal rule: m (v1 - v0) / dt is the mean of both ends' forces less weight.
     const double mean = .5 * (trace.row[r][force] + trace.row[r - 1][force]);
-    const double want = kMass * ((trace.row[r][speed] - trace.row[r - 1][speed]) / .5e-3 + 9.81);
+    const double want =
+        kBesideMass * ((trace.row[r][speed] - trace.row[r - 1][speed]) / .5e-3 + 9.81);
     worst = std::max(worst, std::abs(mean - want));
-    most = std::max(most, std::abs(mean - kMass * 9.81));
+    most = std::max(most, std::abs(mean - kBesideMass * 9.81));
   }
   CHECK(most > 100.);
   CHECK(worst < 1e-3);  // 1e-8 of 50 kN twice

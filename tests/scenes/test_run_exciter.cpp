@@ -22,7 +22,7 @@ constexpr double kTurning = 188.49555921538759;  // rad/s, 30 Hz
 constexpr double kFeet[4][2] = {{11.7, .75}, {12.3, .75}, {11.7, -.75}, {12.3, -.75}};  // x, y, m
 constexpr double kHead = .091;                        // height of the feet on the rails, m
 constexpr double kStiffness = 20e6, kDamping = 40e3;  // of a foot
-constexpr double kMass = 840., kPull = 2. * 20. * .02 * kTurning * kTurning;  // kg, N
+constexpr double kExciterMass = 840., kPull = 2. * 20. * .02 * kTurning * kTurning;  // kg, N
 
 /// Amplitudes x of x e^(i w t) under a force of kPull cos(w t) downwards on the frame.
 struct Answer {
@@ -64,7 +64,7 @@ Answer answer(double w, double pull) {
     A(k, 4) = 1.;
     A(4, k) = 1.;
   }
-  A(4, 4) = -w * w * kMass;
+  A(4, 4) = -w * w * kExciterMass;
   Eigen::Matrix<Phasor, 5, 1> b = Eigen::Matrix<Phasor, 5, 1>::Zero();
   b[4] = -pull;
   const Eigen::Matrix<Phasor, 5, 1> found = A.partialPivLu().solve(b);
@@ -112,7 +112,7 @@ TEST_CASE("the exciter starts at rest under its weight and the vehicle's force",
   const Rows trace = traced(kExciter +
                             " --duration 0.05 --set 'joint[3].polynomial_rad=[0]' --set "
                             "'joint[4].polynomial_rad=[0]' --set track.gravity=false");
-  const double pressed = 60e3 + kMass * 9.81;
+  const double pressed = 60e3 + kExciterMass * 9.81;
   const Answer want = answer(0., pressed);
   for (const char* column : {"frame_centre.dz_m", "rail_centre.dz_m", "foot_left_rear.force_n"}) {
     const std::size_t c = trace.column(column);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/program.h"
+#include "support/shipped.h"
 
 namespace railstep {
 
@@ -65,10 +66,6 @@ inline std::string replaced(std::string text, const std::string& old, const std:
   const std::size_t at = text.find(old);
   REQUIRE(at != std::string::npos);
   return text.replace(at, old.size(), fresh);
-}
-
-inline std::string shipped(const std::string& scene) {
-  return fmt::format("{}/config/scenes/{}.toml", RAILSTEP_SOURCE, scene);
 }
 
 }  // namespace railstep

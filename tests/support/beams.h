@@ -12,6 +12,8 @@ namespace railstep {
 
 using Eigen::Vector3d;
 
+inline constexpr double kShear = 5. / 6.;  // shear factor of a rectangle
+
 /// J of a rectangle by Saint-Venant's series (Timoshenko and Goodier, Theory of Elasticity, section
 /// 109), to round-off: the terms left out are below 64/pi^5 (b/a) / (2 n)^4, n = 400.
 inline double rectangle_torsion(double height, double width) {

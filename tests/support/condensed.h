@@ -9,6 +9,8 @@
 
 namespace railstep {
 
+inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
 /// The peers' scene of reference.md: two rails, 16 bays of 0.6 m, springs at each border.
 inline Track peers_pair(int elements_per_bay) {
   Track t;

@@ -221,7 +221,7 @@ inline FramePoint frame_point(const Structure& s, const Eigen::MatrixXd& modes, 
 /// A floating frame as the time scheme sees it. `drive` sets the unknowns that are not free.
 class FloatingBody : public MovingBody {
  public:
-  FloatingBody(FloatingFrame frame, std::vector<int> free, std::function<void(Motion&)> drive,
+  FloatingBody(FloatingFrame frame, std::vector<int> free, std::function<void(Moving&)> drive,
                const Eigen::Vector2d& gravity = Eigen::Vector2d::Zero())
       : frame_(std::move(frame)),
         free_(std::move(free)),
@@ -230,17 +230,17 @@ class FloatingBody : public MovingBody {
 
   const FloatingFrame& frame() const { return frame_; }
   const std::vector<int>& free_unknowns() const override { return free_; }
-  void prescribe(Motion& m) const override { drive_(m); }
+  void prescribe(Moving& m) const override { drive_(m); }
   /// If the frame's motion is prescribed, the equations are linear in eta.
   bool linear() const override { return free_.front() == 3; }
 
-  Eigen::VectorXd residual(const Motion& m) override {
+  Eigen::VectorXd residual(const Moving& m) override {
     mass_ = mass_matrix(frame_, m.q);
     return picked(mass_ * m.a - frame_force(frame_, m.q, m.v, gravity_), free_);
   }
 
   /// Exact in eta. For the frame's own motion it has the mass and the terms of the spin.
-  Eigen::VectorXd solve(const Motion& m, double by_v, double by_q,
+  Eigen::VectorXd solve(const Moving& m, double by_v, double by_q,
                         const Eigen::VectorXd& residual) override {
     const FloatingFrame& f = frame_;
     const int n = f.modes();
@@ -261,7 +261,7 @@ class FloatingBody : public MovingBody {
  private:
   FloatingFrame frame_;
   std::vector<int> free_;
-  std::function<void(Motion&)> drive_;
+  std::function<void(Moving&)> drive_;
   Eigen::Vector2d gravity_;
   Eigen::MatrixXd mass_;
 };

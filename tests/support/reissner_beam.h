@@ -38,26 +38,26 @@ class ReissnerBody : public MovingBody {
                   g.weight * part_ / 2. * density_[k] * at(shape(g.xi), i) * at(shape(g.xi), j);
   }
 
-  Motion at_rest() const {
+  Moving at_rest() const {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(mass_.rows());
     for (int i = 0; i < q.size(); i += 3) q[i] = part_ / 6. * i;
     return railstep::at_rest(q);
   }
 
   const std::vector<int>& free_unknowns() const override { return free_; }
-  void prescribe(Motion& m) const override {
+  void prescribe(Moving& m) const override {
     m.q[2] = hub_.angle(m.time);
     m.v[2] = hub_.rate(m.time);
     m.a[2] = hub_.acceleration(m.time);
   }
-  Eigen::VectorXd residual(const Motion& m) override {
+  Eigen::VectorXd residual(const Moving& m) override {
     Eigen::VectorXd force = mass_ * m.a;
     stiffness_ = Eigen::MatrixXd::Zero(force.size(), force.size());
     for (int e = 0; e < elements_; ++e)
       for (const GaussPoint& g : gauss(2)) add_point(m.q, 6 * e, g, force);
     return picked(force, free_);
   }
-  Eigen::VectorXd solve(const Motion&, double, double by_q,
+  Eigen::VectorXd solve(const Moving&, double, double by_q,
                         const Eigen::VectorXd& residual) override {
     return picked_square(mass_ + by_q * stiffness_, free_).partialPivLu().solve(residual);
   }

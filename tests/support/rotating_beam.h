@@ -31,8 +31,8 @@ struct SpinUp {
 };
 
 /// Drives the first node's section, and the other held unknowns of a planar beam.
-inline std::function<void(Motion&)> drive_section(const SpinUp& hub) {
-  return [hub](Motion& m) {
+inline std::function<void(Moving&)> drive_section(const SpinUp& hub) {
+  return [hub](Moving& m) {
     const double angle = hub.angle(m.time), rate = hub.rate(m.time);
     const Eigen::Vector2d across(-std::sin(angle), std::cos(angle)), back(-across[1], across[0]);
     const Eigen::Vector2d speed = rate * back;
@@ -46,8 +46,8 @@ inline std::function<void(Motion&)> drive_section(const SpinUp& hub) {
 }
 
 /// Drives a floating frame that is fixed to the hub.
-inline std::function<void(Motion&)> drive_frame(const SpinUp& hub) {
-  return [hub](Motion& m) {
+inline std::function<void(Moving&)> drive_frame(const SpinUp& hub) {
+  return [hub](Moving& m) {
     m.q[2] = hub.angle(m.time);
     m.v[2] = hub.rate(m.time);
     m.a[2] = hub.acceleration(m.time);
@@ -64,7 +64,7 @@ inline Eigen::Vector2d in_hub(const Eigen::Vector2d& tip, double angle, double l
 /// places found once at the start.
 class AncfBody : public MovingBody {
  public:
-  AncfBody(PlanarBeam beam, std::function<void(Motion&)> drive, Eigen::VectorXd load)
+  AncfBody(PlanarBeam beam, std::function<void(Moving&)> drive, Eigen::VectorXd load)
       : beam_(std::move(beam)),
         drive_(std::move(drive)),
         load_(std::move(load)),
@@ -80,13 +80,13 @@ class AncfBody : public MovingBody {
   const PlanarBeam& beam() const { return beam_; }
   const Eigen::VectorXd& mass_values() const { return mass_values_; }
   const std::vector<int>& free_unknowns() const override { return free_; }
-  void prescribe(Motion& m) const override { drive_(m); }
+  void prescribe(Moving& m) const override { drive_(m); }
 
-  Eigen::VectorXd residual(const Motion& m) override {
+  Eigen::VectorXd residual(const Moving& m) override {
     return picked(beam_.mass * m.a + internal_force(beam_.structure, m.q) - load_, free_);
   }
 
-  Eigen::VectorXd solve(const Motion& m, double, double by_q,
+  Eigen::VectorXd solve(const Moving& m, double, double by_q,
                         const Eigen::VectorXd& residual) override {
     Eigen::Map<Eigen::VectorXd>(system_.valuePtr(), system_.nonZeros()) = mass_values_;
     Vector27 q, force;
@@ -128,7 +128,7 @@ class AncfBody : public MovingBody {
   }
 
   PlanarBeam beam_;
-  std::function<void(Motion&)> drive_;
+  std::function<void(Moving&)> drive_;
   Eigen::VectorXd load_;
   std::vector<int> free_;
   Eigen::SparseMatrix<double> system_;
@@ -140,7 +140,7 @@ class AncfBody : public MovingBody {
 /// ANCF linearised at rest (Eq. 24): M a + K (q - rest) = load. One factorisation for all steps.
 class LinearBody : public MovingBody {
  public:
-  LinearBody(PlanarBeam beam, std::function<void(Motion&)> drive, Eigen::VectorXd load)
+  LinearBody(PlanarBeam beam, std::function<void(Moving&)> drive, Eigen::VectorXd load)
       : beam_(std::move(beam)),
         drive_(std::move(drive)),
         load_(std::move(load)),
@@ -148,14 +148,14 @@ class LinearBody : public MovingBody {
         stiffness_(tangent(beam_.structure, beam_.structure.rest)) {}
 
   const std::vector<int>& free_unknowns() const override { return free_; }
-  void prescribe(Motion& m) const override { drive_(m); }
+  void prescribe(Moving& m) const override { drive_(m); }
   bool linear() const override { return true; }
 
-  Eigen::VectorXd residual(const Motion& m) override {
+  Eigen::VectorXd residual(const Moving& m) override {
     return picked(beam_.mass * m.a + stiffness_ * (m.q - beam_.structure.rest) - load_, free_);
   }
 
-  Eigen::VectorXd solve(const Motion&, double, double by_q,
+  Eigen::VectorXd solve(const Moving&, double, double by_q,
                         const Eigen::VectorXd& residual) override {
     if (by_q != factored_)
       solver_.compute(
@@ -166,7 +166,7 @@ class LinearBody : public MovingBody {
 
  private:
   PlanarBeam beam_;
-  std::function<void(Motion&)> drive_;
+  std::function<void(Moving&)> drive_;
   Eigen::VectorXd load_;
   std::vector<int> free_;
   Eigen::SparseMatrix<double> stiffness_;

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "run/simulate.h"
+#include "support/shipped.h"
 
 namespace railstep {
-
-inline const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 
 /// A scene that a test writes and the program reads.
 inline Scene scene_of(const std::string& text, const std::vector<std::string>& overrides = {}) {

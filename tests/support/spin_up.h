@@ -30,10 +30,10 @@ inline double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-using Tip = std::function<Eigen::Vector2d(const Motion&)>;
+using Tip = std::function<Eigen::Vector2d(const Moving&)>;
 
 /// Runs from rest at the hub to kSpinUpEnd. A sample is a whole number of steps.
-inline SpinUpRun spin_up(MovingBody& body, Motion m, const SpinUp& hub, double step,
+inline SpinUpRun spin_up(MovingBody& body, Moving m, const SpinUp& hub, double step,
                          const Tip& tip) {
   const int each = static_cast<int>(std::lround(kSample / step));
   if (std::abs(each * step - kSample) > 1e-12)
@@ -55,7 +55,7 @@ inline SpinUpRun spin_up(MovingBody& body, Motion m, const SpinUp& hub, double s
 }
 
 inline Tip tip_node(int place) {
-  return [place](const Motion& m) { return Eigen::Vector2d(m.q[place], m.q[place + 2]); };
+  return [place](const Moving& m) { return Eigen::Vector2d(m.q[place], m.q[place + 2]); };
 }
 
 inline SpinUpRun spin_up_ancf(const SpinUp& hub, int elements, double step) {
@@ -80,12 +80,12 @@ inline SpinUpRun spin_up_frame(const SpinUp& hub, int bending, int axial, bool s
   FloatingBody body(floating_frame(b.structure, b.mass, modes, stiffening), free, drive_frame(hub));
   const FramePoint end = frame_point(b.structure, modes, 16, stiffening);
   return spin_up(body, at_rest(Eigen::VectorXd::Zero(3 + bending + axial)), hub, step,
-                 [end](const Motion& m) { return position(end, m.q); });
+                 [end](const Moving& m) { return position(end, m.q); });
 }
 
 inline SpinUpRun spin_up_reissner(const SpinUp& hub, int elements, double step) {
   ReissnerBody body(spin_up_beam(1), elements, hub);
-  return spin_up(body, body.at_rest(), hub, step, [elements](const Motion& m) {
+  return spin_up(body, body.at_rest(), hub, step, [elements](const Moving& m) {
     return Eigen::Vector2d(m.q[6 * elements], m.q[6 * elements + 1]);
   });
 }

@@ -6,13 +6,12 @@
 #include <string>
 
 #include "support/program.h"
+#include "support/shipped.h"
 
 namespace railstep {
 
-/// A shipped scene's file.
-inline std::string shipped(const std::string& name) {
-  return RAILSTEP_SOURCE "/config/scenes/" + name + ".toml ";
-}
+/// The file of a shipped scene and a blank.
+inline std::string shipped_word(const std::string& name) { return shipped(name) + " "; }
 
 /// A scene of a test, in a folder of its own.
 struct OwnScene {

@@ -6,7 +6,7 @@
 namespace railstep {
 
 /// A mechanical system at one time. Some unknowns may be prescribed; the others are free.
-struct Motion {
+struct Moving {
   Eigen::VectorXd q, v, a;  // [unknowns]; a is the true acceleration
   Eigen::VectorXd carried;  // [unknowns], the scheme's own acceleration
   double time = 0.;         // s
@@ -28,7 +28,7 @@ inline Eigen::MatrixXd picked_square(const Eigen::MatrixXd& A, const std::vector
 }
 
 /// Motion at rest at q: v = a = 0 at time 0.
-inline Motion at_rest(const Eigen::VectorXd& q) {
+inline Moving at_rest(const Eigen::VectorXd& q) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
   return {q, zero, zero, zero};
 }
@@ -43,17 +43,17 @@ class MovingBody {
   /// Unknowns that are solved for.
   virtual const std::vector<int>& free_unknowns() const = 0;
   /// Sets q, v, a of the prescribed unknowns at motion.time.
-  virtual void prescribe(Motion& motion) const = 0;
-  virtual Eigen::VectorXd residual(const Motion& motion) = 0;  // [free]
+  virtual void prescribe(Moving& motion) const = 0;
+  virtual Eigen::VectorXd residual(const Moving& motion) = 0;  // [free]
   /// (dR/da + by_v dR/dv + by_q dR/dq)^-1 residual, [free].
-  virtual Eigen::VectorXd solve(const Motion& motion, double by_v, double by_q,
+  virtual Eigen::VectorXd solve(const Moving& motion, double by_v, double by_q,
                                 const Eigen::VectorXd& residual) = 0;
   /// Whether R is linear and its matrix exact: one solve then ends the step.
   virtual bool linear() const { return false; }
 };
 
 /// Sets the acceleration that the equations give at the start.
-inline void start(MovingBody& body, Motion& m) {
+inline void start(MovingBody& body, Moving& m) {
   body.prescribe(m);
   const Eigen::VectorXd change = body.solve(m, 0., 0., body.residual(m));
   const std::vector<int>& free = body.free_unknowns();
@@ -80,8 +80,8 @@ class GeneralisedAlpha {
   /// or is only round-off.
   /// @return number of solves
   /// @throws std::runtime_error after 40 solves
-  int advance(MovingBody& body, Motion& m, double tolerance) const {
-    const Motion old = m;
+  int advance(MovingBody& body, Moving& m, double tolerance) const {
+    const Moving old = m;
     const double share = (1. - alpha_f_) / (1. - alpha_m_);
     m.time = old.time + h_;
     set(old, m);
@@ -101,7 +101,7 @@ class GeneralisedAlpha {
 
  private:
   /// q, v and the carried acceleration that belong to m.a.
-  void set(const Motion& old, Motion& m) const {
+  void set(const Moving& old, Moving& m) const {
     m.carried =
         ((1. - alpha_f_) * m.a + alpha_f_ * old.a - alpha_m_ * old.carried) / (1. - alpha_m_);
     m.v = old.v + h_ * ((1. - gamma_) * old.carried + gamma_ * m.carried);

@@ -31,7 +31,7 @@ std::vector<TrackSensor> seat_sensors(const Track& track, int seat) {
            .track = gap}};
 }
 
-double largest(const std::vector<double>& a, const std::vector<double>& b) {
+double largest_change(const std::vector<double>& a, const std::vector<double>& b) {
   REQUIRE(a.size() == b.size());
   double error = 0., peak = 0.;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -119,8 +119,9 @@ void check_against_reference(const std::vector<double>& behind) {
     run.packed->set_start(start_in_equilibrium(track, *run.packed, 0.));
     reset(run.model(), run.state);
     const Passage got = passage_of(run, kRun * 20, 40);
-    const double deflection = largest(got.deflection, want.deflection),
-                 sleeper = largest(got.sleeper, want.sleeper), pad = largest(got.pad, want.pad);
+    const double deflection = largest_change(got.deflection, want.deflection),
+                 sleeper = largest_change(got.sleeper, want.sleeper),
+                 pad = largest_change(got.pad, want.pad);
     CAPTURE(what, behind.size(), deflection, sleeper, pad);
     CHECK(deflection < 1e-3);
     CHECK(sleeper < 1e-3);
@@ -159,9 +160,9 @@ TEST_CASE("on a ring every bay moves as the bay before", "[H29]") {
     const Passage late = passage_of(run, 1, 200);
     CHECK_THAT(run.outputs.load_x[0], Catch::Matchers::WithinRel(200.2 * speed, 1e-14));
     CAPTURE(speed);
-    CHECK(largest(late.deflection, first.deflection) < 1e-9);
-    CHECK(largest(late.sleeper, first.sleeper) < 1e-9);
-    CHECK(largest(late.pad, first.pad) < 1e-9);
+    CHECK(largest_change(late.deflection, first.deflection) < 1e-9);
+    CHECK(largest_change(late.sleeper, first.sleeper) < 1e-9);
+    CHECK(largest_change(late.pad, first.pad) < 1e-9);
     // The energy does not grow either: the whole state is that of 10 000 bays before.
     double change = 0., size = 0.;
     for (std::size_t i = 0; i < before.size(); ++i) {

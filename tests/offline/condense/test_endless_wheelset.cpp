@@ -11,7 +11,7 @@ using namespace railstep;
 
 namespace {
 
-constexpr double kHeadZ = .1;  // m above the axis
+constexpr double kHeadHeight = .1;  // m above the axis
 
 Traffic wheelset_traffic(double start) {
   Wheelset w;
@@ -21,7 +21,7 @@ Traffic wheelset_traffic(double start) {
   w.weight = 98.1e3;
   w.start = start;
   w.speed = kSpeed;
-  return {.wheelsets = {w}, .head = {kHeadZ, .3, .035}};
+  return {.wheelsets = {w}, .head = {kHeadHeight, .3, .035}};
 }
 
 /// A model with NaN in everything that its lines and levers hold of elements that it leaves out.

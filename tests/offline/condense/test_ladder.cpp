@@ -15,12 +15,11 @@ using namespace railstep;
 
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-constexpr int kBays = 24, kSeat = 12;
+constexpr int kLadderBays = 24, kSeat = 12;
 
 /// One rail 60E1 on pads, sleepers and ballast.
 Track long_rail(int elements_per_bay) {
-  Track t = s1_track(kBays, elements_per_bay);
+  Track t = s1_track(kLadderBays, elements_per_bay);
   t.unknowns = Unknowns::vertical;
   t.rails = 1;
   t.support.damping = {0., 0., 20e3};
@@ -69,7 +68,7 @@ Row errors(const std::vector<Row>& got, const std::vector<Row>& want) {
 
 PackOptions options_of(ReductionKind kind, double per_bay, bool residual) {
   Reduction reduction{.kind = kind,
-                      .limit = {static_cast<int>(kBays * per_bay), kUnlimited},
+                      .limit = {static_cast<int>(kLadderBays * per_bay), kUnlimited},
                       .expansion_hz = {20., 84., 356., 1500.}};
   return {.scheme = held_force(2e-4, .6), .residual_flexibility = residual, .reduction = reduction};
 }

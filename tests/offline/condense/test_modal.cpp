@@ -24,7 +24,6 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 using Value = std::complex<double>;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// Lines of the tracks under test, but for those without stiffness along x.
 std::vector<Line> lines_under_test() {

@@ -42,8 +42,6 @@ Track shipped_s1() {
 
 double relative(const Value& got, const Value& want) { return std::abs(got / want - 1.); }
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
 }  // namespace
 
 TEST_CASE("set S1 has its reference receptances", "[receptance]") {

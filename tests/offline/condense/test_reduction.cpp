@@ -23,7 +23,6 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 using Value = std::complex<double>;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr ReductionKind kAll[] = {ReductionKind::modal,  ReductionKind::guyan,
                                   ReductionKind::irs,    ReductionKind::craig_bampton,
                                   ReductionKind::krylov, ReductionKind::complex_modes};

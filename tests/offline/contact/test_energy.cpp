@@ -12,6 +12,7 @@
 #include "run/simulate.h"
 #include "support/drops.h"
 #include "support/model_run.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
@@ -61,7 +62,6 @@ void lift(ModelRun& run, double u) {
   }
 }
 
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const std::string kFull = "condense.kind=\"full\"", kModal = "condense.kind=\"modal\"";
 const std::string kBaumgarte =
     "wheelset[0].guide={method=\"baumgarte\", alpha_per_s=50.0, beta_per_s=50.0}";

@@ -8,13 +8,12 @@
 #include "online/step/step.h"
 #include "run/simulation.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
 
 namespace {
-
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 
 using Words = std::vector<std::string>;
 
@@ -28,7 +27,7 @@ struct Run {
   std::unique_ptr<Simulation> simulation;
   Outputs outputs{};
   explicit Run(const std::string& name, const Words& words)
-      : simulation(simulation_of(read_any_scene(kFolder + name + ".toml", words))) {
+      : simulation(simulation_of(read_any_scene(kScenes + name + ".toml", words))) {
     publish_start(model(), simulation->state, outputs);
   }
   const Model& model() const { return simulation->model(); }
@@ -208,7 +207,7 @@ TEST_CASE("an external wheel off the rail moves nothing and sets its status", "[
 TEST_CASE("features that external wheels cannot be combined with are refused in one sentence",
           "[external][cli]") {
   const auto told = [](const std::string& scene, const std::string& words) {
-    const Ran ran = railstep_program("run " + kFolder + scene + ".toml " + words);
+    const Ran ran = railstep_program("run " + kScenes + scene + ".toml " + words);
     CHECK(ran.code == 2);
     return ran.err;
   };

@@ -9,22 +9,21 @@
 #include "online/step/step.h"
 #include "run/simulate.h"
 #include "support/program.h"
+#include "support/shipped.h"
 #include "support/traced.h"
 
 using namespace railstep;
 
 namespace {
 
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-
-const std::string kTwo =
+const std::string kTwoWheels =
     "external_wheel=[{name=\"a\", rail=\"left\", limit_n=1e6}, {name=\"b\", rail=\"right\", "
     "limit_n=1e6}]";
 
 std::vector<std::string> words_of(const std::string& kind, const std::string& unknowns,
                                   const std::string& dt) {
   return {"load=[]",
-          kTwo,
+          kTwoWheels,
           "track.unknowns=\"" + unknowns + "\"",
           "condense.kind=\"" + kind + "\"",
           "step.dt_s=" + dt,
@@ -59,7 +58,7 @@ TEST_CASE("external forces do work on the path of the points under them", "[exte
     // Without residual flexibility the published path is that of the track's unknowns.
     std::vector<std::string> words = words_of(kind, "full", "1e-4");
     if (kind == std::string("modal")) words.emplace_back("condense.residual_flexibility=false");
-    Simulation run(read_scene(kFolder + "moving_load.toml", words));
+    Simulation run(read_scene(kScenes + "moving_load.toml", words));
     EnergyAccount account(*run.packed(), run.model(), run.state);
     Outputs outputs{};
     publish_start(run.model(), run.state, outputs);
@@ -90,7 +89,7 @@ TEST_CASE("energies balance under external wheels", "[external][energy]") {
   for (const char* kind : {"full", "modal"})
     for (const char* unknowns : {"vertical", "full"}) {
       const Simulation run(
-          read_scene(kFolder + "moving_load.toml", words_of(kind, unknowns, "1e-4")));
+          read_scene(kScenes + "moving_load.toml", words_of(kind, unknowns, "1e-4")));
       const EnergyBalance found = balance(run, {20., 1e-4}, 2000);
       CAPTURE(kind, unknowns, found.error, found.numerical_loss);
       CHECK(found.error > 0.);
@@ -100,7 +99,7 @@ TEST_CASE("energies balance under external wheels", "[external][energy]") {
       if (kind == std::string("full"))
         CHECK(std::abs(found.error - std::abs(found.numerical_loss)) < 1e-9);
       const Simulation fine(
-          read_scene(kFolder + "moving_load.toml", words_of(kind, unknowns, "2.5e-5")));
+          read_scene(kScenes + "moving_load.toml", words_of(kind, unknowns, "2.5e-5")));
       CHECK(balance(fine, {20., 2.5e-5}, 8000).error < .5 * found.error);
     }
 }
@@ -116,7 +115,7 @@ TEST_CASE("run prints the energies of a scene with external wheels", "[external]
     }
   }
   const auto result =
-      told(kFolder + "open_track.toml --duration 0.1 --inputs " + (folder / "in.csv").string());
+      told(kScenes + "open_track.toml --duration 0.1 --inputs " + (folder / "in.csv").string());
   REQUIRE(result["energy_balance_error"].is_number());
   CHECK(result["energy_balance_error"].get<double>() > 0.);
   CHECK(result["energy_balance_error"].get<double>() < 1e-3);

@@ -280,13 +280,13 @@ namespace {
 
 /// A run of the scene, step by step: forces of both wheels, and their sum by the bodies' vertical
 /// momentum.
-struct SceneRun {
+struct BogieRun {
   std::vector<double> force[2];  // N
   std::vector<double> momentum;  // of all bodies, upwards, kg m/s
   std::vector<double> frame;     // height above the mean of the wheels, m
   double dt;
 
-  explicit SceneRun(const std::vector<std::string>& changes) {
+  explicit BogieRun(const std::vector<std::string>& changes) {
     Simulation run(
         read_scene(std::string(RAILSTEP_SOURCE) + "/config/scenes/bogie_at_speed.toml", changes));
     Model model = run.model();
@@ -317,7 +317,7 @@ double amplitude(const std::vector<double>& f, std::size_t from, double frequenc
 TEST_CASE("the force of the bogie at speed swings with the sleepers and bears its weight",
           "[vehicle]") {
   // bogie_at_speed.toml in config/scenes: 80 m/s over bays of .6 m are 133.3 Hz, 150 steps a bay.
-  const SceneRun run({});
+  const BogieRun run({});
   REQUIRE(run.dt == 5e-5);
   const std::size_t all = run.momentum.size(), from = all - 15 * 150;
   // By Newton, impulses less the weight are the change of momentum. The trapezoidal rule over the

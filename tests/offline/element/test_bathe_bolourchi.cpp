@@ -12,7 +12,7 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-constexpr double kRadius = 100., kAngle = std::numbers::pi / 4., kShear = 5. / 6.;
+constexpr double kRadius = 100., kAngle = std::numbers::pi / 4.;
 
 /// Side `height` with the bending stiffness of side 1: heights differ by a term of second order in
 /// height over radius. GJ = EI, as in the published solutions: J = Iy + Iz.

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "support/beams.h"
+#include "support/pi.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-constexpr double kPi = std::numbers::pi, kShear = 5. / 6.;
 
 /// Negative pivots of L D L' in the nodes' order; as many eigenvalues are negative (Sylvester).
 int negative_pivots(const Structure& s, const Eigen::VectorXd& q) {

@@ -31,8 +31,6 @@ Elastica elastica(double alpha) {
           1. - std::sqrt(2. * std::sin(theta) / alpha)};
 }
 
-constexpr double kShear = 5. / 6.;
-
 /// A square beam of length 1 and EI = 1.
 struct Slender {
   BeamSection section;

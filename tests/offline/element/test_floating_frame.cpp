@@ -40,7 +40,7 @@ VectorXd somewhere(const FloatingFrame& f, unsigned seed) {
 }
 
 /// Quantities that a free beam keeps: momentum in x, in z and about the origin, and energy.
-Eigen::Vector4d kept(const FloatingFrame& f, const Motion& m) {
+Eigen::Vector4d kept(const FloatingFrame& f, const Moving& m) {
   const VectorXd p = mass_matrix(f, m.q) * m.v;
   return {p[0], p[1], m.q[0] * p[1] - m.q[1] * p[0] + p[2], energy(f, m.q, m.v, Vector2d::Zero())};
 }
@@ -104,8 +104,8 @@ TEST_CASE("a thrown beam keeps its momentum and energy to the scheme's order", "
   const bool stiffening = GENERATE(false, true);
   const FramedBeam b = framed(3, 1, stiffening, false);
   const auto lost = [&](double step) {
-    FloatingBody body(b.frame, {0, 1, 2, 3, 4, 5, 6}, [](Motion&) {});
-    Motion m = at_rest(somewhere(b.frame, 1));
+    FloatingBody body(b.frame, {0, 1, 2, 3, 4, 5, 6}, [](Moving&) {});
+    Moving m = at_rest(somewhere(b.frame, 1));
     m.q.tail<4>() *= .5;
     m.v << 1., -.5, 2., .4, -.3, .2, .05;
     start(body, m);

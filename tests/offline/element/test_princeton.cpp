@@ -11,7 +11,7 @@ using namespace railstep;
 
 namespace {
 
-constexpr double kLength = .508, kShear = 5. / 6., kHeight = 12.3777e-3, kWidth = 3.2024e-3;
+constexpr double kLength = .508, kHeight = 12.3777e-3, kWidth = 3.2024e-3;
 const Material kAluminium{.young = 71.7e9, .poisson = .31};
 
 /// Displacements along the stiff and the soft side, m: from ANSYS's beam elements and from its 4 x

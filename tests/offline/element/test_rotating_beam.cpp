@@ -122,9 +122,9 @@ TEST_CASE("a preloaded rail turns right to the first order of its angle", "[rota
 
 TEST_CASE("the same push accelerates ANCF equally in every shape, but not a frame", "[rotating]") {
   const PlanarBeam b = hubbed(spin_up_beam(4), true);
-  const auto undriven = [](Motion&) {};
+  const auto undriven = [](Moving&) {};
   AncfBody ancf(b, undriven, VectorXd::Zero(b.structure.unknowns()));
-  Motion still = at_rest(b.structure.rest), bent = at_rest(turned_nodes(b.structure.rest, 1.));
+  Moving still = at_rest(b.structure.rest), bent = at_rest(turned_nodes(b.structure.rest, 1.));
   for (int i = 0; i < bent.q.size(); i += 9) bent.q[i + 2] += .01 * bent.q[i] * bent.q[i];
   const VectorXd push = VectorXd::Ones(static_cast<int>(ancf.free_unknowns().size()));
   CHECK((ancf.solve(still, 0., 0., push) - ancf.solve(bent, 0., 0., push)).norm() == 0.);
@@ -136,7 +136,7 @@ TEST_CASE("the same push accelerates ANCF equally in every shape, but not a fram
   FloatingBody frame(floating_frame(thrown.structure, thrown.mass, modes, true),
                      {0, 1, 2, 3, 4, 5, 6}, undriven);
   const auto accelerated = [&](double bend) {
-    Motion m = at_rest(VectorXd::Zero(7));
+    Moving m = at_rest(VectorXd::Zero(7));
     m.q[3] = bend / tip.shape(1, 0);
     frame.residual(m);  // builds the mass matrix
     return frame.solve(m, 0., 0., VectorXd::Unit(7, 2))[2];
@@ -266,12 +266,12 @@ Fall fall(double step) {
   const Eigen::MatrixXd modes = planar_modes(clamped, 3, 1);
   const FloatingFrame frame = floating_frame(clamped.structure, clamped.mass, modes, true);
   const FramePoint end = frame_point(clamped.structure, modes, 4, true);
-  const auto undriven = [](Motion&) {};
+  const auto undriven = [](Moving&) {};
   AncfBody ancf(b, undriven, gravity_load(b, gravity));
   LinearBody linear(b, undriven, gravity_load(b, gravity));
   FloatingBody floating(frame, {2, 3, 4, 5, 6}, undriven, gravity);
   MovingBody* const bodies[3] = {&ancf, &linear, &floating};
-  Motion m[3] = {at_rest(b.structure.rest), at_rest(b.structure.rest), at_rest(VectorXd::Zero(7))};
+  Moving m[3] = {at_rest(b.structure.rest), at_rest(b.structure.rest), at_rest(VectorXd::Zero(7))};
   for (int k = 0; k < 3; ++k) start(*bodies[k], m[k]);
   const GeneralisedAlpha scheme(step, .8);
   const Tip node = tip_node(36);

@@ -189,7 +189,7 @@ TEST_CASE("the clamp causes nine tenths of the stiffening by Dv off the centroid
   const double z = -study::kCentroidHeight, L = study::kLength, nu = m.poisson;
   const BeamLaw law =
       study_law({.element = {.coupling = Coupling::axis}, .reference_height = z}, m);
-  Structure s = study_cantilever(law, 16, Motion::vertical);
+  Structure s = study_cantilever(law, 16, BendingPlane::vertical);
   for (const int i : {2, 4, 8}) s.held[static_cast<std::size_t>(i)] = false;  // r_z, a_y, b_z
   const Eigen::MatrixXd K = free_part(s, tangent(s, s.rest));
   Eigen::VectorXd tip = Eigen::VectorXd::Zero(s.unknowns());

@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "support/beams.h"
+#include "support/pi.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Square section of side `height`, EI = 1, length 1; the sections can swell at the clamp.
 struct Square {

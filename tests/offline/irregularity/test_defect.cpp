@@ -3,12 +3,11 @@
 #include <stdexcept>
 
 #include "offline/irregularity/defect.h"
+#include "support/pi.h"
 
 using namespace railstep;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double at(const Signal& signal, double place) { return signal_at(signal.model(), place).value; }
 double slope(const Signal& signal, double place) { return signal_at(signal.model(), place).slope; }

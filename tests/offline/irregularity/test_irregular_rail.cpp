@@ -9,6 +9,7 @@
 #include "offline/pack/time_schemes.h"
 #include "offline/start/start.h"
 #include "online/step/step.h"
+#include "support/pi.h"
 
 using namespace railstep;
 
@@ -17,7 +18,6 @@ namespace {
 constexpr double kRailMass = 150., kRailStiffness = 6e7, kRailDamping = 6e4;  // hard-cases.md, R5
 constexpr double kWheelMass = 600., kLoad = 60e3;
 constexpr double kMiddle = 300.;  // m
-constexpr double kPi = 3.14159265358979323846;
 
 /// Rails that each move as one mass under a wheel near their middle: stiff bars 600 m long with a
 /// seat at each end. A wheel at a distance e from the middle meets 12 (e / 600 m)^2 less of the

@@ -8,12 +8,11 @@
 #include "offline/irregularity/rails.h"
 #include "offline/irregularity/random.h"
 #include "offline/irregularity/sincos.h"
+#include "support/pi.h"
 
 using namespace railstep;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Standard deviation of a band, by quadrature of the density over log W.
 double deviation(const Spectrum& spectrum, double shortest, double longest) {

@@ -8,15 +8,10 @@
 
 #include "build/build.h"
 #include "support/block_mutations.h"
+#include "support/shipped.h"
 #include "support/small_model.h"
 
 using namespace railstep;
-
-namespace {
-
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-
-}  // namespace
 
 TEST_CASE("a model that was written and read steps to the same bits", "[artefact]") {
   for (const char* name :

@@ -81,7 +81,7 @@ struct Heights {
 };
 
 /// Largest difference over the peak, and the error bound of the comparison itself, over the peak.
-struct Compared {
+struct Judged {
   double error = 0., bound = 0.;
   bool fails() const { return !(error <= bound); }
 };
@@ -143,7 +143,7 @@ struct LoadedLine {
 };
 
 /// Full order with the same step.
-Compared against_same_step(const RandomScene& scene) {
+Judged against_same_step(const RandomScene& scene) {
   Simulation run(read(scene));
   const LoadedLine loaded(run);
   const std::vector<Line> lines = assemble(run.track());
@@ -165,7 +165,7 @@ Compared against_same_step(const RandomScene& scene) {
 }
 
 /// Condensed, with such small steps that they do not matter.
-Compared against_small_steps(const RandomScene& scene) {
+Judged against_small_steps(const RandomScene& scene) {
   Simulation run(read(scene));
   const LoadedLine loaded(run);
   const std::vector<Line> lines = assemble(run.track());
@@ -195,7 +195,7 @@ TEST_CASE("full order is the dense trapezoidal rule, but for round-off", "[diffe
     CAPTURE(seed);
     RandomScene scene = loaded(seed, 1e-5, 5e-3, 100, false);
     scene.scheme = "scheme = \"newmark\"\n";
-    const Compared found = against_same_step(scene);
+    const Judged found = against_same_step(scene);
     worst = std::max(worst, found.error / found.bound);
     most = std::max(most, found.error);
     loosest = std::max(loosest, found.bound);
@@ -220,7 +220,7 @@ TEST_CASE("a complete condensed track is the dense one with exact steps", "[diff
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(kind, seed);
     const RandomScene scene = all_kept(seed, kind);
-    const Compared found = against_small_steps(scene);
+    const Judged found = against_small_steps(scene);
     bounds.push_back(found.bound);
     worst = std::max(worst, found.error / found.bound);
     most = std::max(most, found.error);

@@ -20,7 +20,7 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 /// rail-data.md's bridge: L 25 m, EI 1.68e10, 12 t/m; A = 1e4 m2 makes it Euler and Bernoulli's.
-Track bridge(int elements) {
+Track stiff_bridge(int elements) {
   return pinned_beam({.area = 1e4, .inertia_y = .08, .inertia_z = 1., .torsion = 1.},
                      {210e9, .3, 1.2}, 25., elements);
 }
@@ -46,7 +46,7 @@ double closed_form(const PinnedModes& modes, double speed, double amplitude, dou
   return sum;
 }
 
-double midspan(const ModelRun& run) {
+double midspan_height(const ModelRun& run) {
   const LineModel& line = run.model().line[0];
   return run.state.u[line.first + line.unknown_of[0][27 * (run.model().elements / 2) + 2]];
 }
@@ -66,7 +66,7 @@ TEST_CASE("an oscillating force that crosses a beam has its modal closed form", 
                         {50., 5., .25, 1, 32},
                         {50., 40., -.1, 4, 96},
                         {74., 1., .6, 1, 32}}) {
-    const Track track = bridge(c.elements);
+    const Track track = stiff_bridge(c.elements);
     const PinnedModes modes(track, 30);  // the others have 30^-4
     const double w = modes.natural[static_cast<std::size_t>(2 * c.highest - 2)];
     const double time = 25. / c.speed;
@@ -84,7 +84,7 @@ TEST_CASE("an oscillating force that crosses a beam has its modal closed form", 
       run.step();
       if (i % 20 != 0) continue;
       const double want = closed_form(modes, c.speed, -200e3, c.frequency, c.phase, run.time());
-      error = std::max(error, std::abs(midspan(run) - want));
+      error = std::max(error, std::abs(midspan_height(run) - want));
       largest = std::max(largest, std::abs(want));
     }
     UNSCOPED_INFO(c.speed << " m/s, " << c.frequency << " Hz: " << error / largest);
@@ -94,7 +94,7 @@ TEST_CASE("an oscillating force that crosses a beam has its modal closed form", 
 
 TEST_CASE("a force with an oscillating part moves the beam as both parts add up", "[load]") {
   const auto run_of = [](double force, double amplitude) {
-    ModelRun run(bridge(8),
+    ModelRun run(stiff_bridge(8),
                  {.loads = {{.speed = 50.,
                              .stop = 25.,
                              .force = force,
@@ -146,7 +146,7 @@ TEST_CASE("the distance by a table of speeds is the integral of the table", "[lo
 TEST_CASE("a table of one speed is that speed, and positions do not drift with the steps",
           "[load]") {
   const auto run_of = [](std::vector<double> speeds, double dt) {
-    ModelRun run(bridge(8),
+    ModelRun run(stiff_bridge(8),
                  {.loads = {{.start = 1.,
                              .speed = 20.,
                              .stop = 25.,

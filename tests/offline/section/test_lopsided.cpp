@@ -8,6 +8,7 @@
 
 #include "offline/section/saint_venant.h"
 #include "section/lopsided.h"
+#include "support/pi.h"
 #include "support/profiles.h"
 #include "support/program.h"
 #include "support/random_outlines.h"
@@ -21,8 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 std::vector<Point> turned(std::vector<Point> points, double angle) {
   for (Point& p : points)
     p = {p[0] * std::cos(angle) - p[1] * std::sin(angle),
@@ -30,7 +29,7 @@ std::vector<Point> turned(std::vector<Point> points, double angle) {
   return points;
 }
 
-std::vector<Point> rectangle(double width, double height) {
+std::vector<Point> rectangle_points(double width, double height) {
   return {{-width / 2, -height / 2},
           {width / 2, -height / 2},
           {width / 2, height / 2},
@@ -64,7 +63,7 @@ TEST_CASE("a section has the same torsion when it is rotated by any angle", "[sa
   const double w = .05, h = .1;
   const SaintVenant upright = saint_venant({{-w / 2, 0}, {w / 2, 0}, {w / 2, h}, {-w / 2, h}}, 0.3);
   for (const double angle : {0., .3, kPi / 4, 2.}) {
-    const Twist found = twist(turned(rectangle(w, h), angle));
+    const Twist found = twist(turned(rectangle_points(w, h), angle));
     CHECK_THAT(found.torsion, WithinRel(upright.torsion, 1e-4));  // the gap of the bounds
     CHECK_THAT(found.shear_centre_y, WithinAbs(0., 1e-4 * w));
     const double low = h / 2 * std::abs(std::cos(angle)) + w / 2 * std::abs(std::sin(angle));
@@ -101,7 +100,7 @@ TEST_CASE("a thin angle has its shear centre where its legs meet", "[saint_venan
 TEST_CASE("products of inertia and principal axes are those of the textbook", "[outline]") {
   const double w = .04, h = .1, I = w * h * (h * h - w * w) / 12;
   for (const double angle : {-.7, -.2, .1, .6}) {
-    const Outline outline = RandomOutlines::of_points(turned(rectangle(w, h), angle));
+    const Outline outline = RandomOutlines::of_points(turned(rectangle_points(w, h), angle));
     const double product = product_of_inertia(outline);
     CHECK_THAT(product, WithinAbs(-I * std::sin(2 * angle) / 2, 1e-13 * I));
     CHECK_THAT(principal_angle(properties(outline), product), WithinAbs(angle, 1e-12));

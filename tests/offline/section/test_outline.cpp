@@ -7,6 +7,7 @@
 #include "offline/section/outline.h"
 #include "offline/section/outline_mirror.h"
 #include "offline/section/rectangles.h"
+#include "support/pi.h"
 #include "support/profiles.h"
 
 using namespace railstep;
@@ -16,7 +17,6 @@ using Catch::WithinRel;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // Sums have some ten terms of one size, each right to half a unit in the last place (1.1e-16).
 constexpr double kRoundOff = 1e-14;
 

@@ -9,14 +9,13 @@
 #include "offline/section/quadratic_elements.h"
 #include "offline/section/saint_venant.h"
 #include "offline/section/section_mesh.h"
+#include "support/pi.h"
 
 using namespace railstep;
 
 namespace {
 
 using Polygon = std::vector<std::array<double, 2>>;
-
-const double kPi = std::acos(-1.0);
 
 Polygon rectangle(double width, double height) {
   return {{-width / 2, 0.0}, {width / 2, 0.0}, {width / 2, height}, {-width / 2, height}};

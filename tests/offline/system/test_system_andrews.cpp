@@ -18,21 +18,21 @@ namespace {
 // y is x, z here, so its rotations are about -y.
 
 constexpr double kA[2] = {-.06934, -.00227}, kB[2] = {-.03635, .03273}, kC[2] = {.014, .072};
-constexpr double kMass[7] = {.04325, .00365, .02373, .00706, .07050, .00706, .05498};
+constexpr double kMasses[7] = {.04325, .00365, .02373, .00706, .07050, .00706, .05498};
 constexpr double kInertia[7] = {2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7,
                                 1.169e-5, 5.667e-7, 1.912e-5};
 constexpr double kD = 28e-3, kDa = 115e-4, kE = 2e-2, kEa = 1421e-5, kRr = 7e-3, kRa = 92e-5;
 constexpr double kSs = 35e-3, kSa = 1874e-5, kSb = 1043e-5, kSc = 18e-3, kSd = 2e-2;
 constexpr double kTa = 2308e-5, kTb = 916e-5, kU = 4e-2, kUa = 1228e-5, kUb = 449e-5;
 constexpr double kZf = 2e-2, kZt = 4e-2, kFa = 1421e-5;
-constexpr double kSpring = 4530., kSpringLength = 7785e-5, kTorque = 33e-3;
+constexpr double kSpring = 4530., kAndrewsSpring = 7785e-5, kTorque = 33e-3;
 
 /// beta, theta, gamma, phi, delta, omega, epsilon
 using Angles = std::array<double, 7>;
-constexpr Angles kStart = {-0.0617138900142764496, 0.,
-                           0.455279819163070380,   0.222668390165885884,
-                           0.487364979543842550,   -0.222668390165885884,
-                           1.23054744454982119};
+constexpr Angles kAndrewsStart = {-0.0617138900142764496, 0.,
+                                  0.455279819163070380,   0.222668390165885884,
+                                  0.487364979543842550,   -0.222668390165885884,
+                                  1.23054744454982119};
 /// Solution at .03 s by PSIDE at a tolerance of 1e-14, with the rates there.
 constexpr Angles kEnd = {0.1581077119629904e+2, -0.1575637105984298e+2, 0.4082224013073101e-1,
                          -0.5347301163226948,   0.5244099658805304,     0.5347301163226948,
@@ -73,10 +73,10 @@ System squeezer() {
   System s;
   s.planar = true;
   s.gravity.setZero();
-  const Places p = places(kStart);
+  const Places p = places(kAndrewsStart);
   for (std::size_t i = 0; i < 7; ++i) {
     RigidBody b;
-    b.mass = kMass[i];
+    b.mass = kMasses[i];
     b.inertia = kInertia[i] * Eigen::Matrix3d::Identity();
     b.position = in_space(p.centre[i]);
     b.orientation = Eigen::AngleAxisd(-p.turn[i], Vector3d::UnitY());
@@ -99,7 +99,7 @@ System squeezer() {
                 .point_a = {kC[0], 0., kC[1]},
                 .point_b = in_space(p.spring),
                 .stiffness = kSpring,
-                .length = kSpringLength}};
+                .length = kAndrewsSpring}};
   s.forces = {{.on = body(0),
                .direction = -Vector3d::UnitY(),
                .factor = {.polynomial = {kTorque}},
@@ -136,7 +136,7 @@ Pose7 at_end(const Scheme& scheme, ConstraintMethod hold) {
 }  // namespace
 
 TEST_CASE("the published start and end close the squeezer's loops", "[system]") {
-  for (const Angles& q : {kStart, kEnd}) {
+  for (const Angles& q : {kAndrewsStart, kEnd}) {
     const Places p = places(q);
     const Vector2d B(kB[0], kB[1]);
     // The last digit of angles of 15 rad, times arms of 3 cm.

@@ -31,9 +31,10 @@ System thrown(bool planar, const Vector3d& gravity = Vector3d::Zero()) {
 }
 
 /// Mass of 1.9 kg; its ends move at 6 m/s.
-constexpr double kMass = 7900. * .02 * .03 * .4, kEndSpeed = 30. * .2;
+constexpr double kBeamMass = 7900. * .02 * .03 * .4, kEndSpeed = 30. * .2;
 
-/// Largest changes: of momentum over kMass kEndSpeed, of the others over their values at the start.
+/// Largest changes: of momentum over kBeamMass kEndSpeed, of the others over their values at the
+/// start.
 struct Kept {
   double linear = 0., angular = 0., energy = 0.;
   Status seen = Status::ok;
@@ -48,7 +49,7 @@ Kept kept(const System& scene, const SystemOptions& options, int steps, int each
     r.frame();
     if (i % each != 0) continue;
     const Eigen::Matrix<double, 6, 1> change = r.momentum() - before;
-    k.linear = std::max(k.linear, change.head<3>().norm() / (kMass * kEndSpeed));
+    k.linear = std::max(k.linear, change.head<3>().norm() / (kBeamMass * kEndSpeed));
     k.angular = std::max(k.angular, change.tail<3>().norm() / before.tail<3>().norm());
     k.energy = std::max(k.energy, std::abs(r.energy() / energy - 1.));
   }
@@ -63,7 +64,7 @@ TEST_CASE("a thrown beam starts as a rigid body does", "[system]") {
   const bool planar = GENERATE(true, false);
   const SystemRun r(thrown(planar), sharp(energy_momentum(1e-3)));
   const FlexibleBeam& b = r.system.beams[0];
-  const double mass = kMass;
+  const double mass = kBeamMass;
   const Vector3d arm(.2, 0., 0.), speed = b.velocity + b.angular_velocity.cross(arm);
   const double x = mass * (.02 * .02 + .03 * .03) / 12.;
   const Vector3d inertia(x, mass * (.4 * .4 + .02 * .02) / 12., mass * (.4 * .4 + .03 * .03) / 12.);
@@ -120,7 +121,7 @@ TEST_CASE("the centre of a thrown beam flies along its parabola", "[system]") {
     const Vector3d speed = b.velocity + b.angular_velocity.cross(Vector3d(.2, 0., 0.));
     r.until(1.);
     // Both schemes are exact for a steady acceleration; the centre follows from linear momentum.
-    CHECK(largest(r.momentum().head<3>() / kMass - (speed + g)) < 1e-9);
+    CHECK(largest(r.momentum().head<3>() / kBeamMass - (speed + g)) < 1e-9);
     CHECK(largest(r.beam_centre(0) - (Vector3d(.2, 0., 0.) + speed + .5 * g)) < 1e-9);
   }
 }

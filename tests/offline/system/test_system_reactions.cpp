@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-const ConstraintMethod kConstraintMethods[] = {
+const ConstraintMethod kAllMethods[] = {
     ConstraintMethod::augmented_lagrangian, ConstraintMethod::baumgarte,
     ConstraintMethod::gear_gupta_leimkuhler, ConstraintMethod::direct};
 
@@ -18,7 +18,7 @@ const ConstraintMethod kConstraintMethods[] = {
 
 TEST_CASE("the joint of a hanging body carries its weight", "[system]") {
   const bool planar = GENERATE(true, false);
-  for (const ConstraintMethod hold : kConstraintMethods) {
+  for (const ConstraintMethod hold : kAllMethods) {
     System s;
     s.planar = planar;
     s.bodies = {rod_body(Vector3d::Zero(), 1., -2. * std::atan(1.), 3., .05)};
@@ -36,7 +36,7 @@ TEST_CASE("the joint of a hanging body carries its weight", "[system]") {
 TEST_CASE("a clamped lever carries its weight and its moment", "[system]") {
   // A rod of 2 m and 3 kg along x is fixed at its start; its end bears 10 N upwards and 4 N along
   // y.
-  for (const ConstraintMethod hold : kConstraintMethods) {
+  for (const ConstraintMethod hold : kAllMethods) {
     System s;
     s.bodies = {rod_body(Vector3d::Zero(), 2., 0., 3., .05)};
     s.joints = {{.kind = JointKind::fixed, .a = ground(), .b = body(0)}};
@@ -82,7 +82,7 @@ TEST_CASE("a swinging pendulum pulls on its hinge with m g cos + m l w^2", "[sys
   // l w^2 along the rod and g cos(a) (1 - m l^2 / I) across it.
   const bool planar = GENERATE(true, false);
   const double m = 2., l = .5, inertia = m * (l * l + (1. + .05 * .05) / 12.);
-  for (const ConstraintMethod hold : kConstraintMethods) {
+  for (const ConstraintMethod hold : kAllMethods) {
     const auto error = [&](double h) {
       System s;
       s.planar = planar;
@@ -113,7 +113,7 @@ TEST_CASE("a swinging pendulum pulls on its hinge with m g cos + m l w^2", "[sys
 TEST_CASE("a spinning rod pulls on its hinge with m r w^2", "[system]") {
   const bool planar = GENERATE(true, false);
   const double w = 20.;
-  for (const ConstraintMethod hold : kConstraintMethods) {
+  for (const ConstraintMethod hold : kAllMethods) {
     System s;
     s.planar = planar;
     s.gravity.setZero();
@@ -147,7 +147,7 @@ TEST_CASE("an accelerated slider pulls on its drive with m a", "[system]") {
                      .motion = {.polynomial = {0., .5, 1., -.3}}}};
     return scene;
   }();
-  for (const ConstraintMethod hold : kConstraintMethods) {
+  for (const ConstraintMethod hold : kAllMethods) {
     SystemRun r(s, sharp(generalised_alpha(1e-3, .9), hold));
     r.until(1.);
     INFO("hold " << static_cast<int>(hold));

@@ -16,7 +16,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double kInertiaY = 3038.3e-8, kInertiaZ = 512e-8, kArea = 7670e-6, kFactor = .4;
+constexpr double kInertiaY = 3038.3e-8, kInertiaZ = 512e-8, kRailArea = 7670e-6, kFactor = .4;
 constexpr double kLean = 1. / 20.;
 
 /// 16 m of R60 on a bed of `stiffness` per metre, equal along y and z. The bed is seats `spacing`
@@ -26,7 +26,7 @@ Track on_bed(double stiffness, double spacing) {
   t.rails = 1;
   t.unknowns = Unknowns::rigid_section;
   t.cant = kLean;
-  t.section = {.area = kArea,
+  t.section = {.area = kRailArea,
                .inertia_y = kInertiaY,
                .inertia_z = kInertiaZ,
                .torsion = 221e-8,
@@ -41,8 +41,8 @@ Track on_bed(double stiffness, double spacing) {
 }
 
 /// Deflection of an endless Timoshenko beam on a bed under a force of 1 N, m.
-double winkler(double k, double inertia) {
-  const double EI = 210e9 * inertia, GA = 210e9 / 2.6 * kArea * kFactor;
+double winkler_depth(double k, double inertia) {
+  const double EI = 210e9 * inertia, GA = 210e9 / 2.6 * kRailArea * kFactor;
   const double product = std::sqrt(k / (4. * EI)), half = k / (4. * GA);
   return (product / k + 1. / (2. * GA)) / (2. * std::sqrt(product + half));
 }
@@ -103,9 +103,9 @@ Track leaning_pair(Unknowns unknowns) {
 }  // namespace
 
 TEST_CASE("a canted rail on a bed bends about both of its axes", "[cant]") {
-  const double k = 5e7, force = 100e3, GA = 210e9 / 2.6 * kArea * kFactor;
+  const double k = 5e7, force = 100e3, GA = 210e9 / 2.6 * kRailArea * kFactor;
   const double cosine = 1. / std::sqrt(1. + kLean * kLean), sine = kLean * cosine;
-  const double upright = winkler(k, kInertiaY), aside = winkler(k, kInertiaZ);
+  const double upright = winkler_depth(k, kInertiaY), aside = winkler_depth(k, kInertiaZ);
   for (const double spacing : {.1, .05}) {
     const std::array<double, 2> found = axis_under(on_bed(k, spacing), force);
     CAPTURE(spacing, found[0], found[1]);

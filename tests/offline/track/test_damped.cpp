@@ -9,6 +9,7 @@
 #include "offline/analysis/damped.h"
 #include "offline/analysis/modes.h"
 #include "offline/analysis/statics.h"
+#include "support/pi.h"
 #include "support/sections.h"
 
 using namespace railstep;
@@ -16,8 +17,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A few bays of set S1: vertical, one rail.
 Track sleepers(int bays) {

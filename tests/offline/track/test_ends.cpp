@@ -6,6 +6,7 @@
 
 #include "offline/analysis/modes.h"
 #include "offline/analysis/statics.h"
+#include "support/pi.h"
 #include "support/sections.h"
 
 using namespace railstep;
@@ -13,8 +14,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Track beam(RailEnds ends) {
   Track t;

@@ -10,6 +10,7 @@
 #include "online/contact/ports.h"
 #include "support/artefact.h"
 #include "support/one_sided_tracks.h"
+#include "support/rail_at.h"
 #include "support/scene_run.h"
 
 using namespace railstep;
@@ -17,8 +18,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-RailPoint at(double x, int rail = 0) { return {rail, x, 0., 0., 2}; }
 
 /// Deflection under the first load, frame by frame.
 std::vector<double> deflections(ModelRun& run, double end) {

@@ -14,6 +14,7 @@
 #include "offline/pack/time_schemes.h"
 #include "online/step/step.h"
 #include "online/track/line.h"
+#include "support/pi.h"
 #include "support/sections.h"
 
 using namespace railstep;
@@ -21,8 +22,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-const double kPi = 3.14159265358979323846;
 
 /// A beam on two seats, so stiff that they yield by 1e-6 of the beam's deflection.
 Track beam(const BeamSection& section, double density, double length, int elements) {

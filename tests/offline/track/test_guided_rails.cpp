@@ -31,7 +31,7 @@ Track sleepers() {
   return t;
 }
 
-struct Run {
+struct GuidedRun {
   Track track = sleepers();
   std::vector<Line> lines = assemble(track);
   std::unique_ptr<PackedModel> packed;
@@ -40,7 +40,7 @@ struct Run {
   Workspace workspace;
   Outputs outputs{};
 
-  Run(double speed, Guide guide) {
+  GuidedRun(double speed, Guide guide) {
     Wheelset w;
     w.mass = 1200.;
     w.inertia_roll = w.inertia_yaw = 700.;
@@ -86,10 +86,11 @@ TEST_CASE("a wheelset that rolls one way is the mirror image of one that rolls t
   // Released at +-2 mrad, it stands on one wheel first and then rocks. Its normals lean with it, so
   // that they push and roll the rails sideways. The left rail of one run moves as the right rail of
   // the other. Rounding over 400 steps with contacts is 1e-9 of the largest.
-  Run one(0., Guide::augmented_lagrangian), other(0., Guide::augmented_lagrangian);
+  GuidedRun one(0., Guide::augmented_lagrangian), other(0., Guide::augmented_lagrangian);
   one.state.u[one.body(3)] = 2e-3;
   other.state.u[other.body(3)] = -2e-3;
-  for (Run* run : {&one, &other}) run->state.u[run->body(2)] = 2e-3 * .75;  // the lower touches
+  for (GuidedRun* run : {&one, &other})
+    run->state.u[run->body(2)] = 2e-3 * .75;  // the lower touches
   double largest_force = 0., largest_y = 0., force_miss = 0., y_miss = 0., z_miss = 0.;
   double low = 0.;
   for (int i = 0; i < 400; ++i) {
@@ -114,7 +115,7 @@ TEST_CASE("a wheelset that rolls one way is the mirror image of one that rolls t
 TEST_CASE("the guide's constraint holds velocity and acceleration as well as position", "[guide]") {
   // The wheelset starts at rest where it should run at 10 m/s. Velocities that swing about 10 m/s
   // by as much could hold the position alone, for as long as the scheme remembers.
-  Run run(10., Guide::augmented_lagrangian);
+  GuidedRun run(10., Guide::augmented_lagrangian);
   for (int i = 1; i <= 5; ++i) {
     run.step();
     CHECK_THAT(run.state.u[run.body(0)],
@@ -129,7 +130,7 @@ TEST_CASE("the guide's constraint holds velocity and acceleration as well as pos
 TEST_CASE("Baumgarte's guide corrects a wrong start at its own rate", "[guide]") {
   // x'' + 2 a x' + b^2 x = 0 with a = b = 200 1/s and a velocity error of -10 m/s has x = -10 t
   // exp(-200 t). The scheme errs by (200 dt)^2 = 1e-4 of it in shape.
-  Run run(10., Guide::baumgarte);
+  GuidedRun run(10., Guide::baumgarte);
   run.state.a[run.body(0)] = run.state.g[run.body(0)] = 2. * 200. * 10.;  // x'' at the start
   double largest = 0., miss = 0.;
   for (int i = 1; i <= 400; ++i) {

@@ -12,6 +12,7 @@
 #include "support/foundation.h"
 #include "support/program.h"
 #include "support/sections.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
@@ -304,7 +305,6 @@ nlohmann::json told(const std::string& words) {
   return nlohmann::json::parse(ran.out);
 }
 
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const std::string kJoint =
     "--set 'rail_joint=[{x_m=4.8, bending_vertical_stiffness_n_m_per_rad=1e6, "
     "bending_vertical_damping_n_m_s_per_rad=200}]' ";

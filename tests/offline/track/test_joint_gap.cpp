@@ -15,7 +15,7 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-constexpr double kRigid = std::numeric_limits<double>::infinity();
+constexpr double kRigidJoint = std::numeric_limits<double>::infinity();
 constexpr double kAlong = 2e8, kEnds = 5e9;  // N/m, of a seat and of pressed ends
 
 /// A rail of 21 bays, cut in the middle of the eleventh, on seats at its axis.
@@ -28,7 +28,7 @@ Track cut_rail(double gap, double along) {
   t.support = {.stiffness = {along, 1e8, 1e8}, .roll_stiffness = 1e6};
   RailJoint joint;
   joint.x = .5 * t.length();
-  joint.stiffness = {0., kRigid, kRigid};
+  joint.stiffness = {0., kRigidJoint, kRigidJoint};
   joint.rotation_stiffness = {1e6, 1e6, 1e6};
   joint.end_stiffness = kEnds;
   joint.gap = {gap, gap};

@@ -5,16 +5,13 @@
 
 #include "offline/analysis/statics.h"
 #include "support/one_sided_tracks.h"
+#include "support/rail_at.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
-namespace {
-
-RailPoint at(double x, int rail = 0) { return {rail, x, 0., 0., 2}; }
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("a gap under the loaded seat closes and carries as the reference says", "[supports]") {
   // R6 has a gap of 0.5 mm, printed to 7 digits; 1e-3 is the case's bound (H7).

@@ -17,7 +17,7 @@ const std::string kRail =
     "schema = 1\n"
     "rail = {rectangle={height_m=0.172, width_m=0.07}, young_pa=60e9}\n";
 /// A short, stiff rail: under the load the pads at both sides of its neighbours lift.
-const std::string kStiff =
+const std::string kStiffWords =
     kRail +
     "track = {unknowns=\"vertical\", rails=1, bays=5, bay_m=0.6, elements_per_bay=1, "
     "ends=\"pinned\"}\n"
@@ -65,12 +65,12 @@ double apart(const Traced& a, const Traced& b, const std::string& column) {
 TEST_CASE("with one-sided pads every condensed start agrees with full order", "[supports]") {
   for (const char* elements : {"1", "2"}) {
     const std::vector<std::string> mesh = {std::string("track.elements_per_bay=") + elements};
-    const Traced full(with_kind(kStiff, "full", mesh));
+    const Traced full(with_kind(kStiffWords, "full", mesh));
     CHECK(full["support_0.force_z_n"][0] == 0.);  // pinned there
     CHECK(full["support_3.force_z_n"][0] == 0.);  // open
     for (const std::string& kind : kKinds) {
       CAPTURE(elements, kind);
-      const Traced run(with_kind(kStiff, kind, mesh));
+      const Traced run(with_kind(kStiffWords, kind, mesh));
       // Modes and seats have the mesh's statics, and pads have only that: the basis rounds.
       for (int support = 0; support < 6; ++support)
         for (const double each : run["support_" + std::to_string(support) + ".force_z_n"])
@@ -86,9 +86,9 @@ TEST_CASE("with one-sided pads every condensed start agrees with full order", "[
 TEST_CASE("with one-sided pads the start keeps to the stated static error", "[supports]") {
   for (const char* elements : {"1", "2", "4"}) {
     const std::string mesh = std::string("track.elements_per_bay=") + elements;
-    const Traced fine(with_kind(kStiff, "full", {"track.elements_per_bay=32"}));
+    const Traced fine(with_kind(kStiffWords, "full", {"track.elements_per_bay=32"}));
     for (const char* kind : {"full", "modal"}) {
-      const Scene scene = with_kind(kStiff, kind, {mesh});
+      const Scene scene = with_kind(kStiffWords, kind, {mesh});
       const Built built(scene);
       const double stated = static_error(built.track, *built.packed);
       const double off = apart(Traced(scene), fine, "l.deflection_z_m");

@@ -8,6 +8,7 @@
 #include "offline/analysis/statics.h"
 #include "offline/element/shape.h"
 #include "offline/track/pad.h"
+#include "support/rail_at.h"
 #include "support/sections.h"
 
 using namespace railstep;
@@ -29,8 +30,6 @@ Track s1(int bays, int elements_per_bay, double pad_length) {
   t.sleeper = Sleeper{300., 169., {0., 0., 50e6}, {0., 0., 80e3}, 8., .26};
   return t;
 }
-
-RailPoint at(double x) { return {0, x, 0., 0., 2}; }
 
 /// The same track by samples: `samples` springs along each pad, each on the element's shape
 /// functions, on sleepers with height and pitch.

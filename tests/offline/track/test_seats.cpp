@@ -9,17 +9,14 @@
 #include "offline/analysis/statics.h"
 #include "support/condensed.h"
 #include "support/fine_track.h"
+#include "support/rail_at.h"
 #include "support/reference_tracks.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
-namespace {
-
-RailPoint at(double x, int rail = 0) { return {rail, x, 0., 0., 2}; }
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("the deflection over missing supports is that of the reference", "[supports]") {
   // R6 is printed to 7 digits; 1e-3 is the case's bound (its beam is Timoshenko's, this one is the

@@ -14,8 +14,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kMovingLoad = shipped("moving_load"), kWheelset = shipped("wheelset_on_track"),
-                  kProfile = std::string(RAILSTEP_SOURCE) + "/config/profiles/60e1.toml";
+const std::string kProfile = std::string(RAILSTEP_SOURCE) + "/config/profiles/60e1.toml";
 
 /// Runs the program after other words of a shell command.
 Ran behind(const std::string& before, const std::string& words) {

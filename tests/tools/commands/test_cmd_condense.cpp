@@ -7,6 +7,7 @@
 #include "online/model/block.h"
 #include "run/simulate.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -14,8 +15,6 @@ using Catch::Contains;
 namespace {
 
 using Json = nlohmann::json;
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-const std::string kMovingLoad = kScenes + "moving_load.toml";
 const std::string kCondensed = " --set 'condense={kind=\"modal\", modes_per_bay=1}'";
 
 /// Condenses the scene into the file. @returns the JSON that is printed

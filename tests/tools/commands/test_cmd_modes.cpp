@@ -11,16 +11,13 @@
 #include "offline/analysis/statics.h"
 #include "scene/scene.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-std::string shipped(const std::string& name) {
-  return std::string(RAILSTEP_SOURCE) + "/config/scenes/" + name + ".toml";
-}
 
 struct Listed {
   std::vector<double> hz, ratio;
@@ -41,7 +38,7 @@ Listed modes_of(const std::string& words) {
 }
 
 /// Expects exit code 2 and one error, in words with this among them and as JSON.
-void check_refused(const std::string& words, const std::string& sentence) {
+void check_modes_refused(const std::string& words, const std::string& sentence) {
   const Ran ran = railstep_program("modes --json " + words);
   INFO(words << ": " << ran.err);
   CHECK(ran.code == 2);
@@ -144,12 +141,12 @@ TEST_CASE("the table shows the same modes as the JSON", "[modes]") {
 
 TEST_CASE("modes refuses a scene that makes no track", "[modes]") {
   const std::string bay = shipped("pinned_bay");
-  check_refused(bay + " --set 'track.ends=\"pined\"'", "E-KEY-06");
-  check_refused(bay + " --set 'track.ends=[\"pinned\"]'", "E-KEY-07");
-  check_refused(bay + " --set 'track.ends=[\"pinned\", 3]'", "pinned");
-  check_refused(bay + " --set track.ends=true", "one of");
-  check_refused(bay + " --set sleeper.mass_kg=3", "ballast");
-  check_refused("no_such_scene.toml", "no_such_scene.toml");
+  check_modes_refused(bay + " --set 'track.ends=\"pined\"'", "E-KEY-06");
+  check_modes_refused(bay + " --set 'track.ends=[\"pinned\"]'", "E-KEY-07");
+  check_modes_refused(bay + " --set 'track.ends=[\"pinned\", 3]'", "pinned");
+  check_modes_refused(bay + " --set track.ends=true", "one of");
+  check_modes_refused(bay + " --set sleeper.mass_kg=3", "ballast");
+  check_modes_refused("no_such_scene.toml", "no_such_scene.toml");
   for (const char* count : {"0", "-1", "1001", "ten"}) {
     const Ran ran = railstep_program("modes " + bay + " --count " + count);
     CHECK(ran.code == 2);
@@ -226,13 +223,13 @@ TEST_CASE("in three dimensions each mode between pins has its number of half wav
     }
     for (const std::size_t n : {1UL, 2UL, 3UL, 4UL}) CHECK(times[n] == 3);
   }
-  check_refused(three_metres("full", -1.01 * critical), "buckles at 1356");
+  check_modes_refused(three_metres("full", -1.01 * critical), "buckles at 1356");
 }
 
 TEST_CASE("at the critical force the track is refused and the message gives both forces",
           "[modes][preload]") {
-  check_refused(three_metres("vertical", -1.01 * 8.703979e6), "8791019 N");
-  check_refused(three_metres("vertical", -1.01 * 8.703979e6), "buckles at 870");
+  check_modes_refused(three_metres("vertical", -1.01 * 8.703979e6), "8791019 N");
+  check_modes_refused(three_metres("vertical", -1.01 * 8.703979e6), "buckles at 870");
   modes_of(three_metres("vertical", -.999 * 8.703979e6));
   // Every command refuses it: a long rail on springs buckles below 2 sqrt(k EI) = 40 MN.
   for (const std::string& words : {"run " + shipped("moving_load"),
@@ -248,6 +245,7 @@ TEST_CASE("at the critical force the track is refused and the message gives both
   const Listed pressed = modes_of(three_metres("vertical", -40. * per_kelvin) + " --count 1");
   CHECK_THAT(warm.hz[0], WithinRel(pressed.hz[0], 1e-9));  // to_string writes six decimals, 1e-6 N
   CHECK(warm.hz[0] < 58.);
-  check_refused(rail + " --set rail.temperature_rise_k=40 --set 'track.ends=[\"pinned\",\"free\"]'",
-                "free end");
+  check_modes_refused(
+      rail + " --set rail.temperature_rise_k=40 --set 'track.ends=[\"pinned\",\"free\"]'",
+      "free end");
 }

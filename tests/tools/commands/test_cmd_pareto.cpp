@@ -13,6 +13,7 @@
 #include "run/trace_compare.h"
 #include "scene/scene.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -20,8 +21,6 @@ using nlohmann::json;
 
 namespace {
 
-const std::string kScenes = RAILSTEP_SOURCE "/config/scenes/";
-const std::string kMovingLoad = kScenes + "moving_load.toml";
 const std::string kFew =
     " --set track.bays=8 --set step.duration_s=0.14 --models full,modal:1 --meshes 1,2 --schemes "
     "generalised-alpha:0.6,held:0.6 --steps 5e-4,1e-4 --reference-levels 2";

@@ -16,6 +16,7 @@
 #include "support/condensed.h"
 #include "support/plotted.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
@@ -24,10 +25,6 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 using Value = std::complex<double>;
-
-std::string shipped(const std::string& name) {
-  return std::string(RAILSTEP_SOURCE) + "/config/scenes/" + name + ".toml";
-}
 
 nlohmann::json answer(const std::string& words) {
   const Ran ran = railstep_program("receptance --json " + words);

@@ -21,6 +21,7 @@
 #include "support/bad_input.h"
 #include "support/plotted.h"
 #include "support/scene_run.h"
+#include "support/shipped.h"
 #include "support/traced.h"
 
 using namespace railstep;
@@ -29,8 +30,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-const std::string kMovingLoad = kScenes + "moving_load.toml";
 
 /// Largest memory of any child so far, KiB.
 long memory_of_children() {

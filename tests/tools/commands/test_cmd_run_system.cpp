@@ -11,6 +11,7 @@
 #include "run/simulate.h"
 #include "support/plotted.h"
 #include "support/program.h"
+#include "support/shipped.h"
 #include "support/traced.h"
 
 using namespace railstep;
@@ -20,7 +21,6 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-const std::string kScenes = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 const std::string kPendulum = kScenes + "double_pendulum.toml",
                   kCrank = kScenes + "slider_crank.toml",
                   kSpring = kScenes + "spring_pendulum.toml";

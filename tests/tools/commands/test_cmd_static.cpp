@@ -37,16 +37,17 @@ TEST_CASE("cantilevers agree with the rows of reference.md", "[static]") {
   // the section's shear unsplit. The split moves x by up to 9e-10 (7e-6 of it): the shear's
   // variation over the section, of second order in the load, then keeps the whole G.
   const Row row = GENERATE(
-      Row{shipped("cantilever_rectangle"), -2.06522e-2, -1.27763e-4, 5e-8, 5e-10},
-      Row{shipped("cantilever_rectangle") + kSplit, -2.06522e-2, -1.27763e-4, 5e-8, 5e-10 + 9e-10},
-      Row{shipped("cantilever_rail"), -2.08871e-2, -1.30243e-4, 5e-8, 5e-10},
-      Row{shipped("cantilever_rail") + kSplit, -2.08871e-2, -1.30243e-4, 5e-8, 5e-10 + 9e-10},
-      Row{shipped("cantilever_rail_linear"), -2.08927e-2, 0., 9e-8, 1e-15},
-      Row{shipped("cantilever_beam"), -2.08927e-2, 0., 9e-8, 1e-15},
-      Row{shipped("cantilever_rail") + kNoShear, -2.06866e-2, -1.28161e-4, 5e-8, 5e-10},
-      Row{shipped("cantilever_rail") + kNoShear + "--model linearised", -2.06921e-2, 0., 5e-8,
+      Row{shipped_word("cantilever_rectangle"), -2.06522e-2, -1.27763e-4, 5e-8, 5e-10},
+      Row{shipped_word("cantilever_rectangle") + kSplit, -2.06522e-2, -1.27763e-4, 5e-8,
+          5e-10 + 9e-10},
+      Row{shipped_word("cantilever_rail"), -2.08871e-2, -1.30243e-4, 5e-8, 5e-10},
+      Row{shipped_word("cantilever_rail") + kSplit, -2.08871e-2, -1.30243e-4, 5e-8, 5e-10 + 9e-10},
+      Row{shipped_word("cantilever_rail_linear"), -2.08927e-2, 0., 9e-8, 1e-15},
+      Row{shipped_word("cantilever_beam"), -2.08927e-2, 0., 9e-8, 1e-15},
+      Row{shipped_word("cantilever_rail") + kNoShear, -2.06866e-2, -1.28161e-4, 5e-8, 5e-10},
+      Row{shipped_word("cantilever_rail") + kNoShear + "--model linearised", -2.06921e-2, 0., 5e-8,
           1e-15},
-      Row{shipped("cantilever_beam") + kNoShear, -2.06921e-2, 0., 5e-8, 1e-15});
+      Row{shipped_word("cantilever_beam") + kNoShear, -2.06921e-2, 0., 5e-8, 1e-15});
   INFO(row.words);
   const nlohmann::json result = solved(row.words);
   const auto [x, y, z] = point(result);
@@ -61,7 +62,7 @@ TEST_CASE("cantilevers agree with the rows of reference.md", "[static]") {
 TEST_CASE("forty elements agree with the converged result of other code", "[static]") {
   // reference.md: Chrono's ANCF 3333 with 40 elements, six digits in x, seven in z.
   const auto [x, y, z] =
-      point(solved(shipped("cantilever_rectangle") + "--set track.elements_per_bay=4"));
+      point(solved(shipped_word("cantilever_rectangle") + "--set track.elements_per_bay=4"));
   CHECK_THAT(z, WithinAbs(-2.065221e-2, 2e-8));  // its three axial points still lock by 1e-6
   CHECK_THAT(x, WithinAbs(-1.27764e-4, 5e-10));
 }
@@ -69,12 +70,12 @@ TEST_CASE("forty elements agree with the converged result of other code", "[stat
 TEST_CASE("the linearised cantilever agrees with Timoshenko's closed form", "[static]") {
   // Bound 1e-7: the rectangles' printed digits (11) cause less, round-off of condition 1e8 1e-8.
   const double f = timoshenko_tip(8700e-6, 39.0e-6, .4721);
-  CHECK_THAT(point(solved(shipped("cantilever_rail_linear")))[2], WithinRel(f, 1e-7));
-  CHECK_THAT(point(solved(shipped("cantilever_beam")))[2], WithinRel(f, 1e-7));
+  CHECK_THAT(point(solved(shipped_word("cantilever_rail_linear")))[2], WithinRel(f, 1e-7));
+  CHECK_THAT(point(solved(shipped_word("cantilever_beam")))[2], WithinRel(f, 1e-7));
   // Section P has area and inertia to the digits of reference.md, 1e-4 and 1.3e-4 of the inertia.
   const double p = timoshenko_tip(8696e-6, 38.78e-6, .4458);
-  const std::string printed =
-      shipped("cantilever_rail") + kSplit + kPrinted + "--set rail.shear_factor_z=0.4458 --model ";
+  const std::string printed = shipped_word("cantilever_rail") + kSplit + kPrinted +
+                              "--set rail.shear_factor_z=0.4458 --model ";
   for (const char* model : {"linearised", "timoshenko"}) {
     std::string words = printed;
     words.append(model);
@@ -83,7 +84,7 @@ TEST_CASE("the linearised cantilever agrees with Timoshenko's closed form", "[st
 }
 
 TEST_CASE("the neutral axis moves the same for every place of the nodes", "[static]") {
-  const std::string scene = shipped("cantilever_rail") + kSplit;
+  const std::string scene = shipped_word("cantilever_rail") + kSplit;
   const auto centroid = point(solved(scene));
   for (const char* line : {"mid-height", "foot", "head"}) {
     const std::string words = scene + "--set 'track.reference_line=\"" + line + "\"' ";
@@ -104,9 +105,9 @@ TEST_CASE("a point off the neutral axis moves along x by the section's turn", "[
   // Linear beam: the end section turns by theta = F L^2/(2 E I), and x = theta z.
   const double theta = 63e3 * 4. / (2. * 210e9 * 39e-6);
   for (const auto& [at, z] : {std::pair("head", .1007375), std::pair("foot", -.085)})
-    CHECK_THAT(
-        point(solved(shipped("cantilever_rail_linear") + "--set 'sensor[0].at=\"" + at + "\"'"))[0],
-        WithinRel(theta * z, 1e-6));
+    CHECK_THAT(point(solved(shipped_word("cantilever_rail_linear") + "--set 'sensor[0].at=\"" + at +
+                            "\"'"))[0],
+               WithinRel(theta * z, 1e-6));
 }
 
 TEST_CASE("a thin cantilever bends as the elastica", "[static]") {
@@ -115,13 +116,13 @@ TEST_CASE("a thin cantilever bends as the elastica", "[static]") {
   const std::string thin =
       "--set rail.rectangle.height_m=0.004 --set rail.rectangle.width_m=0.1 "
       "--set 'load[0].force_z_n=-112.0' --set track.elements_per_bay=4";
-  const auto [x, y, z] = point(solved(shipped("cantilever_rectangle") + thin));
+  const auto [x, y, z] = point(solved(shipped_word("cantilever_rectangle") + thin));
   CHECK_THAT(z / 2., WithinAbs(-.66996, 9e-6));
   CHECK_THAT(x / 2., WithinAbs(-.32894, 9e-6));
 }
 
 TEST_CASE("a section is integrated by points per rectangle or by its outline", "[static]") {
-  const std::string linear = shipped("cantilever_rail_linear");
+  const std::string linear = shipped_word("cantilever_rail_linear");
   const auto with = [&](const std::string& more) { return point(solved(linear + more))[2]; };
   CHECK_THAT(with("--set rail.rule.section_points=3"), WithinRel(with(""), 1e-9));
   // One point in each rectangle misses the rectangle's own w h^3/12.

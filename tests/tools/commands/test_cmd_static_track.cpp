@@ -81,8 +81,8 @@ TEST_CASE("static solves a ballasted track nonlinearly too", "[static]") {
 TEST_CASE("static writes the shape of the neutral axis", "[static]") {
   const auto folder = fresh_folder("shape");
   const std::string file = (folder / "axis.csv").string();
-  const Ran ran =
-      railstep_program("static " + shipped("cantilever_rail") + "--json --shape '" + file + "'");
+  const Ran ran = railstep_program("static " + shipped_word("cantilever_rail") +
+                                   "--json --shape '" + file + "'");
   REQUIRE(ran.code == 0);
   const auto tip = point(nlohmann::json::parse(ran.out), "tip");
   std::istringstream lines(text_of(file));
@@ -106,7 +106,7 @@ TEST_CASE("the far end of a rail lies on it for every rounding of its bays", "[s
   // 7 x 0.6 m over elements of 0.6 m gives 7 + 1e-15 in doubles.
   for (const char* model : {"linearised", "nonlinear", "timoshenko"})
     CHECK(railstep_program(
-              "static " + shipped("cantilever_rail") +
+              "static " + shipped_word("cantilever_rail") +
               "--set track.bays=7 --set track.bay_m=0.6 --set 'sensor[0].position_m=4.2' "
               "--set 'rail.rule.shear=\"twist\"' --model " +
               model)
@@ -116,7 +116,7 @@ TEST_CASE("the far end of a rail lies on it for every rounding of its bays", "[s
 TEST_CASE("without an equilibrium the exit code is 1 and the history is printed", "[static]") {
   const auto folder = fresh_folder("shape");
   const std::string file = (folder / "axis.csv").string();
-  const Ran ran = railstep_program("static " + shipped("cantilever_rail") +
+  const Ran ran = railstep_program("static " + shipped_word("cantilever_rail") +
                                    "--set static.most_iterations=1 --set "
                                    "static.most_load_halvings=2 --json --shape '" +
                                    file + "'");
@@ -127,14 +127,14 @@ TEST_CASE("without an equilibrium the exit code is 1 and the history is printed"
   CHECK_FALSE(std::filesystem::exists(file));
   std::filesystem::remove_all(folder);
   // Load steps that are small enough reach the equilibrium.
-  CHECK(railstep_program("static " + shipped("cantilever_rail") +
+  CHECK(railstep_program("static " + shipped_word("cantilever_rail") +
                          "--set static.most_iterations=3 " + "--set static.tolerance=1e-3")
             .code == 0);
 }
 
 TEST_CASE("static refuses in one sentence what it cannot solve", "[static]") {
-  const std::string rail = "static " + shipped("cantilever_rail"),
-                    beam = "static " + shipped("cantilever_beam");
+  const std::string rail = "static " + shipped_word("cantilever_rail"),
+                    beam = "static " + shipped_word("cantilever_beam");
   refuse(rail + "--model elastic", "--model");
   refuse(rail + "--set 'track.model=\"beam\"'", "timoshenko");
   refuse(rail + "--set 'track.ends=\"free\"'", "E-TRACK-35");
@@ -143,7 +143,7 @@ TEST_CASE("static refuses in one sentence what it cannot solve", "[static]") {
   refuse(beam + "--set track.rails=2 --set 'load[0].rail=\"left\"' --set 'sensor[0].rail=\"left\"'",
          "E-TIMOSHENKO-01");
   refuse(beam + "--set 'track.reference_line=\"foot\"'", "centroid");
-  refuse("static " + shipped("ballasted_track") + "--model timoshenko", "E-TIMOSHENKO-01");
+  refuse("static " + shipped_word("ballasted_track") + "--model timoshenko", "E-TIMOSHENKO-01");
   refuse(rail + "--set 'rail.outline=\"exact\"'", "beside profile");
   refuse(rail + "--set rail.rule.section_points=4", "section_points");
   refuse(rail + "--set rail.rule.axial_points=6", "axial_points");
@@ -169,10 +169,11 @@ TEST_CASE("a section given by constants has no shape for nonlinear bending", "[s
 }
 
 TEST_CASE("run steps the linearised rail about its centroid only", "[static]") {
-  refuse("run " + shipped("wheelset_on_track") + "--set 'track.model=\"nonlinear\"'", "linearised");
-  refuse("run " + shipped("wheelset_on_track") + "--set 'track.reference_line=\"foot\"'",
+  refuse("run " + shipped_word("wheelset_on_track") + "--set 'track.model=\"nonlinear\"'",
+         "linearised");
+  refuse("run " + shipped_word("wheelset_on_track") + "--set 'track.reference_line=\"foot\"'",
          "centroid");
-  refuse("condense " + shipped("ballasted_track") +
+  refuse("condense " + shipped_word("ballasted_track") +
              "--out /dev/null --set 'track.model=\"nonlinear\"'",
          "linearised");
 }

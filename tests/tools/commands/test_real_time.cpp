@@ -17,9 +17,9 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-const std::filesystem::path kRoot = RAILSTEP_SOURCE;
+const std::filesystem::path kTree = RAILSTEP_SOURCE;
 
-using Row = std::map<std::string, std::string>;  // by name of column
+using TableRow = std::map<std::string, std::string>;  // by name of column
 
 std::vector<std::string> parts(const std::string& line, char between) {
   std::vector<std::string> found;
@@ -29,17 +29,17 @@ std::vector<std::string> parts(const std::string& line, char between) {
 }
 
 /// Rows of a file of docs/data by their scene; each scene has one row.
-std::map<std::string, Row> stored(const char* name) {
-  std::istringstream in(text_of(kRoot / "docs/data" / name));
+std::map<std::string, TableRow> stored(const char* name) {
+  std::istringstream in(text_of(kTree / "docs/data" / name));
   std::string line;
   std::getline(in, line);
   const std::vector<std::string> columns = parts(line, ',');
-  std::map<std::string, Row> rows;
+  std::map<std::string, TableRow> rows;
   while (std::getline(in, line)) {
     const std::vector<std::string> fields = parts(line, ',');
     CAPTURE(line);
     REQUIRE(fields.size() == columns.size());
-    Row row;
+    TableRow row;
     for (std::size_t i = 0; i < fields.size(); ++i) row[columns[i]] = fields[i];
     CHECK(rows.emplace(fields[0], row).second);
   }
@@ -79,9 +79,9 @@ TEST_CASE("every scene that runs has its row of times and of errors, and no othe
           "[docs]") {
   const std::map<std::string, StepScene> scenes = runnable();
   CHECK(scenes.size() > 15);
-  const std::string page = text_of(kRoot / "docs/real-time.md");
+  const std::string page = text_of(kTree / "docs/real-time.md");
   for (const char* const file : {"real_time.csv", "real_time_errors.csv"}) {
-    const std::map<std::string, Row> rows = stored(file);
+    const std::map<std::string, TableRow> rows = stored(file);
     for (const auto& [scene, row] : rows) {
       CAPTURE(file, scene);
       CHECK(scenes.count(scene) == 1);

@@ -11,6 +11,7 @@
 #include "study/study_row.h"
 #include "study/tune.h"
 #include "support/program.h"
+#include "support/shipped.h"
 #include "text/read.h"
 
 using namespace railstep;
@@ -18,9 +19,6 @@ using Catch::Contains;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-const std::filesystem::path kScenes = std::filesystem::path(RAILSTEP_SOURCE) / "config/scenes";
-const std::filesystem::path kMovingLoad = kScenes / "moving_load.toml";
 
 TraceTable table(std::vector<std::string> columns, std::vector<double> values) {
   return {std::move(columns), std::move(values)};
@@ -39,8 +37,8 @@ SettingRow row(double us, double error) {
 TEST_CASE("every default setting makes a scene with that setting", "[study]") {
   for (const char* name : {"moving_load.toml", "ballasted_track.toml", "endless_track.toml",
                            "hanging_sleeper.toml", "bogie_at_speed.toml"}) {
-    const Scene own = read_scene(kScenes / name);
-    const Studied study = study_of(kScenes / name, {}, {});
+    const Scene own = read_scene(kScenes + name);
+    const Studied study = study_of(kScenes + name, {}, {});
     const std::vector<Setting> all = settings_of(default_choices(own));
     CHECK(all.size() >= 20);
     for (const Setting& setting : all) {
@@ -201,11 +199,11 @@ TEST_CASE("a study's file returns what it was given, and only to the same study"
 }
 
 TEST_CASE("a scene is verified at other speeds, loads and places", "[study]") {
-  const Scene scene = read_scene(kScenes / "ballasted_track.toml");
+  const Scene scene = read_scene(kScenes + "ballasted_track.toml");
   const std::vector<Variation> all = variations_of(scene);
   REQUIRE(all.size() == 3);
   const auto with = [&](std::size_t i) {
-    return read_scene(kScenes / "ballasted_track.toml", all[i].overrides);
+    return read_scene(kScenes + "ballasted_track.toml", all[i].overrides);
   };
   CHECK(with(0).wheelsets[0].speed == Approx(.9 * scene.wheelsets[0].speed));
   const auto carried = [](const Scene& s) {
@@ -215,7 +213,7 @@ TEST_CASE("a scene is verified at other speeds, loads and places", "[study]") {
   CHECK(with(2).wheelsets[0].start ==
         Approx(scene.wheelsets[0].start + .37 * scene.step->dt * scene.wheelsets[0].speed));
   // One [[vehicle]] for both rails is changed once.
-  const Scene bogie = read_scene(kScenes / "bogie_at_speed.toml", {});
+  const Scene bogie = read_scene(kScenes + "bogie_at_speed.toml", {});
   for (const Variation& own : variations_of(bogie))
-    CHECK_NOTHROW(read_scene(kScenes / "bogie_at_speed.toml", own.overrides));
+    CHECK_NOTHROW(read_scene(kScenes + "bogie_at_speed.toml", own.overrides));
 }

@@ -7,6 +7,7 @@
 
 #include "report/vtk_mesh.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
@@ -59,8 +60,6 @@ double last_of(const std::string& trace, const std::string& column) {
   FAIL("no column " << column);
   return 0.;
 }
-
-const std::string kScenes = RAILSTEP_SOURCE "/config/scenes/";
 
 }  // namespace
 

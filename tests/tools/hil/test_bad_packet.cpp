@@ -22,7 +22,7 @@ const std::vector<std::string> kInputs = {"push.force_n"};
 constexpr double kLimit = 1e3;  // N, limit of the input
 
 /// A packet of inputs in the program's own format.
-Bytes packet(std::uint64_t sequence, double value) {
+Bytes one_packet(std::uint64_t sequence, double value) {
   Bytes bytes(packet_bytes(1));
   encode({.kind = PacketKind::inputs,
           .names = names_sum(kInputs),
@@ -39,7 +39,7 @@ Bytes with(Bytes bytes, std::size_t at, unsigned char value) {
 }
 
 /// Content of a packet of outputs.
-struct Told {
+struct Answer {
   PacketHead head;
   double y;  // y of the wheelset, m
 };
@@ -64,7 +64,7 @@ class PacedRun {
   void send(const Bytes& bytes) const { peer_.send(bytes, port_); }
   /// Sends from another sender.
   void send_as_stranger(const Bytes& bytes) const { LoopbackSocket().send(bytes, port_); }
-  Told receive() const {
+  Answer receive() const {
     std::vector<double> values(outputs_.size());
     const auto head = decode(peer_.receive(), PacketKind::outputs, names_sum(outputs_),
                              static_cast<std::uint32_t>(outputs_.size()), values.data());
@@ -73,14 +73,14 @@ class PacedRun {
     return {*head, values[static_cast<std::size_t>(y - outputs_.begin())]};
   }
   /// Receives outputs up to those of a frame.
-  Told receive_until(std::int64_t frame) const {
-    Told told = receive();
+  Answer receive_until(std::int64_t frame) const {
+    Answer told = receive();
     while (told.head.frame < frame) told = receive();
     return told;
   }
   /// Receives outputs until these bits are set.
-  Told receive_until(Status bits) const {
-    Told told = receive();
+  Answer receive_until(Status bits) const {
+    Answer told = receive();
     while ((told.head.status & static_cast<std::uint32_t>(bits)) == 0 &&
            (told.head.flags & kLastFrame) == 0)
       told = receive();
@@ -118,7 +118,7 @@ class PacedRun {
 TEST_CASE("packets that are short, long, foreign or of another version are dropped and counted",
           "[bad_input][hil][cli]") {
   PacedRun run;
-  const Bytes good = packet(1, 10.), wild = packet(1, 1e9);  // its force would set a bit
+  const Bytes good = one_packet(1, 10.), wild = one_packet(1, 1e9);  // its force would set a bit
   std::vector<Bytes> bad = {{}, {'R'}, Bytes(51, 'R'), Bytes(1500, 0)};
   for (const std::size_t size : {std::size_t{4}, kPacketHead, wild.size() - 8, wild.size() - 1})
     bad.emplace_back(wild.begin(), wild.begin() + static_cast<std::ptrdiff_t>(size));
@@ -130,8 +130,8 @@ TEST_CASE("packets that are short, long, foreign or of another version are dropp
   for (const Bytes& each : bad) run.send(each);
   run.send(good);
   run.receive_until(3);
-  run.send(packet(2, 10.));
-  run.send_as_stranger(packet(3, 1e9));  // the first sender is not silent yet
+  run.send(one_packet(2, 10.));
+  run.send_as_stranger(one_packet(3, 1e9));  // the first sender is not silent yet
   const auto told = run.end();
   CHECK(told["packets"]["foreign"] == bad.size() + 1);
   CHECK(told["packets"]["good"] == 2);
@@ -141,12 +141,12 @@ TEST_CASE("packets that are short, long, foreign or of another version are dropp
 
 TEST_CASE("the newest of repeated and reordered packets is held", "[bad_input][hil][cli]") {
   PacedRun run("", 3);
-  run.send(packet(1, 10.));
+  run.send(one_packet(1, 10.));
   run.receive_until(3);
-  run.send(packet(5, 20.));
-  for (const std::uint64_t old : {5u, 5u, 4u, 2u, 1u}) run.send(packet(old, 1e9));
+  run.send(one_packet(5, 20.));
+  for (const std::uint64_t old : {5u, 5u, 4u, 2u, 1u}) run.send(one_packet(old, 1e9));
   run.receive_until(40);
-  run.send(packet(6, 30.));
+  run.send(one_packet(6, 30.));
   const auto told = run.end();
   CHECK(told["status"].empty());
   const auto& in = told["packets"];
@@ -159,11 +159,11 @@ TEST_CASE("the newest of repeated and reordered packets is held", "[bad_input][h
 TEST_CASE("a flood of packets leaves the newest and costs no frame", "[bad_input][hil][cli]") {
   PacedRun run("", 4);
   std::uint64_t sent = 0;
-  for (int n = 0; n < 5000; ++n) run.send(packet(++sent, 10.));
+  for (int n = 0; n < 5000; ++n) run.send(one_packet(++sent, 10.));
   bool last = false, saturated = false;  // the system may drop packets: until one comes through
   while (!last && !saturated) {
-    for (int n = 0; n < 100; ++n) run.send(packet(++sent, 2. * kLimit));
-    const Told told = run.receive();
+    for (int n = 0; n < 100; ++n) run.send(one_packet(++sent, 2. * kLimit));
+    const Answer told = run.receive();
     saturated = (told.head.status & static_cast<std::uint32_t>(Status::force_saturated)) != 0;
     last = (told.head.flags & kLastFrame) != 0;
   }
@@ -181,11 +181,11 @@ TEST_CASE("NaN and infinity set a status bit and the last good force is held",
           "[bad_input][hil][cli]") {
   const auto end_of = [](const std::vector<double>& then) {
     PacedRun run;
-    run.send(packet(1, 300.));
+    run.send(one_packet(1, 300.));
     std::uint64_t sequence = 1;
     run.receive_until(20);
-    for (const double value : then) run.send(packet(++sequence, value));
-    Told told = then.empty() ? run.receive() : run.receive_until(Status::nonfinite_input);
+    for (const double value : then) run.send(one_packet(++sequence, value));
+    Answer told = then.empty() ? run.receive() : run.receive_until(Status::nonfinite_input);
     while ((told.head.flags & kLastFrame) == 0) told = run.receive();
     const auto names = run.end()["status"];
     CHECK(names.empty() == then.empty());
@@ -204,8 +204,8 @@ TEST_CASE("NaN and infinity set a status bit and the last good force is held",
 TEST_CASE("a huge force sets a status bit and is cut to its limit", "[bad_input][hil][cli]") {
   const auto end_of = [](double value) {
     PacedRun run;
-    run.send(packet(1, value));
-    Told told = run.receive();
+    run.send(one_packet(1, value));
+    Answer told = run.receive();
     while ((told.head.flags & kLastFrame) == 0) told = run.receive();
     const auto names = run.end()["status"];
     CHECK(std::find(names.begin(), names.end(), "force_saturated") != names.end());
@@ -220,16 +220,16 @@ TEST_CASE("while packets are missing the last force is held, then the run makes 
           "[bad_input][hil][cli]") {
   constexpr std::int64_t kSilence = 40;  // frames
   PacedRun run("--silence 0.2 --ramp 0.05");
-  run.send(packet(1, 300.));
+  run.send(one_packet(1, 300.));
   run.receive_until(10);
-  run.send(packet(8, 300.));  // 6 packets are lost
-  Told told = run.receive();
+  run.send(one_packet(8, 300.));  // 6 packets are lost
+  Answer told = run.receive();
   const std::int64_t from = told.head.frame;
   while ((told.head.flags & kSafeStop) == 0 && (told.head.flags & kLastFrame) == 0)
     told = run.receive();
   CHECK(told.head.frame >= from + kSilence - 1);
   const std::int64_t stopped = told.head.frame;
-  run.send(packet(9, 300.));  // too late
+  run.send(one_packet(9, 300.));  // too late
   while ((told.head.flags & kLastFrame) == 0) {
     told = run.receive();
     CHECK((told.head.flags & kSafeStop) != 0);

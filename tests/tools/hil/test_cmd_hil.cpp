@@ -6,6 +6,7 @@
 
 #include "support/loopback.h"
 #include "support/program.h"
+#include "support/shipped.h"
 #include "support/started.h"
 
 using namespace railstep;
@@ -13,8 +14,6 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-const std::string kWheelset = kFolder + "wheelset_on_track.toml";
 /// The wheelset with an input that pushes it sideways.
 const std::string kPushed =
     kWheelset +
@@ -59,7 +58,7 @@ TEST_CASE("a paced run prints its times, settings and state", "[hil][cli]") {
 
 TEST_CASE("bodies and joints are paced without the heap too", "[hil][cli]") {
   const auto result = told(
-      railstep_program("hil " + kFolder + "slider_crank.toml --rate 500 --duration 0.2 --json"));
+      railstep_program("hil " + kScenes + "slider_crank.toml --rate 500 --duration 0.2 --json"));
   CHECK(result["allocations"] == 0);
   CHECK(result["frames"].get<int>() >= 1);
 }
@@ -216,7 +215,7 @@ TEST_CASE("bad options of hil are refused in one sentence with exit code 2", "[h
   CHECK_THAT(refused(good + "--udp nowhere"), Contains("E-HIL-13"));
   CHECK_THAT(refused(good + "--shm a/b"), Contains("--shm a/b") && Contains("E-HIL-11"));
   CHECK_THAT(refused(good + "--silence 1"), Contains("E-HIL-04"));
-  CHECK_THAT(refused(good, kFolder + "no_such_scene.toml"), Contains("no_such_scene.toml"));
+  CHECK_THAT(refused(good, kScenes + "no_such_scene.toml"), Contains("no_such_scene.toml"));
   const LoopbackSocket busy;
   CHECK_THAT(refused(good + "--udp " + busy.address()), Contains("E-HIL-15"));
 }

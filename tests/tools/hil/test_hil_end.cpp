@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "support/shipped.h"
 #include "support/started.h"
 
 using namespace railstep;
@@ -17,9 +18,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kWheelset =
-    std::string(RAILSTEP_SOURCE) + "/config/scenes/wheelset_on_track.toml";
-const std::string kPushed =
+const std::string kPushedWords =
     kWheelset +
     " --set 'wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]' --json";
 
@@ -60,7 +59,7 @@ TEST_CASE("a signal ends a run between two frames and the program says so", "[hi
 TEST_CASE("a signal ends a run within a period of any length", "[hil][cli]") {
   // The period is 1000 s: the test would not wait for its end.
   const std::string name = shared_name("slow");
-  Started hil("hil " + kPushed + " --rate 0.001 --duration 1e5 --shm " + name);
+  Started hil("hil " + kPushedWords + " --rate 0.001 --duration 1e5 --shm " + name);
   hil.await(shared_file(name));
   hil.signal(SIGTERM);
   const Ran ran = hil.end();
@@ -71,7 +70,7 @@ TEST_CASE("a signal ends a run within a period of any length", "[hil][cli]") {
 
 TEST_CASE("a signal ends the wait for the first inputs and the program says so", "[hil][cli]") {
   const std::string name = shared_name("waits");
-  Started hil("hil " + kPushed + " --rate 100 --duration 1 --wait 1e4 --shm " + name);
+  Started hil("hil " + kPushedWords + " --rate 100 --duration 1 --wait 1e4 --shm " + name);
   hil.await(shared_file(name));
   hil.signal(SIGINT);
   const Ran ran = hil.end();
@@ -82,7 +81,7 @@ TEST_CASE("a signal ends the wait for the first inputs and the program says so",
 TEST_CASE("a second signal during a frame without end leaves no shared memory", "[hil][cli]") {
   const std::string name = shared_name("stalls");
   Started hil(
-      "hil " + kPushed +
+      "hil " + kPushedWords +
       " --rate 1000 --duration 1e5 --policy free-run --stall-frame 1 --stall-us 1e8 --shm " + name);
   hil.await([&] { return outputs_of(name) > 0; });  // frame 0 is over, and 1 takes 100 s
   hil.signal(SIGINT);
@@ -98,7 +97,7 @@ TEST_CASE("shared memory that another process cuts short ends the run with one s
   for (const std::uintmax_t left : {0u, 16u}) {
     const std::string name = shared_name("cut");
     const auto folder = fresh_folder("hil_cut");
-    Started hil(fmt::format("hil {} --rate 100 --duration 6000 --record {} --shm {}", kPushed,
+    Started hil(fmt::format("hil {} --rate 100 --duration 6000 --record {} --shm {}", kPushedWords,
                             (folder / "recording").string(), name));
     hil.await([&] { return outputs_of(name) > 3; });
     std::filesystem::resize_file(shared_file(name), left);
@@ -118,7 +117,7 @@ TEST_CASE("shared memory that another process cuts short ends the run with one s
 
 TEST_CASE("shared memory that is cut short before the first inputs ends the wait", "[hil][cli]") {
   const std::string name = shared_name("cut_wait");
-  Started hil("hil " + kPushed + " --rate 100 --duration 1 --wait 1e4 --shm " + name);
+  Started hil("hil " + kPushedWords + " --rate 100 --duration 1 --wait 1e4 --shm " + name);
   hil.await([&] { return word_of(text_of(shared_file(name)), 1) == 1; });
   std::filesystem::resize_file(shared_file(name), 0);
   const Ran ran = hil.end();

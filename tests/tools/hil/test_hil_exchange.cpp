@@ -26,13 +26,13 @@ using Catch::Contains;
 
 namespace {
 
-const std::vector<std::string> kInputs = {"push.force_n"}, kOutputs = {"time_s", "y_m", "z_m"};
-const ExchangeLayout kLayout{kInputs, kOutputs, 1e6, -1};
+const std::vector<std::string> kPush = {"push.force_n"}, kOutputs = {"time_s", "y_m", "z_m"};
+const ExchangeLayout kLayout{kPush, kOutputs, 1e6, -1};
 
 Bytes inputs_packet(std::uint64_t sequence, double value, std::int64_t frame = -1) {
   Bytes bytes(packet_bytes(1));
   encode({.kind = PacketKind::inputs,
-          .names = names_sum(kInputs),
+          .names = names_sum(kPush),
           .count = 1,
           .sequence = sequence,
           .frame = frame},
@@ -171,7 +171,7 @@ TEST_CASE("over UDP packets come in and are counted, and outputs go back", "[hil
 }
 
 TEST_CASE("outputs that no one asked for or that are too many at once are counted", "[hil]") {
-  UdpExchange exchange("127.0.0.1:" + std::to_string(free_port()), {kInputs, kOutputs, 1e9, -1});
+  UdpExchange exchange("127.0.0.1:" + std::to_string(free_port()), {kPush, kOutputs, 1e9, -1});
   const double values[3] = {};
   for (int n = 0; n < 100'000; ++n) exchange.outputs({n, Status::ok, 0, values});
   exchange.finish();

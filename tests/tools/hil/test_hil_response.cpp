@@ -13,6 +13,7 @@
 #include "online/step/step.h"
 #include "support/hil_peers.h"
 #include "support/program.h"
+#include "support/shipped.h"
 #include "support/started.h"
 
 using namespace railstep;
@@ -20,8 +21,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-const std::string kTrack = kFolder + "open_track.toml";
+const std::string kTrack = kScenes + "open_track.toml";
 const std::string kTwoWheels =
     "external_wheel=[{name=\"a\", rail=\"left\", limit_n=1e6}, {name=\"b\", rail=\"right\", "
     "limit_n=1e6}]";
@@ -200,7 +200,7 @@ TEST_CASE("the response in each output is that of the next frame", "[hil][respon
   for (const char* kind : {"full", "modal"}) {
     std::vector<std::string> scene = words;
     scene.push_back(std::string("condense.kind=\"") + kind + "\"");
-    const auto read = [&] { return read_any_scene(kFolder + "moving_load.toml", scene); };
+    const auto read = [&] { return read_any_scene(kScenes + "moving_load.toml", scene); };
     const auto run = simulation_of(read()), beside = simulation_of(read());
     const ExchangeLayout layout = layout_of(*run);
     REQUIRE(layout.inputs.size() == 14);
@@ -297,7 +297,7 @@ TEST_CASE("a response without external wheels or without an exchange is refused"
   const Ran alone = railstep_program("hil " + kTrack + " --rate 100 --duration 0.1 --response");
   CHECK(alone.code == 2);
   CHECK_THAT(alone.err, Contains("E-HIL-04"));
-  const Ran without = railstep_program("hil " + kFolder +
+  const Ran without = railstep_program("hil " + kScenes +
                                        "moving_load.toml --rate 100 --duration 0.1 --response "
                                        "--shm railstep_no_wheel");
   CHECK(without.code == 2);

@@ -10,8 +10,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const std::string kMovingLoad = shipped("moving_load"), kPendulum = shipped("double_pendulum"),
-                  kWheelset = shipped("wheelset_on_track");
+const std::string kPendulum = shipped("double_pendulum");
 
 std::string set(const std::string& override) { return " --set '" + override + "'"; }
 

@@ -12,14 +12,13 @@
 #include "run/inputs.h"
 #include "run/simulate.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
 
 namespace {
 
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
-const std::string kWheelset = kFolder + "wheelset_on_track.toml";
 const char* const kPushed = "wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]";
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -128,7 +127,7 @@ TEST_CASE("energies balance under inputs of wheelsets and of systems", "[inputs]
   }
   for (const char* scheme : {"generalised-alpha", "energy-momentum"}) {
     const auto run = simulation_of(read_any_scene(
-        kFolder + "spring_pendulum.toml",
+        kScenes + "spring_pendulum.toml",
         {"force=[{on=\"bob\", point_m=[0.3, 0.05, -0.9], direction=[1, 0, 0], input=\"fan\", "
          "limit_n=500}]",
          std::string("step.scheme=\"") + scheme + "\"", "step.dt_s=2e-4"}));
@@ -151,7 +150,7 @@ TEST_CASE("energies balance under inputs of wheelsets and of systems", "[inputs]
 TEST_CASE("a moment from an input turns a body as a constant moment does", "[inputs]") {
   const auto turned = [](const std::string& size, bool given) {
     const auto run =
-        simulation_of(read_any_scene(kFolder + "spring_pendulum.toml",
+        simulation_of(read_any_scene(kScenes + "spring_pendulum.toml",
                                      {"force=[{on=\"bob\", direction=[0, 1, 0], " + size + "}]"}));
     static const double value = .02;
     const FrameInputs inputs = [](std::int64_t) { return &value; };

@@ -20,7 +20,7 @@ std::filesystem::path written(const std::string& text) {
   return path;
 }
 
-std::string refusal(const std::string& text) {
+std::string file_refusal(const std::string& text) {
   try {
     read_irregularities(written(text));
   } catch (const InputError& error) {
@@ -57,33 +57,35 @@ TEST_CASE("irregularities of each rail are read separately") {
 
 TEST_CASE("a file that is not a record of irregularities is refused with its line") {
   const std::string rows = "0,1\n.5,2\n1,3\n1.5,4\n";
-  CHECK_THAT(refusal(""), Contains("E-IRREGULARITY-21"));
-  CHECK_THAT(refusal(rows), Contains(":1:") && Contains("'0'") && Contains("distance_m"));
-  CHECK_THAT(refusal("distance_m,vertical\n" + rows), Contains("'vertical'"));
-  CHECK_THAT(refusal("distance_m,vertical_um\n" + rows), Contains("'vertical_um'"));
-  CHECK_THAT(refusal("vertical_mm,gauge_mm\n" + rows),
+  CHECK_THAT(file_refusal(""), Contains("E-IRREGULARITY-21"));
+  CHECK_THAT(file_refusal(rows), Contains(":1:") && Contains("'0'") && Contains("distance_m"));
+  CHECK_THAT(file_refusal("distance_m,vertical\n" + rows), Contains("'vertical'"));
+  CHECK_THAT(file_refusal("distance_m,vertical_um\n" + rows), Contains("'vertical_um'"));
+  CHECK_THAT(file_refusal("vertical_mm,gauge_mm\n" + rows),
              Contains("lacks the column distance_m") && Contains("E-IRREGULARITY-14"));
-  CHECK_THAT(refusal("distance_m\n0\n1\n2\n3\n"),
+  CHECK_THAT(file_refusal("distance_m\n0\n1\n2\n3\n"),
              Contains("lacks a column") && Contains("E-IRREGULARITY-14"));
-  CHECK_THAT(refusal("distance_m,gauge_mm,gauge_m\n"), Contains("E-IRREGULARITY-13"));
-  CHECK_THAT(refusal("distance_m,gauge_mm,left_z_mm\n"), Contains("E-IRREGULARITY-15"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n"),
+  CHECK_THAT(file_refusal("distance_m,gauge_mm,gauge_m\n"), Contains("E-IRREGULARITY-13"));
+  CHECK_THAT(file_refusal("distance_m,gauge_mm,left_z_mm\n"), Contains("E-IRREGULARITY-15"));
+  CHECK_THAT(file_refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n"),
              Contains("3 rows") && Contains("E-IRREGULARITY-18"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n1.7,3\n"),
+  CHECK_THAT(file_refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n1.7,3\n"),
              Contains(":5:") && Contains("1.7 m follows 1 m") && Contains("E-IRREGULARITY-19"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n2,3\n2.5,3\n3,3\n"),  // 1.5 is missing
-             Contains(":5:") && Contains("2 m follows 1 m"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n3,1\n2,2\n1,3\n0,3\n"), Contains(":3:"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,x\n1.5,3\n"),
+  CHECK_THAT(
+      file_refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,3\n2,3\n2.5,3\n3,3\n"),  // 1.5 is missing
+      Contains(":5:") && Contains("2 m follows 1 m"));
+  CHECK_THAT(file_refusal("distance_m,gauge_mm\n3,1\n2,2\n1,3\n0,3\n"), Contains(":3:"));
+  CHECK_THAT(file_refusal("distance_m,gauge_mm\n0,1\n.5,2\n1,x\n1.5,3\n"),
              Contains(":4:") && Contains("'x'"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5,nan\n1,1\n1.5,3\n"), Contains(":3:"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n0.5;2,5\n1,1\n1.5,3\n"), Contains("E-CSV-03"));
-  CHECK_THAT(refusal("distance_m,gauge_mm\n0,1\n.5\n1,1\n1.5,3\n"), Contains("E-IRREGULARITY-17"));
+  CHECK_THAT(file_refusal("distance_m,gauge_mm\n0,1\n.5,nan\n1,1\n1.5,3\n"), Contains(":3:"));
+  CHECK_THAT(file_refusal("distance_m,gauge_mm\n0,1\n0.5;2,5\n1,1\n1.5,3\n"), Contains("E-CSV-03"));
+  CHECK_THAT(file_refusal("distance_m,gauge_mm\n0,1\n.5\n1,1\n1.5,3\n"),
+             Contains("E-IRREGULARITY-17"));
   // A spline through these numbers would overflow.
-  CHECK_THAT(refusal("distance_m,vertical_m\n-8e307,0\n-2.7e307,0\n2.7e307,0\n8e307,0\n"),
+  CHECK_THAT(file_refusal("distance_m,vertical_m\n-8e307,0\n-2.7e307,0\n2.7e307,0\n8e307,0\n"),
              Contains(":2:") && Contains("at least -1000000000, at most 1000000000 m"));
-  CHECK_THAT(refusal("distance_m,left_z_m\n0,0\n1,1e308\n2,0\n3,0\n"),
+  CHECK_THAT(file_refusal("distance_m,left_z_m\n0,0\n1,1e308\n2,0\n3,0\n"),
              Contains(":3:") && Contains("left_z = 1e+308 m"));
-  CHECK_THAT(refusal("distance_m,left_z_m\n0,0\n1e-9,0\n2e-9,0\n3e-9,0\n"),
+  CHECK_THAT(file_refusal("distance_m,left_z_m\n0,0\n1e-9,0\n2e-9,0\n3e-9,0\n"),
              Contains("E-IRREGULARITY-20"));
 }

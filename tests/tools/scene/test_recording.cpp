@@ -7,13 +7,12 @@
 #include "run/recording.h"
 #include "run/simulate.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
 
 namespace {
-
-const std::string kFolder = std::string(RAILSTEP_SOURCE) + "/config/scenes/";
 
 Recording recorded(const Scene& scene, std::int64_t frames, std::int64_t every,
                    const FrameInputs& inputs) {
@@ -35,7 +34,7 @@ void write(const std::filesystem::path& file, const std::vector<std::byte>& byte
 
 Recording pushed() {
   const Scene scene =
-      read_scene(kFolder + "wheelset_on_track.toml",
+      read_scene(kScenes + "wheelset_on_track.toml",
                  {"wheelset[0].force=[{direction=\"y\", input=\"push\", limit_n=1e3}]"});
   static double value = 0.;
   return recorded(scene, 23, 5, [](std::int64_t frame) {
@@ -95,7 +94,7 @@ TEST_CASE("a recording with hashes farther apart than frames can be counted is r
 TEST_CASE("the program records a run and replays it", "[recording][cli]") {
   const auto folder = fresh_folder("replay");
   const std::string file = (folder / "run.recording").string();
-  const Ran ran = railstep_program("run " + kFolder +
+  const Ran ran = railstep_program("run " + kScenes +
                                    "hanging_sleeper.toml --duration 0.05 --hash-every 7 --json "
                                    "--record " +
                                    file);
@@ -116,7 +115,7 @@ TEST_CASE("the program records a run and replays it", "[recording][cli]") {
   CHECK(differing.code == 1);
   CHECK(nlohmann::json::parse(differing.out)["first_difference"]["frame"] == 28);
 
-  const Ran none = railstep_program("replay " + kFolder + "moving_load.toml");
+  const Ran none = railstep_program("replay " + kScenes + "moving_load.toml");
   CHECK(none.code == 2);
   CHECK_THAT(none.err, Contains("E-RECORDING-01"));
   CHECK(railstep_program("replay " + (folder / "nothing").string()).code == 2);

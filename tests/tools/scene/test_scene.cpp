@@ -7,6 +7,7 @@
 
 #include "online/math/table.h"
 #include "scene/scene.h"
+#include "support/shipped.h"
 #include "text/read.h"
 
 using namespace railstep;
@@ -14,10 +15,6 @@ using Catch::Contains;
 using Overrides = std::vector<std::string>;
 
 namespace {
-
-std::filesystem::path shipped(const std::string& name) {
-  return std::filesystem::path(RAILSTEP_SOURCE) / "config/scenes" / (name + ".toml");
-}
 
 /// Message for a shipped scene with one option, or "accepted" if it is read.
 std::string with(const std::string& name, const Overrides& overrides) {
@@ -99,7 +96,8 @@ TEST_CASE("wheelset_on_track is the scene of the paper", "[scene]") {
 TEST_CASE("ballasted_track has sleepers, ballast and sensors", "[scene]") {
   const Scene s = read_scene(shipped("ballasted_track"));
   CHECK(std::get<ProfileFile>(s.rail.shape).path ==
-        (shipped("x").parent_path().parent_path() / "profiles/60e1.toml").lexically_normal());
+        (std::filesystem::path(kScenes).parent_path().parent_path() / "profiles/60e1.toml")
+            .lexically_normal());
   CHECK(s.sleeper->mass == 300);
   CHECK(s.sleeper->ballast_stiffness[2] == 50e6);
   CHECK(s.sleeper->ballast_stiffness[1] == 0.);

@@ -21,7 +21,7 @@ SystemScene scene_with(const Overrides& overrides = {}) {
 }
 
 /// Message for the exciter's scene with this option, or "accepted" if it is read and built.
-std::string with(const Overrides& overrides) {
+std::string beside_with(const Overrides& overrides) {
   try {
     static_cast<void>(BuiltSystem(scene_with(overrides)));
   } catch (const InputError& error) {
@@ -81,7 +81,7 @@ TEST_CASE("a scene with a track and bodies has the columns of both", "[scene]") 
 TEST_CASE("keys that cannot be stepped beside bodies are refused", "[scene]") {
   const auto refused = [](const std::string& option, const std::string& said) {
     CAPTURE(option);
-    CHECK_THAT(with({option}), Contains(said));
+    CHECK_THAT(beside_with({option}), Contains(said));
   };
   refused("wheelset=[{name=\"w\"}]", "[E-BODY-01]");
   refused("irregularity={spectrum=\"ore_low\"}", "E-BODY-04");
@@ -91,7 +91,7 @@ TEST_CASE("keys that cannot be stepped beside bodies are refused", "[scene]") {
   refused("condense={kind=\"full\", modes_per_bay=2}", "E-CONDENSE-30");
   refused("condense={kind=\"full\", highest_hz=200}", "E-CONDENSE-30");
   refused("condense.residual_flexibility=true", "E-CONDENSE-31");
-  CHECK(with({"condense={kind=\"full\", residual_flexibility=false}"}) == "accepted");
+  CHECK(beside_with({"condense={kind=\"full\", residual_flexibility=false}"}) == "accepted");
   refused("step.scheme=\"energy-momentum\"", "E-BODY-06");
   refused("step.scheme=\"tr-bdf2\"", "E-BODY-07");
   refused("step.scheme=\"rk4\"", "expected one of \"generalised-alpha\", \"backward-euler\"");
@@ -104,37 +104,39 @@ TEST_CASE("keys that cannot be stepped beside bodies are refused", "[scene]") {
 }
 
 TEST_CASE("names of rails are known, and points must lie on them", "[scene]") {
-  CHECK_THAT(with({"spring[0].between=[\"rail lift\", \"frame\"]"}),
+  CHECK_THAT(beside_with({"spring[0].between=[\"rail lift\", \"frame\"]"}),
              Contains("expected \"ground\", \"frame\", \"disc_left\", \"disc_right\", \"rail "
                       "left\", \"rail right\" [E-BODY-37]"));
   CHECK_THAT(
-      with({"spring[0].point_m=[25, 0.75, 0]"}),
+      beside_with({"spring[0].point_m=[25, 0.75, 0]"}),
       Contains(
           "[spring[0]] point_m is at 25 m along the left rail; expected 0 to 24 m [E-BODY-24]"));
-  CHECK_THAT(with({"spring[0].point_m=[11.7, -0.75, 0.091]"}),
+  CHECK_THAT(beside_with({"spring[0].point_m=[11.7, -0.75, 0.091]"}),
              Contains("1.50276 m beside the left rail") && Contains("E-BODY-25"));
-  CHECK_THAT(with({"force[0].on=\"rail left\""}), Contains("E-BODY-38"));
+  CHECK_THAT(beside_with({"force[0].on=\"rail left\""}), Contains("E-BODY-38"));
   CHECK_THAT(
-      with({"sensor[0].on=\"rail right\""}),
+      beside_with({"sensor[0].on=\"rail right\""}),
       Contains(
           "expected \"frame\", \"disc_left\", \"disc_right\", \"rail\", \"sleeper\" [E-BODY-39]"));
-  CHECK_THAT(with({"sensor[0].on=\"fram\""}), Contains("E-BODY-23"));
-  CHECK_THAT(with({"body[1].name=\"sleeper\""}),
+  CHECK_THAT(beside_with({"sensor[0].on=\"fram\""}), Contains("E-BODY-23"));
+  CHECK_THAT(beside_with({"body[1].name=\"sleeper\""}),
              Contains("[body[1]] name = \"sleeper\"") && Contains("E-BODY-21"));
-  CHECK_THAT(with({"load=[{name=\"frame\", rail=\"left\", start_m=6, force_z_n=-1e4}]"}),
+  CHECK_THAT(beside_with({"load=[{name=\"frame\", rail=\"left\", start_m=6, force_z_n=-1e4}]"}),
              Contains("[body[0]] name = \"frame\" is taken by [load[0]]"));
-  CHECK_THAT(with({"spring[1].name=\"frame\""}), Contains("is taken by [body[0]]"));
+  CHECK_THAT(beside_with({"spring[1].name=\"frame\""}), Contains("is taken by [body[0]]"));
   // Without a name the same spring has no name for its column.
-  CHECK_THAT(with({"spring=[{between=[\"rail left\", \"frame\"], point_m=[11.7, 0.75, 0.091], "
+  CHECK_THAT(
+      beside_with({"spring=[{between=[\"rail left\", \"frame\"], point_m=[11.7, 0.75, 0.091], "
                    "other_point_m=[11.7, 0.75, 0.341], stiffness_n_per_m=1e6, trace=true}]"}),
-             Contains("E-JOINT-17"));
+      Contains("E-JOINT-17"));
 }
 
 TEST_CASE("a body that nothing holds has no equilibrium", "[scene]") {
   // No joint holds this disc.
-  CHECK_THAT(with({"joint[2].between=[\"frame\", \"disc_left\"]", "joint[2].point_m=[12, 0.3, 0.6]",
+  CHECK_THAT(
+      beside_with({"joint[2].between=[\"frame\", \"disc_left\"]", "joint[2].point_m=[12, 0.3, 0.6]",
                    "joint[4].between=[\"frame\", \"disc_left\"]", "joint[4].point_m=[12, 0.3, 0.6]",
                    "joint[4].polynomial_rad=[0, 188.49555921538759]"}),
-             Contains("exciter_on_track.toml: ") && Contains("body 2") && Contains("E-SYSTEM-62"));
-  CHECK(with({"joint=[]", "step.start=\"released\""}) == "accepted");
+      Contains("exciter_on_track.toml: ") && Contains("body 2") && Contains("E-SYSTEM-62"));
+  CHECK(beside_with({"joint=[]", "step.start=\"released\""}) == "accepted");
 }

@@ -13,6 +13,7 @@
 #include "build/build_irregularity.h"
 #include "offline/contact/hertz.h"
 #include "offline/receptance/full_order.h"
+#include "support/pi.h"
 #include "support/scene_run.h"
 
 using namespace railstep;
@@ -20,12 +21,11 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 const std::string kFull = "condense.kind=\"full\"";  // a start in a tenth of the time
 constexpr double kStatic = 10000. * 9.81 / 2.;       // N under each wheel of these scenes
 
 /// A shipped scene with more tables in TOML after its own.
-std::filesystem::path with(const std::string& name, const std::string& tables) {
+std::filesystem::path irregular(const std::string& name, const std::string& tables) {
   std::ifstream in(kScenes + name + ".toml");
   std::string text((std::istreambuf_iterator<char>(in)), {});
   const std::string profile = "../profiles/";
@@ -39,7 +39,7 @@ std::filesystem::path with(const std::string& name, const std::string& tables) {
 
 std::string refusal(const std::string& tables, const std::vector<std::string>& overrides = {}) {
   try {
-    irregularities_of(read_scene(with("ballasted_track", tables), overrides));
+    irregularities_of(read_scene(irregular("ballasted_track", tables), overrides));
   } catch (const InputError& error) {
     return error.what();
   }
@@ -82,7 +82,7 @@ double corrugation_force(const Scene& scene) {
 
 TEST_CASE("an irregularity is read with its defaults and gives the rails' signals") {
   const Scene scene =
-      read_scene(with("ballasted_track", "[irregularity]\nspectrum = \"german_high\"\n"));
+      read_scene(irregular("ballasted_track", "[irregularity]\nspectrum = \"german_high\"\n"));
   REQUIRE(scene.irregularity);
   CHECK(scene.irregularity->geometries.size() == 4);
   CHECK(scene.irregularity->options.length == 100.);  // four times the longest wave
@@ -93,12 +93,12 @@ TEST_CASE("an irregularity is read with its defaults and gives the rails' signal
   CHECK(rails[3].rail == 1);
   CHECK(rails[3].direction == 2);
   const Scene low = read_scene(
-      with("ballasted_track",
-           "[irregularity]\nspectrum = \"ore_low\"\ngeometries = [\"vertical\"]\nseed = 7\n"));
+      irregular("ballasted_track",
+                "[irregularity]\nspectrum = \"ore_low\"\ngeometries = [\"vertical\"]\nseed = 7\n"));
   CHECK(irregularities_of(low).size() == 2);
   const Scene again = read_scene(
-      with("ballasted_track",
-           "[irregularity]\nspectrum = \"ore_low\"\ngeometries = [\"vertical\"]\nseed = 8\n"));
+      irregular("ballasted_track",
+                "[irregularity]\nspectrum = \"ore_low\"\ngeometries = [\"vertical\"]\nseed = 8\n"));
   CHECK(irregularities_of(low)[0].signal.coefficient !=
         irregularities_of(again)[0].signal.coefficient);
 }
@@ -107,9 +107,9 @@ TEST_CASE("a record is found in the folder of its scene") {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_railstep_record.csv");
   std::ofstream(file) << "distance_m,left_z_mm\n0,0\n0.25,1\n0.5,0\n0.75,2\n1,0\n";
-  const Scene scene =
-      read_scene(with("ballasted_track", "[irregularity]\nfile = \"" + file.filename().string() +
-                                             "\"\ncontact_patch_m = 0.0\n"));
+  const Scene scene = read_scene(irregular(
+      "ballasted_track",
+      "[irregularity]\nfile = \"" + file.filename().string() + "\"\ncontact_patch_m = 0.0\n"));
   const auto rails = irregularities_of(scene);
   REQUIRE(rails.size() == 1);
   CHECK(signal_at(rails[0].signal.model(), .75).value == Approx(2e-3));

@@ -8,6 +8,7 @@
 #include "build/build.h"
 #include "offline/analysis/statics.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -17,10 +18,6 @@ using Overrides = std::vector<std::string>;
 
 namespace {
 
-std::filesystem::path shipped(const std::string& name) {
-  return std::filesystem::path(RAILSTEP_SOURCE) / "config/scenes" / (name + ".toml");
-}
-
 /// A track whose rail is a plain rectangle, which needs no fit.
 Track track(const std::string& name, Overrides overrides) {
   overrides.insert(overrides.begin(), "rail={rectangle={height_m=0.17, width_m=0.045}}");
@@ -28,7 +25,7 @@ Track track(const std::string& name, Overrides overrides) {
 }
 
 /// Message for the ballasted track with one change, or "accepted" if it is read and built.
-std::string with(const std::string& change, const std::string& name = "ballasted_track") {
+std::string seats_with(const std::string& change, const std::string& name = "ballasted_track") {
   try {
     (void)track(name, {"support_change=[{" + change + "}]"});
   } catch (const InputError& error) {
@@ -121,31 +118,33 @@ TEST_CASE("scatter is even, follows its seed and is the same on every machine", 
 }
 
 TEST_CASE("bad changes are refused, each in one sentence", "[seats]") {
-  CHECK_THAT(with("seats=[41], missing=\"pad\""), Contains("at least 0, at most 40"));
-  CHECK_THAT(with("seats=[3.5], missing=\"pad\""), Contains("3.5") && Contains("E-SUPPORT-05"));
-  CHECK_THAT(with("seats=[4, 3], missing=\"pad\""), Contains("E-SUPPORT-06"));
-  CHECK_THAT(with("seats=[4], to=5, missing=\"pad\""), Contains("E-SUPPORT-04"));
-  CHECK_THAT(with("from=7, to=5, missing=\"pad\""), Contains("to = 5"));
-  CHECK_THAT(with("from=7"), Contains("E-SUPPORT-17"));
-  CHECK_THAT(with("missing=\"rail\""), Contains("missing = \"rail\"") && Contains("\"ballast\""));
-  CHECK_THAT(with("rail=\"left\", missing=\"sleeper\""), Contains("E-SUPPORT-14"));
-  CHECK_THAT(with("rail=\"left\", sleeper={mass_kg=1}"), Contains("E-SUPPORT-12"));
-  CHECK_THAT(with("seats=[3], ballast={stiffness_factor=[1, 2]}"), Contains("E-SUPPORT-08"));
-  CHECK_THAT(with("support={stiffness_z_n_per_m=-1}"), Contains("E-KEY-05"));
-  CHECK_THAT(with("support={stifness_z_n_per_m=1}"),
+  CHECK_THAT(seats_with("seats=[41], missing=\"pad\""), Contains("at least 0, at most 40"));
+  CHECK_THAT(seats_with("seats=[3.5], missing=\"pad\""),
+             Contains("3.5") && Contains("E-SUPPORT-05"));
+  CHECK_THAT(seats_with("seats=[4, 3], missing=\"pad\""), Contains("E-SUPPORT-06"));
+  CHECK_THAT(seats_with("seats=[4], to=5, missing=\"pad\""), Contains("E-SUPPORT-04"));
+  CHECK_THAT(seats_with("from=7, to=5, missing=\"pad\""), Contains("to = 5"));
+  CHECK_THAT(seats_with("from=7"), Contains("E-SUPPORT-17"));
+  CHECK_THAT(seats_with("missing=\"rail\""),
+             Contains("missing = \"rail\"") && Contains("\"ballast\""));
+  CHECK_THAT(seats_with("rail=\"left\", missing=\"sleeper\""), Contains("E-SUPPORT-14"));
+  CHECK_THAT(seats_with("rail=\"left\", sleeper={mass_kg=1}"), Contains("E-SUPPORT-12"));
+  CHECK_THAT(seats_with("seats=[3], ballast={stiffness_factor=[1, 2]}"), Contains("E-SUPPORT-08"));
+  CHECK_THAT(seats_with("support={stiffness_z_n_per_m=-1}"), Contains("E-KEY-05"));
+  CHECK_THAT(seats_with("support={stifness_z_n_per_m=1}"),
              Contains("'stifness_z_n_per_m'") && Contains("'stiffness_z_n_per_m'"));
-  CHECK_THAT(with("ballast={stiffness_y_n_per_m=1e7}"),
+  CHECK_THAT(seats_with("ballast={stiffness_y_n_per_m=1e7}"),
              Contains("holds the sleeper along y") && Contains("E-SUPPORT-18"));
-  CHECK_THAT(with("ballast={length_m=0.2}"), Contains("E-SUPPORT-10"));
-  CHECK_THAT(with("ballast={stiffness_scatter=0.2}"), Contains("seed"));
-  CHECK_THAT(with("missing=\"pad\", seed=1"), Contains("E-SUPPORT-16"));
-  CHECK_THAT(with("ballast={stiffness_scatter=1.0}, seed=1"), Contains("below 1"));
-  CHECK_THAT(with("missing=\"ballast\"", "moving_load"), Contains("E-SUPPORT-13"));
-  CHECK_THAT(with("ballast={stiffness_factor=2}", "moving_load"), Contains("E-SUPPORT-11"));
-  CHECK_THAT(with("seats=[20], missing=\"sleeper\""),
+  CHECK_THAT(seats_with("ballast={length_m=0.2}"), Contains("E-SUPPORT-10"));
+  CHECK_THAT(seats_with("ballast={stiffness_scatter=0.2}"), Contains("seed"));
+  CHECK_THAT(seats_with("missing=\"pad\", seed=1"), Contains("E-SUPPORT-16"));
+  CHECK_THAT(seats_with("ballast={stiffness_scatter=1.0}, seed=1"), Contains("below 1"));
+  CHECK_THAT(seats_with("missing=\"ballast\"", "moving_load"), Contains("E-SUPPORT-13"));
+  CHECK_THAT(seats_with("ballast={stiffness_factor=2}", "moving_load"), Contains("E-SUPPORT-11"));
+  CHECK_THAT(seats_with("seats=[20], missing=\"sleeper\""),
              Contains("sleeper = 20") && Contains("E-SENSOR-05"));
-  CHECK_THAT(with("seats=[19], missing=\"sleeper\""), Contains("accepted"));
-  CHECK(with("seats=[19], missing=\"sleeper\"") == "accepted");
+  CHECK_THAT(seats_with("seats=[19], missing=\"sleeper\""), Contains("accepted"));
+  CHECK(seats_with("seats=[19], missing=\"sleeper\"") == "accepted");
 }
 
 TEST_CASE("the right rail may differ", "[seats]") {
@@ -178,7 +177,7 @@ TEST_CASE("the right rail may differ", "[seats]") {
 
 TEST_CASE("the program runs a track whose sides and rails differ", "[seats]") {
   const auto folder = fresh_folder("seats");
-  const auto scene = shipped("ballasted_track").string();
+  const std::string scene = shipped("ballasted_track");
   const std::string words =
       " --set 'rail={rectangle={height_m=0.17, width_m=0.045}, right={rectangle={height_m=0.15, "
       "width_m=0.045}}}' --set 'support_change=[{from=8, to=9, rail=\"left\", "

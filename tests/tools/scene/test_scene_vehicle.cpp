@@ -18,13 +18,13 @@ const std::string kScene = std::string(RAILSTEP_SOURCE) + "/config/scenes/bogie_
 const std::string kSpeed = "speed_m_per_s=10.0, start_m=20.0";
 
 /// The scene with one vehicle in place of its own.
-Scene with(const std::string& vehicle) {
+Scene vehicle_with(const std::string& vehicle) {
   return read_scene(kScene, {"vehicle=[{" + vehicle + "}]"});
 }
 
 std::string sentence(const std::string& vehicle) {
   try {
-    with(vehicle);
+    vehicle_with(vehicle);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -35,18 +35,19 @@ std::string sentence(const std::string& vehicle) {
 
 TEST_CASE("every type of vehicle is read with its defaults", "[scene][vehicle]") {
   const VehicleScene mass =
-      with("name=\"m\", type=\"mass\", mass_kg=100.0, " + kSpeed).vehicles.at(0);
+      vehicle_with("name=\"m\", type=\"mass\", mass_kg=100.0, " + kSpeed).vehicles.at(0);
   CHECK(mass.contact == WheelContactKind::bonded);
   CHECK(mass.vehicle.bodies.at(0).mass == 100.);
   CHECK(
       (mass.gravity == kGravity && !mass.may_leave_rail && mass.start == 20. && mass.speed == 10.));
   const VehicleScene on_spring =
-      with("name=\"m\", type=\"sprung_mass\", mass_kg=100.0, stiffness_n_per_m=1e6, " + kSpeed)
+      vehicle_with("name=\"m\", type=\"sprung_mass\", mass_kg=100.0, stiffness_n_per_m=1e6, " +
+                   kSpeed)
           .vehicles.at(0);
   CHECK(on_spring.contact == WheelContactKind::linear);
   CHECK((on_spring.stiffness == 1e6 && on_spring.damping == 0.));
   const VehicleScene sprung =
-      with(
+      vehicle_with(
           "name=\"m\", type=\"sprung_mass\", mass_kg=100.0, unsprung_mass_kg=10.0, "
           "stiffness_n_per_m=1e6, damping_n_s_per_m=1e3, " +
           kSpeed)
@@ -57,12 +58,12 @@ TEST_CASE("every type of vehicle is read with its defaults", "[scene][vehicle]")
       "frame_mass_kg=1e3, frame_inertia_kg_m2=700.0, wheel_mass_kg=600.0, wheelbase_m=3.0, "
       "primary_stiffness_n_per_m=1e6, ";
   const VehicleScene three =
-      with("name=\"b\", type=\"bogie\", axles=3, " + frame + kSpeed).vehicles.at(0);
+      vehicle_with("name=\"b\", type=\"bogie\", axles=3, " + frame + kSpeed).vehicles.at(0);
   REQUIRE(three.vehicle.wheels.size() == 3);
   CHECK(three.vehicle.wheels[0].place == 1.5);
   CHECK(three.vehicle.wheels[1].place == 0.);
   const VehicleScene whole =
-      with(
+      vehicle_with(
           "name=\"c\", type=\"vehicle\", body_mass_kg=1e4, body_inertia_kg_m2=1e6, "
           "bogie_distance_m=10.0, secondary_stiffness_n_per_m=4e5, " +
           frame + kSpeed)
@@ -91,7 +92,7 @@ TEST_CASE("shipped vehicles are read and stand with their weight on their wheels
                                              {"freight_bogie", 2u, 3u},
                                              {"locomotive_bogie", 3u, 4u}}) {
     const Scene scene =
-        with(std::string("name=\"v\", file=\"../vehicles/") + file + ".toml\", " + kSpeed);
+        vehicle_with(std::string("name=\"v\", file=\"../vehicles/") + file + ".toml\", " + kSpeed);
     CHECK(scene.vehicles.at(0).vehicle.wheels.size() == wheels);
     CHECK(scene.vehicles.at(0).bodies.size() == bodies);
     const Simulation run(scene);

@@ -13,6 +13,7 @@
 
 #include "run/trace_compare.h"
 #include "support/program.h"
+#include "support/shipped.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -21,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kMovingLoad = std::string(RAILSTEP_SOURCE) + "/config/scenes/moving_load.toml";
 const std::string kShort = " --set step.duration_s=0.01";
 const std::string kSix =
     " --vary support.stiffness_z_n_per_m=2e7,3e7,5e7 --vary 'load[0].speed_m_per_s=20,30'";
