@@ -139,12 +139,12 @@ TEST_CASE("static refuses in one sentence what it cannot solve", "[static]") {
   refuse(rail + "--set 'track.model=\"beam\"'", "timoshenko");
   refuse(rail + "--set 'track.ends=\"free\"'", "E-TRACK-35");
   refuse(beam + "--set 'track.ends=\"free\"'", "E-TRACK-35");
-  refuse(rail + "--set 'track.unknowns=\"vertical\"'", "bends in space");
+  refuse(rail + "--set 'track.unknowns=\"vertical\"'", "E-SCENE-08");
   refuse(beam + "--set track.rails=2 --set 'load[0].rail=\"left\"' --set 'sensor[0].rail=\"left\"'",
          "E-TIMOSHENKO-01");
   refuse(beam + "--set 'track.reference_line=\"foot\"'", "centroid");
   refuse("static " + shipped_word("ballasted_track") + "--model timoshenko", "E-TIMOSHENKO-01");
-  refuse(rail + "--set 'rail.outline=\"exact\"'", "beside profile");
+  refuse(rail + "--set 'rail.outline=\"exact\"'", "E-RAIL-04");
   refuse(rail + "--set rail.rule.section_points=4", "section_points");
   refuse(rail + "--set rail.rule.axial_points=6", "axial_points");
   refuse(rail + "--set 'rail.element=\"paper\"'", "E-KEY-02");
