@@ -154,7 +154,7 @@ TEST_CASE("a track refuses springs that do not pull where it cannot have them", 
     CHECK_THAT(ran.err, Catch::Contains(sentence));
   };
   const std::string run = "run " + kHanging + " --set ";
-  refused(run + "ballast.unilateral=true", "accepted are 32");
+  refused(run + "ballast.unilateral=true", "E-PACK-35");
   refused(run + "ballast.gap_m=-1e-3", "gap_m");
   refused(run + "support_change[0].ballast.gap_m=0.2", "gap_m");
   refused(run + "support.length_m=0.1 --set support.unilateral=true", "E-TRACK-14");
