@@ -43,7 +43,7 @@ void check(const System& system, const SystemOptions& o, bool with_scheme) {
     refuse("E-SYSTEM-52",
            "Baumgarte's alpha or beta is negative; expected both to be at least 0 1/s");
   const Scheme& c = o.scheme;
-  if (with_scheme && c.part > 0.)
+  if (with_scheme && c.stage_fraction > 0.)
     refuse("E-SYSTEM-53",
            "the scheme has two stages, but bodies and beams need a scheme of one stage; expected "
            "another step.scheme than \"tr-bdf2\"");
