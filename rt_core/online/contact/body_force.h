@@ -5,7 +5,7 @@
 namespace railstep {
 
 /// A force on a wheelset or a vehicle at a time, N or N m.
-/// @param input  State::input, or null before there is one
+/// @param input  State::input, or null before there is a state
 inline double force_at(const BodyForce& force, double time, const double* input) noexcept {
   return force.input >= 0 ? held_input(input, force.input)
                           : table_value(force.table, force.points, time);

@@ -14,13 +14,13 @@ namespace railstep {
 
 namespace {
 
-/// Contacts where the forces of the step act: on u + dt v of bodies and banded lines at its end; in
-/// the middle of it where forces are held, with condensed lines as they stand (their fastest rates
-/// are far above 1/dt).
+/// Finds the contacts where the forces of the step act: at its end, on u + dt v of bodies and
+/// banded lines. If forces are held it is the middle of the step, with condensed lines as they are
+/// at the start (their fastest rates are far above 1/dt).
 void locate_contacts(const Model& model, const Stage& stage, const State& s, Workspace& w,
                      Coupling& c) noexcept {
   const double ahead = (model.form == Form::condensed ? .5 : 1.) * stage.span;
-  // Irregularities are those of where the penetration is taken; of a mean, those of the middle.
+  // Irregularities are taken where the penetration is taken; for a mean, in the middle.
   const double later = model.scheme.mean != 0 ? 0. : model.scheme.theta * stage.span - ahead;
 #pragma omp simd
   for (std::int32_t i = modal_unknowns(model); i < model.unknowns; ++i)
@@ -43,10 +43,10 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
     c.place[i] = {load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }
 
-/// Whether there is anything under a wheel.
+/// Whether there is a rail or ground under a wheel.
 bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground; }
 
-/// What the loads add to the rail under each wheel through the residual flexibility.
+/// Residual displacement of the rail under each wheel by the loads.
 void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c) noexcept {
   for (ContactId i = 0; i < c.contacts; ++i) c.by_loads[i] = 0.;
   for (std::int32_t l = 0; l < model.loads; ++l) {
@@ -58,7 +58,7 @@ void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c)
   }
 }
 
-/// What a unit force at wheel j adds to the approach of wheel i through the body that carries them
+/// Change of the approach of wheel i by a unit force at wheel j, through the body that carries
 /// both.
 double body_compliance(const Model& model, const Coupling& c, ContactId i, ContactId j) noexcept {
   if (is_of_wheelset(model, i) != is_of_wheelset(model, j)) return 0.;
@@ -82,7 +82,7 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
     }
 }
 
-/// Penetration that the track alone would leave: the located one, moved from where it was located.
+/// Penetration by the track alone: the located one, plus the track's motion since then.
 void track_penetration(const Model& model, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
   for (ContactId i = 0; i < c.contacts; ++i) {

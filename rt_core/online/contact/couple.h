@@ -3,7 +3,7 @@
 
 namespace railstep {
 
-/// What the coupled solve of a step met.
+/// Results of the coupled solve of a step.
 struct CoupleResult {
   Status status;
   std::int32_t iterations;
@@ -13,15 +13,15 @@ struct CoupleResult {
   bool on_rail[kMaxWheels];
 };
 
-/// Wheelsets, their guides, vehicles, their contacts with the rails, and what of the track is
-/// one-sided: finds the contacts at a stage's end, solves the track for its own right-hand side (in
-/// workspace.solved) and for each wheel, then all ports' forces and guides together, and leaves
-/// behind the displacements of all in solved.
+/// Couples wheelsets, guides, vehicles, contacts with the rails and one-sided springs of the track.
+/// It finds the contacts at a stage's end, solves the track for its own right-hand side (in
+/// workspace.solved) and for each wheel, then all ports' forces and guides together. At the end
+/// workspace.solved has all displacements.
 CoupleResult couple(const Model& model, const Stage& stage, State& state,
                     Workspace& workspace) noexcept;
 
-/// After the scheme's correction: velocities and accelerations of guided coordinates are put onto
-/// the guide (augmented Lagrangian; the inertia is diagonal, so the projection is exact).
+/// After the scheme's correction, projects velocities and accelerations of guided coordinates onto
+/// the guide (augmented Lagrangian; the inertia is diagonal, so that the projection is exact).
 void project_guides(const Model& model, const Stage& stage, State& state) noexcept;
 
 }  // namespace railstep

@@ -11,14 +11,15 @@ struct FreeWheelset {
   double free[6];
 };
 
-/// A step's coupled problem: where the track and what stands on it would be without contact, and
-/// how both respond to contact forces. Written where it is read: nothing of it is zeroed.
+/// A step's coupled problem: positions of the track and of the bodies on it without contact, and
+/// the responses of both to contact forces. Not zero-initialised; each entry is written before it
+/// is read.
 struct Coupling {
   int contacts, ports;  // ports: the contacts, then the fixed ones
   WheelContact contact[kMaxWheels];
   RailForce place[kMaxWheels];
-  double by_loads[kMaxWheels];  // residual displacement there by the loads, m
-  double located[kMaxWheels];   // displacement of the lines there as contacts were located, m
+  double by_loads[kMaxWheels];  // residual displacement by the loads, m
+  double located[kMaxWheels];   // displacement of the lines when contacts were located, m
   FreeWheelset wheelset[kMaxWheelsets];
   double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
   double W[kPorts * kPorts];                          // [ports][ports] m/N

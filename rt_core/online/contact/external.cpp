@@ -74,8 +74,8 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
   at.port = {wheel.load_point, element, xi, at.force[2]};
 }
 
-/// What a unit force along a row, held over the step, makes of condensed lines, into w.solved and
-/// w.imaginary; or of banded ones at its end, into w.solved.
+/// Response of the lines to a unit force along a row: of condensed ones to a force held over the
+/// step, into w.solved and w.imaginary; of banded ones at its end, into w.solved.
 void respond(const Model& model, const RailRow& row, Workspace& w) noexcept {
   if (model.form == Form::banded) {
     for (std::int32_t i = 0; i < model.line_unknowns; ++i) w.solved[i] = 0.;
@@ -109,9 +109,9 @@ void apply_to_modes(const Model& model, const RailRow& row, double force, Worksp
   }
 }
 
-/// Rates of modes without the forces' own part, which moves no point: rate z into w.u_star and
-/// w.v_star. The sum over modes of shape shape' is 0, displacements of one instant having no force
-/// in them.
+/// Rates of modes without the part of the forces: rate z into w.u_star and w.v_star. That part
+/// moves no point, as the sum of shape shape' over the modes is 0: displacements of one instant
+/// contain no forces.
 void mode_rates(const Model& model, const State& s, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
@@ -120,7 +120,7 @@ void mode_rates(const Model& model, const State& s, Workspace& w) noexcept {
   }
 }
 
-/// Displacement of a contact's point by the lines, without what is of second order.
+/// Displacement of a contact's point by the lines, without terms of second order.
 double moved(const Model& model, const RailRow& row, const Configuration& at) noexcept {
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], row, at);
@@ -137,8 +137,7 @@ void place_external(const Model& model, std::int64_t step, const double* input,
 
 void place_in_step(const Model& model, std::int64_t step, const State& s, double* scaled,
                    ExternalContact* contact) noexcept {
-  const double dt =
-      model.form == Form::condensed ? 0. : model.scheme.dt;  // as those of wheels are located
+  const double dt = model.form == Form::condensed ? 0. : model.scheme.dt;  // located as wheels are
 #pragma omp simd
   for (std::int32_t i = 0; i < model.line_unknowns; ++i) scaled[i] = s.u[i] + dt * s.v[i];
   place_external(model, step, s.input, {scaled, {s.u, s.v}}, contact);

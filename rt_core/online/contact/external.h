@@ -4,12 +4,12 @@
 
 namespace railstep {
 
-/// Where a wheel of a vehicle outside the model meets its rail in a step: the place is an input,
-/// the rows are frozen on the configuration that the state's velocities lead to.
+/// Contact of a wheel of a vehicle outside the model in a step. The place is an input. The rows are
+/// frozen on the configuration that the state's velocities lead to.
 struct ExternalContact {
   bool on_rail;
   RailRow row[3];   // displacement of that point of the railhead along x, y, z of the track
-  double offset;    // of its height, of second order in the rail's roll, m: track/p_delta.h
+  double offset;    // second order of its height in the rail's roll, m: track/p_delta.h
   double roll;      // of the section under it, rad
   double place;     // along the model's elements, m
   double force[3];  // N on the rail, 0 off it
@@ -35,21 +35,21 @@ void place_external(const Model& model, std::int64_t step, const double* input,
 void place_in_step(const Model& model, std::int64_t step, const State& state, double* scaled,
                    ExternalContact* contact) noexcept;
 
-/// Places them so, and applies their forces to the lines: on the right-hand side of banded lines,
-/// held over the step on condensed ones, as those of wheels in the model are.
+/// Places them in this way and applies their forces to the lines: on the right-hand side of banded
+/// lines, held over the step on condensed ones, as for wheels in the model.
 void apply_external_forces(const Model& model, std::int64_t step, const State& state,
                            Workspace& workspace, ExternalContact* contact) noexcept;
 
-/// Displacements by the lines, and places and forces, of a state.
+/// Publishes displacements by the lines, places and forces of a state.
 void publish_external(const Model& model, const State& state, const ExternalContact* contact,
                       Outputs& outputs) noexcept;
 
-/// Velocities of the rail under the wheels. @param workspace  scratch
+/// Publishes velocities of the rail under the wheels. @param workspace  scratch
 void publish_external_rates(const Model& model, const State& state, const ExternalContact* contact,
                             Workspace& workspace, Outputs& outputs) noexcept;
 
-/// Displacement of one contact's point per newton at another, of all by their rows: symmetric, m/N,
-/// residual flexibility included.
+/// Displacement of one contact's point per newton at another, for all rows: symmetric, m/N, with
+/// residual flexibility.
 /// @param compliance  [3 external_wheels][3 external_wheels] overwritten; 0 off the rail
 void external_compliance(const Model& model, const ExternalContact* contact, Workspace& workspace,
                          double* compliance) noexcept;

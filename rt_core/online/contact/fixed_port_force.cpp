@@ -8,7 +8,7 @@ namespace railstep {
 
 namespace {
 
-/// What a unit force of a port makes of the lines; the imaginary parts of condensed ones alone.
+/// Response of the lines to a unit force of a port; imaginary parts for condensed ones only.
 Complex response_of(const Model& model, std::int32_t port) noexcept {
   const std::ptrdiff_t stride = std::ptrdiff_t{parts(model.form)} * model.line_unknowns;
   const double* re = model.fixed.response + port * stride;

@@ -9,11 +9,11 @@ namespace railstep {
 
 namespace {
 
-/// Gap that forces do not close within a step beside the velocity that is there, m: in 1 ms it
-/// would take 1000 m/s^2.
+/// Gap that forces cannot close within a step, beyond the present velocity, m: in 1 ms this would
+/// take 1000 m/s^2.
 constexpr double kInactiveGap = 1e-3;
 
-/// How far a wheelset goes from its rail at a contact, for changes of its coordinates.
+/// Increase of a wheelset's distance from its rail at a contact by changes of its coordinates.
 double lift(const WheelContact& at, const double* p, const double* from) noexcept {
   double sum = 0.;
   for (int k = 0; k < 6; ++k) sum += at.body_row[k] * (p[k] - (from == nullptr ? 0. : from[k]));

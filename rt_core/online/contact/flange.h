@@ -3,19 +3,20 @@
 
 namespace railstep {
 
-// Flanges in a step's coupled problem: contacts behind those of all wheels. What a force at one
-// does to the track and the wheelset is found as that of a tread is; it neither makes nor feels
-// residual displacements.
+// Flanges in a step's coupled problem: their contacts follow those of all wheels. Responses of the
+// track and the wheelset to a flange force are found as for a tread. Residual flexibility is
+// neglected at flanges.
 
-/// Contacts of all flanges where the forces of the step act, as of the treads.
-/// @param later  s, by how much the irregularities under them are those of a later time
+/// Finds the contacts of all flanges where the forces of the step act, as for treads.
+/// @param later  s; irregularities are those at this time after the configuration's
 void locate_flanges(const Model& model, const State& s, const Workspace& w, double later,
                     Coupling& c) noexcept;
 
-/// Laws of the flanges over the step. To a damper's speed (damper.h) the way along a rail adds.
+/// Laws of the flanges over the step. The motion along the rail adds to a damper's speed
+/// (damper.h).
 void find_flange_laws(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
 
-/// As tread_impact_is_unresolved() of treads, for the mass that the flange has alone.
+/// As tread_impact_is_unresolved(), for the mass that acts at the flange alone.
 bool flange_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
                                  ContactId contact) noexcept;
 

@@ -26,8 +26,8 @@ Frame frame(const RailShape& rail, RailPlace at) noexcept {
           blend(node + 3, N1), blend(node + 6, N1), blend(node, N2),    blend(node + 6, N2)};
 }
 
-/// What a search asks of a place: `value` > 0 if the answer lies ahead, `slope` how fast that falls
-/// over xi, or a positive substitute (`exact` false) where the slope would lead away.
+/// Sample of a search at a place: `value` > 0 if the solution lies ahead, `slope` its decrease over
+/// xi, or a positive substitute (`exact` false) if the slope would lead away.
 struct Sample {
   double value, slope;
   bool exact;
@@ -70,7 +70,7 @@ Found search(int elements, RailPlace at, int cap, Ask ask) noexcept {
   double low = -1.0, high = elements + 1.0;       // outside: not visited yet
   int low_element = -1, high_element = elements;  // that saw them
   cap = cap < 1 ? 1 : cap > kLocateSteps ? kLocateSteps : cap;
-  bool hopped = false;  // from the other side of this border, which pointed here
+  bool hopped = false;  // came from the other side of this border, which pointed here
   for (int steps = 1; steps <= cap; ++steps) {
     const Sample got = ask(at);
     const double step = got.value / got.slope;
@@ -101,7 +101,7 @@ Found search(int elements, RailPlace at, int cap, Ask ask) noexcept {
                                : place_at(0.5 * (low + high), elements);
       continue;
     }
-    // Across a border. Where the far side was already found to point back, stop on the border.
+    // Across a border. If the far side is known to point back, stop on the border.
     const bool visited = next == (ahead ? high_element : low_element);
     const double s = along(at) + 0.5 * step;
     if (next < 0 || next >= elements)

@@ -23,12 +23,12 @@ struct RailPlace {
 
 enum class LocateStatus : std::uint8_t {
   found,
-  off_start,    // the answer lies before element 0; the place is the rail's start
-  off_end,      // behind the last element; the place is the rail's end
+  off_start,    // the solution lies before element 0; the place is the rail's start
+  off_end,      // it lies after the last element; the place is the rail's end
   cap_reached,  // not settled (or not a number); the place is the last one tried
 };
 
-/// How far beyond an end, in xi, still counts as on the rail: rounding of coordinates of 1 km.
+/// Distance beyond an end, in xi, that still counts as on the rail: rounding of 1 km.
 inline constexpr double kEndSlack = 1e-12;
 
 struct PointOnRail {
@@ -39,10 +39,12 @@ struct PointOnRail {
   double residual;  // |r(xi, y, z) - point|, m: 0 to rounding when found
 };
 
-/// Inverse map: the section plane (spanned by a and b) through a point, and where in it.
+/// Inverse map: the section plane (spanned by a and b) through a point, and its place in this
+/// plane.
 ///
-/// Newton on (point - r).(a x b) = 0, from which y and z follow linearly; kept in the bracket of
-/// signs seen, free to cross element borders. On a border either side gives the same point.
+/// Newton's method on (point - r).(a x b) = 0, from which y and z follow linearly. It stays in the
+/// bracket of signs found so far, and may cross element borders. On a border both sides give the
+/// same point.
 /// @param point  [3] m
 /// @param start  the last step's place (clipped to the rail)
 /// @param cap    most evaluations, clipped to 1..8
@@ -55,15 +57,15 @@ struct WheelOnRail {
   int steps;
   RailPlace place;   // of the crown point nearest to the axle
   double distance;   // from the crown's centre curve to the axle line, m
-  double normal[3];  // unit, from the curve to the axle, square to the axle; 0 if they meet
+  double normal[3];  // unit, from the curve to the axle, normal to it; 0 if they meet
   double along;      // e.(c - p): where along the axle, m
 };
 
 /// Closest approach of the axle line p + t e to the curve c(s) = r + z_crown b.
 ///
-/// Newton on the derivative of |(I - e e')(c - p)|^2 / 2, which jumps at element borders: a border
-/// whose two sides both point at it is the answer. A border bent towards the axle can have one
-/// nearest point on each side, micrometres apart in distance; the one reached first is returned.
+/// Newton's method on the derivative of |(I - e e')(c - p)|^2 / 2, which jumps at element borders:
+/// a border to which both its sides point is the solution. A border bent towards the axle can have
+/// a nearest point on each side, micrometres apart in distance; the first one found is returned.
 /// @param p, e     [3] m; [3] unit
 /// @param z_crown  height of the crown's centre of curvature above the axis, m
 [[nodiscard]] WheelOnRail locate_wheel(const RailShape& rail, const double* p, const double* e,

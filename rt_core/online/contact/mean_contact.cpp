@@ -20,8 +20,8 @@ void find_means(const Model& model, const State& s, const Workspace& w, Coupling
   for (ContactId i = 0; i < c.contacts; ++i) {
     const WheelContact& at = c.contact[i];
     if (!(c.law[i].hertz > 0.) || !(at.on_rail || at.on_ground)) continue;
-    // track_free has the track and the loads at the step's end, and the body that carries the wheel
-    // at neither.
+    // track_free has the track and the loads at the step's end, and no position of the body that
+    // carries the wheel.
     double from = c.track_free[i] - (is_of_wheelset(model, i) ? wheelset_lift_before(model, s, c, i)
                                                               : vehicle_lift_before(model, s, i));
     if (at.on_rail)

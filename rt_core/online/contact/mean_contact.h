@@ -3,12 +3,12 @@
 
 namespace railstep {
 
-/// What the loads, and the forces of the step before at their new places, move the rail under a
-/// wheel by the residual flexibility, m.
+/// Residual displacement of the rail under a wheel by the loads and by the forces of the step
+/// before at their new places, m.
 double residual_before(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
 
-/// Makes the laws of Hertz contacts means over the step, from the penetration that its start has in
-/// the step's geometry. What is free of contact forces at its end must be known.
+/// Makes the laws of Hertz contacts means over the step, from the penetration at its start in the
+/// step's geometry. Positions without contact forces at its end must be known.
 void find_means(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
 
 }  // namespace railstep

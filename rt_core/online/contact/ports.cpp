@@ -30,8 +30,8 @@ double penetration(double force, double C) noexcept {
   return root * root;
 }
 
-/// [V(d) - V(e)] / (d - e) and its slope over d, of V = 2/5 C max(d, 0)^2.5: without a difference
-/// of like numbers, by r = sqrt d, s = sqrt e,
+/// [V(d) - V(e)] / (d - e) and its slope over d, for V = 2/5 C max(d, 0)^2.5. Without a difference
+/// of similar numbers, by r = sqrt d, s = sqrt e:
 ///   0.4 C (r^4 + r^3 s + r^2 s^2 + r s^3 + s^4) / (r + s).
 struct Mean {
   double force, slope;
@@ -61,7 +61,7 @@ double force_at(const PortLaw& law, double d) noexcept {
   return larger(0.0, law.slope * d + law.jump * part);
 }
 
-/// df/dd where there is a force.
+/// df/dd of a port with a force.
 double stiffness_at(const PortLaw& law, double d) noexcept {
   if (law.mean) return mean_at(law.hertz, d, law.from).slope;
   if (law.bilateral) return law.slope;
@@ -69,14 +69,15 @@ double stiffness_at(const PortLaw& law, double d) noexcept {
   return law.jump > 0.0 && d < kJumpDepth ? law.slope + law.jump / kJumpDepth : law.slope;
 }
 
-/// Whether the port takes part: a force now, or one that a change of d makes.
+/// Whether the port takes part: it has a force, or a change of d makes one.
 bool acts(const PortLaw& law, double force) noexcept { return law.bilateral || force > 0.0; }
 
-/// Force where a jump above 0 is all there.
+/// Force at which a jump above 0 is complete.
 double knee(const PortLaw& law) noexcept { return law.slope * kJumpDepth + law.jump; }
 
-/// The penetration at which a mean law has a force: closed while that is all from `from` on the way
-/// out, else Newton's from above, which nears a convex rising law from one side.
+/// The penetration at which a mean law has a force. In closed form while the force is that of
+/// `from` on the way out, else by Newton's method from above, which approaches a convex rising law
+/// from one side.
 double mean_depth(const PortLaw& law, double force) noexcept {
   const double e = law.from;
   if (!(force > 0.0)) return 0.0;
@@ -91,8 +92,8 @@ double mean_depth(const PortLaw& law, double force) noexcept {
   return d;
 }
 
-/// The penetration of a force > 0, or any of a bilateral port; at 0 that from which on there is
-/// one.
+/// The penetration of a force > 0, or of any force of a bilateral port; for 0 the one at which
+/// forces begin.
 double depth_of(const PortLaw& law, double force) noexcept {
   if (law.mean) return mean_depth(law, force);
   if (law.bilateral) return (force - law.jump) / law.slope;
@@ -101,8 +102,8 @@ double depth_of(const PortLaw& law, double force) noexcept {
   return (force - law.jump) / law.slope;
 }
 
-/// A lone port's penetration under d_free > 0, or any of a bilateral one: of a contact exact for w
-/// C sqrt(d) small and large and 14 % low between, of a spring exact.
+/// Penetration of a single port under d_free > 0, or under any d_free if bilateral. For a contact
+/// it is exact for small and large w C sqrt(d) and 14 % low between; for a spring it is exact.
 double lone_depth(const PortLaw& law, double d_free, double w) noexcept {
   if (law.bilateral) return (d_free - w * law.jump) / (1.0 + w * law.slope);
   if (law.hertz > 0.0) {
@@ -115,8 +116,8 @@ double lone_depth(const PortLaw& law, double d_free, double w) noexcept {
   return second < d_free ? second : d_free;
 }
 
-/// Where the search of a mean law's penetration starts: near where it would be alone, by three of
-/// Newton's steps from where the contact was or, from open, as if of an ordinary law.
+/// Start of the search for a mean law's penetration: near that of a single port, by three Newton
+/// steps from where the contact was; if it was open, as for an ordinary law.
 double mean_start(const PortLaw& law, double d_free, double w) noexcept {
   double d = d_free;
   if (law.from > 0.0) {
@@ -133,7 +134,7 @@ double mean_start(const PortLaw& law, double d_free, double w) noexcept {
   return d;
 }
 
-/// The problem, and one iterate with all that follows from it.
+/// The problem, and one iterate with the quantities that follow from it.
 struct Problem {
   int n;
   const double* W;
@@ -143,7 +144,7 @@ struct Problem {
 
 struct Point {
   double d[kPorts], f[kPorts], F[kPorts];  // m, N, d + W f - d_free in m
-  double residual, scale;                  // max |F|; what its rounding is measured against
+  double residual, scale;                  // max |F|; scale of its rounding
 };
 
 void evaluate(const Problem& p, Point& x) noexcept {
@@ -167,7 +168,7 @@ void evaluate(const Problem& p, Point& x) noexcept {
   }
 }
 
-/// Gradient of the convex function along a step in f, at x: negative while it goes down.
+/// Gradient of the convex function along a step in f, at x: negative while it decreases.
 double slope(const Problem& p, const Point& x, const double* step) noexcept {
   double sum = 0.0;
   for (int i = 0; i < p.n; ++i)
@@ -175,8 +176,8 @@ double slope(const Problem& p, const Point& x, const double* step) noexcept {
   return sum;
 }
 
-/// delta = -(I + W K)^-1 F, K = df/dd, through the symmetric I + sqrt(K) W sqrt(K). Where that
-/// cannot be solved the coupling between ports is neglected.
+/// delta = -(I + W K)^-1 F, K = df/dd, by the symmetric I + sqrt(K) W sqrt(K). If this cannot be
+/// solved, the coupling between ports is neglected.
 SmallSolve newton_step(const Problem& p, const Point& x, const double* K, double* delta) noexcept {
   double S[kPorts], t[kPorts], A[kPorts * kPorts];
   for (int i = 0; i < p.n; ++i) S[i] = std::sqrt(K[i]);
@@ -195,16 +196,16 @@ SmallSolve newton_step(const Problem& p, const Point& x, const double* K, double
   return solve;
 }
 
-/// The next penetrations: back from Newton's step to the law, on the line along which the port
-/// alone yields. Of a spring that is exact. Of a contact, the step of a lone port ends above the
-/// answer in d, and below in f, by p : 1 with p = W_ii K_i; weighted by 1 : p the quadratic errors
-/// cancel.
+/// The next penetrations: back from Newton's step to the law, on the line along which a single port
+/// yields. This is exact for a spring. For a contact, the step of a single port ends above the
+/// solution in d and below it in f, by p : 1 with p = W_ii K_i; weighted by 1 : p the quadratic
+/// errors cancel.
 void advance(const Problem& p, const Point& x, const double* K, const double* delta,
              double* d) noexcept {
   for (int i = 0; i < p.n; ++i) {
     const double w = p.W[i * p.n + i], next = x.d[i] + delta[i];
     const double force = x.f[i] + K[i] * delta[i];
-    if (p.law[i].mean) {  // convex: Newton's own step nears it from one side
+    if (p.law[i].mean) {  // convex: Newton's own step approaches it from one side
       d[i] = next;
     } else if (K[i] > 0.0 && p.law[i].hertz > 0.0) {
       const double weight = w * K[i];
@@ -217,13 +218,13 @@ void advance(const Problem& p, const Point& x, const double* K, const double* de
   }
 }
 
-/// Slope behind the minimum, over the slope at the start, that calls for a shorter step. A guard
-/// against wild steps only: an ordinary line search (0.5 here) costs iterations, since a step that
-/// passes the minimum on its way to the right active set is a good one. In 9600 random cases 0.5
-/// left 193 unsolved after 8 iterations, 30 left 6, 1000 and no guard at all left 1.
+/// Slope beyond the minimum, over the slope at the start, above which a step is shortened. It only
+/// guards against wild steps: an ordinary line search (0.5 here) costs iterations, since a step
+/// that passes the minimum on its way to the right active set is good. Of 9600 random cases 0.5
+/// left 193 unsolved after 8 iterations, 30 left 6, and 1000 and no guard at all left 1.
 constexpr double kOvershoot = 1000.0;
 
-/// One globalised iteration x -> next; how its linear system was solved.
+/// One globalised iteration x -> next. Returns how its linear system was solved.
 SmallSolve iterate(const Problem& p, const Point& x, Point& next) noexcept {
   double K[kPorts], delta[kPorts], step[kPorts];
   for (int i = 0; i < p.n; ++i)
@@ -235,7 +236,7 @@ SmallSolve iterate(const Problem& p, const Point& x, Point& next) noexcept {
     for (int i = 0; i < p.n; ++i) step[i] = next.f[i] - x.f[i];
     const double before = slope(p, x, step), after = slope(p, next, step);
     if (!(before < 0.0) || !(after > -kOvershoot * before)) break;
-    // Far past the minimum of the convex function on this line: back to the secant's zero.
+    // Far beyond the minimum of the convex function on this line: back to the secant's zero.
     const double part = before / (before - after);
     for (int i = 0; i < p.n; ++i) {
       const double force = x.f[i] + part * step[i];
@@ -267,7 +268,8 @@ bool usable(const Problem& p) noexcept {
   return true;
 }
 
-/// From the last step's forces; a port that had none starts as if alone in the shape they make.
+/// Starts from the last step's forces. A port without force starts as if it were alone in the shape
+/// under these forces.
 void start(const Problem& p, const double* last, Point& x) noexcept {
   for (int i = 0; i < p.n; ++i)
     x.f[i] = std::isfinite(last[i]) && acts(p.law[i], last[i]) ? last[i] : 0.0;
@@ -313,7 +315,7 @@ PortResult solve_ports(int n, const double* W, const PortLaw* law, const double*
     ++iterations;
   }
   if (x->residual < best->residual || done(*x)) best = x;
-  if (!done(*best)) {  // no force at all is always finite
+  if (!done(*best)) {  // without any force all numbers are finite
     for (int i = 0; i < n; ++i) next->d[i] = 0.0;
     evaluate(p, *next);
     if (!(best->residual < next->residual)) best = next;

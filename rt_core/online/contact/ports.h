@@ -8,28 +8,28 @@ namespace railstep {
 
 enum class PortStatus : std::uint8_t {
   converged,    // residual within kPortTolerance
-  cap_reached,  // the forces are the best found, the residual says how good
+  cap_reached,  // the forces are the best found; the residual says how good
   indefinite,  // W is not positive semidefinite: couplings were neglected in a step, the forces are
                // the best found and may not be the only ones
   bad_input,   // a number is not finite, a law is invalid, W_ii < 0 or n is out of range: forces 0
 };
 
-/// Force of a port over its penetration d, which never falls: of a bilateral one slope d + jump
-/// at every d, else 0 where d <= 0, and above
+/// Force of a port over its penetration d; it never falls. A bilateral port has slope d + jump at
+/// every d. Another has 0 for d <= 0, and for d > 0
 ///   hertz d^1.5                                    of a contact (hertz > 0), else
 ///   max(0, slope d + jump)                         of a spring and a damper over one step.
-/// A damper c that works while d > 0 has the velocity kv d + v0 at the end of a step: with it the
-/// slope is k + c kv and the jump c v0. One above 0 is jump min(1, d / kJumpDepth), so that the law
-/// has no gap; one below 0 leaves none, and what stands still has the spring's force at any depth.
+/// A damper c that works while d > 0 has the velocity kv d + v0 at the end of a step: the slope is
+/// then k + c kv and the jump c v0. A jump above 0 is jump min(1, d / kJumpDepth), so that the law
+/// is continuous; a jump below 0 leaves it continuous. Without velocity the force is the spring's.
 ///
-/// Of a contact whose law is a mean (Gonzalez's discrete gradient) the force is
+/// For a contact whose law is a mean (Gonzalez's discrete gradient) the force is
 ///   [V(d) - V(from)] / (d - from),  V(d) = 2/5 hertz max(d, 0)^2.5:
-/// its work over the step is what V gains. It never falls with d either, and is above 0 wherever
-/// one of both ends is.
+/// its work over the step is the gain of V. It never falls with d either, and is above 0 if one of
+/// both ends is.
 struct PortLaw {
   double hertz;  // N/m^1.5
   double slope;  // N/m, > 0 unless hertz > 0
-  double jump;   // N; below 0 of a port that opens
+  double jump;   // N; below 0 for a port that opens
   bool bilateral = false;
   bool mean = false;
   double from = 0.;  // m, of a mean: the penetration at the step's start
@@ -42,17 +42,17 @@ struct PortResult {
   double residual;  // max |d + W f - d_free|, m
 };
 
-/// Residual wanted, over the largest |d_free_i| + sum_j |W_ij| f_j: the rounding of the sum itself
-/// is up to n eps = 3.6e-15 of that, so this leaves a factor of a few hundred.
+/// Target of the residual, over the largest |d_free_i| + sum_j |W_ij| f_j. The rounding of the sum
+/// itself is up to n eps = 3.6e-15 of that, so that a factor of a few hundred is left.
 inline constexpr double kPortTolerance = 1e-12;
 
 /// Coupled one-sided ports: d + W f(d) = d_free, f_i(d_i) by the laws.
 ///
-/// f minimises the convex f'Wf/2 + sum of integrals of d_i(f_i) - d_free'f over f >= 0 of
-/// one-sided ports and any f of bilateral ones, whose d_i(f_i) rises too, so it is unique. Newton
-/// on the active set; its step is taken partly in d and partly in f, weighted so that a lone
-/// contact converges cubically, and shortened if it runs far past the minimum on its line. A lone
-/// spring and damper is solved in one.
+/// f minimises the convex f'Wf/2 + sum of integrals of d_i(f_i) - d_free'f over f >= 0 of one-sided
+/// ports and any f of bilateral ones. As d_i(f_i) rises for all, f is unique. Newton's method works
+/// on the active set. Its step is taken partly in d and partly in f, weighted so that a single
+/// contact converges cubically, and shortened if it ends far beyond the minimum on its line. A
+/// single spring with damper is solved in one step.
 /// @param n       ports, 0 to kPorts
 /// @param W       [n][n] compliance, m/N, symmetric, positive semidefinite
 /// @param law     [n]

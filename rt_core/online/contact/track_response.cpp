@@ -4,7 +4,7 @@ namespace railstep {
 
 namespace {
 
-/// Of a wheel's row, the part of one line.
+/// The part of one line in a wheel's row.
 Complex row_of(const Model& model, const Workspace& w, const LineModel& line,
                ContactId wheel) noexcept {
   const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(wheel) * model.unknowns + line.first;
@@ -16,7 +16,8 @@ bool acts_on(const Coupling& c, ContactId wheel, const LineModel& line) noexcept
   return c.contact[wheel].on_rail && line.rail_factor[c.contact[wheel].row.rail] != 0.;
 }
 
-/// Solves each banded line for itself and for the wheels that touch it, together where they can be.
+/// Solves each banded line for its own forces and for the wheels that act on it, if possible
+/// together.
 void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (ContactId i = 0; i < c.contacts; ++i) {
@@ -40,8 +41,7 @@ void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
   }
 }
 
-/// What a unit force under each wheel, held over the step, makes of the condensed lines that it
-/// acts on.
+/// Response of the condensed lines to a unit force under each wheel, held over the step.
 void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (ContactId i = 0; i < c.contacts; ++i) {
@@ -57,9 +57,9 @@ void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept
   }
 }
 
-/// x -= sum of forces times what a unit of each makes of a line; whole panels, so that the line is
-/// read and written once.
-/// @param unit  [count] of those vectors, from the line's first unknown on
+/// x -= sum of forces times the unit responses of a line, in whole panels, so that the line is read
+/// and written once.
+/// @param unit  [count] unit responses, from the line's first unknown on
 void subtract(const double* const* unit, const double* force, int count, int size,
               double* x) noexcept {
   for (int k = 0; k < size; k += kLanes) {
@@ -73,7 +73,7 @@ void subtract(const double* const* unit, const double* force, int count, int siz
   }
 }
 
-/// What a line that a force at contact `i` moves adds to the displacement under it.
+/// Part of the displacement under contact `i` by a line that a force there moves.
 double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
                   ContactId i, const double* re, const double* im) noexcept {
   if (model.form == Form::banded) return motion(line, c.contact[i].row, {re, {}});

@@ -3,17 +3,17 @@
 
 namespace railstep {
 
-/// Places a vehicle's wheels: upright, over the place that the time says, with the rail's row and
-/// irregularities there, whatever moves. A wheel off the rail stands on the ground at the height of
-/// the rail's axis at rest.
-/// @param before   s, by how much it is looked for ahead of the step's end
+/// Places a vehicle's wheels: upright, over the place at the given time, with the rail's row and
+/// irregularities there, independent of displacements. A wheel off the rail stands on the ground at
+/// the height of the rail's axis at rest.
+/// @param before   s; the place is that at this time before the step's end
 /// @param contact  [wheels] of the model; those of the vehicle are written
-/// @param later    s, by how much the irregularities under them are those of a later time
+/// @param later    s; irregularities are those at this time after the place's
 void place_vehicle_wheels(const Model& model, const VehicleModel& vehicle, std::int64_t step,
                           double before, WheelContact* contact, double later = 0.) noexcept;
 
 /// The same with the penetrations of a configuration.
-/// @param at       displacements of track and vehicles at which to look
+/// @param at       displacements of track and vehicles
 /// @param contact  [wheels] of the model; those of the vehicle are written
 void find_vehicle_contacts(const Model& model, const VehicleModel& vehicle, std::int64_t step,
                            double before, const Configuration& at, WheelContact* contact) noexcept;

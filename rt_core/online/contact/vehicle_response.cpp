@@ -17,7 +17,7 @@ const VehicleModel& vehicle_of(const Model& model, ContactId wheel) noexcept {
   return model.vehicle[vehicle_wheel(model, wheel).vehicle];
 }
 
-/// Of a wheel, among its vehicle's.
+/// Index of a wheel among those of its vehicle.
 int among_own(const Model& model, ContactId wheel) noexcept {
   return among_vehicle_wheels(model, wheel) - vehicle_of(model, wheel).first_wheel;
 }
@@ -32,7 +32,7 @@ void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
   for (int i = 0; i < n; ++i) y[i] += dot(A + i * n, x, n);
 }
 
-/// At what part of the step the equation of motion holds.
+/// Fraction of the step at which the equation of motion holds.
 double held_at(const Model& model) noexcept { return model.form == Form::condensed ? .5 : 1.; }
 
 DepthSpeed speed_of(const Model& model, double time, const State& s, const Workspace& w,

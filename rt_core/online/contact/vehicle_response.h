@@ -3,25 +3,26 @@
 
 namespace railstep {
 
-// Vehicles in a step's coupled problem. Their wheels stand behind those of the wheelsets.
+// Vehicles in a step's coupled problem. Their wheels follow those of the wheelsets.
 
-/// Where each vehicle goes without contact:
+/// Motion of each vehicle without contact:
 ///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 - weight
 ///                             + its forces at the step's end.
 void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
                    Coupling& c) noexcept;
 
-/// Laws of the vehicles' wheels over the step. A damper takes the rate of the penetration at its
-/// end, kv (d - d*) + v* with what the wheel's way adds; of held forces (d - d0) / (theta dt).
+/// Laws of the vehicles' wheels over the step. A damper acts on the rate of penetration at the
+/// step's end, kv (d - d*) + v* plus the effect of the wheel's motion along the rail; if forces are
+/// held, on (d - d0) / (theta dt).
 void find_vehicle_laws(const Model& model, double time, const State& s, const Workspace& w,
                        Coupling& c) noexcept;
 
-/// What a unit force at wheel j adds to the approach of wheel i through a vehicle that carries
+/// Change of the approach of wheel i by a unit force at wheel j, through a vehicle that carries
 /// both.
 double vehicle_compliance(const Model& model, ContactId i, ContactId j) noexcept;
 
-/// Penetration that the rail as it was located, irregularities and the vehicle's place at the
-/// step's start leave of wheel i: what the coordinates at the step's end take off is left out.
+/// Penetration of wheel i from the located rail, irregularities and the vehicle's position at the
+/// step's start, without the effect of the coordinates at the step's end.
 double vehicle_offset(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
 
 /// Height of wheel i at the step's end without contact forces.
@@ -33,7 +34,7 @@ double vehicle_lift_before(const Model& model, const State& s, ContactId i) noex
 /// Moves the vehicles under the contact forces.
 void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept;
 
-/// As tread_impact_is_unresolved of wheelsets, for the mass that the wheel has alone.
+/// As tread_impact_is_unresolved() of wheelsets, for the mass that acts at the wheel alone.
 bool vehicle_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
                                   ContactId wheel) noexcept;
 

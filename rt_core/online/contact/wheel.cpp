@@ -10,7 +10,7 @@ namespace railstep {
 
 namespace {
 
-constexpr int kWindow = 2;  // elements that the search takes in: the wheel's and the nearest other
+constexpr int kWindow = 2;  // elements of the search: the wheel's and the nearest other
 constexpr int kWindowNodes = 3 * kWindow;  // elements on both sides of a joint share none
 
 struct Window {
@@ -19,8 +19,8 @@ struct Window {
   double nodes[9 * kWindowNodes];  // [elements][3][9]
 };
 
-/// Adds a line's displacements of a window's nodes, of both rails together: what one with one table
-/// moves of one it moves of the other, up to sign and weight.
+/// Adds a line's displacements of a window's nodes, for both rails together: a line with one table
+/// moves both rails alike, up to sign and weight.
 void gather_line(const LineModel& line, const Configuration& at, Window* sides) noexcept {
   const std::int32_t from = 27 * sides[0].first, nodes = 3 * sides[0].elements;
   const std::int32_t* left = line.unknown_of[0] + from;
@@ -54,7 +54,7 @@ void gather(const Model& model, double x, const Configuration& at, Window* sides
   for (std::int32_t l = 0; l < model.lines; ++l) gather_line(model.line[l], at, sides);
 }
 
-/// From displacements in the rail's axes to places in the track's: rest added.
+/// From displacements in the rail's axes to positions in the track's axes, with rest added.
 void add_rest(const Model& model, int rail, Window& window) noexcept {
   const Cant& cant = model.cant[rail];
   for (std::int32_t i = 0; i < 3 * window.elements; ++i) {
@@ -72,11 +72,11 @@ void add_rest(const Model& model, int rail, Window& window) noexcept {
   }
 }
 
-/// Good to 1e-9 up to half a radian: the wheelset's roll and yaw stay far below.
+/// Accurate to 1e-9 up to half a radian; the wheelset's roll and yaw stay far below.
 double sine(double x) noexcept { return x * sinc_series(x * x, 8); }
 double cosine(double x) noexcept { return cosine_series(x * x, 8); }
 
-/// Where a wheelset is: its centre and its axes, of which the first does not roll.
+/// Position of a wheelset: its centre and its axes; the first axis does not roll.
 struct Pose {
   double centre[3], ahead[3], axle[3], up[3];
 };
@@ -105,7 +105,7 @@ double section_roll(const Cant& cant, const double* q) noexcept {
   return .5 * (a[2] - b[1]);
 }
 
-/// Where a search in a window starts: at x on the straight rail.
+/// Start of a search in a window: at x on the straight rail.
 RailPlace guess(const Model& model, const Window& window, double x) noexcept {
   double at = x / model.element_length - window.first;
   if (!(at > 0.)) at = 0.;
@@ -114,8 +114,8 @@ RailPlace guess(const Model& model, const Window& window, double x) noexcept {
   return {element, 2. * (at - element) - 1.};
 }
 
-/// Row of the material point (y, z) along the normal. An irregular rail that is drawn along brings
-/// up the height that its steel had behind: its row leans back by the slope.
+/// Row of the material point (y, z) along the normal. If an irregular rail moves along x, the
+/// height of the steel behind arrives: the row leans back by the slope.
 void fill_row(const Cant& cant, const double* shape, double slope, WheelContact& at) noexcept {
   const double lever[3] = {1., at.y, at.z};
   double along[3];
@@ -125,7 +125,7 @@ void fill_row(const Cant& cant, const double* shape, double slope, WheelContact&
     for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
 }
 
-/// d(gap)/d(coordinates) of the wheelset. @param arm  from its centre to where the force acts, m
+/// d(gap)/d(coordinates) of the wheelset. @param arm  from its centre to the force, m
 void fill_body_row(const Pose& body, const double* arm, WheelContact& at) noexcept {
   double lever[3];
   cross(arm, at.normal, lever);
@@ -167,9 +167,9 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   at.z = z_crown + model.crown_radius[side] * (n_b / length);
   if (!(std::fabs(at.y) <= model.head_half_width[side])) at.on_rail = false;
   const double arm[3] = {found.along * axle[0], found.along * axle[1], found.along * axle[2]};
-  // Irregularities are those of the steel right under the axle. The nearest point lies aside of it
-  // by the radius times the rail's slope; read there, they would do work as the rail bends, which
-  // contact at the true shapes' nearest points does not.
+  // Irregularities are those of the steel right under the axle. The nearest point is beside it by
+  // the radius times the rail's slope. If they were read there, they would do work as the rail
+  // bends, which contact at the nearest points of the true shapes does not.
   const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length +
                    (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
   const double rolled = (now.track_offset + model.endless.origin) + now.u[w.first];
@@ -200,7 +200,7 @@ double slope_along(const Model& model, const Window& window, RailPlace place,
   return dot(at.normal, q) + at.y * dot(at.normal, q + 3) + at.z * dot(at.normal, q + 6);
 }
 
-/// Finds the contact of flange `side`, as find_flanges() says.
+/// Finds the contact of flange `side` as find_flanges() describes.
 WheelContact find_flange(const Model& model, const FlangeModel& flange, int side,
                          const Configuration& now, double ahead, const Window& window,
                          SeatMotions& seats) noexcept {

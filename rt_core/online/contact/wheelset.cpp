@@ -13,11 +13,12 @@ namespace {
 
 constexpr int kGuided[kGuideRows] = {0, 5};  // x and yaw
 
-/// The augmented Lagrangian's penalty over the coordinate's inertia term kg m: each iteration
-/// leaves 1/(1 + this) of the violation.
+/// Penalty of the augmented Lagrangian over the coordinate's inertia term kg m: each iteration
+/// leaves 1/(1 + kPenalty) of the violation.
 constexpr double kPenalty = 1e3;
 
-/// Of a guided coordinate at a stage's end; x counts from the start, or from the last bay border.
+/// Target of a guided coordinate at a stage's end; x counts from the start, or from the last bay
+/// border.
 Travelled target(const Model& model, const WheelsetModel& w, int guided, const Stage& at) noexcept {
   if (guided != 0) return {0., 0., 0.};
   return way_at(model, w.travel, at.step, at.before);

@@ -24,8 +24,8 @@ inline constexpr std::size_t kStepStack = std::size_t{128} << 10;
                                    Workspace& workspace, Outputs& outputs) noexcept;
 
 /// Response of the rail under external wheels in the next frame, so that a vehicle outside the
-/// model can close its contacts in that frame. At its end their points are displaced, to rounding,
-/// by
+/// model can close its contacts in that frame. At its end the displacements of their points are, to
+/// rounding,
 ///   free + compliance * forces,
 /// with 3 n + d for direction d of wheel n. The state is not changed. Places among the inputs must
 /// be those of the frame; forces are not used.
