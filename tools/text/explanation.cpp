@@ -28,11 +28,12 @@ std::vector<Explanation> explanations() {
   return all;
 }
 
-std::string_view first_sentence(const Explanation& explanation) {
+std::string first_sentence(const Explanation& explanation) {
   const std::string_view text = explanation.text;
   const auto stop = std::min(text.find(". "), text.find(".\n"));
-  return text.substr(0, std::min({stop == std::string_view::npos ? stop : stop + 1, text.find('\n'),
-                                  text.size()}));
+  std::string sentence(text.substr(0, stop == std::string_view::npos ? stop : stop + 1));
+  std::replace(sentence.begin(), sentence.end(), '\n', ' ');
+  return sentence;
 }
 
 }  // namespace railstep

@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,8 +15,8 @@ struct Explanation {
 /// All of docs/messages, in the order of its files.
 std::vector<Explanation> explanations();
 
-/// Up to the first full stop or the end of the line, whichever comes first.
-std::string_view first_sentence(const Explanation& explanation);
+/// Up to the first full stop, in one line.
+std::string first_sentence(const Explanation& explanation);
 
 /// The files of docs/messages, as the build took them in.
 std::span<const std::string_view> message_pages();

@@ -71,8 +71,8 @@ void OutputFile::drop() noexcept {
 
 void OutputFile::fail(int reason) {
   drop();
-  fail("E-FILE-10",
-       fmt::format("{}: the file cannot be written: {}", file_.string(), std::strerror(reason)));
+  railstep::fail("E-FILE-10", fmt::format("{}: the file cannot be written: {}", file_.string(),
+                                          std::strerror(reason)));
 }
 
 void write_file(const std::filesystem::path& file, std::string_view content) {
