@@ -170,6 +170,8 @@ Value Table::kept(Read read, Value otherwise) const {
   }
 }
 
+bool Table::has(std::string_view key) const { return look_up(key).node != nullptr; }
+
 double Table::number(std::string_view key, const Range& accepted) const {
   return kept(
       [&] {
