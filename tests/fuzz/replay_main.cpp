@@ -1,6 +1,7 @@
-// Runs a fuzzer without libFuzzer: every named file, then mutations of these from a fixed seed for
-// a number of seconds. An input that ends the program is kept in ./failed-<program>.
-// Usage: replay_<target> [SECONDS] FILE_OR_FOLDER...
+// Runs a fuzzer without libFuzzer: every named file, then mutations of these for a number of
+// seconds; each seed gives other mutations. An input that ends the program is kept in
+// ./failed-<program>.
+// Usage: fuzz_<target> [SECONDS [SEED]] FILE_OR_FOLDER...
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -75,7 +76,7 @@ Input mutated(Input input, unsigned seed) {
 }
 
 /// Runs mutations of mutations: four on top of each other, for one input after the other.
-long run_mutations(const std::vector<Input>& corpus, double seconds) {
+long run_mutations(const std::vector<Input>& corpus, double seconds, unsigned seed) {
   const auto begin = std::chrono::steady_clock::now();
   long runs = 0;
   for (unsigned round = 0; !corpus.empty(); ++round)
@@ -84,7 +85,8 @@ long run_mutations(const std::vector<Input>& corpus, double seconds) {
       for (unsigned depth = 0; depth < 4; ++depth, ++runs) {
         const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - begin;
         if (gone.count() >= seconds) return runs;
-        input = mutated(std::move(input), round * 7919u + static_cast<unsigned>(4 * i) + depth);
+        input = mutated(std::move(input),
+                        seed * 2654435761u + round * 7919u + static_cast<unsigned>(4 * i) + depth);
         run(input);
       }
     }
@@ -119,12 +121,19 @@ int main(int argc, char** argv) {
   failed = "failed-" + std::filesystem::path(argv[0]).filename().string();
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS})
     std::signal(signal, keep_input);
-  char* end = nullptr;
-  const double seconds = argc > 1 ? std::strtod(argv[1], &end) : 0.;
-  const int first = argc > 1 && *end == '\0' ? 2 : 1;
+  int first = 1;
+  const auto number = [&] {
+    char* end = nullptr;
+    const double value = first < argc ? std::strtod(argv[first], &end) : 0.;
+    if (end == nullptr || *end != '\0') return 0.;
+    ++first;
+    return value;
+  };
+  const double seconds = number();
+  const auto seed = static_cast<unsigned>(number());
   const std::vector<Input> corpus = read_corpus(argc - first, argv + first);
   for (const Input& input : corpus) run(input);
-  const long runs = run_mutations(corpus, first == 2 ? seconds : 0.);
+  const long runs = run_mutations(corpus, seconds, seed);
   std::printf("%zu inputs, %ld mutations\n", corpus.size(), runs);
   return corpus.empty() ? 1 : 0;
 }
