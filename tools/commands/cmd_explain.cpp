@@ -16,6 +16,7 @@ Exit run_explain(const std::string& id) {
       std::find_if(all.begin(), all.end(), [&](const Explanation& each) { return each.id == id; });
   if (found == all.end()) {
     std::vector<std::string> ids;
+    ids.reserve(all.size());
     for (const Explanation& each : all) ids.emplace_back(each.id);
     throw InputError("E-CLI-14", fmt::format("'{}' is not the id of a message or a status bit; did "
                                              "you mean '{}'? `railstep explain` lists all",

@@ -8,7 +8,7 @@ namespace railstep {
 namespace {
 
 std::string summary(const std::vector<Message>& messages) {
-  const std::string first = messages.front().line();
+  std::string first = messages.front().line();
   const std::size_t others = messages.size() - 1;
   if (others == 0) return first;
   return fmt::format("{} (and {} more error{})", first, others, others == 1 ? "" : "s");

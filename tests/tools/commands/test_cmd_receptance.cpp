@@ -34,11 +34,11 @@ nlohmann::json answer(const std::string& words) {
   return nlohmann::json::parse(ran.out);
 }
 
-std::vector<Value> values_of(const nlohmann::json& json) {
+std::vector<Value> values_of(const nlohmann::json& told) {
   std::vector<Value> values;
-  for (std::size_t i = 0; i < json.at("magnitude_m_per_n").size(); ++i)
+  for (std::size_t i = 0; i < told.at("magnitude_m_per_n").size(); ++i)
     values.push_back(
-        std::polar(json["magnitude_m_per_n"][i].get<double>(), json["phase_rad"][i].get<double>()));
+        std::polar(told["magnitude_m_per_n"][i].get<double>(), told["phase_rad"][i].get<double>()));
   return values;
 }
 
@@ -105,11 +105,11 @@ TEST_CASE("the answer has the receptances of other models beside it", "[receptan
                             "'sensor[0].position_m=12.3' --set 'sensor[1].position_m=12' --set "
                             "'sensor[2].sleeper=20' --set 'condense.modes_per_bay=2.5'" +
                             kBand;
-  const nlohmann::json json = answer(words + " --beside condensed,euler,endless");
-  const auto full = values_of(json);
-  const auto condensed = values_of(json.at("beside").at("condensed")),
-             euler = values_of(json.at("beside").at("euler")),
-             endless = values_of(json.at("beside").at("endless"));
+  const nlohmann::json told = answer(words + " --beside condensed,euler,endless");
+  const auto full = values_of(told);
+  const auto condensed = values_of(told.at("beside").at("condensed")),
+             euler = values_of(told.at("beside").at("euler")),
+             endless = values_of(told.at("beside").at("endless"));
   for (std::size_t i = 0; i < full.size(); ++i) {
     // Up to 400 Hz, waves in 40 bays decay to 1e-7 at the ends and the mesh errs by 1e-4 (its own
     // sizes, as in the tests of receptances). Modes up to 1 kHz err by (f/1 kHz)^2 of the 5 %
@@ -125,11 +125,11 @@ TEST_CASE("the answer has the receptances of other models beside it", "[receptan
 }
 
 TEST_CASE("the answer has resonances, decay rates and warnings", "[receptance]") {
-  const nlohmann::json json = answer(kS1 + " --at mid_bay --from 40 --to-hz 1300 --decay-rate");
-  REQUIRE(json.at("resonances").size() == 4);
-  CHECK(json["resonances"][3]["name"] == "pinned-pinned");
-  CHECK_THAT(json["resonances"][3]["frequency_hz"].get<double>(), WithinRel(1067.25, .01));
-  const nlohmann::json& decay = json.at("decay_rate");
+  const nlohmann::json told = answer(kS1 + " --at mid_bay --from 40 --to-hz 1300 --decay-rate");
+  REQUIRE(told.at("resonances").size() == 4);
+  CHECK(told["resonances"][3]["name"] == "pinned-pinned");
+  CHECK_THAT(told["resonances"][3]["frequency_hz"].get<double>(), WithinRel(1067.25, .01));
+  const nlohmann::json& decay = told.at("decay_rate");
   CHECK(decay.at("distance_m").size() == 29);
   CHECK(decay.at("band_hz") ==
         std::vector<int>{100, 125, 160, 200, 250, 315, 400, 500, 630, 800, 1000});
@@ -247,20 +247,20 @@ TEST_CASE("receptance refuses in one sentence a track or a point that has none",
 
 TEST_CASE("a free rail answers with its mass below its modes", "[receptance]") {
   // At 1 Hz the middle of a 2 m rail moves as -1/(m omega^2), to (1 Hz/290 Hz)^2 = 1.2e-5.
-  const nlohmann::json json = answer(
+  const nlohmann::json told = answer(
       shipped("free_rail") +
       " --set 'sensor=[{name=\"a\", on=\"rail\", position_m=1.0}]' --at a --from 1 --to-hz 1");
   const double mass = 7850. * 8.7e-3 * 2.;
-  CHECK_THAT(json["magnitude_m_per_n"][0].get<double>(),
+  CHECK_THAT(told["magnitude_m_per_n"][0].get<double>(),
              WithinRel(1. / (mass * 4. * M_PI * M_PI), 5e-5));
-  CHECK(json["phase_rad"][0].get<double>() == M_PI);
-  CHECK_FALSE(json.contains("end_effect"));
+  CHECK(told["phase_rad"][0].get<double>() == M_PI);
+  CHECK_FALSE(told.contains("end_effect"));
 }
 
 TEST_CASE("receptance writes its curves and its report", "[receptance]") {
   const auto folder = fresh_folder("receptance");
   const std::string csv = (folder / "curves.csv").string(), page = (folder / "page.html").string();
-  const nlohmann::json json = answer(kS1 +
+  const nlohmann::json told = answer(kS1 +
                                      " --at mid_bay --beside euler --decay-rate --points 60 "
                                      "--from 40 --to-hz 1300 --csv " +
                                      csv + " --report " + page);
@@ -271,9 +271,9 @@ TEST_CASE("receptance writes its curves and its report", "[receptance]") {
   CHECK(std::count(text.begin(), text.end(), '\n') == 61);
   double first_hz = 0., magnitude = 0.;
   REQUIRE(std::sscanf(text.c_str() + text.find('\n'), "%lf,%lf", &first_hz, &magnitude) == 2);
-  CHECK(first_hz == json["frequency_hz"][0].get<double>());
-  CHECK(magnitude == json["magnitude_m_per_n"][0].get<double>());
-  const auto hz = json["frequency_hz"].get<std::vector<double>>();
+  CHECK(first_hz == told["frequency_hz"][0].get<double>());
+  CHECK(magnitude == told["magnitude_m_per_n"][0].get<double>());
+  const auto hz = told["frequency_hz"].get<std::vector<double>>();
   const auto drawn = [&](const char* heading, const char* name, bool log_y) {
     return plotted(html, std::string("<h2>") + heading, name, true, log_y);
   };
@@ -285,10 +285,10 @@ TEST_CASE("receptance writes its curves and its report", "[receptance]") {
     check_drawn(drawn("Magnitude", name, true), hz, nm, 1e-3);  // a logarithm's pixel is wider
     check_drawn(drawn("Phase", name, false), hz, degrees, 1e-3);
   };
-  check_curve(json, "full order");
-  check_curve(json["beside"]["euler"], "Euler-Bernoulli");
+  check_curve(told, "full order");
+  check_curve(told["beside"]["euler"], "Euler-Bernoulli");
   // The bands are numbered from 0 along the axis, on which their frequencies are written.
-  const auto rate = json["decay_rate"]["db_per_m"].get<std::vector<double>>();
+  const auto rate = told["decay_rate"]["db_per_m"].get<std::vector<double>>();
   const Curve decay = plotted(html, "<h2>Track decay rate", "", false, true);
   REQUIRE(decay.y.size() == rate.size());
   for (std::size_t i = 0; i < rate.size(); ++i) CHECK_THAT(decay.y[i], WithinRel(rate[i], 1e-3));

@@ -26,7 +26,7 @@ Recording recorded(const Scene& scene, std::int64_t frames, std::int64_t every,
   return made;
 }
 
-void write(const std::filesystem::path& file, const std::vector<std::byte>& bytes) {
+void write_bytes(const std::filesystem::path& file, const std::vector<std::byte>& bytes) {
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()),
              static_cast<std::streamsize>(bytes.size()));
@@ -65,18 +65,18 @@ TEST_CASE("replay finds the frames in which another input was given", "[recordin
 TEST_CASE("a flipped bit or a missing end of a recording is refused", "[recording]") {
   const auto folder = fresh_folder("recording");
   const std::vector<std::byte> bytes = pushed().bytes();
-  write(folder / "whole", bytes);
+  write_bytes(folder / "whole", bytes);
   CHECK(Recording::read(folder / "whole").bytes() == bytes);
   // test_artefact checks the bits of a block. Here: the whole header and one bit in 997.
   for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += bit < 8 * 64 ? 1 : 997) {
     std::vector<std::byte> flipped = bytes;
     flipped[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
-    write(folder / "flipped", flipped);
+    write_bytes(folder / "flipped", flipped);
     CHECK_THROWS_AS(Recording::read(folder / "flipped"), InputError);
   }
   for (const std::size_t size : {std::size_t{0}, std::size_t{7}, std::size_t{63}, std::size_t{64},
                                  std::size_t{95}, bytes.size() / 2, bytes.size() - 1}) {
-    write(folder / "cut", {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)});
+    write_bytes(folder / "cut", {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)});
     CHECK_THROWS_AS(Recording::read(folder / "cut"), InputError);
   }
 }
@@ -87,7 +87,7 @@ TEST_CASE("a recording with hashes farther apart than frames can be counted is r
   Recording made = pushed();
   made.every = std::numeric_limits<std::int64_t>::max();
   made.hashes.resize(1);
-  write(folder / "far", made.bytes());
+  write_bytes(folder / "far", made.bytes());
   CHECK_THROWS_WITH(Recording::read(folder / "far"), Contains("E-RECORDING-05"));
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("the program records a run and replays it", "[recording][cli]") {
 
   Recording other = Recording::read(file);
   other.hashes[3] ^= 1;
-  write(file, other.bytes());
+  write_bytes(file, other.bytes());
   const Ran differing = railstep_program("replay " + file + " --json");
   CHECK(differing.code == 1);
   CHECK(nlohmann::json::parse(differing.out)["first_difference"]["frame"] == 28);
