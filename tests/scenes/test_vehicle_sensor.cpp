@@ -13,7 +13,7 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-const std::string kBogie = kScenes + "bogie_at_speed.toml";
+const std::string kBogieScene = kScenes + "bogie_at_speed.toml";
 
 /// Sensors over both axle boxes, in the frame's middle and on both wheels.
 const std::string kSensors =
@@ -32,9 +32,9 @@ Traced bogie_run(const std::string& kind, double rho) {
                  "vehicle[0].start_m=6.0", kDip});
 }
 
-std::string told(const std::string& sensor) {
+std::string refusal_of(const std::string& sensor) {
   try {
-    read_scene(kBogie, {"sensor=[{name=\"s\", on=\"vehicle\", " + sensor + "}]"});
+    read_scene(kBogieScene, {"sensor=[{name=\"s\", on=\"vehicle\", " + sensor + "}]"});
   } catch (const InputError& error) {
     return error.what();
   }
@@ -93,26 +93,26 @@ TEST_CASE("a model file keeps a sensor on a vehicle", "[vehicle]") {
   const std::string changes = " --set '" + kSensors +
                               "' --set track.bays=30 --set 'vehicle[0].start_m=6.0' "
                               "--set step.duration_s=0.01";
-  REQUIRE(railstep_program("condense " + kBogie + changes + " --out " + model).code == 0);
+  REQUIRE(railstep_program("condense " + kBogieScene + changes + " --out " + model).code == 0);
   REQUIRE(railstep_program("run " + model + " --trace " + file).code == 0);
   const std::string loaded = text_of(file);
-  REQUIRE(railstep_program("run " + kBogie + changes + " --trace " + file).code == 0);
+  REQUIRE(railstep_program("run " + kBogieScene + changes + " --trace " + file).code == 0);
   CHECK(loaded.find("front.z_m,front.vz_m_per_s,front.az_m_per_s2,rear.z_m") != std::string::npos);
   CHECK(loaded == text_of(file));
 }
 
 TEST_CASE("a sensor on an unknown vehicle or body is refused", "[scene][vehicle]") {
-  CHECK_THAT(told("vehicle=\"tram\""),
+  CHECK_THAT(refusal_of("vehicle=\"tram\""),
              Contains("\"tram\" is unknown; expected \"bogie\" [E-SENSOR-01]"));
-  CHECK_THAT(told("vehicle=\"bogie\", body=\"boot\""),
+  CHECK_THAT(refusal_of("vehicle=\"bogie\", body=\"boot\""),
              Contains("expected \"frame\", \"wheel_1\", \"wheel_2\" [E-SENSOR-01]"));
-  CHECK_THAT(told("vehicle=\"bogie\", body=\"wheel_1\", x_m=0.1"),
+  CHECK_THAT(refusal_of("vehicle=\"bogie\", body=\"wheel_1\", x_m=0.1"),
              Contains("wheel_1 does not pitch; expected x_m = 0 [E-SENSOR-06]"));
-  CHECK_THAT(told("vehicle=\"bogie\", position_m=1.0"),
+  CHECK_THAT(refusal_of("vehicle=\"bogie\", position_m=1.0"),
              Contains("'position_m'") && Contains("E-KEY-02"));
-  CHECK_THAT(told("body=\"frame\""), Contains("'vehicle'") && Contains("E-KEY-01"));
-  CHECK_THAT(told("vehicle=\"bogie\", x_m=1e3"), Contains("x_m = 1000"));
-  const Ran asked = railstep_program("receptance " + kBogie +
+  CHECK_THAT(refusal_of("body=\"frame\""), Contains("'vehicle'") && Contains("E-KEY-01"));
+  CHECK_THAT(refusal_of("vehicle=\"bogie\", x_m=1e3"), Contains("x_m = 1000"));
+  const Ran asked = railstep_program("receptance " + kBogieScene +
                                      " --set 'sensor=[{name=\"s\", on=\"vehicle\", "
                                      "vehicle=\"bogie\"}]' --at s --from 50 --to-hz 60");
   CHECK(asked.code == 2);

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-const std::string kText = "time_s\nsome.column_m";
+const std::string kSystemText = "time_s\nsome.column_m";
 
 RigidBody body_at(const Vector3d& place) {
   return {.mass = 2.,
@@ -202,7 +202,7 @@ LoadStatus status_with(int kind, const Change& change) {
   const std::unique_ptr<PackedSystem> packed = small_model(kind);
   Open open(packed->model());
   change(open, open.model.system);
-  return status_of(to_block(open.model, kText));
+  return status_of(to_block(open.model, kSystemText));
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ LoadStatus status_with(int kind, const Change& change) {
 TEST_CASE("a system that was written and read steps to the same bits", "[artefact][system]") {
   for (int kind = 0; kind < kKinds; ++kind) {
     const std::unique_ptr<PackedSystem> packed = small_model(kind);
-    const Block block = to_block(packed->model(), kText);
+    const Block block = to_block(packed->model(), kSystemText);
     Model model;
     CAPTURE(kind);
     REQUIRE(read(block, model).status == LoadStatus::ok);
@@ -224,9 +224,9 @@ TEST_CASE("a system that was written and read steps to the same bits", "[artefac
     CHECK(written.track_sensors == found.track_sensors);
     CHECK(written.outputs.iterations == found.outputs.iterations);
     CHECK(written.outputs.force_residual == found.outputs.force_residual);
-    const bool same = to_block(model, kText) == block;
+    const bool same = to_block(model, kSystemText) == block;
     CHECK(same);
-    const bool again = to_block(small_model(kind)->model(), kText) == block;
+    const bool again = to_block(small_model(kind)->model(), kSystemText) == block;
     CHECK(again);  // in another heap: nothing is left unset
   }
 }
@@ -236,7 +236,8 @@ TEST_CASE("a block does not hold a matrix that is kept over steps", "[artefact][
   const PackedSystem made_anew(small_system(false), options);
   options.renew = Renew::kept;
   const PackedSystem kept(small_system(false), options);
-  CHECK(to_block(kept.model(), kText).size() == to_block(made_anew.model(), kText).size());
+  CHECK(to_block(kept.model(), kSystemText).size() ==
+        to_block(made_anew.model(), kSystemText).size());
   CHECK(state_doubles(kept.model()) > start_doubles(kept.model()));
   // Reset removes the matrix from a state.
   LoadedRun run(kept.model());
@@ -248,7 +249,7 @@ TEST_CASE("a block does not hold a matrix that is kept over steps", "[artefact][
 
 TEST_CASE("a system's block cut short is refused, signed again or not", "[artefact][system]") {
   for (const int kind : {1, 7}) {
-    const Block good = to_block(small_model(kind)->model(), kText);
+    const Block good = to_block(small_model(kind)->model(), kSystemText);
     for (std::size_t size = payload_of(good); size < good.size(); size += 56) {
       Block cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
       CAPTURE(kind, size);
@@ -366,7 +367,7 @@ TEST_CASE("every system that loads can be stepped and read, whatever its numbers
           "[artefact][system][fuzz]") {
   std::mt19937_64 random(20241103);
   for (int kind = 0; kind < kKinds; ++kind) {
-    const Block good = to_block(small_model(kind)->model(), kText);
+    const Block good = to_block(small_model(kind)->model(), kSystemText);
     int loaded = 0, refused = 0;
     for (int round = 0; round < 1500; ++round) {
       const Block bad = round % 2 == 0 ? mutated(good, random) : with_other_integer(good, random);

@@ -18,7 +18,7 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 /// R4 of hard-cases.md: section F, 6 m; the mass is half the beam's.
-Track rail(int elements) {
+Track bending_rail(int elements) {
   BeamSection f = section_f();
   f.shear_factor_z = .472;
   return pinned_beam(f, {}, 6., elements);
@@ -60,7 +60,7 @@ TEST_CASE("a mass bonded to the beam under it has the figures of the series", "[
   // R4 and H15 of hard-cases.md: 5e-4 of the largest deflection. The mass comes from the ground.
   const int steps = 6000;
   const double speed = 30.;
-  ModelRun run = from_rest(rail(32), {.vehicles = {one_mass(kMass, -.1 * 6., speed)}},
+  ModelRun run = from_rest(bending_rail(32), {.vehicles = {one_mass(kMass, -.1 * 6., speed)}},
                            {.scheme = generalised_alpha(6. / speed / steps, .6)});
   const double printed[] = {9.2547e-4, 1.0686e-3, 9.3573e-4, -2.45e-5};  // at quarters of the way
   Largest largest;
@@ -201,7 +201,7 @@ double largest_of_bonded(const Track& beam, double mass, double speed, int count
 }
 
 double largest_of_run(double speed, int elements, int steps, double rho = .6) {
-  ModelRun run = from_rest(rail(elements), {.vehicles = {one_mass(kMass, -.6, speed)}},
+  ModelRun run = from_rest(bending_rail(elements), {.vehicles = {one_mass(kMass, -.6, speed)}},
                            {.scheme = generalised_alpha(6. / speed / steps, rho)});
   double largest = 0.;
   for (int i = 1; i <= steps + steps / 10; ++i) {
@@ -216,7 +216,7 @@ double largest_of_run(double speed, int elements, int steps, double rho = .6) {
 TEST_CASE("a bonded mass agrees with the series at half the critical speed too", "[vehicle]") {
   for (const double speed : {30., 100.})
     CHECK_THAT(largest_of_run(speed, 32, 6000),
-               WithinRel(largest_of_bonded(rail(2), kMass, speed, 15, 2000), 5e-4));  // H15
+               WithinRel(largest_of_bonded(bending_rail(2), kMass, speed, 15, 2000), 5e-4));  // H15
 }
 
 TEST_CASE("a bonded mass converges with the mesh as the kinks in its way do", "[vehicle]") {
