@@ -59,7 +59,7 @@ TrackScene read_track(const Table& t) {
   constexpr Unknowns kUnknowns[] = {Unknowns::full, Unknowns::rigid_section, Unknowns::vertical};
   track.unknowns = kUnknowns[t.choice("unknowns", {"full", "rigid-section", "vertical"})];
   track.rails = static_cast<int>(t.integer("rails", 1, 2, 2));
-  track.bays = t.integer("bays", 1, kMostElements);
+  track.bays = t.integer("bays", 1, std::int64_t{1} << 53);
   track.bay = t.number("bay_m", between(0.05, 5.0));
   track.elements_per_bay = static_cast<int>(t.integer("elements_per_bay", 1, 1000, 2));
   track.rail_spacing = t.number("rail_spacing_m", between(0.3, 3.0), 1.5);
@@ -291,6 +291,7 @@ void read_rails(const Table& root, Scene& scene) {
   scene.track = read_track(root.table("track"));
   root.attempt([&] { check_size(root.table("track"), scene.track); });
   root.stop_if_refused();
+  scene.track.bays = std::min(scene.track.bays, kMostElements);  // seats are counted below
   const Table rail = root.table("rail");
   scene.rail = read_rail(rail);
   if (const std::optional<Table> right = rail.table_if("right")) {
@@ -344,7 +345,7 @@ Scene read_track_scene(const Table& root) {
     output->refuse("supports", "E-SCENE-31",
                    "the supports of a track without end pass under its traffic; expected "
                    "[[sensor]] tables instead, as sensors follow the traffic bay by bay");
-  check_names(root, scene);
+  if (root.is_faultless()) check_names(root, scene);  // else entries of a list may be missing
   return scene;
 }
 

@@ -104,6 +104,8 @@ class Table {
   }
   /// Ends `whole` here where only refusals were kept: the reading behind it needs what they refuse.
   void stop_if_refused() const;
+  /// Within `whole`: nothing was kept so far.
+  [[nodiscard]] bool is_faultless() const;
 
   [[nodiscard]] std::string name() const;  // "rail.constants", "load[1]"; root: ""
   [[nodiscard]] const std::filesystem::path& file() const;

@@ -57,6 +57,10 @@ void Table::stop_if_refused() const {
     throw_in_order(std::exchange(view_->document->refusals, {}));
 }
 
+bool Table::is_faultless() const {
+  return view_->document->bad_values.empty() && view_->document->refusals.empty();
+}
+
 void Table::throw_kept(const InputError* last) const {
   Document& document = *view_->document;
   document.collects = false;

@@ -57,7 +57,8 @@ TEST_CASE("irregularities of each rail are read separately") {
 
 TEST_CASE("a file that is not a record of irregularities is refused with its line") {
   const std::string rows = "0,1\n.5,2\n1,3\n1.5,4\n";
-  CHECK_THAT(file_refusal(""), Contains("E-IRREGULARITY-21"));
+  CHECK_THAT(file_refusal(""), Contains("E-FILE-07"));
+  CHECK_THAT(file_refusal("\n"), Contains("E-IRREGULARITY-21"));
   CHECK_THAT(file_refusal(rows), Contains(":1:") && Contains("'0'") && Contains("distance_m"));
   CHECK_THAT(file_refusal("distance_m,vertical\n" + rows), Contains("'vertical'"));
   CHECK_THAT(file_refusal("distance_m,vertical_um\n" + rows), Contains("'vertical_um'"));
