@@ -168,7 +168,7 @@ TEST_CASE("loads without an equilibrium are refused in one sentence", "[supports
   t.support.unilateral = true;
   t.bays = 20;
   const Statics statics(t);
-  CHECK_THROWS_WITH(statics.solve({{at(6.), 10e3}}), Catch::Contains("E-TRACK-38"));
+  CHECK_THROWS_WITH(statics.solve({{at(6.), 10e3}}), Catch::Contains("E-TRACK-39"));
   // Beyond the last seat that holds the rail down, a load tips it over.
   Track tips = t;
   for (int seat = 0; seat <= 20; ++seat)
