@@ -232,7 +232,7 @@ TEST_CASE("bad forces on vehicles are refused in one sentence", "[vehicle][input
   CHECK_THAT(told(frame + "direction=\"x\", table=[[0, 1]]"),
              Contains("direction") && Contains("pitch"));
   CHECK_THAT(told(up + "tabel=[[0, 1]]"), Contains("table"));
-  CHECK_THAT(told(up + "table=[[0, 1e9]]"), Contains("E-KEY-05"));
+  CHECK_THAT(told(up + "table=[[0, 1e9]]"), Contains("E-RUNNER-21"));
   CHECK_THAT(told(up + "input=\"push\""), Contains("limit_n"));
   CHECK_THAT(told(frame + "direction=\"pitch\", input=\"push\", limit_n=1"), Contains("limit_n_m"));
   CHECK_THAT(told(up + "input=\"push\", limit_n=1, table=[[0, 1]]"), Contains("E-RUNNER-25"));

@@ -200,7 +200,7 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
                              const std::array<Railhead, 2>& heads) {
   const Flange& flange = *wheelset.flange;
   if (track.cant != 0.)
-    refuse("E-PACK-15", "a wheelset has flanges, but the rails have cant; expected track.cant = 0");
+    refuse("E-PACK-15", "a wheelset has flanges, but the rails have cant; expected rail.cant = 0");
   FlangeModel& packed = model_.flange[model_.flanges++];
   if (contact_count(model_) > kMaxWheels)
     refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
@@ -264,7 +264,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   }
   model_.form = options.reduction ? Form::condensed : Form::banded;
   if (track.cant != 0. && !traffic.held.empty())
-    refuse("E-PACK-20", "bodies are joined to rails with cant; expected track.cant = 0");
+    refuse("E-PACK-20", "bodies are joined to rails with cant; expected rail.cant = 0");
   met_ = {0, track.elements()};
   if (options.endless) add_endless(track, traffic, options);
   add_lines(track, traffic, options);
