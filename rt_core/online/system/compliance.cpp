@@ -18,7 +18,7 @@ void swap(double& a, double& b) noexcept {
   b = t;
 }
 
-/// Places i and k change rows and columns; L's rows go along.
+/// Exchanges rows and columns of places i and k, and the rows of L.
 void exchange(const Pivoted& f, std::int32_t i, std::int32_t k) noexcept {
   if (i == k) return;
   for (std::int32_t c = 0; c < f.n; ++c) swap(row(f, i)[c], row(f, k)[c]);
@@ -29,7 +29,7 @@ void exchange(const Pivoted& f, std::int32_t i, std::int32_t k) noexcept {
   f.order[k] = t;
 }
 
-/// The place from k to the end of the leading rows that keeps most of its own diagonal.
+/// The place, from k to the end of the leading rows, with most left of its own diagonal.
 std::int32_t largest(const Pivoted& f, std::int32_t k) noexcept {
   std::int32_t best = k;
   for (std::int32_t i = k + 1; i < f.leading; ++i)
@@ -38,7 +38,7 @@ std::int32_t largest(const Pivoted& f, std::int32_t k) noexcept {
   return best;
 }
 
-/// Takes place k out of all behind it.
+/// Eliminates place k from all places after it.
 void eliminate(const Pivoted& f, std::int32_t k) noexcept {
   const double* pivot = row(f, k);
   const double inverse = 1. / pivot[k];
@@ -66,7 +66,7 @@ void factor_pivoted(Pivoted& f, double tolerance) noexcept {
   f.rank = f.leading;
   for (std::int32_t k = 0; k < f.leading; ++k) {
     exchange(f, k, largest(f, k));
-    if (magnitude(row(f, k)[k]) <= tolerance * f.scale[k]) {  // of NaN there is no rank
+    if (magnitude(row(f, k)[k]) <= tolerance * f.scale[k]) {  // NaN does not reduce the rank
       f.rank = k;
       break;
     }

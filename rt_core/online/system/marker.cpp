@@ -6,7 +6,7 @@ namespace railstep {
 
 namespace {
 
-/// Which of a node's nine its k-th unknown is.
+/// Index, among a node's nine quantities, of its k-th unknown.
 template <bool kPlanar>
 constexpr int of_nine(int k) noexcept {
   return kPlanar ? kPlanarOf[k] : k;
@@ -33,7 +33,7 @@ void interpolate(const BeamChainModel& beam, const MarkerModel& marker, const do
   interpolate<true>(marker, nodes, out[0]);
 }
 
-/// What a port's nine are.
+/// The nine quantities of a port.
 void nine(const double* values, double out[3][3]) noexcept {
   for (int f = 0; f < 3; ++f)
     for (int c = 0; c < 3; ++c) out[f][c] = values[3 * f + c];
@@ -163,7 +163,7 @@ void force_on_body(const RigidBodyModel& body, const MarkerPose& at, const doubl
   }
 }
 
-/// Adds the part of the directions on the a and b of a section.
+/// Adds the part of the directions to the forces on a and b of a section.
 void add_axes_force(const MarkerModel& marker, const MarkerPose& at, const MarkerGradient& gradient,
                     double* on) noexcept {
   double normal[3] = {}, a[3] = {}, b[3] = {}, part[3];

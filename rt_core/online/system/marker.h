@@ -47,7 +47,7 @@ void generalised_force(const SystemModel& system, const MarkerModel& marker, con
                        const double* centre, const double* matrix, const MarkerGradient& gradient,
                        double* row) noexcept;
 
-/// The system's unknowns on which a marker depends: `count` from `first` on.
+/// The unknowns of the system that a marker depends on: `count` from `first` on.
 struct UnknownRange {
   std::int32_t first, count;
 };

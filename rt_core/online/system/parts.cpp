@@ -43,7 +43,7 @@ void place_nodes(const SystemModel& s, const SystemStart& start, SystemWorkspace
   }
 }
 
-/// Where forces are taken, as the poses of markers.
+/// Centre of a body at which forces are taken, as for poses of markers.
 void place_centre(const SystemModel& s, std::int32_t b, const SystemStart& start,
                   SystemWorkspace& w) noexcept {
   const RigidBodyModel& body = s.body[b];
@@ -109,7 +109,7 @@ void beam_elastic(const Model& model, const BeamChainModel& beam, bool renew,
     beam_forces(beam, nodes, half, force);
 }
 
-/// A body's S is kg M: gyroscopic terms and those of rotating axes are h |w| / 2 of it, and left to
+/// S of a body is kg M. Gyroscopic terms and those of rotating axes are h |w| / 2 of it and left to
 /// the iterations.
 void solve_body(const RigidBodyModel& body, double per_kg, const double* force,
                 double* out) noexcept {
@@ -123,7 +123,7 @@ void solve_body(const RigidBodyModel& body, double per_kg, const double* force,
     if (body.column[3 + c] >= 0) out[body.column[3 + c]] = rate[c];
 }
 
-/// change = -residual, of bodies -S^-1 residual.
+/// change = -residual; for bodies -S^-1 residual.
 void start_change(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const double per_kg = 1. / model.scheme.kg;
@@ -137,9 +137,9 @@ void start_change(const Model& model, SystemWorkspace& w) noexcept {
   }
 }
 
-/// S^-1 g of the ends on a beam, four side by side. What else is to be solved goes along where the
-/// last four are not full.
-/// @param other  [unknowns] in and out; null for none
+/// S^-1 g of the ends on a beam, four side by side. Another right-hand side is solved with the last
+/// four if these are not full.
+/// @param other  [unknowns] in and out; null without one
 void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor, double* solved,
                      const double* gradient, double* other) noexcept {
   const BeamChainModel& beam = s.beam[b];
@@ -155,7 +155,7 @@ void solve_beam_ends(const SystemModel& s, std::int32_t b, const double* factor,
           gradient[std::ptrdiff_t{kMostNodeUnknowns} * (first + e) + k];
   }
   const bool along = other != nullptr && ends % kEndGroup != 0;
-  const std::int32_t last = kEndGroup * groups - 1;  // free where the last group is not full
+  const std::int32_t last = kEndGroup * groups - 1;  // free if the last group is not full
   for (std::int32_t i = 0; along && i < beam.unknowns; ++i)
     solved[end_group_place(beam, last, i)] = other[i];
   for (std::int32_t g = 0; g < groups; ++g)
@@ -180,7 +180,7 @@ void add_port_motion(const SystemModel& s, double factor, const double* force,
   }
 }
 
-/// C g of an end on a rail. @returns how many it is
+/// C g of an end on a rail. @returns number of values
 std::int32_t solve_track_end(const SystemModel& s, std::int32_t end, const double* gradient,
                              double* solved) noexcept {
   const RowModel& row = s.row[s.end[end].row];
@@ -195,8 +195,8 @@ std::int32_t solve_track_end(const SystemModel& s, std::int32_t end, const doubl
   return n;
 }
 
-/// An applied force or moment on the unknowns of its part. A moment on a body acts in the axes in
-/// which the step takes it: of the start for the mean of both ends.
+/// Adds an applied force or moment on the unknowns of its part. A moment on a body acts in the axes
+/// that the step uses: those of the start for the mean of both ends.
 void applied(const SystemModel& s, const SystemWorkspace& w, const PointForceModel& force,
              double size, double* row) noexcept {
   const MarkerModel& marker = s.marker[force.marker];

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// q0 (w, v), put back to unit length.
+/// q0 (w, v), normalised to unit length.
 void product(const double* q0, double w, const double* v, double* q1) noexcept {
   const double a = q0[0], b = q0[1], c = q0[2], d = q0[3];
   const double q[4] = {

@@ -38,8 +38,8 @@ CosSin cos_sin(double angle) noexcept;
 /// q1 = q0 exp(rotation), a rotation vector in body axes of at most 2 pi; of unit length.
 void rotated(const double* q0, const double* rotation, double* q1) noexcept;
 
-/// q1 = q0 cay(rotation), by the angle 2 atan(|rotation| / 2), which the mean of both ends'
-/// directions makes exact: R1 - R0 = [R0 rotation]x (R0 + R1) / 2.
+/// q1 = q0 cay(rotation), by the angle 2 atan(|rotation| / 2), which is exact with the mean of both
+/// ends' directions: R1 - R0 = [R0 rotation]x (R0 + R1) / 2.
 void rotated_by_mean(const double* q0, const double* rotation, double* q1) noexcept;
 
 void rotation_matrix(const double* q, double* R) noexcept;

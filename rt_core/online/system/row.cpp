@@ -15,7 +15,7 @@ void cos_sin_jet(Jet s, Jet& cos, Jet& sin) noexcept {
   sin = {at.sin, at.cos * s.v, -at.sin * s.v * s.v + at.cos * s.a};
 }
 
-/// Jets, or plain numbers where no rates are asked for.
+/// Jets, or plain numbers if no rates are needed.
 template <class T>
 T three(const T* p, const T* q) noexcept {
   return (p[0] * q[0] + p[1] * q[1]) + p[2] * q[2];

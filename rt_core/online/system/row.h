@@ -6,8 +6,8 @@ namespace railstep {
 /// s(t) of a motion with its derivatives.
 Jet motion_at(const SystemModel& system, std::int32_t motion, double time) noexcept;
 
-/// Phi of a row: of joints what must be 0, of springs their extension.
-/// @param s  its motion or offset at the same time
+/// Phi of a row: for joints it must be 0, for springs it is their extension.
+/// @param s  motion or offset at the same time
 double row_value(const RowModel& row, const MarkerPose& a, const MarkerPose& b, double s) noexcept;
 
 /// Phi with its derivatives. A spring's acceleration is not given (0).

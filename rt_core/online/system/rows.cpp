@@ -22,8 +22,8 @@ Pivoted pivoted(const SystemModel& s, const SystemTangent& t) noexcept {
           system_rows(s), s.joint_rows, static_cast<std::int32_t>(*t.rank)};
 }
 
-/// Of a joint row: Phi, or what its way to be held makes of it, in the row's unit; Newton's step
-/// changes it by G times the change of x.
+/// Target of a joint row: Phi, or the function of it that the constraint method holds, in the row's
+/// unit. Newton's step changes it by G times the change of x.
 double joint_wanted(const Model& model, const RowModel& row, const SystemWorkspace& w, double value,
                     Jet s) noexcept {
   const SystemModel& system = model.system;
@@ -39,7 +39,7 @@ double joint_wanted(const Model& model, const RowModel& row, const SystemWorkspa
   return ((phi.a + damp * phi.v) + stiff * phi.x) / ((kg + damp * kv) + stiff);
 }
 
-/// Of a spring: what its force lacks of its law, N.
+/// Force of a spring by its law less its present force, N.
 double spring_lack(const Model& model, std::int32_t r, const SystemWorkspace& w, Jet s) noexcept {
   const SystemModel& system = model.system;
   const RowModel& row = system.row[r];
@@ -89,8 +89,8 @@ void moment_to_cayley(const RigidBodyModel& body, const double* x, double* row) 
       row[k] = (moment[c] - .5 * part[c]) / (1. + .25 * dot(D, D));
 }
 
-/// What Newton's step changes `wanted` by, where that is not the gradient of its force: the
-/// gradient at the step's end (energy-momentum), or of joint rows ahead of it (Baumgarte,
+/// Derivative of `wanted` in Newton's step, if it is not the gradient of the row's force: the
+/// gradient at the step's end (energy-momentum), or for joint rows ahead of it (Baumgarte,
 /// place_ahead).
 /// @param motion  at the same time
 void set_slope(const SystemModel& s, std::int32_t r, double motion, const std::int32_t* end,
@@ -128,8 +128,8 @@ double lanes_dot(const double* g, const double* solved, std::int32_t stride,
   return sum;
 }
 
-/// Adds what the ends of one part give to the compliance.
-/// @param lane    where S^-1 g of an end of the part begins
+/// Adds the compliance by the ends of one part.
+/// @param lane    start of S^-1 g of an end of the part
 template <class Lane>
 void add_part(const SystemModel& s, std::int32_t part, std::int32_t stride,
               const SystemWorkspace& w, const Lane& lane) noexcept {
@@ -143,7 +143,7 @@ void add_part(const SystemModel& s, std::int32_t part, std::int32_t stride,
   }
 }
 
-/// Of pivots of rows with a compliance: round-off alone.
+/// Rank tolerance for pivots of rows with a compliance: round-off only.
 constexpr double kYieldingRank = 1e-15;
 
 /// Factor of slope S^-1 gradient' and the rows' own compliance.
@@ -255,8 +255,8 @@ void factor_rows(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const bool yields = s.constraint_method == ConstraintMethod::augmented_lagrangian;
   factor_yielding(model, yields && s.mean == 0, w);
-  // Where a step goes through a singular position G S^-1 G_m' has pivots below zero, that a
-  // compliance near them brings to zero: it is for rows that depend on each other alone.
+  // If a step passes a singular position, G S^-1 G_m' has pivots below zero, which a compliance of
+  // similar size would bring to zero. So it is only for rows that depend on each other.
   if (yields && s.mean != 0 && *w.tangent.rank < s.joint_rows) factor_yielding(model, true, w);
 }
 

@@ -5,15 +5,15 @@
 
 namespace railstep {
 
-/// Generalised force at a marker on the unknowns that unknowns_of() names, where the step takes
-/// forces.
-/// @param out  [kMostNodeUnknowns], overwritten as far as there are such unknowns
+/// Generalised force at a marker on the unknowns of unknowns_of(), in the pose at which the step
+/// takes forces.
+/// @param out  [kMostNodeUnknowns], overwritten for these unknowns
 void end_row(const SystemModel& system, const SystemWorkspace& w, std::int32_t marker,
              const MarkerGradient& gradient, double* out) noexcept;
 
-/// Values and gradients of all rows at the iterate, and what Newton's step is to bring of each, m:
-/// `wanted`, without the parts' own change. @returns the largest of these, over joint rows
-/// @param renew  the matrix is made anew here: slopes go with it, and stand as long within a step
+/// Values and gradients of all rows at the iterate, and the change that Newton's step must make in
+/// each, m: `wanted`, without the parts' own change. @returns the largest of these over joint rows
+/// @param renew  the matrix is made again here: slopes belong to it, and are kept with it in a step
 double set_rows(const Model& model, double time, bool renew, SystemWorkspace& w) noexcept;
 
 /// Largest |Phi| of the joint rows.

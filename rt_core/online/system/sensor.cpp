@@ -32,8 +32,8 @@ MarkerPose pose_of(const MarkerJet& jet) noexcept {
   return pose;
 }
 
-// Never inlined, as sum_of_rows(): no arithmetic of theirs may leave the mode that their callers
-// set.
+// Never inlined, as sum_of_rows(): none of their arithmetic may move out of the mode that their
+// callers set.
 [[gnu::noinline]] PointMotion point_motion(const Model& model, const State& state,
                                            std::int32_t sensor) noexcept {
   const SystemModel& s = model.system;

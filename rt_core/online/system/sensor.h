@@ -10,15 +10,15 @@ struct PointMotion {
   double acceleration[3];  // m/s2
 };
 
-/// Of a system's sensor, as the state stands.
+/// Motion of a system's sensor in a state.
 PointMotion sensor_motion(const Model& model, const State& state, std::int32_t sensor) noexcept;
 
 /// Rotation of a body, [9], body axes to ground.
 void body_rotation(const State& state, std::int32_t body, double* matrix) noexcept;
 
 /// In the energy-momentum scheme forces and accelerations are those of the last step's middle.
-/// What the joint rows and springs of one joint do to part B as a state stands: the resulting force
-/// and the moment about the joint's point on B, ground axes, N and N m.
+/// Action of one joint's rows or springs on part B in a state: the resulting force, and the moment
+/// about the joint's point on B, ground axes, N and N m.
 struct JointForce {
   double force[3];
   double moment[3];

@@ -27,7 +27,7 @@ struct Square {
   }
 };
 
-/// Where the iterations begin: the scheme's step with the last accelerations.
+/// Start of the iterations: the scheme's step with the last accelerations.
 void guess(const Model& model, const State& state, const Workspace& workspace,
            SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
@@ -70,8 +70,8 @@ Size set_residual(const SystemModel& s, SystemWorkspace& w) noexcept {
   return {square_root(sum), square_root(scale), 0.};
 }
 
-/// One Newton step with the matrix that stands: row forces, then displacements.
-/// @param w  its change that of the parts without rows
+/// One Newton step with the present matrix: row forces, then displacements.
+/// @param w  w.change must be that of the parts without rows
 void newton_step(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   const std::int32_t rows = system_rows(s);
@@ -93,10 +93,10 @@ double step_size(const SystemModel& s, const SystemWorkspace& w) noexcept {
   return most;
 }
 
-/// Whether a Newton step is the round-off of the places that forces are taken at, or is small and
-/// no smaller than the one before: more of them find nothing, whatever is left of the forces.
-/// @param step    its size, 0: none
-/// @param before  size of the step before, 0: none
+/// Whether a Newton step is the round-off of the positions, or is small and not smaller than the
+/// one before: further steps would change nothing, for any residual of the forces.
+/// @param step    its size; 0: no step yet
+/// @param before  size of the step before; 0: no step yet
 bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
                 double before) noexcept {
   if (!(step > 0.) || step > 1e-6) return false;  // places stay below 1000 km
@@ -112,8 +112,9 @@ bool is_settled(const SystemModel& s, const SystemWorkspace& w, double step,
          (step <= 4096. * ulp * place && step > .5 * before && before > 0.);
 }
 
-/// Gear, Gupta, Leimkuhler: the force keeps the velocities, a shift of the positions Phi. Both in
-/// the metric of Newton's matrix; what is left of Phi after the change that velocities take.
+/// Gear, Gupta, Leimkuhler: forces hold velocities, and a shift of the positions holds Phi, both in
+/// the metric of Newton's matrix. The shift takes the part of Phi that remains after the change by
+/// the velocities.
 void shift_step(const Model& model, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   for (std::int32_t i = 0; i < s.unknowns; ++i) w.change[i] = 0.;
@@ -127,7 +128,7 @@ void shift_step(const Model& model, SystemWorkspace& w) noexcept {
   }
 }
 
-/// Extensions of springs where the step starts.
+/// Extensions of springs at the step's start.
 void start_springs(const Model& model, double time, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
   for (std::int32_t r = s.joint_rows; r < system_rows(s); ++r) {
@@ -137,7 +138,7 @@ void start_springs(const Model& model, double time, SystemWorkspace& w) noexcept
   }
 }
 
-/// Hands the step's end to the scheme's correction.
+/// Passes the step's end to the scheme's correction.
 void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& workspace) noexcept {
   const SystemModel& s = model.system;
   if (s.ports > 0) {
@@ -177,11 +178,11 @@ double want_rates(const SystemModel& s, int order, SystemWorkspace& w) noexcept 
   return largest;
 }
 
-/// Takes from velocities (order 1) or accelerations (2) of the model what joints do not allow, in
-/// the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997), capped.
-/// `second` takes the same change. With accelerations go the forces that belong to them: S is kg M
-/// of a body, so that M g + G' force stays what it was. The rates stand before and after.
-/// @returns whether they are held
+/// Removes from velocities (order 1) or accelerations (2) of the model the part that joints do not
+/// allow, in the metric of Newton's matrix (Bayo and Ledesma 1996; Cuadrado and others 1997),
+/// capped. `second` takes the same change. Forces change with accelerations: S of a body is kg M,
+/// so that M g + G' force keeps its value. The rates must be set before, and are set after.
+/// @returns whether the rates are held
 bool project(const Model& model, double time, int order, const Motions& at, double* rates,
              double* second, double* row_force, SystemWorkspace& w) noexcept {
   const SystemModel& s = model.system;
@@ -202,8 +203,8 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
   }
 }
 
-/// Whether the matrix is made anew before iteration `done`. In the second half of the cap always:
-/// a step that is so far off is not to end there for want of a matrix.
+/// Whether the matrix is made again before iteration `done`. In the second half of the cap it
+/// always is: a step that is so far off must not fail for an old matrix.
 bool is_renewed(const SystemModel& s, const SystemTangent& t, std::int32_t done,
                 bool slow) noexcept {
   if (s.renew == Renew::every_iteration || slow || 2 * done >= s.cap) return true;
@@ -212,7 +213,7 @@ bool is_renewed(const SystemModel& s, const SystemTangent& t, std::int32_t done,
          *t.age > static_cast<double>(s.keep_steps);
 }
 
-/// Rows that hang on others where the matrix was made.
+/// Names the rows that depended on others when the matrix was made.
 void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& result) noexcept {
   const auto rank = static_cast<std::int32_t>(*t.rank);
   result.redundant_rows = s.joint_rows - rank;
@@ -221,15 +222,16 @@ void name_redundant(const SystemModel& s, const SystemTangent& t, SystemResult& 
     result.redundant_row[i] = t.order[rank + i];
 }
 
-/// How the iterations go on: what forces lack and what joints want, each against the one before.
+/// Progress of the iterations: residuals of forces and targets of joints, each against the last
+/// one.
 struct Search {
   double residual = __builtin_inf(), wanted = __builtin_inf();
   double step = 0., before = 0.;  // sizes of the last two Newton steps
   bool old = true;                // the matrix is of an earlier step
-  bool slow = false;              // one did not halve with a matrix that stood: make it anew
+  bool slow = false;              // one did not halve with an old matrix: make it again
   bool grown = false;  // one grew, far off perhaps, with a matrix of an earlier step: begin again
 
-  /// Joints count with matrices of an earlier step alone: soft rows give way in proportion to their
+  /// Joints count only with matrices of an earlier step: soft rows yield in proportion to their
   /// force, so that a good step may leave more of Phi than the guess had.
   void compare(const Size& left, double tolerance, bool renew) noexcept {
     const bool was = old && !renew;  // this iterate came by a matrix of an earlier step
@@ -250,7 +252,7 @@ struct Search {
   }
 };
 
-/// Places the iterate and takes all forces and rows there.
+/// Sets positions of the iterate and takes all forces and rows there.
 Size look(const Model& model, const State& state, const SystemStart& start, bool renew,
           SystemWorkspace& w, SystemResult& result) noexcept {
   const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
@@ -334,7 +336,7 @@ Status finish_system(const Model& model, State& state, Workspace& workspace) noe
   if (s.constraint_method != ConstraintMethod::augmented_lagrangian || s.mean != 0 ||
       s.joint_rows == 0)
     return Status::ok;
-  if (s.renew == Renew::kept) {  // an old direction of the joints would take what they allow
+  if (s.renew == Renew::kept) {  // old directions of the joints would remove allowed motion
     solve_ends(model, false, w);
     factor_rows(model, w);
   }

@@ -3,7 +3,7 @@
 
 namespace railstep {
 
-/// What the solve of a system's step met.
+/// Results of the solve of a system's step.
 struct SystemResult {
   Status status;
   std::int32_t iterations;
@@ -13,14 +13,14 @@ struct SystemResult {
   std::int32_t redundant_row[kMostNamedRows];
 };
 
-/// Newton's iterations of one step, capped: finds the displacements at its end, which go into
+/// Newton's iterations of one step, capped. They find the displacements at its end, which go into
 /// workspace.solved from the system's first unknown on, as the scheme's correction expects them,
 /// and the forces of joints and springs.
 SystemResult solve_system(const Model& model, State& state, Workspace& workspace) noexcept;
 
-/// After the scheme's correction: rotations pass into quaternions, and velocities and accelerations
-/// are put onto the joints where the way to hold them asks for it. @returns cap_reached if a
-/// projection was not done
+/// After the scheme's correction: adds rotations to quaternions, and projects velocities and
+/// accelerations onto the joints if the constraint method does so. @returns cap_reached if a
+/// projection did not end
 Status finish_system(const Model& model, State& state, Workspace& workspace) noexcept;
 
 }  // namespace railstep
