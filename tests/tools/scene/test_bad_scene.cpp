@@ -298,5 +298,6 @@ TEST_CASE("a scene may come through a pipe", "[bad_input][cli]") {
       run_program(RAILSTEP_PROGRAM, "run /dev/stdin --duration 0.01", "cat '" + kMovingLoad + "' |")
           .code == 0);
   const BadInput bad("pipe");
-  bad.refused("run /dev/stdin" + bad.old("--trace", "t.csv") + " </dev/null", {"stdin", "E-FILE-07"});
+  bad.refused("run /dev/stdin" + bad.old("--trace", "t.csv") + " </dev/null",
+              {"stdin", "E-FILE-07"});
 }
