@@ -37,7 +37,8 @@ BlockHeader header_of(const std::string& model) {
 
 template <typename T>
 std::string with(std::string model, std::size_t at, T value) {
-  return model.replace(at, sizeof value, reinterpret_cast<const char*>(&value), sizeof value);
+  std::memcpy(model.data() + at, &value, sizeof value);
+  return model;
 }
 
 /// The model with checksums of its present content.
