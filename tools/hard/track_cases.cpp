@@ -48,11 +48,11 @@ std::vector<double> moving_over(const std::filesystem::path& scene, int elements
 /// error, of which the seat carries k f, later by c / k and by 1 / omega, omega of the rail on its
 /// seats.
 double parabola_error(int elements) {
-  constexpr double kStiffness = 3e7, kDamper = 3e4, kBay = .6, kSpeed = 30.;
+  constexpr double kStiffness = 3e7, kDamperOfSeat = 3e4, kBay = .6, kSpeed = 30.;
   const double flexibility = 5.763979e-4 / 50e3;  // m/N, R6
   const double lambda = std::pow(4. * 210e9 * 39e-6 * kBay / kStiffness, .25);
   const double omega = std::sqrt(kStiffness / kBay / (7850. * 8.7e-3));
-  const double late = kDamper / kStiffness + 1. / omega, node = .5 * kBay / elements;
+  const double late = kDamperOfSeat / kStiffness + 1. / omega, node = .5 * kBay / elements;
   return kSpeed * late * kStiffness * flexibility * 4. / std::pow(lambda, 3) * node * node / 3.;
 }
 
