@@ -37,7 +37,8 @@ BlockHeader header_of(const std::string& model) {
 
 template <typename T>
 std::string with(std::string model, std::size_t at, T value) {
-  std::memcpy(model.data() + at, &value, sizeof value);
+  const auto* bytes = reinterpret_cast<const char*>(&value);
+  for (std::size_t i = 0; i < sizeof value; ++i) model.at(at + i) = bytes[i];
   return model;
 }
 
