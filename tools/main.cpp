@@ -73,7 +73,7 @@ Exit exit_of(CLI::App& app, int argc, char** argv) {
   } catch (const Failed& error) {
     return report({{error.id(), error.sentence()}}, Exit::not_reached, json);
   } catch (const Refused& error) {
-    return report({{error.id(), error.sentence()}}, Exit::not_reached, json);
+    return report({{error.id(), error.sentence()}}, Exit::bad_input, json);
   } catch (const std::exception& error) {
     return report({{"E-RUN-91", error.what()}}, Exit::not_reached, json);
   }

@@ -1,7 +1,6 @@
 # Writes a source file that holds the text of the Markdown files in PAGES, for message_pages().
-set(text "#include \"text/explanation.h\"\n\nnamespace railstep {\nnamespace {\n"
+string(CONCAT text "#include \"text/explanation.h\"\n\nnamespace railstep {\nnamespace {\n"
   "constexpr std::string_view kPages[] = {\n")
-string(CONCAT text ${text})
 file(GLOB pages ${PAGES}/*.md)
 foreach(page IN LISTS pages)
   file(READ ${page} content)

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <sstream>
 
 #include "online/math/sha256.h"
 #include "text/read_document.h"
+#include "text/read_value.h"
 
 namespace railstep {
 
@@ -21,20 +21,6 @@ constexpr MessageId kMissing = "E-KEY-01";
 /// Stands for a number that could not be read: it bounds nothing and is neither less nor more.
 constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 
-/// A value as the file writes it, short enough for a sentence.
-std::string shown(const toml::node& node) {
-  if (node.is_table()) return "a table";
-  if (node.is_array()) return "an array";
-  if (const auto* n = node.as_floating_point()) return fmt::format("{}", n->get());
-  std::ostringstream out;
-  node.visit([&](const auto& n) {
-    if constexpr (toml::is_value<decltype(n)>) out << n;
-  });
-  std::string text = out.str();
-  if (const auto* s = node.as_string()) text = '"' + s->get() + '"';
-  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
-}
-
 std::string hex_digest(Sha256& sum) {
   std::array<std::uint8_t, 32> digest{};
   sum.finish(digest.data());
@@ -42,25 +28,6 @@ std::string hex_digest(Sha256& sum) {
   text.reserve(2 * digest.size());
   for (const std::uint8_t byte : digest) fmt::format_to(std::back_inserter(text), "{:02x}", byte);
   return text;
-}
-
-std::string type_of(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::string:
-      return "a string";
-    case toml::node_type::integer:
-      return "an integer";
-    case toml::node_type::floating_point:
-      return "a number";
-    case toml::node_type::boolean:
-      return "a boolean";
-    case toml::node_type::array:
-      return "an array";
-    case toml::node_type::table:
-      return "a table";
-    default:
-      return "a date or time";
-  }
 }
 
 std::string listed(std::initializer_list<std::string_view> names) {
@@ -156,11 +123,11 @@ Table::Entry Table::need(std::string_view key) const {
 }
 
 template <typename Read, typename Value>
-Value Table::kept(Read read, Value otherwise) const {
+Value Table::kept(std::string_view key, Read read, Value otherwise) const {
   Document& document = *view_->document;
   if (view_->table == &document.absent) return otherwise;
   try {
-    return read();
+    return read(need(key));
   } catch (const PlacedError& error) {
     if (!document.collects) throw;
     const bool is_missing = error.messages().front().id == kMissing.name();
@@ -174,11 +141,7 @@ bool Table::has(std::string_view key) const { return look_up(key).node != nullpt
 
 double Table::number(std::string_view key, const Range& accepted) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
-        return entry.number(*entry.node, accepted);
-      },
-      kUnread);
+      key, [&](const Entry& entry) { return entry.number(*entry.node, accepted); }, kUnread);
 }
 
 double Table::number(std::string_view key, const Range& accepted, double otherwise) const {
@@ -198,7 +161,8 @@ double Table::slope(std::string_view key, const Range& accepted, double otherwis
                         accepted.holds(1.0 / n);
   if (is_slope) return 1.0 / n;
   return kept(
-      [&]() -> double {
+      key,
+      [&](const Entry&) -> double {
         entry.refuse(*entry.node, "E-KEY-08",
                      fmt::format("{} = \"{}\"; expected \"1:n\", or a number {}", key, slope,
                                  accepted.text()));
@@ -208,8 +172,8 @@ double Table::slope(std::string_view key, const Range& accepted, double otherwis
 
 std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64_t most) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         const auto* value = entry.node->as_integer();
         if (!value) entry.refuse_type(*entry.node, "an integer");
         if (value->get() < least || value->get() > most)
@@ -228,8 +192,8 @@ std::int64_t Table::integer(std::string_view key, std::int64_t least, std::int64
 
 bool Table::boolean(std::string_view key) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         const auto* value = entry.node->as_boolean();
         if (!value) entry.refuse_type(*entry.node, "true or false");
         return value->get();
@@ -243,8 +207,8 @@ bool Table::boolean(std::string_view key, bool otherwise) const {
 
 std::string Table::string(std::string_view key) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         const auto* value = entry.node->as_string();
         if (!value) entry.refuse_type(*entry.node, "a string");
         if (value->get().empty())
@@ -261,11 +225,7 @@ std::string Table::string(std::string_view key, std::string_view otherwise) cons
 
 std::size_t Table::choice(std::string_view key, Names names) const {
   const std::size_t chosen = kept(
-      [&] {
-        const Entry entry = need(key);
-        return entry.choice(*entry.node, names);
-      },
-      names.size());
+      key, [&](const Entry& entry) { return entry.choice(*entry.node, names); }, names.size());
   if (chosen < names.size()) return chosen;
   view_->document->doubtful.insert(view_->table);
   return 0;
@@ -280,8 +240,8 @@ std::vector<std::size_t> Table::choices(std::string_view key, Names names, std::
   if (!has(key)) return std::vector<std::size_t>(count, otherwise);
   if (!need(key).node->is_array()) return std::vector<std::size_t>(count, choice(key, names));
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         std::vector<std::size_t> chosen;
         for (const toml::node& node : entry.array(count, count))
           chosen.push_back(entry.choice(node, names));
@@ -309,8 +269,8 @@ std::array<double, 2> Table::number_or_pair(std::string_view key, const Range& a
 std::vector<double> Table::numbers(std::string_view key, const Range& accepted, std::size_t least,
                                    std::size_t most) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         std::vector<double> values;
         for (const toml::node& node : entry.array(least, most))
           values.push_back(entry.number(node, accepted));
@@ -322,8 +282,8 @@ std::vector<double> Table::numbers(std::string_view key, const Range& accepted, 
 std::vector<std::string> Table::strings(std::string_view key, std::size_t least,
                                         std::size_t most) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         std::vector<std::string> values;
         for (const toml::node& node : entry.array(least, most)) {
           const auto* value = node.as_string();
@@ -337,8 +297,8 @@ std::vector<std::string> Table::strings(std::string_view key, std::size_t least,
 
 std::vector<double> Table::rows(std::string_view key, std::size_t columns) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         std::vector<double> values;
         for (const toml::node& row : entry.array(1, 100'000)) {
           const toml::array* array = row.as_array();
@@ -355,8 +315,8 @@ std::vector<double> Table::rows(std::string_view key, std::size_t columns) const
 
 Table Table::table(std::string_view key) const {
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         const toml::table* found = entry.node->as_table();
         if (!found) entry.refuse_type(*entry.node, "a table");
         return entry.opened(*found);
@@ -372,8 +332,8 @@ std::optional<Table> Table::table_if(std::string_view key) const {
 std::vector<Table> Table::tables(std::string_view key) const {
   if (!has(key)) return {};
   return kept(
-      [&] {
-        const Entry entry = need(key);
+      key,
+      [&](const Entry& entry) {
         std::vector<Table> found;
         for (const toml::node& node : entry.array(0, 100'000)) {
           const toml::table* table = node.as_table();

@@ -120,9 +120,9 @@ class Table {
   struct Entry;  // one key of it, with the checks the getters share
   [[nodiscard]] Entry look_up(std::string_view key) const;  // marks the key as known
   [[nodiscard]] Entry need(std::string_view key) const;     // and throws where it is absent
+  /// read(entry of the key), or `otherwise` after an error that `whole` keeps.
   template <typename Read, typename Value>
-  Value kept(Read read,
-             Value otherwise) const;  // what read() returns, or `otherwise` after an error
+  Value kept(std::string_view key, Read read, Value otherwise) const;
   void collect() const;
   [[nodiscard]] bool keep(const InputError& refusal) const;  // false outside of `whole`
   void throw_kept(const InputError* last) const;             // if there are any
