@@ -8,7 +8,7 @@ namespace railstep {
 namespace {
 
 constexpr int kEdit = 8;     // cost of one inserted, dropped or changed letter
-constexpr int kMissing = 1;  // of one letter of `known` after the end of `word`
+constexpr int kMissingLetter = 1;  // of one letter of `known` after the end of `word`
 
 /// Edit distance in eighths of an edit, the end of `known` nearly free. O(lengths' product).
 int distance(std::string_view word, std::string_view known) {
@@ -24,7 +24,7 @@ int distance(std::string_view word, std::string_view known) {
   }
   int best = row[known.size()];
   for (std::size_t j = 0; j < known.size(); ++j)
-    best = std::min(best, row[j] + kMissing * static_cast<int>(known.size() - j));
+    best = std::min(best, row[j] + kMissingLetter * static_cast<int>(known.size() - j));
   return best;
 }
 
