@@ -60,7 +60,7 @@ TEST_CASE("no output replaces a file that the scene reads", "[bad_input][cli]") 
   for (const std::string& file :
        {made.profile, made.vehicle, made.irregularity, made.link, made.hard_link})
     bad.refused("run " + made.scene + " --duration 0.001 --trace " + file,
-                {"--trace " + file + ": would take the place of", "which is read"});
+                {"--trace " + file + ": this output would replace", "which the command reads"});
   const std::string section = bad.file("s.toml", "");
   REQUIRE(railstep_program("fit " + made.profile + " --out " + section).code == 0);
   const std::string fitted = bad.file(
@@ -83,7 +83,7 @@ TEST_CASE("no output of any command replaces a file that the scene reads", "[bad
         "pareto " + scene + " --report", "pareto " + scene + " --resume",
         "tune " + scene + " --max-error 1e-3 --out"})
     bad.refused(words + " " + made.profile,
-                {words.substr(words.rfind("--")) + " " + made.profile, "which is read"});
+                {words.substr(words.rfind("--")) + " " + made.profile, "which the command reads"});
 }
 
 TEST_CASE("outputs whose names the program chooses do not replace a file that the scene reads",
@@ -99,7 +99,7 @@ TEST_CASE("outputs whose names the program chooses do not replace a file that th
     const Ran ran = railstep_program(words);
     CAPTURE(words, ran.err);
     CHECK(ran.code == 2);
-    CHECK_THAT(ran.err, Catch::Contains(name + ": would take the place of"));
+    CHECK_THAT(ran.err, Catch::Contains(name + ": this output would replace"));
     CHECK(text_of(bad.path(name)) == text_of(made.irregularity));
   };
   kept("sweep " + at("swept/table.csv") +

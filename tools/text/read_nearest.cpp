@@ -7,7 +7,7 @@
 namespace railstep {
 namespace {
 
-constexpr int kEdit = 8;     // cost of one inserted, dropped or changed letter
+constexpr int kEdit = 8;           // cost of one inserted, dropped or changed letter
 constexpr int kMissingLetter = 1;  // of one letter of `known` after the end of `word`
 
 /// Edit distance in eighths of an edit, the end of `known` nearly free. O(lengths' product).
