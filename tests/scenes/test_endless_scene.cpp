@@ -83,7 +83,7 @@ TEST_CASE("a wheelset's sensor moves the true distance") {
 
 TEST_CASE("a ring and a window agree at a joint") {
   // A joint strikes the wheels. The peak of either form is wrong by some percent in steps of 0.1
-  // ms, by less than 1 % at 50 us (design.md) and by 0.1 % at 25 us.
+  // ms, by less than 1 % at 50 us and by 0.1 % at 25 us.
   const auto fine = [](const char* kind) {
     return small({std::string("condense.kind=\"") + kind + "\"", "step.dt_s=0.000025",
                   "step.duration_s=0.15", "defect[0].at_m=3.0"});

@@ -30,7 +30,7 @@ Exit run_explain(const std::string& id) {
 
 Command add_explain(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
-      "explain", "say more about an error, a warning or a status bit, or list all of them");
+      "explain", "Say more about an error, a warning or a status bit, or list all of them");
   auto id = std::make_shared<std::string>();
   sub->add_option("ID", *id, "the id at the end of a message, such as E-KEY-05");
   return {sub, [id] { return run_explain(*id); }};

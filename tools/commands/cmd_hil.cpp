@@ -1,9 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -17,9 +15,11 @@
 #include "hil/hil_response.h"
 #include "hil/hil_run.h"
 #include "hil/hil_shm.h"
+#include "hil/hil_signals.h"
 #include "hil/hil_udp.h"
 #include "offline/math/refuse.h"
 #include "report/hil_report.h"
+#include "report/hil_table.h"
 #include "run/memory.h"
 #include "run/recording.h"
 #include "run/simulate.h"
@@ -42,24 +42,6 @@ struct HilOptions {
   double stall_us = 0.;
   bool respond = false, json = false;
 };
-
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-/// Ctrl-C ends the run between two frames, and its results are printed all the same. A second one
-/// kills the program, and leaves no shared memory behind.
-void end_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int number) {
-    if (!interrupted.exchange(true)) return;
-    SharedExchange::unlink_at_once();
-    std::signal(number, SIG_DFL);
-    std::raise(number);
-  };
-  action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 Policy policy_of(const std::string& name) {
   const auto* const at = std::find(std::begin(kPolicies), std::end(kPolicies), name);
@@ -110,7 +92,7 @@ HilPlan plan_of(const HilOptions& o) {
   plan.stall_frame = o.stall_frame;
   plan.stall_ns = std::llround(1e3 * o.stall_us);
   plan.respond = o.respond;
-  plan.interrupted = &interrupted;
+  plan.interrupted = &interrupted_by_signal;
   if (o.cpu) {
     const std::vector<int> allowed = allowed_cpus();
     if (std::find(allowed.begin(), allowed.end(), *o.cpu) == allowed.end())
@@ -238,41 +220,6 @@ nlohmann::ordered_json to_json(const HilOptions& o, const HilPlan& plan, const H
   return told;
 }
 
-void print_quantiles(const char* name, const nlohmann::ordered_json& us) {
-  if (us["max"].is_null() || std::isnan(us["max"].get<double>())) return;
-  fmt::print("{}{:9.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f}\n", name, us["median"].get<double>(),
-             us["p99"].get<double>(), us["p99_9"].get<double>(), us["p99_99"].get<double>(),
-             us["max"].get<double>());
-}
-
-void print_paced_table(const nlohmann::ordered_json& told) {
-  fmt::print("rate                      {:g} Hz, a frame simulates {:g} s: {:g} of real time\n",
-             told["rate_hz"].get<double>(), told["frame_length_s"].get<double>(),
-             told["real_time_factor"].get<double>());
-  fmt::print("frames                    {}, skipped {}\n", told["frames"].get<std::int64_t>(),
-             told["skipped"].get<std::int64_t>());
-  fmt::print("overrun count             {} under policy {}, {} in the first {} frames\n",
-             told["overruns"].get<std::int64_t>(), told["policy"].get<std::string>(),
-             told["grace_overruns"].get<std::int64_t>(), told["grace_frames"].get<std::int64_t>());
-  fmt::print("us                           median       p99     p99.9    p99.99       max\n");
-  print_quantiles("task execution time      ", told["frame_us"]);
-  print_quantiles("  of an empty step       ", told["empty_loop"]["frame_us"]);
-  print_quantiles("wake-up latency          ", told["wakeup_us"]);
-  print_quantiles("  of an empty step       ", told["empty_loop"]["wakeup_us"]);
-  for (const char* key : {"packets", "shared_memory"}) {
-    if (!told.contains(key)) continue;
-    fmt::print("{:<26}", key);
-    const char* comma = "";
-    for (const auto& [name, count] : told[key].items()) {
-      fmt::print("{}{} {}", comma, name, count.get<std::int64_t>());
-      comma = ", ";
-    }
-    fmt::print("\n");
-  }
-  fmt::print("allocations               {}\nstate hash                {}\n",
-             told["allocations"].get<std::int64_t>(), told["state_hash"].get<std::string>());
-}
-
 void warn_of_refusals(const std::vector<RealtimeSetting>& settings) {
   for (const RealtimeSetting& each : settings)
     if (!each.done)
@@ -376,7 +323,7 @@ Exit run(const HilOptions& o) {
   if (o.json)
     fmt::print("{}\n", told.dump(2));
   else
-    print_paced_table(told);
+    print_hil_table(told);
   return verdict(record, *simulation);
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("with six unknowns per node a free rail has six rigid modes and bends 
   CHECK(six[5] < 1e-6 * six.back());
   CHECK(six[6] > 10.);
   // In bending and torsion the section's strain follows at once. So the constraint only stiffens:
-  // never below, and by less than design.md's 0.3 %.
+  // never below, and by less than the required 0.3 %.
   for (std::size_t i = 6; i < 14; ++i) {
     CAPTURE(i, nine[i], six[i]);
     CHECK(six[i] > nine[i] * (1. - 1e-9));

@@ -124,7 +124,7 @@ class Linear {
 }  // namespace
 
 TEST_CASE("a rail that rolls under 100 kN is within 2.5 % of the nonlinear element", "[roll]") {
-  // 10 to 40 kN sideways give 2 to 23 mrad. The bound is the demand; design.md has 2 % for 20 mrad.
+  // 10 to 40 kN sideways give 2 to 23 mrad. The bound is the required one.
   // The plain linear rail is 1.5 to 8 % too stiff at any roll.
   const double roll_stiffness = GENERATE(5e4, 1e5, 5e5);
   const Unknowns unknowns = GENERATE(Unknowns::full, Unknowns::rigid_section);

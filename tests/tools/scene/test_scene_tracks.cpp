@@ -59,7 +59,7 @@ std::complex<double> transformed(const std::vector<double>& value, double dt, do
 }  // namespace
 
 TEST_CASE("impact_hammer: blow and response give the track's receptance", "[scenes]") {
-  // Frequencies at which design.md requires 1 %, the step is fine enough and the blow has force.
+  // Frequencies at which 1 % is required: the step is fine enough and the blow has force.
   // The complex solution of the same track is the independent reference.
   const Traced run("impact_hammer");
   CHECK(run.status == Status::ok);
