@@ -14,7 +14,7 @@ struct ReferenceFile {
   double own_error = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::vector<double>> rows;
 
-  /// Throws std::runtime_error if there is no such file or no row in it.
+  /// Throws std::runtime_error if the file does not exist or has no row.
   explicit ReferenceFile(const std::string& path) {
     const std::string remark = "# own_error=";
     std::ifstream in(path);

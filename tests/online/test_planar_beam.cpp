@@ -10,8 +10,6 @@ using namespace railstep;
 
 namespace {
 
-constexpr int W = kPlanarUnknowns;
-
 /// Nodes of n elements of 0.6 m along x, rotated by an angle in the plane and shaken.
 std::vector<double> planar_nodes(int n, std::uint64_t seed, double shake, double angle = 0.) {
   Numbers numbers(seed);
@@ -25,9 +23,10 @@ std::vector<double> planar_nodes(int n, std::uint64_t seed, double shake, double
 
 /// Planar numbers at their places among the spatial ones.
 std::vector<double> in_space(const std::vector<double>& planar) {
-  std::vector<double> q(planar.size() / W * 9, 0.);
+  std::vector<double> q(planar.size() / kPlanarUnknowns * 9, 0.);
   for (std::size_t i = 0; i < planar.size(); ++i)
-    q[i / W * 9 + static_cast<std::size_t>(kPlanarOf[i % W])] = planar[i];
+    q[i / kPlanarUnknowns * 9 + static_cast<std::size_t>(kPlanarOf[i % kPlanarUnknowns])] =
+        planar[i];
   return q;
 }
 
@@ -92,10 +91,12 @@ TEST_CASE("the planar element agrees with the spatial one in the plane", "[plana
     double peak = 0.;
     for (int i = 0; i < 27; ++i)
       peak = std::max(peak, std::abs(straight_entry(want.tangent.data(), 0, i, i)));
-    const auto spatial = [](int i) { return i / W * 9 + kPlanarOf[i % W]; };
+    const auto spatial = [](int i) {
+      return i / kPlanarUnknowns * 9 + kPlanarOf[i % kPlanarUnknowns];
+    };
     for (int e = 0; e < kStraightLanes * straight_groups(n); ++e)
-      for (int i = 0; i < 3 * W; ++i)
-        for (int j = 0; j < 3 * W; ++j) {
+      for (int i = 0; i < 3 * kPlanarUnknowns; ++i)
+        for (int j = 0; j < 3 * kPlanarUnknowns; ++j) {
           const double K = planar_entry(got.tangent.data(), e, i, j);
           REQUIRE(K == planar_entry(got.tangent.data(), e, j, i));
           REQUIRE(std::abs(K - straight_entry(want.tangent.data(), e, spatial(i), spatial(j))) <=

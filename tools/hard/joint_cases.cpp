@@ -346,7 +346,7 @@ std::vector<HardCase> joint_cases() {
        "largest w, 5.4 1/s: 1.6e-3, of which a fifth is asked.",
        mass_ratio},
       {"H45", "h45_jerked_drive", "A motor that starts at 1000 rad/s^2 at once",
-       "The acceleration jumps at the start and the crank comes to 200 rad/s, a loose rod on its "
+       "The acceleration jumps at the start and the crank reaches 200 rad/s, a loose rod on its "
        "end.",
        "The polynomial, and the loose rod's one equation by Runge-Kutta at a quarter of the step.",
        jerked_drive}};

@@ -15,7 +15,7 @@ constexpr const char kAxes[] = {'x', 'y', 'z'};
 std::vector<std::string> wheels_of(const Simulation& run) {
   std::vector<std::string> names;
   for (std::int32_t n = 0; n < run.model().external_wheels; ++n) {
-    const auto at = static_cast<std::size_t>(run.model().external_wheel[n].input + kExternalX);
+    const auto at = static_cast<std::size_t>(run.model().external_wheel[n].input) + kExternalX;
     const std::string& place = run.inputs()[at];  // NAME.x_m
     names.push_back(place.substr(0, place.rfind('.')));
   }

@@ -11,11 +11,10 @@
 #include "offline/analysis/modes.h"
 #include "offline/analysis/rigid.h"
 #include "offline/analysis/statics.h"
+#include "offline/math/complex.h"
 #include "offline/math/refuse.h"
 
 namespace railstep {
-
-using Complex = std::complex<double>;
 
 namespace {
 
@@ -29,23 +28,24 @@ constexpr int kFirst = 60, kMore = 40, kMost = 800;  // vectors of the Krylov sp
 
 /// The root nearest to `rate` of shape' Q(rate) shape = 0, plain transpose: as Q is symmetric, it
 /// errs by the square of what the shape does.
-Complex improved(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
-  const auto product = [&](const Eigen::SparseMatrix<double>& A) -> Complex {
-    return (shape.transpose() * (A.cast<Complex>() * shape))(0, 0);
+ComplexNumber improved(const Line& line, ComplexNumber rate, const Eigen::VectorXcd& shape) {
+  const auto product = [&](const Eigen::SparseMatrix<double>& A) -> ComplexNumber {
+    return (shape.transpose() * (A.cast<ComplexNumber>() * shape))(0, 0);
   };
-  const Complex m = product(line.mass), c = product(line.damping), k = product(line.stiffness);
-  const Complex root = std::sqrt(c * c - 4. * m * k);
+  const ComplexNumber m = product(line.mass), c = product(line.damping),
+                      k = product(line.stiffness);
+  const ComplexNumber root = std::sqrt(c * c - 4. * m * k);
   if (!(std::abs(m * rate * rate) > 1e-8 * std::abs(k))) return rate;
-  const Complex a = (-c + root) / (2. * m), b = (-c - root) / (2. * m);
+  const ComplexNumber a = (-c + root) / (2. * m), b = (-c - root) / (2. * m);
   return std::abs(a - rate) < std::abs(b - rate) ? a : b;
 }
 
 /// One step of inverse iteration: Q(rate) next = Q'(rate) shape.
-Eigen::VectorXcd inverse_step(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
-  const Eigen::SparseLU<Eigen::SparseMatrix<Complex>> factor(dynamic_stiffness(line, rate));
+Eigen::VectorXcd inverse_step(const Line& line, ComplexNumber rate, const Eigen::VectorXcd& shape) {
+  const Eigen::SparseLU<Eigen::SparseMatrix<ComplexNumber>> factor(dynamic_stiffness(line, rate));
   if (factor.info() != Eigen::Success) return shape;  // an exact rate
-  const Eigen::VectorXcd force =
-      2. * rate * (line.mass.cast<Complex>() * shape) + line.damping.cast<Complex>() * shape;
+  const Eigen::VectorXcd force = 2. * rate * (line.mass.cast<ComplexNumber>() * shape) +
+                                 line.damping.cast<ComplexNumber>() * shape;
   const Eigen::VectorXcd next = factor.solve(force);
   return next.allFinite() && next.norm() > 0. ? Eigen::VectorXcd(next / next.norm()) : shape;
 }
@@ -55,10 +55,10 @@ Eigen::VectorXcd inverse_step(const Line& line, Complex rate, const Eigen::Vecto
 double rounding(const Line& line, const Eigen::VectorXcd& shape) {
   const Eigen::VectorXd terms = line.stiffness.cwiseAbs() * shape.cwiseAbs();
   const double left = 10. * std::numeric_limits<double>::epsilon() * terms.norm();
-  return left / (2. * (line.stiffness.cast<Complex>() * shape).norm());
+  return left / (2. * (line.stiffness.cast<ComplexNumber>() * shape).norm());
 }
 
-void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
+void refine(const Line& line, ComplexNumber& rate, Eigen::VectorXcd& shape) {
   rate = improved(line, rate, shape);
   for (int iteration = 0; iteration < 3 && residual(line, rate, shape) > kGood; ++iteration) {
     shape = inverse_step(line, rate, shape);
@@ -70,8 +70,8 @@ void refine(const Line& line, Complex& rate, Eigen::VectorXcd& shape) {
 }
 
 /// The swinging Ritz pairs with |rate| <= radius; nothing if some are not yet sharp.
-std::optional<std::vector<Krylov::Ritz>> sharp(const Line& line, const Krylov& space, Complex shift,
-                                               double radius) {
+std::optional<std::vector<Krylov::Ritz>> sharp(const Line& line, const Krylov& space,
+                                               ComplexNumber shift, double radius) {
   // The quarter disc of that radius lies within this distance of its middle.
   std::vector<Krylov::Ritz> all = space.within(1.01 * std::abs(shift)), found;
   for (Krylov::Ritz& r : all) {
@@ -102,7 +102,7 @@ struct Search {
 /// All swinging modes with |rate| <= radius. The Krylov space grows until it knows them sharply and
 /// a further growth adds none: members of a cluster come out one after the other.
 Search search(const Line& line, double radius) {
-  const Complex shift(-.5 * radius, .5 * radius);
+  const ComplexNumber shift(-.5 * radius, .5 * radius);
   Krylov space(line, shift);
   std::optional<std::size_t> before;
   for (Eigen::Index size = kFirst; size <= kMost; size += std::max<Eigen::Index>(kMore, size / 4)) {
@@ -119,10 +119,10 @@ Search search(const Line& line, double radius) {
 
 }  // namespace
 
-double residual(const Line& line, Complex rate, const Eigen::VectorXcd& shape) {
-  const Eigen::VectorXcd inertia = rate * rate * (line.mass.cast<Complex>() * shape);
-  const Eigen::VectorXcd damping = rate * (line.damping.cast<Complex>() * shape);
-  const Eigen::VectorXcd elastic = line.stiffness.cast<Complex>() * shape;
+double residual(const Line& line, ComplexNumber rate, const Eigen::VectorXcd& shape) {
+  const Eigen::VectorXcd inertia = rate * rate * (line.mass.cast<ComplexNumber>() * shape);
+  const Eigen::VectorXcd damping = rate * (line.damping.cast<ComplexNumber>() * shape);
+  const Eigen::VectorXcd elastic = line.stiffness.cast<ComplexNumber>() * shape;
   return (inertia + damping + elastic).norm() / (inertia.norm() + damping.norm() + elastic.norm());
 }
 
@@ -160,7 +160,7 @@ bool add_damped(const std::vector<Line>& damped, double frequency, std::vector<L
   bool all = true;
   for (const Line& line : damped) {
     const Oscillations found = oscillations(line, kTwoPi * frequency);
-    for (const Complex rate : found.rate)
+    for (const ComplexNumber rate : found.rate)
       to.emplace_back(std::abs(rate) / (kTwoPi), -rate.real() / std::abs(rate));
     all = all && found.all;
   }

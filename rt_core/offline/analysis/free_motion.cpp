@@ -10,13 +10,13 @@
 
 #include "offline/analysis/rigid.h"
 #include "offline/math/refuse.h"
+#include "offline/math/sparse.h"
 #include "offline/track/functional.h"
 
 namespace railstep {
 
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
 using Factor = Eigen::SimplicialLDLT<Sparse>;
 
 constexpr double kNothing = 1e-6;  // of the largest: below it a point of a shape stands still

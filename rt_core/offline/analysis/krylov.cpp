@@ -3,11 +3,10 @@
 #include <algorithm>
 
 #include "offline/analysis/rigid.h"
+#include "offline/math/complex.h"
 #include "offline/math/refuse.h"
 
 namespace railstep {
-
-using Complex = std::complex<double>;
 
 namespace {
 
@@ -16,21 +15,21 @@ constexpr double kInfinite = 1e-12;   // of the largest |nu| = 1/|rate - shift|:
 
 }  // namespace
 
-Eigen::SparseMatrix<Complex> dynamic_stiffness(const Line& line, Complex rate) {
-  Eigen::SparseMatrix<Complex> Q = line.stiffness.cast<Complex>();
-  Q += rate * line.damping.cast<Complex>();
-  Q += rate * rate * line.mass.cast<Complex>();
+Eigen::SparseMatrix<ComplexNumber> dynamic_stiffness(const Line& line, ComplexNumber rate) {
+  Eigen::SparseMatrix<ComplexNumber> Q = line.stiffness.cast<ComplexNumber>();
+  Q += rate * line.damping.cast<ComplexNumber>();
+  Q += rate * rate * line.mass.cast<ComplexNumber>();
   return Q;
 }
 
-Krylov::Krylov(const Line& line, Complex shift)
+Krylov::Krylov(const Line& line, ComplexNumber shift)
     : line_(line), shift_(shift), scale_(std::abs(shift)) {
   factor_.compute(dynamic_stiffness(line, shift));
   if (factor_.info() != Eigen::Success)
     fail("E-MODES-07",
          "the dynamic stiffness of the track cannot be factored; expected stiffnesses and masses "
          "that differ by fewer orders of magnitude");
-  basis_ = start_block(2 * line.unknowns(), 1).cast<Complex>();
+  basis_ = start_block(2 * line.unknowns(), 1).cast<ComplexNumber>();
   basis_ /= basis_.norm();
   projection_.resize(1, 0);
 }
@@ -41,7 +40,7 @@ Eigen::VectorXcd Krylov::apply(const Eigen::VectorXcd& state) const {
   const Eigen::VectorXcd u = state.head(n), v = scale_ * state.tail(n);
   const Eigen::VectorXcd moved = v + shift_ * u;
   const Eigen::VectorXcd force =
-      -(line_.mass.cast<Complex>() * moved + line_.damping.cast<Complex>() * u);
+      -(line_.mass.cast<ComplexNumber>() * moved + line_.damping.cast<ComplexNumber>() * u);
   Eigen::VectorXcd result(2 * n);
   result.head(n) = factor_.solve(force);
   result.tail(n) = (shift_ * result.head(n) + u) / scale_;
@@ -81,9 +80,9 @@ std::vector<Krylov::Ritz> Krylov::within(double radius) const {
   const double outside = complete_ ? 0. : projection_(size_, size_ - 1).real();
   std::vector<Ritz> found;
   for (Eigen::Index i = 0; i < size_; ++i) {
-    const Complex nu = solver.eigenvalues()[i];
+    const ComplexNumber nu = solver.eigenvalues()[i];
     if (std::abs(nu) * radius < 1. || std::abs(nu) < kInfinite * largest) continue;
-    const Complex rate = shift_ + 1. / nu;
+    const ComplexNumber rate = shift_ + 1. / nu;
     const auto weights = solver.eigenvectors().col(i);
     Eigen::VectorXcd shape = basis_.topLeftCorner(line_.unknowns(), size_) * weights;
     shape /= shape.norm();

@@ -3,10 +3,9 @@
 #include <Eigen/SparseCholesky>
 
 #include "offline/math/refuse.h"
+#include "offline/math/sparse.h"
 
 namespace railstep {
-
-using Sparse = Eigen::SparseMatrix<double>;
 
 Sparse picks(int unknowns, const std::vector<int>& chosen) {
   Sparse result(unknowns, static_cast<int>(chosen.size()));

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "offline/math/refuse.h"
+#include "offline/math/sparse.h"
 
 namespace railstep {
 
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
 using Factor = Eigen::SimplicialLDLT<Sparse>;
 
 constexpr int kMostIterations = 200;
@@ -29,7 +29,7 @@ OneSided::OneSided(const Track& track, const std::vector<Line>& lines, std::vect
          "orders of magnitude");
 }
 
-OneSided::Sparse OneSided::stiffness(const Closed& closed, double open_fraction) const {
+Sparse OneSided::stiffness(const Closed& closed, double open_fraction) const {
   Eigen::VectorXd k(static_cast<Eigen::Index>(ports_.size()));
   for (std::size_t p = 0; p < ports_.size(); ++p)
     k[static_cast<Eigen::Index>(p)] = (closed[p] ? 1. : open_fraction) * ports_[p].stiffness;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "offline/analysis/free_motion.h"
+#include "offline/math/sparse.h"
 
 namespace railstep {
 
@@ -23,7 +24,6 @@ class OneSided {
   std::vector<double> forces(const std::vector<Eigen::VectorXd>& displacement) const;
 
  private:
-  using Sparse = Eigen::SparseMatrix<double>;
   using Closed = std::vector<bool>;
 
   Sparse stiffness(const Closed& closed, double open_fraction) const;

@@ -7,13 +7,12 @@
 #include "offline/analysis/free_motion.h"
 #include "offline/element/timoshenko.h"
 #include "offline/math/refuse.h"
+#include "offline/math/sparse.h"
 #include "offline/track/fixed_port.h"
 #include "offline/track/pad.h"
 
 namespace railstep {
 namespace {
-
-using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double kSamePlace = 1e-9;  // of the rail's length
 

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "offline/math/sparse.h"
+
 namespace railstep {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double kRounded = 8., kIdle = 34.;  // roundings in a force; see equilibrium()
 

@@ -8,12 +8,11 @@
 
 #include "offline/analysis/massless.h"
 #include "offline/math/refuse.h"
+#include "offline/math/sparse.h"
 
 namespace railstep {
 
 namespace {
-
-using Sparse = Eigen::SparseMatrix<double>;
 
 /// Splits rows and columns of a line's matrices into unknowns that are kept and those that follow.
 struct Partition {

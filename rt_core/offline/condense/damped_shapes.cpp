@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "offline/math/complex.h"
+
 namespace railstep {
 
 namespace {
-
-using Complex = std::complex<double>;
 
 /// Largest difference of rates that count as equal: at least the round-off of the fastest, and at
 /// most a part of the rate itself, since slow rates beside very fast ones are distinct.
@@ -23,10 +23,10 @@ struct OneRate {
     return std::max(round_off, std::min(kOfFastest * fastest, kOfOwn * size));
   }
   /// The solver may return equal real rates as pairs with imaginary parts of round-off.
-  [[nodiscard]] bool real(Complex rate) const {
+  [[nodiscard]] bool real(ComplexNumber rate) const {
     return std::abs(rate.imag()) <= within(std::abs(rate));
   }
-  [[nodiscard]] bool same(Complex a, Complex b) const {
+  [[nodiscard]] bool same(ComplexNumber a, ComplexNumber b) const {
     const double tolerance = (real(b) ? 2. : 1.) * within(std::abs(b));
     return real(a) == real(b) && std::abs(a - b) <= tolerance;
   }
@@ -45,7 +45,7 @@ std::vector<Eigen::Index> kept(const Eigen::VectorXcd& rates, const OneRate& one
 
 /// Vectors x with (rate^2 + rate D + Omega^2) x = 0, [kept][count]: what a rank-revealing QR of
 /// that matrix, scaled on both sides, leaves last.
-Eigen::MatrixXcd null_space(Complex rate, const Eigen::VectorXd& omega,
+Eigen::MatrixXcd null_space(ComplexNumber rate, const Eigen::VectorXd& omega,
                             const Eigen::MatrixXd& damping, Eigen::Index count) {
   const Eigen::Index m = omega.size();
   const Eigen::VectorXd scale = (omega.array() + std::abs(rate)).inverse();
@@ -101,7 +101,7 @@ Eigen::MatrixXcd unit_congruence(Eigen::MatrixXcd P) {
 }
 
 /// Shapes of one rate from those of the solver, with shape' (2 rate + D) shape = I.
-Eigen::MatrixXcd shapes_of(Complex rate, const Eigen::VectorXd& omega,
+Eigen::MatrixXcd shapes_of(ComplexNumber rate, const Eigen::VectorXd& omega,
                            const Eigen::MatrixXd& damping, Eigen::MatrixXcd X) {
   const Eigen::Index count = X.cols();
   if (count > 1) {
@@ -122,14 +122,14 @@ DampedShapes damped_shapes(const Eigen::VectorXd& omega, const Eigen::MatrixXd& 
   const Eigen::Index m = omega.size(), count = static_cast<Eigen::Index>(order.size());
   DampedShapes modes{Eigen::VectorXcd(count), Eigen::MatrixXcd(m, count)};
   for (auto from = order.begin(); from != order.end();) {
-    const Complex first = rates[*from];
+    const ComplexNumber first = rates[*from];
     const auto to = std::stable_partition(
         from, order.end(), [&](Eigen::Index i) { return one.same(rates[i], first); });
     const Eigen::Index begin = from - order.begin(), own = to - from;
     Eigen::MatrixXcd X(m, own);
-    Complex rate = 0.;
+    ComplexNumber rate = 0.;
     for (Eigen::Index c = 0; c < own; ++c, ++from) {
-      X.col(c) = vectors.col(*from).head(m).cwiseQuotient(omega.cast<Complex>());
+      X.col(c) = vectors.col(*from).head(m).cwiseQuotient(omega.cast<ComplexNumber>());
       rate += rates[*from] / static_cast<double>(own);
     }
     const bool real = one.real(first);

@@ -2,6 +2,8 @@
 #include <Eigen/SparseCholesky>
 #include <vector>
 
+#include "offline/math/sparse.h"
+
 namespace railstep {
 
 /// A part of a vector: its entries from `first` on; entries beyond are read as 0.
@@ -19,8 +21,6 @@ struct Stretch {
 /// the factor from either end, in the direction in which solutions fade.
 class LocalInverse {
  public:
-  using Sparse = Eigen::SparseMatrix<double>;
-
   /// The matrix with its unknowns in order along the track; factored without pivots, in work and
   /// memory linear in its rows.
   explicit LocalInverse(const Sparse& matrix);

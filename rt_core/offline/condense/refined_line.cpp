@@ -3,12 +3,11 @@
 #include "offline/condense/line_flexibility.h"
 #include "offline/element/shape.h"
 #include "offline/math/refuse.h"
+#include "offline/math/sparse.h"
 
 namespace railstep {
 
 namespace {
-
-using Sparse = Eigen::SparseMatrix<double>;
 
 /// A rail's unknowns where it stands, at the nodes of divided elements.
 Eigen::VectorXd divided_state(const Eigen::VectorXd& rail, int elements, int parts) {

@@ -12,6 +12,7 @@
 #include "offline/analysis/statics.h"
 #include "offline/beam/linearise.h"
 #include "offline/math/band_search.h"
+#include "offline/math/complex.h"
 #include "offline/math/larger.h"
 #include "offline/pack/port_statics.h"
 #include "offline/track/squeeze.h"
@@ -21,7 +22,6 @@ namespace railstep {
 
 namespace {
 
-using Value = std::complex<double>;
 constexpr double kPi = 3.14159265358979323846;
 
 /// Vertical receptances of points of the rails by one line, m/N: the displacement of a point under
@@ -37,12 +37,12 @@ class LineReceptances {
 
   void add(double omega, Eigen::VectorXcd& sums) {
     if (!moved()) return;
-    factor_.factorize(dynamic_stiffness(line_, Value(0., omega)));
+    factor_.factorize(dynamic_stiffness(line_, ComplexNumber(0., omega)));
     if (factor_.info() != Eigen::Success) {
       sums.setConstant(std::numeric_limits<double>::infinity());
       return;
     }
-    const Eigen::MatrixXcd forces = rows_.cast<Value>(), answer = factor_.solve(forces);
+    const Eigen::MatrixXcd forces = rows_.cast<ComplexNumber>(), answer = factor_.solve(forces);
     sums += answer.cwiseProduct(forces).colwise().sum().transpose();
   }
 
@@ -51,7 +51,7 @@ class LineReceptances {
 
   const Line& line_;
   Eigen::MatrixXd rows_;  // [unknowns][points]
-  Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor_;
+  Eigen::SparseLU<Eigen::SparseMatrix<ComplexNumber>> factor_;
 };
 
 /// The same for a condensed line: the sum of its modes.
@@ -68,7 +68,7 @@ class ModalReceptances {
   }
 
   void add(double omega, Eigen::VectorXcd& sums) const {
-    const Value rate(0., omega);
+    const ComplexNumber rate(0., omega);
     const Eigen::VectorXcd along = .5 * (rate - rate_.array()).inverse(),
                            back = .5 * (rate - rate_.conjugate().array()).inverse();
     sums += squares_.transpose() * along + squares_.adjoint() * back;
@@ -167,7 +167,7 @@ class ModelReceptances {
   }
 
   Eigen::VectorXcd at(double omega) {
-    Eigen::VectorXcd sums = residual_.cast<Value>();
+    Eigen::VectorXcd sums = residual_.cast<ComplexNumber>();
     for (const ModalReceptances& line : modal_) line.add(omega, sums);
     for (const auto& line : full_) line->add(omega, sums);
     if (closed_) closed_->subtract(omega, sums);

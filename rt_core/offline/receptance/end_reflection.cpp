@@ -8,6 +8,7 @@
 #include <string>
 
 #include "offline/condense/line_flexibility.h"
+#include "offline/math/complex.h"
 #include "offline/math/refuse.h"
 #include "offline/track/end_zone.h"
 #include "offline/track/pad.h"
@@ -16,7 +17,6 @@ namespace railstep {
 
 namespace {
 
-using Value = std::complex<double>;
 using Matrix = Eigen::MatrixXcd;
 
 constexpr int kDoublings = 40;
@@ -90,8 +90,9 @@ Matrix dynamic_block(const Line& line, const std::vector<int>& unknowns, double 
     for (Eigen::Index j = 0; j < n; ++j) {
       const int a = unknowns[static_cast<std::size_t>(i)],
                 b = unknowns[static_cast<std::size_t>(j)];
-      block(i, j) = Value(line.stiffness.coeff(a, b) - omega * omega * line.mass.coeff(a, b),
-                          omega * line.damping.coeff(a, b));
+      block(i, j) =
+          ComplexNumber(line.stiffness.coeff(a, b) - omega * omega * line.mass.coeff(a, b),
+                        omega * line.damping.coeff(a, b));
     }
   return block;
 }
@@ -127,7 +128,7 @@ Matrix EndReflection::bay(double omega, int number) const {
   for (int e = 0; e < n; ++e) {
     const double taken =
         number < 0 ? 0. : end_damping_rate(track_, line_.first_rail(), number * n + e);
-    const Value inertia(-omega * omega, omega * taken);
+    const ComplexNumber inertia(-omega * omega, omega * taken);
     for (Eigen::Index j = 0; j < 3 * d; ++j)
       for (Eigen::Index i = 0; i < 3 * d; ++i) {
         const auto at = static_cast<int>(9 * (i / d)) + carried_[static_cast<std::size_t>(i % d)];
@@ -186,7 +187,7 @@ Reflection EndReflection::at(double hz) const {
   part.topLeftCorner(d, d) += half;
   part.bottomRightCorner(d, d) += half;
   const Matrix ahead = for_ever(part);
-  const Eigen::MatrixXcd sign = mirror_.cast<Value>().asDiagonal();
+  const Eigen::MatrixXcd sign = mirror_.cast<ComplexNumber>().asDiagonal();
   const Matrix behind = sign * ahead * sign;
   const Matrix last = part.bottomRightCorner(d, d) + ahead;
   const Matrix next = -last.partialPivLu().solve(part.topRightCorner(d, d).transpose());

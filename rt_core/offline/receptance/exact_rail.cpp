@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "offline/math/complex.h"
 #include "offline/math/refuse.h"
 #include "offline/track/pad.h"
 
@@ -12,8 +13,7 @@ namespace railstep {
 
 namespace {
 
-using Value = std::complex<double>;
-using Entries = std::vector<Eigen::Triplet<Value>>;
+using Entries = std::vector<Eigen::Triplet<ComplexNumber>>;
 constexpr int kBayDoublings = 40;
 constexpr double kSameNode = 1e-9;  // m
 
@@ -100,12 +100,12 @@ Eigen::Matrix2cd ExactRailReceptance::Seat::on_rail() const {
 }
 
 ExactRailReceptance::Seat ExactRailReceptance::seat(const Part& part, double omega) const {
-  const Value pad(track_.support.stiffness[2], omega * track_.support.damping[2]);
-  const Value along(track_.support.stiffness[0], omega * track_.support.damping[0]);
-  const Value rotation = along * std::pow(track_.support.height_z, 2);
+  const ComplexNumber pad(track_.support.stiffness[2], omega * track_.support.damping[2]);
+  const ComplexNumber along(track_.support.stiffness[0], omega * track_.support.damping[0]);
+  const ComplexNumber rotation = along * std::pow(track_.support.height_z, 2);
   if (!track_.sleeper) return {pad, 0., rotation, false};
-  const Value ballast(track_.sleeper->ballast_stiffness[2],
-                      omega * track_.sleeper->ballast_damping[2]);
+  const ComplexNumber ballast(track_.sleeper->ballast_stiffness[2],
+                              omega * track_.sleeper->ballast_damping[2]);
   return {pad, ballast - omega * omega * part.sleeper_mass, rotation, true};
 }
 
@@ -113,7 +113,7 @@ ExactRailReceptance::Seat ExactRailReceptance::seat(const Part& part, double ome
 Eigen::VectorXcd ExactRailReceptance::row(const Functional& functional, const Part& part,
                                           const Seat& seat) const {
   Eigen::VectorXcd row = Eigen::VectorXcd::Zero(2 * static_cast<Eigen::Index>(x_.size()));
-  const auto at = [&](double x) -> Value& {
+  const auto at = [&](double x) -> ComplexNumber& {
     return row[2 * static_cast<Eigen::Index>(node_at(x))];
   };
   for (const Functional::OnRail& p : functional.rail)
@@ -125,9 +125,9 @@ Eigen::VectorXcd ExactRailReceptance::row(const Functional& functional, const Pa
 }
 
 /// Displacement of sleepers under forces on them with the rails held, m/N.
-Value ExactRailReceptance::held_rail(const Functional& a, const Functional& b, const Part& part,
-                                     const Seat& seat) const {
-  Value sum = 0.;
+ComplexNumber ExactRailReceptance::held_rail(const Functional& a, const Functional& b,
+                                             const Part& part, const Seat& seat) const {
+  ComplexNumber sum = 0.;
   for (const Functional::OnSleeper& s : a.sleeper)
     for (const Functional::OnSleeper& t : b.sleeper)
       if (s.seat == t.seat)
@@ -154,15 +154,15 @@ void ExactRailReceptance::add_ends(const Eigen::Matrix2cd& seat, double omega, E
   }
 }
 
-Eigen::SparseMatrix<Value> ExactRailReceptance::stiffness(const Eigen::Matrix2cd& seat,
-                                                          double omega) const {
+Eigen::SparseMatrix<ComplexNumber> ExactRailReceptance::stiffness(const Eigen::Matrix2cd& seat,
+                                                                  double omega) const {
   Entries entries;
   for (std::size_t i = 0; i + 1 < x_.size(); ++i)
     add(entries, i, beam_dynamic_stiffness(beam_, x_[i + 1] - x_[i], omega));
   for (int i = 0; i <= track_.bays; ++i) add(entries, node_at(i * track_.bay_length), seat);
   add_ends(seat, omega, entries);
   const auto n = 2 * static_cast<int>(x_.size());
-  Eigen::SparseMatrix<Value> result(n, n);
+  Eigen::SparseMatrix<ComplexNumber> result(n, n);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
@@ -173,7 +173,8 @@ Eigen::VectorXcd ExactRailReceptance::at(double hz) {
   for (const Part& part : parts_) {
     const Seat under = seat(part, omega);
     const Eigen::VectorXcd force = row(transfer_.force, part, under);
-    const Eigen::SparseLU<Eigen::SparseMatrix<Value>> factor(stiffness(under.on_rail(), omega));
+    const Eigen::SparseLU<Eigen::SparseMatrix<ComplexNumber>> factor(
+        stiffness(under.on_rail(), omega));
     const Eigen::VectorXcd moved = factor.solve(force);
     for (std::size_t i = 0; i < transfer_.reads.size(); ++i) {
       const Functional& read = transfer_.reads[i];

@@ -3,6 +3,7 @@
 #include <complex>
 #include <vector>
 
+#include "offline/math/complex.h"
 #include "offline/receptance/beam_waves.h"
 #include "offline/receptance/receptance.h"
 
@@ -25,7 +26,6 @@ class ExactRailReceptance : public Receptance {
   Eigen::VectorXcd at(double hz) override;
 
  private:
-  using Value = std::complex<double>;
   /// Rails that move alike, and the sleeper under each.
   struct Part {
     std::array<double, 2> rail_factor;  // weight of the part in left, right
@@ -33,21 +33,23 @@ class ExactRailReceptance : public Receptance {
   };
   /// Stiffness under a rail at one frequency, N/m; without a sleeper the pad's foot stands still.
   struct Seat {
-    Value pad, sleeper;
-    Value rotation;  // N m/rad
+    ComplexNumber pad, sleeper;
+    ComplexNumber rotation;  // N m/rad
     bool has_sleeper;
     /// Over the rail's [w, theta].
     Eigen::Matrix2cd on_rail() const;
-    Value follows() const { return pad / (pad + sleeper); }  // the sleeper, per metre of the rail
+    ComplexNumber follows() const {
+      return pad / (pad + sleeper);
+    }  // the sleeper, per metre of the rail
   };
   void take_places(const Functional& functional);
   Seat seat(const Part& part, double omega) const;
-  Eigen::SparseMatrix<Value> stiffness(const Eigen::Matrix2cd& seat, double omega) const;
+  Eigen::SparseMatrix<ComplexNumber> stiffness(const Eigen::Matrix2cd& seat, double omega) const;
   void add_ends(const Eigen::Matrix2cd& seat, double omega,
-                std::vector<Eigen::Triplet<Value>>& to) const;
+                std::vector<Eigen::Triplet<ComplexNumber>>& to) const;
   Eigen::VectorXcd row(const Functional& functional, const Part& part, const Seat& seat) const;
-  Value held_rail(const Functional& a, const Functional& b, const Part& part,
-                  const Seat& seat) const;
+  ComplexNumber held_rail(const Functional& a, const Functional& b, const Part& part,
+                          const Seat& seat) const;
   std::size_t node_at(double x) const;
 
   Track track_;

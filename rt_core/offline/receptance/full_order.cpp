@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "offline/analysis/krylov.h"
+#include "offline/math/complex.h"
 #include "offline/math/refuse.h"
 #include "offline/receptance/residual_statics.h"
 
 namespace railstep {
-
-using Value = std::complex<double>;
 
 Eigen::MatrixXd read_rows(const Track& track, const Line& line, const Transfer& transfer) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(transfer.reads.size()), line.unknowns());
@@ -28,7 +27,7 @@ FullOrderReceptance::FullOrderReceptance(const Track& track, const Transfer& tra
     if (force.norm() == 0.) continue;
     auto part = std::make_unique<Part>();
     part->line = std::move(line);
-    part->force = force.cast<Value>();
+    part->force = force.cast<ComplexNumber>();
     part->reads = read_rows(track, part->line, transfer);
     if (residual) residual_ += residual_statics(track, part->line, nullptr, transfer);
     // Every frequency has the same pattern.
@@ -38,14 +37,14 @@ FullOrderReceptance::FullOrderReceptance(const Track& track, const Transfer& tra
 }
 
 Eigen::VectorXcd FullOrderReceptance::at(double hz) {
-  Eigen::VectorXcd sum = residual_.cast<Value>();
+  Eigen::VectorXcd sum = residual_.cast<ComplexNumber>();
   for (const std::unique_ptr<Part>& part : parts_) {
-    part->factor.factorize(dynamic_stiffness(part->line, Value(0., 2. * M_PI * hz)));
+    part->factor.factorize(dynamic_stiffness(part->line, ComplexNumber(0., 2. * M_PI * hz)));
     if (part->factor.info() != Eigen::Success)
       fail("E-RECEPTANCE-13", "the track swings without damping at " + std::to_string(hz) +
                                   " Hz; expected dampers, or another frequency");
     const Eigen::VectorXcd moved = part->factor.solve(part->force);
-    sum += part->reads.cast<Value>() * moved;
+    sum += part->reads.cast<ComplexNumber>() * moved;
   }
   return sum;
 }

@@ -6,11 +6,10 @@
 #include <string>
 
 #include "offline/math/refuse.h"
+#include "offline/section/outline.h"
 
 namespace railstep {
 namespace {
-
-using Point = std::array<double, 2>;
 
 /// Twice the signed area of the triangle a, b, c.
 double cross(const Point& a, const Point& b, const Point& c) {

@@ -1,12 +1,9 @@
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
-#include "offline/element/shape.h"
 #include "offline/math/refuse.h"
 #include "offline/system/motion.h"
-#include "offline/system/pack_parts.h"
+#include "offline/system/place_marker.h"
 #include "online/system/row.h"
 
 namespace railstep {
@@ -31,9 +28,10 @@ class Connector {
   }
 
  private:
-  std::int32_t marker(const Part& part, const Vector3d& point, const Matrix3d& axes);
+  std::int32_t marker(const Part& part, const Vector3d& point, const Matrix3d& axes) {
+    return place_marker(system_, track_, part, point, axes, parts_);
+  }
   void check_in_plane(const Part& part, const Vector3d& point) const;
-  void put_on_rail(const Part& part, const Vector3d& point, MarkerModel& marker);
   std::int32_t motion(const Motion& motion);
   void row(RowKind kind, int i, int j = 0, int l = 0, std::int32_t motion = -1, double offset = 0.);
   void points(bool planar);
@@ -61,106 +59,12 @@ Matrix3d around(const Vector3d& axis) {
   return axes;
 }
 
-void set_frame(MarkerModel& marker, const Matrix3d& axes, const Matrix3d& own) {
-  const Matrix3d rows = axes.transpose() * own;  // row k: direction k in the part's axes
-  for (int k = 0; k < 3; ++k)
-    for (int c = 0; c < 3; ++c) marker.frame[3 * k + c] = rows(k, c);
-}
-
-/// Sets the place of a marker on a beam from a point.
-void put_on_beam(const FlexibleBeam& beam, const Vector3d& point, MarkerModel& marker) {
-  const Vector3d local = beam.axes.transpose() * (point - beam.start);
-  const double slack = 1e-9 * beam.length;
-  if (!(local.x() >= -slack && local.x() <= beam.length + slack))
-    refuse("E-SYSTEM-02", "its point is at " + std::to_string(local.x()) +
-                              " m along a beam; expected 0 to " + std::to_string(beam.length) +
-                              " m");
-  const double along = std::clamp(local.x() / beam.length * beam.elements, 0., 1. * beam.elements);
-  const int element = std::min(static_cast<int>(along), beam.elements - 1);
-  double xi = 2. * (along - element) - 1.;
-  for (const double node : {-1., 0., 1.})
-    if (std::abs(xi - node) < 1e-9) xi = node;
-  marker.node = 2 * element;
-  const auto n = shape(xi);
-  for (std::size_t i = 0; i < 3; ++i) marker.value[i] = n[i];
-  marker.position[1] = local.y();
-  marker.position[2] = local.z();
-}
-
 /// A force beside the axis of a planar beam would strain only its section.
 void Connector::check_in_plane(const Part& part, const Vector3d& point) const {
   const auto index = static_cast<std::size_t>(part.index);
   if (index < system_.beams.size() && point.y() != system_.beams[index].start.y())
     refuse("E-SYSTEM-03", "its point is at y = " + std::to_string(point.y()) +
                               " m, beside its beam; expected the beam's y in a planar system");
-}
-
-void Connector::put_on_rail(const Part& part, const Vector3d& point, MarkerModel& marker) {
-  if (track_ == nullptr)
-    refuse("E-SYSTEM-04",
-           "it names a rail, but there is no track; expected a body, a beam or the ground");
-  if (part.index < 0 || part.index >= track_->rails)
-    refuse("E-SYSTEM-05", "it names rail " + std::to_string(part.index) +
-                              ", which the track does not have; expected 0 to " +
-                              std::to_string(track_->rails - 1));
-  if (!(point.x() >= 0. && point.x() <= track_->length()))
-    refuse("E-SYSTEM-06", "its point is at x = " + std::to_string(point.x()) +
-                              " m, beyond the rail's ends; expected 0 to " +
-                              std::to_string(track_->length()) + " m");
-  const double side = track_->rails == 2 ? track_->rail_spacing / 2. : 0.;
-  const double y = part.index == 0 ? side : -side;
-  const double along = point.x() / track_->element_length();
-  RailPortModel port{};
-  port.first = parts_.unknowns;
-  port.rail = part.index;
-  port.element = std::min(static_cast<int>(along), track_->elements() - 1);
-  const auto n = shape(2. * (along - port.element) - 1.);
-  for (std::size_t i = 0; i < 3; ++i) port.value[i] = n[i];
-  const double rest[9] = {point.x(), y, 0., 0., 1., 0., 0., 0., 1.};
-  for (int k = 0; k < 9; ++k) port.rest[k] = rest[k];
-  marker.part = static_cast<std::int32_t>(parts_.ports.size());
-  marker.position[1] = point.y() - y;
-  marker.position[2] = point.z();
-  parts_.ports.push_back(port);
-  parts_.unknowns += 9;
-}
-
-std::int32_t Connector::marker(const Part& part, const Vector3d& point, const Matrix3d& axes) {
-  if (!point.allFinite())
-    refuse("E-SYSTEM-07", "its point is not finite; expected three finite numbers");
-  MarkerModel m{};
-  m.part = part.index;
-  if (part.kind == Part::Kind::ground) {
-    m.kind = PartKind::ground;
-    for (int c = 0; c < 3; ++c) m.position[c] = point[c];
-    set_frame(m, axes, Matrix3d::Identity());
-  } else if (part.kind == Part::Kind::body) {
-    if (part.index < 0 || static_cast<std::size_t>(part.index) >= system_.bodies.size())
-      refuse("E-SYSTEM-08", "it names body " + std::to_string(part.index) +
-                                ", which does not exist; expected one of the " +
-                                std::to_string(system_.bodies.size()) + " bodies, counted from 0");
-    const RigidBody& body = system_.bodies[static_cast<std::size_t>(part.index)];
-    const Matrix3d R = body.orientation.toRotationMatrix();
-    m.kind = PartKind::body;
-    const Vector3d local = R.transpose() * (point - body.position);
-    for (int c = 0; c < 3; ++c) m.position[c] = local[c];
-    set_frame(m, axes, R);
-  } else if (part.kind == Part::Kind::rail) {
-    m.kind = PartKind::rail;
-    put_on_rail(part, point, m);
-    set_frame(m, axes, Matrix3d::Identity());
-  } else {
-    if (part.index < 0 || static_cast<std::size_t>(part.index) >= system_.beams.size())
-      refuse("E-SYSTEM-09", "it names beam " + std::to_string(part.index) +
-                                ", which does not exist; expected one of the " +
-                                std::to_string(system_.beams.size()) + " beams, counted from 0");
-    const FlexibleBeam& beam = system_.beams[static_cast<std::size_t>(part.index)];
-    m.kind = PartKind::beam;
-    put_on_beam(beam, point, m);
-    set_frame(m, axes, beam.axes);
-  }
-  parts_.markers.push_back(m);
-  return static_cast<std::int32_t>(parts_.markers.size()) - 1;
 }
 
 std::int32_t Connector::motion(const Motion& motion) {

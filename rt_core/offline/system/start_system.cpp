@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "offline/math/refuse.h"
+#include "offline/math/sparse.h"
 #include "online/model/beam_chain.h"
 #include "online/system/row.h"
 #include "online/system/rows.h"
@@ -16,7 +17,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Sparse = Eigen::SparseMatrix<double>;
 
 VectorXd vector(const double* values, std::int32_t n) {
   return Eigen::Map<const VectorXd>(values, n);

@@ -97,17 +97,17 @@ std::int32_t railstep_version(void) noexcept { return RAILSTEP_VERSION; }
 const char* railstep_result_text(std::int32_t result) noexcept {
   switch (result) {
     case RAILSTEP_OK:
-      return "all is well";
+      return "no error";
     case RAILSTEP_MISALIGNED:
       return "a block or memory does not start at a multiple of 8 bytes";
     case RAILSTEP_NOT_A_MODEL:
-      return "not a model; accepted is what `railstep condense` wrote";
+      return "not a model; expected a file that `railstep condense` wrote";
     case RAILSTEP_OTHER_VERSION:
-      return "of another format; write it anew";
+      return "the model or the snapshot has another format; write it again";
     case RAILSTEP_WRONG_SIZE:
-      return "cut short or run on; write it anew";
+      return "shorter or longer than its header says; write it again";
     case RAILSTEP_WRONG_SUM:
-      return "the content does not match its check sums; write it anew";
+      return "the content does not match its check sums; write it again";
     case RAILSTEP_BAD_CONTENT:
       return "a number is out of its range";
     case RAILSTEP_TOO_LITTLE_MEMORY:
@@ -115,13 +115,13 @@ const char* railstep_result_text(std::int32_t result) noexcept {
     case RAILSTEP_NOT_A_SNAPSHOT:
       return "not a snapshot";
     case RAILSTEP_OTHER_MODEL:
-      return "a snapshot of another model";
+      return "the snapshot is from another model";
     case RAILSTEP_OTHER_BYTE_ORDER:
-      return "of a machine with another byte order; write it anew";
+      return "from a machine with another byte order; write it again";
     case RAILSTEP_OTHER_BITS:
       return "this machine steps the model to other bits than the one that wrote it";
     default:
-      return "no result of this library";
+      return "not a result of this library";
   }
 }
 

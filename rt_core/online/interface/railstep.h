@@ -9,10 +9,10 @@
  * static, and every loop is capped: one thread may step one run while others step theirs of the
  * same model. SI units; x along the rail, y lateral, z up.
  *
- * Null is no block (RAILSTEP_NOT_A_MODEL), no snapshot (RAILSTEP_NOT_A_SNAPSHOT), no memory and no
- * place for a result (RAILSTEP_TOO_LITTLE_MEMORY); as inputs it stands for those that are held. All
- * other pointers must be good: a model and a run are what railstep_load() and railstep_start()
- * made, and null is not looked for. */
+ * A null pointer in the place of a block gives RAILSTEP_NOT_A_MODEL, in the place of a snapshot
+ * RAILSTEP_NOT_A_SNAPSHOT, in the place of memory or of a result RAILSTEP_TOO_LITTLE_MEMORY. Null
+ * as inputs means that the last inputs are held. The functions do not check any other pointer: a
+ * model comes from railstep_load(), and a run from railstep_start(). */
 
 #include <stddef.h>
 #include <stdint.h>

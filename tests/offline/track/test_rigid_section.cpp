@@ -164,23 +164,23 @@ TEST_CASE("the residual flexibility holds what few unknowns miss of a force on t
   // the head's force, over a seat and beside it, and the force of a pad.
   const Unknowns fewer = GENERATE(Unknowns::rigid_section, Unknowns::vertical);
   const double along = GENERATE(0., 2e7);
-  constexpr double kHeadZ = .1007375;
-  constexpr int kPoints = 8;
+  constexpr double kRailheadZ = .1007375;
+  constexpr int kIntervals = 8;
   Track few = one_rail(fewer);
   few.support.stiffness[0] = along;
   Track nine = with(few, Unknowns::full);
   if (along == 0.) nine.ends = few.ends = {RailEnd::pinned, RailEnd::pinned};
-  nine.elements_per_bay *= 2 * kPoints;
+  nine.elements_per_bay *= 2 * kIntervals;
   const Statics exact(nine), model(few);
-  const ResidualFlexibility residual(few, assemble(few), {}, kPoints);
-  const std::vector<double> under = residual.under({0, kHeadZ});
+  const ResidualFlexibility residual(few, assemble(few), {}, kIntervals);
+  const std::vector<double> under = residual.under({0, kRailheadZ});
   const Functional pad = pad_gap(few, 0, 8);
-  const std::vector<double> opens = residual.from({0, kHeadZ}, pad);
+  const std::vector<double> opens = residual.from({0, kRailheadZ}, pad);
   const double k = few.support.stiffness[2];
   double largest = 0.;
-  for (int p = 0; p <= kPoints; ++p) {  // over an element from seat 8
-    const RailPoint at{0, 4.8 + few.element_length() * p / kPoints, 0., kHeadZ, 2};
-    constexpr std::size_t kElement = 16, kPlaces = kPoints + 1;
+  for (int p = 0; p <= kIntervals; ++p) {  // over an element from seat 8
+    const RailPoint at{0, 4.8 + few.element_length() * p / kIntervals, 0., kRailheadZ, 2};
+    constexpr std::size_t kElement = 16, kPlaces = kIntervals + 1;
     const std::size_t place = kElement * kPlaces + static_cast<std::size_t>(p);
     const double want = exact.flexibility(at, at), got = model.flexibility(at, at) + under[place];
     const auto moved = exact.solve({{at, 1.}}), by_model = model.solve({{at, 1.}});
@@ -202,13 +202,13 @@ TEST_CASE("a vertical track is compared in its own plane, also under compression
   t.axial_force = -4e5;
   t.support.half_spread = .05;
   Track fine = with_strain(t);
-  constexpr int kPoints = 8;
-  fine.elements_per_bay *= 2 * kPoints;
+  constexpr int kIntervals = 8;
+  fine.elements_per_bay *= 2 * kIntervals;
   const Statics exact(fine), model(t);
-  const ResidualFlexibility residual(t, assemble(t), {}, kPoints);
-  const RailPoint at{0, 3.6 + t.element_length() * 3. / kPoints, 0., .09, 2};
+  const ResidualFlexibility residual(t, assemble(t), {}, kIntervals);
+  const RailPoint at{0, 3.6 + t.element_length() * 3. / kIntervals, 0., .09, 2};
   const std::vector<double> under = residual.under({0, .09});
-  const double found = model.flexibility(at, at) + under[12 * (kPoints + 1) + 3];
+  const double found = model.flexibility(at, at) + under[12 * (kIntervals + 1) + 3];
   CHECK_THAT(found, WithinRel(exact.flexibility(at, at), 1e-5));
   // Readings across the track or along its axis do not change.
   for (const int direction : {0, 1}) {

@@ -18,7 +18,6 @@ using Catch::Contains;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 namespace {
 

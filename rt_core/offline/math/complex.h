@@ -1,0 +1,8 @@
+#pragma once
+#include <complex>
+
+namespace railstep {
+
+using ComplexNumber = std::complex<double>;
+
+}  // namespace railstep

@@ -1,0 +1,8 @@
+#pragma once
+#include <Eigen/SparseCore>
+
+namespace railstep {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+}  // namespace railstep
