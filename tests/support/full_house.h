@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "offline/math/sparse.h"
 #include "offline/track/fixed_port.h"
 #include "support/dense_newmark.h"
 #include "support/one_sided_tracks.h"
@@ -120,8 +121,6 @@ class DenseHouse {
     std::size_t row, column;
     long double m, c, k;
   };
-  using Sparse = Eigen::SparseMatrix<double>;
-
   void add(const Sparse& M, const Sparse& C, const Sparse& K, std::int32_t first) {
     const Eigen::MatrixXd m(M), c(C), k(K);
     for (Eigen::Index i = 0; i < m.rows(); ++i) {

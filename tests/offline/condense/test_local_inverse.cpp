@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "offline/condense/local_inverse.h"
+#include "offline/math/sparse.h"
 #include "support/fine_track.h"
 
 using namespace railstep;
-using Sparse = Eigen::SparseMatrix<double>;
-
 namespace {
 
 /// Matrix of springs between neighbours up to `width` apart, all held by a weak spring.

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "offline/math/sparse.h"
 #include "support/beams.h"
 #include "support/pi.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 /// Negative pivots of L D L' in the nodes' order; as many eigenvalues are negative (Sylvester).
 int negative_pivots(const Structure& s, const Eigen::VectorXd& q) {
-  using Sparse = Eigen::SparseMatrix<double>;
   const Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(
       free_part(s, tangent(s, q)));
   REQUIRE(factor.info() == Eigen::Success);
