@@ -162,7 +162,7 @@ TEST_CASE("unfit blocks and unfit memory are refused, and every result has a sen
   CHECK(made == nullptr);
   for (std::int32_t result = RAILSTEP_OK; result <= RAILSTEP_OTHER_MODEL; ++result)
     CHECK(std::strlen(railstep_result_text(result)) > 5);
-  CHECK(std::string(railstep_result_text(99)).find("no result") == 0);
+  CHECK(std::string(railstep_result_text(99)).find("not a result") == 0);
   CHECK(railstep_load(nullptr, 64, memory.data(), room, &model) == RAILSTEP_NOT_A_MODEL);
   CHECK(load(block.size(), nullptr, room) == RAILSTEP_TOO_LITTLE_MEMORY);
   CHECK(model == nullptr);
