@@ -38,9 +38,8 @@ class ExactRailReceptance : public Receptance {
     bool has_sleeper;
     /// Over the rail's [w, theta].
     Eigen::Matrix2cd on_rail() const;
-    ComplexNumber follows() const {
-      return pad / (pad + sleeper);
-    }  // the sleeper, per metre of the rail
+    /// Displacement of the sleeper per metre of the rail's.
+    ComplexNumber follows() const { return pad / (pad + sleeper); }
   };
   void take_places(const Functional& functional);
   Seat seat(const Part& part, double omega) const;
