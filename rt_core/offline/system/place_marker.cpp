@@ -45,7 +45,7 @@ void put_on_rail(const Part& part, const Vector3d& point, const Track* track, Sy
                  MarkerModel& marker) {
   if (track == nullptr)
     refuse("E-SYSTEM-04",
-           "it names a rail, but there is no track; expected a body, a beam or the ground");
+           "it names a rail, but the scene has no track; expected a body, a beam or the ground");
   if (part.index < 0 || part.index >= track->rails)
     refuse("E-SYSTEM-05", "it names rail " + std::to_string(part.index) +
                               ", which the track does not have; expected 0 to " +
