@@ -69,7 +69,7 @@ Cost responses_cost(const Model& model, const LineModel& line) {
   const std::int64_t wheels = contacts_on(model, line);
   const LineCost cost = line_cost(model, line);
   Cost sum = wheels * (cost.unit + cost.add) + wheels * (wheels + 1) / 2 * cost.read +
-             2 * wheels * cost.read;  // read as located, and moved since
+             wheels * (cost.located + cost.read);
   sum = sum + wheels * std::int64_t{model.fixed.count} * cost.read;
   // Dampers of flanges: the rail's motion at three instants.
   return sum + 6 * std::int64_t{model.flanges} * cost.wheel_row;
@@ -79,8 +79,12 @@ Cost fixed_cost(const Model& model) {
   const std::int64_t count = model.fixed.count, n = model.line_unknowns;
   if (model.form == Form::condensed)
     return count * (2 * work(4 * n + 8, 4 * n) + work(4 * n, 6 * n) + work(20, 10));
-  return count * (work(2 * n, 3 * n) + work(20, 10)) +
-         3 * work(2 * model.fixed.entries, 3 * model.fixed.entries);
+  std::int64_t filled = 0;
+  for (std::int64_t i = 0; i < count * model.lines; ++i)
+    filled += kLanes * (model.fixed.panels[2 * i + 1] - model.fixed.panels[2 * i]);
+  return work(2 * filled, 2 * filled) + work(2 * filled, 3 * filled) +
+         count * (model.lines * work(9, 0) + work(20, 10)) +
+         2 * work(2 * model.fixed.entries, 3 * model.fixed.entries);
 }
 
 /// The guides' iterations, each with a solve of all ports.

@@ -23,6 +23,37 @@ bool has_levers(const Model& model) {
   return model.p_delta.lever[0] != nullptr || model.p_delta.lever[1] != nullptr;
 }
 
+/// Panels that the unknowns of elements [from, end) span.
+std::int64_t panels_of_elements(const LineModel& line, std::int64_t from, std::int64_t end) {
+  std::int64_t first = line.size, last = -1;
+  for (const std::int32_t* table : line.unknown_of)
+    for (std::int64_t k = 27 * from; k < 27 * end; ++k)
+      if (table[k] >= 0) {
+        first = std::min<std::int64_t>(first, table[k]);
+        last = std::max<std::int64_t>(last, table[k]);
+      }
+  return last < 0 ? 0 : last / kLanes - first / kLanes + 1;
+}
+
+/// Most panels of a banded line that the response to a wheel fills. The row of a wheelset has the
+/// rolls over the seats around it.
+std::int64_t response_panels(const Model& model, const LineModel& line) {
+  const std::int64_t around =
+      has_levers(model) ? kPDeltaSeats / 2 * std::int64_t{model.p_delta.elements_per_bay} + 1 : 0;
+  std::int64_t most = 0;
+  for (std::int64_t e = 0; e < model.elements; ++e)
+    most =
+        std::max(most, panels_of_elements(line, std::max<std::int64_t>(e - around, 0),
+                                          std::min<std::int64_t>(e + around + 1, model.elements)));
+  return std::min<std::int64_t>(most + line.reach, line.step.panels);
+}
+
+/// Solve of banded lines halfway in some panels, into two copies.
+Cost half_solve_cost(const Band& band, std::int64_t panels) {
+  const std::int64_t flops = 2 * kLanes * (std::int64_t{band.left} + 1) + 128;
+  return panels * work(flops, kLanes * std::int64_t{band.left} + 64 + 6 * kLanes);
+}
+
 }  // namespace
 
 Cost solve_cost(const Band& band) {
@@ -43,9 +74,12 @@ LineCost line_cost(const Model& model, const LineModel& line) {
   c.row = points * (work(3, 2) + (modal ? work(4 * n + 7, 6 * n) : Cost{}));
   c.wheel_row = c.row + seats * (work(4, 3) + (modal ? work(4 * n + 7, 6 * n) : Cost{}));
   c.shape = work((points + seats) * (2 + 4 * n), (points + seats) * (2 + 2 * n) + 2 * n);
-  c.unit = modal ? c.shape + work(6 * n, 6 * n) : c.wheel_row + work(0, n) + solve_cost(line.step);
-  c.read = modal ? work(4 * n + 8, 4 * n) : c.wheel_row;
-  c.add = modal ? work(4 * n, 6 * n) : work(2 * n, 3 * n);
+  const std::int64_t filled = modal ? n : kLanes * response_panels(model, line);
+  c.unit = modal ? c.shape + work(6 * n, 6 * n)
+                 : 2 * c.wheel_row + half_solve_cost(line.step, filled / kLanes);
+  c.read = modal ? work(4 * n + 8, 4 * n) : work(2 * filled + 8, 2 * filled);
+  c.located = modal ? c.read : c.wheel_row;
+  c.add = modal ? work(4 * n, 6 * n) : work(2 * filled, 3 * filled);
   c.node_roll = 2 * (work(3, 2) + c.value);
   return c;
 }

@@ -13,7 +13,8 @@ struct LineCost {
   Cost wheel_row;  // the same of a wheel's row, which the roll over its seats goes into
   Cost shape;      // a wheel's row among the modes
   Cost unit;       // response of the line to a unit force under a wheel, including its row
-  Cost read;       // that response read under a wheel: an entry of W
+  Cost located;    // displacement of the line under a wheel as it was located
+  Cost read;       // a response read under a wheel, an entry of W; or the motion since then
   Cost add;        // a multiple of such a response added to the line
   Cost node_roll;  // the roll of a section
 };

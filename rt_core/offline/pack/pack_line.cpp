@@ -5,6 +5,7 @@
 
 #include "offline/math/refuse.h"
 #include "offline/pack/band_factor.h"
+#include "offline/pack/half_solve.h"
 #include "offline/pack/pack.h"
 
 namespace railstep {
@@ -70,6 +71,13 @@ std::pair<std::complex<double>, std::complex<double>> constant_and_linear(std::c
 }
 
 }  // namespace
+
+void PackedModel::add_reaches() {
+  for (std::int32_t l = 0; l < model_.lines; ++l) {
+    LineModel& line = model_.line[l];
+    line.reach = line.twin < l ? model_.line[line.twin].reach : reach_of(line.step);
+  }
+}
 
 Diagonals PackedModel::keep_diagonals(const Eigen::SparseMatrix<double>& A, int padded) {
   std::map<std::int32_t, std::vector<double>> found;  // offset -> values by row

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <string>
 
 #include "offline/math/refuse.h"
+#include "offline/pack/half_solve.h"
 #include "offline/pack/pack.h"
 #include "online/track/closing.h"
 
@@ -33,34 +35,43 @@ void PackedModel::add_fixed_ports(const Track& track) {
   // theta row response; the lower half is used for both, as they differ by rounding.
   const auto n = static_cast<std::size_t>(fixed.count);
   std::vector<double> compliance(n * n);
-  const std::ptrdiff_t part = model_.line_unknowns, stride = parts(model_.form) * part;
+  const std::ptrdiff_t part = model_.line_unknowns;
+  const auto response = [&](std::size_t j) {
+    return fixed.response + 2 * static_cast<std::ptrdiff_t>(j) * part;
+  };
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      const double* response = fixed.response + static_cast<std::ptrdiff_t>(j) * stride;
-      compliance[i * n + j] = compliance[j * n + i] =
-          model_.scheme.theta *
-          closing(model_, static_cast<std::int32_t>(i), response, response + part);
+      const double sum =
+          model_.form == Form::condensed
+              ? closing(model_, static_cast<std::int32_t>(i), response(j), response(j) + part)
+              : panels_dot({0, model_.line_unknowns / kLanes}, response(i), response(j) + part);
+      compliance[i * n + j] = compliance[j * n + i] = model_.scheme.theta * sum;
     }
   fixed.compliance = keep(std::move(compliance));
 }
 
-/// For banded lines: sparse rows, and S^-1 row by the step's own factors.
+/// For banded lines: sparse rows, and their solves halfway by the step's own factors.
 void PackedModel::add_port_rows() {
   FixedPortModel& fixed = model_.fixed;
   const auto n = static_cast<std::size_t>(model_.line_unknowns);
-  std::vector<std::int32_t> start = {0}, index;
-  std::vector<double> value, response(static_cast<std::size_t>(fixed.count) * n, 0.);
+  std::vector<std::int32_t> start = {0}, index, panels;
+  std::vector<double> value, response(2 * static_cast<std::size_t>(fixed.count) * n, 0.);
   for (std::int32_t j = 0; j < fixed.count; ++j) {
-    double* const own = response.data() + static_cast<std::size_t>(j) * n;
+    double* const own = response.data() + 2 * static_cast<std::size_t>(j) * n;
     for (std::size_t l = 0; l < lines_.size(); ++l) {
       const LineModel& line = model_.line[l];
+      std::vector<double> row(static_cast<std::size_t>(line.size), 0.);
       using Entry = Eigen::SparseMatrix<double>::InnerIterator;
       for (Entry entry(lines_[l].closing, j); entry; ++entry) {
         index.push_back(line.first + static_cast<std::int32_t>(entry.row()));
         value.push_back(entry.value());
-        own[index.back()] = value.back();
+        row[static_cast<std::size_t>(entry.row())] = value.back();
       }
-      solve_band<1>(line.step, own + line.first, 0);
+      const HalfSolve half = solve_halfway(line.step, std::move(row));
+      panels.insert(panels.end(), {half.panels.first, half.panels.end});
+      std::copy(half.forward.begin(), half.forward.end(), own + line.first);
+      std::copy(half.over_pivots.begin(), half.over_pivots.end(),
+                own + n + static_cast<std::size_t>(line.first));
     }
     start.push_back(static_cast<std::int32_t>(index.size()));
   }
@@ -69,6 +80,7 @@ void PackedModel::add_port_rows() {
   fixed.index = keep(std::move(index));
   fixed.value = keep(std::move(value));
   fixed.response = keep(std::move(response));
+  fixed.panels = keep(std::move(panels));
 }
 
 /// For condensed lines: the share of the modes in each row, and the response of the modes to a

@@ -180,6 +180,7 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   move_track(model, w, c);
   move_vehicles(model, w, c);
   if (model.fixed.count > 0) apply_fixed_port_forces(model, c, state, w);
+  finish_track(model, w);
   publish_wheels(model, c, state, result);
   return result;
 }

@@ -18,8 +18,9 @@ struct Coupling {
   int contacts, ports;  // ports: the contacts, then the fixed ones
   WheelContact contact[kMaxWheels];
   RailForce place[kMaxWheels];
-  double by_loads[kMaxWheels];  // residual displacement by the loads, m
-  double located[kMaxWheels];   // displacement of the lines when contacts were located, m
+  Panels panels[kMaxWheels][kMaxLines];  // of its response, in banded lines that it moves
+  double by_loads[kMaxWheels];           // residual displacement by the loads, m
+  double located[kMaxWheels];            // displacement of the lines when contacts were located, m
   FreeWheelset wheelset[kMaxWheelsets];
   double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
   double W[kPorts * kPorts];                          // [ports][ports] m/N

@@ -8,11 +8,14 @@ namespace railstep {
 
 namespace {
 
-/// Response of the lines to a unit force of a port; imaginary parts for condensed ones only.
-Complex response_of(const Model& model, std::int32_t port) noexcept {
-  const std::ptrdiff_t stride = std::ptrdiff_t{parts(model.form)} * model.line_unknowns;
-  const double* re = model.fixed.response + port * stride;
-  return {re, re + modal_unknowns(model)};
+/// Response of the lines to a unit force of a port.
+LineResponse response_of(const Model& model, std::int32_t port, std::int32_t line) noexcept {
+  const double* first =
+      model.fixed.response + 2 * static_cast<std::ptrdiff_t>(port) * model.line_unknowns;
+  if (model.form == Form::condensed) return {{}, first, first + model.line_unknowns};
+  const std::int32_t* panels =
+      model.fixed.panels + 2 * (static_cast<std::ptrdiff_t>(port) * model.lines + line);
+  return {{panels[0], panels[1]}, first, first + model.line_unknowns};
 }
 
 PortLaw law_of(const FixedPortModel& fixed, std::int32_t port, const DepthSpeed& speed) noexcept {
@@ -27,7 +30,13 @@ void place_banded(const Model& model, std::int32_t j, const Workspace& w, Coupli
                                   closing(model, j, w.v_star, nullptr));
   speed.before += speed.per_metre * fixed.gap[j];  // the depth is the closing less the gap
   c.law[c.contacts + j] = law_of(fixed, j, speed);
-  c.track_free[c.contacts + j] = closing(model, j, w.solved, nullptr) - fixed.gap[j];
+  double free = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineResponse own = response_of(model, j, l);
+    const std::int32_t first = model.line[l].first;
+    free += panels_dot(own.panels, own.first + first, w.solved + first);
+  }
+  c.track_free[c.contacts + j] = free - fixed.gap[j];
 }
 
 void place_condensed(const Model& model, std::int32_t j, const State& s, const Workspace& w,
@@ -43,14 +52,12 @@ void place_condensed(const Model& model, std::int32_t j, const State& s, const W
 /// W between a fixed port and all before it.
 void fixed_compliance(const Model& model, std::int32_t j, const Workspace& w,
                       Coupling& c) noexcept {
-  const Complex response = response_of(model, j);
   const int row = c.contacts + j;
   for (ContactId i = 0; i < c.contacts; ++i) {
-    const double sum =
-        c.contact[i].on_rail
-            ? model.scheme.theta * track_under(model, w, c, i, response.re, response.im)
-            : 0.;
-    c.W[i * c.ports + row] = c.W[row * c.ports + i] = sum;
+    double sum = 0.;
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      sum += line_compliance(model, w, c, i, l, response_of(model, j, l));
+    c.W[i * c.ports + row] = c.W[row * c.ports + i] = model.scheme.theta * sum;
   }
   for (std::int32_t i = 0; i <= j; ++i)
     c.W[(c.contacts + i) * c.ports + row] = c.W[row * c.ports + c.contacts + i] =
@@ -74,14 +81,19 @@ void couple_fixed_ports(const Model& model, const State& s, const Workspace& w,
 void apply_fixed_port_forces(const Model& model, const Coupling& c, State& s,
                              Workspace& w) noexcept {
   for (std::int32_t j = 0; j < model.fixed.count; ++j) {
-    const Complex response = response_of(model, j);
     const double force = c.force[c.contacts + j];
     s.port_force[j] = force;
-#pragma omp simd
-    for (std::int32_t k = 0; k < model.line_unknowns; ++k) w.solved[k] -= force * response.re[k];
-    if (model.form == Form::banded) continue;
-#pragma omp simd
-    for (std::int32_t k = 0; k < model.line_unknowns; ++k) w.imaginary[k] -= force * response.im[k];
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      const LineResponse by = response_of(model, j, l);
+      const std::int32_t first = model.line[l].first;
+      if (model.form == Form::banded) {
+        panels_subtract(by.panels, force, by.second + first, w.solved + first);
+        continue;
+      }
+      const Panels all{0, model.line[l].size / kLanes};
+      panels_subtract(all, force, by.first + first, w.solved + first);
+      panels_subtract(all, force, by.second + first, w.imaginary + first);
+    }
   }
 }
 

@@ -16,29 +16,36 @@ bool acts_on(const Coupling& c, ContactId wheel, const LineModel& line) noexcept
   return c.contact[wheel].on_rail && line.rail_factor[c.contact[wheel].row.rail] != 0.;
 }
 
-/// Solves each banded line for its own forces and for the wheels that act on it, if possible
-/// together.
-void solve_bands(const Model& model, Workspace& w, const Coupling& c) noexcept {
-  const std::ptrdiff_t stride = model.unknowns;
-  for (ContactId i = 0; i < c.contacts; ++i) {
-    double* rhs = w.unit + i * stride;
-    for (std::int32_t k = 0; k < model.line_unknowns; ++k) rhs[k] = 0.;
-    if (!c.contact[i].on_rail) continue;
-    for (std::int32_t l = 0; l < model.lines; ++l) spread(model.line[l], c.contact[i].row, 1., rhs);
-  }
+/// The same for one wheel and one line.
+/// @param unit  where the wheel's response begins
+void respond_band(const LineModel& line, const RailRow& row, std::ptrdiff_t unit, Workspace& w,
+                  Panels& at) noexcept {
+  at = panels_of(line, row);
+  at.end = at.end + line.reach < line.step.panels ? at.end + line.reach : line.step.panels;
+  double *const half = w.unit + unit, *const second = w.unit_second + unit + line.first;
+  for (std::int32_t k = kLanes * at.first; k < kLanes * at.end; ++k) half[line.first + k] = 0.;
+  spread(line, row, 1., half);
+  solve_forward<1>(line.step, at, half + line.first, 0);
+  for (std::int32_t k = kLanes * at.first; k < kLanes * at.end; ++k)
+    second[k] = half[line.first + k];
+  divide_by_pivots<1>(line.step, at, second, 0);
+}
+
+/// Halfway solves of each banded line: of its own right-hand side, and of each wheel's row in the
+/// panels that it reaches.
+void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
-    double* x = w.solved + model.line[l].first;
-    double* unit = w.unit + model.line[l].first;
-    const bool both = model.line[l].rail_factor[0] != 0. && model.line[l].rail_factor[1] != 0.;
-    const int together = both && c.contacts >= 2 ? 2 : 0;
-    if (together == 2)
-      solve_band<3>(model.line[l].step, x, stride);
-    else
-      solve_band<1>(model.line[l].step, x, stride);
-    for (int i = together; i < c.contacts; ++i)
-      if (c.contact[i].on_rail && model.line[l].rail_factor[c.contact[i].row.rail] != 0.)
-        solve_band<1>(model.line[l].step, unit + i * stride, stride);
+    const Band& step = model.line[l].step;
+    double* const own = w.solved + model.line[l].first;
+    solve_forward<1>(step, {0, step.panels}, own, 0);
+    divide_by_pivots<1>(step, {0, step.panels}, own, 0);
   }
+  for (ContactId i = 0; i < c.contacts; ++i)
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      const LineModel& line = model.line[l];
+      if (acts_on(c, i, line))
+        respond_band(line, c.contact[i].row, i * std::ptrdiff_t{model.unknowns}, w, c.panels[i][l]);
+    }
 }
 
 /// Response of the condensed lines to a unit force under each wheel, held over the step.
@@ -52,7 +59,7 @@ void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept
       if (!acts_on(c, i, line)) continue;
       shape_row(line, c.contact[i].row, re, re + stride);
       modes_multiply(line.modal.held_force, row_of(model, w, line, i), w.unit + unit + line.first,
-                     w.unit_imaginary + unit + line.first, line.size);
+                     w.unit_second + unit + line.first, line.size);
     }
   }
 }
@@ -80,18 +87,7 @@ double line_under(const Model& model, const Workspace& w, const Coupling& c, con
   return modes_dot(row_of(model, w, line, i), {re + line.first, im + line.first}, line.size);
 }
 
-}  // namespace
-
-void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
-  if (model.form == Form::condensed)
-    respond_modes(model, w, c);
-  else
-    solve_bands(model, w, c);
-  for (ContactId i = 0; i < c.contacts; ++i)
-    c.located[i] = model.form == Form::condensed ? track_under(model, w, c, i, s.u, s.v)
-                                                 : track_under(model, w, c, i, w.scaled, nullptr);
-}
-
+/// Displacement under wheel `i` by displacements `re` and, if condensed, `im` of the lines.
 double track_under(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
                    const double* re, const double* im) noexcept {
   double sum = 0.;
@@ -100,19 +96,50 @@ double track_under(const Model& model, const Workspace& w, const Coupling& c, Co
   return sum;
 }
 
+const double* half_response(const Model& model, const Workspace& w, ContactId i) noexcept {
+  return w.unit + i * std::ptrdiff_t{model.unknowns};
+}
+
+}  // namespace
+
+void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
+  if (model.form == Form::condensed)
+    respond_modes(model, w, c);
+  else
+    respond_bands(model, w, c);
+  for (ContactId i = 0; i < c.contacts; ++i)
+    c.located[i] = model.form == Form::condensed ? track_under(model, w, c, i, s.u, s.v)
+                                                 : track_under(model, w, c, i, w.scaled, nullptr);
+}
+
+double line_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
+                       std::int32_t l, const LineResponse& by) noexcept {
+  const LineModel& line = model.line[l];
+  if (!acts_on(c, i, line)) return 0.;
+  if (model.form == Form::condensed) return line_under(model, w, c, line, i, by.first, by.second);
+  return panels_dot(common(c.panels[i][l], by.panels), half_response(model, w, i) + line.first,
+                    by.second + line.first);
+}
+
 double track_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
                         ContactId j) noexcept {
-  const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(j) * model.unknowns;
+  const std::ptrdiff_t unit = j * std::ptrdiff_t{model.unknowns};
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    if (acts_on(c, i, model.line[l]) && acts_on(c, j, model.line[l]))
-      sum += line_under(model, w, c, model.line[l], i, w.unit + unit, w.unit_imaginary + unit);
+    if (acts_on(c, j, model.line[l]))
+      sum +=
+          line_compliance(model, w, c, i, l, {c.panels[j][l], w.unit + unit, w.unit_second + unit});
   return sum;
 }
 
 double track_motion(const Model& model, const Workspace& w, const Coupling& c,
                     ContactId i) noexcept {
-  return track_under(model, w, c, i, w.solved, w.imaginary) - c.located[i];
+  if (model.form == Form::condensed)
+    return track_under(model, w, c, i, w.solved, w.imaginary) - c.located[i];
+  double sum = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    sum += line_compliance(model, w, c, i, l, {c.panels[i][l], nullptr, w.solved});
+  return sum - c.located[i];
 }
 
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
@@ -123,15 +150,23 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
     int count = 0;
     for (ContactId i = 0; i < c.contacts; ++i) {
       if (!acts_on(c, i, line)) continue;
-      const std::ptrdiff_t unit = static_cast<std::ptrdiff_t>(i) * model.unknowns + line.first;
+      const std::ptrdiff_t unit = i * std::ptrdiff_t{model.unknowns} + line.first;
+      if (model.form == Form::banded)
+        panels_subtract(c.panels[i][l], c.force[i], w.unit_second + unit, w.solved + line.first);
       re[count] = w.unit + unit;
-      im[count] = w.unit_imaginary + unit;
+      im[count] = w.unit_second + unit;
       force[count++] = c.force[i];
     }
+    if (model.form == Form::banded) continue;
     subtract(re, force, count, line.size, w.solved + line.first);
-    if (model.form == Form::condensed)
-      subtract(im, force, count, line.size, w.imaginary + line.first);
+    subtract(im, force, count, line.size, w.imaginary + line.first);
   }
+}
+
+void finish_track(const Model& model, Workspace& w) noexcept {
+  if (model.form == Form::condensed) return;
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    solve_backward<1>(model.line[l].step, w.solved + model.line[l].first, 0);
 }
 
 }  // namespace railstep

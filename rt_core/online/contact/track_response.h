@@ -9,26 +9,40 @@ inline Configuration located_on(const Model& model, const State& s, const Worksp
   return {w.scaled, {s.u, s.v}, track_offset(model, s.steps + 1)};
 }
 
-/// Solves banded lines for their own right-hand side (in workspace.solved), and for each wheel the
-/// lines that it acts on for a unit force there (unit[wheel]). On condensed lines the force is held
+/// Response of a line to a unit force: real and imaginary part of its modes; or, with the line's
+/// matrix L D L' of a step, L^-1 and D^-1 L^-1 of the force's row, which are 0 outside `panels`.
+/// Both point to the first unknown of all lines.
+struct LineResponse {
+  Panels panels;
+  const double *first, *second;
+};
+
+// On banded lines all contacts of a step take one solve, S = L D L'. Forward, L^-1 of the track's
+// right-hand side and of each contact's row r give all that the contacts need: S^-1 b under a
+// contact is (L^-1 r) . (D^-1 L^-1 b), a sum over the few panels to which L^-1 carries r. Their
+// forces are added to D^-1 L^-1 b, and one solve backward gives the displacements.
+
+/// Solves banded lines forward for their own right-hand side (in workspace.solved), and for each
+/// wheel the lines that it acts on for a unit force there. On condensed lines the force is held
 /// over the step. It stores the displacement of the lines under each wheel when located.
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
+
+/// Displacement of line `l` under wheel `i` by a response of it.
+double line_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
+                       std::int32_t l, const LineResponse& by) noexcept;
 
 /// Displacement of the track under wheel `i` by a unit force at wheel `j`, at the step's end.
 double track_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
                         ContactId j) noexcept;
 
-/// Displacement under wheel `i` by displacements `re` and, if condensed, `im` of the lines,
-/// [line_unknowns].
-double track_under(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
-                   const double* re, const double* im) noexcept;
-
 /// Displacement under wheel `i` without contact forces, since the contact was located.
 double track_motion(const Model& model, const Workspace& w, const Coupling& c,
                     ContactId i) noexcept;
 
-/// Displacements of the track under the wheel forces: the free ones plus the response to each
-/// force.
+/// Adds the wheel forces to the track without them.
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept;
+
+/// Displacements of banded lines, by the solve backward; after all forces.
+void finish_track(const Model& model, Workspace& w) noexcept;
 
 }  // namespace railstep

@@ -85,6 +85,7 @@ void describe(Archive& a, Model& m, std::int32_t at) {
     const LineModel& twin = m.line[line.twin];
     line.size = twin.size;
     line.step = twin.step;
+    line.reach = twin.reach;
     line.mass = twin.mass;
     line.damping = twin.damping;
     line.modal = twin.modal;
@@ -104,6 +105,7 @@ void describe(Archive& a, Model& m, std::int32_t at) {
     a.integers(line.unknown_of[1], table);
   if (m.form == Form::condensed) return describe(a, line.modal, line.size);
   describe(a, line.step, line.size);
+  a.count(line.reach, line.size / kLanes);
   describe(a, line.mass, line.size);
   describe(a, line.damping, line.size);
 }
@@ -267,8 +269,9 @@ void describe(Archive& a, FixedPortModel& p, const Model& m) {
     a.integers(p.start, p.count + 1);
     a.integers(p.index, p.entries);
     a.reals(p.value, p.entries);
+    a.integers(p.panels, std::int64_t{2} * p.count * m.lines);
   }
-  a.reals(p.response, std::int64_t{parts(m.form)} * p.count * m.line_unknowns);
+  a.reals(p.response, std::int64_t{2} * p.count * m.line_unknowns);
   a.reals(p.compliance, std::int64_t{p.count} * p.count);
 }
 

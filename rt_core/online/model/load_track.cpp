@@ -201,6 +201,15 @@ bool track_sensors_are_valid(const Model& m) noexcept {
          tables_are_valid(m);
 }
 
+/// Whether the panels of each fixed port lie in their lines.
+bool panels_are_valid(const Model& m) noexcept {
+  const std::int32_t* at = m.fixed.panels;
+  for (std::int32_t j = 0; j < m.fixed.count; ++j)
+    for (std::int32_t l = 0; l < m.lines; ++l, at += 2)
+      if (at[0] < 0 || at[0] > at[1] || at[1] > m.line[l].size / kLanes) return false;
+  return true;
+}
+
 bool fixed_ports_are_valid(const Model& m) noexcept {
   const FixedPortModel& p = m.fixed;
   if (p.count == 0) return true;
@@ -213,7 +222,8 @@ bool fixed_ports_are_valid(const Model& m) noexcept {
   if (p.start == nullptr || p.start[0] != 0 || p.start[p.count] != p.entries) return false;
   for (std::int32_t i = 0; i < p.count; ++i)
     if (p.start[i] > p.start[i + 1]) return false;
-  return within(p.index, p.entries, 0, m.line_unknowns - 1) && (p.entries == 0 || p.value);
+  return within(p.index, p.entries, 0, m.line_unknowns - 1) && (p.entries == 0 || p.value) &&
+         panels_are_valid(m);
 }
 
 }  // namespace

@@ -84,7 +84,8 @@ constexpr std::int32_t parts(Form form) noexcept { return form == Form::condense
 struct LineModel {
   std::int32_t first, size;  // its unknowns among the state's, padded to whole panels
   std::int32_t twin;         // the first line that shares its matrices or modes; itself if none
-  Band step;                 // factor of K + kv C + kg M
+  Band step;                 // factor of K + kv C + kg M, L D L'
+  std::int32_t reach;        // panels behind a force's own to which L^-1 carries it
   Diagonals mass, damping;   // padded to whole panels
   Modal modal;
   BayShift shift;  // of a track without end
@@ -272,10 +273,12 @@ struct FixedPortModel {
   const double* value;        // [entries]
   /// For condensed lines: row' shape, real and imaginary parts; null otherwise.
   const double* shape;  // [count][2][line_unknowns] kg^-1/2
-  /// Response of the lines at the step's end to a unit force along the row: S^-1 row; for condensed
-  /// lines held_force shape, real and imaginary parts.
-  const double* response;    // [count][parts(form)][line_unknowns]
-  const double* compliance;  // [count][count] theta row response, m/N
+  /// Response of the lines to a unit force along the row. For condensed lines held_force shape,
+  /// real and imaginary parts. For banded ones, S = L D L', halfway: L^-1 row and D^-1 L^-1 row, 0
+  /// outside the panels of each line.
+  const double* response;      // [count][2][line_unknowns]
+  const std::int32_t* panels;  // [count][lines][2] first and end of banded ones; null otherwise
+  const double* compliance;    // [count][count] theta row response, m/N
 };
 
 /// A wheel of a vehicle outside the model, which acts on a rail. Its place and force are inputs

@@ -38,14 +38,15 @@ struct Workspace {
   double* v_star;  // [unknowns]
   double* scaled;  // [unknowns]
   double* solved;  // [unknowns] right-hand side of the track without wheels; after the solve, the
-                   // displacements
+                   // displacements. In a solve with wheels D^-1 L^-1 of banded lines'
   double* imaginary;  // the same for condensed lines; `solved` is the real part
   double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
   double* system;     // see system_workspace.h
   double* external;   // [state_doubles] of models with external wheels: a trial state
   double* start;      // [2][unknowns] of schemes of two stages: u and v at the step's start
-  double* unit;       // [contacts][unknowns] as `solved`, for a unit force at each contact
-  double* unit_imaginary;
+  /// [contacts][unknowns] response of the lines to a unit force at each contact: real and imaginary
+  /// part of condensed ones; of banded ones L^-1 and D^-1 L^-1 of its row, in its panels alone.
+  double *unit, *unit_second;
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -109,8 +110,8 @@ inline std::int64_t start_doubles(const Model& model) noexcept {
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t contacts = contact_count(model);
-  const std::int64_t of_modes = model.form == Form::condensed ? 1 + 3 * contacts : 0;
-  return (4 + contacts + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
+  const std::int64_t of_modes = model.form == Form::condensed ? 1 + 2 * contacts : 0;
+  return (4 + 2 * contacts + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -140,10 +141,11 @@ inline State state_on(const Model& model, double* memory) noexcept {
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   const bool condensed = model.form == Form::condensed;
-  const std::int64_t n = model.unknowns, solved = (1 + contact_count(model)) * n;
-  double* const imaginary = memory + 3 * n + solved;
-  double* const row = imaginary + (condensed ? solved : 0);
-  double* const system = row + (condensed ? 2LL * contact_count(model) * n : 0);
+  const std::int64_t n = model.unknowns, units = contact_count(model) * n;
+  double* const unit = memory + 4 * n;
+  double* const imaginary = unit + 2 * units;
+  double* const row = imaginary + (condensed ? n : 0);
+  double* const system = row + (condensed ? 2 * units : 0);
   double* const external = system + system_workspace_doubles(model.system);
   return {memory,
           memory + n,
@@ -154,8 +156,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           system,
           external,
           external + (model.external_wheels > 0 ? state_doubles(model) : 0),
-          memory + 4 * n,
-          imaginary + (condensed ? n : 0)};
+          unit,
+          unit + units};
 }
 
 /// Copies a state to other memory, without the latched status.

@@ -75,6 +75,15 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
   });
 }
 
+Panels panels_of(const LineModel& line, const RailRow& row) noexcept {
+  std::int32_t first = line.size, last = -1;
+  for_carried(line, row, [&](std::int32_t unknown, double) noexcept {
+    if (unknown < first) first = unknown;
+    if (unknown > last) last = unknown;
+  });
+  return last < 0 ? Panels{0, 0} : Panels{first / kLanes, last / kLanes + 1};
+}
+
 void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept {
   const double *shape[kMostCarried], *imaginary[kMostCarried];
   double weight[kMostCarried];

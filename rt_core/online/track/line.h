@@ -78,6 +78,9 @@ double motion(const LineModel& line, const RailRow& row, const Configuration& at
 /// rhs += force * row for a banded line; rhs [unknowns] of all lines.
 void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept;
 
+/// Panels of a banded line that hold the unknowns of a row; none for a line that it does not move.
+Panels panels_of(const LineModel& line, const RailRow& row) noexcept;
+
 /// Shape of a row in the modes of a condensed line; the line's part of re and im [unknowns] is
 /// overwritten.
 void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept;
