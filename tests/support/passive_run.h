@@ -72,7 +72,8 @@ class PassiveRun {
     StandingWheels found;
     for (int i = 0; i < wheel_count(model_); ++i) {
       found.approach.push_back(contact[i].penetration);
-      found.place.push_back({load_point_of(model_, i), contact[i].row.element, contact[i].xi, 0.});
+      found.place.push_back(
+          {model_, load_point_of(model_, i), contact[i].row.element, contact[i].xi, 0.});
     }
     return found;
   }

@@ -68,7 +68,7 @@ Cost tables_cost(const Model& model) {
 Cost responses_cost(const Model& model, const LineModel& line) {
   const std::int64_t wheels = contacts_on(model, line);
   const LineCost cost = line_cost(model, line);
-  Cost sum = wheels * (cost.unit + cost.add) + wheels * (wheels + 1) / 2 * cost.read +
+  Cost sum = wheels * (cost.unit + cost.add) + wheels * (wheels + 1) / 2 * cost.pair +
              wheels * (cost.located + cost.read);
   sum = sum + wheels * std::int64_t{model.fixed.count} * cost.read;
   // Dampers of flanges: the rail's motion at three instants.

@@ -8,17 +8,6 @@ namespace railstep {
 
 namespace {
 
-/// Most unknowns of a rail's element that a line carries.
-std::int64_t carried(const Model& model, const LineModel& line) {
-  std::int64_t most = 0;
-  for (int rail = 0; rail < 2; ++rail)
-    for (std::int32_t e = 0; e < model.elements; ++e)
-      most = std::max<std::int64_t>(
-          most, std::count_if(line.unknown_of[rail] + 27 * e, line.unknown_of[rail] + 27 * (e + 1),
-                              [](std::int32_t unknown) { return unknown >= 0; }));
-  return most;
-}
-
 bool has_levers(const Model& model) {
   return model.p_delta.lever[0] != nullptr || model.p_delta.lever[1] != nullptr;
 }
@@ -56,6 +45,16 @@ Cost half_solve_cost(const Band& band, std::int64_t panels) {
 
 }  // namespace
 
+std::int64_t carried_by(const Model& model, const LineModel& line) {
+  std::int64_t most = 0;
+  for (int rail = 0; rail < 2; ++rail)
+    for (std::int32_t e = 0; e < model.elements; ++e)
+      most = std::max<std::int64_t>(
+          most, std::count_if(line.unknown_of[rail] + 27 * e, line.unknown_of[rail] + 27 * (e + 1),
+                              [](std::int32_t unknown) { return unknown >= 0; }));
+  return most;
+}
+
 Cost solve_cost(const Band& band) {
   const std::int64_t panels = band.panels, left = band.left;
   std::int64_t columns = 0;  // left of all panels, those before the first unknown left out
@@ -66,7 +65,7 @@ Cost solve_cost(const Band& band) {
 }
 
 LineCost line_cost(const Model& model, const LineModel& line) {
-  const std::int64_t n = line.size, points = carried(model, line);
+  const std::int64_t n = line.size, points = carried_by(model, line);
   const bool modal = model.form == Form::condensed;
   const std::int64_t seats = has_levers(model) ? 2 * kPDeltaSeats : 0;
   LineCost c{};
@@ -79,6 +78,8 @@ LineCost line_cost(const Model& model, const LineModel& line) {
                  : 2 * c.wheel_row + half_solve_cost(line.step, filled / kLanes);
   c.read = modal ? work(4 * n + 8, 4 * n) : work(2 * filled + 8, 2 * filled);
   c.located = modal ? c.read : c.wheel_row;
+  const std::int64_t tabled = (points + seats) * (points + seats);
+  c.pair = modal && line.modal.between != nullptr ? work(3 * tabled + 1, 2 * tabled + 2) : c.read;
   c.add = modal ? work(4 * n, 6 * n) : work(2 * filled, 3 * filled);
   c.node_roll = 2 * (work(3, 2) + c.value);
   return c;

@@ -14,11 +14,15 @@ struct LineCost {
   Cost shape;      // a wheel's row among the modes
   Cost unit;       // response of the line to a unit force under a wheel, including its row
   Cost located;    // displacement of the line under a wheel as it was located
-  Cost read;       // a response read under a wheel, an entry of W; or the motion since then
+  Cost read;       // a response read under a wheel; or its motion since it was located
+  Cost pair;       // an entry of W
   Cost add;        // a multiple of such a response added to the line
   Cost node_roll;  // the roll of a section
 };
 LineCost line_cost(const Model& model, const LineModel& line);
+
+/// Most unknowns of a rail's element that a line carries.
+std::int64_t carried_by(const Model& model, const LineModel& line);
 
 /// Solve of one right-hand side; solve_band() costs the same for each.
 Cost solve_cost(const Band& band);
@@ -35,7 +39,7 @@ std::int64_t contacts_on(const Model& model, const LineModel& line);
 // Tables (math/table.h, model/signal.h), as the tests count them.
 inline constexpr Cost kLookUp = branching(32, 5);  // a cubic
 inline constexpr Cost kPairLookUp =
-    branching(161 + 2, 20);                         // 4 x 4 points, times a force and added
+    branching(36 + 2 + 67, 20);  // 4 x 4 points, times a force and added; a mean of two forces' own
 inline constexpr Cost kSignal = branching(61, 6);   // a spline with its slopes
 inline constexpr Cost kPlace = branching(130, 60);  // of a load: table, sine, row
 

@@ -13,9 +13,11 @@ namespace {
 /// Places of the forces: of loads, and of wheels, whose forces are still 0.
 int ports_of(const Model& model, StandingContacts& c, RailForce* acting) {
   for (int i = 0; i < c.loads; ++i)
-    acting[i] = {model.load[i].load_point, c.load[i].row.element, c.load[i].xi, c.load[i].force};
+    acting[i] = {model, model.load[i].load_point, c.load[i].row.element, c.load[i].xi,
+                 c.load[i].force};
   for (int i = 0; i < c.contacts; ++i)
-    acting[c.loads + i] = {load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+    acting[c.loads + i] = {model, load_point_of(model, i), c.contact[i].row.element,
+                           c.contact[i].xi, 0.};
   return c.loads + c.contacts;
 }
 

@@ -57,12 +57,12 @@ HalfSolve solve_halfway(const Band& S, std::vector<double> b) {
   HalfSolve half{
       {0, 0}, std::move(b), std::vector<double>(static_cast<std::size_t>(S.panels) * kLanes, 0.)};
   std::int32_t first = S.panels, last = -1;
-  for (std::int32_t p = 0; p < S.panels; ++p)
-    for (int l = 0; l < kLanes; ++l)
-      if (half.forward[static_cast<std::size_t>(p * kLanes + l)] != 0.) {
-        first = std::min(first, p);
-        last = p;
-      }
+  for (std::size_t i = 0; i < half.forward.size(); ++i) {
+    if (half.forward[i] == 0.) continue;
+    const auto panel = static_cast<std::int32_t>(i / kLanes);
+    first = std::min(first, panel);
+    last = panel;
+  }
   if (last < 0) return half;
   const Forward run(S, first, last, half.forward.data(), half.over_pivots.data());
   half.panels = {first, first + std::max(run.kept(), last + 1 - first)};

@@ -273,7 +273,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   for (const RunningVehicle& vehicle : traffic.vehicles) add_vehicle(track, vehicle, heads);
-  if (model_.form == Form::banded && contact_count(model_) > 0) add_reaches();
+  if (contact_count(model_) > 0) add_responses();
   add_fixed_ports(track);
   for (const ExternalWheel& wheel : traffic.external_wheels) add_external(track, wheel);
   if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);

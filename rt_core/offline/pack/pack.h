@@ -218,7 +218,7 @@ class PackedModel {
   /// @param body  "wheelset" or "vehicle", for messages
   /// @returns number of forces
   std::int32_t keep(const std::vector<OuterForce>& forces, BodyForce* force, const char* body);
-  void add_reaches();
+  void add_responses();
   void add_fixed_ports(const Track& track);
   void add_port_rows();
   void add_port_shapes();

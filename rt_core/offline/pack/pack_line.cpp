@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "offline/cost/line_cost.h"
 #include "offline/math/refuse.h"
 #include "offline/pack/band_factor.h"
 #include "offline/pack/half_solve.h"
@@ -72,10 +73,48 @@ std::pair<std::complex<double>, std::complex<double>> constant_and_linear(std::c
 
 }  // namespace
 
-void PackedModel::add_reaches() {
+namespace {
+
+/// A table of more numbers than this is not made.
+constexpr std::int64_t kMostTabled = 1 << 18;
+
+/// Whether a table between the rows of a line takes less work for a pair of wheels than its modes,
+/// if a wheel's row has `carried` of them.
+bool has_table(const Modal& modal, std::int64_t carried) {
+  return std::int64_t{modal.rows} * (modal.rows + 1) / 2 <= kMostTabled &&
+         carried * carried <= modal.count;
+}
+
+/// Modal::between.
+std::vector<double> table_between(const Modal& modal) {
+  const auto size = static_cast<std::size_t>(modal.count);
+  std::vector<double> re(size), im(size), table;
+  const auto shape = [&](std::int32_t row) {
+    const double* at = modal.shape + std::ptrdiff_t{2} * row * modal.count;
+    return Complex{at, at + modal.count};
+  };
+  for (std::int32_t a = 0; a < modal.rows; ++a) {
+    modes_multiply(modal.held_force, shape(a), re.data(), im.data(), modal.count);
+    for (std::int32_t b = 0; b <= a; ++b)
+      table.push_back(modes_dot(shape(b), {re.data(), im.data()}, modal.count));
+  }
+  return table;
+}
+
+}  // namespace
+
+void PackedModel::add_responses() {
   for (std::int32_t l = 0; l < model_.lines; ++l) {
     LineModel& line = model_.line[l];
-    line.reach = line.twin < l ? model_.line[line.twin].reach : reach_of(line.step);
+    const LineModel& twin = model_.line[line.twin];
+    if (line.twin < l) {
+      line.reach = twin.reach;
+      line.modal.between = twin.modal.between;
+    } else if (model_.form == Form::banded) {
+      line.reach = reach_of(line.step);
+    } else if (contact_count(model_) > 2 && has_table(line.modal, carried_by(model_, line))) {
+      line.modal.between = keep(table_between(line.modal));
+    }
   }
 }
 
@@ -164,6 +203,7 @@ void PackedModel::add_condensed(const Track& track, PackedLine& own, LineModel& 
                   complex(rising),
                   complex(held),
                   0,
+                  nullptr,
                   nullptr};
   std::vector<double> shape;
   std::int32_t count = 0;

@@ -187,7 +187,8 @@ void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor
       PairTable pair = residual.between(load_points_[a], load_points_[b], kPairPoints,
                                         farthest(model_, places[a], places[b]));
       if (all_zero(pair.value)) continue;
-      model_.residual.pair[a][b] = {pair.points, pair.range, keep(std::move(pair.value))};
+      model_.residual.pair_points = pair.points;
+      model_.residual.pair[a][b] = {pair.range, keep(std::move(pair.value))};
     }
   add_track_sensor_tables(residual, track_sensors);
 }

@@ -32,7 +32,7 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
     for (int side = 0; side < 2; ++side) {
       const ContactId i = tread_of(b, side);
       c.law[i] = {set.hertz[side], 0., 0.};
-      c.place[i] = {set.load_point[side], c.contact[i].row.element, c.contact[i].xi, 0.};
+      c.place[i] = {model, set.load_point[side], c.contact[i].row.element, c.contact[i].xi, 0.};
     }
   }
   locate_flanges(model, s, w, later, c);
@@ -40,7 +40,7 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
     place_vehicle_wheels(model, model.vehicle[v], stage.step, stage.before + (stage.span - ahead),
                          c.contact, later);
   for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
-    c.place[i] = {load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+    c.place[i] = {model, load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
 }
 
 /// Whether there is a rail or ground under a wheel.
@@ -52,7 +52,7 @@ void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c)
   for (std::int32_t l = 0; l < model.loads; ++l) {
     const PlacedLoad load = place(model, model.load[l], stage.step, stage.before);
     if (!load.on_rail) continue;
-    const RailForce at{model.load[l].load_point, load.row.element, load.xi, load.force};
+    const RailForce at{model, model.load[l].load_point, load.row.element, load.xi, load.force};
     for (ContactId i = 0; i < c.contacts; ++i)
       c.by_loads[i] += load.force * residual_between(model, at, c.place[i]);
   }
@@ -68,12 +68,12 @@ double body_compliance(const Model& model, const Coupling& c, ContactId i, Conta
 
 /// W between all wheels: through the lines, the bodies and the residual flexibility.
 void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
+  track_compliance(model, w, c);
   for (ContactId i = 0; i < c.contacts; ++i)
-    for (int j = 0; j <= i; ++j) {
+    for (ContactId j = 0; j <= i; ++j) {
       double sum = 0.;
       if (c.contact[i].on_rail && c.contact[j].on_rail)
-        sum = model.scheme.theta *
-                  (track_compliance(model, w, c, i, j) + body_compliance(model, c, i, j)) +
+        sum = model.scheme.theta * (c.W[i * c.ports + j] + body_compliance(model, c, i, j)) +
               (i == j ? residual_under(model, c.place[i])
                       : residual_between(model, c.place[j], c.place[i]));
       else if (stands(c.contact[i]) && stands(c.contact[j]))

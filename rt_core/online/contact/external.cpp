@@ -47,7 +47,7 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
   const double scaled = at.place / model.element_length;
   const double radius = model.crown_radius[wheel.rail], half = model.head_half_width[wheel.rail];
   at.on_rail = scaled >= 0. && scaled <= model.elements && std::fabs(own[kExternalY]) <= half;
-  at.port = {kNoLoadPoint, 0, 0., 0.};
+  at.port.load_point = kNoLoadPoint;
   if (!at.on_rail) return;
   std::int32_t element = static_cast<std::int32_t>(scaled);
   if (element == model.elements) element = model.elements - 1;
@@ -71,7 +71,7 @@ void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64
   const double higher = add_p_delta(model, located, roll, xi, y, z, up, at.row[2], seats);
   at.offset = .5 * roll * roll * (z * along[2] + y * along[1]) - higher;
   for (int d = 0; d < 3; ++d) at.force[d] = own[kExternalForce + d];
-  at.port = {wheel.load_point, element, xi, at.force[2]};
+  at.port = {model, wheel.load_point, element, xi, at.force[2]};
 }
 
 /// Response of the lines to a unit force along a row: of condensed ones to a force held over the

@@ -51,7 +51,7 @@ void locate_flanges(const Model& model, const State& s, const Workspace& w, doub
       WheelContact& at = c.contact[i];
       at.inactive = at.on_rail && at.penetration < -kInactiveGap;
       if (at.inactive) at.on_rail = false;
-      c.place[i] = {kNoLoadPoint, at.row.element, at.xi, 0.};
+      c.place[i].load_point = kNoLoadPoint;
     }
   }
 }

@@ -96,6 +96,17 @@ double track_under(const Model& model, const Workspace& w, const Coupling& c, Co
   return sum;
 }
 
+/// Adds the compliance of a line to W by its table.
+void add_tabled(const LineModel& line, Coupling& c) noexcept {
+  CarriedRow carried[kMaxWheels];
+  for (ContactId i = 0; i < c.contacts; ++i) {
+    if (!acts_on(c, i, line)) continue;
+    carry(line, c.contact[i].row, carried[i]);
+    for (ContactId j = 0; j <= i; ++j)
+      if (acts_on(c, j, line)) c.W[i * c.ports + j] += between(line.modal, carried[i], carried[j]);
+  }
+}
+
 const double* half_response(const Model& model, const Workspace& w, ContactId i) noexcept {
   return w.unit + i * std::ptrdiff_t{model.unknowns};
 }
@@ -121,15 +132,29 @@ double line_compliance(const Model& model, const Workspace& w, const Coupling& c
                     by.second + line.first);
 }
 
-double track_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
-                        ContactId j) noexcept {
-  const std::ptrdiff_t unit = j * std::ptrdiff_t{model.unknowns};
-  double sum = 0.;
+namespace {
+
+/// Adds the compliance of a line to W by the responses to each wheel.
+void add_summed(const Model& model, const Workspace& w, std::int32_t l, Coupling& c) noexcept {
+  for (ContactId j = 0; j < c.contacts; ++j) {
+    if (!acts_on(c, j, model.line[l])) continue;
+    const std::ptrdiff_t unit = j * std::ptrdiff_t{model.unknowns};
+    const LineResponse by{c.panels[j][l], w.unit + unit, w.unit_second + unit};
+    for (ContactId i = j; i < c.contacts; ++i)
+      c.W[i * c.ports + j] += line_compliance(model, w, c, i, l, by);
+  }
+}
+
+}  // namespace
+
+void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
+  for (ContactId i = 0; i < c.contacts; ++i)
+    for (ContactId j = 0; j <= i; ++j) c.W[i * c.ports + j] = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    if (acts_on(c, j, model.line[l]))
-      sum +=
-          line_compliance(model, w, c, i, l, {c.panels[j][l], w.unit + unit, w.unit_second + unit});
-  return sum;
+    if (model.form == Form::condensed && model.line[l].modal.between != nullptr)
+      add_tabled(model.line[l], c);
+    else
+      add_summed(model, w, l, c);
 }
 
 double track_motion(const Model& model, const Workspace& w, const Coupling& c,

@@ -31,9 +31,9 @@ void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noex
 double line_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
                        std::int32_t l, const LineResponse& by) noexcept;
 
-/// Displacement of the track under wheel `i` by a unit force at wheel `j`, at the step's end.
-double track_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
-                        ContactId j) noexcept;
+/// Displacements of the track under each wheel by a unit force at each other, at the step's end:
+/// the lower triangle of W, j <= i.
+void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept;
 
 /// Displacement under wheel `i` without contact forces, since the contact was located.
 double track_motion(const Model& model, const Workspace& w, const Coupling& c,

@@ -35,10 +35,12 @@ inline Cubic cubic(std::int32_t intervals, double xi) noexcept {
            -t * (t - 1.) * (t - 3.) / 2., t * (t - 1.) * (t - 2.) / 6.}};
 }
 
-inline double interpolate(const double* value, std::int32_t intervals, double xi) noexcept {
-  const Cubic c = cubic(intervals, xi);
+inline double interpolate(const double* value, const Cubic& c) noexcept {
   const double* f = value + c.first;
   return (c.weight[0] * f[0] + c.weight[1] * f[1]) + (c.weight[2] * f[2] + c.weight[3] * f[3]);
+}
+inline double interpolate(const double* value, std::int32_t intervals, double xi) noexcept {
+  return interpolate(value, cubic(intervals, xi));
 }
 
 }  // namespace railstep

@@ -51,6 +51,7 @@ void describe(Archive& a, Modal& m, int size) {
   }
   a.count(m.rows, kMostRows);
   a.reals(m.shape, std::int64_t{2} * m.rows * size);
+  a.reals(m.between, std::int64_t{m.rows} * (m.rows + 1) / 2);
 }
 
 template <typename Archive>
@@ -218,12 +219,12 @@ void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
   const std::int64_t table = std::int64_t{r.load_points} * r.elements * (r.points + 1);
   a.reals(r.under, table);
   a.reals(r.axis, table);
+  a.count(r.pair_points, kMostPairPoints);
+  const std::int64_t block = std::int64_t{r.pair_points + 1} * (r.pair_points + 1);
   for (std::int32_t i = 0; i < r.load_points; ++i)
     for (std::int32_t j = 0; j < r.load_points; ++j) {
       PairModel& pair = r.pair[i][j];
-      a.count(pair.points, kMostPairPoints);
       a.count(pair.range, elements);
-      const std::int64_t block = std::int64_t{pair.points + 1} * (pair.points + 1);
       a.reals(pair.value, std::int64_t{r.elements} * (2 * pair.range + 1) * block);
     }
 }

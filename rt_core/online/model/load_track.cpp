@@ -169,7 +169,7 @@ bool residual_is_valid(const Model& m) noexcept {
     if (m.external_wheel[i].load_point >= r.load_points) return false;
   for (std::int32_t i = 0; i < r.load_points; ++i)
     for (std::int32_t j = 0; j < r.load_points; ++j)
-      if (r.pair[i][j].value != nullptr && r.pair[i][j].points < 3) return false;
+      if (r.pair[i][j].value != nullptr && r.pair_points < 3) return false;
   return true;
 }
 

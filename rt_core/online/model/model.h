@@ -70,6 +70,9 @@ struct Modal {
   Complex old_force, new_force, held_force;  // s
   std::int32_t rows;
   const double* shape;  // [rows][2][count] real and imaginary parts, kg^-1/2
+  /// Re shape held_force shape' of each pair of rows a >= b, [a (a + 1) / 2 + b] m/N; null where
+  /// the modes are summed in the step.
+  const double* between;
 };
 
 /// The two forms of a track's lines in the step; all lines of a model have the same form.
@@ -218,8 +221,8 @@ struct VehicleModel {
 /// in element e + shift at point q, -range <= shift <= range. It is zero beyond this range, which
 /// on a track without end never happens.
 struct PairModel {
-  std::int32_t points, range;  // intervals per element; elements to either side
-  const double* value;         // [elements][2 range + 1][points + 1][points + 1] m/N, or null
+  std::int32_t range;   // elements to either side
+  const double* value;  // [elements][2 range + 1][pair_points + 1][pair_points + 1] m/N, or null
 };
 
 /// The part of the static deflection under vertical forces that the model's unknowns miss, tabled
@@ -230,6 +233,7 @@ struct ResidualModel {
   std::int32_t elements;     // of the tables, which repeat then: the model's; of a ring a bay's
   const double* under;       // [load_points][elements][points + 1] m/N, of the force's own point
   const double* axis;        // the same for the rail's axis under it
+  std::int32_t pair_points;  // intervals per element of all pairs; 0: there are none
   PairModel pair[kMaxLoadPoints][kMaxLoadPoints];  // [force][displacement]
 };
 

@@ -9,8 +9,6 @@ Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
   return {re, re + modal.count};
 }
 
-constexpr int kMostCarried = 3 * 9 + 2 * kPDeltaSeats;  // unknowns of a row
-
 /// Calls visit(unknown, weight) for those unknowns of a row that a line has.
 template <typename Visit>
 void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcept {
@@ -75,6 +73,25 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
   });
 }
 
+void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexcept {
+  carried.count = 0;
+  for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
+    carried.unknown[carried.count] = unknown;
+    carried.weight[carried.count++] = weight;
+  });
+}
+
+double between(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept {
+  double sum = 0.;
+  for (int i = 0; i < a.count; ++i)
+    for (int k = 0; k < b.count; ++k) {
+      const std::int32_t own = a.unknown[i], other = b.unknown[k];
+      const std::ptrdiff_t more = own > other ? own : other, less = own > other ? other : own;
+      sum += a.weight[i] * b.weight[k] * modal.between[more * (more + 1) / 2 + less];
+    }
+  return sum;
+}
+
 Panels panels_of(const LineModel& line, const RailRow& row) noexcept {
   std::int32_t first = line.size, last = -1;
   for_carried(line, row, [&](std::int32_t unknown, double) noexcept {
@@ -85,15 +102,16 @@ Panels panels_of(const LineModel& line, const RailRow& row) noexcept {
 }
 
 void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept {
+  CarriedRow carried;
+  carry(line, row, carried);
   const double *shape[kMostCarried], *imaginary[kMostCarried];
-  double weight[kMostCarried];
-  int count = 0;
-  for_carried(line, row, [&](std::int32_t unknown, double w) noexcept {
-    const Complex own = shape_of(line.modal, unknown);
-    shape[count] = own.re;
-    imaginary[count] = own.im;
-    weight[count++] = w;
-  });
+  const double* const weight = carried.weight;
+  const int count = carried.count;
+  for (int i = 0; i < count; ++i) {
+    const Complex own = shape_of(line.modal, carried.unknown[i]);
+    shape[i] = own.re;
+    imaginary[i] = own.im;
+  }
   for (std::int32_t k = 0; k < line.size; k += kLanes) {
     double sum_re[kLanes] = {}, sum_im[kLanes] = {};
     for (int i = 0; i < count; ++i) {

@@ -78,6 +78,19 @@ double motion(const LineModel& line, const RailRow& row, const Configuration& at
 /// rhs += force * row for a banded line; rhs [unknowns] of all lines.
 void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept;
 
+/// The unknowns of a line that a row carries, with their weights.
+inline constexpr int kMostCarried = 3 * 9 + 2 * kPDeltaSeats;
+struct CarriedRow {
+  int count;
+  std::int32_t unknown[kMostCarried];
+  double weight[kMostCarried];
+};
+void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexcept;
+
+/// Displacement along one row by a unit force along the other, held over the step, by the table of
+/// a condensed line.
+double between(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept;
+
 /// Panels of a banded line that hold the unknowns of a row; none for a line that it does not move.
 Panels panels_of(const LineModel& line, const RailRow& row) noexcept;
 

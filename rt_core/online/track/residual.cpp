@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "online/math/table.h"
-
 namespace railstep {
 
 namespace {
@@ -44,7 +42,7 @@ RailForce rail_force(const Model& model, std::int32_t load_point, double x, doub
   double xi = 2. * (scaled - element) - 1.;
   if (!(xi > -1.)) xi = -1.;
   if (xi > 1.) xi = 1.;
-  return {load_point, element, xi, force};
+  return {model, load_point, element, xi, force};
 }
 
 int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) noexcept {
@@ -75,16 +73,16 @@ double residual_between(const Model& model, const RailForce& force, const RailFo
   const PairModel& pair = model.residual.pair[force.load_point][at.load_point];
   const std::int32_t shift = at.element - force.element;
   if (pair.value == nullptr || shift > pair.range || shift < -pair.range) return 0.;
-  const std::int32_t points = pair.points;
+  const std::int32_t points = model.residual.pair_points;
   const double* block =
       pair.value +
       (static_cast<std::ptrdiff_t>(force.element % model.residual.elements) * (2 * pair.range + 1) +
        (shift + pair.range)) *
           static_cast<std::ptrdiff_t>((points + 1) * (points + 1));
-  const Cubic along = cubic(points, force.xi);
+  const Cubic& along = force.between;
   double sum = 0.;
   for (int i = 0; i < 4; ++i)
-    sum += along.weight[i] * interpolate(block + (along.first + i) * (points + 1), points, at.xi);
+    sum += along.weight[i] * interpolate(block + (along.first + i) * (points + 1), at.between);
   return close(force, at) ? at_most_mean(model, force, at, sum) : sum;
 }
 

@@ -1,14 +1,22 @@
 #pragma once
+#include "online/math/table.h"
 #include "online/model/state.h"
 
 namespace railstep {
 
 /// Place of a vertical force on a rail, for the residual flexibility.
 struct RailForce {
-  std::int32_t load_point,
-      element;  // kNoLoadPoint: without residual displacement
+  std::int32_t load_point, element;  // kNoLoadPoint: without residual displacement
   double xi;
-  double force;  // N, up positive
+  double force;   // N, up positive
+  Cubic between;  // in the tables between load points
+
+  RailForce() = default;  // without values: lists of them are long
+  RailForce(const Model& model, std::int32_t at, std::int32_t of_element, double own_xi,
+            double newton) noexcept
+      : load_point(at), element(of_element), xi(own_xi), force(newton) {
+    if (model.residual.pair_points > 0) between = cubic(model.residual.pair_points, xi);
+  }
 };
 
 /// Element and xi of a place along the model's elements, m; clipped to the elements.
