@@ -78,9 +78,8 @@ TransientError transient_error(const Scene& scene, const std::vector<std::string
     return read_scene(scene.file, own);
   };
   const TraceTable got = run_of(scene, frames);
-  const auto own_mesh = static_cast<int>(scene.track.elements_per_bay);
   const Reference reference =
-      refine(study, {.elements_per_bay = 2 * own_mesh,
+      refine(study, {.elements_per_bay = 2 * mesh_of(scene),
                      .step = .5 * step.dt,
                      .target = 0.,
                      .most_levels = window * work_of(scene, 8.) < kMostWork ? 3 : 2,

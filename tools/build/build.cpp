@@ -160,6 +160,7 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   track.ends = scene.track.ends;
   track.end_zone_bays = scene.track.end_zone_bays;
   track.ring = scene.track.endless;
+  track.rigid = scene.track.rigid;
   if (scene.support) {
     track.support = *scene.support;
     track.support.height_z = height_z(scene.support->at, section, track.axis_z);
@@ -175,7 +176,7 @@ Track track_of(const Scene& scene, const RailSection& rail) try {
   for (const StopScene& own : scene.stops)
     track.stops.emplace_back(own).z =
         height_z(own.at, own.rail == kRightRail ? right.section : section, track.axis_z);
-  refuse_buckled(track);
+  if (!track.rigid) refuse_buckled(track);
   if (!scene.track.linearised_under_weight) return track;
   return linearised_under_weight(track, scene.track.gravity ? kGravity : 0.);
 } catch (const Refused& error) {

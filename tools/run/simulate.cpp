@@ -23,7 +23,7 @@ namespace {
 /// Axes of the rails that the model's lines carry.
 void keep_shapes(const Simulation& run, std::vector<RailSnapshot>& shapes) {
   const Model& model = run.model();
-  if (model.lines == 0) return;  // a system alone has no rails
+  if (model.elements == 0) return;  // a system alone has no rails
   const Configuration at{run.state.u, {run.state.u, run.state.v}};
   for (const int rail : {0, 1}) {
     RailSnapshot shape{static_cast<double>(run.state.steps) * model.scheme.dt, rail,

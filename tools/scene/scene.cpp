@@ -55,6 +55,7 @@ void check_endless(const Table& t, const TrackScene& track) {
 }
 
 TrackScene read_track(const Table& t) {
+  if (t.choice("form", {"flexible", "rigid"}, 0) == 1) return read_rigid_track(t);
   TrackScene track{};
   constexpr Unknowns kUnknowns[] = {Unknowns::full, Unknowns::rigid_section, Unknowns::vertical};
   track.unknowns = kUnknowns[t.choice("unknowns", {"full", "rigid-section", "vertical"})];
@@ -289,6 +290,11 @@ void read_rails(const Table& root, Scene& scene) {
   scene.file = root.file();
   scene.sum = root.sum();
   scene.track = read_track(root.table("track"));
+  if (scene.track.rigid) {
+    scene.rail = read_rigid_rail(root);
+    root.attempt([&] { read_gauge(root.table("track"), scene); });
+    return;
+  }
   root.attempt([&] { check_size(root.table("track"), scene.track); });
   root.stop_if_refused();
   scene.track.bays = std::min(scene.track.bays, kMostElements);  // seats are counted below

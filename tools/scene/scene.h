@@ -50,6 +50,7 @@ struct TrackScene {
   Unknowns unknowns;
   int rails;          // 1 (on y = 0) or 2 (left on y = +rail_spacing / 2)
   std::int64_t bays;  // per rail; supports stand at the bays + 1 bay borders
+  bool rigid;         // the rails do not give way
   bool endless;       // `bays` then counts the ring or window under the traffic
   double bay;         // m
   int elements_per_bay;

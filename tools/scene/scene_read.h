@@ -21,6 +21,11 @@ const char* key_of_system(const Table& root);
 /// Section, material and rule of [rail] or of a beam.
 BarScene read_bar(const Table& bar);
 RailScene read_rail(const Table& rail);
+
+/// Rails that do not give way: [track], without end or of a length; and heads and cant by [rail].
+/// Without that table they are upright and have the sizes of a rail 60E1.
+TrackScene read_rigid_track(const Table& track);
+RailScene read_rigid_rail(const Table& root);
 /// [rail.right]; keys that it does not have are as in [rail].
 RailScene read_right_rail(const Table& right, const RailScene& left);
 /// [[support_change]], in the file's order.

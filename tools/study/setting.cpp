@@ -121,10 +121,15 @@ bool is_of_condensed(const std::string& scheme) {
   return scheme == "discrete-gradient" || parts_of(scheme)[0] == "held";
 }
 
+int mesh_of(const Scene& scene) {
+  return scene.track.rigid ? 0 : static_cast<int>(scene.track.elements_per_bay);
+}
+
 std::vector<std::string> overrides_of(const Setting& setting) {
   std::vector<std::string> overrides;
   add_model(setting.model, overrides);
-  overrides.push_back(fmt::format("track.elements_per_bay={}", setting.elements_per_bay));
+  if (setting.elements_per_bay > 0)
+    overrides.push_back(fmt::format("track.elements_per_bay={}", setting.elements_per_bay));
   add_scheme(setting.scheme, overrides);
   overrides.push_back(fmt::format("step.dt_s={:.17g}", setting.step));
   return overrides;
@@ -152,9 +157,10 @@ Choices default_choices(const Scene& scene) {
   if (!scene.track.endless)
     all.models.insert(all.models.end(),
                       {"irs:1", "craig-bampton:4", "complex-modes:2", "modal:2:bare"});
-  const int own = static_cast<int>(scene.track.elements_per_bay);
+  const int own = mesh_of(scene);
   if (own > 1) all.meshes.push_back((own + 1) / 2);
-  all.meshes.insert(all.meshes.end(), {own, 2 * own});
+  all.meshes.push_back(own);
+  if (own > 0) all.meshes.push_back(2 * own);
   all.schemes = {fmt::format("generalised-alpha:{:g}", scene.step->rho_inf), "newmark",
                  "backward-euler", "tr-bdf2", fmt::format("held:{:g}", scene.step->rho_inf)};
   if (has_hertz(scene)) all.schemes.emplace_back("discrete-gradient");

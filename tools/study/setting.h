@@ -12,7 +12,7 @@ struct Setting {
   /// (modes_per_bay, of "guyan" and "irs" nodes_per_bay), without residual flexibility, and
   /// track.unknowns where they are not the scene's.
   std::string model;
-  int elements_per_bay;
+  int elements_per_bay;  // 0: of rigid rails, which have no mesh
   /// "own" as the scene says. Of full order "generalised-alpha:RHO", "newmark", "hht:ALPHA",
   /// "backward-euler", "tr-bdf2"; of condensed models "held:RHO", "discrete-gradient".
   std::string scheme;
@@ -21,6 +21,9 @@ struct Setting {
 
 bool is_condensed(const std::string& model);
 bool is_of_condensed(const std::string& scheme);
+
+/// The scene's own elements per bay; 0 of rigid rails.
+int mesh_of(const Scene& scene);
 
 /// "key=value" over a scene that make it so; frames stay as they are. Throws InputError for a model
 /// or a scheme that there is not.

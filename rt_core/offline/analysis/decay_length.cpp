@@ -6,6 +6,7 @@
 namespace railstep {
 
 double decay_length(const Track& track) {
+  if (track.rigid) return 0.;
   double longest = 0.;
   for (int rail = 0; rail < track.rails; ++rail) {
     const RailBar bar = track.bar(rail);

@@ -278,7 +278,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const ExternalWheel& wheel : traffic.external_wheels) add_external(track, wheel);
   if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);
   add_track_sensors(track, traffic.track_sensors);
-  if (options.residual_flexibility)
+  if (options.residual_flexibility && !track.rigid)
     add_residual(track, traffic.track_sensors, options.residual_points);
   add_p_delta(track);
   std::vector<double> start = start_released(*this);
@@ -298,7 +298,7 @@ void PackedModel::add_lines(const Track& track, const Traffic& traffic,
     kept.push_back({{}, i, closing, {}, {}});
     moved.push_back(std::move(lines[i]));
   }
-  if (moved.empty())
+  if (moved.empty() && !track.rigid)
     refuse("E-PACK-21",
            "nothing moves the track; expected a load, a wheelset, a vehicle or an external wheel "
            "on it");

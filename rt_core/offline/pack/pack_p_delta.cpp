@@ -87,7 +87,7 @@ std::vector<double> levers(const Track& track, const SeatShares& shares, int rai
 }  // namespace
 
 void PackedModel::add_p_delta(const Track& track) {
-  if (track.unknowns == Unknowns::vertical) return;
+  if (track.unknowns == Unknowns::vertical || track.rigid) return;
   if (model_.wheelsets == 0 && model_.external_wheels == 0) return;  // no lateral forces
   if (!pads_are_off_the_axis(track)) return;
   PDeltaModel& p_delta = model_.p_delta;

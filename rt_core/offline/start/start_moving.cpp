@@ -271,6 +271,7 @@ std::vector<double> start_moving(const Track& track, const PackedModel& packed, 
   if (model.endless.bays == 0)
     refuse("E-START-05",
            "the start is \"moving\", but the track has ends; expected a track without end");
+  if (track.rigid) return start_in_equilibrium(track, packed, gravity);  // no wave goes with it
   if (model.endless.progress.period > kMostSteps) refuse("E-START-06", no_whole_bays(model));
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     if (side_force(model.wheelset[b]) != 0.)

@@ -360,6 +360,7 @@ ElementPlace place_on(const Track& track, double x) {
 std::vector<Line> assemble(const Track& track) {
   check(track);
   std::vector<Line> lines;
+  if (track.rigid) return lines;
   if (track.rails == 1) {
     split(assemble_part(track, Mirror::none, {0}), {1., 0.}, lines);
   } else if (!has_sleepers(track)) {

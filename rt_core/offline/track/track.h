@@ -86,6 +86,9 @@ struct Track {
   /// The last bay border is the first: a track without ends, whatever runs on it runs round. Its
   /// seats are alike, its pads points; x goes from 0 to length() all the same.
   bool ring = false;
+  /// The rails do not give way: the track has no lines, and only its lengths, section and cant
+  /// count.
+  bool rigid = false;
   /// Spring from the first node of a rail, and of each piece of a cut rail, to the ground along x,
   /// N/m. It is so soft that it matters only if nothing else holds the rail.
   double hold_along = 0.;

@@ -16,8 +16,9 @@ bool acts_on(const Coupling& c, ContactId wheel, const LineModel& line) noexcept
   return c.contact[wheel].on_rail && line.rail_factor[c.contact[wheel].row.rail] != 0.;
 }
 
-/// The same for one wheel and one line.
-/// @param unit  where the wheel's response begins
+/// Halfway solve of a banded line for a wheel's row.
+/// @param unit  where the wheel's responses begin in the workspace
+/// @param at    out: its panels
 void respond_band(const LineModel& line, const RailRow& row, std::ptrdiff_t unit, Workspace& w,
                   Panels& at) noexcept {
   at = panels_of(line, row);

@@ -336,7 +336,7 @@ void describe(Archive& a, Model& m) {
   a.integer(m.steps);
   for (std::int64_t* most : {&m.cost.flops, &m.cost.bytes, &m.cost.instructions}) a.integer(*most);
   a.count(m.system.unknowns, m.unknowns);
-  if (m.lines > 0) describe_track(a, m);
+  if (m.elements > 0) describe_track(a, m);
   if (m.system.unknowns > 0) describe(a, m.system, m.line_unknowns);
 }
 

@@ -204,12 +204,13 @@ bool frames_are_valid(const Model& m) noexcept {
 bool is_valid(const Model& m) noexcept {
   if (!is_above_zero(m.scheme.dt) || !frames_are_valid(m) || !inputs_are_valid(m)) return false;
   if (!scheme_is_valid(m)) return false;
-  if (m.lines < 1 && m.system.unknowns < 1) return false;
-  if (m.lines > 0 && !track_is_valid(m)) return false;
+  if (m.elements < 1 && m.system.unknowns < 1) return false;
+  if (m.elements > 0 && !track_is_valid(m)) return false;
   return (m.system.unknowns == 0 || system_is_valid(m)) && cost_is_valid(m);
 }
 
 bool start_is_valid(const Model& m) noexcept {
+  if (start_doubles(m) == 0) return true;  // nothing on rigid rails has a motion of its own
   return m.start != nullptr && (m.system.unknowns == 0 || system_start_is_valid(m));
 }
 

@@ -49,10 +49,10 @@ bool stands_alone_or_beside(const Model& m) noexcept {
   if (m.form == Form::condensed || m.wheelsets != 0 || m.vehicles != 0 || m.vehicle_wheels != 0 ||
       m.fixed.count != 0 || m.endless.bays != 0)
     return false;
-  if (m.lines > 0)
+  if (m.elements > 0)
     return s.mean == 0 && s.constraint_method != ConstraintMethod::gear_gupta_leimkuhler &&
            (s.ports == 0 || (s.port_compliance && s.port_shapes && compliances_are_valid(s)));
-  return s.ports == 0 && m.line_unknowns == 0 && m.elements == 0 && m.loads == 0 && m.signals == 0;
+  return s.ports == 0 && m.line_unknowns == 0 && m.lines == 0 && m.loads == 0 && m.signals == 0;
 }
 
 /// Whether each unknown belongs to one direction or rotation.

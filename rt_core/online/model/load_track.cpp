@@ -231,6 +231,7 @@ bool fixed_ports_are_valid(const Model& m) noexcept {
 bool track_is_valid(const Model& m) noexcept {
   if (m.elements < 1 || !endless_is_valid(m.endless, m.elements)) return false;
   if (!(m.element_length > 0.) || m.line_unknowns % kLanes != 0) return false;
+  if (m.lines == 0 && m.line_unknowns != 0) return false;
   for (std::int32_t i = 0; i < m.lines; ++i)
     if (!line_is_valid(m, m.line[i])) return false;
   for (std::int32_t i = 0; i < m.loads; ++i)
