@@ -1,6 +1,5 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <random>
 #include <vector>
 
@@ -65,7 +64,7 @@ TEST_CASE("the band solve is backward stable for every size and bandwidth", "[ba
         const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
         const BandFactor factor = factor_band(A.sparseView());
         std::vector<double> x = padded(b, factor.panels);
-        solve_band<1>(factor.view(), x.data(), 0);
+        solve_band(factor.view(), x.data());
         const Eigen::VectorXd got = Eigen::Map<Eigen::VectorXd>(x.data(), n);
         const Eigen::VectorXd dense = A.ldlt().solve(b);
         worst = std::max(worst, backward_error(A, got, b));
@@ -80,29 +79,6 @@ TEST_CASE("the band solve is backward stable for every size and bandwidth", "[ba
   // Higham, Accuracy and Stability, th. 9.3 for dominant matrices: a small multiple of the sums'
   // length, at most (203 + 8). Rounding errors do not all add up, so the bound is loose.
   CHECK(worst < 203 + 8);
-}
-
-template <int R>
-void check_bits(const BandFactor& factor, std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  const int n = factor.panels * kLanes, stride = n + 3;
-  std::vector<double> together(static_cast<std::size_t>(R * stride));
-  for (double& x : together) x = normal(random);
-  std::vector<double> alone = together;
-  solve_band<R>(factor.view(), together.data(), stride);
-  for (int r = 0; r < R; ++r) solve_band<1>(factor.view(), alone.data() + r * stride, 0);
-  CHECK(std::memcmp(together.data(), alone.data(), together.size() * sizeof(double)) == 0);
-}
-
-TEST_CASE("several right-hand sides give the same bits as one", "[band]") {
-  std::mt19937 random(2);
-  for (int n : {8, 24, 96, 168})
-    for (int bandwidth : {0, 5, 26, 60}) {
-      const auto factor = factor_band(random_band(n, bandwidth, 0.1, random).sparseView());
-      check_bits<2>(factor, random);
-      check_bits<3>(factor, random);
-      check_bits<4>(factor, random);
-    }
 }
 
 TEST_CASE("a matrix that is not positive definite is refused with the number of its unknown",

@@ -21,9 +21,9 @@ class Forward {
     const auto width = static_cast<std::ptrdiff_t>(std::max(S.left / kLanes, 1));
     double whole = 0.;
     for (std::int32_t p = first; p < S.panels; ++p) {
-      forward_panel<1>(S, first, p, x, 0);
+      forward_panel(S, first, p, x);
       std::copy(x + p * kLanes, x + (p + 1) * kLanes, over_pivots + p * kLanes);
-      divide_by_pivots<1>(S, {p, p + 1}, over_pivots, 0);
+      divide_by_pivots(S, {p, p + 1}, over_pivots);
       square_.push_back(panels_dot({p, p + 1}, x, over_pivots));
       whole += square_.back();
       const bool full = static_cast<std::ptrdiff_t>(square_.size()) > width;

@@ -45,7 +45,7 @@ TrackPorts track_ports(const Model& model) {
     double* const shape = ports.shapes.data() + n * i;
     add_unit_force(model, s.port[i / 9], static_cast<int>(i % 9), shape);
     for (std::int32_t l = 0; l < model.lines; ++l)
-      solve_band<1>(model.line[l].step, shape + model.line[l].first, 0);
+      solve_band(model.line[l].step, shape + model.line[l].first);
     read_ports(model, shape, column.data());
     for (std::size_t k = 0; k < rows; ++k) ports.compliance[rows * k + i] = column[k];
   }

@@ -14,9 +14,9 @@ struct CoupleResult {
 };
 
 /// Couples wheelsets, guides, vehicles, contacts with the rails and one-sided springs of the track.
-/// It finds the contacts at a stage's end, solves the track for its own right-hand side (in
-/// workspace.solved) and for each wheel, then all ports' forces and guides together. At the end
-/// workspace.solved has all displacements.
+/// It finds the contacts at a stage's end and the response of the track to its own right-hand side
+/// (in workspace.solved) and to each wheel, then solves for all ports' forces and guides together.
+/// At the end workspace.solved has all displacements.
 CoupleResult couple(const Model& model, const Stage& stage, State& state,
                     Workspace& workspace) noexcept;
 

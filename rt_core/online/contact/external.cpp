@@ -81,7 +81,7 @@ void respond(const Model& model, const RailRow& row, Workspace& w) noexcept {
     for (std::int32_t i = 0; i < model.line_unknowns; ++i) w.solved[i] = 0.;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       spread(model.line[l], row, 1., w.solved);
-      solve_band<1>(model.line[l].step, w.solved + model.line[l].first, 0);
+      solve_band(model.line[l].step, w.solved + model.line[l].first);
     }
     return;
   }

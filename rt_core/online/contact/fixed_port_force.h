@@ -7,7 +7,8 @@ namespace railstep {
 // rows are fixed, so that the model contains the response of the lines to a unit force along each.
 
 /// Appends the fixed ports to the wheels: laws, penetrations without port forces, their part of W,
-/// and the last step's forces. The track without port forces is in workspace.solved.
+/// and the last step's forces. Banded lines without port forces are halfway solved in
+/// workspace.solved (track_response.h); modes are there at the step's end.
 void couple_fixed_ports(const Model& model, const State& s, const Workspace& w,
                         Coupling& c) noexcept;
 

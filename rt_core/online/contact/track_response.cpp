@@ -26,10 +26,10 @@ void respond_band(const LineModel& line, const RailRow& row, std::ptrdiff_t unit
   double *const half = w.unit + unit, *const second = w.unit_second + unit + line.first;
   for (std::int32_t k = kLanes * at.first; k < kLanes * at.end; ++k) half[line.first + k] = 0.;
   spread(line, row, 1., half);
-  solve_forward<1>(line.step, at, half + line.first, 0);
+  solve_forward(line.step, at, half + line.first);
   for (std::int32_t k = kLanes * at.first; k < kLanes * at.end; ++k)
     second[k] = half[line.first + k];
-  divide_by_pivots<1>(line.step, at, second, 0);
+  divide_by_pivots(line.step, at, second);
 }
 
 /// Halfway solves of each banded line: of its own right-hand side, and of each wheel's row in the
@@ -38,8 +38,8 @@ void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const Band& step = model.line[l].step;
     double* const own = w.solved + model.line[l].first;
-    solve_forward<1>(step, {0, step.panels}, own, 0);
-    divide_by_pivots<1>(step, {0, step.panels}, own, 0);
+    solve_forward(step, {0, step.panels}, own);
+    divide_by_pivots(step, {0, step.panels}, own);
   }
   for (ContactId i = 0; i < c.contacts; ++i)
     for (std::int32_t l = 0; l < model.lines; ++l) {
@@ -108,10 +108,6 @@ void add_tabled(const LineModel& line, Coupling& c) noexcept {
   }
 }
 
-const double* half_response(const Model& model, const Workspace& w, ContactId i) noexcept {
-  return w.unit + i * std::ptrdiff_t{model.unknowns};
-}
-
 }  // namespace
 
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
@@ -129,8 +125,8 @@ double line_compliance(const Model& model, const Workspace& w, const Coupling& c
   const LineModel& line = model.line[l];
   if (!acts_on(c, i, line)) return 0.;
   if (model.form == Form::condensed) return line_under(model, w, c, line, i, by.first, by.second);
-  return panels_dot(common(c.panels[i][l], by.panels), half_response(model, w, i) + line.first,
-                    by.second + line.first);
+  const double* const half = w.unit + i * std::ptrdiff_t{model.unknowns};
+  return panels_dot(common(c.panels[i][l], by.panels), half + line.first, by.second + line.first);
 }
 
 namespace {
@@ -192,7 +188,7 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
 void finish_track(const Model& model, Workspace& w) noexcept {
   if (model.form == Form::condensed) return;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    solve_backward<1>(model.line[l].step, w.solved + model.line[l].first, 0);
+    solve_backward(model.line[l].step, w.solved + model.line[l].first);
 }
 
 }  // namespace railstep

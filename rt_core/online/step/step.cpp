@@ -64,7 +64,7 @@ bool has_forces(const Model& model) noexcept {
 /// The track's displacements without wheels, from the loads on the right-hand side.
 void solve_bands(const Model& model, Workspace& w) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l)
-    solve_band<1>(model.line[l].step, w.solved + model.line[l].first, 0);
+    solve_band(model.line[l].step, w.solved + model.line[l].first);
 }
 
 /// Modes without wheels at the step's end; the forces q1 in `solved` are stored in the state.

@@ -22,13 +22,13 @@ BandFactor step_of(const Line& line, double dt) {
 
 /// All of L^-1 b, not cut.
 std::vector<double> whole_forward(const Band& S, std::vector<double> b) {
-  solve_forward<1>(S, {0, S.panels}, b.data(), 0);
+  solve_forward(S, {0, S.panels}, b.data());
   return b;
 }
 
 double square(const Band& S, std::vector<double> y) {
   const std::vector<double> own = y;
-  divide_by_pivots<1>(S, {0, S.panels}, y.data(), 0);
+  divide_by_pivots(S, {0, S.panels}, y.data());
   return std::inner_product(own.begin(), own.end(), y.begin(), 0.);
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("two solves halfway give the displacement of one place by a force at a
   force[place] = 1.;
   const HalfSolve by = solve_halfway(S, force);
   std::vector<double> moved = force;
-  solve_band<1>(S, moved.data(), 0);
+  solve_band(S, moved.data());
   for (int away = -60; away <= 60; ++away) {
     std::vector<double> row(size, 0.);
     const int unknown = line.unknowns() / 2 + away;
