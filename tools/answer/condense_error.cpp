@@ -21,9 +21,9 @@ constexpr double kMostWork = 4e7;
 
 /// Of a level with `finer` times the elements and the steps, for a second.
 double work_of(const Scene& scene, double finer) {
-  const auto elements =
-      static_cast<double>(scene.track.bays * scene.track.elements_per_bay * scene.track.rails);
-  // Unknowns and the width of their bands, and wheels, each with a solve of its own.
+  const std::int64_t meshed = scene.track.bays * mesh_of(scene) * scene.track.rails;
+  const double elements = meshed > 0 ? static_cast<double>(meshed) : 1.;  // rigid rails have none
+  // Unknowns and the width of their bands.
   const double each = scene.track.unknowns == Unknowns::vertical ? 1. : 12.;
   return each * elements * finer * finer / scene.step->dt;
 }
