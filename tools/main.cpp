@@ -37,9 +37,10 @@ Exit report(const std::vector<Message>& errors, Exit exit, bool json) {
 
 Exit run(CLI::App& app, int argc, char** argv) {
   const std::vector<Command> commands = {
-      add_fit(app), add_static(app), add_modes(app),  add_receptance(app), add_condense(app),
-      add_run(app), add_sweep(app),  add_replay(app), add_compare(app),    add_rules(app),
-      add_hil(app), add_hard(app),   add_pareto(app), add_tune(app),       add_explain(app)};
+      add_fit(app),        add_static(app),   add_modes(app), add_critical(app),
+      add_receptance(app), add_condense(app), add_run(app),   add_sweep(app),
+      add_replay(app),     add_compare(app),  add_rules(app), add_hil(app),
+      add_hard(app),       add_pareto(app),   add_tune(app),  add_explain(app)};
   want_finite_numbers(app);
   refuse_empty_words(argc, argv);
   app.parse(argc, argv);
@@ -54,7 +55,7 @@ Exit run(CLI::App& app, int argc, char** argv) {
   return Exit::bad_input;
 }
 
-/// What the program ends with. Errors are told, each in one line.
+/// The program's exit. Errors are told, each in one line.
 Exit exit_of(CLI::App& app, int argc, char** argv) {
   const bool json = std::any_of(argv, argv + argc,
                                 [](const char* word) { return std::strcmp(word, "--json") == 0; });

@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "answer/running.h"
 #include "build/build.h"
 #include "commands/command.h"
 #include "commands/options.h"
@@ -20,6 +22,7 @@ namespace {
 struct ModesOptions {
   std::string scene;
   std::vector<std::string> overrides;
+  std::optional<double> speed;
   int count = 10;
   bool json = false;
 };
@@ -41,18 +44,48 @@ void print_table(const NaturalModes& modes) {
     fmt::print("{:4}  {:13.6g}  {:13.6g}\n", i + 1, modes.frequency[i], modes.damping_ratio[i]);
 }
 
+nlohmann::ordered_json to_json(const std::vector<RunningMode>& modes) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const RunningMode& m : modes)
+    all.push_back({{"frequency_hz", m.frequency}, {"damping_ratio", m.damping_ratio}});
+  return {{"modes", all}};
+}
+
+void print_table(const std::vector<RunningMode>& modes) {
+  fmt::print("mode  |s|/(2 pi), Hz  damping ratio\n");
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    fmt::print("{:4}  {:14.7g}  {:13.6g}\n", i + 1, modes[i].frequency, modes[i].damping_ratio);
+}
+
+/// Modes of vehicles that run, instead of those of the track.
+void print_running(const ModesOptions& o) {
+  const auto modes = modes_at_speed(read_scene(o.scene, o.overrides), *o.speed);
+  if (o.json)
+    fmt::print("{}\n", to_json(modes).dump(2));
+  else
+    print_table(modes);
+}
+
 }  // namespace
 
 Command add_modes(CLI::App& app) {
   auto o = std::make_shared<ModesOptions>();
-  CLI::App* sub = app.add_subcommand("modes", "Natural frequencies and damping of a track");
+  CLI::App* sub = app.add_subcommand(
+      "modes", "Natural frequencies and damping of a track, or of vehicles that run");
   sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--count", o->count, "how many, the lowest first (default 10)")
       ->check(within(1, 1000));
+  sub->add_option("--speed", o->speed,
+                  "modes of the rail vehicles at this speed, m/s, on rigid rails")
+      ->check(within(0.1, 1000.0));
   add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep modes config/scenes/free_rail.toml --count 12");
   return {sub, [o] {
+            if (o->speed) {
+              print_running(*o);
+              return Exit::done;
+            }
             const NaturalModes modes = solve(*o);
             if (o->json)
               fmt::print("{}\n", nlohmann::ordered_json{{"frequencies_hz", modes.frequency},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "answer/running.h"
 #include "answer/static_solution.h"
 #include "commands/command.h"
 #include "commands/options.h"
@@ -63,10 +64,45 @@ std::string to_csv(const StaticSolution& solution) {
   return text;
 }
 
+nlohmann::ordered_json to_json(const RunningLoads& loads) {
+  nlohmann::ordered_json wheels = nlohmann::ordered_json::array(), sets = wheels;
+  for (const WheelLoad& w : loads.wheels)
+    wheels.push_back({{"name", w.name}, {"q_n", w.q}, {"y_n", w.y}, {"t_x_n", w.t_x}});
+  for (const WheelsetLoad& w : loads.wheelsets)
+    sets.push_back({{"name", w.name},
+                    {"y_m", w.y},
+                    {"yaw_rad", w.yaw},
+                    {"sum_y_n", w.sum_y},
+                    {"resistance_n", w.resistance}});
+  return {{"wheels", wheels}, {"wheelsets", sets}};
+}
+
+void print_table(const RunningLoads& loads) {
+  fmt::print("{:<28} {:>12} {:>12} {:>12}\n", "wheel", "q_n", "y_n", "t_x_n");
+  for (const WheelLoad& w : loads.wheels)
+    fmt::print("{:<28} {:>12.2f} {:>12.2f} {:>12.2f}\n", w.name, w.q, w.y, w.t_x);
+  fmt::print("{:<28} {:>12} {:>12} {:>12} {:>12}\n", "wheelset", "y_m", "yaw_rad", "sum_y_n",
+             "resistance_n");
+  for (const WheelsetLoad& w : loads.wheelsets)
+    fmt::print("{:<28} {:>12.4e} {:>12.4e} {:>12.4e} {:>12.2f}\n", w.name, w.y, w.yaw, w.sum_y,
+               w.resistance);
+}
+
+/// Rail vehicles that run on rigid rails: the steady forces of their wheels.
+Exit run_rail_vehicles(const Scene& scene, bool json) {
+  const RunningLoads loads = running_loads(scene);
+  if (json)
+    fmt::print("{}\n", to_json(loads).dump(2));
+  else
+    print_table(loads);
+  return Exit::done;
+}
+
 Exit run_static(const StaticOptions& o) {
   std::vector<std::string> overrides = o.overrides;
   if (!o.model.empty()) overrides.push_back(fmt::format("track.model=\"{}\"", o.model));
   const Scene scene = read_scene(o.scene, overrides);
+  if (!scene.rail_vehicles.empty()) return run_rail_vehicles(scene, o.json);
   print_note(lopsided_note(scene));
   const StaticSolution solution = solve_static(scene);
   if (!solution.converged) print_history(o.scene, solution);

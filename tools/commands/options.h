@@ -22,7 +22,7 @@ bool is_folder(CLI::Option& option);
 /// --set.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
 
-/// What a study tries and judges, in the words of the command's help.
+/// The words of a command's help for what a study tries and judges.
 struct StudyHelp {
   const char *models, *schemes, *outputs;
 };

@@ -10,6 +10,7 @@
 #include "offline/beam/equilibrium.h"
 #include "offline/pack/pack.h"
 #include "offline/pack/travel_rows.h"
+#include "offline/runner/runner.h"
 #include "offline/section/section.h"
 #include "offline/track/track.h"
 #include "offline/vehicle/kinds.h"
@@ -165,6 +166,16 @@ struct VehicleScene : RunningVehicle {
   std::vector<WheelTread> treads;
 };
 
+/// A vehicle in space on both rails.
+struct RailVehicleScene {
+  std::string name;
+  Runner runner;
+  RollingContact contact;
+  double start;                // m
+  double speed;                // m/s; with a table its first
+  std::vector<double> speeds;  // as SpeedScene::speeds
+};
+
 /// The speed of largest magnitude of a load, a wheelset or a vehicle, m/s.
 template <typename Runner>
 double fastest(const Runner& runner) {
@@ -233,6 +244,7 @@ struct Scene {
   std::vector<InputScene> inputs;
   std::vector<ExternalWheelScene> external_wheels;
   std::vector<VehicleScene> vehicles;
+  std::vector<RailVehicleScene> rail_vehicles;
   std::optional<IrregularityScene> irregularity;
   std::vector<DefectScene> defects;
   std::optional<StepScene> step;  // nullopt: the scene is not run

@@ -72,6 +72,12 @@ Flange read_flange(const Table& t, const Scene& scene);
 /// @param inputs  the inputs of their forces are added to it
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
                                         std::vector<InputScene>& inputs);
+/// Whether a [[vehicle]] is a rail vehicle in space, by its own type or that of its file.
+bool is_rail_vehicle(const Table& t);
+/// The [[vehicle]] tables that are rail vehicles, and [contact].
+std::vector<RailVehicleScene> read_rail_vehicles(const Table& root, const Scene& scene);
+/// Bodies, wheelsets and elements of a rail vehicle, from its file or from its own table.
+Runner read_runner(const Table& t);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
 std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,
                                           const VehicleScene& own);

@@ -82,7 +82,7 @@ void read_kind(const Table& t, VehicleScene& v) {
   v.bodies = std::move(kind.bodies);
 }
 
-/// Reads the vehicle itself, here or from a file of its own.
+/// Reads an upright vehicle itself, here or from a file of its own.
 void read_what(const Table& t, VehicleScene& v) {
   if (!t.has("file")) return read_kind(t, v);
   if (t.has("type"))
@@ -208,7 +208,9 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
                                         std::vector<InputScene>& inputs) {
   std::vector<VehicleScene> vehicles;
-  root.each("vehicle", [&](const Table& t) { read_vehicle(t, scene, vehicles, inputs); });
+  root.each("vehicle", [&](const Table& t) {
+    if (!is_rail_vehicle(t)) read_vehicle(t, scene, vehicles, inputs);
+  });
   return vehicles;
 }
 

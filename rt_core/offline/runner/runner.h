@@ -1,0 +1,63 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+namespace railstep {
+
+/// The six coordinates of a body in a frame that follows the track: displacements of its centre
+/// along x, y and z, m, then rotations about these axes, rad. The `pitch` of a wheelset is its
+/// spin beyond speed / radius, and its axle is turned by yaw and then by roll.
+enum class BodyMotion { x, y, z, roll, pitch, yaw };
+inline constexpr int kMotions = 6;
+constexpr int at(BodyMotion motion) { return static_cast<int>(motion); }
+
+/// A rigid body of a rail vehicle.
+struct RunnerBody {
+  std::string name;
+  double mass;                    // kg
+  std::array<double, 3> inertia;  // about x, y and z through its centre, kg m2
+  std::array<double, 3> centre;   // at rest: x from the vehicle's origin, y, z over top of rail, m
+  double radius = 0.;             // of a wheelset's wheels, m; 0: it has none
+  [[nodiscard]] bool is_wheelset() const { return radius > 0.; }
+};
+
+/// A linear element of a suspension between two bodies. Deflections count from the loaded vehicle
+/// at rest on straight, level track.
+///
+/// `mid_frame`: springs along and about three axes halfway between those of both bodies. They act
+/// halfway between the points at which both bodies meet, which coincide at rest. So the stiffness
+/// is symmetric and momentum is kept, with preloads too.
+/// `line`: a spring along the line between a point of each body; only entry 0 counts.
+struct RunnerElement {
+  enum class Kind { mid_frame, line };
+  std::string name;
+  Kind kind;
+  int a, b;                                // bodies
+  std::array<double, 3> point_a, point_b;  // at rest, as RunnerBody::centre
+  std::array<double, 6> stiffness{};       // N/m, N/m, N/m, N m/rad, N m/rad, N m/rad
+  std::array<double, 6> damping{};         // N s/m and N m s/rad
+  std::array<double, 6> series{};          // of a spring in series with the damper; 0: it is rigid
+  std::array<double, 6> preload{};         // force on `a` at rest, N and N m; of a line its tension
+};
+
+/// A rail vehicle: rigid bodies in space on a linear suspension, with wheels on both rails.
+struct Runner {
+  std::vector<RunnerBody> bodies;
+  std::vector<RunnerElement> elements;
+};
+
+/// Conical treads on the circular crowns of rigid, straight rails: Hertz's law along the normal and
+/// linear creep with constant coefficients,
+///   Tx = -f11 xi_x,  Ty = -f22 xi_y - f23 xi_s,  moment = f23 xi_y - f33 xi_s,
+/// xi the creepages and spin over the speed; Kalker, Three-Dimensional Elastic Bodies in Rolling
+/// Contact, 1990.
+struct RollingContact {
+  double slope;                  // of the treads, tangent of the cone's half angle
+  double half_distance;          // between the contacts of a centred wheelset, m
+  double crown_radius;           // m
+  double hertz;                  // N/m^1.5
+  std::array<double, 4> kalker;  // f11 N, f22 N, f23 N m, f33 N m2
+};
+
+}  // namespace railstep

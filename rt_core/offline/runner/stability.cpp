@@ -1,0 +1,96 @@
+#include "offline/runner/stability.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace railstep {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLeastHz = .01;
+
+/// Eigenvalues of q'' = -M^-1 (C q' + K q + row' force), force' = k (row q' - force / c), in
+/// coordinates sqrt(M) q and with forces over sqrt(k).
+Eigen::VectorXcd eigenvalues(const LinearRunning& l) {
+  const Index n = l.mass.size(), series = static_cast<Index>(l.series.size());
+  const VectorXd scale = l.mass.cwiseSqrt().cwiseInverse();
+  MatrixXd A = MatrixXd::Zero(2 * n + series, 2 * n + series);
+  A.block(0, n, n, n).setIdentity();
+  A.block(n, 0, n, n) = -(scale.asDiagonal() * l.stiffness * scale.asDiagonal());
+  A.block(n, n, n, n) = -(scale.asDiagonal() * l.damping * scale.asDiagonal());
+  for (Index i = 0; i < series; ++i) {
+    const RunnerMatrices::Series& s = l.series[static_cast<std::size_t>(i)];
+    const VectorXd row = std::sqrt(s.stiffness) * (scale.asDiagonal() * s.row);
+    A.block(n, 2 * n + i, n, 1) = -row;
+    A.block(2 * n + i, n, 1, n) = row.transpose();
+    A(2 * n + i, 2 * n + i) = -s.stiffness / s.damping;
+  }
+  return Eigen::EigenSolver<MatrixXd>(A, false).eigenvalues();
+}
+
+bool counts(const std::complex<double>& s) {
+  return s.imag() >= 0. && std::abs(s) > 2. * std::numbers::pi * kLeastHz;
+}
+
+LinearRunning running_at(const Runner& runner, const RunnerMatrices& m,
+                         const RollingContact& contact, double speed) {
+  return linear_running(runner, m, contact, speed, steady_running(runner, m, contact, speed));
+}
+
+/// The mode that grows most.
+std::complex<double> least_damped(const Runner& runner, const RunnerMatrices& m,
+                                  const RollingContact& contact, double speed) {
+  std::complex<double> most = -1e300;
+  for (const std::complex<double>& s : eigenvalues(running_at(runner, m, contact, speed)))
+    if (counts(s) && s.real() > most.real()) most = s;
+  return most;
+}
+
+}  // namespace
+
+std::vector<RunningMode> running_modes(const LinearRunning& linear) {
+  std::vector<RunningMode> modes;
+  for (const std::complex<double>& s : eigenvalues(linear))
+    if (counts(s))
+      modes.push_back({std::abs(s) / (2. * std::numbers::pi), -s.real() / std::abs(s)});
+  std::sort(modes.begin(), modes.end(),
+            [](const RunningMode& a, const RunningMode& b) { return a.frequency < b.frequency; });
+  return modes;
+}
+
+std::optional<CriticalRunning> critical_running_speed(const Runner& runner, const RunnerMatrices& m,
+                                                      const RollingContact& contact, double from,
+                                                      double to) {
+  const int steps = static_cast<int>(std::ceil(std::max(100., (to - from) / 2.)));
+  double low = from;
+  if (least_damped(runner, m, contact, low).real() >= 0.) return std::nullopt;
+  for (int i = 1; i <= steps; ++i) {
+    double high = from + (to - from) * i / steps;
+    std::complex<double> s = least_damped(runner, m, contact, high);
+    if (s.real() < 0.) {
+      low = high;
+      continue;
+    }
+    while (high - low > 1e-10 * high) {
+      const double middle = .5 * (low + high);
+      const std::complex<double> there = least_damped(runner, m, contact, middle);
+      if (there.real() < 0.)
+        low = middle;
+      else {
+        high = middle;
+        s = there;
+      }
+    }
+    return CriticalRunning{high, std::abs(s) / (2. * std::numbers::pi)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace railstep

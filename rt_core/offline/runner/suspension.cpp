@@ -1,0 +1,242 @@
+#include "offline/runner/suspension.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "offline/math/refuse.h"
+
+namespace railstep {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+Vector3d vector(const std::array<double, 3>& x) { return {x[0], x[1], x[2]}; }
+
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d m;
+  m << 0., -v[2], v[1], v[2], 0., -v[0], -v[1], v[0], 0.;
+  return m;
+}
+
+/// One end of an element: a point of a body.
+struct End {
+  int first;  // coordinate of the body
+  bool wheelset;
+  Vector3d arm;  // from the body's centre to the point, m
+};
+
+End end_of(const Runner& runner, int body, const std::array<double, 3>& point) {
+  const RunnerBody& b = runner.bodies[static_cast<std::size_t>(body)];
+  return {kMotions * body, b.is_wheelset(), vector(point) - vector(b.centre)};
+}
+
+/// Rotation of the body at an end. The axle boxes of a wheelset do not spin with it.
+Rows rotation(const End& end, Eigen::Index n) {
+  Rows r = Rows::Zero(3, n);
+  for (int d = 0; d < 3; ++d)
+    if (d != 1 || !end.wheelset) r(d, end.first + 3 + d) = 1.;
+  return r;
+}
+
+/// Displacement of the point of an end, of first order.
+Rows displacement(const End& end, Eigen::Index n) {
+  Rows r = -cross_matrix(end.arm) * rotation(end, n);
+  for (int d = 0; d < 3; ++d) r(d, end.first + d) = 1.;
+  return r;
+}
+
+/// Second derivative of p . (displacement of second order): t x (t x arm) / 2 for a rotation vector
+/// t. A wheelset yaws and then rolls, so that its rotation vector has roll yaw / 2 about y.
+MatrixXd bend(const End& end, const Vector3d& p, Eigen::Index n) {
+  const Rows t = rotation(end, n);
+  const Matrix3d turned = .5 * (p * end.arm.transpose() + end.arm * p.transpose()) -
+                          p.dot(end.arm) * Matrix3d::Identity();
+  MatrixXd m = t.transpose() * turned * t;
+  if (end.wheelset) {
+    const int roll = end.first + at(BodyMotion::roll), yaw = end.first + at(BodyMotion::yaw);
+    const double moment = .5 * end.arm.cross(p)[1];
+    m(roll, yaw) += moment;
+    m(yaw, roll) += moment;
+  }
+  return m;
+}
+
+Vector3d direction(const RunnerElement& e) {
+  const Vector3d way = vector(e.point_b) - vector(e.point_a);
+  return way / way.norm();
+}
+
+/// Force on body `a` at rest.
+Vector3d preload_force(const RunnerElement& e) {
+  if (e.kind == RunnerElement::Kind::line) return e.preload[0] * direction(e);
+  return {e.preload[0], e.preload[1], e.preload[2]};
+}
+
+/// Deflections of an element's springs over the coordinates, each with its entry.
+struct Spring {
+  std::size_t entry;
+  VectorXd row;
+};
+std::vector<Spring> springs(const Runner& runner, const RunnerElement& e) {
+  const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
+  const End a = end_of(runner, e.a, e.point_a), b = end_of(runner, e.b, e.point_b);
+  const Rows moved = displacement(a, n) - displacement(b, n);
+  if (e.kind == RunnerElement::Kind::line) return {{0, -moved.transpose() * direction(e)}};
+  const Rows turned = rotation(a, n) - rotation(b, n);
+  std::vector<Spring> all;
+  all.reserve(kMotions);
+  for (int d = 0; d < 3; ++d) all.push_back({static_cast<std::size_t>(d), moved.row(d)});
+  for (int d = 0; d < 3; ++d) all.push_back({static_cast<std::size_t>(3 + d), turned.row(d)});
+  return all;
+}
+
+/// Part of the stiffness that an element's preload makes.
+MatrixXd geometric_stiffness(const Runner& runner, const RunnerElement& e) {
+  const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
+  const End a = end_of(runner, e.a, e.point_a), b = end_of(runner, e.b, e.point_b);
+  const Vector3d p = preload_force(e);
+  const Rows moved = displacement(a, n) - displacement(b, n);
+  MatrixXd g = bend(b, p, n) - bend(a, p, n);
+  if (e.kind == RunnerElement::Kind::line) {
+    const Vector3d along = direction(e);
+    const double length = (vector(e.point_b) - vector(e.point_a)).norm();
+    const Matrix3d across = Matrix3d::Identity() - along * along.transpose();
+    return g + e.preload[0] / length * moved.transpose() * across * moved;
+  }
+  const Rows mean = .5 * (rotation(a, n) + rotation(b, n));
+  const MatrixXd turned = mean.transpose() * cross_matrix(p) * moved;
+  return g - turned - turned.transpose();
+}
+
+/// Force of an element's preload over the coordinates.
+VectorXd preload(const Runner& runner, const RunnerElement& e) {
+  const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
+  VectorXd sum = VectorXd::Zero(n);
+  const double sign = e.kind == RunnerElement::Kind::line ? -1. : 1.;  // tension pulls `a` to `b`
+  for (const Spring& s : springs(runner, e)) sum += sign * e.preload[s.entry] * s.row;
+  return sum;
+}
+
+void check_element(const Runner& runner, const RunnerElement& e) {
+  const auto is_body = [&](int body) {
+    return body >= 0 && body < static_cast<int>(runner.bodies.size());
+  };
+  if (!is_body(e.a) || !is_body(e.b) || e.a == e.b)
+    refuse("E-SUSPENSION-01",
+           "element " + e.name +
+               " does not join two bodies of its vehicle; expected two different ones");
+  if (e.kind == RunnerElement::Kind::line && !((vector(e.point_b) - vector(e.point_a)).norm() > 0.))
+    refuse("E-SUSPENSION-02",
+           "element " + e.name + " has no length; expected two points that differ");
+  for (std::size_t d = 0; d < e.stiffness.size(); ++d)
+    if (!(e.stiffness[d] >= 0.) || !(e.damping[d] >= 0.) || !(e.series[d] >= 0.))
+      refuse("E-SUSPENSION-03",
+             "a stiffness or damping of element " + e.name + " is negative; expected 0 or more");
+}
+
+void check(const Runner& runner) {
+  for (const RunnerBody& b : runner.bodies)
+    if (!(b.mass > 0.) || !(b.inertia[0] > 0.) || !(b.inertia[1] > 0.) || !(b.inertia[2] > 0.))
+      refuse("E-SUSPENSION-04",
+             "body " + b.name + " has a mass or an inertia that is not positive; expected above 0");
+  for (const RunnerElement& e : runner.elements) check_element(runner, e);
+}
+
+VectorXd weights(const Runner& runner, double gravity) {
+  VectorXd w = VectorXd::Zero(static_cast<Eigen::Index>(kMotions * runner.bodies.size()));
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b)
+    w[kMotions * static_cast<Eigen::Index>(b) + at(BodyMotion::z)] =
+        gravity * runner.bodies[b].mass;
+  return w;
+}
+
+bool has_preload(const RunnerElement& e) {
+  for (const double p : e.preload)
+    if (p != 0.) return true;
+  return false;
+}
+
+/// Throws Refused unless preloads carry the weight of each body without wheels.
+void check_balance(const Runner& runner, const VectorXd& rest, double weight) {
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    if (runner.bodies[b].is_wheelset()) continue;
+    const auto first = kMotions * static_cast<Eigen::Index>(b);
+    if (!(rest.segment(first, kMotions).cwiseAbs().maxCoeff() <= 1e-6 * weight))
+      refuse("E-SUSPENSION-05",
+             "the preloads and springs of the vehicle do not carry body " + runner.bodies[b].name +
+                 "; expected springs or preloads that hold its weight in balance");
+  }
+}
+
+}  // namespace
+
+RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
+  check(runner);
+  const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
+  RunnerMatrices m{
+      VectorXd::Zero(n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), -weights(runner, gravity), {}};
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b)
+    for (int d = 0; d < 3; ++d) {
+      const auto first = kMotions * static_cast<Eigen::Index>(b);
+      m.mass[first + d] = runner.bodies[b].mass;
+      m.mass[first + 3 + d] = runner.bodies[b].inertia[static_cast<std::size_t>(d)];
+    }
+  for (const RunnerElement& e : runner.elements) {
+    for (const Spring& s : springs(runner, e)) {
+      const double damping = e.damping[s.entry], series = e.series[s.entry];
+      m.stiffness += e.stiffness[s.entry] * s.row * s.row.transpose();
+      if (series == 0.)
+        m.damping += damping * s.row * s.row.transpose();
+      else if (damping > 0.)
+        m.series.push_back({s.row, series, damping});
+    }
+    if (!has_preload(e)) continue;
+    m.stiffness += geometric_stiffness(runner, e);
+    m.rest += preload(runner, e);
+  }
+  return m;
+}
+
+void balance_preloads(Runner& runner, double gravity) {
+  check(runner);
+  const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
+  VectorXd rest = -weights(runner, gravity);
+  const double weight = -rest.sum();
+  MatrixXd K = MatrixXd::Zero(n, n);
+  std::vector<RunnerElement*> open;
+  for (RunnerElement& e : runner.elements) {
+    if (has_preload(e)) {
+      rest += preload(runner, e);
+      continue;
+    }
+    open.push_back(&e);
+    for (const Spring& s : springs(runner, e))
+      K += e.stiffness[s.entry] * s.row * s.row.transpose();
+  }
+  VectorXd load = rest;
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    if (!runner.bodies[b].is_wheelset()) continue;
+    const auto first = kMotions * static_cast<Eigen::Index>(b);
+    K.middleRows(first, kMotions).setZero();
+    K.middleCols(first, kMotions).setZero();
+    K.diagonal().segment(first, kMotions).setConstant(K.diagonal().maxCoeff());
+    load.segment(first, kMotions).setZero();
+  }
+  const VectorXd sunk = K.completeOrthogonalDecomposition().solve(load);
+  for (RunnerElement* e : open) {
+    const double sign = e->kind == RunnerElement::Kind::line ? 1. : -1.;
+    for (const Spring& s : springs(runner, *e)) {
+      const double force = sign * e->stiffness[s.entry] * s.row.dot(sunk);
+      if (std::fabs(force) > 1e-12 * weight) e->preload[s.entry] = force;
+    }
+    rest += preload(runner, *e);
+  }
+  check_balance(runner, rest, weight);
+}
+
+}  // namespace railstep

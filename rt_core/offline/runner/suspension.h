@@ -1,0 +1,38 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "offline/runner/runner.h"
+
+namespace railstep {
+
+/// M q'' + C q' + K q + sum of row' force of `series` = rest + forces of the rails, about the
+/// loaded vehicle at rest. q are the six motions of each body, in their order.
+struct RunnerMatrices {
+  /// A damper in series with a spring: force' = stiffness (row q' - force / damping).
+  struct Series {
+    Eigen::VectorXd row;        // [n]
+    double stiffness, damping;  // N/m, N s/m
+  };
+  Eigen::VectorXd mass;                // [n] kg, kg m2
+  Eigen::MatrixXd damping, stiffness;  // [n][n] symmetric
+  Eigen::VectorXd rest;                // [n] preloads less weights, N and N m
+  std::vector<Series> series;
+};
+
+/// The stiffness is the second derivative of the elements' energy and includes what their preloads
+/// make of it: the geometric stiffness. With s1 and s2 the parts of first and second order of a
+/// point's displacement, d = s(a) - s(b), p the preload and t the mean rotation of both bodies,
+/// the energy of a mid-frame element is d1' k d1 / 2 - p . (d1 + d2 - t x d1), and that of a line
+/// with tension T and length L has T |d across|^2 / (2 L) in place of the last term. Preloads that
+/// are moments make no geometric stiffness.
+/// Throws Refused on bodies that are not there, and on masses, stiffness or damping out of range.
+RunnerMatrices runner_matrices(const Runner& runner, double gravity);
+
+/// Gives the elements whose preload is 0 in all entries the force that they carry where the
+/// vehicle stands under its weight with its wheelsets held: of linear springs without geometric
+/// stiffness, and of least energy where springs alone do not decide.
+/// Throws Refused where the preloads then do not carry the weight of a body.
+void balance_preloads(Runner& runner, double gravity);
+
+}  // namespace railstep

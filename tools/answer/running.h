@@ -1,0 +1,37 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "offline/runner/stability.h"
+#include "scene/scene.h"
+
+namespace railstep {
+
+/// Modes of the rail vehicles of a scene that run at a speed on straight, rigid rails, the lowest
+/// first. Throws InputError where the scene has no rail vehicle, or rails that give way.
+std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed);
+
+/// The lowest critical speed of the scene's rail vehicles between two speeds, m/s.
+std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to);
+
+/// Forces of a wheel on its rail in the track's axes, down and outwards, and of the rail on the
+/// wheel ahead, N.
+struct WheelLoad {
+  std::string name;
+  double q, y, t_x;
+};
+/// Steady place of a wheelset, and its force on the track along y.
+struct WheelsetLoad {
+  std::string name;
+  double y, yaw, sum_y;  // m, rad, N
+  double resistance;     // along the track, against the motion, N
+};
+struct RunningLoads {
+  std::vector<WheelLoad> wheels;
+  std::vector<WheelsetLoad> wheelsets;
+};
+/// The loads of all rail vehicles at their speeds at t = 0.
+RunningLoads running_loads(const Scene& scene);
+
+}  // namespace railstep

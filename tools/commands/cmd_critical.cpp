@@ -1,0 +1,66 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "answer/running.h"
+#include "commands/command.h"
+#include "commands/options.h"
+
+namespace railstep {
+namespace {
+
+struct CriticalOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  double from = 1., to = 200.;
+  bool json = false;
+};
+
+nlohmann::ordered_json to_json(const std::optional<CriticalRunning>& found) {
+  const nlohmann::ordered_json none = nullptr;
+  return {{"critical_speed_m_per_s", found ? nlohmann::ordered_json(found->speed) : none},
+          {"frequency_hz", found ? nlohmann::ordered_json(found->frequency) : none}};
+}
+
+void print_text(const CriticalOptions& o, const std::optional<CriticalRunning>& found) {
+  if (found)
+    fmt::print("critical speed {:.6f} m/s ({:.3f} km/h), a mode of {:.5f} Hz\n", found->speed,
+               3.6 * found->speed, found->frequency);
+  else
+    fmt::print("no mode loses its damping between {:g} and {:g} m/s, or one has none at {:g} m/s\n",
+               o.from, o.to, o.from);
+}
+
+Exit run_critical(const CriticalOptions& o) {
+  if (!(o.from < o.to))
+    throw InputError("E-CLI-15", fmt::format("--from {:g} is not below --to {:g}; expected a range "
+                                             "of speeds",
+                                             o.from, o.to));
+  const auto found = critical_speed_between(read_scene(o.scene, o.overrides), o.from, o.to);
+  if (o.json)
+    fmt::print("{}\n", to_json(found).dump(2));
+  else
+    print_text(o, found);
+  return Exit::done;
+}
+
+}  // namespace
+
+Command add_critical(CLI::App& app) {
+  auto o = std::make_shared<CriticalOptions>();
+  CLI::App* sub = app.add_subcommand(
+      "critical", "The least speed at which a rail vehicle hunts, on straight, rigid rails");
+  sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
+  sub->add_option("--from", o->from, "lowest speed, m/s (default 1)")->check(within(0.1, 1000.0));
+  sub->add_option("--to", o->to, "highest speed, m/s (default 200)")->check(within(0.1, 1000.0));
+  add_overrides(*sub, o->overrides);
+  sub->add_flag("--json", o->json, "one JSON object on stdout");
+  sub->footer(
+      "Example: railstep critical config/scenes/manchester_straight.toml --from 10 --to 150");
+  return {sub, [o] { return run_critical(*o); }};
+}
+
+}  // namespace railstep

@@ -1,0 +1,86 @@
+#include <fmt/core.h>
+
+#include "offline/contact/hertz.h"
+#include "offline/runner/suspension.h"
+#include "scene/scene_read.h"
+
+namespace railstep {
+namespace {
+
+/// [contact]: wheels that are cones on crowns that are circles.
+RollingContact read_rolling(const Table& root, const Scene& scene, double radius) {
+  const Table t = root.table("contact");
+  static_cast<void>(t.choice("wheel", {"cone"}));
+  static_cast<void>(t.choice("rail", {"crown"}));
+  static_cast<void>(t.choice("normal", {"hertz"}));
+  RollingContact c{};
+  c.slope = t.slope("slope", between(0.0, 0.5), 0.05);
+  c.crown_radius = scene.rail.crown_radius;
+  c.half_distance = .5 * t.number("distance_m", between(0.3, 3.0), scene.track.rail_spacing);
+  c.hertz = t.has("hertz_n_per_m15")
+                ? t.number("hertz_n_per_m15", between(1e6, 1e14))
+                : hertz_constant(radius, c.crown_radius, scene.rail.young, scene.rail.poisson);
+  if (t.choice("creep", {"none", "linear"}) == 0) return c;
+  const std::vector<double> f = t.numbers("kalker", between(0.0, 1e12), 4, 4);
+  if (f.size() == 4) c.kalker = {f[0], f[1], f[2], f[3]};
+  return c;
+}
+
+Runner read_runner_of(const Table& t) {
+  Runner runner =
+      !t.has("file") ? read_runner(t) : read_toml(t.path("file")).whole([](const Table& root) {
+        static_cast<void>(root.integer("schema", 1, 1));
+        static_cast<void>(root.table("vehicle").string("type"));
+        for (const char* text : {"name", "source"})
+          if (root.has(text)) static_cast<void>(root.string(text));
+        return read_runner(root);
+      });
+  try {
+    balance_preloads(runner, kGravity);
+  } catch (const Refused& error) {
+    t.refuse(t.has("file") ? "file" : "element", error.id(), error.sentence());
+  }
+  return runner;
+}
+
+double first_radius(const Runner& runner) {
+  for (const RunnerBody& body : runner.bodies)
+    if (body.is_wheelset()) return body.radius;
+  return kWheelRadius;
+}
+
+RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scene& scene) {
+  if (scene.track.rails == 1)
+    t.refuse("", "E-VEHICLE-26",
+             "a rail vehicle runs on two rails, but the track has one; expected track.rails = 2");
+  RailVehicleScene v{};
+  v.name = checked_name(t, "name", t.string("name"));
+  if (!t.has("file")) static_cast<void>(t.string("type"));
+  v.runner = read_runner_of(t);
+  v.contact = read_rolling(root, scene, first_radius(v.runner));
+  v.start = t.number("start_m", between(-1e6, 1e6), 0.0);
+  const SpeedScene speed = read_speed(t, std::nullopt);
+  v.speed = speed.speed;
+  v.speeds = speed.speeds;
+  return v;
+}
+
+}  // namespace
+
+bool is_rail_vehicle(const Table& t) {
+  constexpr const char* kType = "rail_vehicle";
+  if (!t.has("file")) return t.has("type") && t.string("type") == kType;
+  const Table root = read_toml(t.path("file"));
+  const std::optional<Table> vehicle = root.table_if("vehicle");
+  return vehicle && vehicle->has("type") && vehicle->string("type") == kType;
+}
+
+std::vector<RailVehicleScene> read_rail_vehicles(const Table& root, const Scene& scene) {
+  std::vector<RailVehicleScene> vehicles;
+  root.each("vehicle", [&](const Table& t) {
+    if (is_rail_vehicle(t)) vehicles.push_back(read_rail_vehicle(root, t, scene));
+  });
+  return vehicles;
+}
+
+}  // namespace railstep
