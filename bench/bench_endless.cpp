@@ -30,7 +30,7 @@ std::vector<double> forces(const PackedModel& packed, int finer) {
     for (int part = 1; part <= finer; ++part) {
       run.frame();
       if (n > kFirst * kFrame && part == (finer + 1) / 2)
-        found.insert(found.end(), run.state().wheel_force, run.state().wheel_force + 2);
+        found.insert(found.end(), run.state().contact_force, run.state().contact_force + 2);
     }
   return found;
 }

@@ -93,7 +93,7 @@ void step_wheels(benchmark::State& run, const std::optional<Reduction>& modal) {
   Outputs outputs{};
   reset(model, state);
   for (auto _ : run) benchmark::DoNotOptimize(advance_frame(model, state, workspace, outputs));
-  run.counters["force"] = outputs.wheel_force[0];
+  run.counters["force"] = outputs.contact_force[0];
   run.counters["iterations"] = outputs.iterations;
 }
 

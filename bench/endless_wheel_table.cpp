@@ -66,11 +66,11 @@ Quantities heard(const Track& track, PackedModel& packed, int finer, const Seat&
     const bool wanted = n * kStep > kSettled;
     for (int part = 1; part <= finer; ++part) {
       const Outputs& out = run.frame();
-      if (wanted && part == (finer + 1) / 2) found[0].push_back(out.wheel_force[0]);
+      if (wanted && part == (finer + 1) / 2) found[0].push_back(out.contact_force[0]);
     }
     if (!wanted) continue;
     read_track_sensors(packed.model(), run.state(), run.outputs(), track_sensor.data());
-    found[1].push_back(run.outputs().wheel_rail_z[0]);
+    found[1].push_back(run.outputs().contact_rail_z[0]);
     for (const std::size_t k : {0u, 1u}) found[2 + k].push_back(track_sensor[2 * seat(n) + k]);
   }
   return found;

@@ -120,13 +120,13 @@ class Run {
     for (const double* of_load : {o.load_x, o.load_place, o.load_deflection, o.load_force})
       published_.add(of_load, model_.loads);
     for (const double* of_wheel :
-         {o.wheel_force, o.wheel_force_mean, o.wheel_force_peak, o.wheel_impulse, o.wheel_gap,
-          o.wheel_x, o.wheel_place, o.wheel_rail_z})
+         {o.contact_force, o.contact_force_mean, o.contact_force_peak, o.contact_impulse,
+          o.contact_gap, o.contact_x, o.contact_place, o.contact_rail_z})
       published_.add(of_wheel, wheel_count(model_));
-    published_.add(o.wheel_on_rail, wheel_count(model_));
-    for (const double* of_flange :
-         {o.flange_force, o.flange_force_peak, o.flange_impulse, o.flange_gap})
-      published_.add(of_flange, flange_count(model_));
+    published_.add(o.contact_on_rail, wheel_count(model_));
+    for (const double* of_contact :
+         {o.contact_force, o.contact_force_peak, o.contact_impulse, o.contact_gap})
+      published_.add(of_contact + wheel_count(model_), flange_count(model_));
     published_.add(o.external_force, model_.external_wheels);
     for (std::int32_t i = 0; i < model_.external_wheels; ++i) {
       published_.add(o.external_displacement[i], 3);
@@ -151,7 +151,7 @@ class Run {
       bears.reserve(bears.size() + static_cast<std::size_t>(count));
       for (std::int32_t i = 0; i < count; ++i) bears.push_back(force[i] != 0.);
     };
-    add(state_.wheel_force, contact_count(model_));
+    add(state_.contact_force, contact_count(model_));
     add(state_.port_force, model_.fixed.count);
     return bears;
   }

@@ -30,7 +30,7 @@ Difference compared(const House& house, double dt, int steps) {
     run.step();
     if (!want.solved) ++found.unsolved;
     for (std::size_t i = 0; i < want.force.size(); ++i) {
-      const double got = i < wheels ? run.state.wheel_force[i] : run.state.port_force[i - wheels];
+      const double got = i < wheels ? run.state.contact_force[i] : run.state.port_force[i - wheels];
       const auto wanted = static_cast<double>(want.force[i]);
       largest = std::max(largest, std::abs(wanted));
       off = std::max(off, std::abs(got - wanted));
@@ -97,13 +97,13 @@ HouseLaws laws_of(ModelRun& run, int steps) {
     for (int i = 0; i < wheel_count(m); ++i) {
       const double C = is_of_wheelset(m, i) ? m.wheelset[wheelset_of(m, i)].hertz[rail_of(m, i)]
                                             : vehicle_wheel(m, i).contact.hertz;
-      if (note(run.state.wheel_force[i], hertz_force(C, run.outputs.wheel_gap[i])))
+      if (note(run.state.contact_force[i], hertz_force(C, run.outputs.contact_gap[i])))
         found.wheel_bore[static_cast<std::size_t>(i)] = true;
     }
     for (int i = 0; i < flange_count(m); ++i) {
-      const double depth = std::max(-run.outputs.flange_gap[i], 0.);
-      if (note(run.outputs.flange_force[i],
-               flange_of(m, flange_contact(m, i)).contact.stiffness * depth))
+      const ContactId contact = flange_contact(m, i);
+      const double depth = std::max(-run.outputs.contact_gap[contact], 0.);
+      if (note(run.outputs.contact_force[contact], flange_of(m, contact).contact.stiffness * depth))
         found.flange_bore[static_cast<std::size_t>(i)] = true;
     }
     for (std::int32_t j = 0; j < m.fixed.count; ++j)

@@ -74,7 +74,7 @@ Instants instants_of(const Model& single, std::int64_t steps) {
     note(found.shift, track_offset(single, n + 1) != track_offset(single, n), n);
     double force = 0.;
     for (std::int32_t i = 0; i < wheel_count(single); ++i)
-      force = std::max(force, outputs.wheel_force[i]);
+      force = std::max(force, outputs.contact_force[i]);
     if (n == 1) first = force;
     if (force > hardest) {
       hardest = force;
@@ -117,8 +117,8 @@ void check_resumed(const Model& single, const std::set<std::int64_t>& at, std::i
       static_cast<void>(advance_frame(single, other.state, other.workspace, again));
     CAPTURE(from);
     CHECK(state_hash(single, other.state) == end);
-    CHECK(std::equal(std::begin(again.wheel_force), std::end(again.wheel_force),
-                     std::begin(outputs.wheel_force)));
+    CHECK(std::equal(std::begin(again.contact_force), std::end(again.contact_force),
+                     std::begin(outputs.contact_force)));
     CHECK(std::equal(std::begin(again.load_deflection), std::end(again.load_deflection),
                      std::begin(outputs.load_deflection)));
   }

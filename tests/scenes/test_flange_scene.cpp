@@ -46,6 +46,9 @@ struct Steps {
   }
 };
 
+/// Contact of the left flange of a lone wheelset, behind its two treads.
+constexpr ContactId kLeftFlange = 2;
+
 /// Lateral parts of the normals of treads and flanges in the next step, for that step's forces.
 struct Push {
   double lateral[4];
@@ -62,7 +65,7 @@ struct Push {
   }
   double on(const State& state) const {
     double sum = 0.;
-    for (int i = 0; i < 4; ++i) sum += lateral[i] * state.wheel_force[i];
+    for (int i = 0; i < 4; ++i) sum += lateral[i] * state.contact_force[i];
     return sum;
   }
 };
@@ -74,8 +77,8 @@ TEST_CASE("wheelset_flange: impact, rebound and rest agree with closed forms", "
   s.until(1.);
   const double y0 = s.y();
   // Until it meets the flange v^2 = 2 F s / m, but for 1e-4 since the loaded rail lies lower.
-  while (s.out.flange_force[0] <= 0.) s.step();
-  CHECK(s.out.flange_force[1] == 0.);
+  while (s.out.contact_force[kLeftFlange] <= 0.) s.step();
+  CHECK(s.out.contact_force[kLeftFlange + 1] == 0.);
   Steps before;
   const double met = s.time() - s.model.scheme.dt;
   before.until(met);
@@ -84,7 +87,7 @@ TEST_CASE("wheelset_flange: impact, rebound and rest agree with closed forms", "
   CHECK_THAT(speed, WithinRel(std::sqrt(2. * kPush * way / kMass), 1e-3));
   CHECK_THAT(met, WithinAbs(1. + std::sqrt(2. * kMass * kClearance / kPush), 1e-3));
   // After the rebound the wheelset moves against the push as far as its energy allows.
-  while (s.out.flange_force[0] > 0. || s.speed() > 0.) s.step();
+  while (s.out.contact_force[kLeftFlange] > 0. || s.speed() > 0.) s.step();
   const double back = s.speed(), from = s.y();
   while (s.speed() < 0.) s.step();
   CHECK_THAT(from - s.y(), WithinRel(kMass * back * back / (2. * kPush), 2e-3));
@@ -99,11 +102,11 @@ TEST_CASE("wheelset_flange: impact, rebound and rest agree with closed forms", "
   constexpr int kSteps = 4000;
   for (int i = 0; i < kSteps; ++i) {
     s.step();
-    f += s.out.flange_force[0] / kSteps;
-    left += s.out.wheel_force[0] / kSteps;
-    right += s.out.wheel_force[1] / kSteps;
+    f += s.out.contact_force[kLeftFlange] / kSteps;
+    left += s.out.contact_force[0] / kSteps;
+    right += s.out.contact_force[1] / kSteps;
     roll += s.at(s.run.state.u, 3) / kSteps;
-    depth -= s.out.flange_gap[0] / kSteps;
+    depth -= s.out.contact_gap[kLeftFlange] / kSteps;
   }
   CHECK(s.seen == Status::ok);
   CHECK(std::abs(s.speed()) < 1e-6);
@@ -163,7 +166,7 @@ Balance balance(const std::string& name, const std::vector<std::string>& changes
     static_cast<void>(advance_frame(single, run.state, run.workspace, out));
     account.follow(run.state);
     found.rest = std::max(found.rest, std::abs(account.imbalance() + account.flow().loss));
-    found.flange = std::max(found.flange, out.flange_force[0]);
+    found.flange = std::max(found.flange, out.contact_force[kLeftFlange]);
   }
   found.turned = account.turned_over();
   found.error = account.balance_error();
@@ -290,7 +293,7 @@ TEST_CASE("a push at the start leans the wheelset on its flange, where it stays"
   Steps s({"condense.kind=\"" + kind + "\"", "step.start=\"equilibrium\"",
            "wheelset[0].force[0].table=[[0.0, " + push + "]]"});
   std::vector<double> start(s.run.state.u, s.run.state.u + s.model.unknowns);
-  const std::vector<double> forces(s.run.state.wheel_force, s.run.state.wheel_force + 4);
+  const std::vector<double> forces(s.run.state.contact_force, s.run.state.contact_force + 4);
   const std::size_t side = push[0] == '-' ? 1 : 0;
   const double f = forces[2 + side];
   CHECK(forces[3 - side] == 0.);
@@ -305,7 +308,7 @@ TEST_CASE("a push at the start leans the wheelset on its flange, where it stays"
       moved = std::max(moved, std::abs(s.run.state.u[i] - start[static_cast<std::size_t>(i)]));
     }
     for (std::size_t i = 0; i < 4; ++i)
-      changed = std::max(changed, std::abs(s.run.state.wheel_force[i] - forces[i]));
+      changed = std::max(changed, std::abs(s.run.state.contact_force[i] - forces[i]));
   }
   CAPTURE(kind, push, moved, changed, f);
   CHECK(s.seen == Status::ok);

@@ -88,7 +88,8 @@ TEST_CASE("a constant force on a frame acts as additional weight", "[vehicle][in
     const VehicleModel& v = pressed.model().vehicle[0];
     // Both equilibria are exact to 1e-10 of a force; rounding over 200 steps.
     for (int i = 0; i < 2; ++i)
-      CHECK_THAT(pressed.outputs.wheel_force[i], WithinRel(heavier.outputs.wheel_force[i], 1e-8));
+      CHECK_THAT(pressed.outputs.contact_force[i],
+                 WithinRel(heavier.outputs.contact_force[i], 1e-8));
     for (int k = 0; k < v.size; ++k)
       CHECK_THAT(pressed.state.u[v.first + k], WithinAbs(heavier.state.u[v.first + k], 1e-10));
   }
@@ -101,7 +102,7 @@ TEST_CASE("a moment on a frame shifts force to the front wheel by moment over wh
     const ModelRun level = standing_bogie(modal, 8000., {});
     const ModelRun leant = standing_bogie(modal, 8000., constant(kTurn, moment));
     for (const int i : {0, 1})  // the forces of two wheels follow from statics
-      CHECK_THAT(leant.state.wheel_force[i] - level.state.wheel_force[i],
+      CHECK_THAT(leant.state.contact_force[i] - level.state.contact_force[i],
                  WithinRel((i == 0 ? 1. : -1.) * moment / kBogie.wheelbase, 1e-8));
   }
 }
@@ -117,12 +118,12 @@ TEST_CASE("a vehicle without weight is pressed down by a force and has no equili
   CHECK_THROWS_WITH(from_rest(track, {.vehicles = {v}}, options), Contains("E-START-08"));
   v.forces = constant(kRise, -kPress);
   const ModelRun run = from_rest(track, {.vehicles = {v}}, options);
-  for (const int i : {0, 1}) CHECK_THAT(run.state.wheel_force[i], WithinRel(.5 * kPress, 1e-8));
+  for (const int i : {0, 1}) CHECK_THAT(run.state.contact_force[i], WithinRel(.5 * kPress, 1e-8));
   // A moment does not count as weight, whatever its size.
   v.forces = {{kRise, {0., -1e4}, -1}, {kTurn, {0., 1.2e4}, -1}};
   const ModelRun leant = from_rest(track, {.vehicles = {v}}, options);
   for (const int i : {0, 1})
-    CHECK_THAT(leant.state.wheel_force[i],
+    CHECK_THAT(leant.state.contact_force[i],
                WithinRel(5e3 + (i == 0 ? 1. : -1.) * 1.2e4 / kBogie.wheelbase, 1e-8));
 }
 
@@ -136,7 +137,7 @@ TEST_CASE("under a constant input a bogie settles where the same weight would ho
     for (int n = 0; n < 8000; ++n) run.step();
     CAPTURE(modal);
     for (int i = 0; i < 2; ++i)
-      CHECK_THAT(run.outputs.wheel_force[i], WithinRel(heavier.state.wheel_force[i], 1e-7));
+      CHECK_THAT(run.outputs.contact_force[i], WithinRel(heavier.state.contact_force[i], 1e-7));
     const VehicleModel& v = run.model().vehicle[0];
     for (int k = 0; k < v.size; ++k)
       CHECK_THAT(run.state.u[v.first + k], WithinAbs(heavier.state.u[v.first + k], 1e-9));

@@ -64,7 +64,7 @@ struct Drop {
 
   const Model& model() const { return packed->model(); }
   double time() const { return static_cast<double>(state.steps) * model().scheme.dt; }
-  double force() const { return outputs.wheel_force[0]; }
+  double force() const { return outputs.contact_force[0]; }
   double wheel(const double* of) const { return of[model().wheelset[0].first + 2]; }
   /// Vertical value of the left rail's node under the wheel.
   double rail(const double* of, int node) const {
@@ -102,7 +102,7 @@ struct Drop {
       sum += .5 * (u.dot(lines[l].stiffness * u) + v.dot(lines[l].mass * v));
     }
     for (int i = 0; i < 2; ++i) {
-      const double d = std::max(0., -outputs.wheel_gap[i]), f = outputs.wheel_force[i];
+      const double d = std::max(0., -outputs.contact_gap[i]), f = outputs.contact_force[i];
       sum += .4 * w.hertz[0] * d * d * std::sqrt(d);
       sum += .5 * f * f * residual_under(model(), rail_force(model(), w.load_point[i], w.start, f));
     }

@@ -27,8 +27,8 @@ inline Heard listen(ModelRun& run, int from, int frames) {
   for (int frame = 1; frame <= from + frames; ++frame) {
     run.step();
     if (frame <= from) continue;
-    heard.force.push_back(run.outputs.wheel_force_mean[0]);
-    heard.rail.push_back(run.outputs.wheel_rail_z[0]);
+    heard.force.push_back(run.outputs.contact_force_mean[0]);
+    heard.rail.push_back(run.outputs.contact_rail_z[0]);
   }
   CHECK(run.seen == Status::ok);
   return heard;

@@ -129,7 +129,7 @@ class PassiveRun {
 
   /// Whole energy with the wheels at the places of a step, J.
   double of_all(const State& at, std::int64_t step) const {
-    return of_bodies(at) + of_weight(at) + of_contacts(wheels(at, step), at.wheel_force);
+    return of_bodies(at) + of_weight(at) + of_contacts(wheels(at, step), at.contact_force);
   }
 
   /// Energy that dampers of lines and vehicles take in a step of the trapezoidal rule, which moves

@@ -309,7 +309,7 @@ std::vector<HardCase> element_cases() {
        incompressible},
       {"H12", "h12_slender", "Length over height 10 000",
        "Stretch is 1e8 times as stiff as bending: digits cancel, the more the finer the mesh.",
-       "P L^3/3EI; shear and the shorter lever are 1e-8 of it. Of 64 elements some 1e-4 are lost "
+       "P L^3/3EI; shear and the shorter lever are 1e-8 of it. With 64 elements some 1e-4 are lost "
        "by "
        "rounding: an assembly in doubles that shares nothing with this one, solved in 60 digits, "
        "is "

@@ -20,7 +20,7 @@ struct Change {
   double by;
 };
 
-double pressed(const State& state, int wheel) { return std::max(0., state.wheel_force[wheel]); }
+double pressed(const State& state, int wheel) { return std::max(0., state.contact_force[wheel]); }
 
 /// m: where a contact follows Hertz's law, a part of its depth (f / C)^(2/3), so that the law's
 /// fifth derivative adds part^4 / 30 to its slope, 2e-11.

@@ -114,7 +114,7 @@ std::string hard_report(const std::vector<HardOutcome>& outcomes) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>Hard "
       "cases</title>\n"
       "<style>{}.failed td{{background:#fdd}}</style></head>\n<body>\n<h1>Hard cases</h1>\n"
-      "<p>{} of {} passed. Of each case the figure that comes nearest to its bound; the margin is "
+      "<p>{} of {} passed. The figure of each case is the one nearest to its bound; the margin is "
       "the bound over the figure. Frames are medians of wall time, beside whatever else ran.</p>\n"
       "<table>\n<tr><th>case</th><th>what it is</th><th>tightest figure</th><th>figure</th>"
       "<th>bound</th><th>margin</th><th>us a frame</th></tr>\n{}</table>\n{}</body>\n</html>\n",

@@ -71,7 +71,7 @@ HardResult drop_10_mm(const std::filesystem::path& scene) {
 
 // H40 ------------------------------------------------------------------------------------------
 
-/// What a wheelset's upright momentum misses over some rows: the upright parts of all contacts less
+/// Error of a wheelset's upright momentum over some rows: the upright parts of all contacts less
 /// its weight and what the momentum changed by, N s.
 double missed_momentum(const HardRun& run, std::size_t first, std::size_t last) {
   constexpr double kMass = 1200., kTrack = 1.5, kAngle = 70. * std::numbers::pi / 180.;

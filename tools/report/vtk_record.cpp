@@ -117,7 +117,7 @@ void add_wheel(const Simulation& run, ContactId wheel, VtkMesh& mesh) {
   const CrownTop top = crown_top(cant, run.model().head_z[side], run.model().crown_radius[side]);
   const double aside = cant.cosine * top.y - cant.sine * top.z;
   mesh.add_force(vtk_vector({x, y + aside, set.rest_z - set.radius}), vtk_vector({0., 0., p[2]}),
-                 vtk_vector({0., 0., -run.state.wheel_force[wheel]}));
+                 vtk_vector({0., 0., -run.state.contact_force[wheel]}));
 }
 
 void add_load(const Simulation& run, const LoadModel& load, VtkMesh& mesh) {

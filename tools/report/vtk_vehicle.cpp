@@ -93,7 +93,7 @@ void add_vehicle(const Simulation& run, int vehicle, const DrawnVehicle& drawn, 
   const Vehicle& what = drawn.what;
   const VehicleModel& model = run.model().vehicle[vehicle];
   const VehicleWheel* wheel = run.model().vehicle_wheel + model.first_wheel;
-  const double* force = run.state.wheel_force + 2 * run.model().wheelsets + model.first_wheel;
+  const double* force = run.state.contact_force + 2 * run.model().wheelsets + model.first_wheel;
   const Standing at = stand(run, model, wheel->rail, drawn);
   for (const Vehicle::Wheel& own : what.wheels) add_wheel(at, own, *force++, mesh);
   for (std::size_t body = 0; body < what.bodies.size(); ++body)

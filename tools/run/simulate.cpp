@@ -85,7 +85,7 @@ double lowest(const Model& model, const Outputs& outputs) {
   for (std::int32_t i = 0; i < model.loads; ++i)
     least = std::min(least, outputs.load_deflection[i]);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    least = std::min(least, outputs.wheel_rail_z[i]);
+    least = std::min(least, outputs.contact_rail_z[i]);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     least = std::min(least, outputs.external_displacement[i][2]);
   return least;

@@ -38,7 +38,7 @@ struct ParetoResult {
   std::vector<ReceptanceErrors> receptances;  // of each model on the front
 };
 
-/// Runs all settings. What `resume` has of the same program, scene and question is not run again;
+/// Runs all settings. Rows that `resume` has of the same program, scene and question are kept;
 /// each row that is made goes there at once.
 /// @param after  called with the settings that are done and all of them
 ParetoResult pareto(const ParetoRequest& request,

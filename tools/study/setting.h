@@ -13,7 +13,7 @@ struct Setting {
   /// track.unknowns where they are not the scene's.
   std::string model;
   int elements_per_bay;  // 0: of rigid rails, which have no mesh
-  /// "own" as the scene says. Of full order "generalised-alpha:RHO", "newmark", "hht:ALPHA",
+  /// "own" as the scene says. In full order "generalised-alpha:RHO", "newmark", "hht:ALPHA",
   /// "backward-euler", "tr-bdf2"; of condensed models "held:RHO", "discrete-gradient".
   std::string scheme;
   double step;  // s
@@ -53,7 +53,7 @@ bool goes_with(const std::string& model, const std::string& scheme);
 /// Model by model, mesh by mesh, scheme by scheme, the longest step first.
 std::vector<Setting> settings_of(const Choices& choices);
 
-/// The scheme by which a model is run with small steps. Of full order generalised-alpha, but where
+/// The scheme by which a model is run with small steps. In full order generalised-alpha, but where
 /// the scene gives numbers of another scheme, which stand in its way, that one.
 std::string plain_scheme(const std::string& model, const StepScene& step);
 

@@ -97,7 +97,7 @@ void find_depths(const Model& model, const State& state, StandingContacts& c) {
   for (int i = 0; i < c.contacts; ++i) {
     c.depth[i] = c.approach[i] + c.moved[c.loads + i];
     if (is_linear(model, i))
-      c.hertz += linear_energy(vehicle_wheel(model, i).contact, state.wheel_force[i], c.depth[i]);
+      c.hertz += linear_energy(vehicle_wheel(model, i).contact, state.contact_force[i], c.depth[i]);
     if (is_flange(model, i)) c.hertz += flange_energy(flange_of(model, i).contact, c.depth[i]);
   }
 }
@@ -123,7 +123,7 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
   const int ports = ports_of(model, c, acting);
   for (int i = 0; i < c.contacts; ++i)
     if (is_linear(model, i) && c.contact[i].on_rail)
-      acting[c.loads + i].force = -state.wheel_force[i];
+      acting[c.loads + i].force = -state.contact_force[i];
   if (c.contacts > 0) solve_forces(model, c, acting, ports);
   for (int i = 0; i < ports; ++i) {
     c.force[i] = acting[i].force;

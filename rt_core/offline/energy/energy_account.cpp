@@ -180,8 +180,8 @@ void EnergyAccount::add_port(const Standing& now, std::int32_t j) {
 
 /// Force of the scheme on a wheel over the step, N.
 double EnergyAccount::wheel_force(const Standing& now, int wheel) const {
-  const double f1 = now.state.wheel_force[wheel];
-  return model_.form == Form::condensed ? f1 : .5 * (last_.state.wheel_force[wheel] + f1);
+  const double f1 = now.state.contact_force[wheel];
+  return model_.form == Form::condensed ? f1 : .5 * (last_.state.contact_force[wheel] + f1);
 }
 
 /// Work of a wheelset's wheels by the change of approach due to its motion along x alone, J: the
@@ -282,7 +282,7 @@ void EnergyAccount::add_start(const Standing& now) {
   forces(model_, s.steps, f.data(), nullptr);
   for (int i = 0; i < contact_count(model_); ++i)
     for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
-      spread(model_.line[l], last_.contacts.contact[i].row, -s.wheel_force[i], f.data());
+      spread(model_.line[l], last_.contacts.contact[i].row, -s.contact_force[i], f.data());
   const FixedPortModel& fixed = model_.fixed;
   for (std::int32_t j = 0; j < fixed.count; ++j)
     for (std::int32_t k = fixed.start[j]; k < fixed.start[j + 1]; ++k)
@@ -300,7 +300,7 @@ void EnergyAccount::add_start(const Standing& now) {
       double force = -w.mass[k] * s.g[at] - (k == 2 ? w.weight : 0.);
       if (k < 3) force += outer_force(model_, w, k, s);
       for (int n = 0; n < own.count; ++n)
-        force += last_.contacts.contact[own.at[n]].body_row[k] * s.wheel_force[own.at[n]];
+        force += last_.contacts.contact[own.at[n]].body_row[k] * s.contact_force[own.at[n]];
       flow_.loss += .5 * force * (now.state.u[at] - s.u[at]);
     }
   }

@@ -66,7 +66,8 @@ double vehicle_unbalanced(const Model& model, const VehicleModel& vehicle, const
   const auto part = [&](const double* values) {
     return Vector(values + vehicle.first, vehicle.size);
   };
-  const Vector force(at.wheel_force + vehicle_contact(model, vehicle.first_wheel), vehicle.wheels);
+  const Vector force(at.contact_force + vehicle_contact(model, vehicle.first_wheel),
+                     vehicle.wheels);
   const Eigen::VectorXd left = m.row.transpose() * force + forces_on(model, vehicle, at) -
                                m.weight - m.mass.cwiseProduct(part(at.g)) - m.damping * part(at.v) -
                                m.stiffness * part(at.u);

@@ -29,7 +29,7 @@ struct Pose {
   std::vector<Eigen::VectorXd> lines;
   std::vector<std::array<double, 6>> wheelsets;
   SettledVehicles vehicles;
-  std::vector<double> wheel_force;  // [contacts] of wheelsets, N
+  std::vector<double> contact_force;  // [contacts] of wheelsets, N
 };
 
 /// Puts static displacements and velocities of a line into a state.
@@ -106,7 +106,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
       put(packed.lines()[l], model.line[l], pose.lines[l],
           Eigen::VectorXd::Zero(pose.lines[l].size()), state);
     pose.wheelsets.clear();
-    pose.wheel_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
+    pose.contact_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
     double most = 0.;
     for (std::int32_t b = 0; b < model.wheelsets; ++b) {
       const Stance now = stance_of(model, b, at);
@@ -115,7 +115,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
       double* const p = state.u + model.wheelset[b].first;
       for (int i = 0; i < now.count; ++i) {
         p[now.first_coordinate() + i] += way[i];
-        pose.wheel_force[static_cast<std::size_t>(now.number[static_cast<std::size_t>(i)])] =
+        pose.contact_force[static_cast<std::size_t>(now.number[static_cast<std::size_t>(i)])] =
             now.force[i];
       }
       const double aside = way_off_flanges(model, b, at);
@@ -265,7 +265,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
           (later.wheelsets[set][k] - before.wheelsets[set][k]) / span;
     }
   }
-  std::copy(at.wheel_force.begin(), at.wheel_force.end(), state.wheel_force);
+  std::copy(at.contact_force.begin(), at.contact_force.end(), state.contact_force);
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const std::size_t own = static_cast<std::size_t>(b);
     const Eigen::VectorXd& u = at.vehicles.displacement[own];
@@ -275,7 +275,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
     std::copy(v.begin(), v.end(), state.v + model.vehicle[b].first);
   }
   for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
-    state.wheel_force[vehicle_contact(model, i)] = at.vehicles.force[i];
+    state.contact_force[vehicle_contact(model, i)] = at.vehicles.force[i];
   put_port_forces(model, state);
   return memory;
 }

@@ -236,7 +236,7 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
       put(w.first + static_cast<int>(k), at[0].wheelsets[own][k], at[1].wheelsets[own][k],
           at[2].wheelsets[own][k]);
     state.v[w.first] += w.travel.speed;
-    for (int side = 0; side < 2; ++side) state.wheel_force[tread_of(b, side)] = wheel_load(w);
+    for (int side = 0; side < 2; ++side) state.contact_force[tread_of(b, side)] = wheel_load(w);
   }
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const auto own = static_cast<std::size_t>(b);
@@ -245,7 +245,7 @@ void stand_up(const Model& model, const Model& carried, std::vector<double>& mem
           at[1].vehicles.displacement[own][k], at[2].vehicles.displacement[own][k]);
   }
   for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
-    state.wheel_force[vehicle_contact(model, i)] = at[0].vehicles.force[i];
+    state.contact_force[vehicle_contact(model, i)] = at[0].vehicles.force[i];
 }
 
 /// Names speeds that are possible, with all digits that they need.

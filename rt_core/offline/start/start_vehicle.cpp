@@ -212,8 +212,8 @@ struct Under {
   }
 
  private:
-  /// Of the largest force. Rounding of heights is below 1e-8 of it, so that slopes are good to
-  /// 1e-5.
+  /// A part of the largest force. Rounding of heights is below 1e-8 of it, so that slopes are good
+  /// to 1e-5.
   static constexpr double kPart = 1e-3;
 
   Eigen::VectorXd of(const std::vector<Eigen::VectorXd>& lines) const {

@@ -1,8 +1,8 @@
 // The kernels of rows once more, in vectors of four. AVX2 has no fused products, so the bits are
 // those of the base.
 //
-// What other sources share is included before the instruction set is changed: a linker may take its
-// functions from here for the whole program, which must run on every processor
+// Headers that other sources share are included before the instruction set is changed: a linker may
+// take their functions from here for the whole program, which must run on every processor
 // (tests/checks/check-kernels).
 #include <utility>
 

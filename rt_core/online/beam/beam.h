@@ -14,7 +14,7 @@ inline constexpr int kProductOf[kProducts][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1},
                                                  {2, 2}, {0, 3}, {0, 4}, {1, 3}, {1, 4},
                                                  {2, 3}, {2, 4}, {3, 3}, {3, 4}, {4, 4}};
 
-/// What one point of the axis adds to the energy of a quadratic 3-node ANCF beam element:
+/// Part of one point of the axis in the energy of a quadratic 3-node ANCF beam element:
 ///   U = p0 (s - s0) + (s - s0)' C (s - s0) / 2,  s the inner products.
 /// Every Green-Lagrange strain of the section is linear in s, so section, material, rule, preload
 /// and shape at rest are in these constants alone.

@@ -6,7 +6,7 @@ namespace RAILSTEP_KERNELS::chained {
 
 using straight::unrolled;
 
-// Where things are in a batch's tangents and in the factor of a chain. Of the factor's row k,
+// Where things are in a batch's tangents and in the factor of a chain. In the factor's row k,
 // column j > k is L(j, k), and column k is 1 / D(k).
 
 /// Blocks of a batch's tangents.

@@ -50,7 +50,7 @@ struct Node {
   }
 };
 
-/// What a node's y takes of kOthers nodes; then y := D^-1 y.
+/// Takes the parts of kOthers nodes from a node's y; then y := D^-1 y.
 /// @param others  of the node's columns from W on, W each
 template <int W, int kStep, class T, int kOthers, class Entry>
 [[gnu::always_inline]] inline void take_of_others(const Entry& entry, double* x,

@@ -6,7 +6,7 @@ namespace railstep {
 /// Numbers of C that a straight element with a section symmetric in y has: upper triangles of five
 /// blocks of products, row after row, block after block.
 inline constexpr int kStraightConstants = 37, kStraightBlocks = 5;
-/// Of each product, in the order of kProductOf: its block and its place in it.
+/// Block of each product, in the order of kProductOf, and its place in the block.
 ///   {r'r', r'b', a'a', b'b', aa, bb}, {r'a', a'b'}, {r'a, a'b, b'a}, {r'b, a'a, b'b}, {ab}
 inline constexpr int kStraightBlock[kProducts] = {0, 1, 0, 0, 1, 0, 2, 3, 3, 2, 2, 3, 0, 4, 0};
 inline constexpr int kStraightPlace[kProducts] = {0, 0, 1, 2, 1, 3, 0, 0, 1, 1, 2, 2, 4, 0, 5};

@@ -6,7 +6,7 @@
 
 namespace RAILSTEP_KERNELS::straight {
 
-// What tells the spatial from the planar element: how many components each field of a node has.
+// The spatial and the planar element differ in the number of components of each field of a node.
 // All else of both is written once.
 
 /// each(0), ..., each(N - 1), the index a constant of its type.

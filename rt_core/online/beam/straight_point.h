@@ -138,8 +138,8 @@ template <class Kind, int I, int K, int J, int kBlock, class T>
   });
 }
 
-/// d2U/dV_i dV_j: the sum of C(ik, jl) V_k V_l', and the stress on the identity. Of a block of C
-/// the side with fewer vectors makes the outer products.
+/// d2U/dV_i dV_j: the sum of C(ik, jl) V_k V_l', and the stress on the identity. The side of
+/// a block of C with fewer vectors makes the outer products.
 template <class Kind, int I, int J, class T>
 [[gnu::always_inline]] inline void tangent_block(const StraightBeam& beam, const T* stress,
                                                  const T* V, T* K) noexcept {

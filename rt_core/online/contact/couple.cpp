@@ -141,10 +141,10 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
                     CoupleResult& result) noexcept {
   for (ContactId i = 0; i < c.contacts; ++i) {
     const WheelContact& at = c.contact[i];
-    if (state.wheel_force[i] <= 0. && c.force[i] > 0. &&
+    if (state.contact_force[i] <= 0. && c.force[i] > 0. &&
         impact_is_unresolved_at(model, c, state, i))
       result.status = result.status | Status::contact_unresolved;
-    state.wheel_force[i] = c.force[i];
+    state.contact_force[i] = c.force[i];
     result.gap[i] = -c.penetration[i];
     result.x[i] = at.x;
     result.on_rail[i] = at.on_rail;
@@ -175,7 +175,7 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   track_penetration(model, state, w, c);
   if (model.scheme.mean != 0) find_means(model, state, w, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
-  for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.wheel_force[i];
+  for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.contact_force[i];
   solve_coupled(model, stage, state, w, c, result);
   move_track(model, w, c);
   move_vehicles(model, w, c);

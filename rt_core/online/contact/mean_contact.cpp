@@ -11,8 +11,8 @@ double residual_before(const Model& model, const State& s, const Coupling& c,
   double sum = c.by_loads[i];
   for (ContactId j = 0; j < c.contacts; ++j)
     if (c.contact[j].on_rail)
-      sum -= s.wheel_force[j] * (i != j ? residual_between(model, c.place[j], c.place[i])
-                                        : residual_under(model, c.place[i]));
+      sum -= s.contact_force[j] * (i != j ? residual_between(model, c.place[j], c.place[i])
+                                          : residual_under(model, c.place[i]));
   return sum;
 }
 

@@ -29,7 +29,7 @@ extern "C" {
 typedef struct railstep_model railstep_model;
 typedef struct railstep_run railstep_run;
 
-/* What a call came to. */
+/* Result of a call. */
 enum {
   RAILSTEP_OK = 0,
   RAILSTEP_MISALIGNED,        /* a block or memory does not start at a multiple of 8 bytes */
@@ -45,7 +45,7 @@ enum {
   RAILSTEP_OTHER_BITS         /* see railstep_self_check() */
 };
 
-/* What a frame met; several can be set, the run goes on. */
+/* Events of a frame; several can be set, the run goes on. */
 enum {
   RAILSTEP_OFF_RAIL = 1,            /* a load or wheel left the rail, its force is 0 */
   RAILSTEP_CONTACT_LOST = 2,        /* a wheel stood free of its rail during the frame */
@@ -65,7 +65,7 @@ int32_t railstep_version(void) RAILSTEP_NOTHROW;
 const char* railstep_result_text(int32_t result) RAILSTEP_NOTHROW;
 /* The name of the lowest status bit that is set, as `railstep run` prints it, or "". */
 const char* railstep_status_name(uint32_t status) RAILSTEP_NOTHROW;
-/* What it means and what to do about it, or "". */
+/* Its meaning and a remedy, or "". */
 const char* railstep_status_text(uint32_t status) RAILSTEP_NOTHROW;
 
 /* Memory that a model takes beside its block. */
@@ -111,17 +111,15 @@ void railstep_read(const railstep_run* run, double* outputs) RAILSTEP_NOTHROW;
 /* Steps made since the start, and their time, s. */
 int64_t railstep_steps(const railstep_run* run) RAILSTEP_NOTHROW;
 double railstep_time_s(const railstep_run* run) RAILSTEP_NOTHROW;
-/* Of the state's bits: equal states have equal hashes. */
+/* Hash of the state's bits: equal states have equal hashes. */
 uint64_t railstep_hash(const railstep_run* run) RAILSTEP_NOTHROW;
 
-/* Wheels of a vehicle outside the model ([[external_wheel]] of a scene). What the next frame makes
- * of the rail under them: with 3 n + d for direction d (x, y, z) of wheel n, their points will be
- * displaced by
- *   free_motion + compliance * forces
- * under forces on the rail, to rounding. The run is not changed. inputs: places as the frame will
- * have them, or null: as they are held; the forces among them are not looked at. free_motion: [3
- * n], m; compliance: [3 n][3 n], symmetric, m/N; both 0 for a wheel off the rail. Returns what was
- * met. */
+/* Wheels of a vehicle outside the model ([[external_wheel]] of a scene). The response of
+ * the rail under them in the next frame: with 3 n + d for direction d (x, y, z) of wheel n, their
+ * points will be displaced by free_motion + compliance * forces under forces on the rail, to
+ * rounding. The run is not changed. inputs: places as the frame will have them, or null: as they
+ * are held; the forces among them are not looked at. free_motion: [3 n], m; compliance: [3 n][3 n],
+ * symmetric, m/N; both 0 for a wheel off the rail. Returns what was met. */
 int32_t railstep_external_wheels(const railstep_model* model) RAILSTEP_NOTHROW;
 uint32_t railstep_response(railstep_run* run, const double* inputs, double* free_motion,
                            double* compliance) RAILSTEP_NOTHROW;

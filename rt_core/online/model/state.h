@@ -10,22 +10,22 @@ namespace railstep {
 /// All numbers that a replay needs, and no others. The caller owns the memory, state_doubles() of
 /// it. LineModel says what u, v, a and g of a condensed line are.
 struct State {
-  std::int64_t steps;   // time = steps * dt, so it never drifts
-  double* numbers;      // [state_doubles] all of these arrays in one row
-  double* u;            // [unknowns] displacement: m; slopes 1
-  double* v;            // [unknowns] velocity
-  double* a;            // [unknowns] the scheme's acceleration
-  double* g;            // [unknowns] true acceleration
-  double* wheel_force;  // [contacts] N, of the last step: start of the contact solve
-  double* port_force;   // [fixed ports] N, the same; 0: open
-  double* multiplier;   // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
-                        // the force on the wheelset is its negative
-  double* quaternion;   // [system.bodies][4] body axes to ground
-  double* row_force;    // [rows] of the system's joints and springs, N; the force on its parts is
-                        // -G' of it, so a tensile force of a joint or spring is positive
-  double* kept;         // Newton's matrix of the system if it is kept over steps, or null
-  double* input;        // [inputs] N or N m: the last good ones
-  Status latched;       // kLatched bits that were met since the reset
+  std::int64_t steps;     // time = steps * dt, so it never drifts
+  double* numbers;        // [state_doubles] all of these arrays in one row
+  double* u;              // [unknowns] displacement: m; slopes 1
+  double* v;              // [unknowns] velocity
+  double* a;              // [unknowns] the scheme's acceleration
+  double* g;              // [unknowns] true acceleration
+  double* contact_force;  // [contacts] N, of the last step: start of the contact solve
+  double* port_force;     // [fixed ports] N, the same; 0: open
+  double* multiplier;     // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
+                          // the force on the wheelset is its negative
+  double* quaternion;     // [system.bodies][4] body axes to ground
+  double* row_force;      // [rows] of the system's joints and springs, N; the force on its parts is
+                          // -G' of it, so a tensile force of a joint or spring is positive
+  double* kept;           // Newton's matrix of the system if it is kept over steps, or null
+  double* input;          // [inputs] N or N m: the last good ones
+  Status latched;         // kLatched bits that were met since the reset
 };
 
 /// Status bits that stay set until reset(): a frame was lost or distorted.
@@ -58,26 +58,22 @@ inline double held_input(const double* input, std::int32_t at) noexcept {
 /// Results that a frame publishes.
 struct Outputs {
   Status status;
-  std::int32_t first_bad_unknown;       // -1: all finite
-  double load_x[kMaxLoads];             // m; where the load is, or was when it was removed
-  double load_place[kMaxLoads];         // the same along the model's elements, m
-  double load_deflection[kMaxLoads];    // of the loaded point, m, up positive
-  double load_force[kMaxLoads];         // N, up positive
-  double wheel_force[kMaxWheels];       // N on the wheel, up positive, at the frame's end
-  double wheel_force_mean[kMaxWheels];  // N, over the frame's steps
-  double wheel_force_peak[kMaxWheels];  // N
-  double wheel_impulse[kMaxWheels];     // N s
-  double wheel_gap[kMaxWheels];         // m, negative in contact; where the force was taken
-  bool wheel_on_rail[kMaxWheels];
-  double wheel_x[kMaxWheels];       // of the contact along the undeformed rail, m
-  double wheel_place[kMaxWheels];   // the same along the model's elements, m
-  double wheel_rail_z[kMaxWheels];  // displacement of the rail's axis under it, m
-  /// Left and right flange of each wheelset that has them.
-  double flange_force[kMaxFlanges];       // N along its normal, at the frame's end
-  double flange_force_peak[kMaxFlanges];  // N
-  double flange_impulse[kMaxFlanges];     // N s
-  double flange_gap[kMaxFlanges];         // m along its normal, negative in contact
-  /// Of external wheels: the point of the rail under each at the frame's end.
+  std::int32_t first_bad_unknown;     // -1: all finite
+  double load_x[kMaxLoads];           // m; where the load is, or was when it was removed
+  double load_place[kMaxLoads];       // the same along the model's elements, m
+  double load_deflection[kMaxLoads];  // of the loaded point, m, up positive
+  double load_force[kMaxLoads];       // N, up positive
+  /// By contact (contact_id.h), along its normal: of a wheel the force on it, up positive.
+  double contact_force[kMaxWheels];       // N, at the frame's end
+  double contact_force_mean[kMaxWheels];  // N, over the frame's steps
+  double contact_force_peak[kMaxWheels];  // N
+  double contact_impulse[kMaxWheels];     // N s
+  double contact_gap[kMaxWheels];         // m, negative in contact; where the force was taken
+  bool contact_on_rail[kMaxWheels];
+  double contact_x[kMaxWheels];       // along the undeformed rail, m
+  double contact_place[kMaxWheels];   // the same along the model's elements, m
+  double contact_rail_z[kMaxWheels];  // of wheels: displacement of the rail's axis under it, m
+  /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];
   double external_place[kMaxExternalWheels];            // m along the model's elements
   double external_force[kMaxExternalWheels];            // N along z, up positive

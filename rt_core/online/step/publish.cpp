@@ -50,11 +50,9 @@ std::int32_t first_unknown_of(const Model& model, ContactId contact) noexcept {
 /// First unknown of a body whose contact, orientation or joint has too large numbers, or -1. They
 /// are high powers of unknowns, which overflow long before the unknowns do.
 std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) noexcept {
-  for (ContactId i = 0; i < contact_count(model); ++i) {
-    const double gap =
-        is_flange(model, i) ? out.flange_gap[among_flanges(model, i)] : out.wheel_gap[i];
-    if (!is_moderate(gap) || !is_moderate(s.wheel_force[i])) return first_unknown_of(model, i);
-  }
+  for (ContactId i = 0; i < contact_count(model); ++i)
+    if (!is_moderate(out.contact_gap[i]) || !is_moderate(s.contact_force[i]))
+      return first_unknown_of(model, i);
   const SystemModel& system = model.system;
   for (std::int32_t b = 0; b < system.bodies; ++b)
     for (int k = 0; k < 4; ++k)
@@ -77,18 +75,6 @@ std::int32_t first_bad(const Model& model, const State& s, const Outputs& out) n
   return other >= 0 ? other : first_lost(model, s, out);
 }
 
-/// @param gap  [contacts] m
-void collect_flanges(const Model& model, const State& s, const double* gap, Outputs& out) noexcept {
-  for (std::int32_t i = 0; i < flange_count(model); ++i) {
-    const ContactId contact = flange_contact(model, i);
-    const double force = s.wheel_force[contact];
-    out.flange_force[i] = force;
-    out.flange_impulse[i] += force * model.scheme.dt;
-    if (force > out.flange_force_peak[i]) out.flange_force_peak[i] = force;
-    out.flange_gap[i] = gap[contact];
-  }
-}
-
 }  // namespace
 
 void start_frame(const Model& model, const State& state, Outputs& out) noexcept {
@@ -97,10 +83,8 @@ void start_frame(const Model& model, const State& state, Outputs& out) noexcept 
   out.iterations = 0;
   out.force_residual = 0.;
   out.redundant_rows = 0;
-  for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    out.wheel_force_peak[i] = out.wheel_impulse[i] = 0.;
-  for (std::int32_t i = 0; i < flange_count(model); ++i)
-    out.flange_force_peak[i] = out.flange_impulse[i] = 0.;
+  for (ContactId i = 0; i < contact_count(model); ++i)
+    out.contact_force_peak[i] = out.contact_impulse[i] = 0.;
 }
 
 void collect_solve(const CoupleResult& met, Outputs& out) noexcept {
@@ -112,18 +96,17 @@ void collect_solve(const CoupleResult& met, Outputs& out) noexcept {
 void collect(const Model& model, const State& s, const CoupleResult& met, Outputs& out) noexcept {
   collect_solve(met, out);
   const double offset = track_offset(model, s.steps + 1);
-  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
-    const double force = s.wheel_force[i];
-    out.wheel_force[i] = force;
-    out.wheel_impulse[i] += force * model.scheme.dt;
-    out.wheel_force_mean[i] = out.wheel_impulse[i] / (model.scheme.dt * model.steps_per_frame);
-    if (force > out.wheel_force_peak[i]) out.wheel_force_peak[i] = force;
-    out.wheel_gap[i] = met.gap[i];
-    out.wheel_x[i] = met.x[i] + offset;
-    out.wheel_place[i] = met.x[i];
-    out.wheel_on_rail[i] = met.on_rail[i];
+  for (ContactId i = 0; i < contact_count(model); ++i) {
+    const double force = s.contact_force[i];
+    out.contact_force[i] = force;
+    out.contact_impulse[i] += force * model.scheme.dt;
+    out.contact_force_mean[i] = out.contact_impulse[i] / (model.scheme.dt * model.steps_per_frame);
+    if (force > out.contact_force_peak[i]) out.contact_force_peak[i] = force;
+    out.contact_gap[i] = met.gap[i];
+    out.contact_x[i] = met.x[i] + offset;
+    out.contact_place[i] = met.x[i];
+    out.contact_on_rail[i] = met.on_rail[i];
   }
-  collect_flanges(model, s, met.gap, out);
 }
 
 void collect(const SystemResult& met, Outputs& out) noexcept {
@@ -151,9 +134,9 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     outputs.load_deflection[i] += residual_displacement(model, force, count, i);
   for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     const RailForce& own = force[model.loads + i];
-    outputs.wheel_rail_z[i] = 0.;
-    if (!outputs.wheel_on_rail[i]) continue;
-    outputs.wheel_rail_z[i] =
+    outputs.contact_rail_z[i] = 0.;
+    if (!outputs.contact_on_rail[i]) continue;
+    outputs.contact_rail_z[i] =
         axis_height(model, rail_of(model, i), own.element, own.xi, standing(model, state)) +
         residual_displacement(model, force, count, model.loads + i) +
         own.force * (residual_axis(model, own) - residual_under(model, own));
@@ -174,20 +157,16 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., standing(model, state),
                           contact);
-  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
-    outputs.wheel_force[i] = outputs.wheel_force_mean[i] = outputs.wheel_force_peak[i] =
-        state.wheel_force[i];
-    outputs.wheel_gap[i] = -contact[i].penetration;
-    outputs.wheel_on_rail[i] = contact[i].on_rail;
-    outputs.wheel_place[i] = contact[i].x;
-    outputs.wheel_x[i] = contact[i].x + track_offset(model, state.steps);
-  }
   for (std::int32_t f = 0; f < model.flanges; ++f)
-    find_flanges(model, model.flange[f], standing(model, state), contact + flange_number(f, 0));
-  for (std::int32_t i = 0; i < flange_count(model); ++i) {
-    outputs.flange_force[i] = outputs.flange_force_peak[i] =
-        state.wheel_force[flange_contact(model, i)];
-    outputs.flange_gap[i] = -contact[i].penetration;
+    find_flanges(model, model.flange[f], standing(model, state),
+                 contact + flange_contact(model, flange_number(f, 0)));
+  for (ContactId i = 0; i < contact_count(model); ++i) {
+    outputs.contact_force[i] = outputs.contact_force_mean[i] = outputs.contact_force_peak[i] =
+        state.contact_force[i];
+    outputs.contact_gap[i] = -contact[i].penetration;
+    outputs.contact_on_rail[i] = contact[i].on_rail;
+    outputs.contact_place[i] = contact[i].x;
+    outputs.contact_x[i] = contact[i].x + track_offset(model, state.steps);
   }
   if (model.external_wheels > 0) {
     ExternalContact external[kMaxExternalWheels];
@@ -199,8 +178,8 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
   RailForce force[kMaxRailForces];
   const int count = rail_forces(model, outputs, force);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    if (outputs.wheel_on_rail[i])
-      outputs.wheel_gap[i] -= residual_displacement(model, force, count, model.loads + i);
+    if (outputs.contact_on_rail[i])
+      outputs.contact_gap[i] -= residual_displacement(model, force, count, model.loads + i);
 }
 
 }  // namespace railstep

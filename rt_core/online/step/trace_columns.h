@@ -18,17 +18,17 @@ struct OutputColumn {
 inline constexpr OutputColumn<kMaxLoads> kLoadColumns[] = {
     {"x_m", &Outputs::load_x}, {"deflection_z_m", &Outputs::load_deflection}};
 inline constexpr OutputColumn<kMaxWheels> kWheelColumns[] = {
-    {"force_z_n", &Outputs::wheel_force},
-    {"force_z_mean_n", &Outputs::wheel_force_mean},
-    {"force_z_peak_n", &Outputs::wheel_force_peak},
-    {"impulse_z_n_s", &Outputs::wheel_impulse},
-    {"gap_m", &Outputs::wheel_gap},
-    {"rail_z_m", &Outputs::wheel_rail_z}};
-inline constexpr OutputColumn<2 * kMaxWheelsets> kFlangeColumns[] = {
-    {"flange_force_n", &Outputs::flange_force},
-    {"flange_force_peak_n", &Outputs::flange_force_peak},
-    {"flange_impulse_n_s", &Outputs::flange_impulse},
-    {"flange_gap_m", &Outputs::flange_gap}};
+    {"force_z_n", &Outputs::contact_force},
+    {"force_z_mean_n", &Outputs::contact_force_mean},
+    {"force_z_peak_n", &Outputs::contact_force_peak},
+    {"impulse_z_n_s", &Outputs::contact_impulse},
+    {"gap_m", &Outputs::contact_gap},
+    {"rail_z_m", &Outputs::contact_rail_z}};
+inline constexpr OutputColumn<kMaxWheels> kFlangeColumns[] = {
+    {"flange_force_n", &Outputs::contact_force},
+    {"flange_force_peak_n", &Outputs::contact_force_peak},
+    {"flange_impulse_n_s", &Outputs::contact_impulse},
+    {"flange_gap_m", &Outputs::contact_gap}};
 
 /// A column of the rail under an external wheel.
 struct ExternalColumn {

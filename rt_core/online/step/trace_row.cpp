@@ -23,8 +23,9 @@ struct RowWriter {
   double* to;
 
   template <int most, std::size_t n>
-  void operator()(ColumnOf, std::int32_t i, const OutputColumn<most> (&columns)[n]) noexcept {
-    for (const OutputColumn<most>& column : columns) *to++ = (outputs.*column.value)[i];
+  void operator()(ColumnOf of, std::int32_t i, const OutputColumn<most> (&columns)[n]) noexcept {
+    const std::int32_t at = of == ColumnOf::flange ? flange_contact(model, i) : i;
+    for (const OutputColumn<most>& column : columns) *to++ = (outputs.*column.value)[at];
   }
   template <std::size_t n>
   void operator()(ColumnOf, std::int32_t i, const ExternalColumn (&columns)[n]) noexcept {

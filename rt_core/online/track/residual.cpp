@@ -51,8 +51,8 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
     forces[count++] =
         rail_force(model, model.load[i].load_point, outputs.load_place[i], outputs.load_force[i]);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    forces[count++] = rail_force(model, load_point_of(model, i), outputs.wheel_place[i],
-                                 outputs.wheel_on_rail[i] ? -outputs.wheel_force[i] : 0.);
+    forces[count++] = rail_force(model, load_point_of(model, i), outputs.contact_place[i],
+                                 outputs.contact_on_rail[i] ? -outputs.contact_force[i] : 0.);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     forces[count++] =
         rail_force(model, model.external_wheel[i].load_point, outputs.external_place[i],

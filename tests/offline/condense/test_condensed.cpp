@@ -63,8 +63,8 @@ Rows s1_rows(ModelRun run, int frames) {
   for (int i = 0; i < frames; ++i) {
     run.step();
     read_track_sensors(run.model(), run.state, run.outputs, track_sensors);
-    rows.push_back({run.outputs.wheel_rail_z[0], run.outputs.wheel_force_mean[0], track_sensors[0],
-                    track_sensors[1]});
+    rows.push_back({run.outputs.contact_rail_z[0], run.outputs.contact_force_mean[0],
+                    track_sensors[0], track_sensors[1]});
   }
   CHECK(run.seen == Status::ok);
   return rows;
@@ -127,10 +127,10 @@ TEST_CASE("on condensed track the paper's wheelset settles to the reactions of f
     CHECK(run.seen == Status::ok);
     std::vector<double> found(5);
     read_track_sensors(run.model(), run.state, run.outputs, found.data());
-    found.push_back(run.outputs.wheel_rail_z[0]);
-    found.push_back(run.outputs.wheel_force[0]);
+    found.push_back(run.outputs.contact_rail_z[0]);
+    found.push_back(run.outputs.contact_force[0]);
     found.push_back(run.body()[2]);
-    found.push_back(-run.outputs.wheel_gap[0]);
+    found.push_back(-run.outputs.contact_gap[0]);
     return found;
   };
   const auto full = settled(full_order(1e-4)), modal = settled(condensed(paper_track(), 2., 1e-4));

@@ -32,14 +32,14 @@ TEST_CASE("a condensed track in static equilibrium does not move", "[condensed]"
     for (int l = 0; l < 6; ++l)
       most = std::max(most, std::abs(run.outputs.load_deflection[l] - start.load_deflection[l]));
     for (int w = 0; w < 4; ++w)
-      most = std::max(most, std::abs(run.outputs.wheel_rail_z[w] - start.wheel_rail_z[w]));
+      most = std::max(most, std::abs(run.outputs.contact_rail_z[w] - start.contact_rail_z[w]));
     most = std::max({most, std::abs(run.body()[2] - z), .5 * std::abs(run.body()[3] - roll)});
   }
   CHECK(run.seen == Status::ok);
   CAPTURE(most);
   CHECK(most < 1e-13);  // m; rounding of some mm
   for (int w = 0; w < 4; ++w)
-    CHECK_THAT(run.outputs.wheel_force[w], WithinRel(start.wheel_force[w], 1e-9));
+    CHECK_THAT(run.outputs.contact_force[w], WithinRel(start.contact_force[w], 1e-9));
 }
 
 TEST_CASE("a wheelset on unequal rails starts with its own weight on both wheels", "[start]") {
@@ -50,13 +50,13 @@ TEST_CASE("a wheelset on unequal rails starts with its own weight on both wheels
     ModelRun run = in_equilibrium(paper_track(), traffic, options);
     CHECK(run.body()[3] < -2e-3);
     // Both contacts shift along the axle by 2.8e-3 of .448 m; the arms are .5 m.
-    const double start[2] = {run.state.wheel_force[0], run.state.wheel_force[1]};
+    const double start[2] = {run.state.contact_force[0], run.state.contact_force[1]};
     for (const double force : start) CHECK_THAT(force, WithinRel(490.5, 2.6e-3));
     for (int i = 0; i < 20; ++i) {
       run.step();
       // It slides down its slope by 5e-8 m, which costs the contacts 2e-10 m of 4e-6 m.
       for (int wheel = 0; wheel < 2; ++wheel)
-        CHECK_THAT(run.outputs.wheel_force[wheel], WithinRel(start[wheel], 1e-4));
+        CHECK_THAT(run.outputs.contact_force[wheel], WithinRel(start[wheel], 1e-4));
     }
     CHECK(run.seen == Status::ok);
   }
@@ -75,10 +75,10 @@ TEST_CASE("forces on one condensed rail affect each other as on the fine track",
     publish_start(run.model(), run.state, run.outputs);
     return std::vector<double>{run.outputs.load_deflection[swapped ? 1 : 0],
                                run.outputs.load_deflection[swapped ? 0 : 1],
-                               run.outputs.wheel_rail_z[0],
-                               run.outputs.wheel_rail_z[1],
-                               run.outputs.wheel_rail_z[2],
-                               run.outputs.wheel_rail_z[3]};
+                               run.outputs.contact_rail_z[0],
+                               run.outputs.contact_rail_z[1],
+                               run.outputs.contact_rail_z[2],
+                               run.outputs.contact_rail_z[3]};
   };
   const Statics statics(fine);
   std::vector<PointForce> forces;

@@ -71,7 +71,7 @@ TEST_CASE("a bogie starts in motion and is at the same place of its bay 10 000 b
   CHECK(force < 1e-7);
   CHECK(rail < 1e-7);
   // 200 020 ms and half a bogie, less half a step: the step locates contacts there.
-  CHECK_THAT(run.outputs.wheel_x[0],
+  CHECK_THAT(run.outputs.contact_x[0],
              Catch::Matchers::WithinRel(kSpeed * (200.02 - .5 * dt) + 1.28, 1e-12));
 }
 
@@ -103,9 +103,9 @@ TEST_CASE("bogie, wheelset and load run on one ring, each from its own start") {
   CHECK(run.seen == Status::ok);
   const double x[] = {5., 5., 1.28, -1.28, 1.28, -1.28};
   for (int i = 0; i < 6; ++i)  // half a step before the end; the guide's tolerance is 1e-10 m
-    CHECK_THAT(run.outputs.wheel_x[i], Catch::Matchers::WithinAbs(x[i] + 3. - 1.5e-3, 1e-4));
+    CHECK_THAT(run.outputs.contact_x[i], Catch::Matchers::WithinAbs(x[i] + 3. - 1.5e-3, 1e-4));
   CHECK_THAT(run.outputs.load_x[0], Catch::Matchers::WithinAbs(6., 1e-12));
   // Each carries its own weight: over sleepers a wheel's force swings by some percent.
-  CHECK_THAT(run.outputs.wheel_force_mean[0], Catch::Matchers::WithinRel(49.05e3, .05));
-  CHECK_THAT(run.outputs.wheel_force_mean[2], Catch::Matchers::WithinRel(54.54e3, .05));
+  CHECK_THAT(run.outputs.contact_force_mean[0], Catch::Matchers::WithinRel(49.05e3, .05));
+  CHECK_THAT(run.outputs.contact_force_mean[2], Catch::Matchers::WithinRel(54.54e3, .05));
 }

@@ -115,14 +115,14 @@ TEST_CASE("a wheel meets a joint at a kilometre once, and not once in each turn 
   for (int frame = 0; frame < 2000; ++frame) {
     run.step();
     smooth.step();
-    const double more = run.outputs.wheel_force_peak[0] - smooth.outputs.wheel_force_peak[0];
-    if (std::abs(more) > 5e3) met.push_back(run.outputs.wheel_x[0]);
+    const double more = run.outputs.contact_force_peak[0] - smooth.outputs.contact_force_peak[0];
+    if (std::abs(more) > 5e3) met.push_back(run.outputs.contact_x[0]);
   }
   REQUIRE(!met.empty());
   // From the start of the ramp to the end of the track's oscillation, within 2 m.
   CHECK(met.front() > 19.5);
   CHECK(met.back() < 22.1);
-  CHECK_THAT(run.outputs.wheel_x[0], Catch::Matchers::WithinAbs(60., .01));
+  CHECK_THAT(run.outputs.contact_x[0], Catch::Matchers::WithinAbs(60., .01));
 }
 
 TEST_CASE("no step reads the elements of a ring that traffic never reaches") {

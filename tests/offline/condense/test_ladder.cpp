@@ -155,7 +155,7 @@ TEST_CASE("a wheel that goes back and forth over borders and bays gains no energ
     std::vector<double> peak;
     for (int trip = 0; trip < kTrips; ++trip) {
       run.step();
-      peak.push_back(run.outputs.wheel_force_peak[0]);
+      peak.push_back(run.outputs.contact_force_peak[0]);
     }
     const double first = *std::max_element(peak.begin() + 100, peak.begin() + 1100),
                  last = *std::max_element(peak.end() - 1000, peak.end());

@@ -36,8 +36,8 @@ Carried ride(const std::string& contact, int masses, double apart, const std::st
     Outputs outputs{};
     found.seen = found.seen | advance_frame(run.model(), run.state, run.workspace, outputs);
     for (int i = 0; i < masses; ++i) {
-      found.most = std::max(found.most, std::abs(outputs.wheel_force[i]));
-      if (2 * frame >= frames) found.together += outputs.wheel_force_mean[i] / (.5 * frames);
+      found.most = std::max(found.most, std::abs(outputs.contact_force[i]));
+      if (2 * frame >= frames) found.together += outputs.contact_force_mean[i] / (.5 * frames);
     }
   }
   return found;

@@ -155,15 +155,15 @@ TEST_CASE("the force of a vehicle moves the rail in the same way when it is exte
     double most = 0.;
     for (int n = 1; n <= 400; ++n) {
       REQUIRE(inside.frame({}) == Status::ok);
-      const double x = inside.outputs.wheel_place[0];
-      REQUIRE(outside.frame({x, 0., 0., 0., -inside.outputs.wheel_force[0], x, 0., 0., 0., 0.}) ==
+      const double x = inside.outputs.contact_place[0];
+      REQUIRE(outside.frame({x, 0., 0., 0., -inside.outputs.contact_force[0], x, 0., 0., 0., 0.}) ==
               Status::ok);
       most = std::max(most, std::abs(outside.outputs.external_displacement[0][2]));
     }
     CHECK(most > 1e-4);
     // Only the start differs: inside it is in equilibrium, outside the rail is unloaded.
     CHECK(outside.outputs.external_displacement[0][2] ==
-          Approx(inside.outputs.wheel_rail_z[0]).epsilon(.02));
+          Approx(inside.outputs.contact_rail_z[0]).epsilon(.02));
   }
 }
 

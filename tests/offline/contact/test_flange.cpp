@@ -29,8 +29,8 @@ ModelRun rolling(const Wheelset& w, double dt, double y, double speed) {
   run.state.v[own.first + 1] = speed;
   double depth[2];  // the treads are half a metre from the middle, the weight is at y
   for (const int i : {0, 1}) {
-    run.state.wheel_force[i] = w.weight * (.5 + (i == 0 ? y : -y));
-    depth[i] = std::pow(run.state.wheel_force[i] / own.hertz[i], 2. / 3.);
+    run.state.contact_force[i] = w.weight * (.5 + (i == 0 ? y : -y));
+    depth[i] = std::pow(run.state.contact_force[i] / own.hertz[i], 2. / 3.);
   }
   run.state.u[own.first + 2] = -.5 * (depth[0] + depth[1]);
   run.state.u[own.first + 3] = depth[1] - depth[0];
@@ -195,7 +195,7 @@ TEST_CASE("a damped flange rebounds as in the closed form", "[flange]") {
     double peak = 0.;
     while (run.time() < .15) {
       run.step();
-      peak = std::max(peak, run.outputs.flange_force[0]);
+      peak = std::max(peak, run.outputs.contact_force[flange_contact(run.model(), 0)]);
     }
     const double want =
         std::exp(-(M_PI - 2. * std::asin(zeta)) * zeta / std::sqrt(1. - zeta * zeta));
@@ -244,13 +244,13 @@ TEST_CASE("a flange holds up to Nadal's limit without friction, then climbs and 
   ModelRun held = pushed(.97 * limit);
   held.until(.6);
   CHECK(held.seen == Status::ok);
-  CHECK(held.outputs.wheel_force[0] > 0.);
-  CHECK(held.outputs.wheel_force[0] < .1 * Q);
+  CHECK(held.outputs.contact_force[0] > 0.);
+  CHECK(held.outputs.contact_force[0] < .1 * Q);
   ModelRun climbs = pushed(1.03 * limit);
   while (!has(climbs.seen, Status::off_rail) && climbs.time() < 2.) climbs.step();
   CHECK(has(climbs.seen, Status::contact_lost));
   REQUIRE(has(climbs.seen, Status::off_rail));
-  CHECK(climbs.outputs.wheel_force[0] == 0.);
+  CHECK(climbs.outputs.contact_force[0] == 0.);
   // The tip, 28 mm below the tread, has come up to the point 14 mm below the head's top. It is over
   // that point by the motion in a step of 50 us at up to 2 m/s.
   const double *p = climbs.body(), arm_y = .5 - kHalfHead - p[1], arm_z = -.162 - p[2];

@@ -58,7 +58,7 @@ Worst never_grows(const RandomScene& scene) {
     worst.made_in = std::max(worst.made_in, (e.after - e.before) / run.reference());
     worst.all = std::max(worst.all, made / run.reference());
     for (int i = 0; i < wheel_count(run.model()); ++i)
-      worst.pressed += run.state().wheel_force[i] > 0. ? 1 : 0;
+      worst.pressed += run.state().contact_force[i] > 0. ? 1 : 0;
     if (!std::isfinite(e.after)) worst.made = std::numeric_limits<double>::infinity();
   }
   worst.lost = has(run.seen(), Status::off_rail) || has(run.seen(), Status::cap_reached);
@@ -93,7 +93,7 @@ double carried(const PassiveRun& run) {
   const StandingWheels at00 = run.wheels(run.old(), step - 1), at01 = run.wheels(run.old(), step);
   const StandingWheels at10 = run.wheels(run.state(), step - 1);
   const StandingWheels at11 = run.wheels(run.state(), step);
-  const double *f0 = run.old().wheel_force, *f1 = run.state().wheel_force;
+  const double *f0 = run.old().contact_force, *f1 = run.state().contact_force;
   double sum = 0.;
   for (std::size_t i = 0; i < at00.place.size(); ++i) {
     sum += .5 * f1[i] * (at01.approach[i] - at00.approach[i]);
@@ -119,7 +119,7 @@ Worst is_kept(const RandomScene& scene) {
     worst.made = std::max(worst.made, off / run.bound(e));
     worst.made_in = std::max(worst.made_in, off / run.reference());
     for (int i = 0; i < wheel_count(run.model()); ++i)
-      worst.pressed += run.state().wheel_force[i] != 0. ? 1 : 0;
+      worst.pressed += run.state().contact_force[i] != 0. ? 1 : 0;
     if (!std::isfinite(e.after)) worst.made = std::numeric_limits<double>::infinity();
   }
   worst.lost = has(run.seen(), Status::off_rail) || has(run.seen(), Status::cap_reached);
@@ -184,7 +184,7 @@ Worst rebounds(const RandomScene& scene) {
     run.step();
     const StepEnergies e = run.energies();
     if (worst.steps == 0) start = e.before;
-    const bool presses = run.state().wheel_force[0] > 0.;
+    const bool presses = run.state().contact_force[0] > 0.;
     if (presses && !pressed) may *= std::pow(gain(contact_steps(scene)), 2);
     pressed = presses;
     worst.pressed += presses ? 1 : 0;

@@ -62,7 +62,7 @@ TEST_CASE("a wheelset on rails that sink differently starts in a state that the 
   set.mass = 4e3;
   for (const Named& each : all_schemes(track, dt)) {
     ModelRun run = in_equilibrium(track, {.wheelsets = {set}, .head = kHead}, each.options);
-    const double start[2] = {run.state.wheel_force[0], run.state.wheel_force[1]};
+    const double start[2] = {run.state.contact_force[0], run.state.contact_force[1]};
     const double roll = run.body()[3];
     CHECK(roll > 1e-3);
     const double depth = std::pow(start[0] / run.model().wheelset[0].hertz[0], 2. / 3.);
@@ -73,7 +73,7 @@ TEST_CASE("a wheelset on rails that sink differently starts in a state that the 
       const double t = n * dt, off = 1.5 * .5 * 9.81 * std::pow(roll * t, 2) / depth;
       for (const int wheel : {0, 1}) {
         CAPTURE(each.name, n, wheel, off);
-        CHECK_THAT(run.outputs.wheel_force[wheel], WithinRel(start[wheel], 1e-9 + off));
+        CHECK_THAT(run.outputs.contact_force[wheel], WithinRel(start[wheel], 1e-9 + off));
       }
     }
     CHECK(run.seen == Status::ok);
@@ -90,7 +90,7 @@ TEST_CASE("a flange that roll would push into its rail starts clear of it", "[st
   set.mass = 4e3;
   for (const Named& each : all_schemes(track, dt)) {
     ModelRun run = in_equilibrium(track, {.wheelsets = {set}, .head = kFlangedHead}, each.options);
-    const double* const force = run.state.wheel_force;
+    const double* const force = run.state.contact_force;
     const double start[2] = {force[0], force[1]}, aside = run.body()[1], roll = run.body()[3];
     CAPTURE(each.name, softer, aside, roll);
     CHECK(roll > 1e-3);
@@ -115,13 +115,13 @@ TEST_CASE("a wheelset that leans on its flange on unequal rails stays at rest", 
   set.forces = {{.direction = 1, .table = {0., 2e3}}};
   for (const Named& each : all_schemes(track, dt)) {
     ModelRun run = in_equilibrium(track, {.wheelsets = {set}, .head = kFlangedHead}, each.options);
-    const std::vector<double> start(run.state.wheel_force, run.state.wheel_force + 4);
+    const std::vector<double> start(run.state.contact_force, run.state.contact_force + 4);
     CHECK(start[2] > 1e3);
     for (int n = 1; n <= 100; ++n) {
       run.step();
       for (std::size_t contact = 0; contact < 4; ++contact) {
         CAPTURE(each.name, n, contact);
-        CHECK(std::abs(run.state.wheel_force[contact] - start[contact]) < 1e-9 * 20e3);
+        CHECK(std::abs(run.state.contact_force[contact] - start[contact]) < 1e-9 * 20e3);
       }
     }
     CHECK(run.seen == Status::ok);

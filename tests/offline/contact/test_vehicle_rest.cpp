@@ -52,7 +52,7 @@ TEST_CASE("a vehicle at rest on one-sided supports stays at rest", "[vehicle][su
       }
       CHECK(open == 0.);
       CHECK(pressed > 1e3);
-      const std::vector<double> before(run.state.wheel_force, run.state.wheel_force + wheels);
+      const std::vector<double> before(run.state.contact_force, run.state.contact_force + wheels);
       const std::vector<double> ports(run.state.port_force,
                                       run.state.port_force + run.model().fixed.count);
       for (const double force : before) sum += force;
@@ -61,7 +61,7 @@ TEST_CASE("a vehicle at rest on one-sided supports stays at rest", "[vehicle][su
       CAPTURE(modal, wheels);
       CHECK(run.seen == Status::ok);
       for (std::size_t i = 0; i < before.size(); ++i)  // as on a track that pulls, test_vehicle_run
-        CHECK_THAT(run.outputs.wheel_force[i], WithinRel(before[i], 1e-8));
+        CHECK_THAT(run.outputs.contact_force[i], WithinRel(before[i], 1e-8));
       for (std::size_t j = 0; j < ports.size(); ++j)
         CHECK_THAT(run.state.port_force[j], WithinAbs(ports[j], 1e-8 * before[0]));
     }
@@ -94,10 +94,10 @@ TEST_CASE("a released vehicle settles where the start finds it", "[vehicle][supp
   ModelRun run(track, traffic, full_order(1e-3));
   run.until(3.);
   for (int i = 0; i < 3; ++i)
-    CHECK_THAT(run.outputs.wheel_force[i], WithinRel(rest.state.wheel_force[i], 1e-6));
+    CHECK_THAT(run.outputs.contact_force[i], WithinRel(rest.state.contact_force[i], 1e-6));
   for (int j = 0; j < run.model().fixed.count; ++j)
     CHECK_THAT(run.state.port_force[j],
-               WithinAbs(rest.state.port_force[j], 1e-6 * rest.state.wheel_force[0]));
+               WithinAbs(rest.state.port_force[j], 1e-6 * rest.state.contact_force[0]));
 }
 
 TEST_CASE("vehicles without support have no equilibrium on such a track", "[vehicle]") {

@@ -65,7 +65,7 @@ struct RoughRun {
             contact[1].slope + slope_under(model, contact[1], at)};
   }
   std::array<double, 2> forces() const {
-    return {run.state.wheel_force[0], run.state.wheel_force[1]};
+    return {run.state.contact_force[0], run.state.contact_force[1]};
   }
 };
 

@@ -37,9 +37,9 @@ TEST_CASE("a vehicle at rest on a track stays at rest to rounding", "[vehicle]")
     for (int k = 0; k < v.size; ++k)
       moved = std::max(moved, std::abs(run.state.u[v.first + k] - before.u[v.first + k]));
     CAPTURE(modal);
-    CHECK(moved < 1e-8 * before.wheel_force[0] / 4.3e5);
+    CHECK(moved < 1e-8 * before.contact_force[0] / 4.3e5);
     for (int i = 0; i < 4; ++i)
-      CHECK_THAT(run.outputs.wheel_force[i], WithinRel(before.wheel_force[i], 1e-8));
+      CHECK_THAT(run.outputs.contact_force[i], WithinRel(before.contact_force[i], 1e-8));
   }
 }
 
@@ -50,12 +50,12 @@ TEST_CASE("each wheel of a bogie bears half its weight, and on three axles the s
     const ModelRun two = from_rest(track, {.vehicles = {running(bogie(kBogie), 5.3, 0.)}},
                                    options_of(modal, track, 1e-4));
     for (int i = 0; i < 2; ++i)  // moments about either wheel: the frame is in the middle
-      CHECK_THAT(two.state.wheel_force[i], WithinRel(kBogieLoad, 1e-10));
+      CHECK_THAT(two.state.contact_force[i], WithinRel(kBogieLoad, 1e-10));
     BogieData data = kBogie;
     data.axles = 3;
     const ModelRun three = from_rest(track, {.vehicles = {running(bogie(data), 6., 0.)}},
                                      options_of(modal, track, 1e-4));
-    const double *f = three.state.wheel_force, weight = (1307.5 + 8000. + 3. * 906.5) * 9.81;
+    const double *f = three.state.contact_force, weight = (1307.5 + 8000. + 3. * 906.5) * 9.81;
     CHECK_THAT(f[0] + f[1] + f[2], WithinRel(weight, 1e-10));
     CHECK_THAT(f[0], WithinRel(f[2], 1e-8));  // in the middle of a symmetric track
     // The middle wheel stands in the trough of the three and bears less. Springs of 1.22e6 N/m over
@@ -98,7 +98,7 @@ TEST_CASE("on rigid ground a vehicle oscillates at its own frequencies", "[vehic
     for (int i = steps / 4; i < steps; ++i) run.step();
     CHECK_THAT(q[0], WithinRel(start, 1e-6));
     CHECK_THAT(q[2], WithinRel(frame, 1e-6));
-    CHECK(!run.outputs.wheel_on_rail[0]);
+    CHECK(!run.outputs.contact_on_rail[0]);
     CHECK(run.seen == Status::ok);  // the ground is not a loss of contact
   }
 }
@@ -117,8 +117,8 @@ TEST_CASE("a condensed track carries a bogie as the full one does", "[vehicle]")
     full.step();
     kept.step();
     for (int wheel = 0; wheel < 2; ++wheel) {
-      const double force = full.outputs.wheel_force_mean[wheel];
-      error = std::max(error, std::abs(force - kept.outputs.wheel_force_mean[wheel]));
+      const double force = full.outputs.contact_force_mean[wheel];
+      error = std::max(error, std::abs(force - kept.outputs.contact_force_mean[wheel]));
       swing = std::max(swing, std::abs(force - kBogieLoad));
     }
   }
@@ -135,13 +135,13 @@ TEST_CASE("a vehicle comes and goes without a jolt except at the rail's end", "[
     RunningVehicle v = running(sprung_mass(4000., 200., 2e5, 1e4), -1.003, 20.);
     ModelRun run = from_rest(track, {.vehicles = {v}}, options_of(modal, track, 1e-4));
     const double load = 4200. * 9.81;
-    CHECK_THAT(run.state.wheel_force[0], WithinRel(load, 1e-10));
+    CHECK_THAT(run.state.contact_force[0], WithinRel(load, 1e-10));
     int on = 0, off = 0;
     while (run.time() < .8) {
       run.step();
-      (run.outputs.wheel_on_rail[0] ? on : off) += 1;
-      CHECK(std::isfinite(run.outputs.wheel_force[0]));
-      if (!run.outputs.wheel_on_rail[0]) CHECK(run.outputs.wheel_rail_z[0] == 0.);
+      (run.outputs.contact_on_rail[0] ? on : off) += 1;
+      CHECK(std::isfinite(run.outputs.contact_force[0]));
+      if (!run.outputs.contact_on_rail[0]) CHECK(run.outputs.contact_rail_z[0] == 0.);
     }
     CHECK_THAT(on, WithinAbs(6000., 1.));
     CHECK(off > 0);
@@ -151,7 +151,7 @@ TEST_CASE("a vehicle comes and goes without a jolt except at the rail's end", "[
     for (std::int32_t e = 0; e < run.model().elements; ++e)
       rest = std::max(rest, std::abs(axis_height(run.model(), 0, e, 0., standing)));
     CHECK(rest < 1e-7);
-    CHECK_THAT(run.outputs.wheel_force[0], WithinRel(load, .2));
+    CHECK_THAT(run.outputs.contact_force[0], WithinRel(load, .2));
   }
 }
 
@@ -176,9 +176,9 @@ TEST_CASE("vehicles on two rails run beside wheelsets and give the same bits aga
     ModelRun run = from_rest(track, traffic, options);
     while (run.state.steps < 400) run.step();
     // Both rails carry the same load: left and right are equal everywhere.
-    CHECK_THAT(run.outputs.wheel_force[2], WithinRel(run.outputs.wheel_force[4], 1e-9));
-    CHECK_THAT(run.outputs.wheel_force[0], WithinRel(run.outputs.wheel_force[1], 1e-9));
-    CHECK(run.outputs.wheel_force[2] > 1e4);
+    CHECK_THAT(run.outputs.contact_force[2], WithinRel(run.outputs.contact_force[4], 1e-9));
+    CHECK_THAT(run.outputs.contact_force[0], WithinRel(run.outputs.contact_force[1], 1e-9));
+    CHECK(run.outputs.contact_force[2] > 1e4);
     return state_hash(run.model(), run.state);
   };
   CHECK(hash_of(1) == hash_of(1));
@@ -296,7 +296,7 @@ struct BogieRun {
     const VehicleModel& v = model.vehicle[0];
     for (std::int64_t i = 0; i < model.steps; ++i) {
       REQUIRE(advance_frame(model, run.state, run.workspace, outputs) == Status::ok);
-      for (std::size_t k = 0; k < 2; ++k) force[k].push_back(outputs.wheel_force[k]);
+      for (std::size_t k = 0; k < 2; ++k) force[k].push_back(outputs.contact_force[k]);
       const double *u = run.state.u + v.first, *speed = run.state.v + v.first;
       momentum.push_back(v.mass[0] * speed[0] + v.mass[2] * speed[2] + v.mass[3] * speed[3]);
       frame.push_back(u[0] - .5 * (u[2] + u[3]));

@@ -28,7 +28,7 @@ TEST_CASE("the paper's wheelset settles in its static equilibrium", "[wheelset]"
   run.until(1.);
   CHECK(run.seen == Status::ok);
   // Wheels without friction carry half the weight each, however the rails move.
-  for (int i = 0; i < 2; ++i) CHECK_THAT(run.outputs.wheel_force[i], WithinRel(490.5, 1e-9));
+  for (int i = 0; i < 2; ++i) CHECK_THAT(run.outputs.contact_force[i], WithinRel(490.5, 1e-9));
   // Both rails under their wheel, at the head and at the axis below it; statics has no contact.
   const Statics statics(paper_track());
   std::vector<PointForce> forces;
@@ -39,12 +39,12 @@ TEST_CASE("the paper's wheelset settles in its static equilibrium", "[wheelset]"
   // Both find one equilibrium; after 1 s less than 1e-8 of the fall is left.
   const std::ptrdiff_t place = 2 * (run.model().residual.points + 1);
   const double missed = 490.5 * run.model().residual.axis[place];
-  CHECK_THAT(run.outputs.wheel_rail_z[0], WithinRel(axis - missed, 1e-6));
-  CHECK_THAT(run.outputs.wheel_rail_z[1], WithinRel(axis - missed, 1e-6));
+  CHECK_THAT(run.outputs.contact_rail_z[0], WithinRel(axis - missed, 1e-6));
+  CHECK_THAT(run.outputs.contact_rail_z[1], WithinRel(axis - missed, 1e-6));
   // reference.md has a Hertz approach of 3.615e-6 m under 490.5 N, printed to 4 digits.
-  CHECK_THAT(-run.outputs.wheel_gap[0], WithinAbs(3.615e-6, 1e-9));
+  CHECK_THAT(-run.outputs.contact_gap[0], WithinAbs(3.615e-6, 1e-9));
   const double residual = 490.5 * run.model().residual.under[place];
-  CHECK_THAT(run.body()[2], WithinAbs(head - residual + run.outputs.wheel_gap[0], 1e-10));
+  CHECK_THAT(run.body()[2], WithinAbs(head - residual + run.outputs.contact_gap[0], 1e-10));
 }
 
 TEST_CASE("a wheelset released as it touches sinks as in the reference", "[wheelset]") {
@@ -88,7 +88,7 @@ TEST_CASE("a wheel dropped on a rigid rail bounces with its energy", "[wheelset]
     double peak = 0.;
     while (run.time() < 4e-3) {
       run.step();
-      peak = std::max(peak, run.outputs.wheel_force[1]);
+      peak = std::max(peak, run.outputs.contact_force[1]);
     }
     CHECK(has(run.seen, Status::contact_lost));
     return std::pair{peak, run.state.v[run.model().wheelset[0].first + 2]};
@@ -113,7 +113,7 @@ TEST_CASE("both methods of the guide hold, with the same motion", "[wheelset]") 
     run.until(.2);
     CHECK(run.outputs.constraint_violation < 1e-9);
     CHECK_THAT(run.body()[0], WithinAbs(2., 1e-9));
-    return std::array{run.body()[2], run.outputs.wheel_force[0]};
+    return std::array{run.body()[2], run.outputs.contact_force[0]};
   };
   const auto a = run_to(Guide::augmented_lagrangian), b = run_to(Guide::baumgarte);
   CHECK_THAT(a[0], WithinRel(b[0], 1e-6));
@@ -160,6 +160,6 @@ TEST_CASE("a wheelset that runs off the rails falls, and a status reports it", "
   run.state.v[run.model().wheelset[0].first] = 10.;
   run.until(.05);
   CHECK(has(run.seen, Status::off_rail));
-  CHECK(run.outputs.wheel_force[0] == 0.);
+  CHECK(run.outputs.contact_force[0] == 0.);
   CHECK(run.body()[2] < -1e-3);
 }

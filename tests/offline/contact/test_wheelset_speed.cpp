@@ -99,16 +99,16 @@ TEST_CASE("a wheelset with a table has the forces of two half masses with that t
     const PackOptions options = options_of(modal, track, 1e-4, 1.);
     ModelRun set = run_of(modal, 1e-4, 1., quick());
     ModelRun mass = from_rest(track, {.vehicles = {v}, .head = {.0}}, options);
-    CHECK_THAT(mass.state.wheel_force[0], WithinRel(45e3, 1e-9));
+    CHECK_THAT(mass.state.contact_force[0], WithinRel(45e3, 1e-9));
     double error = 0., swing = 0.;
     while (set.time() < .3) {
       set.step();
       mass.step();
       for (int side = 0; side < 2; ++side)
-        error =
-            std::max(error, std::abs(set.outputs.wheel_force[side] - mass.outputs.wheel_force[0]));
-      swing = std::max(swing, std::abs(mass.outputs.wheel_force[0] - 45e3));
-      CHECK_THAT(set.outputs.wheel_x[0], WithinAbs(mass.outputs.wheel_x[0], 1e-3));
+        error = std::max(error,
+                         std::abs(set.outputs.contact_force[side] - mass.outputs.contact_force[0]));
+      swing = std::max(swing, std::abs(mass.outputs.contact_force[0] - 45e3));
+      CHECK_THAT(set.outputs.contact_x[0], WithinAbs(mass.outputs.contact_x[0], 1e-3));
     }
     CAPTURE(modal, error, swing);
     CHECK(error < 5e-3 * swing);

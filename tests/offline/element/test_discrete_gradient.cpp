@@ -185,11 +185,11 @@ double most_growth(ModelRun& run, double speed, double above, bool standing) {
   for (int n = 0; n < 60; ++n) {
     run.step();
     energy.follow(run.state);
-    const double f = run.outputs.wheel_force[0];
+    const double f = run.outputs.contact_force[0];
     met = met || f > 0.;
-    const RailForce at = rail_force(model, wheel.load_point, run.outputs.wheel_place[0], f);
+    const RailForce at = rail_force(model, wheel.load_point, run.outputs.contact_place[0], f);
     const StoredEnergy& now = energy.stored();
-    const double contact = stored(wheel.contact.hertz, -run.outputs.wheel_gap[0]) +
+    const double contact = stored(wheel.contact.hertz, -run.outputs.contact_gap[0]) +
                            .5 * f * f * residual_under(model, at);
     const double total = now.kinetic + now.strain - energy.flow().weight +
                          (standing ? now.hertz + now.residual : contact);

@@ -80,10 +80,10 @@ Peak peak_of(Ride& ride, double until) {
   Peak peak{0., 0., 1e300};
   while (ride.time() < until) {
     ride.step();
-    const double force = ride.outputs.wheel_force[0];
+    const double force = ride.outputs.contact_force[0];
     peak.least = std::min(peak.least, force);
     if (force > peak.force) peak = {force, ride.time(), peak.least};
-    CHECK(ride.outputs.wheel_force[1] == Approx(force).epsilon(1e-9));
+    CHECK(ride.outputs.contact_force[1] == Approx(force).epsilon(1e-9));
   }
   return peak;
 }
@@ -153,7 +153,7 @@ TEST_CASE("R5: behind the joint wheel and rail move down together with the force
   double highest = 0.;
   while (ride.time() < kAhead / kSpeed + 12e-3) {
     ride.step();
-    force.push_back(ride.outputs.wheel_force[0]);
+    force.push_back(ride.outputs.contact_force[0]);
     if (force.size() < window) continue;
     double mean = 0.;
     for (std::size_t k = force.size() - window; k < force.size(); ++k)
@@ -202,7 +202,7 @@ TEST_CASE("a slow ride follows the irregularity of rail and tread") {
     ride.step();
     if (k % 500 != 499) continue;
     CHECK(*z - level == Approx(lifted(speed * ride.time())).margin(sunk));
-    CHECK(ride.outputs.wheel_force[0] == Approx(kLoad).margin(.6));
+    CHECK(ride.outputs.contact_force[0] == Approx(kLoad).margin(.6));
   }
   CHECK(lifted(1.25) > .7e-3);
   CHECK(ride.met == Status::ok);

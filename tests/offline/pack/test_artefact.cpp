@@ -35,9 +35,9 @@ TEST_CASE("a model that was written and read steps to the same bits", "[artefact
       CHECK(std::equal(written.outputs.load_deflection, written.outputs.load_deflection + kMaxLoads,
                        found.outputs.load_deflection));
       for (int i = 0; i < tread_count(model); ++i) {
-        CHECK(written.outputs.wheel_force_peak[i] == found.outputs.wheel_force_peak[i]);
-        CHECK(written.outputs.wheel_gap[i] == found.outputs.wheel_gap[i]);
-        CHECK(written.outputs.wheel_rail_z[i] == found.outputs.wheel_rail_z[i]);
+        CHECK(written.outputs.contact_force_peak[i] == found.outputs.contact_force_peak[i]);
+        CHECK(written.outputs.contact_gap[i] == found.outputs.contact_gap[i]);
+        CHECK(written.outputs.contact_rail_z[i] == found.outputs.contact_rail_z[i]);
       }
       // A model that was read is written as it was. The scene built again in another heap gives the
       // same bytes, so nothing is left unset.

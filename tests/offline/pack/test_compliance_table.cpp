@@ -24,10 +24,10 @@ TEST_CASE("the table between a line's rows gives the wheel forces of its modes",
     tabled.step();
     REQUIRE(advance_frame(without, summed.state, summed.workspace, outputs) == Status::ok);
     for (int i = 0; i < 4; ++i) {
-      const double force = tabled.outputs.wheel_force[i];
+      const double force = tabled.outputs.contact_force[i];
       least = std::min(least, force);
       most = std::max(most, force);
-      apart = std::max(apart, std::abs(force - outputs.wheel_force[i]));
+      apart = std::max(apart, std::abs(force - outputs.contact_force[i]));
     }
   }
   CHECK(most > 1.02 * least);  // the forces change over the seats

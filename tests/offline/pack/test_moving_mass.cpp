@@ -109,7 +109,7 @@ Compared crossing(const Track& beam, const RunningVehicle& v, int modes, double 
   ModalCrossing exact(beam, modes, v.vehicle, v.start, v.speed, k, v.damping);
   exact.rough = rough.model();
   Compared c;
-  c.static_force = run.state.wheel_force[0];
+  c.static_force = run.state.contact_force[0];
   const double rest = run.state.u[run.model().vehicle[0].first];
   while (run.time() < until) {
     run.step();
@@ -121,7 +121,7 @@ Compared crossing(const Track& beam, const RunningVehicle& v, int modes, double 
     c.body = std::max(c.body, std::abs(body - exact.body(0)));
     c.largest_body = std::max(c.largest_body, std::abs(exact.body(0) - rest));
     for (int i = 0; i < force.size(); ++i)
-      c.force = std::max(c.force, std::abs(run.outputs.wheel_force[i] - force[i]));
+      c.force = std::max(c.force, std::abs(run.outputs.contact_force[i] - force[i]));
   }
   return c;
 }

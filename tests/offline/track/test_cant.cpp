@@ -255,12 +255,12 @@ TEST_CASE("a wheelset at rest on canted rails stays in their middle", "[cant]") 
   for (int n = 0; n < 3000; ++n) {
     run.step();
     for (const int wheel : {0, 1})
-      largest = std::max(largest, std::abs(run.outputs.wheel_force[wheel] - 981. / 2.));
+      largest = std::max(largest, std::abs(run.outputs.contact_force[wheel] - 981. / 2.));
   }
   CAPTURE(largest);
   CHECK(run.seen == Status::ok);
   CHECK(largest < 1e-9 * 981.);
-  CHECK_THAT(run.outputs.wheel_force[1], WithinRel(run.outputs.wheel_force[0], 1e-9));
+  CHECK_THAT(run.outputs.contact_force[1], WithinRel(run.outputs.contact_force[0], 1e-9));
   CHECK_THAT(run.body()[1], WithinAbs(0., 1e-12));  // y, m: rounding of the sums over both sides
   CHECK_THAT(run.body()[3], WithinAbs(0., 1e-12));  // roll
 }

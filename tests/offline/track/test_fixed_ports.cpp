@@ -202,10 +202,10 @@ TEST_CASE("a wheelset over a hanging sleeper stands in equilibrium and rolls slo
     run.until(.02);
     // It stands. On condensed lines the wheel locates its contact beside the node, where the slopes
     // of the elements make a V. A load that moves by s shifts s/bay of it from seat to seat.
-    const double shift = std::abs(run.outputs.wheel_x[0] - 2.4);
+    const double shift = std::abs(run.outputs.contact_x[0] - 2.4);
     CHECK(shift < 1e-4);  // the V has slopes of 1e-4, half a metre below the axle
     const double moved = 80e3 * (shift / track.bay_length + 1e-10);
-    CHECK_THAT(run.outputs.wheel_force[0], WithinAbs(80e3, moved));
+    CHECK_THAT(run.outputs.contact_force[0], WithinAbs(80e3, moved));
     CHECK_THAT(run.state.port_force[0], WithinAbs(start, moved));
     CHECK(run.seen == Status::ok);
   }

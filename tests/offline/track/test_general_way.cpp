@@ -104,8 +104,8 @@ Trace trace(ModelRun run, int frames) {
     for (std::int32_t l = 0; l < run.model().loads; ++l)
       row.push_back(run.outputs.load_deflection[l]);
     for (std::int32_t w = 0; w < 2 * run.model().wheelsets; ++w) {
-      row.push_back(run.outputs.wheel_force[w]);
-      row.push_back(run.outputs.wheel_rail_z[w]);
+      row.push_back(run.outputs.contact_force[w]);
+      row.push_back(run.outputs.contact_rail_z[w]);
     }
     found.rows.push_back(row);
   }

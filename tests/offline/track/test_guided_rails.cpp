@@ -97,11 +97,11 @@ TEST_CASE("a wheelset that rolls one way is the mirror image of one that rolls t
     one.step();
     other.step();
     for (const int rail : {0, 1}) {
-      const double force = one.outputs.wheel_force[rail], y = one.head(rail, 1);
+      const double force = one.outputs.contact_force[rail], y = one.head(rail, 1);
       largest_force = std::max(largest_force, force);
       largest_y = std::max(largest_y, std::abs(y));
       low = std::min(low, one.head(rail, 2));
-      force_miss = std::max(force_miss, std::abs(force - other.outputs.wheel_force[1 - rail]));
+      force_miss = std::max(force_miss, std::abs(force - other.outputs.contact_force[1 - rail]));
       y_miss = std::max(y_miss, std::abs(y + other.head(1 - rail, 1)));
       z_miss = std::max(z_miss, std::abs(one.head(rail, 2) - other.head(1 - rail, 2)));
     }

@@ -251,9 +251,9 @@ TEST_CASE("with six unknowns per node mirror coordinates and one line agree", "[
 TEST_CASE("with six unknowns per node a wheelset rides as with nine", "[unknowns]") {
   Ride nine(s1_track(12, 2)), six(with(s1_track(12, 2), Unknowns::rigid_section));
   const Outputs a = nine.advance(200), b = six.advance(200);
-  REQUIRE(a.wheel_on_rail[0]);
-  REQUIRE(b.wheel_on_rail[0]);
+  REQUIRE(a.contact_on_rail[0]);
+  REQUIRE(b.contact_on_rail[0]);
   // The wheel's static force is its weight; the track gives the rail's height under it: 0.3 %.
-  CHECK_THAT(b.wheel_force[0], WithinRel(a.wheel_force[0], 3e-3));
-  CHECK_THAT(b.wheel_rail_z[0], WithinRel(a.wheel_rail_z[0], 3e-3));
+  CHECK_THAT(b.contact_force[0], WithinRel(a.contact_force[0], 3e-3));
+  CHECK_THAT(b.contact_rail_z[0], WithinRel(a.contact_rail_z[0], 3e-3));
 }

@@ -302,7 +302,8 @@ TEST_CASE("railheads are level on any supports", "[supports]") {
     alike.step();
     lower.step();
     for (int side = 0; side < 2; ++side)
-      CHECK_THAT(lower.outputs.wheel_force[side], WithinRel(alike.outputs.wheel_force[side], 1e-8));
+      CHECK_THAT(lower.outputs.contact_force[side],
+                 WithinRel(alike.outputs.contact_force[side], 1e-8));
   }
 }
 
@@ -322,7 +323,7 @@ TEST_CASE("a wheelset stands with half its weight on each of two different rails
   for (int i = 0; i < 200; ++i) {
     run.step();
     for (int side = 0; side < 2; ++side)
-      CHECK_THAT(run.outputs.wheel_force[side], WithinRel(50e3, 1e-3));
+      CHECK_THAT(run.outputs.contact_force[side], WithinRel(50e3, 1e-3));
   }
   CHECK(run.seen == Status::ok);
 }

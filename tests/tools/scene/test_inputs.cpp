@@ -99,9 +99,9 @@ TEST_CASE("a state that is no longer finite is kept, and so are the last outputs
   CHECK(has(met, Status::nonfinite_state));
   CHECK(outputs.first_bad_unknown >= 0);
   for (int i = 0; i < 2; ++i) {
-    CHECK(outputs.wheel_force[i] == last.wheel_force[i]);
-    CHECK(outputs.wheel_gap[i] == last.wheel_gap[i]);
-    CHECK(outputs.wheel_rail_z[i] == last.wheel_rail_z[i]);
+    CHECK(outputs.contact_force[i] == last.contact_force[i]);
+    CHECK(outputs.contact_gap[i] == last.contact_gap[i]);
+    CHECK(outputs.contact_rail_z[i] == last.contact_rail_z[i]);
   }
   const std::int64_t steps = run.state.steps;
   CHECK(has(advance_frame(model, run.state, run.workspace, outputs), Status::nonfinite_state));

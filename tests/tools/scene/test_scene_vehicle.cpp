@@ -97,7 +97,7 @@ TEST_CASE("shipped vehicles are read and stand with their weight on their wheels
     CHECK(scene.vehicles.at(0).bodies.size() == bodies);
     const Simulation run(scene);
     double sum = 0., weight = 0.;
-    for (std::size_t i = 0; i < wheels; ++i) sum += run.state.wheel_force[i];
+    for (std::size_t i = 0; i < wheels; ++i) sum += run.state.contact_force[i];
     for (const Vehicle::Body& body : scene.vehicles[0].vehicle.bodies)
       weight += (body.mass + body.carried) * kGravity;
     CHECK(sum == Approx(weight).epsilon(1e-10));
