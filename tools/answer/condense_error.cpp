@@ -15,11 +15,11 @@ namespace {
 /// The ringing at the start of a released scene is not judged, for at most this time, s.
 constexpr double kRinging = .02;
 
-/// Of a level of refinement: steps of elements, as many times as those of vertical unknowns. Some
-/// seconds.
+/// Most work of a level of refinement: steps of elements, as many times as those of vertical
+/// unknowns. Some seconds.
 constexpr double kMostWork = 4e7;
 
-/// Of a level with `finer` times the elements and the steps, for a second.
+/// Work of a level with `finer` times the elements and the steps, for a second.
 double work_of(const Scene& scene, double finer) {
   const std::int64_t meshed = scene.track.bays * mesh_of(scene) * scene.track.rails;
   const double elements = meshed > 0 ? static_cast<double>(meshed) : 1.;  // rigid rails have none
@@ -40,7 +40,7 @@ TraceTable run_of(const Scene& scene, std::int64_t frames) {
 }
 
 /// Whether wheels hold on to the rail by what stands for Hertz's law. A single mass on a spring is
-/// that spring, whose law is no contact's.
+/// that spring, whose law is not that of a contact.
 bool stands_for_hertz(const VehicleScene& v) {
   return v.contact == WheelContactKind::bonded ||
          (v.contact == WheelContactKind::linear && v.vehicle.bodies.size() > 1);

@@ -49,7 +49,7 @@ std::vector<double> inputs_of(const Options& o, const Names& names) {
   std::vector<double> value(names.size(), 0.);
   for (const std::string& given : o.inputs) {
     const std::size_t equals = given.find('=');
-    if (equals == std::string::npos) fail("--input " + given + ": accepted is NAME=VALUE");
+    if (equals == std::string::npos) fail("--input " + given + ": expected NAME=VALUE");
     const std::string name = given.substr(0, equals);
     std::size_t at = 0;
     while (at < names.size() && names[at] != name && std::to_string(at) != name) ++at;
@@ -65,7 +65,7 @@ void print_outputs(const Outputs& o, const Names& names) {
     std::printf("  %-32s %.9g\n", names[i].c_str(), o.value[i]);
 }
 
-/// What `railstep hil --names` wrote: of inputs and outputs the count, the sum and the names.
+/// The answer of `railstep hil --names`: count, sum and names of the inputs and of the outputs.
 struct Layout {
   Names inputs, outputs;
   std::uint32_t inputs_sum = 0, outputs_sum = 0;
@@ -154,7 +154,7 @@ bool read_outputs(const unsigned char* at, std::size_t size, const Layout& layou
 
 int connected_socket(const std::string& address) {
   const std::size_t colon = address.rfind(':');
-  if (colon == std::string::npos) fail("--udp " + address + ": accepted is HOST:PORT");
+  if (colon == std::string::npos) fail("--udp " + address + ": expected HOST:PORT");
   addrinfo wanted{}, *found = nullptr;
   wanted.ai_socktype = SOCK_DGRAM;
   std::string host = address.substr(0, colon);

@@ -184,7 +184,7 @@ int main(int argc, char** argv) {
   if (!read_layout(argv[2], &layout))
     return fail(argv[2], "not the names of one external wheel with its response");
   const int file = connected(argv[1]);
-  if (file < 0) return fail(argv[1], "no such address; accepted is HOST:PORT");
+  if (file < 0) return fail(argv[1], "no such address; expected HOST:PORT");
   const double frame_s = atof(argv[3]);
   const int code =
       ride(file, &layout, frame_s, lround(atof(argv[4]) / frame_s), atof(argv[5]), argc > 6);

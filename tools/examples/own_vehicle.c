@@ -36,7 +36,7 @@ static int fail(const char* what, const char* why) {
   return 2;
 }
 
-/* What a frame is given: place along and across, force on the rail. */
+/* Inputs of a frame: place along and across, force on the rail. */
 enum { kX, kY, kForceX, kForceY, kForceZ, kInputs };
 
 static int ride(railstep_run* run, double frame_s, double seconds, double constant,

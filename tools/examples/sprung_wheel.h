@@ -14,8 +14,8 @@ static const double kGravity = 9.81;                    /* m/s2 */
 static const double kStart = 0.3, kSpeed = 30.0;        /* m, m/s */
 static const double kRhoInf = 0.6; /* of its generalised-alpha, as the track's */
 
-/* Of its own time scheme (Chung and Hulbert 1993, with the true acceleration as Arnold and Bruls
- * 2007 have it). */
+/* Constants of its own time scheme (Chung and Hulbert 1993, with the true acceleration as Arnold
+ * and Bruls 2007 have it). */
 typedef struct {
   double dt, beta, gamma, alpha_m, alpha_f;
 } Scheme;

@@ -88,7 +88,7 @@ class Balance {
     return free_force.cwiseProduct(free_part(structure_, scale_)).norm();
   }
 
-  /// What a rounding of the positions makes of each internal force. Far from where the structure
+  /// Change of each internal force by a rounding of the positions. Far from where the structure
   /// lies it would excuse anything: a loose one flies away.
   Eigen::VectorXd noise(const Sparse& K, const Eigen::VectorXd& q) const {
     const double extent = 2. * structure_.rest.cwiseAbs().maxCoeff();

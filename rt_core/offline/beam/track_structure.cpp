@@ -113,7 +113,7 @@ void TrackStructure::add_seat(int rail, int seat) {
   const double g = track_.rail_spacing;
   const std::array<int, 4>& sleeper = sleeper_[index(rail)][index(seat)];
   const Cant cant = track_.lean(rail);
-  // Of the sleeper's motions along x, y, z what lies along d of the rail.
+  // The parts along d of the rail of the sleeper's motions along x, y, z.
   const double along[3][3] = {
       {1., 0., 0.}, {0., cant.cosine, cant.sine}, {0., -cant.sine, cant.cosine}};
   const auto end = [&](int side, int d) {

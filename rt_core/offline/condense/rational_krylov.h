@@ -7,10 +7,10 @@ namespace railstep {
 
 /// Rational Krylov shapes (Grimme 1997): how the line moves under a wheel's unit forces, (K + i w C
 /// - w^2 M)^-1 b, with its damping in full, at the expansion points, over every seat and in the
-/// middle of every bay. Of all these, Re and Im apart, the `most` directions that hold the most of
-/// their strain energy (singular vectors): the error of Galerkin's coordinates in a place's static
-/// compliance is the strain energy that they leave out. Away from statics this is a measure and not
-/// a bound; a motion far softer than the expansion points holds little of it.
+/// middle of every bay. These are taken with Re and Im apart, and the `most` directions that hold
+/// the most of their strain energy (singular vectors) are kept: the error of Galerkin's coordinates
+/// in a place's static compliance is the strain energy that they leave out. Away from statics this
+/// is a measure and not a bound; a motion far softer than the expansion points holds little of it.
 /// @param hz    expansion points, above 0
 /// @param most  columns of the result, fewer where there are no more Throws Refused if the line
 /// resonates without damping at an expansion point.

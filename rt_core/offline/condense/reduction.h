@@ -25,7 +25,7 @@ struct ReducedLineModel {
   DampedModes modes;
 };
 
-/// Of one line, which holds one rail or both.
+/// The limit for one line, which holds one rail or both.
 ModalLimit limit_of(const Line& line, const Reduction& reduction);
 
 /// Number of coordinates that a model keeps; for truncated damped modes the number of modes.

@@ -18,8 +18,8 @@ class Superelement {
 
   /// One element of a rail of the track divided into `parts`.
   /// @param track  must outlive it
-  /// @param carried unknowns of a node, 0 to 8, ascending; d of them. Of a section that does not
-  ///                strain 5 is its roll, and 7 is not among them
+  /// @param carried unknowns of a node, 0 to 8, ascending; d of them. Where sections do not
+  ///                strain, 5 is their roll, and 7 is not among them
   Superelement(const Track& track, int rail, std::vector<int> carried, int parts);
 
   int parts() const { return parts_; }

@@ -23,7 +23,7 @@ Cost located_pair(const Model& model) {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     const LineCost cost = line_cost(model, line);
-    // Of a table for both rails each unknown is read once.
+    // Each unknown of a table for both rails is read once.
     const std::int64_t tables = line.unknown_of[0] == line.unknown_of[1] ? 1 : 2;
     sum = sum + kSearchNodes * 9 * (work(4, 6) + tables * cost.value) +
           2 * kPDeltaSeats * cost.node_roll;

@@ -17,8 +17,8 @@ struct Reflection {
 /// nodes (a half seat at each border), the bays of the zone to that of the end, Z_e. Displacements
 /// u that arrive and v that go back have one sum and forces that balance,
 ///   (Z_e + S Z S) v = (Z - Z_e) u,   S the mirror along x,
-/// and the waves are the eigenvectors of what one bay makes of u. Of these the one that a point
-/// force sends farthest is taken.
+/// and the waves are the eigenvectors of the map of u over one bay. The wave that a point force
+/// sends farthest is taken.
 class EndReflection {
  public:
   /// @param direction  of the force that sends the wave: 1 y, 2 z

@@ -10,7 +10,7 @@ namespace railstep {
 
 using Point = std::array<double, 2>;  // y (lateral), z (up), m
 
-/// Of two points, m.
+/// Distance of two points, m.
 inline double distance(const Point& a, const Point& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1]);
 }

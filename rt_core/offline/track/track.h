@@ -176,8 +176,8 @@ struct Line {
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
   Eigen::SparseMatrix<double> end_damping;  // the part of damping in the zones at the ends
   std::array<RailUnknowns, 2> unknown_of;  // of left and right rail; the same in mirror coordinates
-  /// Of each rail, by node where it is cut: the unknowns of the end ahead, which begins the next
-  /// element; those of the end behind are the node's own.
+  /// The unknowns of the end ahead, which begins the next element, by the node where a rail is cut;
+  /// for each rail; those of the end behind are the node's own.
   std::array<std::map<int, std::array<int, 9>>, 2> cuts;
   /// [seats] of each SleeperMotion, scaled: the ends' mean displacement, or half their difference,
   /// times sqrt 2 (of one rail, its end's displacement); -1 where held or on another line.
