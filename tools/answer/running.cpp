@@ -85,7 +85,13 @@ std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double
 RunningLoads running_loads(const Scene& scene) {
   check(scene);
   RunningLoads loads;
-  for (const RailVehicleScene& v : scene.rail_vehicles) add_loads(v, loads);
+  for (const RailVehicleScene& v : scene.rail_vehicles) {
+    if (!(v.speed > 0.))
+      refuse_scene(scene, "E-VEHICLE-30",
+                   "a vehicle in space has no speed ahead at t = 0, and creep at rest has no law "
+                   "here; expected a speed above 0 m/s");
+    add_loads(v, loads);
+  }
   return loads;
 }
 

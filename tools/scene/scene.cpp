@@ -338,8 +338,8 @@ Scene read_track_scene(const Table& root) {
   root.attempt([&] { scene.stops = read_stops(root, scene); });
   root.attempt([&] { scene.loads = read_loads(root, scene); });
   root.attempt([&] { scene.wheelsets = read_wheelsets(root, scene, scene.inputs); });
-  root.attempt([&] { scene.vehicles = read_vehicles(root, scene, scene.inputs); });
-  root.attempt([&] { scene.rail_vehicles = read_rail_vehicles(root, scene); });
+  root.attempt(
+      [&] { scene.vehicles = read_vehicles(root, scene, scene.inputs, scene.rail_vehicles); });
   root.attempt([&] { scene.external_wheels = read_external_wheels(root, scene); });
   root.attempt([&] { scene.irregularity = read_irregularity(root, scene); });
   root.stop_if_refused();  // the readers below ask what runs on the track

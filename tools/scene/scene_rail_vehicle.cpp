@@ -49,6 +49,16 @@ double first_radius(const Runner& runner) {
   return kWheelRadius;
 }
 
+}  // namespace
+
+bool is_rail_vehicle(const Table& t) {
+  constexpr const char* kType = "rail_vehicle";
+  if (!t.has("file")) return t.has("type") && t.string("type") == kType;
+  const Table root = read_toml(t.path("file"));
+  const std::optional<Table> vehicle = root.table_if("vehicle");
+  return vehicle && vehicle->has("type") && vehicle->string("type") == kType;
+}
+
 RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scene& scene) {
   if (scene.track.rails == 1)
     t.refuse("", "E-VEHICLE-26",
@@ -63,24 +73,6 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   v.speed = speed.speed;
   v.speeds = speed.speeds;
   return v;
-}
-
-}  // namespace
-
-bool is_rail_vehicle(const Table& t) {
-  constexpr const char* kType = "rail_vehicle";
-  if (!t.has("file")) return t.has("type") && t.string("type") == kType;
-  const Table root = read_toml(t.path("file"));
-  const std::optional<Table> vehicle = root.table_if("vehicle");
-  return vehicle && vehicle->has("type") && vehicle->string("type") == kType;
-}
-
-std::vector<RailVehicleScene> read_rail_vehicles(const Table& root, const Scene& scene) {
-  std::vector<RailVehicleScene> vehicles;
-  root.each("vehicle", [&](const Table& t) {
-    if (is_rail_vehicle(t)) vehicles.push_back(read_rail_vehicle(root, t, scene));
-  });
-  return vehicles;
 }
 
 }  // namespace railstep

@@ -70,12 +70,14 @@ std::vector<TreadScene> read_treads(const Table& t, const Scene& scene, const Wh
 /// [wheelset.flange].
 Flange read_flange(const Table& t, const Scene& scene);
 /// @param inputs  the inputs of their forces are added to it
+/// @param rail_vehicles  out: those in space
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
-                                        std::vector<InputScene>& inputs);
+                                        std::vector<InputScene>& inputs,
+                                        std::vector<RailVehicleScene>& rail_vehicles);
 /// Whether a [[vehicle]] is a rail vehicle in space, by its own type or that of its file.
 bool is_rail_vehicle(const Table& t);
-/// The [[vehicle]] tables that are rail vehicles, and [contact].
-std::vector<RailVehicleScene> read_rail_vehicles(const Table& root, const Scene& scene);
+/// A [[vehicle]] that is one, and [contact].
+RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scene& scene);
 /// Bodies, wheelsets and elements of a rail vehicle, from its file or from its own table.
 Runner read_runner(const Table& t);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.

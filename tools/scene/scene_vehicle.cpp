@@ -206,10 +206,14 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
 }  // namespace
 
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
-                                        std::vector<InputScene>& inputs) {
+                                        std::vector<InputScene>& inputs,
+                                        std::vector<RailVehicleScene>& rail_vehicles) {
   std::vector<VehicleScene> vehicles;
   root.each("vehicle", [&](const Table& t) {
-    if (!is_rail_vehicle(t)) read_vehicle(t, scene, vehicles, inputs);
+    if (is_rail_vehicle(t))
+      rail_vehicles.push_back(read_rail_vehicle(root, t, scene));
+    else
+      read_vehicle(t, scene, vehicles, inputs);
   });
   return vehicles;
 }

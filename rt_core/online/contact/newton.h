@@ -44,7 +44,7 @@ struct NewtonProblem {
 
 /// Whether all numbers are finite, and blocks follow each other and fill the n coordinates.
 [[nodiscard]] bool is_usable(const NewtonProblem& p, const double* force) noexcept;
-/// What is missed at a point whose forces are known.
+/// Finds z - z_free - Y F at a point whose forces are known.
 void find_missed(const NewtonProblem& p, NewtonPoint& at) noexcept;
 /// Newton's step (I - Y J) step = -missed, by elimination in the order of the coordinates.
 /// @returns false where a pivot is not above 1e-12 of its row; the step is then

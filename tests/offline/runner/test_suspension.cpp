@@ -31,7 +31,7 @@ struct Pose {
   Vector point;
 };
 
-/// Of a wheelset the axle boxes, which do not spin, are turned by yaw and then by roll.
+/// The axle boxes of a wheelset do not spin: they are turned by yaw and then by roll.
 Pose pose_of(const Runner& runner, int body, const std::array<double, 3>& point, const Motions& q) {
   const RunnerBody& b = runner.bodies[static_cast<std::size_t>(body)];
   const Vector moved = q.segment<3>(kMotions * body), by = q.segment<3>(kMotions * body + 3);
