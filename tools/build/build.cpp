@@ -48,6 +48,12 @@ std::vector<RunningVehicle> vehicles_of(const Scene& scene) {
   return vehicles;
 }
 
+std::vector<RailVehicle> rail_vehicles_of(const Scene& scene) {
+  std::vector<RailVehicle> vehicles;
+  for (const RailVehicleScene& own : scene.rail_vehicles) vehicles.emplace_back(own);
+  return vehicles;
+}
+
 std::vector<double> limits_of(const std::vector<InputScene>& inputs) {
   std::vector<double> limits;
   limits.reserve(inputs.size());
@@ -196,6 +202,13 @@ TraceNames names_of(const Scene& scene, std::vector<std::string> track_sensors) 
   for (const VehicleScene& vehicle : scene.vehicles)
     for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i)
       names.wheels.push_back(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
+  for (const RailVehicleScene& vehicle : scene.rail_vehicles) {
+    names.runners.push_back(vehicle.name);
+    for (const std::string& set : vehicle.wheelsets) {
+      names.runner_wheelsets.push_back(set);
+      names.runner_wheels.insert(names.runner_wheels.end(), {set + "_left", set + "_right"});
+    }
+  }
   for (const ExternalWheelScene& wheel : scene.external_wheels)
     names.external_wheels.push_back(wheel.name);
   names.track_sensors = std::move(track_sensors);
@@ -211,6 +224,7 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
   return {{.loads = loads_of(scene, sections),
            .wheelsets = wheelsets_of(scene),
            .vehicles = vehicles_of(scene),
+           .rail_vehicles = rail_vehicles_of(scene),
            .head = head,
            .track_sensors = std::move(sensors.track_sensors),
            .irregularities = irregularities_of(scene),

@@ -20,6 +20,9 @@ std::int64_t bays_taken(const Scene& scene) {
   for (const VehicleScene& v : scene.vehicles)
     for (const Vehicle::Wheel& wheel : v.vehicle.wheels)
       last = std::max(last, v.start + wheel.place);
+  for (const RailVehicleScene& v : scene.rail_vehicles)
+    for (const RunnerBody& body : v.runner.bodies)
+      if (body.is_wheelset()) last = std::max(last, v.start + body.centre[0]);
   return static_cast<std::int64_t>(last / scene.track.bay) + 1;
 }
 

@@ -17,12 +17,11 @@ constexpr double kPi = 3.14159265358979323846;
 
 /// A record's shortest wave is two of its steps.
 void check_record(const Scene& scene, const IrregularityScene& own, const RailSignals& rails) {
-  double step = 0., speed = 0.;
+  double step = 0.;
   for (const auto* pair : {&rails.y, &rails.z})
     for (const Signal& signal : *pair)
       if (!signal.coefficient.empty()) step = signal.step;
-  for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(fastest(w)));
-  for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
+  const double speed = fastest_wheel(scene);
   if (2. * step >= 8. * speed * scene.step->dt * (1. - 1e-12)) return;
   throw InputError(
       "E-SCENE-36",

@@ -81,6 +81,23 @@ void add_vehicle_point(const std::string& name, const VehicleSensor& sensor, con
   add(".az_m_per_s2", {.acceleration = 1.});
 }
 
+/// The motions of a rail vehicle's bodies other than wheelsets, which have columns of their own.
+void add_bodies(const RailVehicleScene& vehicle, int index, Sensors& sensors) {
+  constexpr const char* kNames[kMotions] = {"x_m",      "y_m",       "z_m",
+                                            "roll_rad", "pitch_rad", "yaw_rad"};
+  for (std::size_t b = 0; b < vehicle.runner.bodies.size(); ++b) {
+    const RunnerBody& body = vehicle.runner.bodies[b];
+    if (body.is_wheelset()) continue;
+    for (int k = 1; k < kMotions; ++k) {  // x is prescribed
+      TrackSensor sensor{.displacement = 1.};
+      sensor.rail_vehicle = index;
+      sensor.coordinate = kMotions * static_cast<int>(b) + k;
+      sensors.columns.push_back(fmt::format("{}.{}.{}", vehicle.name, body.name, kNames[k]));
+      sensors.track_sensors.push_back(std::move(sensor));
+    }
+  }
+}
+
 void add_point(const std::string& name, const Point& point, Sensors& sensors) {
   for (const SensorColumn& column : kSensorColumns) {
     const int d = column.direction;
@@ -195,6 +212,8 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
   Sensors sensors;
   for (std::size_t i = 0; i < scene.vehicles.size(); ++i)
     add_bodies(scene.vehicles[i], static_cast<int>(i), sensors);
+  for (std::size_t i = 0; i < scene.rail_vehicles.size(); ++i)
+    add_bodies(scene.rail_vehicles[i], static_cast<int>(i), sensors);
   const int behind = scene.track.endless ? bays_behind(scene) : 0;
   for (SensorScene sensor : scene.sensors) {
     move_on(sensor, behind, track);

@@ -10,15 +10,10 @@ void refuse_unstepped(const Scene& scene) {
   const auto refuse = [&](bool unstepped, MessageId id, const char* sentence) {
     if (unstepped) throw InputError(id, fmt::format("{}: {}", scene.file.string(), sentence));
   };
-  refuse(scene.loads.empty() && scene.wheelsets.empty() && scene.vehicles.empty() &&
-             scene.external_wheels.empty() && scene.rail_vehicles.empty(),
-         "E-SCENE-38",
+  refuse(scene.loads.empty() && !has_wheels(scene) && scene.external_wheels.empty(), "E-SCENE-38",
          "nothing runs on the track; expected a [[load]], a [[wheelset]], a [[vehicle]] or an "
          "[[external_wheel]]");
   refuse(!scene.step, "E-STEP-11", "the scene has no [step]; expected one to run or condense it");
-  refuse(!scene.rail_vehicles.empty(), "E-VEHICLE-29",
-         "a vehicle in space is not stepped yet; expected upright vehicles, or `railstep modes "
-         "--speed`, `railstep critical` or `railstep static` for this scene");
   refuse(scene.track.model != RailModel::linearised, "E-SCENE-39",
          "a run steps the linearised rail; expected track.model = \"linearised\"");
   refuse(scene.track.reference_line != ReferenceLine::centroid, "E-SCENE-40",

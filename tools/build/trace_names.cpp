@@ -17,6 +17,12 @@ struct ColumnNames {
         return names.wheels;
       case ColumnOf::flange:
         return names.flanges;
+      case ColumnOf::runner_wheel:
+        return names.runner_wheels;
+      case ColumnOf::runner_wheelset:
+        return names.runner_wheelsets;
+      case ColumnOf::runner:
+        return names.runners;
       case ColumnOf::external_wheel:
         return names.external_wheels;
       case ColumnOf::sensor:

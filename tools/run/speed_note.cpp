@@ -13,10 +13,8 @@ namespace {
 constexpr double kNear = .8;  // of critical speed: deflections are 1.7 times the static ones
 
 double fastest_of(const Scene& scene) {
-  double most = 0.;
+  double most = fastest_wheel(scene);
   for (const LoadScene& load : scene.loads) most = std::max(most, std::abs(fastest(load)));
-  for (const WheelsetScene& w : scene.wheelsets) most = std::max(most, std::abs(fastest(w)));
-  for (const VehicleScene& v : scene.vehicles) most = std::max(most, std::abs(fastest(v)));
   return most;
 }
 

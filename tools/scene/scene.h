@@ -167,13 +167,9 @@ struct VehicleScene : RunningVehicle {
 };
 
 /// A vehicle in space on both rails.
-struct RailVehicleScene {
+struct RailVehicleScene : RailVehicle {
   std::string name;
-  Runner runner;
-  RollingContact contact;
-  double start;                // m
-  double speed;                // m/s; with a table its first
-  std::vector<double> speeds;  // as SpeedScene::speeds
+  std::vector<std::string> wheelsets;  // NAME.BODY; their wheels are NAME.BODY_left and _right
 };
 
 /// The speed of largest magnitude of a load, a wheelset or a vehicle, m/s.
@@ -257,6 +253,11 @@ struct Scene {
     return step ? static_cast<double>(step->steps) * step->dt : 0.0;
   }
 };
+
+/// Whether anything has wheels that the model moves.
+bool has_wheels(const Scene& scene);
+/// The largest size of the speed of all that has such wheels, m/s.
+double fastest_wheel(const Scene& scene);
 
 /// Whether a wheelset has flanges.
 bool has_flanges(const Scene& scene);

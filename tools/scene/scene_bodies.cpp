@@ -314,6 +314,11 @@ void check_names(const Table& root, const Scene& scene) {
     const std::string name = t.string("name");
     while (vehicle < scene.vehicles.size() && scene.vehicles[vehicle].table == name)
       claim(traced, t, "name", scene.vehicles[vehicle++].name);
+    for (const RailVehicleScene& own : scene.rail_vehicles) {
+      if (own.name != name) continue;
+      claim(traced, t, "name", own.name);
+      for (const std::string& wheelset : own.wheelsets) claim(traced, t, "name", wheelset);
+    }
   }
   for (std::size_t i = 0; i < sensors.size(); ++i)
     claim(traced, sensors[i], "name", scene.sensors[i].name);

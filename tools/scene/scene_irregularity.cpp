@@ -34,13 +34,6 @@ std::array<bool, 2> read_sides(const Table& t, std::string_view key, const Scene
   return {side != 2, side != 1};
 }
 
-double fastest(const Scene& scene) {
-  double speed = 0.;
-  for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(fastest(w)));
-  for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
-  return speed;
-}
-
 /// Refuses a wave that is passed in less than eight steps.
 void check_wave(const Table& t, std::string_view key, double wavelength, double speed,
                 const Scene& scene) {
@@ -121,7 +114,7 @@ void read_generated(const Table& t, const Scene& scene, IrregularityScene& own) 
   o.length = t.number(
       "period_m", between(o.longest, 1e6),
       std::max(scene.track.endless ? kEndlessPeriod : scene.track.length(), 4. * o.longest));
-  check_wave(t, "shortest_wavelength_m", o.shortest, fastest(scene), scene);
+  check_wave(t, "shortest_wavelength_m", o.shortest, fastest_wheel(scene), scene);
 }
 
 }  // namespace
@@ -129,7 +122,7 @@ void read_generated(const Table& t, const Scene& scene, IrregularityScene& own) 
 std::optional<IrregularityScene> read_irregularity(const Table& root, const Scene& scene) {
   const std::optional<Table> t = root.table_if("irregularity");
   if (!t) return std::nullopt;
-  if (scene.wheelsets.empty() && scene.vehicles.empty())
+  if (!has_wheels(scene))
     t->refuse("", "E-IRREGULARITY-28",
               "no wheel feels the irregularity; expected a [[wheelset]] or a "
               "[[vehicle]]");
@@ -149,7 +142,7 @@ std::optional<IrregularityScene> read_irregularity(const Table& root, const Scen
 std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
   std::vector<DefectScene> defects;
   root.each("defect", [&](const Table& t) {
-    if (scene.wheelsets.empty() && scene.vehicles.empty())
+    if (!has_wheels(scene))
       t.refuse("", "E-IRREGULARITY-30",
                "no wheel feels the defect; expected a [[wheelset]] or a [[vehicle]]");
     DefectScene d{};
@@ -169,7 +162,7 @@ std::vector<DefectScene> read_defects(const Table& root, const Scene& scene) {
       d.from = t.number("from_m", on_rail);
       d.to = t.number("to_m", between(d.from + 2. * d.length, 1e9));
       check_samples(t, "to_m", .5 * (d.to - d.from), d.patch, d.length);
-      check_wave(t, "wavelength_m", d.length, fastest(scene), scene);
+      check_wave(t, "wavelength_m", d.length, fastest_wheel(scene), scene);
     }
     defects.push_back(d);
   });

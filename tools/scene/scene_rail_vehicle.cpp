@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "offline/contact/hertz.h"
 #include "offline/runner/suspension.h"
 #include "scene/scene_read.h"
@@ -22,7 +24,7 @@ RollingContact read_rolling(const Table& root, const Scene& scene, double radius
                 : hertz_constant(radius, c.crown_radius, scene.rail.young, scene.rail.poisson);
   if (t.choice("creep", {"none", "linear"}) == 0) return c;
   const std::vector<double> f = t.numbers("kalker", between(0.0, 1e12), 4, 4);
-  if (f.size() == 4) c.kalker = {f[0], f[1], f[2], f[3]};
+  std::copy(f.begin(), f.end(), c.kalker);
   return c;
 }
 
@@ -67,6 +69,8 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   v.name = checked_name(t, "name", t.string("name"));
   if (!t.has("file")) static_cast<void>(t.string("type"));
   v.runner = read_runner_of(t);
+  for (const RunnerBody& body : v.runner.bodies)
+    if (body.is_wheelset()) v.wheelsets.push_back(v.name + "." + body.name);
   v.contact = read_rolling(root, scene, first_radius(v.runner));
   v.start = t.number("start_m", between(-1e6, 1e6), 0.0);
   const SpeedScene speed = read_speed(t, std::nullopt);

@@ -57,7 +57,7 @@ namespace {
 /// forces of an external wheel, which are held over a step. nullptr: there is none.
 const char* contact_beside(const Scene& scene) {
   if (!scene.wheelsets.empty()) return "[[wheelset]]";
-  if (!scene.vehicles.empty()) return "[[vehicle]]";
+  if (!scene.vehicles.empty() || !scene.rail_vehicles.empty()) return "[[vehicle]]";
   if (!scene.stops.empty()) return "[[stop]]";
   if (scene.support && (scene.support->unilateral || scene.support->gap > 0.))
     return "[support] of pads that do not pull";

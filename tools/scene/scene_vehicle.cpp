@@ -218,4 +218,17 @@ std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
   return vehicles;
 }
 
+bool has_wheels(const Scene& scene) {
+  return !scene.wheelsets.empty() || !scene.vehicles.empty() || !scene.rail_vehicles.empty();
+}
+
+double fastest_wheel(const Scene& scene) {
+  double speed = 0.;
+  for (const WheelsetScene& w : scene.wheelsets) speed = std::max(speed, std::fabs(fastest(w)));
+  for (const VehicleScene& v : scene.vehicles) speed = std::max(speed, std::fabs(fastest(v)));
+  for (const RailVehicleScene& v : scene.rail_vehicles)
+    speed = std::max(speed, std::fabs(fastest(v)));
+  return speed;
+}
+
 }  // namespace railstep

@@ -134,7 +134,7 @@ RunnerElement read_shear_spring(const Table& t) {
 RunnerElement read_anti_roll_bar(const Table& t) {
   RunnerElement e{};
   e.kind = RunnerElement::Kind::mid_frame;  // where it acts does not matter
-  e.stiffness[at(BodyMotion::roll)] = t.number("stiffness_n_m_per_rad", kStiffnessRange);
+  e.stiffness[index_of(BodyMotion::roll)] = t.number("stiffness_n_m_per_rad", kStiffnessRange);
   return e;
 }
 

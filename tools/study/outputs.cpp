@@ -19,7 +19,7 @@ struct KindNames {
 };
 const std::vector<KindNames> kNames = {
     {OutputKind::deflection, "deflection", {".deflection_z_m", ".rail_z_m"}},
-    {OutputKind::contact_force, "contact_force", {".force_z_mean_n"}},
+    {OutputKind::contact_force, "contact_force", {".force_z_mean_n", ".q_n"}},
     {OutputKind::support_force, "support_force", {".force_z_n"}},
     {OutputKind::sensor, "sensor", {".dz_m"}},
     {OutputKind::stress, "stress", {".stress_x_pa"}}};

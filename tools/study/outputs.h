@@ -15,8 +15,8 @@ inline constexpr OutputKind kOutputKinds[] = {OutputKind::deflection, OutputKind
 
 /// "deflection": of the rail under loads and wheels (<load>.deflection_z_m, <wheel>.rail_z_m);
 /// "contact_force": mean of a frame (<wheel>.force_z_mean_n), which is the force below the frames'
-/// own frequency; "support_force" (support_<i>.force_z_n); "sensor" (<sensor>.dz_m);
-/// "stress" of gauges (<sensor>.stress_x_pa).
+/// own frequency, of vehicles in space the force at its end (<wheel>.q_n); "support_force"
+/// (support_<i>.force_z_n); "sensor" (<sensor>.dz_m); "stress" of gauges (<sensor>.stress_x_pa).
 const char* name_of(OutputKind kind);
 
 /// The part of a trace that is judged: the time from which on, and the outputs that count as the

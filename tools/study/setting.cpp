@@ -94,7 +94,7 @@ void add_scheme(const std::string& scheme, std::vector<std::string>& overrides) 
 }
 
 bool has_hertz(const Scene& scene) {
-  return !scene.wheelsets.empty() ||
+  return !scene.wheelsets.empty() || !scene.rail_vehicles.empty() ||
          std::any_of(scene.vehicles.begin(), scene.vehicles.end(),
                      [](const VehicleScene& v) { return v.contact == WheelContactKind::hertz; });
 }

@@ -66,7 +66,7 @@ Cost tables_cost(const Model& model) {
 
 /// The track under all contacts: responses, W, penetrations, and the forces' way back.
 Cost responses_cost(const Model& model, const LineModel& line) {
-  const std::int64_t wheels = contacts_on(model, line);
+  const std::int64_t wheels = rows_on(model, line);
   const LineCost cost = line_cost(model, line);
   Cost sum = wheels * (cost.unit + cost.add) + wheels * (wheels + 1) / 2 * cost.pair +
              wheels * (cost.located + cost.read);
@@ -97,22 +97,23 @@ Cost coupled_cost(const Model& model, std::int64_t contacts) {
   for (std::int32_t v = 0; v < model.vehicles; ++v)
     lift += 2 * std::int64_t{model.vehicle[v].size} * model.vehicle[v].wheels;
   const std::int64_t ports = contacts + model.fixed.count;
-  return iterations * (ports_cost(ports, model.scheme.mean != 0) + work(lift + 3 * ports, lift) +
-                       model.wheelsets * work(150, 100));
+  const Cost solve = wheel_seat_row_count(model) > 0 ? coupled_runners_cost(model)
+                                                     : ports_cost(ports, model.scheme.mean != 0);
+  return iterations * (solve + work(lift + 3 * ports, lift) + model.wheelsets * work(150, 100));
 }
 
 }  // namespace
 
 Cost contact_cost(const Model& model) {
   const std::int64_t contacts = contact_count(model), sets = model.wheelsets;
-  if (contacts + model.fixed.count == 0) return {};
+  if (track_row_count(model) + model.fixed.count == 0) return {};
   const std::int64_t moving = model.unknowns - modal_unknowns(model);
   Cost sum = work(2 * moving, 3 * moving) + (sets + model.flanges) * located_pair(model) +
              sets * work(400, 200);
   for (std::int32_t l = 0; l < model.lines; ++l) sum = sum + responses_cost(model, model.line[l]);
-  const std::int64_t pairs = contacts * (contacts + 1) / 2;
+  const std::int64_t rows = track_row_count(model), pairs = rows * (rows + 1) / 2;
   sum = sum + pairs * (work(40, 20) + kPairLookUp);
-  sum = sum + loads_cost(model) + model.loads * contacts * kPairLookUp + contacts * work(200, 100);
+  sum = sum + loads_cost(model) + model.loads * rows * kPairLookUp + rows * work(200, 100);
   if (model.scheme.mean != 0)  // where each contact was, and the residual displacement there
     sum = sum + contacts * (work(50, 30) + contacts * kPairLookUp);
   for (std::int32_t l = 0; l < model.lines && model.scheme.mean != 0; ++l)

@@ -16,6 +16,12 @@ Cost system_cost(const Model& model);
 /// Cost of one step's wheels, flanges and fixed ports, including their rows and responses.
 Cost contact_cost(const Model& model);
 
+/// Cost of one step's runners, and of what is published of them.
+Cost runners_cost(const Model& model);
+Cost publish_runners_cost(const Model& model);
+/// Cost of one solve that couples runners with a track.
+Cost coupled_runners_cost(const Model& model);
+
 /// Cost of one call of solve_ports() with n ports: its start, its capped iterations, each with the
 /// most shortenings of its step, and the end at the cap.
 /// @param means  whether laws of contacts are means over the step

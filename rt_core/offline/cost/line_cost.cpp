@@ -104,10 +104,12 @@ Cost loads_cost(const Model& model) {
   return sum;
 }
 
-std::int64_t contacts_on(const Model& model, const LineModel& line) {
+std::int64_t rows_on(const Model& model, const LineModel& line) {
   std::int64_t count = 0;
   for (std::int32_t i = 0; i < contact_count(model); ++i)
     if (line.rail_factor[rail_of(model, i)] != 0.) ++count;
+  for (const double factor : line.rail_factor)
+    if (factor != 0.) count += wheel_seat_row_count(model) / 2;
   return count;
 }
 

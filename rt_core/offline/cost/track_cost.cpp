@@ -31,7 +31,7 @@ Cost publish_cost(const Model& model) {
     if (model.external_wheels > 0 && model.form == Form::condensed)
       sum = sum + work(6 * model.line[l].size, 6 * model.line[l].size);
   }
-  return sum;
+  return sum + publish_runners_cost(model);
 }
 
 /// Cost of a step, or of each of its stages.
@@ -45,7 +45,7 @@ Cost stage_cost(const Model& model) {
   // Bodies are predicted and corrected as the lines are.
   const std::int64_t bodies = model.unknowns - model.line_unknowns;
   sum = sum + work(21 * bodies, 18 * bodies);
-  return sum + contact_cost(model) + system_cost(model);
+  return sum + contact_cost(model) + runners_cost(model) + system_cost(model);
 }
 
 Cost step_cost(const Model& model) {

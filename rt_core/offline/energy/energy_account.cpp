@@ -49,6 +49,8 @@ EnergyAccount::Standing EnergyAccount::stand(const State& state) const {
   at.state = copied_state(model_, state, at.memory.data());
   for (const LineEnergy& line : lines_) at.lines.push_back(line.motion(at.state));
   at.contacts = standing_contacts(model_, at.state);
+  for (std::int32_t i = 0; i < model_.runners; ++i)
+    at.runners.push_back(standing_runner(model_, model_.runner[i], at.state));
   for (std::int32_t j = 0; j < model_.fixed.count; ++j) {
     at.depth.push_back(closing(model_, j, at.state.u, at.state.v) - model_.fixed.gap[j]);
     at.speed.push_back(closing_speed(model_, j, at.state));
@@ -76,7 +78,14 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
     sum.strain += own.strain;
   }
   sum.hertz = at.contacts.hertz;
-  sum.residual = at.contacts.residual;
+  for (std::size_t i = 0; i < at.runners.size(); ++i) {
+    const RunnerEnergy own = runner_energy(model_.runner[i], at.runners[i], at.state);
+    sum.kinetic += own.kinetic;
+    sum.strain += own.strain;
+    sum.hertz += own.hertz;
+    sum.residual += own.residual;
+  }
+  sum.residual += at.contacts.residual;
   for (std::size_t j = 0; j < at.depth.size(); ++j)
     sum.ports += .5 * model_.fixed.stiffness[j] * std::pow(std::max(0., at.depth[j]), 2);
   return sum;
@@ -93,6 +102,7 @@ void EnergyAccount::follow(const State& state) {
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) add_wheelset(now, b);
   for (std::int32_t j = 0; j < model_.fixed.count; ++j) add_port(now, j);
   for (std::int32_t b = 0; b < model_.vehicles; ++b) add_vehicle(now, b);
+  for (std::size_t i = 0; i < now.runners.size(); ++i) add_runner(now, i);
   if (first_ && model_.form == Form::banded) add_start(now);
   last_ = std::move(now);  // its views stay valid: a vector's memory moves along
   first_ = false;
@@ -110,6 +120,13 @@ void EnergyAccount::shift_bay(std::int64_t step) {
   for (std::size_t l = 0; l < lines_.size(); ++l) last_.lines[l] = lines_[l].motion(last_.state);
   for (int i = 0; i < last_.contacts.loads; ++i)
     last_.contacts.load[i].row.element -= e.bay_elements;
+  for (StandingRunner& runner : last_.runners)
+    for (auto& wheelset : runner.wheels)
+      for (StandingWheel& wheel : wheelset)
+        for (WheelSeatRow& seat : wheel.seat) {
+          seat.row.element -= e.bay_elements;
+          for (std::int32_t s = 0; s < seat.row.seats; ++s) seat.row.seat[s] -= 2 * e.bay_elements;
+        }
   for (ExternalContact& at : last_.external)
     for (RailRow& row : at.row) row.element -= e.bay_elements;
   for (int i = 0; i < last_.contacts.contacts; ++i) {
@@ -237,6 +254,15 @@ void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
   flow_.guides += vehicle_passage(now, b);
 }
 
+void EnergyAccount::add_runner(const Standing& now, std::size_t i) {
+  const RunnerWork work = runner_work(model_, model_.runner[i], last_.runners[i], last_.state,
+                                      now.runners[i], now.state);
+  flow_.weight += work.weight;
+  flow_.guides += work.drive;
+  flow_.dissipated += work.dissipated + work.creep;
+  flow_.loss += work.loss;
+}
+
 double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
   const WheelsetModel& w = model_.wheelset[b];
   const int x = w.first;
@@ -283,6 +309,8 @@ void EnergyAccount::add_start(const Standing& now) {
   for (int i = 0; i < contact_count(model_); ++i)
     for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
       spread(model_.line[l], last_.contacts.contact[i].row, -s.contact_force[i], f.data());
+  for (std::size_t i = 0; i < last_.runners.size(); ++i)
+    add_seat_forces(model_, model_.runner[i], last_.runners[i], f.data());
   const FixedPortModel& fixed = model_.fixed;
   for (std::int32_t j = 0; j < fixed.count; ++j)
     for (std::int32_t k = fixed.start[j]; k < fixed.start[j + 1]; ++k)
@@ -292,6 +320,8 @@ void EnergyAccount::add_start(const Standing& now) {
         .5 * lines_[l].unbalanced(last_.lines[l], f.data()).dot(now.lines[l].u - last_.lines[l].u);
   for (std::int32_t b = 0; b < model_.vehicles; ++b)
     flow_.loss += .5 * vehicle_unbalanced(model_, model_.vehicle[b], s, now.state);
+  for (std::size_t i = 0; i < now.runners.size(); ++i)
+    flow_.loss += .5 * runner_unbalanced(model_.runner[i], last_.runners[i], s, now.state);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
     const WheelsetModel& w = model_.wheelset[b];
     const WheelsetContacts own = contacts_of(model_, b);

@@ -6,6 +6,7 @@
 #include "offline/energy/external_energy.h"
 #include "offline/energy/frame_inputs.h"
 #include "offline/energy/line_energy.h"
+#include "offline/energy/runner_energy.h"
 
 namespace railstep {
 
@@ -26,8 +27,8 @@ struct EnergyFlow {
   double weight = 0.;      // of the weight of track, wheelsets and vehicles
   double forces = 0.;      // of forces on wheelsets and vehicles
   double outside = 0.;     // of the forces of external wheels
-  double guides = 0.;      // of the guides that keep the speed of wheelsets and vehicles
-  double dissipated = 0.;  // by dampers, trapezoidal in the step
+  double guides = 0.;      // of guides and drives that keep the speed of all that runs
+  double dissipated = 0.;  // by dampers and creep, trapezoidal in the step
   double carriers = 0.;    // on residual flexibility, see residual_work
   double loss = 0.;        // of the scheme, see EnergyAccount
   double work() const { return loads + weight + forces + outside + guides + carriers; }
@@ -90,6 +91,7 @@ class EnergyAccount {
     State state;
     std::vector<LineMotion> lines;
     StandingContacts contacts;
+    std::vector<StandingRunner> runners;
     std::vector<double> depth, speed;       // of one-sided springs, m, m/s
     std::vector<ExternalContact> external;  // as they acted in the step that ends here
   };
@@ -102,6 +104,7 @@ class EnergyAccount {
   void add_port(const Standing& now, std::int32_t j);
   void add_wheelset(const Standing& now, std::int32_t b);
   void add_vehicle(const Standing& now, std::int32_t b);
+  void add_runner(const Standing& now, std::size_t i);
   double vehicle_passage(const Standing& now, std::int32_t b) const;
   double wheel_force(const Standing& now, int wheel) const;
   double passage_work(const Standing& now, std::int32_t b) const;

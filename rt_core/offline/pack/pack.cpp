@@ -10,6 +10,7 @@
 #include "offline/cost/cost.h"
 #include "offline/math/refuse.h"
 #include "offline/pack/released.h"
+#include "online/math/newton.h"
 #include "online/model/external_input.h"
 
 namespace railstep {
@@ -64,7 +65,8 @@ bool is_moved(const Track& track, const Line& line, const Traffic& traffic, doub
       if (acts_on(track, line, wheel.rail, .01, .1, direction)) return true;
   for (const RunningVehicle& vehicle : traffic.vehicles)
     if (acts_on(track, line, vehicle.rail, 0., .1, 2)) return true;
-  for (int direction = 0; direction < 3 && !traffic.wheelsets.empty(); ++direction)
+  const bool in_space = !traffic.wheelsets.empty() || !traffic.rail_vehicles.empty();
+  for (int direction = 0; direction < 3 && in_space; ++direction)
     for (int rail = 0; rail < track.rails; ++rail)
       if (acts_on(track, line, rail, .01, .1, direction)) return true;
   return gravity != 0. && weight(track, line, gravity).norm() > 0.;
@@ -273,8 +275,10 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   for (const RunningVehicle& vehicle : traffic.vehicles) add_vehicle(track, vehicle, heads);
-  if (contact_count(model_) > 0) add_responses();
+  for (const RailVehicle& vehicle : traffic.rail_vehicles) add_runner(track, vehicle);
+  if (track_row_count(model_) > 0) add_responses();
   add_fixed_ports(track);
+  if (newton_size(model_) > kMostNewton) refuse_many_coordinates();
   for (const ExternalWheel& wheel : traffic.external_wheels) add_external(track, wheel);
   if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);
   add_track_sensors(track, traffic.track_sensors);
@@ -319,7 +323,7 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
     refuse("E-PACK-06",
            "an external wheel is on a rail that the track does not have; expected rail 0, or rail "
            "1 of two");
-  if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.fixed.count > 0)
+  if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.runners > 0 || model_.fixed.count > 0)
     refuse(
         "E-PACK-24",
         "an external wheel is beside a wheelset, a vehicle, a stop, a joint with a gap or a "

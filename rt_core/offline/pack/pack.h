@@ -8,6 +8,7 @@
 #include "offline/condense/reduction.h"
 #include "offline/irregularity/spline.h"
 #include "offline/math/constants.h"
+#include "offline/runner/running.h"
 #include "offline/track/fixed_port.h"
 #include "offline/vehicle/vehicle.h"
 #include "online/model/state.h"
@@ -86,6 +87,15 @@ struct RunningVehicle {
   std::optional<Falling> falling = std::nullopt;  // of a released start
 };
 
+/// A vehicle in space on both rails, as a scene gives it.
+struct RailVehicle {
+  Runner runner = {};
+  RollingContact contact = {};
+  double start = 0., speed = 0.;    // of its origin, m, m/s
+  std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
+  double gravity = kGravity;        // m/s2
+};
+
 /// Stiffness of a bonded contact, N/m: it yields a millionth of what the stiffest rail does.
 inline constexpr double kBonded = 1e15;
 
@@ -112,6 +122,7 @@ struct TrackSensor {
   Functional track = {};
   int wheelset = -1, coordinate = 0;  // of a track sensor on a wheelset; 0 x, 1 y, 2 z
   int vehicle = -1;                   // of a track sensor on a vehicle; `coordinate` is its own
+  int rail_vehicle = -1;              // the same on a rail vehicle
   double lever = 0.;                  // factor of a vehicle's next coordinate, which is added
   double acceleration = 0.;           // factor of it, of a track sensor on a vehicle
   struct PortForce {
@@ -133,6 +144,7 @@ struct Traffic {
   std::vector<MovingLoad> loads = {};
   std::vector<Wheelset> wheelsets = {};
   std::vector<RunningVehicle> vehicles = {};
+  std::vector<RailVehicle> rail_vehicles = {};
   Railhead head = {};  // of both rails
   std::vector<TrackSensor> track_sensors = {};
   std::vector<RailIrregularity> irregularities = {};
@@ -178,6 +190,12 @@ struct PackedLine {
   ModeGroups modes;                     // of a condensed line
 };
 
+/// A rail vehicle as it was packed.
+struct PackedRunner {
+  RailVehicle vehicle;
+  RunnerMatrices matrices;
+};
+
 /// A model and the memory that its views look into. Not copied: views would look into the original.
 ///
 /// Lines that no load, wheel, weight or one-sided support can move are left out. Lines with the
@@ -193,6 +211,7 @@ class PackedModel {
   const std::vector<PackedLine>& lines() const { return lines_; }
   /// Load points of all vertical forces.
   const std::vector<LoadPoint>& load_points() const { return load_points_; }
+  const std::vector<PackedRunner>& runners() const { return runners_; }
   /// @param state  state_doubles() values, from start.h
   void set_start(std::vector<double> state);
   /// Largest amount by which G_res was raised under a wheel so that W stays positive, m/N.
@@ -230,6 +249,8 @@ class PackedModel {
                   const std::array<Railhead, 2>& heads);
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
+  void add_runner(const Track& track, const RailVehicle& vehicle);
+  [[noreturn]] void refuse_many_coordinates() const;
   TravelModel keep_travel(double speed, const std::vector<double>& speeds);
   void add_weight(const Track& track, double gravity);
   void add_track_sensors(const Track& track, const std::vector<TrackSensor>& track_sensors);
@@ -244,6 +265,7 @@ class PackedModel {
   Model model_{};
   std::vector<PackedLine> lines_;
   std::vector<LoadPoint> load_points_;
+  std::vector<PackedRunner> runners_;
   double clipped_ = 0.;
   Elements met_{};  // elements that the traffic visits (ring), else all
   std::vector<std::unique_ptr<std::vector<double>>> reals_;

@@ -13,8 +13,8 @@ namespace railstep {
 
 namespace {
 
-/// The one speed of all traffic, m/s.
-double speed_of(const Traffic& traffic) {
+/// The one speed of all traffic, m/s. Rail vehicles on rigid rails have speeds of their own.
+double speed_of(const Traffic& traffic, bool rigid) {
   std::vector<double> speeds;
   const auto add = [&](double speed, const std::vector<double>& table) {
     if (!table.empty())
@@ -26,6 +26,8 @@ double speed_of(const Traffic& traffic) {
   for (const MovingLoad& load : traffic.loads) add(load.speed, load.speeds);
   for (const Wheelset& set : traffic.wheelsets) add(set.speed, set.speeds);
   for (const RunningVehicle& vehicle : traffic.vehicles) add(vehicle.speed, vehicle.speeds);
+  for (const RailVehicle& vehicle : traffic.rail_vehicles)
+    if (!rigid) add(vehicle.speed, vehicle.speeds);
   for (const double speed : speeds)
     if (speed != speeds[0])
       refuse("E-PACK-31", "traffic on a track without end has the speeds " +
@@ -45,6 +47,9 @@ std::pair<double, double> span_of(const Traffic& traffic) {
   for (const Wheelset& set : traffic.wheelsets) take(set.start);
   for (const RunningVehicle& own : traffic.vehicles)
     for (const Vehicle::Wheel& wheel : own.vehicle.wheels) take(own.start + wheel.place);
+  for (const RailVehicle& own : traffic.rail_vehicles)
+    for (const RunnerBody& body : own.runner.bodies)
+      if (body.is_wheelset()) take(own.start + body.centre[0]);
   return span;
 }
 
@@ -69,7 +74,7 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   const auto [first, last] = span_of(traffic);
   Endless& e = model_.endless;
   e = {track.bays, track.elements_per_bay, bay, options.endless->behind * bay,
-       bay_progress(speed_of(traffic) * options.scheme.dt / bay)};
+       bay_progress(speed_of(traffic, track.rigid) * options.scheme.dt / bay)};
   // The traffic moves by up to a bay before the track is shifted. The ends of a window must stay at
   // rest; on a ring waves of the traffic must not reach it again.
   const double decay = decay_length(track), behind = e.origin + first,

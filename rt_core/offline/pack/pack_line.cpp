@@ -112,7 +112,7 @@ void PackedModel::add_responses() {
       line.modal.between = twin.modal.between;
     } else if (model_.form == Form::banded) {
       line.reach = reach_of(line.step);
-    } else if (contact_count(model_) > 2 && has_table(line.modal, carried_by(model_, line))) {
+    } else if (track_row_count(model_) > 2 && has_table(line.modal, carried_by(model_, line))) {
       line.modal.between = keep(table_between(line.modal));
     }
   }

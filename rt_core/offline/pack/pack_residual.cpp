@@ -100,6 +100,13 @@ void PackedModel::add_track_sensors(const Track& track,
         entry(g + at + next, part * track_sensor.acceleration);
       }
     }
+    if (track_sensor.rail_vehicle >= 0) {
+      const std::int32_t at =
+          model_.runner[track_sensor.rail_vehicle].first + track_sensor.coordinate;
+      entry(at, track_sensor.displacement);
+      entry(model_.unknowns + at, track_sensor.velocity);
+      entry(2 * model_.unknowns + model_.fixed.count + at, track_sensor.acceleration);
+    }
     start.push_back(static_cast<std::int32_t>(index.size()));
     rest.push_back(track_sensor.rest);
   }
@@ -199,7 +206,8 @@ void PackedModel::add_track_sensor_tables(const ResidualFlexibility& residual,
   std::vector<double> values;
   for (const TrackSensor& track_sensor : track_sensors) {
     table.push_back(-1);
-    const bool of_track = track_sensor.wheelset < 0 && track_sensor.vehicle < 0;
+    const bool of_track =
+        track_sensor.wheelset < 0 && track_sensor.vehicle < 0 && track_sensor.rail_vehicle < 0;
     if (!of_track || (track_sensor.displacement == 0. && track_sensor.velocity == 0.)) continue;
     const ResidualFlexibility::Near near = near_at_once(residual, load_points_, track_sensor, met_);
     if (all_zero(near.value)) continue;

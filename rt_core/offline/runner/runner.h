@@ -3,14 +3,9 @@
 #include <string>
 #include <vector>
 
-namespace railstep {
+#include "online/model/runner_model.h"
 
-/// The six coordinates of a body in a frame that follows the track: displacements of its centre
-/// along x, y and z, m, then rotations about these axes, rad. The `pitch` of a wheelset is its
-/// spin beyond speed / radius, and its axle is turned by yaw and then by roll.
-enum class BodyMotion { x, y, z, roll, pitch, yaw };
-inline constexpr int kMotions = 6;
-constexpr int at(BodyMotion motion) { return static_cast<int>(motion); }
+namespace railstep {
 
 /// A rigid body of a rail vehicle.
 struct RunnerBody {
@@ -45,19 +40,6 @@ struct RunnerElement {
 struct Runner {
   std::vector<RunnerBody> bodies;
   std::vector<RunnerElement> elements;
-};
-
-/// Conical treads on the circular crowns of rigid, straight rails: Hertz's law along the normal and
-/// linear creep with constant coefficients,
-///   Tx = -f11 xi_x,  Ty = -f22 xi_y - f23 xi_s,  moment = f23 xi_y - f33 xi_s,
-/// xi the creepages and spin over the speed; Kalker, Three-Dimensional Elastic Bodies in Rolling
-/// Contact, 1990.
-struct RollingContact {
-  double slope;                  // of the treads, tangent of the cone's half angle
-  double half_distance;          // between the contacts of a centred wheelset, m
-  double crown_radius;           // m
-  double hertz;                  // N/m^1.5
-  std::array<double, 4> kalker;  // f11 N, f22 N, f23 N m, f33 N m2
 };
 
 }  // namespace railstep

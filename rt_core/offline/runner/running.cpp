@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <unsupported/Eigen/AutoDiff>
 
 #include "offline/math/refuse.h"
 
@@ -13,8 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-/// A number with its derivatives over the six motions of a wheelset and their rates.
-using Derived = Eigen::AutoDiffScalar<Eigen::Matrix<double, 2 * kMotions, 1>>;
 
 Index first_of(std::size_t body) { return kMotions * static_cast<Index>(body); }
 
@@ -25,32 +22,36 @@ struct Contacts {
   MatrixXd by_rate;
 };
 
-void add_wheelset(const RollingContact& contact, double radius, double speed, Index first,
-                  const VectorXd& u, const VectorXd& v, Contacts& sum) {
-  Derived motion[kMotions], rate[kMotions];
-  for (int k = 0; k < kMotions; ++k) {
-    motion[k] = Derived(u[first + k], 2 * kMotions, k);
-    rate[k] = Derived(v[first + k], 2 * kMotions, kMotions + k);
-  }
-  for (const double side : {1., -1.}) {
-    const WheelForce<Derived> f = wheel_force(contact, radius, side, speed, motion, rate);
+void add_wheelset(const RollingContact& contact, double radius, double speed,
+                  const RailsUnder& rails, Index first, const VectorXd& u, const VectorXd& v,
+                  Contacts& sum) {
+  for (const int side : {0, 1}) {
+    WheelSlopes slopes;
+    Eigen::Matrix<double, kMotions, 1> over_rail = u.segment<kMotions>(first);
+    over_rail[index_of(BodyMotion::y)] -= rails.y[side];
+    over_rail[index_of(BodyMotion::z)] -= rails.z[side];
+    const WheelForce f = wheel_force(contact, radius, side == 0 ? 1. : -1., speed, over_rail.data(),
+                                     v.data() + first, {}, slopes);
     for (int k = 0; k < kMotions; ++k) {
-      sum.force[first + k] += f.generalised[k].value();
-      for (int j = 0; j < kMotions; ++j) {
-        sum.by_displacement(first + k, first + j) += f.generalised[k].derivatives()[j];
-        sum.by_rate(first + k, first + j) += f.generalised[k].derivatives()[kMotions + j];
-      }
+      sum.force[first + k] += f.generalised[k];
+      for (int j = 0; j < 4; ++j)
+        sum.by_displacement(first + k, first + index_of(kPlaced[j])) += slopes.by_motion[k][j];
+      for (int j = 0; j < kMotions; ++j) sum.by_rate(first + k, first + j) += slopes.by_rate[k][j];
     }
   }
 }
 
 Contacts contacts_at(const Runner& runner, const RollingContact& contact, double speed,
-                     const VectorXd& u, const VectorXd& v) {
+                     const VectorXd& u, const VectorXd& v,
+                     const std::vector<RailsUnder>& rails = {}) {
   Contacts sum{VectorXd::Zero(u.size()), MatrixXd::Zero(u.size(), u.size()),
                MatrixXd::Zero(u.size(), u.size())};
-  for (std::size_t b = 0; b < runner.bodies.size(); ++b)
-    if (runner.bodies[b].is_wheelset())
-      add_wheelset(contact, runner.bodies[b].radius, speed, first_of(b), u, v, sum);
+  std::size_t set = 0;
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    if (!runner.bodies[b].is_wheelset()) continue;
+    const RailsUnder under = rails.empty() ? RailsUnder{} : rails[set++];
+    add_wheelset(contact, runner.bodies[b].radius, speed, under, first_of(b), u, v, sum);
+  }
   return sum;
 }
 
@@ -58,43 +59,90 @@ Contacts contacts_at(const Runner& runner, const RollingContact& contact, double
 double sunk(const Runner& runner, const RunnerMatrices& m, const RollingContact& contact) {
   double weight = 0., wheels = 0.;
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
-    weight -= m.rest[first_of(b) + at(BodyMotion::z)];
+    weight -= m.rest[first_of(b) + index_of(BodyMotion::z)];
     wheels += runner.bodies[b].is_wheelset() ? 2. : 0.;
   }
   return std::pow(weight / wheels / contact.hertz, 2. / 3.);
 }
 
+/// The vehicle sunk into its contacts, each wheelset in the middle of its rails.
+VectorXd first_guess(const Runner& runner, const RunnerMatrices& m, const RollingContact& contact,
+                     const std::vector<RailsUnder>& rails) {
+  VectorXd u = VectorXd::Zero(m.mass.size());
+  const double depth = sunk(runner, m, contact);
+  std::size_t set = 0;
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    double* const own = u.data() + first_of(b);
+    own[index_of(BodyMotion::z)] = -depth;
+    if (rails.empty() || !runner.bodies[b].is_wheelset()) continue;
+    const RailsUnder& under = rails[set++];
+    own[index_of(BodyMotion::y)] += .5 * (under.y[0] + under.y[1]);
+    own[index_of(BodyMotion::z)] += .5 * (under.z[0] + under.z[1]);
+    const double roll = .5 * (under.z[0] - under.z[1]) / contact.half_distance;
+    own[index_of(BodyMotion::roll)] = roll;
+    // The treads stay over the crowns.
+    own[index_of(BodyMotion::y)] -= (runner.bodies[b].radius + contact.crown_radius) * roll;
+  }
+  return u;
+}
+
+bool all_touch(const Runner& runner, const RollingContact& contact, double speed,
+               const SteadyRunning& steady, const std::vector<RailsUnder>& rails) {
+  for (const auto& wheelset : wheel_forces(runner, contact, speed, steady, rails))
+    for (const WheelForce& wheel : wheelset)
+      if (!(wheel.normal > 0.)) return false;
+  return true;
+}
+
+void sink_wheelsets(const Runner& runner, double by, VectorXd& u) {
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b)
+    if (runner.bodies[b].is_wheelset()) u[first_of(b) + index_of(BodyMotion::z)] -= by;
+}
+
 /// A moment about the axle stops a spin's motion, so its rate is sought in place of its angle.
 bool is_spin(const Runner& runner, Index k) {
-  return k % kMotions == at(BodyMotion::pitch) &&
+  return k % kMotions == index_of(BodyMotion::pitch) &&
          runner.bodies[static_cast<std::size_t>(k / kMotions)].is_wheelset();
 }
 
 }  // namespace
 
 SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
-                             const RollingContact& contact, double speed) {
+                             const RollingContact& contact, double speed,
+                             const std::vector<RailsUnder>& rails) {
   const Index n = m.mass.size();
   SteadyRunning s{VectorXd::Zero(n), VectorXd::Zero(n), 0.};
-  for (Index k = at(BodyMotion::z); k < n; k += kMotions)
-    s.displacement[k] = -sunk(runner, m, contact);
-  constexpr int kCap = 60;
+  s.displacement = first_guess(runner, m, contact, rails);
+  const auto touches = [&](const SteadyRunning& tried) {
+    return all_touch(runner, contact, speed, tried, rails);
+  };
+  // Contacts that press give Newton's method its way back.
+  for (int i = 0; i < 20 && !touches(s); ++i) sink_wheelsets(runner, 2e-4, s.displacement);
+  constexpr int kCap = 60, kHalvings = 12;
   for (int i = 0; i < kCap; ++i) {
-    const Contacts c = contacts_at(runner, contact, speed, s.displacement, s.rate);
+    const Contacts c = contacts_at(runner, contact, speed, s.displacement, s.rate, rails);
     const VectorXd left = m.rest + c.force - m.stiffness * s.displacement - m.damping * s.rate;
     MatrixXd J = m.stiffness - c.by_displacement;
     for (Index k = 0; k < n; ++k)
       if (is_spin(runner, k)) J.col(k) = m.damping.col(k) - c.by_rate.col(k);
     s.resistance = -left[0];
     const VectorXd step = J.bottomRightCorner(n - 1, n - 1).partialPivLu().solve(left.tail(n - 1));
-    for (Index k = 1; k < n; ++k) (is_spin(runner, k) ? s.rate : s.displacement)[k] += step[k - 1];
     const double change = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(change)) break;
-    if (change < 1e-11) return s;
+    SteadyRunning next = s;
+    double part = 1.;
+    for (int halving = 0; halving < kHalvings; ++halving, part *= .5) {
+      next = s;
+      for (Index k = 1; k < n; ++k)
+        (is_spin(runner, k) ? next.rate : next.displacement)[k] += part * step[k - 1];
+      if (touches(next)) break;
+    }
+    s = std::move(next);
+    if (change < 1e-11 && touches(s)) return s;
   }
   fail("E-VEHICLE-23",
-       "no steady motion of the vehicle was found; expected a suspension that holds each body in "
-       "every direction");
+       "no steady motion of the vehicle with all wheels on their rails was found; expected a "
+       "suspension that holds each body in every direction, and rails that are not too uneven");
 }
 
 LinearRunning linear_running(const Runner& runner, const RunnerMatrices& m,
@@ -106,25 +154,31 @@ LinearRunning linear_running(const Runner& runner, const RunnerMatrices& m,
     const RunnerBody& body = runner.bodies[b];
     if (!body.is_wheelset()) continue;
     const double spin = body.inertia[1] * speed / body.radius;
-    const Index roll = first_of(b) + at(BodyMotion::roll), yaw = first_of(b) + at(BodyMotion::yaw);
+    const Index roll = first_of(b) + index_of(BodyMotion::roll),
+                yaw = first_of(b) + index_of(BodyMotion::yaw);
     linear.damping(roll, yaw) -= spin;
     linear.damping(yaw, roll) += spin;
   }
   return linear;
 }
 
-std::vector<std::array<WheelForce<double>, 2>> wheel_forces(const Runner& runner,
-                                                            const RollingContact& contact,
-                                                            double speed,
-                                                            const SteadyRunning& steady) {
-  std::vector<std::array<WheelForce<double>, 2>> all;
+std::vector<std::array<WheelForce, 2>> wheel_forces(const Runner& runner,
+                                                    const RollingContact& contact, double speed,
+                                                    const SteadyRunning& steady,
+                                                    const std::vector<RailsUnder>& rails) {
+  std::vector<std::array<WheelForce, 2>> all;
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     if (!runner.bodies[b].is_wheelset()) continue;
-    const double* u = steady.displacement.data() + first_of(b);
-    const double* v = steady.rate.data() + first_of(b);
-    const double radius = runner.bodies[b].radius;
-    all.push_back({wheel_force(contact, radius, 1., speed, u, v),
-                   wheel_force(contact, radius, -1., speed, u, v)});
+    const RailsUnder under = rails.empty() ? RailsUnder{} : rails[all.size()];
+    std::array<WheelForce, 2> wheels;
+    for (const std::size_t side : {0u, 1u}) {
+      Eigen::Matrix<double, kMotions, 1> u = steady.displacement.segment<kMotions>(first_of(b));
+      u[index_of(BodyMotion::y)] -= under.y[side];
+      u[index_of(BodyMotion::z)] -= under.z[side];
+      wheels[side] = wheel_force(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., speed,
+                                 u.data(), steady.rate.data() + first_of(b), {});
+    }
+    all.push_back(wheels);
   }
   return all;
 }

@@ -2,8 +2,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "offline/runner/rolling_contact.h"
 #include "offline/runner/suspension.h"
+#include "online/runner/rolling_contact.h"
 
 namespace railstep {
 
@@ -23,19 +23,21 @@ struct LinearRunning {
 };
 
 /// By Newton's method with exact derivatives. The first body is held along x.
-/// @param speed  m/s, above 0
+/// @param speed  m/s
+/// @param rails  under each wheelset; empty: straight and level
 /// Throws Failed if no steady motion is found.
 SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& matrices,
-                             const RollingContact& contact, double speed);
+                             const RollingContact& contact, double speed,
+                             const std::vector<RailsUnder>& rails = {});
 
 LinearRunning linear_running(const Runner& runner, const RunnerMatrices& matrices,
                              const RollingContact& contact, double speed,
                              const SteadyRunning& steady);
 
 /// Forces of the rails on the wheels, [wheelsets][left, right].
-std::vector<std::array<WheelForce<double>, 2>> wheel_forces(const Runner& runner,
-                                                            const RollingContact& contact,
-                                                            double speed,
-                                                            const SteadyRunning& steady);
+std::vector<std::array<WheelForce, 2>> wheel_forces(const Runner& runner,
+                                                    const RollingContact& contact, double speed,
+                                                    const SteadyRunning& steady,
+                                                    const std::vector<RailsUnder>& rails = {});
 
 }  // namespace railstep

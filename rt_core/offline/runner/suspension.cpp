@@ -58,7 +58,8 @@ MatrixXd bend(const End& end, const Vector3d& p, Eigen::Index n) {
                           p.dot(end.arm) * Matrix3d::Identity();
   MatrixXd m = t.transpose() * turned * t;
   if (end.wheelset) {
-    const int roll = end.first + at(BodyMotion::roll), yaw = end.first + at(BodyMotion::yaw);
+    const int roll = end.first + index_of(BodyMotion::roll),
+              yaw = end.first + index_of(BodyMotion::yaw);
     const double moment = .5 * end.arm.cross(p)[1];
     m(roll, yaw) += moment;
     m(yaw, roll) += moment;
@@ -150,7 +151,7 @@ void check(const Runner& runner) {
 VectorXd weights(const Runner& runner, double gravity) {
   VectorXd w = VectorXd::Zero(static_cast<Eigen::Index>(kMotions * runner.bodies.size()));
   for (std::size_t b = 0; b < runner.bodies.size(); ++b)
-    w[kMotions * static_cast<Eigen::Index>(b) + at(BodyMotion::z)] =
+    w[kMotions * static_cast<Eigen::Index>(b) + index_of(BodyMotion::z)] =
         gravity * runner.bodies[b].mass;
   return w;
 }

@@ -8,12 +8,14 @@
 #include "offline/analysis/statics.h"
 #include "offline/contact/hertz.h"
 #include "offline/math/refuse.h"
+#include "offline/start/start_runner.h"
 #include "offline/start/start_vehicle.h"
 #include "offline/start/start_wheelset.h"
 #include "offline/start/static_lines.h"
 #include "online/contact/body_force.h"
 #include "online/contact/wheel.h"
 #include "online/model/progress.h"
+#include "online/runner/runner_contact.h"
 #include "online/step/step.h"
 #include "online/track/closing.h"
 #include "online/track/moving_load.h"
@@ -29,6 +31,7 @@ struct Pose {
   std::vector<Eigen::VectorXd> lines;
   std::vector<std::array<double, 6>> wheelsets;
   SettledVehicles vehicles;
+  SettledRunners runners;
   std::vector<double> contact_force;  // [contacts] of wheelsets, N
 };
 
@@ -76,6 +79,22 @@ void put_wheelsets(const Model& model, double time, State& state) {
   }
 }
 
+/// Puts displacements of lines alone into a state.
+void put_lines(const PackedModel& packed, const std::vector<Eigen::VectorXd>& lines, State& state) {
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    put(packed.lines()[l], packed.model().line[l], lines[l], Eigen::VectorXd::Zero(lines[l].size()),
+        state);
+}
+
+/// The largest change of a coordinate of rail vehicles, m and rad.
+double change_of(const SettledRunners& before, const SettledRunners& now) {
+  double most = 0.;
+  for (std::size_t r = 0; r < now.steady.size(); ++r)
+    most = std::max(
+        most, (now.steady[r].displacement - before.steady[r].displacement).cwiseAbs().maxCoeff());
+  return most;
+}
+
 /// Static equilibrium, by iteration: the forces that balance the wheelsets where they are, the
 /// rails and vehicles under these forces, and the shift of each wheelset to the depths that belong
 /// to its forces. Contacts are those that the step finds, so that it keeps the start. The forces
@@ -92,6 +111,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
   put_wheelsets(model, time, state);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) (void)wheel_load(model.wheelset[b]);
   Pose pose;
+  pose.runners = runners_on_even_rails(packed);
   double before = HUGE_VAL;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     Acting acting = loads;
@@ -100,14 +120,16 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
       port.push_back(acting.ports.size());
       add_forces(model, stance_of(model, b, at), acting);
     }
+    const std::size_t first_of_runners = acting.ports.size();
+    add_forces(packed, pose.runners, at, time, acting);
     if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
     pose.lines = static_lines(packed, statics, acting, gravity);
-    for (std::size_t l = 0; l < pose.lines.size(); ++l)
-      put(packed.lines()[l], model.line[l], pose.lines[l],
-          Eigen::VectorXd::Zero(pose.lines[l].size()), state);
+    put_lines(packed, pose.lines, state);
     pose.wheelsets.clear();
     pose.contact_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
-    double most = 0.;
+    SettledRunners settled = settle_runners(packed, at, time, acting, first_of_runners);
+    double most = change_of(pose.runners, settled);
+    pose.runners = std::move(settled);
     for (std::int32_t b = 0; b < model.wheelsets; ++b) {
       const Stance now = stance_of(model, b, at);
       const Eigen::VectorXd way = way_to_depths(
@@ -134,7 +156,9 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
 /// The equilibrium `time` later, for rates only: each wheel presses right over its place with its
 /// static force. Under a force a mesh has a kink at the border of two elements, and a contact's own
 /// place passes it only after the wheel.
-Pose passing(const Statics& statics, const PackedModel& packed, double gravity, double time) {
+/// @param now  the equilibrium at present
+Pose passing(const Statics& statics, const PackedModel& packed, double gravity, double time,
+             const Pose& now) {
   const Model& model = packed.model();
   if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
     return equilibrium(statics, packed, gravity, time);
@@ -146,9 +170,17 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
     acting.forces.push_back({point_of(packed, load_point_of(model, i), x), -wheel_load(w)});
     acting.ports.push_back(rail_force(model, load_point_of(model, i), x, -wheel_load(w)));
   }
+  std::vector<double> memory = start_released(packed);
+  State state = state_on(model, memory.data());
+  const Configuration at{state.u, {state.u, state.v}, track_offset(model, 0)};
+  put_lines(packed, now.lines, state);
+  const std::size_t first_of_runners = acting.ports.size();
+  add_forces(packed, now.runners, at, time, acting);
   Pose pose;
   if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
   pose.lines = static_lines(packed, statics, acting, gravity);
+  put_lines(packed, pose.lines, state);
+  pose.runners = settle_runners(packed, at, time, acting, first_of_runners);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
     const double up[3] = {0., 0., 1.}, rolled = travelled(w.travel, 0.).speed * time;
@@ -197,6 +229,10 @@ Window window(const Model& model, double length) {
     const VehicleModel& own = model.vehicle[model.vehicle_wheel[i].vehicle];
     narrow(own.start + model.vehicle_wheel[i].place, travelled(own.travel, 0.).speed);
   }
+  for (std::int32_t r = 0; r < model.runners; ++r)
+    for (std::int32_t i = 0; i < model.runner[r].wheelsets; ++i)
+      narrow(model.runner[r].start + model.runner[r].wheelset[i].place,
+             travelled(model.runner[r].travel, 0.).speed);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     narrow(model.wheelset[b].start, travelled(model.wheelset[b].travel, 0.).speed);
   return w;
@@ -241,6 +277,40 @@ std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel&
   return {0., 0., z, roll, 0., 0.};
 }
 
+namespace {
+
+/// Puts rail vehicles into a state. The rates are those of steady running, and those by which rails
+/// lead them on.
+void put_runners(const PackedModel& packed, const SettledRunners& now, const SettledRunners& before,
+                 const SettledRunners& later, double span, State& state) {
+  const Model& model = packed.model();
+  std::vector<double> crown;  // radius under each wheelset, m
+  for (std::size_t r = 0; r < now.steady.size(); ++r) {
+    const std::int32_t first = model.runner[r].first;
+    crown.insert(crown.end(), static_cast<std::size_t>(model.runner[r].wheelsets),
+                 model.runner[r].contact.crown_radius);
+    const Eigen::VectorXd& u = now.steady[r].displacement;
+    const Eigen::VectorXd v =
+        now.steady[r].rate + (later.steady[r].displacement - before.steady[r].displacement) / span;
+    std::copy(u.begin(), u.end(), state.u + first);
+    std::copy(v.begin(), v.end(), state.v + first);
+    // A damper in series with a spring has no force.
+    const auto& series = packed.runners()[r].matrices.series;
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      const std::int32_t own = first + static_cast<std::int32_t>(u.size() + static_cast<int>(i));
+      state.u[own] = series[i].row.dot(u);
+      state.v[own] = series[i].row.dot(v);
+    }
+  }
+  for (std::size_t set = 0; set < now.wheels.size(); ++set)
+    for (const std::size_t side : {0u, 1u})
+      keep_wheel_force(
+          now.wheels[set][side], crown[set],
+          wheel_force_of(state, static_cast<std::int32_t>(set), static_cast<std::int32_t>(side)));
+}
+
+}  // namespace
+
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
                                          double gravity) {
   const Model& model = packed.model();
@@ -250,8 +320,8 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
   const Statics statics(track);
   const Pose at = equilibrium(statics, packed, gravity, 0.);
   const Window w = window(model, track.length());
-  const Pose later = passing(statics, packed, gravity, w.to);
-  const Pose before = passing(statics, packed, gravity, w.from);
+  const Pose later = passing(statics, packed, gravity, w.to, at);
+  const Pose before = passing(statics, packed, gravity, w.from, at);
   const double span = w.to > w.from ? w.to - w.from : 1.;  // s; 1 if there is no window
   for (std::size_t l = 0; l < packed.lines().size(); ++l) {
     put(packed.lines()[l], model.line[l], at.lines[l], (later.lines[l] - before.lines[l]) / span,
@@ -276,6 +346,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
   }
   for (std::int32_t i = 0; i < model.vehicle_wheels; ++i)
     state.contact_force[vehicle_contact(model, i)] = at.vehicles.force[i];
+  put_runners(packed, at.runners, before.runners, later.runners, span, state);
   put_port_forces(model, state);
   return memory;
 }

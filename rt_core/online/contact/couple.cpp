@@ -3,6 +3,7 @@
 #include "online/contact/fixed_port_force.h"
 #include "online/contact/flange.h"
 #include "online/contact/mean_contact.h"
+#include "online/contact/runner_coupling.h"
 #include "online/contact/track_response.h"
 #include "online/contact/vehicle_contact.h"
 #include "online/contact/vehicle_response.h"
@@ -41,6 +42,7 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
                          c.contact, later);
   for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
     c.place[i] = {model, load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+  locate_wheel_seats(model, stage, s, w, c);
 }
 
 /// Whether there is a rail or ground under a wheel.
@@ -48,12 +50,12 @@ bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground
 
 /// Residual displacement of the rail under each wheel by the loads.
 void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c) noexcept {
-  for (ContactId i = 0; i < c.contacts; ++i) c.by_loads[i] = 0.;
+  for (int i = 0; i < c.rows; ++i) c.by_loads[i] = 0.;
   for (std::int32_t l = 0; l < model.loads; ++l) {
     const PlacedLoad load = place(model, model.load[l], stage.step, stage.before);
     if (!load.on_rail) continue;
     const RailForce at{model, model.load[l].load_point, load.row.element, load.xi, load.force};
-    for (ContactId i = 0; i < c.contacts; ++i)
+    for (int i = 0; i < c.rows; ++i)
       c.by_loads[i] += load.force * residual_between(model, at, c.place[i]);
   }
 }
@@ -66,18 +68,21 @@ double body_compliance(const Model& model, const Coupling& c, ContactId i, Conta
                                   : vehicle_compliance(model, i, j);
 }
 
-/// W between all wheels: through the lines, the bodies and the residual flexibility.
+/// W between all rows: through the lines, the bodies of contacts and the residual flexibility.
 void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
   track_compliance(model, w, c);
-  for (ContactId i = 0; i < c.contacts; ++i)
-    for (ContactId j = 0; j <= i; ++j) {
+  for (int i = 0; i < c.rows; ++i)
+    for (int j = 0; j <= i; ++j) {
+      // Bodies of runners are coordinates of their own.
+      const bool of_contacts = i < c.contacts;
+      const double body = of_contacts ? body_compliance(model, c, i, j) : 0.;
       double sum = 0.;
-      if (c.contact[i].on_rail && c.contact[j].on_rail)
-        sum = model.scheme.theta * (c.W[i * c.ports + j] + body_compliance(model, c, i, j)) +
+      if (is_on_rail(c, i) && is_on_rail(c, j))
+        sum = model.scheme.theta * (c.W[i * c.ports + j] + body) +
               (i == j ? residual_under(model, c.place[i])
                       : residual_between(model, c.place[j], c.place[i]));
-      else if (stands(c.contact[i]) && stands(c.contact[j]))
-        sum = model.scheme.theta * body_compliance(model, c, i, j);
+      else if (of_contacts && stands(c.contact[i]) && stands(c.contact[j]))
+        sum = model.scheme.theta * body;
       c.W[i * c.ports + j] = c.W[j * c.ports + i] = sum;
     }
 }
@@ -96,38 +101,68 @@ void track_penetration(const Model& model, const State& s, const Workspace& w,
       c.track_free[i] += is_of_wheelset(model, i) ? wheelset_offset(model, s, w, c, i)
                                                   : vehicle_offset(model, s, c, i);
   }
+  for (int i = c.contacts; i < c.rows; ++i) {
+    c.track_free[i] = 0.;
+    if (is_on_rail(c, i))
+      c.track_free[i] = (c.located[i] + model.scheme.theta * track_motion(model, w, c, i)) +
+                        (c.by_loads[i] + c.seat[i - c.contacts].rise);
+  }
+}
+
+/// Result of one solve of all ports, by either method.
+struct Solved {
+  Status status;  // cap_reached or contact_ill_posed
+  int iterations;
+};
+
+Status status_of(PortStatus met) noexcept {
+  switch (met) {
+    case PortStatus::converged:
+      return Status::ok;
+    case PortStatus::cap_reached:
+      return Status::cap_reached;
+    case PortStatus::indefinite:
+    case PortStatus::bad_input:
+      break;
+  }
+  return Status::contact_ill_posed;
 }
 
 /// Ports for given multipliers.
-PortResult solve(const Model& model, const State& s, Coupling& c) noexcept {
-  double d_free[kPorts];
+/// @param runners  null: there are none on this track
+Solved solve(const Model& model, const State& s, const Workspace& w, Coupling& c,
+             CoupledRunners* runners) noexcept {
+  double d_free[kPorts + kMaxWheelSeatRows];
   for (int i = 0; i < c.ports; ++i) {
     d_free[i] = c.track_free[i];
     if (i >= c.contacts || !stands(c.contact[i])) continue;
     d_free[i] -= model.scheme.theta *
                  (is_of_wheelset(model, i) ? free_lift(model, s, c, i) : vehicle_lift(model, c, i));
   }
-  return solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
+  if (runners != nullptr) {
+    const NewtonResult met = solve_coupled_runners(model, d_free, w, c, *runners);
+    return {status_of(met.status), met.iterations};
+  }
+  const PortResult met = solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
+  return {status_of(met.status), met.iterations};
 }
 
 /// The guides' augmented Lagrangian around the contacts, at most the largest cap of the wheelsets.
 void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& w, Coupling& c,
-                   CoupleResult& result) noexcept {
+                   CoupledRunners* runners, CoupleResult& result) noexcept {
   const std::int32_t cap = guide_iterations(model);
   bool settled = false;
-  PortStatus met = PortStatus::converged;
+  Status met = Status::ok;
   for (std::int32_t iteration = 0; iteration < cap && !settled; ++iteration) {
-    const PortResult ports = solve(model, s, c);
+    const Solved ports = solve(model, s, w, c, runners);
     met = ports.status;
     if (ports.iterations > result.iterations) result.iterations = ports.iterations;
     result.violation = 0.;
     settled = move_wheelsets(model, stage, s, w, c, result.violation);
     if (iteration + 1 > result.iterations) result.iterations = iteration + 1;
   }
-  if (!settled || met == PortStatus::cap_reached)
-    result.status = result.status | Status::cap_reached;
-  if (met == PortStatus::indefinite || met == PortStatus::bad_input)
-    result.status = result.status | Status::contact_ill_posed;
+  result.status = result.status | met;
+  if (!settled) result.status = result.status | Status::cap_reached;
 }
 
 bool impact_is_unresolved_at(const Model& model, const Coupling& c, const State& s,
@@ -162,7 +197,9 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   CoupleResult result{};
   Coupling c;
   c.contacts = contact_count(model);
-  c.ports = c.contacts + model.fixed.count;
+  c.rows = track_row_count(model);
+  c.ports = port_count(model);
+  c.W = w.compliance;
   const double time = time_of(model.scheme, stage);
   locate_contacts(model, stage, state, w, c);
   respond(model, state, w, c);
@@ -176,7 +213,12 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   if (model.scheme.mean != 0) find_means(model, state, w, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.contact_force[i];
-  solve_coupled(model, stage, state, w, c, result);
+  const bool has_runners = c.rows > c.contacts;
+  CoupledRunners runners;
+  if (has_runners) couple_runners(model, stage, state, w, c, runners);
+  solve_coupled(model, stage, state, w, c, has_runners ? &runners : nullptr, result);
+  if (has_runners)
+    result.status = result.status | move_coupled_runners(model, c, runners, state, w);
   move_track(model, w, c);
   move_vehicles(model, w, c);
   if (model.fixed.count > 0) apply_fixed_port_forces(model, c, state, w);

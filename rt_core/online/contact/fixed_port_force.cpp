@@ -36,7 +36,7 @@ void place_banded(const Model& model, std::int32_t j, const Workspace& w, Coupli
     const std::int32_t first = model.line[l].first;
     free += panels_dot(own.panels, own.first + first, w.solved + first);
   }
-  c.track_free[c.contacts + j] = free - fixed.gap[j];
+  c.track_free[c.rows + j] = free - fixed.gap[j];
 }
 
 void place_condensed(const Model& model, std::int32_t j, const State& s, const Workspace& w,
@@ -46,21 +46,21 @@ void place_condensed(const Model& model, std::int32_t j, const State& s, const W
   const double d0 = closing(model, j, s.u, s.v) - fixed.gap[j];
   const double d1 = closing(model, j, w.solved, w.imaginary) - fixed.gap[j];
   c.law[c.contacts + j] = law_of(fixed, j, mean_speed(model.scheme, d0));
-  c.track_free[c.contacts + j] = theta * d1 + (1. - theta) * d0;
+  c.track_free[c.rows + j] = theta * d1 + (1. - theta) * d0;
 }
 
 /// W between a fixed port and all before it.
 void fixed_compliance(const Model& model, std::int32_t j, const Workspace& w,
                       Coupling& c) noexcept {
-  const int row = c.contacts + j;
-  for (ContactId i = 0; i < c.contacts; ++i) {
+  const int row = c.rows + j;
+  for (int i = 0; i < c.rows; ++i) {
     double sum = 0.;
     for (std::int32_t l = 0; l < model.lines; ++l)
       sum += line_compliance(model, w, c, i, l, response_of(model, j, l));
     c.W[i * c.ports + row] = c.W[row * c.ports + i] = model.scheme.theta * sum;
   }
   for (std::int32_t i = 0; i <= j; ++i)
-    c.W[(c.contacts + i) * c.ports + row] = c.W[row * c.ports + c.contacts + i] =
+    c.W[(c.rows + i) * c.ports + row] = c.W[row * c.ports + c.rows + i] =
         model.fixed.compliance[j * model.fixed.count + i];
 }
 
@@ -74,14 +74,14 @@ void couple_fixed_ports(const Model& model, const State& s, const Workspace& w,
     else
       place_banded(model, j, w, c);
     fixed_compliance(model, j, w, c);
-    c.force[c.contacts + j] = s.port_force[j];
+    c.force[c.rows + j] = s.port_force[j];
   }
 }
 
 void apply_fixed_port_forces(const Model& model, const Coupling& c, State& s,
                              Workspace& w) noexcept {
   for (std::int32_t j = 0; j < model.fixed.count; ++j) {
-    const double force = c.force[c.contacts + j];
+    const double force = c.force[c.rows + j];
     s.port_force[j] = force;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineResponse by = response_of(model, j, l);

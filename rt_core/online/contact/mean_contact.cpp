@@ -6,13 +6,19 @@
 
 namespace railstep {
 
-double residual_before(const Model& model, const State& s, const Coupling& c,
-                       ContactId i) noexcept {
+double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
   double sum = c.by_loads[i];
-  for (ContactId j = 0; j < c.contacts; ++j)
-    if (c.contact[j].on_rail)
-      sum -= s.contact_force[j] * (i != j ? residual_between(model, c.place[j], c.place[i])
-                                          : residual_under(model, c.place[i]));
+  for (int j = 0; j < c.rows; ++j) {
+    if (!is_on_rail(c, j)) continue;
+    // Of a seat the force on the wheel along y, z, and none about x; only z has residual parts.
+    const int seat = j - c.contacts;
+    const double force = seat < 0 ? s.contact_force[j]
+                         : seat % kWheelSeatRows == 1
+                             ? s.wheel_force[kWheelForces * (seat / kWheelSeatRows) + 2]
+                             : 0.;
+    sum -= force * (i != j ? residual_between(model, c.place[j], c.place[i])
+                           : residual_under(model, c.place[i]));
+  }
   return sum;
 }
 

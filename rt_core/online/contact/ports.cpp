@@ -291,6 +291,13 @@ bool done(const Point& x) noexcept { return x.residual <= kPortTolerance * x.sca
 
 }  // namespace
 
+PortForce port_force(const PortLaw& law, double d) noexcept {
+  const double force = force_at(law, d);
+  return {force, acts(law, force) ? stiffness_at(law, d) : 0.0};
+}
+
+double port_depth(const PortLaw& law, double force) noexcept { return depth_of(law, force); }
+
 PortResult solve_ports(int n, const double* W, const PortLaw* law, const double* d_free, double* f,
                        double* d, int cap) noexcept {
   const Problem p{n, W, law, d_free};

@@ -36,6 +36,14 @@ struct PortLaw {
 };
 inline constexpr double kJumpDepth = 1e-6;  // m
 
+/// The force of a port alone at a penetration, and its slope over it; the reverse for a force > 0,
+/// or for any force of a bilateral port.
+struct PortForce {
+  double force, slope;  // N, N/m
+};
+PortForce port_force(const PortLaw& law, double d) noexcept;
+double port_depth(const PortLaw& law, double force) noexcept;
+
 struct PortResult {
   PortStatus status;
   int iterations;   // Newton iterations taken, 0 to cap

@@ -4,16 +4,15 @@ namespace railstep {
 
 namespace {
 
-/// The part of one line in a wheel's row.
-Complex row_of(const Model& model, const Workspace& w, const LineModel& line,
-               ContactId wheel) noexcept {
-  const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(wheel) * model.unknowns + line.first;
+/// The part of one line in a row.
+Complex row_of(const Model& model, const Workspace& w, const LineModel& line, int row) noexcept {
+  const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(row) * model.unknowns + line.first;
   return {re, re + model.unknowns};
 }
 
-/// Whether a force at the wheel moves the line.
-bool acts_on(const Coupling& c, ContactId wheel, const LineModel& line) noexcept {
-  return c.contact[wheel].on_rail && line.rail_factor[c.contact[wheel].row.rail] != 0.;
+/// Whether a force along a row moves the line.
+bool acts_on(const Coupling& c, int row, const LineModel& line) noexcept {
+  return is_on_rail(c, row) && line.rail_factor[track_row(c, row).rail] != 0.;
 }
 
 /// Halfway solve of a banded line for a wheel's row.
@@ -41,24 +40,24 @@ void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
     solve_forward(step, {0, step.panels}, own);
     divide_by_pivots(step, {0, step.panels}, own);
   }
-  for (ContactId i = 0; i < c.contacts; ++i)
+  for (int i = 0; i < c.rows; ++i)
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
       if (acts_on(c, i, line))
-        respond_band(line, c.contact[i].row, i * std::ptrdiff_t{model.unknowns}, w, c.panels[i][l]);
+        respond_band(line, track_row(c, i), i * std::ptrdiff_t{model.unknowns}, w, c.panels[i][l]);
     }
 }
 
 /// Response of the condensed lines to a unit force under each wheel, held over the step.
 void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
-  for (ContactId i = 0; i < c.contacts; ++i) {
+  for (int i = 0; i < c.rows; ++i) {
     double* re = w.row + 2 * i * stride;
     const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
       if (!acts_on(c, i, line)) continue;
-      shape_row(line, c.contact[i].row, re, re + stride);
+      shape_row(line, track_row(c, i), re, re + stride);
       modes_multiply(line.modal.held_force, row_of(model, w, line, i), w.unit + unit + line.first,
                      w.unit_second + unit + line.first, line.size);
     }
@@ -83,13 +82,13 @@ void subtract(const double* const* unit, const double* force, int count, int siz
 
 /// Part of the displacement under contact `i` by a line that a force there moves.
 double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
-                  ContactId i, const double* re, const double* im) noexcept {
-  if (model.form == Form::banded) return motion(line, c.contact[i].row, {re, {}});
+                  int i, const double* re, const double* im) noexcept {
+  if (model.form == Form::banded) return motion(line, track_row(c, i), {re, {}});
   return modes_dot(row_of(model, w, line, i), {re + line.first, im + line.first}, line.size);
 }
 
 /// Displacement under wheel `i` by displacements `re` and, if condensed, `im` of the lines.
-double track_under(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
+double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
                    const double* re, const double* im) noexcept {
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
@@ -99,11 +98,11 @@ double track_under(const Model& model, const Workspace& w, const Coupling& c, Co
 
 /// Adds the compliance of a line to W by its table.
 void add_tabled(const LineModel& line, Coupling& c) noexcept {
-  CarriedRow carried[kMaxWheels];
-  for (ContactId i = 0; i < c.contacts; ++i) {
+  CarriedRow carried[kMaxTrackRows];
+  for (int i = 0; i < c.rows; ++i) {
     if (!acts_on(c, i, line)) continue;
-    carry(line, c.contact[i].row, carried[i]);
-    for (ContactId j = 0; j <= i; ++j)
+    carry(line, track_row(c, i), carried[i]);
+    for (int j = 0; j <= i; ++j)
       if (acts_on(c, j, line)) c.W[i * c.ports + j] += between(line.modal, carried[i], carried[j]);
   }
 }
@@ -115,12 +114,12 @@ void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noex
     respond_modes(model, w, c);
   else
     respond_bands(model, w, c);
-  for (ContactId i = 0; i < c.contacts; ++i)
+  for (int i = 0; i < c.rows; ++i)
     c.located[i] = model.form == Form::condensed ? track_under(model, w, c, i, s.u, s.v)
                                                  : track_under(model, w, c, i, w.scaled, nullptr);
 }
 
-double line_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
+double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
                        std::int32_t l, const LineResponse& by) noexcept {
   const LineModel& line = model.line[l];
   if (!acts_on(c, i, line)) return 0.;
@@ -133,20 +132,19 @@ namespace {
 
 /// Adds the compliance of a line to W by the responses to each wheel.
 void add_summed(const Model& model, const Workspace& w, std::int32_t l, Coupling& c) noexcept {
-  for (ContactId j = 0; j < c.contacts; ++j) {
+  for (int j = 0; j < c.rows; ++j) {
     if (!acts_on(c, j, model.line[l])) continue;
     const std::ptrdiff_t unit = j * std::ptrdiff_t{model.unknowns};
     const LineResponse by{c.panels[j][l], w.unit + unit, w.unit_second + unit};
-    for (ContactId i = j; i < c.contacts; ++i)
-      c.W[i * c.ports + j] += line_compliance(model, w, c, i, l, by);
+    for (int i = j; i < c.rows; ++i) c.W[i * c.ports + j] += line_compliance(model, w, c, i, l, by);
   }
 }
 
 }  // namespace
 
 void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
-  for (ContactId i = 0; i < c.contacts; ++i)
-    for (ContactId j = 0; j <= i; ++j) c.W[i * c.ports + j] = 0.;
+  for (int i = 0; i < c.rows; ++i)
+    for (int j = 0; j <= i; ++j) c.W[i * c.ports + j] = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
     if (model.form == Form::condensed && model.line[l].modal.between != nullptr)
       add_tabled(model.line[l], c);
@@ -154,8 +152,7 @@ void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexc
       add_summed(model, w, l, c);
 }
 
-double track_motion(const Model& model, const Workspace& w, const Coupling& c,
-                    ContactId i) noexcept {
+double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept {
   if (model.form == Form::condensed)
     return track_under(model, w, c, i, w.solved, w.imaginary) - c.located[i];
   double sum = 0.;
@@ -167,10 +164,10 @@ double track_motion(const Model& model, const Workspace& w, const Coupling& c,
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
-    const double *re[kMaxWheels], *im[kMaxWheels];
-    double force[kMaxWheels];
+    const double *re[kMaxTrackRows], *im[kMaxTrackRows];
+    double force[kMaxTrackRows];
     int count = 0;
-    for (ContactId i = 0; i < c.contacts; ++i) {
+    for (int i = 0; i < c.rows; ++i) {
       if (!acts_on(c, i, line)) continue;
       const std::ptrdiff_t unit = i * std::ptrdiff_t{model.unknowns} + line.first;
       if (model.form == Form::banded)

@@ -17,9 +17,10 @@ struct LineResponse {
   const double *first, *second;
 };
 
-// On banded lines all contacts of a step take one solve, S = L D L'. Forward, L^-1 of the track's
-// right-hand side and of each contact's row r give all that the contacts need: S^-1 b under a
-// contact is (L^-1 r) . (D^-1 L^-1 b), a sum over the few panels to which L^-1 carries r. Their
+// Contacts and seats of wheels touch the track along rows (contact_id.h), with forces against them.
+// On banded lines all of a step take one solve, S = L D L'. Forward, L^-1 of the track's
+// right-hand side and of each row r give all that the contacts need: S^-1 b along a row
+// is (L^-1 r) . (D^-1 L^-1 b), a sum over the few panels to which L^-1 carries r. Their
 // forces are added to D^-1 L^-1 b, and one solve backward gives the displacements.
 
 /// Solves banded lines forward for their own right-hand side (in workspace.solved), and for each
@@ -28,7 +29,7 @@ struct LineResponse {
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
 
 /// Displacement of line `l` under wheel `i` by a response of it.
-double line_compliance(const Model& model, const Workspace& w, const Coupling& c, ContactId i,
+double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
                        std::int32_t l, const LineResponse& by) noexcept;
 
 /// Displacements of the track under each wheel by a unit force at each other, at the step's end:
@@ -36,8 +37,7 @@ double line_compliance(const Model& model, const Workspace& w, const Coupling& c
 void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept;
 
 /// Displacement under wheel `i` without contact forces, since the contact was located.
-double track_motion(const Model& model, const Workspace& w, const Coupling& c,
-                    ContactId i) noexcept;
+double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept;
 
 /// Adds the wheel forces to the track without them.
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept;

@@ -20,6 +20,24 @@ inline std::int32_t contact_count(const Model& model) noexcept {
   return wheel_count(model) + flange_count(model);
 }
 
+// The track is touched along rows: one of each contact, then those of the seats of runners' wheels,
+// left and right of each wheelset in turn: along y and z at the centre of the crown, and roll of
+// the section. Rigid rails have no seats.
+inline constexpr int kWheelSeatRows = 3;
+
+inline std::int32_t wheel_seat_row_count(const Model& model) noexcept {
+  return model.lines > 0 ? 2 * kWheelSeatRows * model.runner_wheelsets : 0;
+}
+inline std::int32_t track_row_count(const Model& model) noexcept {
+  return contact_count(model) + wheel_seat_row_count(model);
+}
+/// The first row of the seat under a runner's wheel, among all rows of the track.
+/// @param wheelset  among those of all runners
+inline std::int32_t wheel_seat_row(const Model& model, std::int32_t wheelset,
+                                   std::int32_t side) noexcept {
+  return contact_count(model) + kWheelSeatRows * (2 * wheelset + side);
+}
+
 /// The tread of a wheelset on a side.
 constexpr ContactId tread_of(std::int32_t wheelset, std::int32_t side) noexcept {
   return 2 * wheelset + side;

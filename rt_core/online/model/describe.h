@@ -212,6 +212,34 @@ void describe(Archive& a, VehicleModel& v) {
 }
 
 template <typename Archive>
+void describe(Archive& a, RollingContact& c) {
+  for (double* x : {&c.slope, &c.half_distance, &c.crown_radius, &c.hertz}) a.real(*x);
+  for (double& x : c.kalker) a.real(x);
+}
+
+template <typename Archive>
+void describe(Archive& a, RunnerModel& r) {
+  a.count(r.first, kMostUnknowns);
+  a.count(r.size, kMaxRunnerUnknowns);
+  a.count(r.bodies, r.size / kMotions);
+  a.count(r.first_wheelset, kMaxRunnerWheelsets);
+  a.count(r.wheelsets, kMaxWheelsetsOfRunner);
+  for (std::int32_t i = 0; i < r.wheelsets; ++i) {
+    RunnerWheelset& w = r.wheelset[i];
+    a.count(w.first, kMaxRunnerUnknowns);
+    for (double* x : {&w.place, &w.radius, &w.spin_inertia}) a.real(*x);
+  }
+  a.real(r.start);
+  describe(a, r.travel);
+  describe(a, r.contact);
+  for (std::int32_t& point : r.load_point) a.count(point, kMaxLoadPoints - 1);
+  const std::int64_t n = r.size, motions = std::int64_t{kMotions} * r.wheelsets;
+  for (const double** of : {&r.mass, &r.rest}) a.reals(*of, n);
+  for (const double** of : {&r.damping, &r.stiffness, &r.inverse}) a.reals(*of, n * n);
+  a.reals(r.compliance, motions * motions);
+}
+
+template <typename Archive>
 void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
   a.count(r.load_points, kMaxLoadPoints);
   a.count(r.points, kMostRows);
@@ -297,6 +325,9 @@ void describe_track(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.flanges; ++i) describe(a, m.flange[i]);
   for (std::int32_t i = 0; i < m.vehicles; ++i) describe(a, m.vehicle[i]);
   for (std::int32_t i = 0; i < m.vehicle_wheels; ++i) describe(a, m.vehicle_wheel[i]);
+  a.count(m.runners, kMaxRunners);
+  a.count(m.runner_wheelsets, kMaxRunnerWheelsets);
+  for (std::int32_t i = 0; i < m.runners; ++i) describe(a, m.runner[i]);
   for (std::int32_t i = 0; i < m.signals; ++i) {
     a.count(m.signal[i].rail, 1);
     a.count(m.signal[i].direction, 2);

@@ -1,6 +1,7 @@
 #include "online/model/load_track.h"
 
 #include "online/math/finite.h"
+#include "online/math/newton.h"
 #include "online/model/external_input.h"
 #include "online/model/progress.h"
 #include "online/model/state.h"
@@ -103,7 +104,8 @@ bool load_is_valid(const LoadModel& l) noexcept {
 /// External wheels need a track with loads only and one step a frame; each has its own inputs.
 bool external_wheels_are_valid(const Model& m) noexcept {
   if (m.external_wheels == 0) return true;
-  if (m.wheelsets > 0 || m.vehicles > 0 || m.fixed.count > 0 || m.steps_per_frame != 1)
+  if (m.wheelsets > 0 || m.vehicles > 0 || m.runners > 0 || m.fixed.count > 0 ||
+      m.steps_per_frame != 1)
     return false;
   for (std::int32_t i = 0; i < m.external_wheels; ++i)
     if (m.external_wheel[i].input + kExternalInputs > m.inputs) return false;
@@ -141,6 +143,37 @@ bool vehicle_is_valid(const Model& m, const VehicleModel& v) noexcept {
          diagonal_is_above_zero(v.compliance, v.wheels);
 }
 
+bool contact_is_valid(const RollingContact& c) noexcept {
+  return c.hertz > 0. && c.crown_radius > 0. && c.half_distance > 0. && c.slope >= 0. &&
+         are_not_negative(c.kalker, 4);
+}
+
+/// Wheelsets are among the bodies, and follow those of the runners before.
+bool runner_is_valid(const Model& m, const RunnerModel& r, std::int32_t first_wheelset) noexcept {
+  if (r.first < m.line_unknowns || r.first + r.size > m.unknowns || r.bodies < 1) return false;
+  if (r.first_wheelset != first_wheelset || r.wheelsets < 1) return false;
+  for (std::int32_t i = 0; i < r.wheelsets; ++i) {
+    const RunnerWheelset& w = r.wheelset[i];
+    if (w.first % kMotions != 0 || w.first / kMotions >= r.bodies || !(w.radius > 0.)) return false;
+  }
+  const std::int64_t motions = std::int64_t{kMotions} * r.wheelsets;
+  return travel_is_valid(r.travel) && contact_is_valid(r.contact) && r.mass && r.rest &&
+         r.damping && r.stiffness && r.inverse && r.compliance &&
+         are_above_zero(r.mass, std::int64_t{kMotions} * r.bodies) &&
+         are_not_negative(r.mass, r.size) && diagonal_is_not_negative(r.inverse, r.size) &&
+         diagonal_is_not_negative(r.compliance, motions);
+}
+
+bool runners_are_valid(const Model& m) noexcept {
+  std::int32_t wheelsets = 0;
+  for (std::int32_t i = 0; i < m.runners; ++i) {
+    if (!runner_is_valid(m, m.runner[i], wheelsets)) return false;
+    wheelsets += m.runner[i].wheelsets;
+  }
+  return wheelsets == m.runner_wheelsets && newton_size(m) <= kMostNewton &&
+         (m.lines == 0 || wheelsets <= kMaxSeatedWheelsets);
+}
+
 /// Whether a wheel belongs to its vehicle, whose matrices have a row for it.
 bool wheel_is_valid(const Model& m, std::int32_t i) noexcept {
   const VehicleWheel& wheel = m.vehicle_wheel[i];
@@ -165,6 +198,9 @@ bool residual_is_valid(const Model& m) noexcept {
       return false;
   for (std::int32_t i = 0; i < m.vehicle_wheels && tables; ++i)
     if (m.vehicle_wheel[i].load_point >= r.load_points) return false;
+  for (std::int32_t i = 0; i < m.runners && tables; ++i)
+    if (m.runner[i].load_point[0] >= r.load_points || m.runner[i].load_point[1] >= r.load_points)
+      return false;
   for (std::int32_t i = 0; i < m.external_wheels && tables; ++i)
     if (m.external_wheel[i].load_point >= r.load_points) return false;
   for (std::int32_t i = 0; i < r.load_points; ++i)
@@ -245,6 +281,7 @@ bool track_is_valid(const Model& m) noexcept {
     if (!vehicle_is_valid(m, m.vehicle[i])) return false;
   for (std::int32_t i = 0; i < m.vehicle_wheels; ++i)
     if (!wheel_is_valid(m, i)) return false;
+  if (!runners_are_valid(m)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_is_valid(m.signal[i].signal)) return false;
   return external_wheels_are_valid(m) && residual_is_valid(m) && p_delta_is_valid(m.p_delta) &&

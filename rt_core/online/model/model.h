@@ -6,6 +6,7 @@
 #include "online/math/diagonals.h"
 #include "online/model/cant.h"
 #include "online/model/caps.h"
+#include "online/model/runner_model.h"
 #include "online/model/scheme.h"
 #include "online/model/signal.h"
 #include "online/model/system.h"
@@ -99,14 +100,6 @@ struct LineModel {
   double rail_factor[2];       // weight of the line in left and right rail; 0: it lacks that rail
   std::int32_t mirrored;       // right rail: y components change sign
   std::int32_t rigid_section;  // a_z and b_y are one unknown, the roll a_z
-};
-
-/// Motion along the rails: at one speed, or by a table of speeds, linear between its rows and
-/// constant outside them.
-struct TravelModel {
-  double speed;         // m/s; with a table the one of the largest size
-  std::int32_t rows;    // 0: one speed
-  const double* table;  // [rows][3]  s, m/s, m since t = 0
 };
 
 /// A prescribed force that moves along a rail: force * table + amplitude sin(2 pi (frequency t +
@@ -343,6 +336,8 @@ struct Model {
   VehicleModel vehicle[kMaxVehicles];
   VehicleWheel vehicle_wheel[kMaxWheels];
   RailSignal signal[kMaxSignals];
+  std::int32_t runners, runner_wheelsets;  // the latter of all runners
+  RunnerModel runner[kMaxRunners];
   std::int32_t external_wheels;  // of a track alone with loads
   ExternalWheelModel external_wheel[kMaxExternalWheels];
   SystemModel system;

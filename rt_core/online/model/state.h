@@ -7,6 +7,8 @@
 
 namespace railstep {
 
+inline constexpr int kWheelForces = 4;  // kept of each wheel of a runner
+
 /// All numbers that a replay needs, and no others. The caller owns the memory, state_doubles() of
 /// it. LineModel says what u, v, a and g of a condensed line are.
 struct State {
@@ -18,6 +20,8 @@ struct State {
   double* g;              // [unknowns] true acceleration
   double* contact_force;  // [contacts] N, of the last step: start of the contact solve
   double* port_force;     // [fixed ports] N, the same; 0: open
+  double* wheel_force;    // [wheels of runners][kWheelForces] of the last step: N along x, y, z on
+                          // the wheel, N m about x on the rail's section
   double* multiplier;     // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
                           // the force on the wheelset is its negative
   double* quaternion;     // [system.bodies][4] body axes to ground
@@ -32,6 +36,24 @@ struct State {
 inline constexpr Status kLatched =
     Status::nonfinite_input | Status::nonfinite_state | Status::force_saturated;
 
+/// Coordinates of the solve that couples runners with the track, or of the largest one on rigid
+/// rails.
+inline std::int32_t newton_size(const Model& model) noexcept {
+  if (model.lines > 0)
+    return model.runner_wheelsets == 0
+               ? 0
+               : contact_count(model) + model.fixed.count +
+                     (kMotions + 2 * kWheelSeatRows) * model.runner_wheelsets;
+  std::int32_t most = 0;
+  for (std::int32_t i = 0; i < model.runners; ++i)
+    if (kMotions * model.runner[i].wheelsets > most) most = kMotions * model.runner[i].wheelsets;
+  return most;
+}
+/// Coordinates of the coupled solve of a track: its rows and one-sided springs.
+inline std::int32_t port_count(const Model& model) noexcept {
+  return track_row_count(model) + model.fixed.count;
+}
+
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
   double* u_star;  // [unknowns]
@@ -40,13 +62,16 @@ struct Workspace {
   double* solved;  // [unknowns] right-hand side of the track without wheels; after the solve, the
                    // displacements. In a solve with wheels D^-1 L^-1 of banded lines'
   double* imaginary;  // the same for condensed lines; `solved` is the real part
-  double* row;        // [contacts][2][unknowns] of condensed lines: shape under each contact
+  double* row;        // [track rows][2][unknowns] of condensed lines: shape of each row
   double* system;     // see system_workspace.h
   double* external;   // [state_doubles] of models with external wheels: a trial state
   double* start;      // [2][unknowns] of schemes of two stages: u and v at the step's start
-  /// [contacts][unknowns] response of the lines to a unit force at each contact: real and imaginary
-  /// part of condensed ones; of banded ones L^-1 and D^-1 L^-1 of its row, in its panels alone.
+  /// [track rows][unknowns] response of the lines to a unit force along each row: real and
+  /// imaginary part of condensed ones; of banded ones L^-1 and D^-1 L^-1 of the row, in its panels
+  /// alone.
   double *unit, *unit_second;
+  double* compliance;  // [ports][ports] of the coupled solve, m/N
+  double* newton;      // [2][newton_size][newton_size]
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -73,6 +98,16 @@ struct Outputs {
   double contact_x[kMaxWheels];       // along the undeformed rail, m
   double contact_place[kMaxWheels];   // the same along the model's elements, m
   double contact_rail_z[kMaxWheels];  // of wheels: displacement of the rail's axis under it, m
+  /// By wheel of rail vehicles at the frame's end, left and right of each wheelset in turn: forces
+  /// on the rail in the track's axes, down and outwards, N; 0 where it is not touched.
+  double wheel_q[2 * kMaxRunnerWheelsets], wheel_y[2 * kMaxRunnerWheelsets];
+  double wheel_y_over_q[2 * kMaxRunnerWheelsets];  // 0 where q is 0
+  bool wheel_on_rail[2 * kMaxRunnerWheelsets];     // of the model's rails; never on rigid ones
+  double wheel_place[2 * kMaxRunnerWheelsets];     // along the model's elements, m
+  /// By wheelset: force on the track along y, N, then displacement, m, and yaw, rad.
+  double wheelset_sum_y[kMaxRunnerWheelsets], wheelset_y[kMaxRunnerWheelsets];
+  double wheelset_yaw[kMaxRunnerWheelsets];
+  double drive_force[kMaxRunners];  // ahead on each rail vehicle, which keeps its speed, N
   /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];
   double external_place[kMaxExternalWheels];            // m along the model's elements
@@ -95,19 +130,29 @@ inline double* guide_of(const State& state, std::int32_t wheelset) noexcept {
   return state.multiplier + std::ptrdiff_t{kGuideRows} * wheelset;
 }
 
+/// The forces of a wheel of a runner, [kWheelForces]. @param wheelset  among those of all runners
+inline double* wheel_force_of(const State& state, std::int32_t wheelset,
+                              std::int32_t side) noexcept {
+  return state.wheel_force + std::ptrdiff_t{kWheelForces} * (2 * wheelset + side);
+}
+
 inline std::int64_t state_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + guide_rows(model) +
+  return 4LL * model.unknowns + contact_count(model) + model.fixed.count +
+         2LL * kWheelForces * model.runner_wheelsets + guide_rows(model) +
          system_state_doubles(model.system) + model.inputs;
 }
 /// Size of the model's start: all of a state but Newton's matrix, which is not made yet.
 inline std::int64_t start_doubles(const Model& model) noexcept {
-  return 4LL * model.unknowns + contact_count(model) + model.fixed.count + guide_rows(model) +
+  return 4LL * model.unknowns + contact_count(model) + model.fixed.count +
+         2LL * kWheelForces * model.runner_wheelsets + guide_rows(model) +
          system_start_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
-  const std::int64_t contacts = contact_count(model);
-  const std::int64_t of_modes = model.form == Form::condensed ? 1 + 2 * contacts : 0;
-  return (4 + 2 * contacts + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
+  const std::int64_t rows = track_row_count(model), ports = port_count(model),
+                     newton = newton_size(model);
+  const std::int64_t of_modes = model.form == Form::condensed ? 1 + 2 * rows : 0;
+  return (4 + 2 * rows + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
+         ports * ports + 2 * newton * newton +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -117,7 +162,8 @@ inline State state_on(const Model& model, double* memory) noexcept {
   const std::int64_t n = model.unknowns;
   double* const wheels = memory + 4 * n;
   double* const ports = wheels + contact_count(model);
-  double* const guides = ports + model.fixed.count;
+  double* const runners = ports + model.fixed.count;
+  double* const guides = runners + 2LL * kWheelForces * model.runner_wheelsets;
   double* const system = guides + guide_rows(model);
   double* const rows = system + 4LL * model.system.bodies;
   return {0,
@@ -128,6 +174,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           memory + 3 * n,
           wheels,
           ports,
+          runners,
           guides,
           system,
           rows,
@@ -137,12 +184,15 @@ inline State state_on(const Model& model, double* memory) noexcept {
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   const bool condensed = model.form == Form::condensed;
-  const std::int64_t n = model.unknowns, units = contact_count(model) * n;
+  const std::int64_t n = model.unknowns, units = track_row_count(model) * n,
+                     ports = port_count(model), newton = newton_size(model);
   double* const unit = memory + 4 * n;
   double* const imaginary = unit + 2 * units;
   double* const row = imaginary + (condensed ? n : 0);
   double* const system = row + (condensed ? 2 * units : 0);
-  double* const external = system + system_workspace_doubles(model.system);
+  double* const compliance = system + system_workspace_doubles(model.system);
+  double* const of_newton = compliance + ports * ports;
+  double* const external = of_newton + 2 * newton * newton;
   return {memory,
           memory + n,
           memory + 2 * n,
@@ -153,7 +203,9 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           external,
           external + (model.external_wheels > 0 ? state_doubles(model) : 0),
           unit,
-          unit + units};
+          unit + units,
+          compliance,
+          of_newton};
 }
 
 /// Copies a state to other memory, without the latched status.

@@ -12,7 +12,7 @@ enum class Status : std::uint32_t {
   nonfinite_state = 1u << 3,  // the state is no longer finite: Outputs name the first bad unknown
   contact_unresolved = 1u << 4,  // a wheel struck its rail for fewer than 10 steps: shorten dt
   redundant_joint = 1u << 5,     // a joint row depended on others: it has no force of its own
-  large_turn = 1u << 6,          // a rail under a wheel rolled so far that its linear form is off
+  large_turn = 1u << 6,          // a rail or a body turned so far that its linear form is off
   nonfinite_input = 1u << 7,     // an input was not finite: its last good value was held
   force_saturated = 1u << 8,     // an input was beyond its limit, and cut to it
   contact_ill_posed = 1u << 9,   // compliances of contacts that are impossible
@@ -48,8 +48,8 @@ inline constexpr StatusText kStatusTexts[] = {
      "joints by the augmented Lagrangian"},
     {Status::large_turn, "large_turn",
      "a rail under a wheel rolled by more than 0.14 rad, where the linear rail's roll is off by 1 "
-     "% "
-     "and more: give the pads roll stiffness, or less lateral force"},
+     "% and more, or a body of a rail vehicle turned by more than 0.1 rad: give the pads roll "
+     "stiffness, or less lateral force"},
     {Status::nonfinite_input, "nonfinite_input",
      "an input was not a finite number, and its last good value was held"},
     {Status::force_saturated, "force_saturated",

@@ -28,6 +28,16 @@ void copy_published(const Model& model, const Outputs& from, Outputs& to) noexce
   copy(from.contact_x, to.contact_x, contacts);
   copy(from.contact_place, to.contact_place, contacts);
   copy(from.contact_rail_z, to.contact_rail_z, contacts);
+  const std::int32_t sets = model.runner_wheelsets;
+  copy(from.wheel_q, to.wheel_q, 2 * sets);
+  copy(from.wheel_y, to.wheel_y, 2 * sets);
+  copy(from.wheel_y_over_q, to.wheel_y_over_q, 2 * sets);
+  copy(from.wheel_on_rail, to.wheel_on_rail, 2 * sets);
+  copy(from.wheel_place, to.wheel_place, 2 * sets);
+  copy(from.wheelset_sum_y, to.wheelset_sum_y, sets);
+  copy(from.wheelset_y, to.wheelset_y, sets);
+  copy(from.wheelset_yaw, to.wheelset_yaw, sets);
+  copy(from.drive_force, to.drive_force, model.runners);
   copy(from.external_on_rail, to.external_on_rail, model.external_wheels);
   copy(from.external_place, to.external_place, model.external_wheels);
   copy(from.external_force, to.external_force, model.external_wheels);

@@ -6,6 +6,7 @@
 #include "online/contact/vehicle_contact.h"
 #include "online/contact/wheel.h"
 #include "online/math/finite.h"
+#include "online/runner/runner_contact.h"
 #include "online/system/marker.h"
 #include "online/track/moving_load.h"
 #include "online/track/residual.h"
@@ -120,6 +121,7 @@ void collect(const SystemResult& met, Outputs& out) noexcept {
 }
 
 void publish(const Model& model, const State& state, Outputs& outputs) noexcept {
+  outputs.status = outputs.status | publish_runners(model, state, outputs);
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const PlacedLoad at = place(model, model.load[i], state.steps);
     outputs.load_x[i] = at.x;

@@ -6,6 +6,7 @@
 #include "online/math/tiny.h"
 #include "online/model/external_input.h"
 #include "online/model/progress.h"
+#include "online/runner/runner_step.h"
 #include "online/step/copy_outputs.h"
 #include "online/step/input.h"
 #include "online/step/publish.h"
@@ -130,10 +131,17 @@ void finish_stage(const Model& model, const Stage& stage, State& s, const Worksp
   if (model.wheelsets > 0) project_guides(model, stage, s);
 }
 
-/// Whether a stage's ports are solved together with its track.
-bool has_ports(const Model& model) noexcept {
-  return wheel_count(model) > 0 || model.fixed.count > 0;
+/// Rigid rails leave nothing between runners and the rest.
+void step_runners(const Model& model, const Stage& stage, State& s, Workspace& w,
+                  Outputs& outputs) noexcept {
+  if (model.runners == 0 || model.lines > 0) return;
+  const RunnerResult met = solve_runners(model, stage, s, w);
+  outputs.status = outputs.status | met.status;
+  if (met.iterations > outputs.iterations) outputs.iterations = met.iterations;
 }
+
+/// Whether a stage's ports are solved together with its track.
+bool has_ports(const Model& model) noexcept { return port_count(model) > 0; }
 
 /// The first of two stages: afterwards the state is at its end, and the step's start in `w.start`.
 void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
@@ -149,6 +157,7 @@ void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& o
     collect_solve(couple(model, stage, state, w), outputs);
   else
     solve_bands(model, w);
+  step_runners(model, stage, state, w, outputs);
   finish_stage(model, stage, state, w);
 }
 
@@ -169,6 +178,7 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
     collect(model, state, couple(model, stage, state, w), outputs);
   else if (model.form == Form::banded)
     solve_bands(model, w);
+  step_runners(model, stage, state, w, outputs);
   if (model.system.unknowns > 0) collect(solve_system(model, state, w), outputs);
   finish_stage(model, stage, state, w);
   if (model.system.unknowns > 0) outputs.status = outputs.status | finish_system(model, state, w);

@@ -30,6 +30,14 @@ inline constexpr OutputColumn<kMaxWheels> kFlangeColumns[] = {
     {"flange_impulse_n_s", &Outputs::contact_impulse},
     {"flange_gap_m", &Outputs::contact_gap}};
 
+inline constexpr OutputColumn<2 * kMaxRunnerWheelsets> kRunnerWheelColumns[] = {
+    {"q_n", &Outputs::wheel_q}, {"y_n", &Outputs::wheel_y}, {"y_over_q", &Outputs::wheel_y_over_q}};
+inline constexpr OutputColumn<kMaxRunnerWheelsets> kRunnerWheelsetColumns[] = {
+    {"sum_y_n", &Outputs::wheelset_sum_y},
+    {"y_m", &Outputs::wheelset_y},
+    {"yaw_rad", &Outputs::wheelset_yaw}};
+inline constexpr OutputColumn<kMaxRunners> kRunnerColumns[] = {{"drive_n", &Outputs::drive_force}};
+
 /// A column of the rail under an external wheel.
 struct ExternalColumn {
   const char* name;
@@ -73,7 +81,18 @@ struct SpringColumn {
 inline constexpr SpringColumn kSpringColumns[] = {{"force_n"}};
 
 /// Owner of a column, other than track sensors, whose names are complete.
-enum class ColumnOf { load, wheel, flange, external_wheel, sensor, joint, spring };
+enum class ColumnOf {
+  load,
+  wheel,
+  flange,
+  runner_wheel,
+  runner_wheelset,
+  runner,
+  external_wheel,
+  sensor,
+  joint,
+  spring
+};
 
 /// Visits the columns in their order: visit(of, i, columns) for load, wheel, ... number i, with
 /// the table of its columns, and visit(track sensors) once for the columns of all of them.
@@ -82,6 +101,11 @@ void for_each_column(const Model& model, Visit& visit) {
   for (std::int32_t i = 0; i < model.loads; ++i) visit(ColumnOf::load, i, kLoadColumns);
   for (std::int32_t i = 0; i < wheel_count(model); ++i) visit(ColumnOf::wheel, i, kWheelColumns);
   for (std::int32_t i = 0; i < flange_count(model); ++i) visit(ColumnOf::flange, i, kFlangeColumns);
+  for (std::int32_t i = 0; i < 2 * model.runner_wheelsets; ++i)
+    visit(ColumnOf::runner_wheel, i, kRunnerWheelColumns);
+  for (std::int32_t i = 0; i < model.runner_wheelsets; ++i)
+    visit(ColumnOf::runner_wheelset, i, kRunnerWheelsetColumns);
+  for (std::int32_t i = 0; i < model.runners; ++i) visit(ColumnOf::runner, i, kRunnerColumns);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     visit(ColumnOf::external_wheel, i, kExternalColumns);
   visit(model.track_sensor);

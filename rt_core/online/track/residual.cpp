@@ -57,6 +57,14 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
     forces[count++] =
         rail_force(model, model.external_wheel[i].load_point, outputs.external_place[i],
                    outputs.external_on_rail[i] ? outputs.external_force[i] : 0.);
+  for (std::int32_t n = 0; n < model.runners; ++n) {
+    const RunnerModel& runner = model.runner[n];
+    const std::int32_t first = 2 * runner.first_wheelset;
+    for (std::int32_t i = first; i < first + 2 * runner.wheelsets; ++i)
+      if (outputs.wheel_on_rail[i])
+        forces[count++] = rail_force(model, runner.load_point[i % 2], outputs.wheel_place[i],
+                                     -outputs.wheel_q[i]);
+  }
   return count;
 }
 

@@ -22,9 +22,11 @@ struct RailForce {
 /// Element and xi of a place along the model's elements, m; clipped to the elements.
 RailForce rail_force(const Model& model, std::int32_t load_point, double x, double force) noexcept;
 
-inline constexpr int kMaxRailForces = kMaxLoads + kMaxWheels + kMaxExternalWheels;
+inline constexpr int kMaxRailForces =
+    kMaxLoads + kMaxWheels + kMaxExternalWheels + 2 * kMaxRunnerWheelsets;
 
-/// Vertical forces of all loads, then all wheels, then all external wheels, as published.
+/// Vertical forces of all loads, then all wheels, then all external wheels, then all wheels of
+/// runners, as published.
 /// @param forces  [kMaxRailForces]
 /// @returns number of forces
 int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) noexcept;

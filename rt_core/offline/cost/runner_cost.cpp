@@ -1,0 +1,63 @@
+#include "offline/cost/line_cost.h"
+#include "online/math/newton.h"
+#include "online/model/state.h"
+
+namespace railstep {
+
+namespace {
+
+// One wheel on its rail: forces alone, and with their slopes.
+constexpr Cost kWheel = branching(600, 250), kWheelSlopes = branching(2600, 2600);
+
+/// All wheels and scalar laws at the caps of Newton's iterations, and the matrices of these.
+Cost newton_cost(std::int64_t wheels, std::int64_t scalars, std::int64_t n) {
+  constexpr std::int64_t trials = 3;  // of a step's parts
+  const Cost missed = work(2 * n * n + 8 * n, n * n + 6 * n);
+  const Cost step = work(2 * kMostLaw * n * n + 2 * n * n * n / 3 + 6 * n * n, 2 * n * n * n / 3);
+  const Cost scalar = branching(40, 20);
+  return (trials + 1) * kNewtonSweeps * (scalars * scalar) +
+         kNewtonSweeps *
+             (trials * (wheels * kWheel + missed) + wheels * kWheelSlopes + missed + step) +
+         work(6 * n, 3 * n * n);
+}
+
+}  // namespace
+
+Cost runners_cost(const Model& model) {
+  Cost sum{};
+  for (std::int32_t i = 0; i < model.runners; ++i) {
+    const RunnerModel& own = model.runner[i];
+    const std::int64_t n = own.size, motions = std::int64_t{kMotions} * own.wheelsets;
+    const Cost solved = model.lines > 0 ? Cost{} : newton_cost(2LL * own.wheelsets, 0, motions);
+    const std::int64_t products = model.form == Form::condensed ? 3 : 2;
+    sum = sum + work(2 * products * n * n + 20 * n, products * n * n + 12 * n) +
+          work(2 * n * motions, n * motions + n) + solved + 3 * table_cost(own.travel.rows) +
+          own.wheelsets * (branching(40, 40) + model.signals * kSignal);
+  }
+  return sum;
+}
+
+Cost coupled_runners_cost(const Model& model) {
+  const std::int64_t n = newton_size(model), scalars = contact_count(model) + model.fixed.count;
+  if (model.lines == 0 || n == 0) return {};
+  Cost seats{};
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineCost cost = line_cost(model, model.line[l]);
+    seats = seats + 3 * cost.wheel_row + kPDeltaSeats * cost.node_roll;
+  }
+  return newton_cost(2LL * model.runner_wheelsets, scalars, n) + work(0, 4 * n * n) +
+         wheel_seat_row_count(model) * (work(300, 150) + seats + port_count(model) * kPairLookUp);
+}
+
+Cost publish_runners_cost(const Model& model) {
+  Cost sum{};
+  for (std::int32_t i = 0; i < model.runners; ++i) {
+    const RunnerModel& own = model.runner[i];
+    const std::int64_t n = own.size;
+    sum = sum + work(4 * n + 10, 4 * n) + 2 * table_cost(own.travel.rows) +
+          own.wheelsets * (2 * kWheel + branching(40, 40) + model.signals * kSignal);
+  }
+  return sum;
+}
+
+}  // namespace railstep

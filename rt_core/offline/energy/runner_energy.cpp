@@ -1,0 +1,223 @@
+#include "offline/energy/runner_energy.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "online/model/progress.h"
+#include "online/track/residual.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+namespace {
+
+using RunnerVector = Eigen::Map<const Eigen::VectorXd>;
+
+struct RunnerMaps {
+  RunnerVector mass, rest;
+  Eigen::Map<const Eigen::MatrixXd> damping, stiffness;  // symmetric
+  explicit RunnerMaps(const RunnerModel& r)
+      : mass(r.mass, r.size),
+        rest(r.rest, r.size),
+        damping(r.damping, r.size, r.size),
+        stiffness(r.stiffness, r.size, r.size) {}
+};
+
+RunnerVector part_of(const RunnerModel& runner, const double* values) {
+  return {values + runner.first, runner.size};
+}
+
+double along(const Model& model, const WheelSeatRow& seat, const Configuration& at) {
+  double sum = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], seat.row, at);
+  return sum;
+}
+
+/// The seat under a wheel: its rows, and how the lines have moved it.
+void stand_on_seat(const Model& model, const RunnerModel& runner, int wheelset, int side,
+                   const State& at, const std::vector<RailForce>& acting, StandingWheel& wheel) {
+  const Configuration now{at.u, {at.u, at.v}, track_offset(model, at.steps)};
+  SeatMotions seats;
+  RailForce place[kWheelSeatRows];
+  locate_wheel_seat(model, now, runner, element_place(model, runner, wheelset, at.steps, 0.), side,
+                    seats, wheel.seat, place);
+  wheel.residual = 0.;
+  std::fill_n(wheel.moved, kWheelSeatRows, 0.);
+  if (!wheel.seat[0].on_rail) return;
+  for (int k = 0; k < kWheelSeatRows; ++k)
+    wheel.moved[k] = along(model, wheel.seat[k], now) + wheel.seat[k].rise;
+  const auto own = 2 * (runner.first_wheelset + wheelset) + side;
+  wheel.residual = residual_displacement(model, acting.data(), static_cast<int>(acting.size()),
+                                         static_cast<int>(own));
+  wheel.moved[1] += wheel.residual;
+}
+
+/// Vertical forces of all wheels of runners on the rails.
+std::vector<RailForce> wheel_forces_on_rails(const Model& model, const State& at) {
+  std::vector<RailForce> forces;
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
+    for (int i = 0; i < runner.wheelsets; ++i)
+      for (int side = 0; side < 2; ++side)
+        forces.push_back(rail_force(model, runner.load_point[side],
+                                    element_place(model, runner, i, at.steps, 0.),
+                                    -wheel_force_of(at, runner.first_wheelset + i, side)[2]));
+  }
+  return forces;
+}
+
+/// Forces of the rails over all coordinates.
+Eigen::VectorXd forces_of(const RunnerModel& runner, const StandingRunner& standing) {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(runner.size);
+  for (int i = 0; i < runner.wheelsets; ++i)
+    for (const StandingWheel& wheel : standing.wheels[static_cast<std::size_t>(i)])
+      for (int k = 0; k < kMotions; ++k)
+        force[runner.wheelset[i].first + k] += wheel.force.generalised[k];
+  return force;
+}
+
+double hertz_energy(const StandingRunner& standing) {
+  double sum = 0.;
+  for (const auto& wheelset : standing.wheels)
+    for (const StandingWheel& wheel : wheelset)
+      sum += .4 * wheel.force.normal * std::max(wheel.force.depth, 0.);
+  return sum;
+}
+
+double residual_energy(const StandingRunner& standing) {
+  double sum = 0.;
+  for (const auto& wheelset : standing.wheels)
+    for (const StandingWheel& wheel : wheelset)
+      sum -= .5 * wheel.force.generalised[2] * wheel.residual;
+  return sum;
+}
+
+/// Work of the contacts in a step, J.
+struct ContactWork {
+  double on_bodies;           // with the part of their spins that goes with the speed
+  double on_lines, on_seats;  // the latter with what the seats' going along adds
+  double drive, creep;
+};
+ContactWork contact_work(const Model& model, const RunnerModel& r, const StandingRunner& before,
+                         const StandingRunner& after, const Eigen::VectorXd& moved,
+                         const Configuration& lines_moved) {
+  const double dt = model.scheme.dt, v0 = before.speed, v1 = after.speed;
+  ContactWork sum{.5 * (forces_of(r, before) + forces_of(r, after)).dot(moved), 0., 0., 0., 0.};
+  for (int i = 0; i < r.wheelsets; ++i)
+    for (const std::size_t side : {0u, 1u}) {
+      const StandingWheel &a = before.wheels[static_cast<std::size_t>(i)][side],
+                          &b = after.wheels[static_cast<std::size_t>(i)][side];
+      constexpr int spin = index_of(BodyMotion::pitch);
+      const double *f = a.force.generalised, *g = b.force.generalised;
+      sum.on_bodies += .5 * dt * (f[spin] * v0 + g[spin] * v1) / r.wheelset[i].radius;
+      sum.drive -= .5 * dt * (f[0] * v0 + g[0] * v1);
+      sum.drive += .5 * (f[1] + g[1]) * (b.uneven_y - a.uneven_y) +
+                   .5 * (f[2] + g[2]) * (b.uneven_z - a.uneven_z);
+      sum.creep -= .5 * dt * (a.force.creep_power + b.force.creep_power);
+      if (!a.seat[0].on_rail || !b.seat[0].on_rail) continue;
+      for (int k = 0; k < kWheelSeatRows; ++k) {
+        const double f0 = a.on_seat(r.contact, k), f1 = b.on_seat(r.contact, k);
+        sum.on_seats += .5 * (f0 + f1) * (b.moved[k] - a.moved[k]);
+        sum.on_lines += .5 * (f0 * along(model, a.seat[k], lines_moved) +
+                              f1 * along(model, b.seat[k], lines_moved));
+      }
+    }
+  return sum;
+}
+
+}  // namespace
+
+StandingRunner standing_runner(const Model& model, const RunnerModel& runner, const State& at) {
+  StandingRunner standing;
+  const double time = static_cast<double>(at.steps) * model.scheme.dt;
+  standing.speed = travelled(runner.travel, time).speed;
+  const std::vector<RailForce> acting = wheel_forces_on_rails(model, at);
+  for (int i = 0; i < runner.wheelsets; ++i) {
+    const RailsUnder uneven = rails_under(model, runner, i, at.steps, 0.);
+    const std::int32_t first = runner.first + runner.wheelset[i].first;
+    auto& wheels = standing.wheels.emplace_back();
+    for (int side = 0; side < 2; ++side) {
+      StandingWheel& wheel = wheels[static_cast<std::size_t>(side)];
+      wheel.uneven_y = uneven.y[side];
+      wheel.uneven_z = uneven.z[side];
+      stand_on_seat(model, runner, i, side, at, acting, wheel);
+      RailsUnder under = uneven;
+      under.y[side] += wheel.moved[0];
+      under.z[side] += wheel.moved[1];
+      RailRate rate{0., 0., 0.};
+      if (wheel.seat[0].on_rail && model.form == Form::banded)
+        rate = {along(model, wheel.seat[0], {at.v, {}}), along(model, wheel.seat[1], {at.v, {}}),
+                along(model, wheel.seat[2], {at.v, {}})};
+      wheel.force =
+          wheel_force(runner, i, under, rate, side, standing.speed, at.u + first, at.v + first);
+    }
+  }
+  return standing;
+}
+
+RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& standing,
+                           const State& at) {
+  const RunnerMaps m(runner);
+  const RunnerVector u = part_of(runner, at.u);
+  Eigen::VectorXd v = part_of(runner, at.v);
+  for (int i = 0; i < runner.wheelsets; ++i)
+    v[runner.wheelset[i].first + index_of(BodyMotion::pitch)] +=
+        standing.speed / runner.wheelset[i].radius;
+  return {.5 * v.dot(m.mass.cwiseProduct(v)), .5 * u.dot(m.stiffness * u), hertz_energy(standing),
+          residual_energy(standing)};
+}
+
+RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
+                       const State& from, const StandingRunner& after, const State& to) {
+  const RunnerMaps m(runner);
+  const double dt = model.scheme.dt;
+  std::vector<double> lines_u(static_cast<std::size_t>(model.unknowns)), lines_v = lines_u;
+  for (std::size_t i = 0; i < lines_u.size(); ++i) {
+    lines_u[i] = to.u[i] - from.u[i];
+    lines_v[i] = to.v[i] - from.v[i];
+  }
+  const Eigen::VectorXd du = part_of(runner, lines_u.data()), dv = part_of(runner, lines_v.data());
+  const ContactWork contact = contact_work(model, runner, before, after, du,
+                                           {lines_u.data(), {lines_u.data(), lines_v.data()}});
+  const double residual = residual_energy(after) - residual_energy(before);
+  RunnerWork work{m.rest.dot(du), contact.drive, 0., contact.creep, 0.};
+  work.loss = (contact.on_bodies + contact.on_seats) +
+              (hertz_energy(after) - hertz_energy(before)) + contact.creep - contact.drive;
+  work.drive -= contact.on_seats - contact.on_lines - residual;
+  // The frames accelerate.
+  const double faster = (after.speed - before.speed) / dt;
+  for (std::int32_t b = 0; b < runner.bodies; ++b)
+    work.drive -= m.mass[kMotions * b] * faster * du[kMotions * b];
+  if (model.form == Form::condensed) {
+    work.dissipated = du.dot(m.damping * du) / dt;
+    return work;
+  }
+  const Eigen::VectorXd v0 = part_of(runner, from.v), v1 = part_of(runner, to.v);
+  const Eigen::VectorXd v = .5 * (v0 + v1);
+  const Eigen::VectorXd g = .5 * (part_of(runner, from.g) + part_of(runner, to.g));
+  const Eigen::VectorXd eu = du - dt * v, ev = dv - dt * g;
+  work.dissipated = .5 * dt * (v0.dot(m.damping * v0) + v1.dot(m.damping * v1));
+  work.loss += eu.dot(m.mass.cwiseProduct(g) + m.damping * v) - v.dot(m.mass.cwiseProduct(ev)) -
+               .25 * dt * dv.dot(m.damping * dv);
+  return work;
+}
+
+double runner_unbalanced(const RunnerModel& runner, const StandingRunner& standing, const State& at,
+                         const State& after) {
+  const RunnerMaps m(runner);
+  const Eigen::VectorXd left =
+      forces_of(runner, standing) + m.rest - m.mass.cwiseProduct(part_of(runner, at.g)) -
+      m.damping * part_of(runner, at.v) - m.stiffness * part_of(runner, at.u);
+  return left.dot(part_of(runner, after.u) - part_of(runner, at.u));
+}
+
+void add_seat_forces(const Model& model, const RunnerModel& runner, const StandingRunner& standing,
+                     double* force) {
+  for (const auto& wheelset : standing.wheels)
+    for (const StandingWheel& wheel : wheelset)
+      for (int k = 0; k < kWheelSeatRows && wheel.seat[0].on_rail; ++k)
+        for (std::int32_t l = 0; l < model.lines; ++l)
+          spread(model.line[l], wheel.seat[k].row, wheel.on_seat(runner.contact, k), force);
+}
+
+}  // namespace railstep

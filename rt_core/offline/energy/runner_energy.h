@@ -1,0 +1,62 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "online/contact/wheel_seat.h"
+#include "online/runner/runner_contact.h"
+
+namespace railstep {
+
+/// A wheel of a rail vehicle on its rail in a state.
+struct StandingWheel {
+  WheelForce force;
+  WheelSeatRow seat[kWheelSeatRows];  // rows of the rail under it; not on_rail on rigid rails
+  double moved[kWheelSeatRows];       // of the seat, with its residual displacement, m, m, rad
+  double residual;                    // residual displacement along z alone, m
+  double uneven_y, uneven_z;          // of the unloaded rail, m
+  /// Force on the seat along row k, N, N m.
+  double on_seat(const RollingContact& contact, int k) const {
+    return k == 2 ? contact.crown_radius * force.across : -force.generalised[1 + k];
+  }
+};
+
+/// A rail vehicle in a state, with the forces of the rails on its wheels.
+struct StandingRunner {
+  double speed;                                      // m/s
+  std::vector<std::array<StandingWheel, 2>> wheels;  // [wheelsets][left, right]
+};
+/// The rates of the rails count as 0 on condensed lines.
+StandingRunner standing_runner(const Model& model, const RunnerModel& runner, const State& at);
+
+/// Energy of a rail vehicle in a state, J: of its bodies over the frames that move along the track,
+/// spins in full; of its springs, with the geometric stiffness that its preloads make; of its Hertz
+/// contacts; of the residual flexibility under its wheels.
+struct RunnerEnergy {
+  double kinetic, strain, hertz, residual;
+};
+RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& standing,
+                           const State& at);
+
+/// Flows of energy in a step between two states, J. Means over the step are trapezoidal.
+struct RunnerWork {
+  double weight;      // of weights and preloads
+  double drive;       // of the drive: against creep and acceleration, over uneven rails, and along
+                      // rails that give way
+  double dissipated;  // by dampers
+  double creep;       // by creep, not below 0
+  /// Loss of the scheme: that of the bodies as VehicleWork::loss, and the work of the mean force of
+  /// a contact beyond its spring's energy, its creep and the drive's work.
+  double loss;
+};
+RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
+                       const State& from, const StandingRunner& after, const State& to);
+
+/// Work in the first step of the forces that are out of balance at a start, J.
+double runner_unbalanced(const RunnerModel& runner, const StandingRunner& standing, const State& at,
+                         const State& after);
+
+/// Adds the forces on the seats to those on the unknowns of banded lines.
+void add_seat_forces(const Model& model, const RunnerModel& runner, const StandingRunner& standing,
+                     double* force);
+
+}  // namespace railstep

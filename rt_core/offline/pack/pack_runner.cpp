@@ -1,0 +1,140 @@
+#include <Eigen/LU>
+#include <string>
+
+#include "offline/math/refuse.h"
+#include "offline/pack/pack.h"
+#include "online/math/newton.h"
+
+namespace railstep {
+
+namespace {
+
+/// The matrices with a coordinate without mass for each damper that is in series with a spring.
+struct Extended {
+  Eigen::VectorXd mass, rest;
+  Eigen::MatrixXd damping, stiffness;
+};
+
+Extended extended(const RunnerMatrices& m) {
+  const Eigen::Index n = m.mass.size(), series = static_cast<Eigen::Index>(m.series.size());
+  Extended e{Eigen::VectorXd::Zero(n + series), Eigen::VectorXd::Zero(n + series),
+             Eigen::MatrixXd::Zero(n + series, n + series),
+             Eigen::MatrixXd::Zero(n + series, n + series)};
+  e.mass.head(n) = m.mass;
+  e.rest.head(n) = m.rest;
+  e.damping.topLeftCorner(n, n) = m.damping;
+  e.stiffness.topLeftCorner(n, n) = m.stiffness;
+  for (Eigen::Index i = 0; i < series; ++i) {
+    const RunnerMatrices::Series& own = m.series[static_cast<std::size_t>(i)];
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(n + series);
+    row.head(n) = own.row;
+    row[n + i] = -1.;  // the spring takes what the damper does not
+    e.stiffness += own.stiffness * row * row.transpose();
+    e.damping(n + i, n + i) = own.damping;
+  }
+  return e;
+}
+
+/// (s K + s kv C + kg M)^-1 without the first coordinate, symmetric to the last bit.
+Eigen::MatrixXd held_inverse(const Extended& m, const Scheme& scheme, double s) {
+  Eigen::MatrixXd A = s * m.stiffness + s * scheme.kv * m.damping;
+  A.diagonal() += scheme.kg * m.mass;
+  const Eigen::Index n = A.rows() - 1;
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  const Eigen::MatrixXd own = A.bottomRightCorner(n, n).partialPivLu().inverse();
+  inverse.bottomRightCorner(n, n) = .5 * (own + own.transpose());
+  return inverse;
+}
+
+std::vector<double> values(const Eigen::MatrixXd& symmetric) {
+  return {symmetric.data(), symmetric.data() + symmetric.size()};
+}
+
+/// The motions of all wheelsets among a runner's coordinates.
+std::vector<Eigen::Index> motions_of(const RunnerModel& runner) {
+  std::vector<Eigen::Index> all;
+  for (std::int32_t i = 0; i < runner.wheelsets; ++i)
+    for (int k = 0; k < kMotions; ++k) all.push_back(runner.wheelset[i].first + k);
+  return all;
+}
+
+/// The rows and columns of some coordinates.
+Eigen::MatrixXd submatrix(const Eigen::MatrixXd& A, const std::vector<Eigen::Index>& of) {
+  const auto n = static_cast<Eigen::Index>(of.size());
+  Eigen::MatrixXd part(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      part(i, j) = A(of[static_cast<std::size_t>(i)], of[static_cast<std::size_t>(j)]);
+  return part;
+}
+
+void add_wheelsets(const Runner& runner, Model& model, RunnerModel& packed) {
+  packed.first_wheelset = model.runner_wheelsets;
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    const RunnerBody& body = runner.bodies[b];
+    if (!body.is_wheelset()) continue;
+    const int most = model.lines > 0 ? kMaxSeatedWheelsets : kMaxRunnerWheelsets;
+    if (packed.wheelsets == kMaxWheelsetsOfRunner || model.runner_wheelsets == most)
+      refuse("E-PACK-53",
+             "there are more wheelsets of rail vehicles than a model takes; expected at most " +
+                 std::to_string(kMaxWheelsetsOfRunner) + " of a vehicle and " +
+                 std::to_string(most) + " of all on such rails");
+    packed.wheelset[packed.wheelsets++] = {kMotions * static_cast<std::int32_t>(b), body.centre[0],
+                                           body.radius, body.inertia[1]};
+    ++model.runner_wheelsets;
+  }
+}
+
+}  // namespace
+
+void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
+  if (track.rails != 2)
+    refuse("E-PACK-52", "a rail vehicle in space runs on one rail; expected a track of two");
+  if (model_.runners == kMaxRunners)
+    refuse("E-PACK-54",
+           "there are more rail vehicles in space than a model takes; expected at "
+           "most " +
+               std::to_string(kMaxRunners));
+  const RunnerMatrices matrices = runner_matrices(vehicle.runner, vehicle.gravity);
+  const Extended m = extended(matrices);
+  const auto n = static_cast<std::int32_t>(m.mass.size());
+  if (n > kMaxRunnerUnknowns)
+    refuse("E-PACK-55", "a rail vehicle has " + std::to_string(n) +
+                            " coordinates; expected at "
+                            "most " +
+                            std::to_string(kMaxRunnerUnknowns) +
+                            ": six of each body, and one of each damper in series with a spring");
+  RunnerModel& packed = model_.runner[model_.runners];
+  packed.first = model_.unknowns;
+  packed.size = n;
+  packed.bodies = static_cast<std::int32_t>(vehicle.runner.bodies.size());
+  add_wheelsets(vehicle.runner, model_, packed);
+  packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
+  packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
+  packed.contact = vehicle.contact;
+  const bool held = model_.form == Form::condensed;
+  const Eigen::MatrixXd inverse = held_inverse(m, model_.scheme, held ? .5 : 1.);
+  const std::vector<Eigen::Index> motions = motions_of(packed);
+  const Eigen::MatrixXd compliance = model_.scheme.theta * submatrix(inverse, motions);
+  packed.mass = keep(values(m.mass));
+  packed.rest = keep(values(m.rest));
+  packed.damping = keep(values(m.damping));
+  packed.stiffness = keep(values(m.stiffness));
+  packed.inverse = keep(values(inverse));
+  packed.compliance = keep(values(compliance));
+  ++model_.runners;
+  model_.unknowns += (n + kLanes - 1) / kLanes * kLanes;
+  for (const int rail : {0, 1})
+    packed.load_point[rail] = model_.lines > 0 ? load_point_of_wheel(rail) : 0;
+  runners_.push_back({vehicle, matrices});
+}
+
+void PackedModel::refuse_many_coordinates() const {
+  refuse("E-PACK-56",
+         "the contacts, one-sided springs and wheelsets of rail vehicles on one track have " +
+             std::to_string(newton_size(model_)) + " coordinates; expected at most " +
+             std::to_string(kMostNewton) +
+             ": one of each contact and spring, 12 of each wheelset of a rail vehicle");
+}
+
+}  // namespace railstep

@@ -1,0 +1,144 @@
+#include "offline/start/start_runner.h"
+
+#include <Eigen/LU>
+
+#include "online/contact/wheel_seat.h"
+#include "online/runner/runner_contact.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+namespace {
+
+/// The seat under one wheel, at a time from now on.
+struct StaticSeat {
+  WheelSeatRow row[kWheelSeatRows];
+  RailForce place[kWheelSeatRows];
+};
+StaticSeat seat_of(const Model& model, const RunnerModel& runner, int wheelset, int side,
+                   const Configuration& at, double time) {
+  StaticSeat seat;
+  SeatMotions motions;
+  locate_wheel_seat(model, at, runner, element_place(model, runner, wheelset, 0, -time), side,
+                    motions, seat.row, seat.place);
+  return seat;
+}
+
+double moved_by(const Model& model, const WheelSeatRow& seat, const Configuration& at) {
+  double sum = seat.rise;
+  for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], seat.row, at);
+  return sum;
+}
+
+/// Yaw at which wheelsets roll along uneven rails, rad.
+double rolling_yaw(const Model& model, const RunnerModel& runner, int wheelset, double time) {
+  const double speed = travelled(runner.travel, 0.).speed, span = 1e-5;
+  if (speed == 0. || model.signals == 0) return 0.;
+  const auto middle = [&](double at) {
+    const RailsUnder under = rails_under(model, runner, wheelset, 0, -(time + at));
+    return .5 * (under.y[0] + under.y[1]);
+  };
+  return (middle(span) - middle(-span)) / (2. * span * speed);
+}
+
+/// Moves each wheelset to the middle of its uneven rails, and the other bodies with them.
+void follow_alignment(const PackedRunner& own, const Model& model, const RunnerModel& runner,
+                      double time, SteadyRunning& steady) {
+  const Eigen::Index n = own.matrices.mass.size();
+  Eigen::VectorXd given = Eigen::VectorXd::Zero(n);
+  std::vector<bool> is_given(static_cast<std::size_t>(n), false);
+  is_given[0] = true;  // x of the first body
+  for (int i = 0; i < runner.wheelsets; ++i) {
+    const RailsUnder under = rails_under(model, runner, i, 0, -time);
+    const Eigen::Index first = runner.wheelset[i].first;
+    for (int k = 0; k < kMotions; ++k) is_given[static_cast<std::size_t>(first + k)] = true;
+    given[first + index_of(BodyMotion::y)] = .5 * (under.y[0] + under.y[1]);
+    given[first + index_of(BodyMotion::yaw)] = rolling_yaw(model, runner, i, time);
+  }
+  Eigen::MatrixXd K = own.matrices.stiffness;
+  Eigen::VectorXd force = -(K * given);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (!is_given[static_cast<std::size_t>(k)]) continue;
+    K.row(k).setZero();
+    K.col(k).setZero();
+    K(k, k) = 1.;
+    force[k] = 0.;
+  }
+  steady.displacement += given + Eigen::VectorXd(K.fullPivLu().solve(force));
+}
+
+}  // namespace
+
+SettledRunners runners_on_even_rails(const PackedModel& packed) {
+  SettledRunners settled;
+  const Model& model = packed.model();
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const PackedRunner& own = packed.runners()[static_cast<std::size_t>(r)];
+    const double speed = travelled(model.runner[r].travel, 0.).speed;
+    settled.steady.push_back(
+        steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed));
+    for (const auto& wheels :
+         wheel_forces(own.vehicle.runner, own.vehicle.contact, speed, settled.steady.back()))
+      settled.wheels.push_back(wheels);
+  }
+  return settled;
+}
+
+void add_forces(const PackedModel& packed, const SettledRunners& runners, const Configuration& at,
+                double time, Acting& acting) {
+  const Model& model = packed.model();
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
+    const auto set = static_cast<std::size_t>(runner.first_wheelset);
+    for (int i = 0; i < runner.wheelsets; ++i)
+      for (int side = 0; side < 2; ++side) {
+        const StaticSeat seat = seat_of(model, runner, i, side, at, time);
+        if (!seat.row[0].on_rail) continue;
+        const WheelForce& f =
+            runners.wheels[set + static_cast<std::size_t>(i)][static_cast<std::size_t>(side)];
+        acting.contacts.push_back({seat.row[0].row, -f.generalised[1]});
+        acting.contacts.push_back({seat.row[1].row, -f.generalised[2]});
+        acting.contacts.push_back({seat.row[2].row, runner.contact.crown_radius * f.across});
+        RailForce place = seat.place[1];
+        place.force = -f.generalised[2];
+        acting.ports.push_back(place);
+      }
+  }
+}
+
+SettledRunners settle_runners(const PackedModel& packed, const Configuration& at, double time,
+                              const Acting& acting, std::size_t first_port) {
+  const Model& model = packed.model();
+  SettledRunners settled;
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
+    const PackedRunner& own = packed.runners()[static_cast<std::size_t>(r)];
+    std::vector<RailsUnder> rails;
+    for (int i = 0; i < runner.wheelsets; ++i) {
+      const RailsUnder uneven = rails_under(model, runner, i, 0, -time);
+      RailsUnder& under = rails.emplace_back(RailsUnder{});
+      for (int side = 0; side < 2; ++side) {
+        under.z[side] = uneven.z[side];
+        // Alignment is followed; the gauge is not.
+        under.y[side] = uneven.y[side] - .5 * (uneven.y[0] + uneven.y[1]);
+        const StaticSeat seat = seat_of(model, runner, i, side, at, time);
+        if (!seat.row[0].on_rail) continue;
+        under.y[side] += moved_by(model, seat.row[0], at);
+        under.z[side] +=
+            moved_by(model, seat.row[1], at) +
+            residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
+                                  static_cast<int>(first_port++));
+      }
+    }
+    const double speed = travelled(runner.travel, 0.).speed;
+    settled.steady.push_back(
+        steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed, rails));
+    for (const auto& wheels :
+         wheel_forces(own.vehicle.runner, own.vehicle.contact, speed, settled.steady.back(), rails))
+      settled.wheels.push_back(wheels);
+    follow_alignment(own, model, runner, time, settled.steady.back());
+  }
+  return settled;
+}
+
+}  // namespace railstep

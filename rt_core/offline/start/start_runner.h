@@ -1,0 +1,30 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "offline/start/static_lines.h"
+
+namespace railstep {
+
+/// Rail vehicles in their steady motion, with the forces of their wheels.
+struct SettledRunners {
+  std::vector<SteadyRunning> steady;  // of each
+  /// [wheelsets of all][left, right] forces on the wheel.
+  std::vector<std::array<WheelForce, 2>> wheels;
+};
+
+/// Rail vehicles on straight, level, rigid rails.
+SettledRunners runners_on_even_rails(const PackedModel& packed);
+
+/// Adds the forces of the wheels to those on the lines, with everything moved on by `time`, s.
+void add_forces(const PackedModel& packed, const SettledRunners& runners, const Configuration& at,
+                double time, Acting& acting);
+
+/// Rail vehicles on rails as they lie. Rails that are not even in height are stood on; along y each
+/// wheelset goes with its rails, at the yaw at which it rolls along them, and the other bodies
+/// follow as their springs demand.
+/// @param acting  with add_forces() of these runners, from its port `first_port` on
+SettledRunners settle_runners(const PackedModel& packed, const Configuration& at, double time,
+                              const Acting& acting, std::size_t first_port);
+
+}  // namespace railstep

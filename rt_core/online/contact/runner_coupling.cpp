@@ -1,0 +1,188 @@
+#include "online/contact/runner_coupling.h"
+
+#include "online/contact/damper.h"
+#include "online/contact/mean_contact.h"
+#include "online/contact/track_response.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr int kOfWheelset = kMotions + 2 * kWheelSeatRows;
+
+/// Visits all wheelsets: their runner, their number in it, and that among all.
+template <typename Visit>
+void for_each_wheelset(const Model& model, Visit visit) noexcept {
+  for (std::int32_t n = 0; n < model.runners; ++n)
+    for (std::int32_t i = 0; i < model.runner[n].wheelsets; ++i)
+      visit(model.runner[n], i, model.runner[n].first_wheelset + i);
+}
+
+/// Rate of a seat's row over its displacement at the contacts' instant.
+DepthSpeed rate_of(const Model& model, const State& s, const Workspace& w, const Coupling& c,
+                   int row) noexcept {
+  if (!is_on_rail(c, row)) return {0., 0.};
+  const double missed = residual_before(model, s, c, row) + c.seat[row - c.contacts].rise;
+  if (model.form == Form::condensed) return mean_speed(model.scheme, c.located[row] + missed);
+  double u = missed, v = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    u += motion(model.line[l], track_row(c, row), {w.u_star, {}});
+    v += motion(model.line[l], track_row(c, row), {w.v_star, {}});
+  }
+  return speed_at_end(model.scheme, u, v);
+}
+
+/// Displacement of a seat's row by the last step's forces on all seats.
+double moved_before(const Model& model, const State& s, const Coupling& c, int row) noexcept {
+  double sum = 0.;
+  for (std::int32_t wheel = 0; wheel < 2 * model.runner_wheelsets; ++wheel) {
+    const double* const force = s.wheel_force + std::ptrdiff_t{kWheelForces} * wheel;
+    const double* const W = c.W + row * c.ports + c.contacts + kWheelSeatRows * wheel;
+    sum += W[2] * force[3] - (W[0] * force[1] + W[1] * force[2]);
+  }
+  return sum;
+}
+
+/// Index of a scalar law among the ports.
+int port_of(const Coupling& c, int scalar) noexcept {
+  return scalar < c.contacts ? scalar : c.rows + (scalar - c.contacts);
+}
+
+/// The row of the track of a coordinate of Newton's method that is one, or the port of a scalar.
+/// -1: a motion of a wheelset.
+int port_of_coordinate(const Coupling& c, int scalars, int at) noexcept {
+  if (at < scalars) return port_of(c, at);
+  const int set = (at - scalars) / kOfWheelset, k = (at - scalars) % kOfWheelset;
+  return k < kMotions ? -1 : c.contacts + 2 * kWheelSeatRows * set + (k - kMotions);
+}
+
+void fill_compliance(const Model& model, const Coupling& c, int scalars, double* Y) noexcept {
+  const int n = newton_size(model);
+  for (int i = 0; i < n; ++i) {
+    const int a = port_of_coordinate(c, scalars, i);
+    for (int j = 0; j < n; ++j) {
+      const int b = port_of_coordinate(c, scalars, j);
+      Y[i * n + j] = a < 0 || b < 0 ? 0. : c.W[a * c.ports + b];
+    }
+  }
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
+    const int motions = kMotions * runner.wheelsets;
+    const auto at = [&](int k) noexcept {
+      return scalars + kOfWheelset * (runner.first_wheelset + k / kMotions) + k % kMotions;
+    };
+    for (int i = 0; i < motions; ++i)
+      for (int j = 0; j < motions; ++j) Y[at(i) * n + at(j)] = runner.compliance[i * motions + j];
+  }
+}
+
+}  // namespace
+
+void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, const Workspace& w,
+                        Coupling& c) noexcept {
+  const double ahead = (model.form == Form::condensed ? .5 : 1.) * stage.span;
+  const double before = stage.before + (stage.span - ahead);
+  const Configuration at = located_on(model, s, w);
+  for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
+    const double x = element_place(model, runner, i, stage.step, before);
+    SeatMotions seats;
+    for (int side = 0; side < 2; ++side) {
+      const std::int32_t row = wheel_seat_row(model, set, side);
+      locate_wheel_seat(model, at, runner, x, side, seats, c.seat + (row - c.contacts),
+                        c.place + row);
+    }
+  });
+}
+
+void couple_runners(const Model& model, const Stage& stage, const State& s, Workspace& w,
+                    const Coupling& c, CoupledRunners& all) noexcept {
+  all.scalars = c.contacts + model.fixed.count;
+  fill_compliance(model, c, all.scalars, w.newton);
+  for (std::int32_t r = 0; r < model.runners; ++r)
+    move_freely(stage_of(model, model.runner[r], stage), s, w, w.solved + model.runner[r].first);
+  const double theta = model.scheme.theta;
+  for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
+    const RunnerStage at = stage_of(model, runner, stage);
+    WheelsetMotion motion;
+    find_motion(at, i, s, w, w.solved + runner.first, motion);
+    WheelsetLaw& law = all.law[set];
+    law = {&runner,
+           i,
+           true,
+           rails_under(model, runner, i, stage.step, at.before(theta)),
+           travelled(runner.travel, at.time(theta)).speed,
+           at.rate,
+           {},
+           {},
+           false};
+    const int first = all.scalars + kOfWheelset * set;
+    for (int k = 0; k < kMotions; ++k) {
+      all.z_free[first + k] = motion.free[k];
+      all.start[first + k] = motion.start[k];
+      law.rate_at_zero[k] = motion.rate_at_zero[k];
+    }
+    for (int k = 0; k < 2 * kWheelSeatRows; ++k) {
+      const int row = wheel_seat_row(model, set, 0) + k;
+      all.z_free[first + kMotions + k] = c.track_free[row];
+      all.start[first + kMotions + k] = c.track_free[row] + moved_before(model, s, c, row);
+      law.rate_at_zero[kMotions + k] = rate_of(model, s, w, c, row).before;
+    }
+  });
+}
+
+NewtonResult solve_coupled_runners(const Model& model, const double* d_free, const Workspace& w,
+                                   Coupling& c, CoupledRunners& all) noexcept {
+  LawBlock block[kMostNewton];
+  double z[kMostNewton];
+  const int n = newton_size(model), sets = model.runner_wheelsets;
+  for (int i = 0; i < all.scalars; ++i) {
+    const int port = port_of(c, i);
+    const PortLaw& law = c.law[i];
+    block[i] = {i, 1};
+    all.z_free[i] = z[i] = d_free[port];
+    if (c.force[port] > 0. || law.bilateral) z[i] = port_depth(law, c.force[port]);
+  }
+  for (int i = 0; i < sets; ++i)
+    block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset};
+  for (int i = all.scalars; i < n; ++i) z[i] = all.start[i];
+  const NewtonResult met = solve_laws(
+      {n, all.scalars + sets, w.newton, block, all.z_free, w.newton + std::ptrdiff_t{n} * n,
+       kRunnerTolerance},
+      [&](int b, const double* at, double* force, double* slope) noexcept {
+        if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slope);
+        const PortForce own = port_force(c.law[b], *at);
+        *force = -own.force;
+        if (slope != nullptr) *slope = -own.slope;
+      },
+      all.force, z);
+  for (int i = 0; i < n; ++i) {
+    const int port = port_of_coordinate(c, all.scalars, i);
+    if (port < 0) continue;
+    c.force[port] = -all.force[i];
+    if (i < all.scalars) c.penetration[port] = z[i];
+  }
+  for (int i = all.scalars; i < n; ++i) all.start[i] = z[i];
+  return met;
+}
+
+Status move_coupled_runners(const Model& model, const Coupling& c, const CoupledRunners& all,
+                            State& s, Workspace& w) noexcept {
+  Status met = Status::ok;
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
+    double force[kMostMotions];
+    for (int i = 0; i < runner.wheelsets; ++i) {
+      const std::int32_t set = runner.first_wheelset + i;
+      for (int k = 0; k < kMotions; ++k)
+        force[kMotions * i + k] = all.force[all.scalars + kOfWheelset * set + k];
+      keep_wheel_forces(runner, i, all.law[set], s);
+      if (all.law[set].lost) met = met | Status::contact_lost;
+      if (!is_on_rail(c, wheel_seat_row(model, set, 0))) met = met | Status::off_rail;
+    }
+    move_by(runner, force, w.solved + runner.first);
+  }
+  return met;
+}
+
+}  // namespace railstep

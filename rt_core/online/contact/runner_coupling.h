@@ -1,0 +1,36 @@
+#pragma once
+#include "online/contact/coupling.h"
+#include "online/runner/runner_step.h"
+
+namespace railstep {
+
+// Runners in a step's coupled problem: each wheelset with the seats under its wheels is one law,
+// and every contact and one-sided spring is one. Newton's method solves all of them together.
+
+/// Finds the seats under all wheels of runners, where the forces of the stage act.
+void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, const Workspace& w,
+                        Coupling& c) noexcept;
+
+/// All of the runners for one stage.
+struct CoupledRunners {
+  int scalars;  // contacts and one-sided springs, before the wheelsets among the coordinates
+  WheelsetLaw law[kMaxSeatedWheelsets];
+  double z_free[kMostNewton], start[kMostNewton], force[kMostNewton];
+};
+
+/// Moves the runners without contact into `solved`, and fills Y and the laws of the wheelsets.
+/// Rows, W and track_free of the seats must be known.
+void couple_runners(const Model& model, const Stage& stage, const State& s, Workspace& w,
+                    const Coupling& c, CoupledRunners& runners) noexcept;
+
+/// Solves all laws. @param d_free  [ports] of contacts and one-sided springs
+/// Forces against all rows go into c.force, and depths of scalar laws into c.penetration.
+NewtonResult solve_coupled_runners(const Model& model, const double* d_free, const Workspace& w,
+                                   Coupling& c, CoupledRunners& runners) noexcept;
+
+/// Moves the runners by their forces, and stores these.
+/// @returns contact_lost where a wheel is free, off_rail where one is beyond the rail's ends
+Status move_coupled_runners(const Model& model, const Coupling& c, const CoupledRunners& runners,
+                            State& s, Workspace& w) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+
+#include "online/model/travel_model.h"
+
+namespace railstep {
+
+/// The six coordinates of a body in a frame that follows the track: displacements of its centre
+/// along x, y and z, m, then rotations about these axes, rad. The `pitch` of a wheelset is its
+/// spin beyond speed / radius, and its axle is turned by yaw and then by roll.
+enum class BodyMotion { x, y, z, roll, pitch, yaw };
+inline constexpr int kMotions = 6;
+constexpr int index_of(BodyMotion motion) noexcept { return static_cast<int>(motion); }
+
+/// Conical treads on the circular crowns of rigid, straight rails: Hertz's law along the normal and
+/// linear creep with constant coefficients,
+///   Tx = -f11 xi_x,  Ty = -f22 xi_y - f23 xi_s,  moment = f23 xi_y - f33 xi_s,
+/// xi the creepages and spin over the speed; Kalker, Three-Dimensional Elastic Bodies in Rolling
+/// Contact, 1990.
+struct RollingContact {
+  double slope;          // of the treads, tangent of the cone's half angle
+  double half_distance;  // between the contacts of a centred wheelset, m
+  double crown_radius;   // m
+  double hertz;          // N/m^1.5
+  double kalker[4];      // f11 N, f22 N, f23 N m, f33 N m2
+};
+
+inline constexpr int kMaxRunners = 8;
+inline constexpr int kMaxWheelsetsOfRunner = 8;
+inline constexpr int kMaxRunnerWheelsets = 16;  // of all runners
+inline constexpr int kMaxSeatedWheelsets = 8;   // of all on rails that give way
+inline constexpr int kMaxRunnerUnknowns = 256;  // of one runner
+
+/// A wheelset of a runner.
+struct RunnerWheelset {
+  std::int32_t first;   // of its six motions among the runner's coordinates
+  double place;         // along x from the runner's origin, m
+  double radius;        // m
+  double spin_inertia;  // kg m2
+};
+
+/// Rigid bodies in space on a linear suspension, in frames that move along the track,
+///   M q'' + C q' + K q = rest + forces of the rails + what the frames' motion makes.
+/// q are the six motions of each body, then the deflection of each damper that is in series with a
+/// spring; such a coordinate has no mass. The first body's x is held at its place along the track;
+/// the drive's force that this takes is published. The equation holds at the fraction s of the step
+/// at which that of a vehicle holds.
+struct RunnerModel {
+  std::int32_t first, size;                        // its coordinates among the state's unknowns
+  std::int32_t bodies, first_wheelset, wheelsets;  // the first one among those of all runners
+  RunnerWheelset wheelset[kMaxWheelsetsOfRunner];
+  double start;  // place of its origin at t = 0, m
+  TravelModel travel;
+  RollingContact contact;
+  std::int32_t load_point[2];         // on left and right rail: height at which its wheels press
+  const double *mass, *rest;          // [size] diagonal, kg, kg m2; N, N m
+  const double *damping, *stiffness;  // [size][size]
+  /// [size][size] of s K + s kv C + kg M without the first coordinate, whose row and column are 0.
+  const double* inverse;
+  const double* compliance;  // [6 wheelsets][6 wheelsets] theta times its part for the wheelsets
+};
+
+}  // namespace railstep

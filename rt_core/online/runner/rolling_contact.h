@@ -1,0 +1,258 @@
+#pragma once
+#include <cmath>
+
+#include "online/math/dual.h"
+#include "online/math/sine.h"
+#include "online/model/runner_model.h"
+
+namespace railstep {
+
+// A wheel on its rail. Its geometry depends on four of the wheelset's motions alone: y, z, roll and
+// yaw. T is double, or a Dual over these four.
+
+inline constexpr double kLeastRolling = .1;  // m/s: creepages of slower wheels are over this speed
+inline constexpr BodyMotion kPlaced[4] = {BodyMotion::y, BodyMotion::z, BodyMotion::roll,
+                                          BodyMotion::yaw};
+using Placed = Dual<4>;
+
+namespace tread_contact {
+
+template <typename T>
+struct Vector {
+  T x, y, z;
+};
+template <typename T>
+Vector<T> operator*(const T& f, const Vector<T>& a) noexcept {
+  return {f * a.x, f * a.y, f * a.z};
+}
+template <typename T>
+T dot(const Vector<T>& a, const Vector<T>& b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <typename T>
+struct CosineSine {
+  T cosine, sine;
+};
+/// Within 3e-17 up to 0.1 rad, 3e-10 up to 0.5 rad.
+inline CosineSine<double> turned(double angle) noexcept {
+  const double square = angle * angle;
+  return {cosine_series(square, 8), angle * sinc_series(square, 8)};
+}
+template <int n>
+CosineSine<Dual<n>> turned(const Dual<n>& angle) noexcept {
+  const CosineSine<double> at = turned(angle.value);
+  return {dual::chain(at.cosine, -at.sine, angle), dual::chain(at.sine, at.cosine, angle)};
+}
+
+/// A cone about the axle of a wheelset that yaws and then rolls, and the crown's centre line, which
+/// runs along x.
+template <typename T>
+struct ConeOnCrown {
+  const RollingContact& c;
+  double radius, side;  // side: 1 of the left wheel, -1 of the right
+  double cosine, sine;  // of the cone's half angle
+  T y, z;               // from the wheelset's centre to the line
+  T ahead_x, ahead_y;   // axis that does not roll, level
+  Vector<T> axle;
+
+  ConeOnCrown(const RollingContact& contact, double wheel_radius, double of_side, const T& u_y,
+              const T& u_z, const T& roll, const T& yaw) noexcept
+      : c(contact),
+        radius(wheel_radius),
+        side(of_side),
+        cosine(1. / std::sqrt(1. + c.slope * c.slope)),
+        sine(c.slope * cosine),
+        y(side * (c.half_distance + c.crown_radius * sine) - u_y),
+        z((-c.crown_radius * cosine - radius) - u_z) {
+    const CosineSine<T> r = turned(roll), h = turned(yaw);
+    ahead_x = h.cosine;
+    ahead_y = h.sine;
+    axle = {-(h.sine * r.cosine), h.cosine * r.cosine, r.sine};
+  }
+
+  /// A point of the line, from the wheelset's centre: its part along the axle and across it.
+  struct Point {
+    T x, along, far;
+    Vector<T> across;
+  };
+  Point point(const T& x) const noexcept {
+    using std::sqrt;
+    const T along = dot({x, y, z}, axle);
+    const Vector<T> across = {x - along * axle.x, y - along * axle.y, z - along * axle.z};
+    return {x, along, sqrt(dot(across, across)), across};
+  }
+  /// Newton's step to the point of the line that is nearest to the cone. It converges from
+  /// centimetres off, and one step from the solution also makes its derivatives right.
+  T nearer(const Point& p) const noexcept {
+    const T sine_x = p.across.x / p.far;
+    const T rise = sine_x + (side * c.slope) * axle.x;
+    return p.x - rise * p.far / (1. - axle.x * axle.x - sine_x * sine_x);
+  }
+};
+
+/// Steps of the search for the nearest point; the error of each is of the order of the square of
+/// the one before.
+inline constexpr int kNearestSteps = 4;
+
+}  // namespace tread_contact
+
+/// Rows of a contact over the six motions of its wheelset: a unit force on the wheel at the contact
+/// along the normal, along x and across, in the tangent plane, and a unit moment about the normal.
+/// They also give the slip from the rates of the motions. Entries that are 0 are left out.
+template <typename T>
+struct WheelRows {
+  T depth;     // penetration, m; its derivatives are the negative row of the normal
+  T n_y, n_z;  // normal, from the rail to the wheel; across is (0, n_z, -n_y)
+  T normal_roll, normal_yaw;
+  T along_roll, along_spin, along_yaw;
+  T across_roll, across_spin, across_yaw;
+  T spin_roll, spin_spin;  // of the moment; n_z about z
+};
+
+/// @param side  1 of the left wheel, -1 of the right
+/// Other parameters: motions of the wheelset over the rail.
+template <typename T>
+WheelRows<T> wheel_rows(const RollingContact& c, double radius, double side, const T& y, const T& z,
+                        const T& roll, const T& yaw) noexcept {
+  using tread_contact::ConeOnCrown;
+  const ConeOnCrown<double> searched(c, radius, side, value_of(y), value_of(z), value_of(roll),
+                                     value_of(yaw));
+  double x = 0.;
+  for (int i = 0; i < tread_contact::kNearestSteps; ++i) x = searched.nearer(searched.point(x));
+  const ConeOnCrown<T> pair(c, radius, side, y, z, roll, yaw);
+  const auto p = pair.point(pair.nearer(pair.point(T(x))));
+  const auto& axle = pair.axle;
+  WheelRows<T> rows;
+  const T wheel = (radius + c.slope * c.half_distance) - (side * c.slope) * p.along;
+  rows.depth = c.crown_radius - pair.cosine * (p.far - wheel);
+  const T outwards = -pair.cosine / p.far;
+  rows.n_y = outwards * p.across.y - (side * pair.sine) * axle.y;
+  rows.n_z = outwards * p.across.z - (side * pair.sine) * axle.z;
+  // The contact, from the wheelset's centre.
+  const T arm_y = pair.y + c.crown_radius * rows.n_y, arm_z = pair.z + c.crown_radius * rows.n_z;
+  // Motion of the contact by a unit of roll and of spin.
+  const T rolled_x = pair.ahead_y * arm_z, rolled_y = -(pair.ahead_x * arm_z),
+          rolled_z = pair.ahead_x * arm_y - pair.ahead_y * p.x;
+  const T spun_y = axle.z * p.x - axle.x * arm_z, spun_z = axle.x * arm_y - axle.y * p.x;
+  rows.normal_roll = rows.n_y * rolled_y + rows.n_z * rolled_z;
+  rows.normal_yaw = rows.n_y * p.x;
+  rows.along_roll = rolled_x;
+  rows.along_spin = axle.y * arm_z - axle.z * arm_y;
+  rows.along_yaw = -arm_y;
+  rows.across_roll = rows.n_z * rolled_y - rows.n_y * rolled_z;
+  rows.across_spin = rows.n_z * spun_y - rows.n_y * spun_z;
+  rows.across_yaw = rows.n_z * p.x;
+  rows.spin_roll = rows.n_y * pair.ahead_y;
+  rows.spin_spin = rows.n_y * axle.y + rows.n_z * axle.z;
+  return rows;
+}
+
+/// Forces at a contact: along its normal, N; of creep, along and across, N, and its moment, N m.
+template <typename T>
+struct ContactForces {
+  T normal, along, across, moment;
+};
+
+/// How a rail moves under a wheel, m/s and rad/s: the centre of its crown along y and z, and its
+/// section about x.
+struct RailRate {
+  double y, z, roll;
+};
+
+/// Slip of the wheel over the rail at a contact, m/s, and spin, rad/s.
+template <typename T>
+struct Slip {
+  T along, across, spin;
+};
+/// @param v      [6] rates of the wheelset's motions
+/// @param speed  of the wheelset's frame, m/s
+template <typename T>
+Slip<T> slip_of(const RollingContact& c, const WheelRows<T>& r, const double* v, double speed,
+                double radius, const RailRate& rail) noexcept {
+  const double spin = speed / radius + v[4];
+  // The contact is a crown's radius from the centre of the crown, along the normal.
+  return {(speed + v[0]) + r.along_roll * v[3] + r.along_spin * spin + r.along_yaw * v[5],
+          r.n_z * (v[1] - rail.y) - r.n_y * (v[2] - rail.z) + r.across_roll * v[3] +
+              r.across_spin * spin + r.across_yaw * v[5] + c.crown_radius * rail.roll,
+          r.spin_roll * v[3] + r.spin_spin * spin + r.n_z * v[5]};
+}
+
+/// Reciprocal of the speed over which creepages are taken, s/m.
+inline double per_rolling(double speed) noexcept {
+  const double size = std::fabs(speed);
+  return 1. / (size > kLeastRolling ? size : kLeastRolling);
+}
+
+/// Forces at a contact in touch. @param per_speed  per_rolling()
+template <typename T>
+ContactForces<T> contact_forces(const RollingContact& c, const T& depth, const Slip<T>& slip,
+                                double per_speed) noexcept {
+  using std::sqrt;
+  const double f11 = c.kalker[0] * per_speed, f22 = c.kalker[1] * per_speed,
+               f23 = c.kalker[2] * per_speed, f33 = c.kalker[3] * per_speed;
+  ContactForces<T> f;
+  f.normal = c.hertz * depth * sqrt(depth);
+  f.along = -f11 * slip.along;
+  f.across = -f22 * slip.across - f23 * slip.spin;
+  f.moment = f23 * slip.across - f33 * slip.spin;
+  return f;
+}
+
+/// Over the six motions of the wheelset, N and N m.
+template <typename T>
+void generalise(const WheelRows<T>& r, const ContactForces<T>& f, T* force) noexcept {
+  force[0] = f.along;
+  force[1] = f.normal * r.n_y + f.across * r.n_z;
+  force[2] = f.normal * r.n_z - f.across * r.n_y;
+  force[3] = f.normal * r.normal_roll + f.along * r.along_roll + f.across * r.across_roll +
+             f.moment * r.spin_roll;
+  force[4] = f.along * r.along_spin + f.across * r.across_spin + f.moment * r.spin_spin;
+  force[5] =
+      f.normal * r.normal_yaw + f.along * r.along_yaw + f.across * r.across_yaw + f.moment * r.n_z;
+}
+
+/// Deviation of both railheads from straight, level lines under a wheelset, m: [left, right].
+struct RailsUnder {
+  double y[2], z[2];
+};
+
+/// Force of the rail on a wheel.
+struct WheelForce {
+  double depth;           // penetration, m; forces are 0 unless it is above 0
+  double normal, across;  // N; across: of creep
+  double generalised[6];  // over the wheelset's motions, N and N m; the first three are x, y, z
+  double creep_power;     // W, not above 0
+};
+
+/// Derivatives of WheelForce::generalised, and of its force across as a seventh row, over motions,
+/// rates, and slip across that none of these makes.
+struct WheelSlopes {
+  double by_motion[7][4];  // over kPlaced
+  double by_rate[7][6];
+  double by_across[7];
+};
+
+/// @param side  1 of the left wheel, -1 of the right
+/// @param u, v  [6] motions of the wheelset over the rail, and their rates
+/// @param rail  rates of the rail
+inline WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
+                              const double* u, const double* v, const RailRate& rail) noexcept {
+  const WheelRows<double> r = wheel_rows(c, radius, side, u[1], u[2], u[3], u[5]);
+  WheelForce force{r.depth, 0., 0., {}, 0.};
+  if (!(r.depth > 0.)) return force;
+  const Slip<double> slip = slip_of(c, r, v, speed, radius, rail);
+  const ContactForces<double> f = contact_forces(c, r.depth, slip, per_rolling(speed));
+  force.normal = f.normal;
+  force.across = f.across;
+  force.creep_power = f.along * slip.along + f.across * slip.across + f.moment * slip.spin;
+  generalise(r, f, force.generalised);
+  return force;
+}
+
+/// The same with derivatives.
+WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
+                       const double* u, const double* v, const RailRate& rail,
+                       WheelSlopes& slopes) noexcept;
+
+}  // namespace railstep

@@ -1,0 +1,222 @@
+#include "online/runner/runner_step.h"
+
+#include "online/math/dense.h"
+#include "online/runner/runner_contact.h"
+#include "online/track/travel.h"
+
+namespace railstep {
+
+namespace {
+
+/// Adds the forces of the frames' acceleration and the wheelsets' spins, N and N m. The gyroscopic
+/// moments are those of the rates that the last acceleration leads to.
+void add_frame_forces(const RunnerStage& at, const State& s, const Workspace& w,
+                      double* force) noexcept {
+  const RunnerModel& r = at.runner;
+  const Travelled way = travelled(r.travel, at.time(at.held));
+  const double later = at.held * at.model.scheme.kv / at.model.scheme.kg;
+  const auto rate = [&](std::int32_t k) noexcept {
+    const double v0 = s.v[r.first + k], v1 = w.v_star[r.first + k];
+    return (v0 + at.held * (v1 - v0)) + later * s.g[r.first + k];
+  };
+  for (std::int32_t b = 0; b < r.bodies; ++b)
+    force[kMotions * b] -= r.mass[kMotions * b] * way.acceleration;
+  for (std::int32_t i = 0; i < r.wheelsets; ++i) {
+    const RunnerWheelset& set = r.wheelset[i];
+    const std::int32_t roll = set.first + index_of(BodyMotion::roll),
+                       spin = set.first + index_of(BodyMotion::pitch),
+                       yaw = set.first + index_of(BodyMotion::yaw);
+    const double momentum = set.spin_inertia * (way.speed / set.radius);
+    force[roll] += momentum * rate(yaw);
+    force[yaw] -= momentum * rate(roll);
+    force[spin] -= set.spin_inertia * (way.acceleration / set.radius);
+  }
+}
+
+}  // namespace
+
+RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept {
+  const Scheme& c = model.scheme;
+  const bool held = model.form == Form::condensed;
+  return {model, runner, stage, held ? .5 : 1., held ? 1. / (c.theta * c.dt) : c.kv};
+}
+
+void move_freely(const RunnerStage& at, const State& s, const Workspace& w, double* u) noexcept {
+  const RunnerModel& r = at.runner;
+  const Scheme& c = at.model.scheme;
+  const double *u_star = w.u_star + r.first, *v_star = w.v_star + r.first;
+  const double *u0 = s.u + r.first, *v0 = s.v + r.first;
+  double force[kMaxRunnerUnknowns], rate[kMaxRunnerUnknowns];
+  for (std::int32_t k = 0; k < r.size; ++k) {
+    force[k] = r.mass[k] * (c.kg * u_star[k]) + r.rest[k];
+    rate[k] = at.held * (c.kv * u_star[k] - v_star[k]) - (1. - at.held) * v0[k];
+    u[k] = 0.;
+  }
+  add_frame_forces(at, s, w, force);
+  symmetric_multiply_add(r.damping, rate, force, r.size);
+  if (at.held < 1.) {
+    double moved[kMaxRunnerUnknowns];
+    for (std::int32_t k = 0; k < r.size; ++k) moved[k] = -(1. - at.held) * u0[k];
+    symmetric_multiply_add(r.stiffness, moved, force, r.size);
+  }
+  symmetric_multiply_add(r.inverse, force, u, r.size);
+}
+
+void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,
+                 const double* u, WheelsetMotion& motion) noexcept {
+  const Scheme& c = at.model.scheme;
+  for (int k = 0; k < kMotions; ++k) {
+    const std::int32_t own = at.runner.wheelset[wheelset].first + k, all = at.runner.first + own;
+    motion.free[k] = s.u[all] + c.theta * (u[own] - s.u[all]);
+    motion.start[k] = s.u[all] + c.theta * ((w.u_star[all] + s.g[all] / c.kg) - s.u[all]);
+    motion.rate_at_zero[k] =
+        at.held < 1. ? -at.rate * s.u[all] : w.v_star[all] - at.rate * w.u_star[all];
+  }
+}
+
+void move_by(const RunnerModel& runner, const double* force, double* u) noexcept {
+  for (int i = 0; i < kMotions * runner.wheelsets; ++i) {
+    const std::int32_t own = runner.wheelset[i / kMotions].first + i % kMotions;
+    const double* column = runner.inverse + std::ptrdiff_t{runner.size} * own;
+#pragma omp simd
+    for (std::int32_t k = 0; k < runner.size; ++k) u[k] += column[k] * force[i];
+  }
+}
+
+namespace {
+
+/// Slopes of the forces on a wheelset, and of the force across, over its motions and those of the
+/// seat under one wheel.
+void add_slopes(const WheelSlopes& w, double rate, double crown_radius, int k, double* motion,
+                double* seat) noexcept {
+  for (int m = 0; m < kMotions; ++m) motion[m] += rate * w.by_rate[k][m];
+  for (int m = 0; m < 4; ++m) motion[index_of(kPlaced[m])] += w.by_motion[k][m];
+  if (seat == nullptr) return;
+  // The wheel's place counts over the rail.
+  seat[0] = -(w.by_motion[k][0] + rate * w.by_rate[k][1]);
+  seat[1] = -(w.by_motion[k][1] + rate * w.by_rate[k][2]);
+  seat[2] = rate * (crown_radius * w.by_across[k]);
+}
+
+}  // namespace
+
+void WheelsetLaw::evaluate(const double* z, double* force, double* slope) noexcept {
+  const int n = size();
+  const double crown = runner->contact.crown_radius;
+  double v[kMotions];
+  for (int k = 0; k < kMotions; ++k) {
+    v[k] = rate * z[k] + rate_at_zero[k];
+    force[k] = 0.;
+  }
+  if (slope != nullptr)
+    for (int k = 0; k < n * n; ++k) slope[k] = 0.;
+  lost = false;
+  for (int side = 0; side < 2; ++side) {
+    const int seat = kMotions + 3 * side;
+    RailsUnder under = rails;
+    RailRate moving{0., 0., 0.};
+    if (seated) {
+      under.y[side] += z[seat];
+      under.z[side] += z[seat + 1];
+      moving = {rate * z[seat] + rate_at_zero[seat], rate * z[seat + 1] + rate_at_zero[seat + 1],
+                rate * z[seat + 2] + rate_at_zero[seat + 2]};
+    }
+    WheelSlopes slopes;
+    const WheelForce f = wheel_force(*runner, wheelset, under, moving, side, speed, z, v,
+                                     slope == nullptr ? nullptr : &slopes);
+    if (!(f.depth > 0.)) lost = true;
+    for (int k = 0; k < kMotions; ++k) force[k] += f.generalised[k];
+    keep_wheel_force(f, crown, kept[side]);
+    if (seated) {
+      force[seat] = -f.generalised[1];
+      force[seat + 1] = -f.generalised[2];
+      force[seat + 2] = crown * f.across;
+    }
+    if (slope == nullptr) continue;
+    for (int k = 0; k < kMotions; ++k)
+      add_slopes(slopes, rate, crown, k, slope + n * k, seated ? slope + n * k + seat : nullptr);
+    if (!seated) continue;
+    constexpr int kRows[3] = {1, 2, 6};  // forces along y and z, and across
+    const double factor[3] = {-1., -1., crown};
+    for (int d = 0; d < 3; ++d) {
+      double* const row = slope + n * (seat + d);
+      add_slopes(slopes, rate, crown, kRows[d], row, row + seat);
+      for (int m = 0; m < n; ++m) row[m] *= factor[d];
+    }
+  }
+}
+
+Status status_of(NewtonStatus met) noexcept {
+  switch (met) {
+    case NewtonStatus::converged:
+      return Status::ok;
+    case NewtonStatus::cap_reached:
+      return Status::cap_reached;
+    case NewtonStatus::weak_pivot:
+    case NewtonStatus::bad_input:
+      break;
+  }
+  return Status::contact_ill_posed;
+}
+
+namespace {
+
+RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcept {
+  const RunnerModel& r = at.runner;
+  const double theta = at.model.scheme.theta;
+  double* const u = w.solved + r.first;
+  move_freely(at, s, w, u);
+  LawBlock block[kMaxWheelsetsOfRunner];
+  WheelsetLaw law[kMaxWheelsetsOfRunner];
+  double z_free[kMostMotions], z[kMostMotions], force[kMostMotions];
+  const double speed = travelled(r.travel, at.time(theta)).speed;
+  for (int i = 0; i < r.wheelsets; ++i) {
+    WheelsetMotion motion;
+    find_motion(at, i, s, w, u, motion);
+    block[i] = {kMotions * i, kMotions};
+    law[i] = {&r,    i,       false, rails_under(at.model, r, i, at.stage.step, at.before(theta)),
+              speed, at.rate, {},    {},
+              false};
+    for (int k = 0; k < kMotions; ++k) {
+      z_free[kMotions * i + k] = motion.free[k];
+      z[kMotions * i + k] = motion.start[k];
+      law[i].rate_at_zero[k] = motion.rate_at_zero[k];
+    }
+  }
+  const NewtonResult met = solve_laws(
+      {kMotions * r.wheelsets, r.wheelsets, r.compliance, block, z_free, w.newton,
+       kRunnerTolerance},
+      [&law](int b, const double* at_z, double* f, double* slope) noexcept {
+        law[b].evaluate(at_z, f, slope);
+      },
+      force, z);
+  move_by(r, force, u);
+  RunnerResult result{status_of(met.status), met.iterations};
+  for (int i = 0; i < r.wheelsets; ++i) {
+    if (law[i].lost) result.status = result.status | Status::contact_lost;
+    keep_wheel_forces(r, i, law[i], s);
+  }
+  return result;
+}
+
+}  // namespace
+
+void keep_wheel_forces(const RunnerModel& runner, int wheelset, const WheelsetLaw& law,
+                       State& s) noexcept {
+  for (int side = 0; side < 2; ++side)
+    for (int d = 0; d < kWheelForces; ++d)
+      wheel_force_of(s, runner.first_wheelset + wheelset, side)[d] = law.kept[side][d];
+}
+
+RunnerResult solve_runners(const Model& model, const Stage& stage, State& s,
+                           Workspace& w) noexcept {
+  RunnerResult sum{Status::ok, 0};
+  for (std::int32_t i = 0; i < model.runners; ++i) {
+    const RunnerResult own = solve_runner(stage_of(model, model.runner[i], stage), s, w);
+    sum.status = sum.status | own.status;
+    if (own.iterations > sum.iterations) sum.iterations = own.iterations;
+  }
+  return sum;
+}
+
+}  // namespace railstep

@@ -1,0 +1,78 @@
+#pragma once
+#include "online/math/newton.h"
+#include "online/model/state.h"
+#include "online/runner/runner_contact.h"
+
+namespace railstep {
+
+inline constexpr int kMostMotions = kMotions * kMaxWheelsetsOfRunner;
+/// Tolerance of Newton's method: penetrations are differences of lengths that are 1e4 times as
+/// large.
+inline constexpr double kRunnerTolerance = 1e-10;
+
+/// One runner in a stage, and the instants at which its equation and its contacts hold.
+struct RunnerStage {
+  const Model& model;
+  const RunnerModel& runner;
+  const Stage& stage;
+  double held;  // fraction of the stage at which the equation of motion holds
+  double
+      rate;  // change of a motion's rate at the contacts' instant by a change of the motion there
+  double before(double fraction) const noexcept {
+    return stage.before + (1. - fraction) * stage.span;
+  }
+  double time(double fraction) const noexcept {
+    return static_cast<double>(stage.step) * model.scheme.dt - before(fraction);
+  }
+};
+RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept;
+
+/// Displacements at the stage's end without contact. @param u  [size] out
+void move_freely(const RunnerStage& at, const State& s, const Workspace& w, double* u) noexcept;
+
+/// The motions of one wheelset at the contacts' instant.
+struct WheelsetMotion {
+  double free[kMotions];          // without contact
+  double start[kMotions];         // as the last acceleration leads to it
+  double rate_at_zero[kMotions];  // rates are `rate` times the motions, and this
+};
+/// @param u  of move_freely()
+void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,
+                 const double* u, WheelsetMotion& motion) noexcept;
+
+/// Adds the displacements by forces on the wheelsets. @param force  [6 wheelsets]
+void move_by(const RunnerModel& runner, const double* force, double* u) noexcept;
+
+/// The law of one wheelset: its six motions, then those of the seats under its left and right
+/// wheel, if they give way: y, z and roll.
+struct WheelsetLaw {
+  const RunnerModel* runner;
+  int wheelset;
+  bool seated;
+  RailsUnder rails;
+  double speed, rate;
+  double rate_at_zero[kMotions + 6];
+  double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
+  bool lost;                     // a wheel was free there
+
+  int size() const noexcept { return seated ? kMotions + 6 : kMotions; }
+  /// @param slope  [size][size], or null
+  void evaluate(const double* z, double* force, double* slope) noexcept;
+};
+
+/// Stores the forces on the wheels of a wheelset as a law last found them.
+void keep_wheel_forces(const RunnerModel& runner, int wheelset, const WheelsetLaw& law,
+                       State& s) noexcept;
+
+struct RunnerResult {
+  Status status;
+  int iterations;  // the most of Newton's
+};
+
+/// Displacements of all runners at the end of a stage on rigid rails, in `solved`, and the forces
+/// on their wheels. The wheels meet the rails by Newton's method over the motions of the wheelsets.
+RunnerResult solve_runners(const Model& model, const Stage& stage, State& s, Workspace& w) noexcept;
+
+Status status_of(NewtonStatus met) noexcept;
+
+}  // namespace railstep
