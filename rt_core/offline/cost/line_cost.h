@@ -33,7 +33,7 @@ Cost advance_cost(const Model& model, const LineModel& line);
 /// Cost of all loads once: their places and forces.
 Cost loads_cost(const Model& model);
 
-/// How many contacts act on a line.
+/// How many rows of the track, of contacts and wheel seats, act on a line.
 std::int64_t rows_on(const Model& model, const LineModel& line);
 
 // Tables (math/table.h, model/signal.h), as the tests count them.

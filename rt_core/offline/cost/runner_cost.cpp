@@ -18,7 +18,7 @@ Cost newton_cost(std::int64_t wheels, std::int64_t scalars, std::int64_t n) {
   return (trials + 1) * kNewtonSweeps * (scalars * scalar) +
          kNewtonSweeps *
              (trials * (wheels * kWheel + missed) + wheels * kWheelSlopes + missed + step) +
-         work(6 * n, 3 * n * n);
+         wheels * kWheel + work(6 * n, 3 * n * n);
 }
 
 }  // namespace
@@ -54,8 +54,8 @@ Cost publish_runners_cost(const Model& model) {
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
     const std::int64_t n = own.size;
-    sum = sum + work(4 * n + 10, 4 * n) + 2 * table_cost(own.travel.rows) +
-          own.wheelsets * (2 * kWheel + branching(40, 40) + model.signals * kSignal);
+    sum = sum + work(4 * n + 10, 4 * n) + (1 + own.wheelsets) * table_cost(own.travel.rows) +
+          own.wheelsets * branching(40, 40);
   }
   return sum;
 }

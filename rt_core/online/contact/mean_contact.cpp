@@ -10,7 +10,7 @@ double residual_before(const Model& model, const State& s, const Coupling& c, in
   double sum = c.by_loads[i];
   for (int j = 0; j < c.rows; ++j) {
     if (!is_on_rail(c, j)) continue;
-    // Of a seat the force on the wheel along y, z, and none about x; only z has residual parts.
+    // Vertical forces alone have residual displacements: of the rows of a seat the one along z.
     const int seat = j - c.contacts;
     const double force = seat < 0 ? s.contact_force[j]
                          : seat % kWheelSeatRows == 1

@@ -156,6 +156,11 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
         if (slope != nullptr) *slope = -own.slope;
       },
       all.force, z);
+  // The last point that was tried need not be the best one.
+  for (int i = 0; i < sets && met.status != NewtonStatus::converged; ++i) {
+    const int first = all.scalars + kOfWheelset * i;
+    all.law[i].evaluate(z + first, all.force + first, nullptr);
+  }
   for (int i = 0; i < n; ++i) {
     const int port = port_of_coordinate(c, all.scalars, i);
     if (port < 0) continue;

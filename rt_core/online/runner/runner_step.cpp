@@ -190,6 +190,9 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
         law[b].evaluate(at_z, f, slope);
       },
       force, z);
+  // The last point that was tried need not be the best one.
+  for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)
+    law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr);
   move_by(r, force, u);
   RunnerResult result{status_of(met.status), met.iterations};
   for (int i = 0; i < r.wheelsets; ++i) {
