@@ -39,7 +39,7 @@ std::vector<LawBlock> blocks_of(const std::vector<int>& sizes) {
   return blocks;
 }
 
-double scratch[kMostNewton * kMostNewton];
+double elimination_scratch[kMostNewton * kMostNewton];
 
 /// Solves from where given forces lead. @param force  in: those of the step before
 template <typename Law>
@@ -101,7 +101,7 @@ TEST_CASE("frictionless contacts have the forces of the convex solver", "[newton
       VectorXd force(n), z(n);
       for (int i = 0; i < n; ++i) force[i] = -f[i] * between(.9, 1.1, random);
       force[trial % n] = trial % 2 == 0 ? 0. : force[trial % n];
-      const NewtonProblem p{n, n, W.data(), blocks.data(), free.data(), scratch};
+      const NewtonProblem p{n, n, W.data(), blocks.data(), free.data(), elimination_scratch};
       const NewtonResult met = solve_from(p, Contacts{law.data()}, force.data(), z.data());
       INFO(n << " contacts, trial " << trial << ", residual " << met.residual);
       CHECK(met.status == NewtonStatus::converged);
@@ -138,8 +138,9 @@ TEST_CASE("linear creep is solved in one iteration", "[newton]") {
       law.c[i] = between(-1e4, 1e4, random);
       force[i] = between(-1e4, 1e4, random);
     }
-    const NewtonProblem p{
-        n, static_cast<int>(sizes.size()), Y.data(), law.block.data(), free.data(), scratch};
+    const NewtonProblem p{n,           static_cast<int>(sizes.size()),
+                          Y.data(),    law.block.data(),
+                          free.data(), elimination_scratch};
     const NewtonResult met = solve_from(p, law, force.data(), z.data());
     CHECK(met.status == NewtonStatus::converged);
     CHECK(met.iterations <= (n == 0 ? 0 : 1));
@@ -196,7 +197,7 @@ TEST_CASE("creep that saturates is solved within the cap", "[newton]") {
     VectorXd free(n), force = VectorXd::Zero(n), z(n);
     for (int i = 0; i < n; ++i)
       free[i] = i % 3 == 0 ? between(-6e-4, -2e-4, random) : between(-.02, .02, random);
-    const NewtonProblem p{n, wheels, Y.data(), blocks.data(), free.data(), scratch};
+    const NewtonProblem p{n, wheels, Y.data(), blocks.data(), free.data(), elimination_scratch};
     static_cast<void>(solve_from(p, law, force.data(), z.data()));  // the step before
     // A step later all has moved by 2 %, some wheels from creep to slip or back.
     for (double& x : free) x *= between(.98, 1.02, random);
@@ -215,7 +216,7 @@ TEST_CASE("creep that saturates is solved within the cap", "[newton]") {
 TEST_CASE("what Newton's method cannot solve has a status", "[newton]") {
   const double Y = 1., free = 1.;
   const LawBlock one{0, 1};
-  const NewtonProblem p{1, 1, &Y, &one, &free, scratch};
+  const NewtonProblem p{1, 1, &Y, &one, &free, elimination_scratch};
   double force = 0., z = 0.;
   // z = 1 + F(z) with F = z^2 has no real solution: the slope passes 1.
   const auto none = [](int, const double* at, double* f, double* slope) noexcept {
@@ -252,10 +253,10 @@ TEST_CASE("what Newton's method cannot solve has a status", "[newton]") {
   CHECK(solve_from(p, none_of, &force, &z).status == NewtonStatus::bad_input);
   CHECK(force == 0.);
   const LawBlock gap{1, 1};
-  CHECK(solve_laws({1, 1, &Y, &gap, &free, scratch}, none_of, &force, &z).status ==
+  CHECK(solve_laws({1, 1, &Y, &gap, &free, elimination_scratch}, none_of, &force, &z).status ==
         NewtonStatus::bad_input);
   std::vector<double> forces(kMostNewton + 1), places(kMostNewton + 1);
-  CHECK(solve_laws({kMostNewton + 1, 1, &Y, &one, &free, scratch}, none_of, forces.data(),
-                   places.data())
+  CHECK(solve_laws({kMostNewton + 1, 1, &Y, &one, &free, elimination_scratch}, none_of,
+                   forces.data(), places.data())
             .status == NewtonStatus::bad_input);
 }
