@@ -33,13 +33,30 @@ std::vector<LawBlock> blocks_of(const std::vector<int>& sizes) {
   std::vector<LawBlock> blocks;
   int first = 0;
   for (const int size : sizes) {
-    blocks.push_back({first, size});
+    blocks.push_back({first, size, size});
     first += size;
   }
   return blocks;
 }
 
-double elimination_scratch[kMostNewton * kMostNewton];
+double elimination_scratch[2 * kMostNewton * kMostNewton];
+
+/// A law whose slopes are one matrix [size][size], in two factors: one and the matrix.
+template <typename Law>
+struct Factored {
+  const Law& law;
+  const LawBlock* block;
+  void operator()(int b, const double* z, double* force, const LawSlopes* slopes) const noexcept {
+    law(b, z, force, slopes == nullptr ? nullptr : slopes->slope);
+    const int size = block[b].size;
+    for (int k = 0; k < size * size && slopes != nullptr; ++k)
+      slopes->spread[k] = k % (size + 1) == 0 ? 1. : 0.;
+  }
+};
+template <typename Law>
+NewtonResult solve_whole(const NewtonProblem& p, const Law& law, double* force, double* z) {
+  return solve_laws(p, Factored<Law>{law, p.block}, force, z);
+}
 
 /// Solves from where given forces lead. @param force  in: those of the step before
 template <typename Law>
@@ -48,7 +65,7 @@ NewtonResult solve_from(const NewtonProblem& p, const Law& law, double* force, d
     z[i] = p.z_free[i];
     for (int j = 0; j < p.n; ++j) z[i] += p.Y[i * p.n + j] * force[j];
   }
-  return solve_laws(p, law, force, z);
+  return solve_whole(p, law, force, z);
 }
 
 /// Scalar contacts in the terms of ports.h: penetration d = d_free - W f.
@@ -215,7 +232,7 @@ TEST_CASE("creep that saturates is solved within the cap", "[newton]") {
 
 TEST_CASE("what Newton's method cannot solve has a status", "[newton]") {
   const double Y = 1., free = 1.;
-  const LawBlock one{0, 1};
+  const LawBlock one{0, 1, 1};
   const NewtonProblem p{1, 1, &Y, &one, &free, elimination_scratch};
   double force = 0., z = 0.;
   // z = 1 + F(z) with F = z^2 has no real solution: the slope passes 1.
@@ -252,11 +269,11 @@ TEST_CASE("what Newton's method cannot solve has a status", "[newton]") {
   force = std::numeric_limits<double>::quiet_NaN();
   CHECK(solve_from(p, none_of, &force, &z).status == NewtonStatus::bad_input);
   CHECK(force == 0.);
-  const LawBlock gap{1, 1};
-  CHECK(solve_laws({1, 1, &Y, &gap, &free, elimination_scratch}, none_of, &force, &z).status ==
+  const LawBlock gap{1, 1, 1};
+  CHECK(solve_whole({1, 1, &Y, &gap, &free, elimination_scratch}, none_of, &force, &z).status ==
         NewtonStatus::bad_input);
   std::vector<double> forces(kMostNewton + 1), places(kMostNewton + 1);
-  CHECK(solve_laws({kMostNewton + 1, 1, &Y, &one, &free, elimination_scratch}, none_of,
+  CHECK(solve_whole({kMostNewton + 1, 1, &Y, &one, &free, elimination_scratch}, none_of,
                    forces.data(), places.data())
             .status == NewtonStatus::bad_input);
 }

@@ -66,11 +66,12 @@ Cost tables_cost(const Model& model) {
 
 /// The track under all contacts: responses, W, penetrations, and the forces' way back.
 Cost responses_cost(const Model& model, const LineModel& line) {
-  const std::int64_t wheels = rows_on(model, line);
+  const std::int64_t bases = bases_on(model, line), n = line.size;
   const LineCost cost = line_cost(model, line);
-  Cost sum = wheels * (cost.unit + cost.add) + wheels * (wheels + 1) / 2 * cost.pair +
-             wheels * (cost.located + cost.read);
-  sum = sum + wheels * std::int64_t{model.fixed.count} * cost.read;
+  Cost sum = bases * (cost.unit + cost.add) + bases * (bases + 1) / 2 * (cost.pair + work(8, 8)) +
+             bases * (cost.located + cost.read);
+  if (line.modal.between != nullptr) sum = sum + work(8 * n, 6 * n);
+  sum = sum + bases * std::int64_t{model.fixed.count} * cost.read;
   // Dampers of flanges: the rail's motion at three instants.
   return sum + 6 * std::int64_t{model.flanges} * cost.wheel_row;
 }

@@ -1,16 +1,14 @@
 #include "offline/cost/line_cost.h"
 
 #include <algorithm>
+#include <set>
 
+#include "online/contact/wheel_seat.h"
 #include "online/model/contact_id.h"
 
 namespace railstep {
 
 namespace {
-
-bool has_levers(const Model& model) {
-  return model.p_delta.lever[0] != nullptr || model.p_delta.lever[1] != nullptr;
-}
 
 /// Panels that the unknowns of elements [from, end) span.
 std::int64_t panels_of_elements(const LineModel& line, std::int64_t from, std::int64_t end) {
@@ -46,13 +44,15 @@ Cost half_solve_cost(const Band& band, std::int64_t panels) {
 }  // namespace
 
 std::int64_t carried_by(const Model& model, const LineModel& line) {
-  std::int64_t most = 0;
-  for (int rail = 0; rail < 2; ++rail)
-    for (std::int32_t e = 0; e < model.elements; ++e)
-      most = std::max<std::int64_t>(
-          most, std::count_if(line.unknown_of[rail] + 27 * e, line.unknown_of[rail] + 27 * (e + 1),
-                              [](std::int32_t unknown) { return unknown >= 0; }));
-  return most;
+  std::size_t most = 0;
+  for (const std::int32_t* table : line.unknown_of)
+    for (std::int32_t e = 0; e < model.elements; ++e) {
+      std::set<std::int32_t> along, across;  // rows are along x, or in the plane of a section
+      for (std::int32_t i = 27 * e; i < 27 * (e + 1); ++i)
+        if (table[i] >= 0) (i % 3 == 0 ? along : across).insert(table[i]);
+      most = std::max({most, along.size(), across.size()});
+    }
+  return static_cast<std::int64_t>(most);
 }
 
 Cost solve_cost(const Band& band) {
@@ -66,7 +66,7 @@ Cost solve_cost(const Band& band) {
 
 LineCost line_cost(const Model& model, const LineModel& line) {
   const std::int64_t n = line.size, points = carried_by(model, line);
-  const bool modal = model.form == Form::condensed;
+  const bool modal = model.form == Form::condensed, tabled = line.modal.between != nullptr;
   const std::int64_t seats = has_levers(model) ? 2 * kPDeltaSeats : 0;
   LineCost c{};
   c.value = modal ? work(4 * n + 7, 4 * n) : work(0, 1);
@@ -74,12 +74,12 @@ LineCost line_cost(const Model& model, const LineModel& line) {
   c.wheel_row = c.row + seats * (work(4, 3) + (modal ? work(4 * n + 7, 6 * n) : Cost{}));
   c.shape = work((points + seats) * (2 + 4 * n), (points + seats) * (2 + 2 * n) + 2 * n);
   const std::int64_t filled = modal ? n : kLanes * response_panels(model, line);
-  c.unit = modal ? c.shape + work(6 * n, 6 * n)
+  c.unit = modal ? c.shape + (tabled ? Cost{} : work(6 * n, 6 * n))
                  : 2 * c.wheel_row + half_solve_cost(line.step, filled / kLanes);
   c.read = modal ? work(4 * n + 8, 4 * n) : work(2 * filled + 8, 2 * filled);
   c.located = modal ? c.read : c.wheel_row;
-  const std::int64_t tabled = (points + seats) * (points + seats);
-  c.pair = modal && line.modal.between != nullptr ? work(3 * tabled + 1, 2 * tabled + 2) : c.read;
+  const std::int64_t pairs = (points + seats) * (points + seats);
+  c.pair = tabled ? work(2 * pairs + 2 * (points + seats) + 1, 2 * pairs + 2) : c.read;
   c.add = modal ? work(4 * n, 6 * n) : work(2 * filled, 3 * filled);
   c.node_roll = 2 * (work(3, 2) + c.value);
   return c;
@@ -104,12 +104,15 @@ Cost loads_cost(const Model& model) {
   return sum;
 }
 
-std::int64_t rows_on(const Model& model, const LineModel& line) {
+std::int64_t bases_on(const Model& model, const LineModel& line) {
   std::int64_t count = 0;
   for (std::int32_t i = 0; i < contact_count(model); ++i)
     if (line.rail_factor[rail_of(model, i)] != 0.) ++count;
+  const std::int64_t seats = wheel_seat_row_count(model) / 2;  // of a rail
+  if (seats > 0 && seats_mirror(model))
+    return count + seats + (has_levers(model) ? 2 * std::int64_t{model.runner_wheelsets} : 0);
   for (const double factor : line.rail_factor)
-    if (factor != 0.) count += wheel_seat_row_count(model) / 2;
+    if (factor != 0.) count += seats;
   return count;
 }
 

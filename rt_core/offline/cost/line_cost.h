@@ -34,7 +34,7 @@ Cost advance_cost(const Model& model, const LineModel& line);
 Cost loads_cost(const Model& model);
 
 /// How many rows of the track, of contacts and wheel seats, act on a line.
-std::int64_t rows_on(const Model& model, const LineModel& line);
+std::int64_t bases_on(const Model& model, const LineModel& line);
 
 // Tables (math/table.h, model/signal.h), as the tests count them.
 inline constexpr Cost kLookUp = branching(32, 5);  // a cubic

@@ -1,6 +1,7 @@
 #include "offline/cost/line_cost.h"
 #include "online/math/newton.h"
 #include "online/model/state.h"
+#include "online/runner/runner_step.h"
 
 namespace railstep {
 
@@ -12,12 +13,19 @@ constexpr Cost kWheel = branching(600, 250), kWheelSlopes = branching(2600, 2600
 /// All wheels and scalar laws at the caps of Newton's iterations, and the matrices of these.
 Cost newton_cost(std::int64_t wheels, std::int64_t scalars, std::int64_t n) {
   constexpr std::int64_t trials = 3;  // of a step's parts
+  const std::int64_t ranks = scalars + kWheelsetRank * wheels / 2;
   const Cost missed = work(2 * n * n + 8 * n, n * n + 6 * n);
-  const Cost step = work(2 * kMostLaw * n * n + 2 * n * n * n / 3 + 6 * n * n, 2 * n * n * n / 3);
+  // Y B, then S Y B, then its elimination.
+  const Cost factor =
+      work(2 * kWheelsetRank * n * n + 2 * n * ranks + 2 * kMostLaw * ranks * ranks +
+               ranks * ranks * (2 * ranks / 3 + 4),
+           2 * kWheelsetRank * n * n + 2 * kMostLaw * ranks * ranks + ranks * ranks * ranks);
+  const Cost step = work(2 * kMostLaw * ranks + 2 * ranks * ranks + 2 * n * ranks + 8 * n,
+                         2 * kMostLaw * ranks + 2 * ranks * ranks + 2 * n * ranks);
   const Cost scalar = branching(40, 20);
   return (trials + 1) * kNewtonSweeps * (scalars * scalar) +
-         kNewtonSweeps *
-             (trials * (wheels * kWheel + missed) + wheels * kWheelSlopes + missed + step) +
+         kNewtonSweeps * (trials * (wheels * kWheel + missed) + wheels * kWheelSlopes + missed +
+                          factor + step) +
          wheels * kWheel + work(6 * n, 3 * n * n);
 }
 

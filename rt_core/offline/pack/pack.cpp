@@ -268,6 +268,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (track.cant != 0. && !traffic.held.empty())
     refuse("E-PACK-20", "bodies are joined to rails with cant; expected rail.cant = 0");
   met_ = {0, track.elements()};
+  is_met_.assign(static_cast<std::size_t>(track.elements()), true);
   if (options.endless) add_endless(track, traffic, options);
   add_lines(track, traffic, options);
   model_.line_unknowns = model_.unknowns;

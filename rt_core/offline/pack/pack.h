@@ -268,6 +268,8 @@ class PackedModel {
   std::vector<PackedRunner> runners_;
   double clipped_ = 0.;
   Elements met_{};  // elements that the traffic visits (ring), else all
+  std::vector<bool> is_met_;  // each element; between parts of the traffic a ring has others
+  bool moves_along_ = true;   // rows may have parts along x
   std::vector<std::unique_ptr<std::vector<double>>> reals_;
   std::vector<std::unique_ptr<std::vector<std::int32_t>>> integers_;
 };

@@ -36,21 +36,18 @@ double speed_of(const Traffic& traffic, bool rigid) {
   return speeds.empty() ? 0. : speeds[0];
 }
 
-/// Places of the traffic at the back and at the front, m, x = 0 included.
-std::pair<double, double> span_of(const Traffic& traffic) {
-  std::pair<double, double> span{0., 0.};
-  const auto take = [&](double x) {
-    span.first = std::min(span.first, x);
-    span.second = std::max(span.second, x);
-  };
-  for (const MovingLoad& load : traffic.loads) take(load.start);
-  for (const Wheelset& set : traffic.wheelsets) take(set.start);
+/// Places of the traffic, m, x = 0 included.
+std::vector<double> places_of(const Traffic& traffic) {
+  std::vector<double> places{0.};
+  for (const MovingLoad& load : traffic.loads) places.push_back(load.start);
+  for (const Wheelset& set : traffic.wheelsets) places.push_back(set.start);
   for (const RunningVehicle& own : traffic.vehicles)
-    for (const Vehicle::Wheel& wheel : own.vehicle.wheels) take(own.start + wheel.place);
+    for (const Vehicle::Wheel& wheel : own.vehicle.wheels)
+      places.push_back(own.start + wheel.place);
   for (const RailVehicle& own : traffic.rail_vehicles)
     for (const RunnerBody& body : own.runner.bodies)
-      if (body.is_wheelset()) take(own.start + body.centre[0]);
-  return span;
+      if (body.is_wheelset()) places.push_back(own.start + body.centre[0]);
+  return places;
 }
 
 std::string too_short(const Track& track, double span, double decay) {
@@ -71,7 +68,9 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
            "a track without end has the wrong form; expected a ring if it is condensed, and a "
            "window if it is in full order");
   const double bay = track.bay_length;
-  const auto [first, last] = span_of(traffic);
+  const std::vector<double> places = places_of(traffic);
+  const auto [lowest, highest] = std::minmax_element(places.begin(), places.end());
+  const double first = *lowest, last = *highest;
   Endless& e = model_.endless;
   e = {track.bays, track.elements_per_bay, bay, options.endless->behind * bay,
        bay_progress(speed_of(traffic, track.rigid) * options.scheme.dt / bay)};
@@ -88,10 +87,21 @@ void PackedModel::add_endless(const Track& track, const Traffic& traffic,
   // A ring's shapes and tables are read only near the traffic: from a bay behind it to a bay ahead
   // of where it moves to, and at the seats around a wheelset.
   const auto border = [&](double x) { return static_cast<int>(std::floor((e.origin + x) / bay)); };
-  const bool rolls = track.unknowns != Unknowns::vertical && !traffic.wheelsets.empty();
+  const bool rolls = track.unknowns != Unknowns::vertical &&
+                     !(traffic.wheelsets.empty() && traffic.rail_vehicles.empty());
   const int spare = 1 + (rolls ? kPDeltaSeats / 2 : 0);
-  met_ = {std::max(border(first) - spare, 0) * track.elements_per_bay,
-          std::min(border(last) + 2 + spare, track.bays) * track.elements_per_bay};
+  const auto around = [&](double from, double to) {
+    return Elements{std::max(border(from) - spare, 0) * track.elements_per_bay,
+                    std::min(border(to) + 2 + spare, track.bays) * track.elements_per_bay};
+  };
+  met_ = around(first, last);
+  is_met_.assign(is_met_.size(), false);
+  for (const double x : places) {
+    const Elements own = around(x, x);
+    std::fill(is_met_.begin() + own.first, is_met_.begin() + own.last, true);
+  }
+  // The search for a wheelset's contact reads the whole motion of the rails' nodes.
+  moves_along_ = !traffic.wheelsets.empty();
 }
 
 Track window_of(Track track) {

@@ -141,11 +141,9 @@ template <typename Number>
 void PackedModel::keep_tables(const Line& line, LineModel& packed, const Number& number) {
   const auto keep_table = [&](const Line::RailUnknowns& table) {
     std::vector<std::int32_t> unknowns(9 * table.size(), -1);
-    const auto first = 3 * static_cast<std::size_t>(met_.first),
-               last = 3 * static_cast<std::size_t>(met_.last);
-    for (std::size_t node = first; node < last; ++node)
-      for (std::size_t k = 0; k < 9; ++k)
-        if (table[node][k] >= 0)
+    for (std::size_t node = 0; node < table.size(); ++node)
+      for (std::size_t k = 0; k < 9 && is_met_[node / 3]; ++k)
+        if (table[node][k] >= 0 && (moves_along_ || k % 3 != 0))
           unknowns[9 * node + k] = static_cast<std::int32_t>(number(table[node][k], k));
     return keep(std::move(unknowns));
   };

@@ -88,7 +88,8 @@ std::vector<double> levers(const Track& track, const SeatShares& shares, int rai
 
 void PackedModel::add_p_delta(const Track& track) {
   if (track.unknowns == Unknowns::vertical || track.rigid) return;
-  if (model_.wheelsets == 0 && model_.external_wheels == 0) return;  // no lateral forces
+  if (model_.wheelsets == 0 && model_.external_wheels == 0 && model_.runners == 0)
+    return;  // no lateral forces
   if (!pads_are_off_the_axis(track)) return;
   PDeltaModel& p_delta = model_.p_delta;
   p_delta.elements_per_bay = track.elements_per_bay;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "offline/math/refuse.h"
+#include "offline/runner/rolling_slopes.h"
 
 namespace railstep {
 
@@ -31,7 +32,7 @@ void add_wheelset(const RollingContact& contact, double radius, double speed,
     over_rail[index_of(BodyMotion::y)] -= rails.y[side];
     over_rail[index_of(BodyMotion::z)] -= rails.z[side];
     const WheelForce f = wheel_force(contact, radius, side == 0 ? 1. : -1., speed, over_rail.data(),
-                                     v.data() + first, {}, slopes);
+                                     v.data() + first, slopes);
     for (int k = 0; k < kMotions; ++k) {
       sum.force[first + k] += f.generalised[k];
       for (int j = 0; j < 4; ++j)

@@ -90,11 +90,12 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
 /// Penetration by the track alone: the located one, plus the track's motion since then.
 void track_penetration(const Model& model, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
+  find_track_motion(model, w, c);
   for (ContactId i = 0; i < c.contacts; ++i) {
     // Off the rail: far away.
     c.track_free[i] = c.contact[i].inactive ? c.contact[i].penetration : -1.;
     if (c.contact[i].on_rail)
-      c.track_free[i] = model.scheme.theta * track_motion(model, w, c, i) + c.by_loads[i];
+      c.track_free[i] = model.scheme.theta * c.moved[i] + c.by_loads[i];
     else if (c.contact[i].on_ground)
       c.track_free[i] = 0.;
     if (stands(c.contact[i]))
@@ -104,7 +105,7 @@ void track_penetration(const Model& model, const State& s, const Workspace& w,
   for (int i = c.contacts; i < c.rows; ++i) {
     c.track_free[i] = 0.;
     if (is_on_rail(c, i))
-      c.track_free[i] = (c.located[i] + model.scheme.theta * track_motion(model, w, c, i)) +
+      c.track_free[i] = (c.located[i] + model.scheme.theta * c.moved[i]) +
                         (c.by_loads[i] + c.seat[i - c.contacts].rise);
   }
 }
@@ -199,10 +200,15 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   c.contacts = contact_count(model);
   c.rows = track_row_count(model);
   c.ports = port_count(model);
+  c.mirrored = c.rows > c.contacts && seats_mirror(model);
+  c.of_set = !c.mirrored ? 2 * kWheelSeatRows : kWheelSeatRows + (has_levers(model) ? 2 : 0);
+  c.bases = c.contacts + c.of_set * ((c.rows - c.contacts) / (2 * kWheelSeatRows));
   c.W = w.compliance;
   const double time = time_of(model.scheme, stage);
   locate_contacts(model, stage, state, w, c);
+  find_acting(model, c);
   respond(model, state, w, c);
+  if (c.mirrored) lean_wheel_seats(model, c);
   find_residual_by_loads(model, stage, c);
   free_wheelsets(model, stage, state, w, c);
   free_vehicles(model, time, state, w, c);
@@ -210,7 +216,7 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   find_flange_laws(model, state, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);
-  if (model.scheme.mean != 0) find_means(model, state, w, c);
+  if (model.scheme.mean != 0) find_means(model, state, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.contact_force[i];
   const bool has_runners = c.rows > c.contacts;

@@ -21,12 +21,17 @@ inline constexpr int kMaxTrackRows = kMaxWheels + kMaxWheelSeatRows;
 /// is read.
 struct Coupling {
   int contacts, rows, ports;  // rows of the track (contact_id.h); ports: these, then the fixed ones
+  int bases;                  // rows along which the lines are moved: see base_row()
+  bool mirrored;              // one base serves the seats of both rails
+  int of_set;                 // bases of a wheelset of runners
   WheelContact contact[kMaxWheels];
   WheelSeatRow seat[kMaxWheelSeatRows];
   RailForce place[kMaxTrackRows];
-  Panels panels[kMaxTrackRows][kMaxLines];  // of its response, in banded lines that it moves
+  bool acts[kMaxTrackRows][kMaxLines];      // whether forces along a base move a line
+  Panels panels[kMaxTrackRows][kMaxLines];  // of a base's response, in banded lines that it moves
   double by_loads[kMaxTrackRows];           // residual displacement by the loads, m
   double located[kMaxTrackRows];  // displacement of the lines when contacts were located, m
+  double moved[kMaxTrackRows];    // without contact forces since then, m
   FreeWheelset wheelset[kMaxWheelsets];
   double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
   double* W;                                          // [ports][ports] m/N
@@ -37,11 +42,66 @@ struct Coupling {
   double penetration[kPorts];                // m; of scenes without runners [ports]
 };
 
-inline const RailRow& track_row(const Coupling& c, int row) noexcept {
-  return row < c.contacts ? c.contact[row].row : c.seat[row - c.contacts].row;
-}
 inline bool is_on_rail(const Coupling& c, int row) noexcept {
   return row < c.contacts ? c.contact[row].on_rail : c.seat[row - c.contacts].on_rail;
+}
+
+// Lines are moved along bases: the rows of contacts, then those of seats; where seats mirror, the
+// rows of the left seat of each wheelset and then, if the model has levers (p_delta.h), those of
+// its left and right seat along z.
+
+/// The place of a base in Coupling::seat.
+inline int seat_of_base(const Coupling& c, int base) noexcept {
+  const int of_seats = base - c.contacts;
+  return 2 * kWheelSeatRows * (of_seats / c.of_set) + of_seats % c.of_set;
+}
+inline const RailRow& base_row(const Coupling& c, int base) noexcept {
+  return base < c.contacts ? c.contact[base].row : c.seat[seat_of_base(c, base)].row;
+}
+/// Finds which lines forces along each base move, Coupling::acts.
+inline void find_acting(const Model& model, Coupling& c) noexcept {
+  for (int i = 0; i < c.bases; ++i) {
+    const bool on_rail = i < c.contacts ? c.contact[i].on_rail : c.seat[seat_of_base(c, i)].on_rail;
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      c.acts[i][l] = on_rail && carries(model.line[l], base_row(c, i));
+  }
+}
+
+/// The rows of the track that a base is a part of on a line: factor times it. A row along z also
+/// has -lean times that of the roll.
+struct RowsOfBase {
+  int count, row[2];
+  double factor[2];
+};
+inline RowsOfBase rows_of_base(const Coupling& c, int base, const LineModel& line) noexcept {
+  if (base < c.contacts || !c.mirrored) return {1, {base, 0}, {1., 0.}};
+  const int d = (base - c.contacts) % c.of_set, left = c.contacts + seat_of_base(c, base) - d;
+  if (d >= kWheelSeatRows)
+    return {1, {left + 1 + kWheelSeatRows * (d - kWheelSeatRows), 0}, {1., 0.}};
+  const double right = line.rail_factor[1] == line.rail_factor[0] ? 1. : -1.;
+  return {2, {left + d, left + d + kWheelSeatRows}, {1., d == 1 ? right : -right}};
+}
+
+/// Subtracts from rows along z their part by the rolls. @param x  [rows]
+inline void lean_rows(const Coupling& c, double* x) noexcept {
+  for (int i = c.contacts; i < c.rows; i += kWheelSeatRows)
+    x[i + 1] -= c.seat[i + 1 - c.contacts].lean * x[i + 2];
+}
+
+/// Sums up over lines and bases. @param value  value(base, line's number, line)
+/// @param x  [rows] out
+template <typename Value>
+void sum_rows(const Model& model, const Coupling& c, const Value& value, double* x) noexcept {
+  for (int i = 0; i < c.rows; ++i) x[i] = 0.;
+  for (int i = 0; i < c.bases; ++i)
+    for (std::int32_t l = 0; l < model.lines; ++l) {
+      const LineModel& line = model.line[l];
+      if (!c.acts[i][l]) continue;
+      const double own = value(i, l, line);
+      const RowsOfBase rows = rows_of_base(c, i, line);
+      for (int k = 0; k < rows.count; ++k) x[rows.row[k]] += rows.factor[k] * own;
+    }
+  lean_rows(c, x);
 }
 
 }  // namespace railstep

@@ -53,12 +53,13 @@ void place_condensed(const Model& model, std::int32_t j, const State& s, const W
 void fixed_compliance(const Model& model, std::int32_t j, const Workspace& w,
                       Coupling& c) noexcept {
   const int row = c.rows + j;
-  for (int i = 0; i < c.rows; ++i) {
-    double sum = 0.;
-    for (std::int32_t l = 0; l < model.lines; ++l)
-      sum += line_compliance(model, w, c, i, l, response_of(model, j, l));
-    c.W[i * c.ports + row] = c.W[row * c.ports + i] = model.scheme.theta * sum;
-  }
+  double by_port[kMaxTrackRows];
+  const auto under = [&](int base, std::int32_t l, const LineModel&) noexcept {
+    return line_compliance(model, w, c, base, l, response_of(model, j, l));
+  };
+  sum_rows(model, c, under, by_port);
+  for (int i = 0; i < c.rows; ++i)
+    c.W[i * c.ports + row] = c.W[row * c.ports + i] = model.scheme.theta * by_port[i];
   for (std::int32_t i = 0; i <= j; ++i)
     c.W[(c.rows + i) * c.ports + row] = c.W[row * c.ports + c.rows + i] =
         model.fixed.compliance[j * model.fixed.count + i];

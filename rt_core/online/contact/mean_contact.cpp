@@ -22,7 +22,7 @@ double residual_before(const Model& model, const State& s, const Coupling& c, in
   return sum;
 }
 
-void find_means(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept {
+void find_means(const Model& model, const State& s, Coupling& c) noexcept {
   for (ContactId i = 0; i < c.contacts; ++i) {
     const WheelContact& at = c.contact[i];
     if (!(c.law[i].hertz > 0.) || !(at.on_rail || at.on_ground)) continue;
@@ -30,8 +30,7 @@ void find_means(const Model& model, const State& s, const Workspace& w, Coupling
     // carries the wheel.
     double from = c.track_free[i] - (is_of_wheelset(model, i) ? wheelset_lift_before(model, s, c, i)
                                                               : vehicle_lift_before(model, s, i));
-    if (at.on_rail)
-      from += (residual_before(model, s, c, i) - c.by_loads[i]) - track_motion(model, w, c, i);
+    if (at.on_rail) from += (residual_before(model, s, c, i) - c.by_loads[i]) - c.moved[i];
     c.law[i].mean = true;
     c.law[i].from = from;
   }

@@ -9,6 +9,6 @@ double residual_before(const Model& model, const State& s, const Coupling& c, in
 
 /// Makes the laws of Hertz contacts means over the step, from the penetration at its start in the
 /// step's geometry. Positions without contact forces at its end must be known.
-void find_means(const Model& model, const State& s, const Workspace& w, Coupling& c) noexcept;
+void find_means(const Model& model, const State& s, Coupling& c) noexcept;
 
 }  // namespace railstep

@@ -19,18 +19,27 @@ void for_each_wheelset(const Model& model, Visit visit) noexcept {
       visit(model.runner[n], i, model.runner[n].first_wheelset + i);
 }
 
+/// Displacements and rates along the rows of banded lines, as u* and v* have them.
+struct Predicted {
+  double u[kMaxTrackRows], v[kMaxTrackRows];
+};
+void predict(const Model& model, const Workspace& w, const Coupling& c, Predicted& to) noexcept {
+  const auto by = [&](const double* x) noexcept {
+    return [&c, x](int base, std::int32_t, const LineModel& line) noexcept {
+      return motion(line, base_row(c, base), {x, {}});
+    };
+  };
+  sum_rows(model, c, by(w.u_star), to.u);
+  sum_rows(model, c, by(w.v_star), to.v);
+}
+
 /// Rate of a seat's row over its displacement at the contacts' instant.
-DepthSpeed rate_of(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                   int row) noexcept {
+DepthSpeed rate_of(const Model& model, const State& s, const Coupling& c,
+                   const Predicted& predicted, int row) noexcept {
   if (!is_on_rail(c, row)) return {0., 0.};
   const double missed = residual_before(model, s, c, row) + c.seat[row - c.contacts].rise;
   if (model.form == Form::condensed) return mean_speed(model.scheme, c.located[row] + missed);
-  double u = missed, v = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l) {
-    u += motion(model.line[l], track_row(c, row), {w.u_star, {}});
-    v += motion(model.line[l], track_row(c, row), {w.v_star, {}});
-  }
-  return speed_at_end(model.scheme, u, v);
+  return speed_at_end(model.scheme, predicted.u[row] + missed, predicted.v[row]);
 }
 
 /// Displacement of a seat's row by the last step's forces on all seats.
@@ -86,6 +95,11 @@ void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, 
   const Configuration at = located_on(model, s, w);
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
     const double x = element_place(model, runner, i, stage.step, before);
+    if (c.mirrored) {
+      const std::int32_t row = wheel_seat_row(model, set, 0);
+      return locate_mirrored_seats(model, at, runner, x, c.seat + (row - c.contacts),
+                                   c.place + row);
+    }
     SeatMotions seats;
     for (int side = 0; side < 2; ++side) {
       const std::int32_t row = wheel_seat_row(model, set, side);
@@ -95,9 +109,24 @@ void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, 
   });
 }
 
+void lean_wheel_seats(const Model& model, Coupling& c) noexcept {
+  for_each_wheelset(model, [&](const RunnerModel& runner, int, std::int32_t set) noexcept {
+    for (int side = 0; side < 2; ++side) {
+      const std::int32_t first = wheel_seat_row(model, set, side);
+      const SeatLean own = seat_lean(model, runner.contact, side, c.located[first + 2]);
+      WheelSeatRow& along_z = c.seat[first + 1 - c.contacts];
+      along_z.lean = own.lean;
+      along_z.rise += own.rise;
+    }
+  });
+  lean_rows(c, c.located);
+}
+
 void couple_runners(const Model& model, const Stage& stage, const State& s, Workspace& w,
                     const Coupling& c, CoupledRunners& all) noexcept {
   all.scalars = c.contacts + model.fixed.count;
+  Predicted predicted;
+  if (model.form == Form::banded) predict(model, w, c, predicted);
   fill_compliance(model, c, all.scalars, w.newton);
   for (std::int32_t r = 0; r < model.runners; ++r)
     move_freely(stage_of(model, model.runner[r], stage), s, w, w.solved + model.runner[r].first);
@@ -126,7 +155,7 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
       const int row = wheel_seat_row(model, set, 0) + k;
       all.z_free[first + kMotions + k] = c.track_free[row];
       all.start[first + kMotions + k] = c.track_free[row] + moved_before(model, s, c, row);
-      law.rate_at_zero[kMotions + k] = rate_of(model, s, w, c, row).before;
+      law.rate_at_zero[kMotions + k] = rate_of(model, s, c, predicted, row).before;
     }
   });
 }
@@ -139,21 +168,23 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
   for (int i = 0; i < all.scalars; ++i) {
     const int port = port_of(c, i);
     const PortLaw& law = c.law[i];
-    block[i] = {i, 1};
+    block[i] = {i, 1, 1};
     all.z_free[i] = z[i] = d_free[port];
     if (c.force[port] > 0. || law.bilateral) z[i] = port_depth(law, c.force[port]);
   }
   for (int i = 0; i < sets; ++i)
-    block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset};
+    block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, kWheelsetRank};
   for (int i = all.scalars; i < n; ++i) z[i] = all.start[i];
   const NewtonResult met = solve_laws(
       {n, all.scalars + sets, w.newton, block, all.z_free, w.newton + std::ptrdiff_t{n} * n,
        kRunnerTolerance},
-      [&](int b, const double* at, double* force, double* slope) noexcept {
-        if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slope);
+      [&](int b, const double* at, double* force, const LawSlopes* slopes) noexcept {
+        if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes);
         const PortForce own = port_force(c.law[b], *at);
         *force = -own.force;
-        if (slope != nullptr) *slope = -own.slope;
+        if (slopes == nullptr) return;
+        *slopes->spread = 1.;
+        *slopes->slope = -own.slope;
       },
       all.force, z);
   // The last point that was tried need not be the best one.

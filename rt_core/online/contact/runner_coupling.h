@@ -11,6 +11,9 @@ namespace railstep {
 void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                         Coupling& c) noexcept;
 
+/// Adds the effect of the rails' roll to seats that mirror. Their displacements must be known.
+void lean_wheel_seats(const Model& model, Coupling& c) noexcept;
+
 /// All of the runners for one stage.
 struct CoupledRunners {
   int scalars;  // contacts and one-sided springs, before the wheelsets among the coordinates

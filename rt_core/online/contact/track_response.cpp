@@ -4,19 +4,17 @@ namespace railstep {
 
 namespace {
 
-/// The part of one line in a row.
-Complex row_of(const Model& model, const Workspace& w, const LineModel& line, int row) noexcept {
-  const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(row) * model.unknowns + line.first;
+/// The part of one line in a base.
+Complex base_of(const Model& model, const Workspace& w, const LineModel& line, int base) noexcept {
+  const double* re = w.row + 2 * static_cast<std::ptrdiff_t>(base) * model.unknowns + line.first;
   return {re, re + model.unknowns};
 }
 
-/// Whether a force along a row moves the line.
-bool acts_on(const Coupling& c, int row, const LineModel& line) noexcept {
-  return is_on_rail(c, row) && line.rail_factor[track_row(c, row).rail] != 0.;
-}
+/// Whether the compliance between places of a line is in a table.
+bool is_tabled(const LineModel& line) noexcept { return line.modal.between != nullptr; }
 
-/// Halfway solve of a banded line for a wheel's row.
-/// @param unit  where the wheel's responses begin in the workspace
+/// Halfway solve of a banded line for a base.
+/// @param unit  where the base's responses begin in the workspace
 /// @param at    out: its panels
 void respond_band(const LineModel& line, const RailRow& row, std::ptrdiff_t unit, Workspace& w,
                   Panels& at) noexcept {
@@ -31,8 +29,8 @@ void respond_band(const LineModel& line, const RailRow& row, std::ptrdiff_t unit
   divide_by_pivots(line.step, at, second);
 }
 
-/// Halfway solves of each banded line: of its own right-hand side, and of each wheel's row in the
-/// panels that it reaches.
+/// Halfway solves of each banded line: of its own right-hand side, and of each base in the panels
+/// that it reaches.
 void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const Band& step = model.line[l].step;
@@ -40,25 +38,27 @@ void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
     solve_forward(step, {0, step.panels}, own);
     divide_by_pivots(step, {0, step.panels}, own);
   }
-  for (int i = 0; i < c.rows; ++i)
+  for (int i = 0; i < c.bases; ++i)
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
-      if (acts_on(c, i, line))
-        respond_band(line, track_row(c, i), i * std::ptrdiff_t{model.unknowns}, w, c.panels[i][l]);
+      if (c.acts[i][l])
+        respond_band(line, base_row(c, i), i * std::ptrdiff_t{model.unknowns}, w, c.panels[i][l]);
     }
 }
 
-/// Response of the condensed lines to a unit force under each wheel, held over the step.
+/// Shapes of the bases in condensed lines, and unless there is a table the response to a unit force
+/// along each, held over the step.
 void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
-  for (int i = 0; i < c.rows; ++i) {
+  for (int i = 0; i < c.bases; ++i) {
     double* re = w.row + 2 * i * stride;
     const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
-      if (!acts_on(c, i, line)) continue;
-      shape_row(line, track_row(c, i), re, re + stride);
-      modes_multiply(line.modal.held_force, row_of(model, w, line, i), w.unit + unit + line.first,
+      if (!c.acts[i][l]) continue;
+      shape_row(line, base_row(c, i), re, re + stride);
+      if (is_tabled(line)) continue;
+      modes_multiply(line.modal.held_force, base_of(model, w, line, i), w.unit + unit + line.first,
                      w.unit_second + unit + line.first, line.size);
     }
   }
@@ -80,30 +80,74 @@ void subtract(const double* const* unit, const double* force, int count, int siz
   }
 }
 
-/// Part of the displacement under contact `i` by a line that a force there moves.
-double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
-                  int i, const double* re, const double* im) noexcept {
-  if (model.form == Form::banded) return motion(line, track_row(c, i), {re, {}});
-  return modes_dot(row_of(model, w, line, i), {re + line.first, im + line.first}, line.size);
+/// x -= forces times the shapes of a line, as they move it when held over the step.
+void subtract_held(const Complex& held, const Complex* shape, const double* force, int count,
+                   int size, double* re, double* im) noexcept {
+  for (int k = 0; k < size; k += kLanes) {
+    double sum_re[kLanes] = {}, sum_im[kLanes] = {};
+    for (int i = 0; i < count; ++i) {
+#pragma omp simd
+      for (int l = 0; l < kLanes; ++l) {
+        sum_re[l] += force[i] * shape[i].re[k + l];
+        sum_im[l] += force[i] * shape[i].im[k + l];
+      }
+    }
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      re[k + l] -= held.re[k + l] * sum_re[l] - held.im[k + l] * sum_im[l];
+      im[k + l] -= held.re[k + l] * sum_im[l] + held.im[k + l] * sum_re[l];
+    }
+  }
 }
 
-/// Displacement under wheel `i` by displacements `re` and, if condensed, `im` of the lines.
-double track_under(const Model& model, const Workspace& w, const Coupling& c, int i,
-                   const double* re, const double* im) noexcept {
-  double sum = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l)
-    if (acts_on(c, i, model.line[l])) sum += line_under(model, w, c, model.line[l], i, re, im);
-  return sum;
+/// Part of the displacement along a base by a line that a force there moves.
+double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
+                  int base, const double* re, const double* im) noexcept {
+  if (model.form == Form::banded) return motion(line, base_row(c, base), {re, {}});
+  return modes_dot(base_of(model, w, line, base), {re + line.first, im + line.first}, line.size);
+}
+
+/// Adds the compliance of a line between two bases to W of their rows.
+/// @param same  the bases are one
+void add_between(const RowsOfBase& a, const RowsOfBase& b, bool same, double value,
+                 Coupling& c) noexcept {
+  for (int k = 0; k < a.count; ++k)
+    for (int m = 0; m < b.count; ++m) {
+      const int own = a.row[k], other = b.row[m];
+      if (same && own < other) continue;
+      const int more = own > other ? own : other, less = own > other ? other : own;
+      // Two bases that are parts of one row count both ways.
+      const double both = !same && own == other ? 2. : 1.;
+      c.W[more * c.ports + less] += both * (a.factor[k] * b.factor[m]) * value;
+    }
 }
 
 /// Adds the compliance of a line to W by its table.
-void add_tabled(const LineModel& line, Coupling& c) noexcept {
+void add_tabled(const LineModel& line, std::int32_t l, Coupling& c) noexcept {
   CarriedRow carried[kMaxTrackRows];
-  for (int i = 0; i < c.rows; ++i) {
-    if (!acts_on(c, i, line)) continue;
-    carry(line, track_row(c, i), carried[i]);
+  RowsOfBase rows[kMaxTrackRows];
+  for (int i = 0; i < c.bases; ++i) {
+    if (!c.acts[i][l]) continue;
+    carry(line, base_row(c, i), carried[i]);
+    rows[i] = rows_of_base(c, i, line);
     for (int j = 0; j <= i; ++j)
-      if (acts_on(c, j, line)) c.W[i * c.ports + j] += between(line.modal, carried[i], carried[j]);
+      if (c.acts[j][l])
+        add_between(rows[i], rows[j], i == j, between(line.modal, carried[i], carried[j]), c);
+  }
+}
+
+/// Takes rows along z with their part by the rolls, W in its lower triangle.
+void lean_compliance(Coupling& c) noexcept {
+  const auto at = [&](int a, int b) noexcept -> double& {
+    return a > b ? c.W[a * c.ports + b] : c.W[b * c.ports + a];
+  };
+  for (int z = c.contacts + 1; z < c.rows; z += kWheelSeatRows) {
+    const double lean = c.seat[z - c.contacts].lean;
+    if (lean == 0.) continue;
+    const double by_roll = at(z, z + 1);
+    for (int i = 0; i < c.rows; ++i) at(z, i) -= lean * at(z + 1, i);
+    // The row itself counts in both factors.
+    at(z, z) -= lean * (by_roll - lean * at(z + 1, z + 1));
   }
 }
 
@@ -114,29 +158,38 @@ void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noex
     respond_modes(model, w, c);
   else
     respond_bands(model, w, c);
-  for (int i = 0; i < c.rows; ++i)
-    c.located[i] = model.form == Form::condensed ? track_under(model, w, c, i, s.u, s.v)
-                                                 : track_under(model, w, c, i, w.scaled, nullptr);
+  const bool condensed = model.form == Form::condensed;
+  const double *re = condensed ? s.u : w.scaled, *im = condensed ? s.v : nullptr;
+  const auto under = [&](int base, std::int32_t, const LineModel& line) noexcept {
+    return line_under(model, w, c, line, base, re, im);
+  };
+  sum_rows(model, c, under, c.located);
 }
 
-double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
+double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int base,
                        std::int32_t l, const LineResponse& by) noexcept {
   const LineModel& line = model.line[l];
-  if (!acts_on(c, i, line)) return 0.;
-  if (model.form == Form::condensed) return line_under(model, w, c, line, i, by.first, by.second);
-  const double* const half = w.unit + i * std::ptrdiff_t{model.unknowns};
-  return panels_dot(common(c.panels[i][l], by.panels), half + line.first, by.second + line.first);
+  if (model.form == Form::condensed)
+    return line_under(model, w, c, line, base, by.first, by.second);
+  const double* const half = w.unit + base * std::ptrdiff_t{model.unknowns};
+  return panels_dot(common(c.panels[base][l], by.panels), half + line.first,
+                    by.second + line.first);
 }
 
 namespace {
 
-/// Adds the compliance of a line to W by the responses to each wheel.
+/// Adds the compliance of a line to W by the responses to each base.
 void add_summed(const Model& model, const Workspace& w, std::int32_t l, Coupling& c) noexcept {
-  for (int j = 0; j < c.rows; ++j) {
-    if (!acts_on(c, j, model.line[l])) continue;
+  const LineModel& line = model.line[l];
+  for (int j = 0; j < c.bases; ++j) {
+    if (!c.acts[j][l]) continue;
     const std::ptrdiff_t unit = j * std::ptrdiff_t{model.unknowns};
     const LineResponse by{c.panels[j][l], w.unit + unit, w.unit_second + unit};
-    for (int i = j; i < c.rows; ++i) c.W[i * c.ports + j] += line_compliance(model, w, c, i, l, by);
+    const RowsOfBase rows = rows_of_base(c, j, line);
+    for (int i = j; i < c.bases; ++i)
+      if (c.acts[i][l])
+        add_between(rows_of_base(c, i, line), rows, i == j, line_compliance(model, w, c, i, l, by),
+                    c);
   }
 }
 
@@ -146,39 +199,56 @@ void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexc
   for (int i = 0; i < c.rows; ++i)
     for (int j = 0; j <= i; ++j) c.W[i * c.ports + j] = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l)
-    if (model.form == Form::condensed && model.line[l].modal.between != nullptr)
-      add_tabled(model.line[l], c);
+    if (is_tabled(model.line[l]))
+      add_tabled(model.line[l], l, c);
     else
       add_summed(model, w, l, c);
+  lean_compliance(c);
 }
 
-double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept {
-  if (model.form == Form::condensed)
-    return track_under(model, w, c, i, w.solved, w.imaginary) - c.located[i];
-  double sum = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l)
-    sum += line_compliance(model, w, c, i, l, {c.panels[i][l], nullptr, w.solved});
-  return sum - c.located[i];
+void find_track_motion(const Model& model, const Workspace& w, Coupling& c) noexcept {
+  const auto under = [&](int base, std::int32_t l, const LineModel& line) noexcept {
+    return model.form == Form::condensed
+               ? line_under(model, w, c, line, base, w.solved, w.imaginary)
+               : line_compliance(model, w, c, base, l, {c.panels[base][l], nullptr, w.solved});
+  };
+  sum_rows(model, c, under, c.moved);
+  for (int i = 0; i < c.rows; ++i) c.moved[i] -= c.located[i];
 }
 
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
+  double row_force[kMaxTrackRows];
+  for (int i = 0; i < c.rows; ++i) row_force[i] = c.force[i];
+  for (int i = c.contacts; i < c.rows; i += kWheelSeatRows)
+    row_force[i + 2] -= c.seat[i + 1 - c.contacts].lean * row_force[i + 1];
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     const double *re[kMaxTrackRows], *im[kMaxTrackRows];
+    Complex shape[kMaxTrackRows];
     double force[kMaxTrackRows];
     int count = 0;
-    for (int i = 0; i < c.rows; ++i) {
-      if (!acts_on(c, i, line)) continue;
+    for (int i = 0; i < c.bases; ++i) {
+      if (!c.acts[i][l]) continue;
       const std::ptrdiff_t unit = i * std::ptrdiff_t{model.unknowns} + line.first;
+      const RowsOfBase rows = rows_of_base(c, i, line);
+      double own = 0.;
+      for (int k = 0; k < rows.count; ++k) own += rows.factor[k] * row_force[rows.row[k]];
       if (model.form == Form::banded)
-        panels_subtract(c.panels[i][l], c.force[i], w.unit_second + unit, w.solved + line.first);
+        panels_subtract(c.panels[i][l], own, w.unit_second + unit, w.solved + line.first);
+      else
+        shape[count] = base_of(model, w, line, i);
       re[count] = w.unit + unit;
       im[count] = w.unit_second + unit;
-      force[count++] = c.force[i];
+      force[count++] = own;
     }
     if (model.form == Form::banded) continue;
-    subtract(re, force, count, line.size, w.solved + line.first);
-    subtract(im, force, count, line.size, w.imaginary + line.first);
+    double *const of_re = w.solved + line.first, *const of_im = w.imaginary + line.first;
+    if (is_tabled(line)) {
+      subtract_held(line.modal.held_force, shape, force, count, line.size, of_re, of_im);
+      continue;
+    }
+    subtract(re, force, count, line.size, of_re);
+    subtract(im, force, count, line.size, of_im);
   }
 }
 

@@ -28,16 +28,16 @@ struct LineResponse {
 /// over the step. It stores the displacement of the lines under each wheel when located.
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
 
-/// Displacement of line `l` under wheel `i` by a response of it.
-double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int i,
+/// Displacement of line `l`, which forces along a base move, along it by a response of the line.
+double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int base,
                        std::int32_t l, const LineResponse& by) noexcept;
 
 /// Displacements of the track under each wheel by a unit force at each other, at the step's end:
 /// the lower triangle of W, j <= i.
 void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept;
 
-/// Displacement under wheel `i` without contact forces, since the contact was located.
-double track_motion(const Model& model, const Workspace& w, const Coupling& c, int i) noexcept;
+/// Finds the displacements without contact forces since the contacts were located, Coupling::moved.
+void find_track_motion(const Model& model, const Workspace& w, Coupling& c) noexcept;
 
 /// Adds the wheel forces to the track without them.
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept;

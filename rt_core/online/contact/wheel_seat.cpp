@@ -6,6 +6,8 @@ namespace railstep {
 
 namespace {
 
+constexpr double kUp[3] = {0., 0., 1.};
+
 /// The centre of the crown in the rail's section: its contact with a centred wheel is in the middle
 /// of the railhead.
 struct SectionPoint {
@@ -41,41 +43,103 @@ void fill_roll_row(const double* shape, RailRow& row) noexcept {
   }
 }
 
+/// An element and a place in it. @returns whether there is one
+bool find_place(const Model& model, double x, std::int32_t& element, double& xi) noexcept {
+  const double scaled = x / model.element_length;
+  if (!(scaled >= 0. && scaled <= model.elements)) return false;
+  element = static_cast<std::int32_t>(scaled);
+  if (element == model.elements) element = model.elements - 1;
+  xi = 2. * (scaled - element) - 1.;
+  return true;
+}
+
+void clear(bool on_rail, int side, std::int32_t element, WheelSeatRow* seat,
+           RailForce* place) noexcept {
+  for (int d = 0; d < kWheelSeatRows; ++d) {
+    seat[d].on_rail = on_rail;
+    seat[d].row.rail = side;
+    seat[d].row.element = element;
+    seat[d].row.seats = 0;
+    seat[d].rise = seat[d].lean = 0.;
+    place[d].load_point = kNoLoadPoint;
+  }
+}
+
+void fill_seat_rows(const Model& model, const SectionPoint& centre, int side, const double* shape,
+                    WheelSeatRow* seat) noexcept {
+  constexpr double kAlong[2][3] = {{0., 1., 0.}, {0., 0., 1.}};
+  for (int d = 0; d < 2; ++d)
+    fill_point_row(model.cant[side], centre, shape, kAlong[d], seat[d].row);
+  fill_roll_row(shape, seat[2].row);
+}
+
 }  // namespace
+
+bool seats_mirror(const Model& model) noexcept {
+  const Cant &left = model.cant[0], &right = model.cant[1];
+  bool mirror = left.cosine == right.cosine && left.sine == -right.sine &&
+                model.head_z[0] == model.head_z[1] &&
+                model.crown_radius[0] == model.crown_radius[1];
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    const LineModel& line = model.line[l];
+    const double of_left = line.rail_factor[0], of_right = line.rail_factor[1];
+    mirror = mirror && line.mirrored != 0 && line.unknown_of[0] == line.unknown_of[1] &&
+             of_left != 0. && (of_left == of_right || of_left == -of_right);
+  }
+  return mirror;
+}
+
+SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
+                   double roll) noexcept {
+  const SectionPoint centre = crown_centre(model, contact, side);
+  double up[3];
+  to_rail(model.cant[side], kUp, up);
+  // The row has the slope of what is a square of rolls, so that it gives twice its value.
+  const double lean = roll * (centre.z * up[2] + centre.y * up[1]);
+  return {lean, .5 * roll * lean};
+}
+
+void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
+                           double x, WheelSeatRow* seat, RailForce* place) noexcept {
+  std::int32_t element = 0;
+  double xi = 0.;
+  const bool on_rail = find_place(model, x, element, xi);
+  for (int side = 0; side < 2; ++side) {
+    clear(on_rail, side, element, seat + kWheelSeatRows * side, place + kWheelSeatRows * side);
+    if (on_rail)
+      place[kWheelSeatRows * side + 1] = {model, runner.load_point[side], element, xi, 0.};
+  }
+  if (!on_rail) return;
+  double shape[3];
+  shape_functions(xi, shape);
+  fill_seat_rows(model, crown_centre(model, runner.contact, 0), 0, shape, seat);
+  if (!has_levers(model)) return;
+  SeatMotions motions;
+  for (int side = 0; side < 2; ++side) {
+    RailRow& row = seat[kWheelSeatRows + side].row;
+    row = {};
+    row.rail = side;
+    row.element = element;
+    seat[kWheelSeatRows * side + 1].rise = -add_levers(model, at, xi, kUp, row, motions);
+  }
+}
 
 void locate_wheel_seat(const Model& model, const Configuration& at, const RunnerModel& runner,
                        double x, int side, SeatMotions& seats, WheelSeatRow* seat,
                        RailForce* place) noexcept {
-  const double scaled = x / model.element_length;
-  const bool on_rail = scaled >= 0. && scaled <= model.elements;
-  for (int d = 0; d < kWheelSeatRows; ++d) {
-    seat[d].on_rail = on_rail;
-    seat[d].row.rail = side;
-    seat[d].row.element = 0;
-    seat[d].row.seats = 0;
-    seat[d].rise = 0.;
-    place[d].load_point = kNoLoadPoint;
-  }
+  std::int32_t element = 0;
+  double xi = 0.;
+  const bool on_rail = find_place(model, x, element, xi);
+  clear(on_rail, side, element, seat, place);
   if (!on_rail) return;
-  std::int32_t element = static_cast<std::int32_t>(scaled);
-  if (element == model.elements) element = model.elements - 1;
-  const double xi = 2. * (scaled - element) - 1.;
   double shape[3];
   shape_functions(xi, shape);
   const SectionPoint centre = crown_centre(model, runner.contact, side);
-  constexpr double kAlong[2][3] = {{0., 1., 0.}, {0., 0., 1.}};
-  for (int d = 0; d < kWheelSeatRows; ++d) seat[d].row.element = element;
-  for (int d = 0; d < 2; ++d)
-    fill_point_row(model.cant[side], centre, shape, kAlong[d], seat[d].row);
-  fill_roll_row(shape, seat[2].row);
+  fill_seat_rows(model, centre, side, shape, seat);
   double roll = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) roll += motion(model.line[l], seat[2].row, at);
-  // The row has the slope of what is a square of rolls, so that it gives twice its value.
-  double up[3];
-  to_rail(model.cant[side], kAlong[1], up);
-  const double own = -.5 * roll * roll * (centre.z * up[2] + centre.y * up[1]);
-  seat[1].rise =
-      -(own + add_p_delta(model, at, roll, xi, centre.y, centre.z, kAlong[1], seat[1].row, seats));
+  seat[1].rise = seat_lean(model, runner.contact, side, roll).rise -
+                 add_p_delta(model, at, roll, xi, centre.y, centre.z, kUp, seat[1].row, seats);
   place[1] = {model, runner.load_point[side], element, xi, 0.};
 }
 

@@ -9,10 +9,31 @@ namespace railstep {
 struct WheelSeatRow {
   bool on_rail;
   double rise;  // m, of second order in the roll of the rail (track/p_delta.h)
+  double lean;  // m: of the row along z, its part by the roll that is not in `row`, negative
   RailRow row;
 };
 
-/// The rows of the seat under a wheel at a place along the model's elements.
+/// Whether seats at one place of both rails have rows that are mirror images, so that one of them
+/// serves both: every line has both rails alike.
+bool seats_mirror(const Model& model) noexcept;
+
+/// What the roll of the section under a seat does to its row along z.
+struct SeatLean {
+  double lean, rise;  // m
+};
+/// @param roll  rad
+SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
+                   double roll) noexcept;
+
+/// Of seats that mirror, the three rows under the left wheel of a wheelset without the effect of
+/// the roll of the section there. The place of the first two under the right wheel have what the
+/// rolls over the seats of both rails add to the rows along z.
+/// @param seat, place  [2 kWheelSeatRows] out
+void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
+                           double x, WheelSeatRow* seat, RailForce* place) noexcept;
+
+/// The rows of the seat under a wheel at a place along the model's elements, with the effect of the
+/// rail's roll.
 /// @param seats  of one configuration
 /// @param seat   [kWheelSeatRows] out
 /// @param place  [kWheelSeatRows] out: of the row along z for the residual flexibility

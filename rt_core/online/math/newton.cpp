@@ -8,28 +8,54 @@ namespace {
 
 constexpr double kLeastPivot = 1e-12;  // of the largest number of the matrix
 
-/// A = I - Y J.
-void fill(const NewtonProblem& p, const NewtonPoint& at, double* A) noexcept {
-  const int n = p.n;
-  const double* slope = at.slope;
+/// Y B, [n][ranks]. Coordinates of two parts do not move each other: most of Y is 0.
+void spread_through(const NewtonProblem& p, NewtonSlopes& s) noexcept {
+  const double* spread = s.spread;
+  int first = 0;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
-    for (int i = 0; i < n; ++i) {
-      const double* y = p.Y + i * n + own.first;
-      double* const row = A + i * n + own.first;
-      for (int k = 0; k < own.size; ++k) row[k] = 0.;
-      for (int m = 0; m < own.size; ++m)
+    for (int i = 0; i < p.n; ++i) {
+      const double* y = p.Y + i * p.n + own.first;
+      double sum[kMostLaw] = {};
+      for (int m = 0; m < own.size; ++m) {
+        if (y[m] == 0.) continue;
 #pragma omp simd
-        for (int k = 0; k < own.size; ++k) row[k] -= y[m] * slope[m * own.size + k];
+        for (int k = 0; k < own.rank; ++k) sum[k] += y[m] * spread[m * own.rank + k];
+      }
+      for (int k = 0; k < own.rank; ++k) s.moved[i * s.ranks + first + k] = sum[k];
     }
-    slope += own.size * own.size;
+    spread += own.size * own.rank;
+    first += own.rank;
   }
-  for (int i = 0; i < n; ++i) A[i * n + i] += 1.;
 }
 
-/// Solves A x = b in place, with row exchanges. The largest of equal pivots is the first one.
-/// @returns false where a pivot is too small; b is then meaningless
-bool eliminate(double* A, double* b, int n) noexcept {
+/// I - S Y B, [ranks][ranks].
+void fill(const NewtonProblem& p, NewtonSlopes& s) noexcept {
+  const int n = s.ranks;
+  const double* slope = s.slope;
+  int first = 0;
+  for (int b = 0; b < p.blocks; ++b) {
+    const LawBlock& own = p.block[b];
+    for (int k = 0; k < own.rank; ++k) {
+      double* const row = s.factor + (first + k) * n;
+      for (int j = 0; j < n; ++j) row[j] = 0.;
+      for (int m = 0; m < own.size; ++m) {
+        const double by = slope[k * own.size + m];
+        const double* const moved = s.moved + (own.first + m) * n;
+#pragma omp simd
+        for (int j = 0; j < n; ++j) row[j] -= by * moved[j];
+      }
+      row[first + k] += 1.;
+    }
+    slope += own.size * own.rank;
+    first += own.rank;
+  }
+}
+
+/// L U = A in place, with row exchanges. The largest of equal pivots is the first one.
+/// @param exchange  [n] out: row that took the place of each
+/// @returns false where a pivot is too small
+bool eliminate(double* A, int* exchange, int n) noexcept {
   double largest = 0.;
   for (int i = 0; i < n * n; ++i) {
     const double size = std::fabs(A[i]);
@@ -39,46 +65,59 @@ bool eliminate(double* A, double* b, int n) noexcept {
     int best = j;
     for (int i = j + 1; i < n; ++i)
       if (std::fabs(A[i * n + j]) > std::fabs(A[best * n + j])) best = i;
+    exchange[j] = best;
     double* const pivot = A + j * n;
     if (best != j) {
       double* const other = A + best * n;
-      for (int k = j; k < n; ++k) {
+      for (int k = 0; k < n; ++k) {
         const double kept = pivot[k];
         pivot[k] = other[k];
         other[k] = kept;
       }
-      const double kept = b[j];
-      b[j] = b[best];
-      b[best] = kept;
     }
     if (!(std::fabs(pivot[j]) > kLeastPivot * largest)) return false;
     const double inverse = 1. / pivot[j];
     for (int i = j + 1; i < n; ++i) {
       double* const row = A + i * n;
       const double factor = row[j] * inverse;
+      row[j] = factor;
 #pragma omp simd
       for (int k = j + 1; k < n; ++k) row[k] -= factor * pivot[k];
-      b[i] -= factor * b[j];
     }
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    for (int k = j + 1; k < n; ++k) b[j] -= A[j * n + k] * b[k];
-    b[j] /= A[j * n + j];
   }
   return true;
 }
 
+/// Solves L U x = b in place.
+void substitute(const double* A, const int* exchange, double* b, int n) noexcept {
+  for (int j = 0; j < n; ++j) {
+    const double kept = b[exchange[j]];
+    b[exchange[j]] = b[j];
+    b[j] = kept;
+  }
+  for (int j = 1; j < n; ++j) b[j] -= fast_dot(A + j * n, b, j);
+  for (int j = n - 1; j >= 0; --j) {
+    const double* const row = A + j * n;
+    b[j] = (b[j] - fast_dot(row + j + 1, b + j + 1, n - 1 - j)) / row[j];
+  }
+}
+
 /// The step of each coordinate by itself. A law that falls faster than its part gives way stands.
-void step_alone(const NewtonProblem& p, const NewtonPoint& at, double* step) noexcept {
-  const double* slope = at.slope;
+void step_alone(const NewtonProblem& p, const NewtonSlopes& s, const double* missed,
+                double* step) noexcept {
+  std::ptrdiff_t passed = 0;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
+    const double *spread = s.spread + passed, *slope = s.slope + passed;
     for (int k = 0; k < own.size; ++k) {
       const int i = own.first + k;
-      const double pivot = 1. - p.Y[i * p.n + i] * slope[k * own.size + k];
-      step[i] = -at.missed[i] / (pivot > 1. ? pivot : 1.);
+      double own_slope = 0.;
+      for (int m = 0; m < own.rank; ++m)
+        own_slope += spread[k * own.rank + m] * slope[m * own.size + k];
+      const double pivot = 1. - p.Y[i * p.n + i] * own_slope;
+      step[i] = -missed[i] / (pivot > 1. ? pivot : 1.);
     }
-    slope += own.size * own.size;
+    passed += std::ptrdiff_t{own.size} * own.rank;
   }
 }
 
@@ -89,6 +128,7 @@ bool is_usable(const NewtonProblem& p, const double* force) noexcept {
   int end = 0;
   for (int b = 0; b < p.blocks; ++b) {
     if (p.block[b].first != end || p.block[b].size < 1 || p.block[b].size > kMostLaw) return false;
+    if (p.block[b].rank < 1 || p.block[b].rank > p.block[b].size) return false;
     end += p.block[b].size;
     if (end > p.n) return false;
   }
@@ -126,26 +166,32 @@ void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) no
   }
 }
 
-bool newton_step(const NewtonProblem& p, const double* root, const NewtonPoint& at,
+void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept {
+  slopes.ranks = 0;
+  for (int b = 0; b < p.blocks; ++b) slopes.ranks += p.block[b].rank;
+  slopes.moved = p.scratch;
+  slopes.factor = p.scratch + p.n * slopes.ranks;
+  spread_through(p, slopes);
+  fill(p, slopes);
+  slopes.solvable = eliminate(slopes.factor, slopes.exchange, slopes.ranks);
+}
+
+void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const double* missed,
                  double* step) noexcept {
-  double* const A = p.scratch;
-  fill(p, at, A);
-  // Coordinates over the roots have one unit, so that pivots can be compared.
-  double unit[kMostNewton];
-  for (int i = 0; i < p.n; ++i) unit[i] = root[i] > 0. ? root[i] : 1.;
-  for (int i = 0; i < p.n; ++i) {
-    const double inverse = 1. / unit[i];
-    step[i] = -at.missed[i] * inverse;
-#pragma omp simd
-    for (int k = 0; k < p.n; ++k) A[i * p.n + k] *= inverse * unit[k];
+  if (!slopes.solvable) return step_alone(p, slopes, missed, step);
+  double t[kMostNewton];
+  const double* slope = slopes.slope;
+  int row = 0;
+  for (int b = 0; b < p.blocks; ++b) {
+    const LawBlock& own = p.block[b];
+    for (int k = 0; k < own.rank; ++k, ++row) {
+      t[row] = 0.;
+      for (int m = 0; m < own.size; ++m) t[row] -= *slope++ * missed[own.first + m];
+    }
   }
-  if (eliminate(A, step, p.n)) {
-    // A coordinate that does not give way goes where it is free, without rounding.
-    for (int i = 0; i < p.n; ++i) step[i] = root[i] > 0. ? step[i] * unit[i] : -at.missed[i];
-    return true;
-  }
-  step_alone(p, at, step);
-  return false;
+  substitute(slopes.factor, slopes.exchange, t, slopes.ranks);
+  for (int i = 0; i < p.n; ++i)
+    step[i] = fast_dot(slopes.moved + i * slopes.ranks, t, slopes.ranks) - missed[i];
 }
 
 }  // namespace railstep

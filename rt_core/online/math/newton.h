@@ -8,9 +8,16 @@ inline constexpr int kNewtonSweeps = 8;  // most iterations of one solve
 inline constexpr int kMostNewton = 128;  // coordinates
 inline constexpr int kMostLaw = 12;      // of one law: a wheelset and the rails under its wheels
 
-/// Coordinates of one law: `size` of them from `first` on. Its forces depend on these alone.
+/// Coordinates of one law: `size` of them from `first` on. Its forces on these depend on them
+/// alone, mostly by `rank` scalars, such as the normal force and the creep forces of a wheel.
 struct LawBlock {
-  int first, size;
+  int first, size, rank;  // 1 <= rank <= size
+};
+
+/// Slopes of the forces on a law's coordinates as a product of two factors, spread * slope.
+struct LawSlopes {
+  double* spread;  // [size][rank] forces on the coordinates by a unit of each scalar
+  double* slope;   // [rank][size] of the scalars
 };
 
 enum class NewtonStatus : std::uint8_t {
@@ -34,8 +41,7 @@ inline constexpr double kNewtonTolerance = 1e-12;  // where a problem does not s
 /// One point of the iteration.
 struct NewtonPoint {
   double z[kMostNewton], force[kMostNewton];
-  double slope[kMostNewton * kMostLaw];  // blocks [size][size], one after the other
-  double missed[kMostNewton];            // z - z_free - Y F
+  double missed[kMostNewton];  // z - z_free - Y F
   double residual;
 };
 
@@ -45,7 +51,7 @@ struct NewtonProblem {
   const double* Y;  // [n][n] compliance of the linear parts, symmetric, positive semidefinite
   const LawBlock* block;
   const double* z_free;  // [n]
-  double* scratch;       // [n][n]
+  double* scratch;       // [2][n][n]
   double tolerance = kNewtonTolerance;
 };
 
@@ -55,22 +61,37 @@ struct NewtonProblem {
 void find_roots(const NewtonProblem& p, double* root) noexcept;
 /// Finds z - z_free - Y F at a point whose forces are known.
 void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) noexcept;
-/// Newton's step (I - Y J) step = -missed, by elimination with row exchanges. I - Y J has no pivots
-/// of one sign, as J is not symmetric and Y couples the coordinates.
-/// @returns false where a pivot is not above 1e-12 of the matrix; the step is then
-///   -missed / (1 - Y_ii J_ii) of each coordinate by itself
-[[nodiscard]] bool newton_step(const NewtonProblem& p, const double* root, const NewtonPoint& at,
-                               double* step) noexcept;
+/// The slopes of all laws at one point, and the matrix of the scalars, which has fewer rows than
+/// that of the coordinates: with J = B S a step dz = -missed + Y B t has t of
+/// (I - S Y B) t = -S missed. Normal forces and creep forces have steep slopes in their own
+/// directions; the matrix's leading minors are then positive, or nearly so.
+struct NewtonSlopes {
+  double spread[kMostNewton * kMostLaw], slope[kMostNewton * kMostLaw];  // blocks, one by one
+  double* moved;                                                         // [n][ranks] Y B
+  double* factor;                                                        // [ranks][ranks]
+  int exchange[kMostNewton];
+  int ranks;
+  bool solvable;
+};
+/// Factors I - S Y B by elimination with row exchanges; not solvable where a pivot is not above
+/// 1e-12 of the matrix. The laws' slopes must be known.
+void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
+/// Step from a point by slopes that may be those of another. Unless these are solvable it is
+/// -missed / (1 - Y_ii J_ii) of each coordinate by itself.
+void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const double* missed,
+                 double* step) noexcept;
 
 /// Forces at a point, and their slopes on request.
 template <typename Law>
-void find_forces(const NewtonProblem& p, const Law& law, const double* root, bool slopes,
+void find_forces(const NewtonProblem& p, const Law& law, const double* root, NewtonSlopes* slopes,
                  NewtonPoint& at) noexcept {
-  double* slope = at.slope;
+  std::ptrdiff_t passed = 0;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
-    law(b, at.z + own.first, at.force + own.first, slopes ? slope : nullptr);
-    slope += own.size * own.size;
+    LawSlopes of_law{};
+    if (slopes != nullptr) of_law = {slopes->spread + passed, slopes->slope + passed};
+    law(b, at.z + own.first, at.force + own.first, slopes == nullptr ? nullptr : &of_law);
+    passed += std::ptrdiff_t{own.size} * own.rank;
   }
   find_missed(p, root, at);
 }
@@ -80,19 +101,30 @@ template <typename Law>
 void go_part(const NewtonProblem& p, const Law& law, const double* root, const NewtonPoint& from,
              const double* step, double part, NewtonPoint& to) noexcept {
   for (int i = 0; i < p.n; ++i) to.z[i] = from.z[i] + part * step[i];
-  find_forces(p, law, root, false, to);
+  find_forces(p, law, root, nullptr, to);
+}
+
+inline constexpr double kSlowStep = .03;
+/// Whether slopes are to be found anew: a step by those that are left more than kSlowStep of the
+/// residual, or as many such steps as there may still be would not end the iteration.
+inline bool is_slow(double residual, double before, double tolerance, int steps_left) noexcept {
+  if (!(residual <= kSlowStep * before)) return true;
+  const double part = residual / before;
+  for (int i = 0; i < steps_left; ++i) residual *= part;
+  return residual > tolerance;
 }
 
 /// Laws of any kind at the interfaces of linear parts: z = z_free + Y F(z), by Newton's method with
-/// the laws' own slopes. A step that does not lessen the residual is halved, at most twice. Laws
-/// that are scalar, rising and without friction have a solver of their own, which cannot fail
-/// (ports.h).
-/// @param law    law(b, z, force, slope) of block b: its coordinates, [size]; its forces, [size];
-///               and unless slope is null their slopes, [size][size]. Finite for finite z.
+/// the laws' own slopes, which are kept as long as steps by them lessen the residual fast. A step
+/// that does not lessen it is halved, at most twice. Laws that are scalar, rising and without
+/// friction have a solver of their own, which cannot fail (ports.h).
+/// @param law    law(b, z, force, slopes) of block b: its coordinates, [size]; its forces, [size];
+///               and unless `slopes` is null, where the factors of their slopes go. Finite for
+///               finite z.
 /// @param force  [n] out
 /// @param z      [n] in: a start; out: the solution
 /// Work: at most kNewtonSweeps eliminations, as many evaluations of all laws with slopes, and
-/// 1 + 3 kNewtonSweeps of the forces alone.
+/// 3 kNewtonSweeps of the forces alone.
 template <typename Law>
 [[nodiscard]] NewtonResult solve_laws(const NewtonProblem& p, const Law& law, double* force,
                                       double* z) noexcept {
@@ -102,25 +134,32 @@ template <typename Law>
   }
   NewtonPoint points[2];
   NewtonPoint *at = points, *next = points + 1;
+  NewtonSlopes slopes;
   double root[kMostNewton];
   find_roots(p, root);
   for (int i = 0; i < p.n; ++i) at->z[i] = z[i];
-  find_forces(p, law, root, true, *at);
+  find_forces(p, law, root, &slopes, *at);
   int iterations = 0;
-  bool weak = false;
+  bool weak = false, renew = true, better = true;
   // A step is taken only where it lessens the residual, so that the last point is the best one.
-  for (bool better = true; better && at->residual > p.tolerance && iterations < kNewtonSweeps;
-       ++iterations) {
-    if (iterations > 0) find_forces(p, law, root, true, *at);
+  for (; at->residual > p.tolerance && iterations < kNewtonSweeps; ++iterations) {
+    if (renew) {
+      if (iterations > 0) find_forces(p, law, root, &slopes, *at);
+      factor_slopes(p, slopes);
+      if (!slopes.solvable) weak = true;
+    }
     double step[kMostNewton];
-    if (!newton_step(p, root, *at, step)) weak = true;
+    newton_step(p, slopes, at->missed, step);
     double part = 1.;
     better = false;
     for (int halving = 0; halving < 3 && !better; ++halving, part *= .5) {
       go_part(p, law, root, *at, step, part, *next);
       better = next->residual < at->residual;
     }
-    if (!better) break;
+    if (!better && renew) break;
+    renew = !better ||
+            is_slow(next->residual, at->residual, p.tolerance, kNewtonSweeps - 1 - iterations);
+    if (!better) continue;
     NewtonPoint* const last = at;
     at = next;
     next = last;

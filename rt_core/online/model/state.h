@@ -71,7 +71,7 @@ struct Workspace {
   /// alone.
   double *unit, *unit_second;
   double* compliance;  // [ports][ports] of the coupled solve, m/N
-  double* newton;      // [2][newton_size][newton_size]
+  double* newton;      // [3][newton_size][newton_size]
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -152,7 +152,7 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
                      newton = newton_size(model);
   const std::int64_t of_modes = model.form == Form::condensed ? 1 + 2 * rows : 0;
   return (4 + 2 * rows + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
-         ports * ports + 2 * newton * newton +
+         ports * ports + 3 * newton * newton +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -192,7 +192,7 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   double* const system = row + (condensed ? 2 * units : 0);
   double* const compliance = system + system_workspace_doubles(model.system);
   double* const of_newton = compliance + ports * ports;
-  double* const external = of_newton + 2 * newton * newton;
+  double* const external = of_newton + 3 * newton * newton;
   return {memory,
           memory + n,
           memory + 2 * n,

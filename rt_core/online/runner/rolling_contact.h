@@ -225,12 +225,11 @@ struct WheelForce {
   double creep_power;     // W, not above 0
 };
 
-/// Derivatives of WheelForce::generalised, and of its force across as a seventh row, over motions,
-/// rates, and slip across that none of these makes.
-struct WheelSlopes {
-  double by_motion[7][4];  // over kPlaced
-  double by_rate[7][6];
-  double by_across[7];
+/// Derivatives of the normal force and of the creep forces along and across, over kPlaced, over the
+/// rates of the motions, and over slip across that none of these makes.
+struct ContactSlopes {
+  double by_motion[3][4], by_rate[3][6], by_across[3];
+  double spread[6][3];  // forces on the motions by a unit of each of the three
 };
 
 /// @param side  1 of the left wheel, -1 of the right
@@ -253,6 +252,6 @@ inline WheelForce wheel_force(const RollingContact& c, double radius, double sid
 /// The same with derivatives.
 WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
                        const double* u, const double* v, const RailRate& rail,
-                       WheelSlopes& slopes) noexcept;
+                       ContactSlopes& slopes) noexcept;
 
 }  // namespace railstep

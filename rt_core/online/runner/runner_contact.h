@@ -14,7 +14,7 @@ RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheels
 /// @param slopes  out: derivatives; null: none
 inline WheelForce wheel_force(const RunnerModel& runner, int wheelset, const RailsUnder& rails,
                               const RailRate& rate, int side, double speed, const double* u,
-                              const double* v, WheelSlopes* slopes = nullptr) noexcept {
+                              const double* v, ContactSlopes* slopes = nullptr) noexcept {
   const double over_rail[6] = {u[0], u[1] - rails.y[side], u[2] - rails.z[side], u[3], u[4], u[5]};
   const double radius = runner.wheelset[wheelset].radius, sign = side == 0 ? 1. : -1.;
   if (slopes == nullptr)

@@ -85,22 +85,31 @@ void move_by(const RunnerModel& runner, const double* force, double* u) noexcept
 
 namespace {
 
-/// Slopes of the forces on a wheelset, and of the force across, over its motions and those of the
-/// seat under one wheel.
-void add_slopes(const WheelSlopes& w, double rate, double crown_radius, int k, double* motion,
-                double* seat) noexcept {
-  for (int m = 0; m < kMotions; ++m) motion[m] += rate * w.by_rate[k][m];
-  for (int m = 0; m < 4; ++m) motion[index_of(kPlaced[m])] += w.by_motion[k][m];
-  if (seat == nullptr) return;
-  // The wheel's place counts over the rail.
-  seat[0] = -(w.by_motion[k][0] + rate * w.by_rate[k][1]);
-  seat[1] = -(w.by_motion[k][1] + rate * w.by_rate[k][2]);
-  seat[2] = rate * (crown_radius * w.by_across[k]);
+/// Both factors of the slopes of one wheel's three forces.
+/// @param seat  of its rail's y, z and roll among the n coordinates; 0: they are not among them
+void fill_slopes(const ContactSlopes& w, double rate, double crown_radius, int n, int side,
+                 int seat, const LawSlopes& to) noexcept {
+  for (int k = 0; k < 3; ++k) {
+    double* const own = to.slope + (3 * side + k) * n;
+    for (int m = 0; m < n; ++m) own[m] = 0.;
+    for (int m = 0; m < kMotions; ++m) own[m] = rate * w.by_rate[k][m];
+    for (int m = 0; m < 4; ++m) own[index_of(kPlaced[m])] += w.by_motion[k][m];
+    double* const spread = to.spread + 3 * side + k;
+    for (int m = 0; m < n; ++m) spread[m * kWheelsetRank] = m < kMotions ? w.spread[m][k] : 0.;
+    if (seat == 0) continue;
+    // The wheel's place counts over the rail.
+    own[seat] = -own[1];
+    own[seat + 1] = -own[2];
+    own[seat + 2] = rate * (crown_radius * w.by_across[k]);
+    spread[seat * kWheelsetRank] = -w.spread[1][k];
+    spread[(seat + 1) * kWheelsetRank] = -w.spread[2][k];
+    spread[(seat + 2) * kWheelsetRank] = k == 2 ? crown_radius : 0.;
+  }
 }
 
 }  // namespace
 
-void WheelsetLaw::evaluate(const double* z, double* force, double* slope) noexcept {
+void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slopes) noexcept {
   const int n = size();
   const double crown = runner->contact.crown_radius;
   double v[kMotions];
@@ -108,8 +117,6 @@ void WheelsetLaw::evaluate(const double* z, double* force, double* slope) noexce
     v[k] = rate * z[k] + rate_at_zero[k];
     force[k] = 0.;
   }
-  if (slope != nullptr)
-    for (int k = 0; k < n * n; ++k) slope[k] = 0.;
   lost = false;
   for (int side = 0; side < 2; ++side) {
     const int seat = kMotions + 3 * side;
@@ -121,28 +128,17 @@ void WheelsetLaw::evaluate(const double* z, double* force, double* slope) noexce
       moving = {rate * z[seat] + rate_at_zero[seat], rate * z[seat + 1] + rate_at_zero[seat + 1],
                 rate * z[seat + 2] + rate_at_zero[seat + 2]};
     }
-    WheelSlopes slopes;
+    ContactSlopes own;
     const WheelForce f = wheel_force(*runner, wheelset, under, moving, side, speed, z, v,
-                                     slope == nullptr ? nullptr : &slopes);
+                                     slopes == nullptr ? nullptr : &own);
     if (!(f.depth > 0.)) lost = true;
     for (int k = 0; k < kMotions; ++k) force[k] += f.generalised[k];
     keep_wheel_force(f, crown, kept[side]);
-    if (seated) {
-      force[seat] = -f.generalised[1];
-      force[seat + 1] = -f.generalised[2];
-      force[seat + 2] = crown * f.across;
-    }
-    if (slope == nullptr) continue;
-    for (int k = 0; k < kMotions; ++k)
-      add_slopes(slopes, rate, crown, k, slope + n * k, seated ? slope + n * k + seat : nullptr);
+    if (slopes != nullptr) fill_slopes(own, rate, crown, n, side, seated ? seat : 0, *slopes);
     if (!seated) continue;
-    constexpr int kRows[3] = {1, 2, 6};  // forces along y and z, and across
-    const double factor[3] = {-1., -1., crown};
-    for (int d = 0; d < 3; ++d) {
-      double* const row = slope + n * (seat + d);
-      add_slopes(slopes, rate, crown, kRows[d], row, row + seat);
-      for (int m = 0; m < n; ++m) row[m] *= factor[d];
-    }
+    force[seat] = -f.generalised[1];
+    force[seat + 1] = -f.generalised[2];
+    force[seat + 2] = crown * f.across;
   }
 }
 
@@ -173,7 +169,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   for (int i = 0; i < r.wheelsets; ++i) {
     WheelsetMotion motion;
     find_motion(at, i, s, w, u, motion);
-    block[i] = {kMotions * i, kMotions};
+    block[i] = {kMotions * i, kMotions, kWheelsetRank};
     law[i] = {&r,    i,       false, rails_under(at.model, r, i, at.stage.step, at.before(theta)),
               speed, at.rate, {},    {},
               false};
@@ -186,8 +182,8 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   const NewtonResult met = solve_laws(
       {kMotions * r.wheelsets, r.wheelsets, r.compliance, block, z_free, w.newton,
        kRunnerTolerance},
-      [&law](int b, const double* at_z, double* f, double* slope) noexcept {
-        law[b].evaluate(at_z, f, slope);
+      [&law](int b, const double* at_z, double* f, const LawSlopes* slopes) noexcept {
+        law[b].evaluate(at_z, f, slopes);
       },
       force, z);
   // The last point that was tried need not be the best one.

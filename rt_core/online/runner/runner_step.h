@@ -43,6 +43,8 @@ void find_motion(const RunnerStage& at, int wheelset, const State& s, const Work
 /// Adds the displacements by forces on the wheelsets. @param force  [6 wheelsets]
 void move_by(const RunnerModel& runner, const double* force, double* u) noexcept;
 
+inline constexpr int kWheelsetRank = 6;
+
 /// The law of one wheelset: its six motions, then those of the seats under its left and right
 /// wheel, if they give way: y, z and roll.
 struct WheelsetLaw {
@@ -56,8 +58,10 @@ struct WheelsetLaw {
   bool lost;                     // a wheel was free there
 
   int size() const noexcept { return seated ? kMotions + 6 : kMotions; }
-  /// @param slope  [size][size], or null
-  void evaluate(const double* z, double* force, double* slope) noexcept;
+  /// @param slopes  out: of the normal and creep forces of both wheels, which are kWheelsetRank
+  ///                scalars. How their directions turn, and the creep moment, change it too little
+  ///                in a step to be worth their work. Null: none
+  void evaluate(const double* z, double* force, const LawSlopes* slopes) noexcept;
 };
 
 /// Stores the forces on the wheels of a wheelset as a law last found them.

@@ -59,6 +59,12 @@ double axis_height(const Model& model, std::int32_t rail, std::int32_t element, 
   return sum;
 }
 
+bool carries(const LineModel& line, const RailRow& row) noexcept {
+  bool any = false;
+  for_carried(line, row, [&](std::int32_t, double) noexcept { any = true; });
+  return any;
+}
+
 double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept {
   double sum = 0.;
   for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
@@ -76,19 +82,34 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
 void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexcept {
   carried.count = 0;
   for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
+    // The roll of a section that does not strain is its a_z and its b_y.
+    const int last = carried.count - 1;
+    if (last >= 0 && carried.unknown[last] == unknown) {
+      carried.weight[last] += weight;
+      return;
+    }
     carried.unknown[carried.count] = unknown;
     carried.weight[carried.count++] = weight;
   });
 }
 
 double between(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept {
+  const auto row_of = [&](std::int32_t unknown) noexcept {
+    return modal.between + std::ptrdiff_t{unknown} * (unknown + 1) / 2;
+  };
+  const double* of_b[kMostCarried];
+  for (int k = 0; k < b.count; ++k) of_b[k] = row_of(b.unknown[k]);
   double sum = 0.;
-  for (int i = 0; i < a.count; ++i)
+  for (int i = 0; i < a.count; ++i) {
+    const std::int32_t own = a.unknown[i];
+    const double* const of_a = row_of(own);
+    double along = 0.;
     for (int k = 0; k < b.count; ++k) {
-      const std::int32_t own = a.unknown[i], other = b.unknown[k];
-      const std::ptrdiff_t more = own > other ? own : other, less = own > other ? other : own;
-      sum += a.weight[i] * b.weight[k] * modal.between[more * (more + 1) / 2 + less];
+      const std::int32_t other = b.unknown[k];
+      along += b.weight[k] * (own > other ? of_a[other] : of_b[k][own]);
     }
+    sum += a.weight[i] * along;
+  }
   return sum;
 }
 

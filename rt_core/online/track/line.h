@@ -72,6 +72,9 @@ inline void set_height_row(const Cant& cant, double y, double z, const double* s
 double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
                    const Configuration& at) noexcept;
 
+/// Whether a line has an unknown that a row carries.
+bool carries(const LineModel& line, const RailRow& row) noexcept;
+
 /// The part of a row's displacement by a line.
 double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept;
 

@@ -20,7 +20,7 @@ double node_roll(const Model& model, std::int32_t rail, std::int32_t node, const
     double* const value = motions.value[l][s];
     if (!shared || !alike) {
       value[0] = nodal_value(line, rail, own, 5, at);
-      value[1] = nodal_value(line, rail, own, 7, at);
+      value[1] = line.rigid_section != 0 ? value[0] : nodal_value(line, rail, own, 7, at);
     }
     roll += .5 * weight_of(line, rail, 5) * value[0];
     roll -= .5 * weight_of(line, rail, 7) * value[1];
@@ -41,6 +41,11 @@ double add_p_delta(const Model& model, const Configuration& at, double roll, dou
     row.coefficient[i][5] -= .5 * down * shape[i];
     row.coefficient[i][7] += .5 * down * shape[i];
   }
+  return add_levers(model, at, xi, normal, row, motions);
+}
+
+double add_levers(const Model& model, const Configuration& at, double xi, const double* normal,
+                  RailRow& row, SeatMotions& motions) noexcept {
   const PDeltaModel& seats = model.p_delta;
   const double* lever = seats.lever[row.rail];
   if (lever == nullptr) return 0.;

@@ -17,12 +17,22 @@ inline void keep_section(double* q) noexcept {
   q[8] -= shorter;
 }
 
+/// Whether rolls over seats count in the rows of contacts.
+inline bool has_levers(const Model& model) noexcept {
+  return model.p_delta.lever[0] != nullptr || model.p_delta.lever[1] != nullptr;
+}
+
 /// Motions of the nodes over seats by each line, for their roll. If a line moves both rails alike,
 /// the other rail takes them from here.
 struct SeatMotions {
   std::int32_t first = -kPDeltaSeats;        // seat; none yet
   double value[kMaxLines][kPDeltaSeats][2];  // a_z and b_y, before their weights in the rail
 };
+
+/// Adds to a row along a normal the rolls over the seats around, by which it rises.
+/// @returns rise of its point along the normal, m. Other parameters: those of add_p_delta()
+double add_levers(const Model& model, const Configuration& at, double xi, const double* normal,
+                  RailRow& row, SeatMotions& motions) noexcept;
 
 /// Adds to the row of the point (y, z) along a normal the effect of the section's roll under it and
 /// of the rolls over the seats around; without roll it adds nothing.
