@@ -39,7 +39,7 @@ std::vector<LawBlock> blocks_of(const std::vector<int>& sizes) {
   return blocks;
 }
 
-double elimination_scratch[2 * kMostNewton * kMostNewton];
+double elimination_scratch[newton_scratch(kMostNewton, kMostNewton, kMostNewton* kMostLaw)];
 
 /// A law whose slopes are one matrix [size][size], in two factors: one and the matrix.
 template <typename Law>
@@ -227,7 +227,7 @@ TEST_CASE("creep that saturates is solved within the cap", "[newton]") {
     for (int w = 0; w < wheels; ++w)
       CHECK(force.segment(3 * w + 1, 2).norm() <= .3 * force[3 * w] * (1. + 1e-12) + 1.1e-9);
   }
-  CHECK(most <= 6);
+  CHECK(most < kNewtonSweeps);
 }
 
 TEST_CASE("what Newton's method cannot solve has a status", "[newton]") {
@@ -274,6 +274,6 @@ TEST_CASE("what Newton's method cannot solve has a status", "[newton]") {
         NewtonStatus::bad_input);
   std::vector<double> forces(kMostNewton + 1), places(kMostNewton + 1);
   CHECK(solve_whole({kMostNewton + 1, 1, &Y, &one, &free, elimination_scratch}, none_of,
-                   forces.data(), places.data())
+                    forces.data(), places.data())
             .status == NewtonStatus::bad_input);
 }

@@ -4,55 +4,68 @@
 
 #include <algorithm>
 
+#include "offline/start/standing_track.h"
+#include "run/simulation.h"
 #include "text/read.h"
 
 namespace railstep {
 namespace {
 
-/// The steady running of one vehicle of a scene, and what it needs.
-struct Run {
-  RunnerMatrices matrices;
-  SteadyRunning steady;
-};
-
-[[noreturn]] void refuse_scene(const Scene& scene, MessageId id, const char* sentence) {
-  throw InputError(id, fmt::format("{}: {}", scene.file.string(), sentence));
-}
-
 void check(const Scene& scene) {
   if (scene.rail_vehicles.empty())
-    refuse_scene(scene, "E-VEHICLE-27",
-                 "the scene has no vehicle in space; expected a [[vehicle]] whose type is "
-                 "\"rail_vehicle\"");
-  if (!scene.track.rigid)
-    refuse_scene(scene, "E-VEHICLE-28",
-                 "the motions of a vehicle that runs are found on rigid rails, but these give way; "
-                 "expected track.form = \"rigid\"");
+    throw InputError("E-VEHICLE-27",
+                     fmt::format("{}: the scene has no vehicle in space; expected a [[vehicle]] "
+                                 "whose type is \"rail_vehicle\"",
+                                 scene.file.string()));
 }
 
-Run run_of(const RailVehicleScene& v, double speed) {
-  RunnerMatrices matrices = runner_matrices(v.runner, kGravity);
-  SteadyRunning steady = steady_running(v.runner, matrices, v.contact, speed);
-  return {std::move(matrices), std::move(steady)};
+/// The rails under each vehicle of a scene, even ones.
+std::vector<RunningOn> rails_of(Scene scene) {
+  std::vector<RunningOn> rails(scene.rail_vehicles.size());
+  if (scene.track.rigid) return rails;
+  scene.irregularity.reset();
+  const Built built(scene);
+  for (std::size_t i = 0; i < rails.size(); ++i)
+    rails[i] = rails_at_rest(*built.packed, built.track, static_cast<std::int32_t>(i));
+  return rails;
 }
 
-void add_loads(const RailVehicleScene& v, RunningLoads& loads) {
-  const Run run = run_of(v, v.speed);
-  const auto forces = wheel_forces(v.runner, v.contact, v.speed, run.steady);
+void add_wheelset(const std::string& name, const double* left, const double* right,
+                  const double* motion, RunningLoads& loads) {
+  loads.wheels.push_back({name + "_left", left[2], -left[1], left[0]});
+  loads.wheels.push_back({name + "_right", right[2], right[1], right[0]});
+  loads.wheelsets.push_back({name, motion[index_of(BodyMotion::y)],
+                             motion[index_of(BodyMotion::yaw)], -left[1] - right[1],
+                             -(left[0] + right[0])});
+}
+
+void add_loads_on_rigid(const RailVehicleScene& v, RunningLoads& loads) {
+  const SteadyRunning steady =
+      steady_running(v.runner, runner_matrices(v.runner, kGravity), v.contact, v.speed);
+  const auto forces = wheel_forces(v.runner, v.contact, v.speed, steady);
   std::size_t set = 0;
   for (std::size_t b = 0; b < v.runner.bodies.size(); ++b) {
     if (!v.runner.bodies[b].is_wheelset()) continue;
     const std::string& name = v.wheelsets[set];
     const auto& [left, right] = forces[set++];
-    loads.wheels.push_back(
-        {name + "_left", left.generalised[2], -left.generalised[1], left.generalised[0]});
-    loads.wheels.push_back(
-        {name + "_right", right.generalised[2], right.generalised[1], right.generalised[0]});
-    const auto first = kMotions * static_cast<Eigen::Index>(b);
-    loads.wheelsets.push_back({name, run.steady.displacement[first + index_of(BodyMotion::y)],
-                               run.steady.displacement[first + index_of(BodyMotion::yaw)],
-                               -left.generalised[1] - right.generalised[1],
-                               -(left.generalised[0] + right.generalised[0])});
+    add_wheelset(name, left.generalised, right.generalised,
+                 steady.displacement.data() + kMotions * static_cast<Eigen::Index>(b), loads);
+  }
+}
+
+/// The loads at which a run starts.
+void add_loads_on_track(const Scene& scene, RunningLoads& loads) {
+  const Simulation run(scene);
+  const Model& model = run.model();
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& own = model.runner[r];
+    for (int i = 0; i < own.wheelsets; ++i) {
+      const std::int32_t set = own.first_wheelset + i;
+      add_wheelset(
+          scene.rail_vehicles[static_cast<std::size_t>(r)].wheelsets[static_cast<std::size_t>(i)],
+          wheel_force_of(run.state, set, 0), wheel_force_of(run.state, set, 1),
+          run.state.u + own.first + own.wheelset[i].first, loads);
+    }
   }
 }
 
@@ -60,11 +73,14 @@ void add_loads(const RailVehicleScene& v, RunningLoads& loads) {
 
 std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
   check(scene);
+  const std::vector<RunningOn> rails = rails_of(scene);
   std::vector<RunningMode> all;
-  for (const RailVehicleScene& v : scene.rail_vehicles) {
-    const Run run = run_of(v, speed);
+  for (std::size_t i = 0; i < rails.size(); ++i) {
+    const RailVehicleScene& v = scene.rail_vehicles[i];
+    const RunnerMatrices m = runner_matrices(v.runner, kGravity);
+    const SteadyRunning steady = steady_running(v.runner, m, v.contact, speed, rails[i].rails);
     const std::vector<RunningMode> own =
-        running_modes(linear_running(v.runner, run.matrices, v.contact, speed, run.steady));
+        running_modes(linear_running(v.runner, m, v.contact, speed, steady, rails[i]));
     all.insert(all.end(), own.begin(), own.end());
   }
   std::sort(all.begin(), all.end(),
@@ -74,10 +90,12 @@ std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
 
 std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to) {
   check(scene);
+  const std::vector<RunningOn> rails = rails_of(scene);
   std::optional<CriticalRunning> least;
-  for (const RailVehicleScene& v : scene.rail_vehicles) {
-    const auto own =
-        critical_running_speed(v.runner, runner_matrices(v.runner, kGravity), v.contact, from, to);
+  for (std::size_t i = 0; i < rails.size(); ++i) {
+    const RailVehicleScene& v = scene.rail_vehicles[i];
+    const auto own = critical_running_speed(v.runner, runner_matrices(v.runner, kGravity),
+                                            v.contact, from, to, rails[i]);
     if (own && (!least || own->speed < least->speed)) least = own;
   }
   return least;
@@ -86,7 +104,11 @@ std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double
 RunningLoads running_loads(const Scene& scene) {
   check(scene);
   RunningLoads loads;
-  for (const RailVehicleScene& v : scene.rail_vehicles) add_loads(v, loads);
+  if (!scene.track.rigid) {
+    add_loads_on_track(scene, loads);
+    return loads;
+  }
+  for (const RailVehicleScene& v : scene.rail_vehicles) add_loads_on_rigid(v, loads);
   return loads;
 }
 

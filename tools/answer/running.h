@@ -8,8 +8,9 @@
 
 namespace railstep {
 
-/// Modes of the rail vehicles of a scene that run at a speed on straight, rigid rails, the lowest
-/// first. Throws InputError where the scene has no rail vehicle, or rails that give way.
+/// Modes of the rail vehicles of a scene that run at a speed on straight, even rails, the lowest
+/// first. Rails that give way are there as they stand under the vehicle (standing_track.h). Throws
+/// InputError where the scene has no rail vehicle.
 std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed);
 
 /// The lowest critical speed of the scene's rail vehicles between two speeds, m/s.
@@ -31,7 +32,8 @@ struct RunningLoads {
   std::vector<WheelLoad> wheels;
   std::vector<WheelsetLoad> wheelsets;
 };
-/// The loads of all rail vehicles at their speeds at t = 0.
+/// The loads of all rail vehicles at their speeds at t = 0; on rails that give way those at which
+/// a run starts.
 RunningLoads running_loads(const Scene& scene);
 
 }  // namespace railstep

@@ -52,7 +52,7 @@ Exit run_critical(const CriticalOptions& o) {
 Command add_critical(CLI::App& app) {
   auto o = std::make_shared<CriticalOptions>();
   CLI::App* sub = app.add_subcommand(
-      "critical", "The least speed at which a rail vehicle hunts, on straight, rigid rails");
+      "critical", "The least speed at which a rail vehicle hunts, on straight, even rails");
   sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--from", o->from, "lowest speed, m/s (default 1)")->check(within(0.1, 1000.0));
   sub->add_option("--to", o->to, "highest speed, m/s (default 200)")->check(within(0.1, 1000.0));

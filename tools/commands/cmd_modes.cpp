@@ -76,7 +76,7 @@ Command add_modes(CLI::App& app) {
   sub->add_option("--count", o->count, "how many, the lowest first (default 10)")
       ->check(within(1, 1000));
   sub->add_option("--speed", o->speed,
-                  "modes of the rail vehicles at this speed, m/s, on rigid rails")
+                  "modes of the rail vehicles at this speed, m/s, on even rails")
       ->check(within(0.1, 1000.0));
   add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");

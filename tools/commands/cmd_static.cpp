@@ -88,7 +88,7 @@ void print_table(const RunningLoads& loads) {
                w.resistance);
 }
 
-/// Rail vehicles that run on rigid rails: the steady forces of their wheels.
+/// Rail vehicles: the steady forces of their wheels.
 Exit run_rail_vehicles(const Scene& scene, bool json) {
   const RunningLoads loads = running_loads(scene);
   if (json)

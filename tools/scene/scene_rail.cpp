@@ -10,7 +10,7 @@ namespace {
 const Range kSize = between(1e-4, 1.0);
 const Range kShearFactor = above_upto(0.0, 1.2);
 // A beam may be of rubber; a rail's modulus under 1 GPa was given in N/mm2.
-const Range kRailYoung = between(1e9, 1e13), kBeamYoung = between(1e5, 1e13);  // Pa
+const Range kRailYoung = between(1e9, 1e16), kBeamYoung = between(1e5, 1e13);  // Pa
 
 RectangleSizes read_rectangles(const Table& t) {
   const RectangleSizes r{t.number("foot_width_m", kSize), t.number("foot_height_m", kSize),

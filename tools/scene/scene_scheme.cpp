@@ -51,32 +51,8 @@ void read_contact(const Table& root, Scene& scene) {
              "\"craig-bampton\" or \"krylov\"");
 }
 
-namespace {
-
-/// The first part of a scene whose force depends on the motion within a step. It would not meet the
-/// forces of an external wheel, which are held over a step. nullptr: there is none.
-const char* contact_beside(const Scene& scene) {
-  if (!scene.wheelsets.empty()) return "[[wheelset]]";
-  if (!scene.vehicles.empty() || !scene.rail_vehicles.empty()) return "[[vehicle]]";
-  if (!scene.stops.empty()) return "[[stop]]";
-  if (scene.support && (scene.support->unilateral || scene.support->gap > 0.))
-    return "[support] of pads that do not pull";
-  if (scene.sleeper && (scene.sleeper->ballast_unilateral || scene.sleeper->ballast_gap > 0.))
-    return "[ballast] that does not pull";
-  return nullptr;
-}
-
-}  // namespace
-
 void check_external_wheels(const Table& root, const Scene& scene) {
   if (scene.external_wheels.empty()) return;
-  if (const char* const other = contact_beside(scene))
-    root.tables("external_wheel")
-        .front()
-        .refuse("", "E-STEP-03",
-                fmt::format("an external wheel runs on a linear track, but the scene has a {}; "
-                            "expected one of the two",
-                            other));
   if (!scene.step) return;
   const Table step = root.table("step");
   if (scene.step->scheme == TimeScheme::tr_bdf2 && !scene.condense.kind)

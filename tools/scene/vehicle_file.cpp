@@ -138,9 +138,15 @@ RunnerElement read_anti_roll_bar(const Table& t) {
   return e;
 }
 
-RunnerElement read_typed_element(const Table& t) {
-  switch (t.choice("type", {"spring", "damper", "spring_damper", "maxwell", "traction_rod",
-                            "bushing", "shear_spring", "anti_roll_bar"})) {
+/// An element's type, in the order of the switch below.
+enum { kBumpStop = 8 };
+std::size_t element_type(const Table& t) {
+  return t.choice("type", {"spring", "damper", "spring_damper", "maxwell", "traction_rod",
+                           "bushing", "shear_spring", "anti_roll_bar", "bump_stop"});
+}
+
+RunnerElement read_typed_element(const Table& t, std::size_t type) {
+  switch (type) {
     case 0:
       return read_line(t, true, false, false);
     case 1:
@@ -176,25 +182,58 @@ RunnerElement placed(RunnerElement e, const BogiePlace& place) {
   return e;
 }
 
-void read_runner_element(const Table& t, const BogiePlace& place, Runner& runner) {
-  RunnerElement e = placed(read_typed_element(t), place);
-  const std::string name = checked_name(t, "name", t.string("name")) + place.suffix;
-  const std::vector<std::string> between = t.strings("between", 2, 2);
-  if (between.size() != 2) return;  // its error is kept
-  e.a = runner_body(t, runner, place, between[0]);
-  e.b = runner_body(t, runner, place, between[1]);
-  e.name = name;
-  if (!t.boolean("mirror", false)) return runner.elements.push_back(e);
-  const RunnerElement other = mirrored(e);
-  if (other.point_a == e.point_a && other.point_b == e.point_b)
+RunnerStop read_stop(const Table& t, const BogiePlace& place) {
+  RunnerStop s{};
+  s.point = place.at(three_numbers(t, "point_m", kPlaceRange));
+  s.axis = static_cast<int>(t.choice("axis", {"x", "y", "z"}));
+  const auto [below, above] = t.number_or_pair("clearance_m", between(0.0, 10.0));
+  s.law = {below, above, t.number("stiffness_n_per_m", above_upto(0.0, 1e13))};
+  if (place.turned && s.axis != 2) std::swap(s.law.below, s.law.above);
+  return s;
+}
+
+/// The same stop on the vehicle's other side.
+RunnerStop mirrored(RunnerStop s) {
+  s.point[1] = -s.point[1];
+  if (s.axis == 1) std::swap(s.law.below, s.law.above);
+  return s;
+}
+
+/// Adds an element or a stop, and on request the same on the other side.
+/// @param y, add  of its point; adds one of a name
+template <typename Part, typename Add>
+void add_mirrored(const Table& t, const Part& part, double y, const Add& add) {
+  if (!t.boolean("mirror", false)) return add(part, "");
+  if (y == 0.)
     t.refuse("mirror", "E-VEHICLE-22",
              "mirror = true, but the element lies in the middle of the vehicle; expected a point "
              "with y other than 0, or no mirror");
-  const bool left = e.point_a[1] > 0.;
-  runner.elements.push_back(e);
-  runner.elements.back().name += left ? "_left" : "_right";
-  runner.elements.push_back(other);
-  runner.elements.back().name += left ? "_right" : "_left";
+  add(part, y > 0. ? "_left" : "_right");
+  add(mirrored(part), y > 0. ? "_right" : "_left");
+}
+
+void read_runner_element(const Table& t, const BogiePlace& place, Runner& runner) {
+  const std::size_t type = element_type(t);
+  RunnerStop stop{};
+  RunnerElement e{};
+  if (type == kBumpStop)
+    stop = read_stop(t, place);
+  else
+    e = placed(read_typed_element(t, type), place);
+  const std::string name = checked_name(t, "name", t.string("name")) + place.suffix;
+  const std::vector<std::string> between = t.strings("between", 2, 2);
+  if (between.size() != 2) return;  // its error is kept
+  const auto add_to = [&](auto& parts) {
+    return [&](auto part, const char* side) {
+      part.a = runner_body(t, runner, place, between[0]);
+      part.b = runner_body(t, runner, place, between[1]);
+      part.name = name + side;
+      parts.push_back(part);
+    };
+  };
+  if (type == kBumpStop) return add_mirrored(t, stop, stop.point[1], add_to(runner.stops));
+  const double y = e.point_a[1] != 0. ? e.point_a[1] : e.point_b[1];
+  add_mirrored(t, e, y, add_to(runner.elements));
 }
 
 void read_runner_bodies(const Table& t, const BogiePlace& place, Runner& runner) {

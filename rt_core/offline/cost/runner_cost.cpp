@@ -35,18 +35,21 @@ Cost runners_cost(const Model& model) {
   Cost sum{};
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
-    const std::int64_t n = own.size, motions = std::int64_t{kMotions} * own.wheelsets;
-    const Cost solved = model.lines > 0 ? Cost{} : newton_cost(2LL * own.wheelsets, 0, motions);
+    const std::int64_t n = own.size, meets = interface_size(own);
+    const Cost solved =
+        model.lines > 0 ? Cost{} : newton_cost(2LL * own.wheelsets, own.stops, meets);
     const std::int64_t products = model.form == Form::condensed ? 3 : 2;
     sum = sum + work(2 * products * n * n + 20 * n, products * n * n + 12 * n) +
-          work(2 * n * motions, n * motions + n) + solved + 3 * table_cost(own.travel.rows) +
+          work(2 * n * meets + 8 * n * own.stops, n * meets + n + 8 * n * own.stops) + solved +
+          3 * table_cost(own.travel.rows) +
           own.wheelsets * (branching(40, 40) + model.signals * kSignal);
   }
   return sum;
 }
 
 Cost coupled_runners_cost(const Model& model) {
-  const std::int64_t n = newton_size(model), scalars = contact_count(model) + model.fixed.count;
+  const std::int64_t n = newton_size(model),
+                     scalars = contact_count(model) + model.fixed.count + model.runner_stops;
   if (model.lines == 0 || n == 0) return {};
   Cost seats{};
   for (std::int32_t l = 0; l < model.lines; ++l) {

@@ -76,6 +76,26 @@ Eigen::VectorXd forces_of(const RunnerModel& runner, const StandingRunner& stand
   return force;
 }
 
+/// Forces of the bump stops over all coordinates.
+Eigen::VectorXd stop_forces(const RunnerModel& runner, const RunnerVector& u) {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(runner.size);
+  for (std::int32_t j = 0; j < runner.stops; ++j) {
+    const RunnerVector row(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size);
+    force += stop_force(runner.stop[j], row.dot(u)).force * row;
+  }
+  return force;
+}
+
+double stop_energy(const RunnerModel& runner, const RunnerVector& u) {
+  double sum = 0.;
+  for (std::int32_t j = 0; j < runner.stops; ++j)
+    sum += stop_force(
+               runner.stop[j],
+               RunnerVector(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size).dot(u))
+               .energy;
+  return sum;
+}
+
 double hertz_energy(const StandingRunner& standing) {
   double sum = 0.;
   for (const auto& wheelset : standing.wheels)
@@ -163,8 +183,8 @@ RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& stan
   for (int i = 0; i < runner.wheelsets; ++i)
     v[runner.wheelset[i].first + index_of(BodyMotion::pitch)] +=
         standing.speed / runner.wheelset[i].radius;
-  return {.5 * v.dot(m.mass.cwiseProduct(v)), .5 * u.dot(m.stiffness * u), hertz_energy(standing),
-          residual_energy(standing)};
+  return {.5 * v.dot(m.mass.cwiseProduct(v)), .5 * u.dot(m.stiffness * u) + stop_energy(runner, u),
+          hertz_energy(standing), residual_energy(standing)};
 }
 
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
@@ -183,6 +203,9 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
   RunnerWork work{m.rest.dot(du), contact.drive, 0., contact.creep, 0.};
   work.loss = (contact.on_bodies + contact.on_seats) +
               (hertz_energy(after) - hertz_energy(before)) + contact.creep - contact.drive;
+  const RunnerVector u0 = part_of(runner, from.u), u1 = part_of(runner, to.u);
+  work.loss += .5 * (stop_forces(runner, u0) + stop_forces(runner, u1)).dot(du) +
+               (stop_energy(runner, u1) - stop_energy(runner, u0));
   work.drive -= contact.on_seats - contact.on_lines - residual;
   // The frames accelerate.
   const double faster = (after.speed - before.speed) / dt;
@@ -206,8 +229,9 @@ double runner_unbalanced(const RunnerModel& runner, const StandingRunner& standi
                          const State& after) {
   const RunnerMaps m(runner);
   const Eigen::VectorXd left =
-      forces_of(runner, standing) + m.rest - m.mass.cwiseProduct(part_of(runner, at.g)) -
-      m.damping * part_of(runner, at.v) - m.stiffness * part_of(runner, at.u);
+      forces_of(runner, standing) + stop_forces(runner, part_of(runner, at.u)) + m.rest -
+      m.mass.cwiseProduct(part_of(runner, at.g)) - m.damping * part_of(runner, at.v) -
+      m.stiffness * part_of(runner, at.u);
   return left.dot(part_of(runner, after.u) - part_of(runner, at.u));
 }
 

@@ -324,11 +324,6 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
     refuse("E-PACK-06",
            "an external wheel is on a rail that the track does not have; expected rail 0, or rail "
            "1 of two");
-  if (model_.wheelsets > 0 || model_.vehicles > 0 || model_.runners > 0 || model_.fixed.count > 0)
-    refuse(
-        "E-PACK-24",
-        "an external wheel is beside a wheelset, a vehicle, a stop, a joint with a gap or a "
-        "support that does not pull; expected a linear track with loads and external wheels alone");
   for (const PackedLine& own : lines_)
     if (own.basis.flexibility.size() > 0)
       refuse("E-PACK-25",

@@ -46,9 +46,8 @@ Eigen::MatrixXd held_inverse(const Extended& m, const Scheme& scheme, double s) 
   return inverse;
 }
 
-std::vector<double> values(const Eigen::MatrixXd& symmetric) {
-  return {symmetric.data(), symmetric.data() + symmetric.size()};
-}
+/// Column by column.
+std::vector<double> values(const Eigen::MatrixXd& A) { return {A.data(), A.data() + A.size()}; }
 
 /// The motions of all wheelsets among a runner's coordinates.
 std::vector<Eigen::Index> motions_of(const RunnerModel& runner) {
@@ -58,14 +57,37 @@ std::vector<Eigen::Index> motions_of(const RunnerModel& runner) {
   return all;
 }
 
-/// The rows and columns of some coordinates.
-Eigen::MatrixXd submatrix(const Eigen::MatrixXd& A, const std::vector<Eigen::Index>& of) {
-  const auto n = static_cast<Eigen::Index>(of.size());
-  Eigen::MatrixXd part(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      part(i, j) = A(of[static_cast<std::size_t>(i)], of[static_cast<std::size_t>(j)]);
-  return part;
+/// Rows of the stops over all coordinates, [size][stops].
+Eigen::MatrixXd stop_rows(const RunnerMatrices& m, Eigen::Index size) {
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(m.stops.size()));
+  for (std::size_t i = 0; i < m.stops.size(); ++i)
+    rows.col(static_cast<Eigen::Index>(i)).head(m.mass.size()) = m.stops[i].row;
+  return rows;
+}
+
+/// The part of the inverse for the motions of the wheelsets and the stops, symmetric to the last
+/// bit.
+Eigen::MatrixXd interface_compliance(const RunnerModel& runner, const Eigen::MatrixXd& inverse,
+                                     const Eigen::MatrixXd& stops) {
+  const std::vector<Eigen::Index> motions = motions_of(runner);
+  const auto wheels = static_cast<Eigen::Index>(motions.size());
+  Eigen::MatrixXd meets = Eigen::MatrixXd::Zero(inverse.rows(), wheels + stops.cols());
+  for (Eigen::Index i = 0; i < wheels; ++i) meets(motions[static_cast<std::size_t>(i)], i) = 1.;
+  meets.rightCols(stops.cols()) = stops;
+  const Eigen::MatrixXd part = meets.transpose() * inverse * meets;
+  return .5 * (part + part.transpose());
+}
+
+void add_stops(const RunnerMatrices& m, Model& model, RunnerModel& packed) {
+  packed.first_stop = model.runner_stops;
+  for (const RunnerMatrices::Stop& stop : m.stops) {
+    if (packed.stops == kMaxStopsOfRunner)
+      refuse("E-PACK-57",
+             "a rail vehicle has more bump stops than a model takes; expected at most " +
+                 std::to_string(kMaxStopsOfRunner));
+    packed.stop[packed.stops++] = stop.law;
+    ++model.runner_stops;
+  }
 }
 
 void add_wheelsets(const Runner& runner, Model& model, RunnerModel& packed) {
@@ -109,18 +131,22 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   packed.size = n;
   packed.bodies = static_cast<std::int32_t>(vehicle.runner.bodies.size());
   add_wheelsets(vehicle.runner, model_, packed);
+  add_stops(matrices, model_, packed);
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
   packed.contact = vehicle.contact;
   const bool held = model_.form == Form::condensed;
   const Eigen::MatrixXd inverse = held_inverse(m, model_.scheme, held ? .5 : 1.);
-  const std::vector<Eigen::Index> motions = motions_of(packed);
-  const Eigen::MatrixXd compliance = model_.scheme.theta * submatrix(inverse, motions);
+  const Eigen::MatrixXd stops = stop_rows(matrices, n);
+  const Eigen::MatrixXd compliance =
+      model_.scheme.theta * interface_compliance(packed, inverse, stops);
   packed.mass = keep(values(m.mass));
   packed.rest = keep(values(m.rest));
   packed.damping = keep(values(m.damping));
   packed.stiffness = keep(values(m.stiffness));
   packed.inverse = keep(values(inverse));
+  packed.stop_row = keep(values(stops));
+  packed.stop_moved = keep(values(inverse * stops));
   packed.compliance = keep(values(compliance));
   ++model_.runners;
   model_.unknowns += (n + kLanes - 1) / kLanes * kLanes;
@@ -134,7 +160,7 @@ void PackedModel::refuse_many_coordinates() const {
          "the contacts, one-sided springs and wheelsets of rail vehicles on one track have " +
              std::to_string(newton_size(model_)) + " coordinates; expected at most " +
              std::to_string(kMostNewton) +
-             ": one of each contact and spring, 12 of each wheelset of a rail vehicle");
+             ": one of each contact, spring and bump stop, 12 of each wheelset of a rail vehicle");
 }
 
 }  // namespace railstep

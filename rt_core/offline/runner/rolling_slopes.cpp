@@ -10,17 +10,23 @@ WheelForce wheel_force(const RollingContact& c, double radius, double side, doub
   slopes = {};
   if (!(r.depth.value > 0.)) return {r.depth.value, 0., 0., {}, 0.};
   const double per_speed = per_rolling(speed);
-  Placed sum[6];
-  generalise(r, contact_forces(c, r.depth, slip_of(c, r, v, speed, radius, {}), per_speed), sum);
+  const ContactForces<Placed> f =
+      contact_forces(c, r.depth, slip_of(c, r, v, speed, radius, {}), per_speed);
+  Placed sum[7];
+  generalise(r, f, sum);
+  sum[6] = f.across;
   const double along[6] = {1., 0., 0., r.along_roll.value, r.along_spin.value, r.along_yaw.value};
   const double across[6] = {
       0., r.n_z.value, -r.n_y.value, r.across_roll.value, r.across_spin.value, r.across_yaw.value};
   const double spin[6] = {0., 0., 0., r.spin_roll.value, r.spin_spin.value, r.n_z.value};
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < 7; ++k) {
     for (int m = 0; m < 4; ++m) slopes.by_motion[k][m] = sum[k].slope[m];
-    const double by_along = -c.kalker[0] * along[k];
-    const double by_across = c.kalker[2] * spin[k] - c.kalker[1] * across[k];
-    const double by_spin = -c.kalker[2] * across[k] - c.kalker[3] * spin[k];
+    // The seventh row is a unit force across.
+    const double x = k < 6 ? along[k] : 0., y = k < 6 ? across[k] : 1., z = k < 6 ? spin[k] : 0.;
+    const double by_along = -c.kalker[0] * x;
+    const double by_across = c.kalker[2] * z - c.kalker[1] * y;
+    const double by_spin = -c.kalker[2] * y - c.kalker[3] * z;
+    slopes.by_across[k] = per_speed * by_across;
     for (int m = 0; m < 6; ++m)
       slopes.by_rate[k][m] =
           per_speed * (by_along * along[m] + by_across * across[m] + by_spin * spin[m]);

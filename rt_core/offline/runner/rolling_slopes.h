@@ -3,9 +3,10 @@
 
 namespace railstep {
 
-/// Derivatives of WheelForce::generalised over kPlaced and over the rates of the motions.
+/// Derivatives of WheelForce::generalised, and of its force across as a seventh row, over kPlaced,
+/// the rates of the motions, and slip across that none of these makes.
 struct WheelSlopes {
-  double by_motion[6][4], by_rate[6][6];
+  double by_motion[7][4], by_rate[7][6], by_across[7];
 };
 
 /// wheel_force() with all derivatives. @param side  1 of the left wheel, -1 of the right

@@ -36,10 +36,21 @@ struct RunnerElement {
   std::array<double, 6> preload{};         // force on `a` at rest, N and N m; of a line its tension
 };
 
-/// A rail vehicle: rigid bodies in space on a linear suspension, with wheels on both rails.
+/// A bump stop between two bodies: a spring along an axis of the track that presses once body `a`
+/// has moved against `b` by more than a gap.
+struct RunnerStop {
+  std::string name;
+  int a, b;                     // bodies
+  std::array<double, 3> point;  // at rest, as RunnerBody::centre
+  int axis;                     // 0 x, 1 y, 2 z
+  StopModel law;
+};
+
+/// A rail vehicle: rigid bodies in space on a suspension, with wheels on both rails.
 struct Runner {
   std::vector<RunnerBody> bodies;
   std::vector<RunnerElement> elements;
+  std::vector<RunnerStop> stops = {};
 };
 
 }  // namespace railstep

@@ -122,8 +122,10 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
   constexpr int kCap = 60, kHalvings = 12;
   for (int i = 0; i < kCap; ++i) {
     const Contacts c = contacts_at(runner, contact, speed, s.displacement, s.rate, rails);
-    const VectorXd left = m.rest + c.force - m.stiffness * s.displacement - m.damping * s.rate;
-    MatrixXd J = m.stiffness - c.by_displacement;
+    const MatrixXd stiffness = stiffness_at(m, s.displacement);
+    const VectorXd left = m.rest + c.force + stop_forces(m, s.displacement) -
+                          m.stiffness * s.displacement - m.damping * s.rate;
+    MatrixXd J = stiffness - c.by_displacement;
     for (Index k = 0; k < n; ++k)
       if (is_spin(runner, k)) J.col(k) = m.damping.col(k) - c.by_rate.col(k);
     s.resistance = -left[0];
@@ -146,11 +148,90 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
        "suspension that holds each body in every direction, and rails that are not too uneven");
 }
 
+namespace {
+
+/// Adds the derivatives of one wheel's force over the motions of the seat under it, and those of
+/// the force on the seat.
+/// @param first, seat  coordinates of the wheelset and of the seat
+void add_seat(const WheelSlopes& slopes, double crown_radius, Index first, Index seat,
+              LinearRunning& linear) {
+  // Over y, z and roll of the seat; the wheel's place counts over the rail.
+  const auto add = [&](Index row, int k, double factor) {
+    for (int j = 0; j < 2; ++j) {
+      linear.stiffness(row, seat + j) += factor * slopes.by_motion[k][j];
+      linear.damping(row, seat + j) += factor * slopes.by_rate[k][1 + j];
+    }
+    linear.damping(row, seat + 2) -= factor * crown_radius * slopes.by_across[k];
+  };
+  for (int k = 0; k < kMotions; ++k) add(first + k, k, 1.);
+  constexpr int kForces[3] = {1, 2, 6};  // along y and z, and across
+  const double factor[3] = {-1., -1., crown_radius};
+  for (int d = 0; d < 3; ++d) {
+    add(seat + d, kForces[d], factor[d]);
+    for (int j = 0; j < 4; ++j)
+      linear.stiffness(seat + d, first + index_of(kPlaced[j])) -=
+          factor[d] * slopes.by_motion[kForces[d]][j];
+    for (int j = 0; j < kMotions; ++j)
+      linear.damping(seat + d, first + j) -= factor[d] * slopes.by_rate[kForces[d]][j];
+  }
+}
+
+/// Changes the last coordinates, those of the seats, to their modes on the track alone.
+void take_modes(const StandingTrack& track, LinearRunning& linear) {
+  const Index seats = track.mass.rows(), n = linear.mass.size();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(track.stiffness, track.mass);
+  MatrixXd change = MatrixXd::Identity(n, n);
+  change.bottomRightCorner(seats, seats) = modes.eigenvectors();
+  linear.stiffness = change.transpose() * linear.stiffness * change;
+  linear.damping = change.transpose() * linear.damping * change;
+  linear.mass.tail(seats).setOnes();
+}
+
+/// The motions of rails that give way, beside those of a vehicle.
+void add_track(const Runner& runner, const RollingContact& contact, double speed,
+               const SteadyRunning& steady, const RunningOn& on, LinearRunning& linear) {
+  const StandingTrack& track = *on.track;
+  const Index n = linear.mass.size(), seats = track.mass.rows();
+  linear.mass.conservativeResize(n + seats);
+  for (MatrixXd* A : {&linear.stiffness, &linear.damping}) {
+    A->conservativeResize(n + seats, n + seats);
+    A->rightCols(seats).setZero();
+    A->bottomRows(seats).setZero();
+  }
+  linear.stiffness.bottomRightCorner(seats, seats) = track.stiffness;
+  linear.damping.bottomRightCorner(seats, seats) = track.damping;
+  for (RunnerMatrices::Series& own : linear.series) {
+    own.row.conservativeResize(n + seats);
+    own.row.tail(seats).setZero();
+  }
+  Index seat = n;
+  std::size_t set = 0;
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    if (!runner.bodies[b].is_wheelset()) continue;
+    const RailsUnder under = on.rails.empty() ? RailsUnder{} : on.rails[set++];
+    for (const int side : {0, 1}) {
+      Eigen::Matrix<double, kMotions, 1> u = steady.displacement.segment<kMotions>(first_of(b));
+      u[index_of(BodyMotion::y)] -= under.y[side];
+      u[index_of(BodyMotion::z)] -= under.z[side];
+      WheelSlopes slopes;
+      static_cast<void>(wheel_force(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., speed,
+                                    u.data(), steady.rate.data() + first_of(b), slopes));
+      add_seat(slopes, contact.crown_radius, first_of(b), seat, linear);
+      seat += 3;
+    }
+  }
+  take_modes(track, linear);
+}
+
+}  // namespace
+
 LinearRunning linear_running(const Runner& runner, const RunnerMatrices& m,
                              const RollingContact& contact, double speed,
-                             const SteadyRunning& steady) {
-  const Contacts c = contacts_at(runner, contact, speed, steady.displacement, steady.rate);
-  LinearRunning linear{m.mass, m.damping - c.by_rate, m.stiffness - c.by_displacement, m.series};
+                             const SteadyRunning& steady, const RunningOn& on) {
+  const Contacts c =
+      contacts_at(runner, contact, speed, steady.displacement, steady.rate, on.rails);
+  LinearRunning linear{m.mass, m.damping - c.by_rate,
+                       stiffness_at(m, steady.displacement) - c.by_displacement, m.series};
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     const RunnerBody& body = runner.bodies[b];
     if (!body.is_wheelset()) continue;
@@ -160,6 +241,7 @@ LinearRunning linear_running(const Runner& runner, const RunnerMatrices& m,
     linear.damping(roll, yaw) -= spin;
     linear.damping(yaw, roll) += spin;
   }
+  if (on.track) add_track(runner, contact, speed, steady, on, linear);
   return linear;
 }
 

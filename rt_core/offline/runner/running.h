@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "offline/runner/suspension.h"
@@ -15,11 +16,22 @@ struct SteadyRunning {
 };
 
 /// Small motions about it, M q'' + C q' + K q + sum of row' force of `series` = 0, gyroscopic
-/// moments of the wheelsets included. C and K are not symmetric.
+/// moments of the wheelsets included. C and K are not symmetric. Rails that give way add the modes
+/// of their seats to q.
 struct LinearRunning {
   Eigen::VectorXd mass;
   Eigen::MatrixXd damping, stiffness;
   std::vector<RunnerMatrices::Series> series;
+};
+
+/// Rails that give way under a vehicle as they stand: y, z and roll of the seats under each of its
+/// wheels, left and right of each wheelset in turn, as masses, dampers and springs.
+struct StandingTrack {
+  Eigen::MatrixXd mass, damping, stiffness;  // [6 wheelsets][6 wheelsets], symmetric
+};
+struct RunningOn {
+  std::vector<RailsUnder> rails = {};  // under each wheelset; empty: straight and level
+  std::optional<StandingTrack> track = std::nullopt;  // empty: rigid
 };
 
 /// By Newton's method with exact derivatives. The first body is held along x.
@@ -32,7 +44,7 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& matrice
 
 LinearRunning linear_running(const Runner& runner, const RunnerMatrices& matrices,
                              const RollingContact& contact, double speed,
-                             const SteadyRunning& steady);
+                             const SteadyRunning& steady, const RunningOn& on = {});
 
 /// Forces of the rails on the wheels, [wheelsets][left, right].
 std::vector<std::array<WheelForce, 2>> wheel_forces(const Runner& runner,

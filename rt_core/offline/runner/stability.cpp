@@ -40,15 +40,17 @@ bool counts(const std::complex<double>& s) {
 }
 
 LinearRunning running_at(const Runner& runner, const RunnerMatrices& m,
-                         const RollingContact& contact, double speed) {
-  return linear_running(runner, m, contact, speed, steady_running(runner, m, contact, speed));
+                         const RollingContact& contact, double speed, const RunningOn& on) {
+  return linear_running(runner, m, contact, speed,
+                        steady_running(runner, m, contact, speed, on.rails), on);
 }
 
 /// The mode that grows most.
 std::complex<double> least_damped(const Runner& runner, const RunnerMatrices& m,
-                                  const RollingContact& contact, double speed) {
+                                  const RollingContact& contact, double speed,
+                                  const RunningOn& on) {
   std::complex<double> most = -1e300;
-  for (const std::complex<double>& s : eigenvalues(running_at(runner, m, contact, speed)))
+  for (const std::complex<double>& s : eigenvalues(running_at(runner, m, contact, speed, on)))
     if (counts(s) && s.real() > most.real()) most = s;
   return most;
 }
@@ -67,20 +69,20 @@ std::vector<RunningMode> running_modes(const LinearRunning& linear) {
 
 std::optional<CriticalRunning> critical_running_speed(const Runner& runner, const RunnerMatrices& m,
                                                       const RollingContact& contact, double from,
-                                                      double to) {
+                                                      double to, const RunningOn& on) {
   const int steps = static_cast<int>(std::ceil(std::max(100., (to - from) / 2.)));
   double low = from;
-  if (least_damped(runner, m, contact, low).real() >= 0.) return std::nullopt;
+  if (least_damped(runner, m, contact, low, on).real() >= 0.) return std::nullopt;
   for (int i = 1; i <= steps; ++i) {
     double high = from + (to - from) * i / steps;
-    std::complex<double> s = least_damped(runner, m, contact, high);
+    std::complex<double> s = least_damped(runner, m, contact, high, on);
     if (s.real() < 0.) {
       low = high;
       continue;
     }
     while (high - low > 1e-10 * high) {
       const double middle = .5 * (low + high);
-      const std::complex<double> there = least_damped(runner, m, contact, middle);
+      const std::complex<double> there = least_damped(runner, m, contact, middle, on);
       if (there.real() < 0.)
         low = middle;
       else {

@@ -27,6 +27,6 @@ struct CriticalRunning {
 std::optional<CriticalRunning> critical_running_speed(const Runner& runner,
                                                       const RunnerMatrices& matrices,
                                                       const RollingContact& contact, double from,
-                                                      double to);
+                                                      double to, const RunningOn& on = {});
 
 }  // namespace railstep

@@ -123,14 +123,18 @@ VectorXd preload(const Runner& runner, const RunnerElement& e) {
   return sum;
 }
 
-void check_element(const Runner& runner, const RunnerElement& e) {
+void check_bodies(const Runner& runner, const std::string& name, int a, int b) {
   const auto is_body = [&](int body) {
     return body >= 0 && body < static_cast<int>(runner.bodies.size());
   };
-  if (!is_body(e.a) || !is_body(e.b) || e.a == e.b)
+  if (!is_body(a) || !is_body(b) || a == b)
     refuse("E-SUSPENSION-01",
-           "element " + e.name +
+           "element " + name +
                " does not join two bodies of its vehicle; expected two different ones");
+}
+
+void check_element(const Runner& runner, const RunnerElement& e) {
+  check_bodies(runner, e.name, e.a, e.b);
   if (e.kind == RunnerElement::Kind::line && !((vector(e.point_b) - vector(e.point_a)).norm() > 0.))
     refuse("E-SUSPENSION-02",
            "element " + e.name + " has no length; expected two points that differ");
@@ -146,6 +150,13 @@ void check(const Runner& runner) {
       refuse("E-SUSPENSION-04",
              "body " + b.name + " has a mass or an inertia that is not positive; expected above 0");
   for (const RunnerElement& e : runner.elements) check_element(runner, e);
+  for (const RunnerStop& s : runner.stops) {
+    check_bodies(runner, s.name, s.a, s.b);
+    if (!(s.law.below >= 0.) || !(s.law.above >= 0.) || !(s.law.stiffness > 0.))
+      refuse("E-SUSPENSION-06", "bump stop " + s.name +
+                                    " has a gap below 0, or a stiffness that is not above 0; "
+                                    "expected gaps of 0 or more and a stiffness above 0");
+  }
 }
 
 VectorXd weights(const Runner& runner, double gravity) {
@@ -179,8 +190,12 @@ void check_balance(const Runner& runner, const VectorXd& rest, double weight) {
 RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
   check(runner);
   const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
-  RunnerMatrices m{
-      VectorXd::Zero(n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), -weights(runner, gravity), {}};
+  RunnerMatrices m{VectorXd::Zero(n),
+                   MatrixXd::Zero(n, n),
+                   MatrixXd::Zero(n, n),
+                   -weights(runner, gravity),
+                   {},
+                   {}};
   for (std::size_t b = 0; b < runner.bodies.size(); ++b)
     for (int d = 0; d < 3; ++d) {
       const auto first = kMotions * static_cast<Eigen::Index>(b);
@@ -200,7 +215,26 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
     m.stiffness += geometric_stiffness(runner, e);
     m.rest += preload(runner, e);
   }
+  for (const RunnerStop& s : runner.stops) {
+    const Rows moved = displacement(end_of(runner, s.a, s.point), n) -
+                       displacement(end_of(runner, s.b, s.point), n);
+    m.stops.push_back({moved.row(s.axis), s.law});
+  }
   return m;
+}
+
+VectorXd stop_forces(const RunnerMatrices& m, const VectorXd& u) {
+  VectorXd sum = VectorXd::Zero(u.size());
+  for (const RunnerMatrices::Stop& stop : m.stops)
+    sum += stop_force(stop.law, stop.row.dot(u)).force * stop.row;
+  return sum;
+}
+
+MatrixXd stiffness_at(const RunnerMatrices& m, const VectorXd& u) {
+  MatrixXd K = m.stiffness;
+  for (const RunnerMatrices::Stop& stop : m.stops)
+    K -= stop_force(stop.law, stop.row.dot(u)).slope * stop.row * stop.row.transpose();
+  return K;
 }
 
 void balance_preloads(Runner& runner, double gravity) {

@@ -18,7 +18,17 @@ struct RunnerMatrices {
   Eigen::MatrixXd damping, stiffness;  // [n][n] symmetric
   Eigen::VectorXd rest;                // [n] preloads less weights, N and N m
   std::vector<Series> series;
+  struct Stop {
+    Eigen::VectorXd row;  // [n]
+    StopModel law;
+  };
+  std::vector<Stop> stops;
 };
+
+/// Forces of the bump stops over the coordinates at a displacement.
+Eigen::VectorXd stop_forces(const RunnerMatrices& matrices, const Eigen::VectorXd& u);
+/// The stiffness with that of the stops that press at a displacement.
+Eigen::MatrixXd stiffness_at(const RunnerMatrices& matrices, const Eigen::VectorXd& u);
 
 /// The stiffness is the second derivative of the elements' energy and includes what their preloads
 /// make of it: the geometric stiffness. With s1 and s2 the parts of first and second order of a

@@ -55,16 +55,26 @@ void follow_alignment(const PackedRunner& own, const Model& model, const RunnerM
     given[first + index_of(BodyMotion::y)] = .5 * (under.y[0] + under.y[1]);
     given[first + index_of(BodyMotion::yaw)] = rolling_yaw(model, runner, i, time);
   }
-  Eigen::MatrixXd K = own.matrices.stiffness;
-  Eigen::VectorXd force = -(K * given);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (!is_given[static_cast<std::size_t>(k)]) continue;
-    K.row(k).setZero();
-    K.col(k).setZero();
-    K(k, k) = 1.;
-    force[k] = 0.;
+  // Bump stops may begin to press, or let go.
+  constexpr int kTurns = 20;
+  const Eigen::VectorXd before = steady.displacement, held = stop_forces(own.matrices, before);
+  Eigen::VectorXd moved = given;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    Eigen::MatrixXd K = stiffness_at(own.matrices, before + moved);
+    Eigen::VectorXd force =
+        stop_forces(own.matrices, before + moved) - held - own.matrices.stiffness * moved;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (!is_given[static_cast<std::size_t>(k)]) continue;
+      K.row(k).setZero();
+      K.col(k).setZero();
+      K(k, k) = 1.;
+      force[k] = 0.;
+    }
+    const Eigen::VectorXd step = K.fullPivLu().solve(force);
+    moved += step;
+    if (own.matrices.stops.empty() || step.cwiseAbs().maxCoeff() < 1e-14) break;
   }
-  steady.displacement += given + Eigen::VectorXd(K.fullPivLu().solve(force));
+  steady.displacement += moved;
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ Eigen::SparseVector<double> row_of(const Track& track, const PackedModel& packed
   return point_row(track, line, at, packed.model().form == Form::banded);
 }
 
-/// Row of a contact, as the step applies it.
-Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRow& row) {
-  const bool strains = packed.model().form == Form::banded;
+}  // namespace
+
+Eigen::VectorXd contact_row(const Line& line, const RailRow& row, bool strains) {
   const double factor = line.rail_factor[static_cast<std::size_t>(row.rail)];
   Eigen::VectorXd result = Eigen::VectorXd::Zero(line.unknowns());
   const auto add = [&](int unknown, int k, double value) {
@@ -30,6 +30,13 @@ Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRo
     for (const int k : {5, 7})
       add(line.unknown(row.rail, row.seat[s], k), k, (k == 5 ? .5 : -.5) * row.lever[s]);
   return result;
+}
+
+namespace {
+
+/// Row of a contact, as the step applies it.
+Eigen::VectorXd row_of(const PackedModel& packed, const Line& line, const RailRow& row) {
+  return contact_row(line, row, packed.model().form == Form::banded);
 }
 
 /// Adds the displacements of each line of a condensed model under the forces of its fixed ports.

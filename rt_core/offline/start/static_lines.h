@@ -22,6 +22,10 @@ struct Acting {
   std::vector<RailForce> ports;
 };
 
+/// Row of a contact over the unknowns of a line.
+/// @param strains  false: without the part of the section's own strain (a_y, b_z)
+Eigen::VectorXd contact_row(const Line& line, const RailRow& row, bool strains);
+
 /// Static displacements of each line of the model: its unknowns, or its coordinates if condensed.
 /// They include the effect of the one-sided springs that are closed.
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,

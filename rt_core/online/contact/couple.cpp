@@ -48,9 +48,13 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
 /// Whether there is a rail or ground under a wheel.
 bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground; }
 
-/// Residual displacement of the rail under each wheel by the loads.
-void find_residual_by_loads(const Model& model, const Stage& stage, Coupling& c) noexcept {
+/// Residual displacement of the rail under each wheel by the loads and the external wheels.
+void find_residual_by_loads(const Model& model, const Stage& stage, const ExternalContact* external,
+                            Coupling& c) noexcept {
   for (int i = 0; i < c.rows; ++i) c.by_loads[i] = 0.;
+  for (std::int32_t n = 0; n < model.external_wheels; ++n)
+    for (int i = 0; i < c.rows && external[n].on_rail; ++i)
+      c.by_loads[i] += external[n].force[2] * residual_between(model, external[n].port, c.place[i]);
   for (std::int32_t l = 0; l < model.loads; ++l) {
     const PlacedLoad load = place(model, model.load[l], stage.step, stage.before);
     if (!load.on_rail) continue;
@@ -194,7 +198,8 @@ void publish_wheels(const Model& model, const Coupling& c, State& state,
 
 }  // namespace
 
-CoupleResult couple(const Model& model, const Stage& stage, State& state, Workspace& w) noexcept {
+CoupleResult couple(const Model& model, const Stage& stage, const ExternalContact* external,
+                    State& state, Workspace& w) noexcept {
   CoupleResult result{};
   Coupling c;
   c.contacts = contact_count(model);
@@ -209,7 +214,7 @@ CoupleResult couple(const Model& model, const Stage& stage, State& state, Worksp
   find_acting(model, c);
   respond(model, state, w, c);
   if (c.mirrored) lean_wheel_seats(model, c);
-  find_residual_by_loads(model, stage, c);
+  find_residual_by_loads(model, stage, external, c);
   free_wheelsets(model, stage, state, w, c);
   free_vehicles(model, time, state, w, c);
   find_vehicle_laws(model, time, state, w, c);

@@ -1,4 +1,5 @@
 #pragma once
+#include "online/contact/external.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -17,8 +18,9 @@ struct CoupleResult {
 /// It finds the contacts at a stage's end and the response of the track to its own right-hand side
 /// (in workspace.solved) and to each wheel, then solves for all ports' forces and guides together.
 /// At the end workspace.solved has all displacements.
-CoupleResult couple(const Model& model, const Stage& stage, State& state,
-                    Workspace& workspace) noexcept;
+/// @param external  [external_wheels] whose forces are in workspace.solved
+CoupleResult couple(const Model& model, const Stage& stage, const ExternalContact* external,
+                    State& state, Workspace& workspace) noexcept;
 
 /// After the scheme's correction, projects velocities and accelerations of guided coordinates onto
 /// the guide (augmented Lagrangian; the inertia is diagonal, so that the projection is exact).

@@ -58,10 +58,16 @@ int port_of(const Coupling& c, int scalar) noexcept {
   return scalar < c.contacts ? scalar : c.rows + (scalar - c.contacts);
 }
 
+/// The first stop among the coordinates of Newton's method, behind all wheelsets.
+int first_stop(const Model& model, int scalars) noexcept {
+  return scalars + kOfWheelset * model.runner_wheelsets;
+}
+
 /// The row of the track of a coordinate of Newton's method that is one, or the port of a scalar.
-/// -1: a motion of a wheelset.
-int port_of_coordinate(const Coupling& c, int scalars, int at) noexcept {
+/// -1: a motion of a wheelset, or a stop.
+int port_of_coordinate(const Model& model, const Coupling& c, int scalars, int at) noexcept {
   if (at < scalars) return port_of(c, at);
+  if (at >= first_stop(model, scalars)) return -1;
   const int set = (at - scalars) / kOfWheelset, k = (at - scalars) % kOfWheelset;
   return k < kMotions ? -1 : c.contacts + 2 * kWheelSeatRows * set + (k - kMotions);
 }
@@ -69,20 +75,22 @@ int port_of_coordinate(const Coupling& c, int scalars, int at) noexcept {
 void fill_compliance(const Model& model, const Coupling& c, int scalars, double* Y) noexcept {
   const int n = newton_size(model);
   for (int i = 0; i < n; ++i) {
-    const int a = port_of_coordinate(c, scalars, i);
+    const int a = port_of_coordinate(model, c, scalars, i);
     for (int j = 0; j < n; ++j) {
-      const int b = port_of_coordinate(c, scalars, j);
+      const int b = port_of_coordinate(model, c, scalars, j);
       Y[i * n + j] = a < 0 || b < 0 ? 0. : c.W[a * c.ports + b];
     }
   }
   for (std::int32_t r = 0; r < model.runners; ++r) {
     const RunnerModel& runner = model.runner[r];
-    const int motions = kMotions * runner.wheelsets;
+    const int motions = kMotions * runner.wheelsets, meets = interface_size(runner);
     const auto at = [&](int k) noexcept {
-      return scalars + kOfWheelset * (runner.first_wheelset + k / kMotions) + k % kMotions;
+      return k < motions
+                 ? scalars + kOfWheelset * (runner.first_wheelset + k / kMotions) + k % kMotions
+                 : first_stop(model, scalars) + runner.first_stop + (k - motions);
     };
-    for (int i = 0; i < motions; ++i)
-      for (int j = 0; j < motions; ++j) Y[at(i) * n + at(j)] = runner.compliance[i * motions + j];
+    for (int i = 0; i < meets; ++i)
+      for (int j = 0; j < meets; ++j) Y[at(i) * n + at(j)] = runner.compliance[i * meets + j];
   }
 }
 
@@ -128,8 +136,15 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
   Predicted predicted;
   if (model.form == Form::banded) predict(model, w, c, predicted);
   fill_compliance(model, c, all.scalars, w.newton);
-  for (std::int32_t r = 0; r < model.runners; ++r)
-    move_freely(stage_of(model, model.runner[r], stage), s, w, w.solved + model.runner[r].first);
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
+    const RunnerStage at = stage_of(model, runner, stage);
+    double* const u = w.solved + runner.first;
+    move_freely(at, s, w, u);
+    const int stop = first_stop(model, all.scalars) + runner.first_stop;
+    find_stops(at, s, w, u, all.z_free + stop, all.start + stop);
+    for (int j = 0; j < runner.stops; ++j) all.stop[runner.first_stop + j] = runner.stop + j;
+  }
   const double theta = model.scheme.theta;
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
     const RunnerStage at = stage_of(model, runner, stage);
@@ -174,11 +189,15 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
   }
   for (int i = 0; i < sets; ++i)
     block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, kWheelsetRank};
+  for (int i = 0; i < model.runner_stops; ++i)
+    block[all.scalars + sets + i] = {first_stop(model, all.scalars) + i, 1, 1};
   for (int i = all.scalars; i < n; ++i) z[i] = all.start[i];
   const NewtonResult met = solve_laws(
-      {n, all.scalars + sets, w.newton, block, all.z_free, w.newton + std::ptrdiff_t{n} * n,
-       kRunnerTolerance},
+      {n, all.scalars + sets + model.runner_stops, w.newton, block, all.z_free,
+       w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance},
       [&](int b, const double* at, double* force, const LawSlopes* slopes) noexcept {
+        if (b >= all.scalars + sets)
+          return stop_law(*all.stop[b - all.scalars - sets], *at, force, slopes);
         if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes);
         const PortForce own = port_force(c.law[b], *at);
         *force = -own.force;
@@ -193,7 +212,7 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
     all.law[i].evaluate(z + first, all.force + first, nullptr);
   }
   for (int i = 0; i < n; ++i) {
-    const int port = port_of_coordinate(c, all.scalars, i);
+    const int port = port_of_coordinate(model, c, all.scalars, i);
     if (port < 0) continue;
     c.force[port] = -all.force[i];
     if (i < all.scalars) c.penetration[port] = z[i];
@@ -207,7 +226,7 @@ Status move_coupled_runners(const Model& model, const Coupling& c, const Coupled
   Status met = Status::ok;
   for (std::int32_t r = 0; r < model.runners; ++r) {
     const RunnerModel& runner = model.runner[r];
-    double force[kMostMotions];
+    double force[kMostInterfaces];
     for (int i = 0; i < runner.wheelsets; ++i) {
       const std::int32_t set = runner.first_wheelset + i;
       for (int k = 0; k < kMotions; ++k)
@@ -216,6 +235,9 @@ Status move_coupled_runners(const Model& model, const Coupling& c, const Coupled
       if (all.law[set].lost) met = met | Status::contact_lost;
       if (!is_on_rail(c, wheel_seat_row(model, set, 0))) met = met | Status::off_rail;
     }
+    for (int j = 0; j < runner.stops; ++j)
+      force[kMotions * runner.wheelsets + j] =
+          all.force[first_stop(model, all.scalars) + runner.first_stop + j];
     move_by(runner, force, w.solved + runner.first);
   }
   return met;

@@ -122,17 +122,27 @@ void add_between(const RowsOfBase& a, const RowsOfBase& b, bool same, double val
     }
 }
 
-/// Adds the compliance of a line to W by its table.
+/// Adds the compliance of a line to W by its table. A few bases at a time are on the stack.
 void add_tabled(const LineModel& line, std::int32_t l, Coupling& c) noexcept {
-  CarriedRow carried[kMaxTrackRows];
-  RowsOfBase rows[kMaxTrackRows];
-  for (int i = 0; i < c.bases; ++i) {
-    if (!c.acts[i][l]) continue;
-    carry(line, base_row(c, i), carried[i]);
-    rows[i] = rows_of_base(c, i, line);
-    for (int j = 0; j <= i; ++j)
-      if (c.acts[j][l])
-        add_between(rows[i], rows[j], i == j, between(line.modal, carried[i], carried[j]), c);
+  constexpr int kAtOnce = 16;
+  for (int first = 0; first < c.bases; first += kAtOnce) {
+    const int end = first + kAtOnce < c.bases ? first + kAtOnce : c.bases;
+    CarriedRow carried[kAtOnce], other;
+    RowsOfBase rows[kAtOnce];
+    for (int i = first; i < end; ++i) {
+      if (!c.acts[i][l]) continue;
+      carry(line, base_row(c, i), carried[i - first]);
+      rows[i - first] = rows_of_base(c, i, line);
+    }
+    for (int j = 0; j < end; ++j) {
+      if (!c.acts[j][l]) continue;
+      carry(line, base_row(c, j), other);
+      const RowsOfBase of_other = rows_of_base(c, j, line);
+      for (int i = j > first ? j : first; i < end; ++i)
+        if (c.acts[i][l])
+          add_between(rows[i - first], of_other, i == j,
+                      between(line.modal, carried[i - first], other), c);
+    }
   }
 }
 

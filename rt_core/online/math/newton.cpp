@@ -166,11 +166,20 @@ void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) no
   }
 }
 
-void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept {
+void place_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept {
+  std::ptrdiff_t blocks = 0;
   slopes.ranks = 0;
-  for (int b = 0; b < p.blocks; ++b) slopes.ranks += p.block[b].rank;
-  slopes.moved = p.scratch;
-  slopes.factor = p.scratch + p.n * slopes.ranks;
+  for (int b = 0; b < p.blocks; ++b) {
+    slopes.ranks += p.block[b].rank;
+    blocks += std::ptrdiff_t{p.block[b].size} * p.block[b].rank;
+  }
+  slopes.spread = p.scratch;
+  slopes.slope = slopes.spread + blocks;
+  slopes.moved = slopes.slope + blocks;
+  slopes.factor = slopes.moved + p.n * slopes.ranks;
+}
+
+void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept {
   spread_through(p, slopes);
   fill(p, slopes);
   slopes.solvable = eliminate(slopes.factor, slopes.exchange, slopes.ranks);

@@ -51,7 +51,7 @@ struct NewtonProblem {
   const double* Y;  // [n][n] compliance of the linear parts, symmetric, positive semidefinite
   const LawBlock* block;
   const double* z_free;  // [n]
-  double* scratch;       // [2][n][n]
+  double* scratch;       // newton_scratch() of the sizes
   double tolerance = kNewtonTolerance;
 };
 
@@ -66,13 +66,20 @@ void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) no
 /// (I - S Y B) t = -S missed. Normal forces and creep forces have steep slopes in their own
 /// directions; the matrix's leading minors are then positive, or nearly so.
 struct NewtonSlopes {
-  double spread[kMostNewton * kMostLaw], slope[kMostNewton * kMostLaw];  // blocks, one by one
-  double* moved;                                                         // [n][ranks] Y B
-  double* factor;                                                        // [ranks][ranks]
+  double *spread, *slope;  // blocks, one by one
+  double* moved;           // [n][ranks] Y B
+  double* factor;          // [ranks][ranks]
   int exchange[kMostNewton];
   int ranks;
   bool solvable;
 };
+/// Numbers of NewtonProblem::scratch. @param blocks  sum of size times rank of all laws
+constexpr std::int64_t newton_scratch(std::int64_t n, std::int64_t ranks,
+                                      std::int64_t blocks) noexcept {
+  return 2 * blocks + n * ranks + ranks * ranks;
+}
+/// Places the slopes in the scratch.
+void place_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
 /// Factors I - S Y B by elimination with row exchanges; not solvable where a pivot is not above
 /// 1e-12 of the matrix. The laws' slopes must be known.
 void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
@@ -135,6 +142,7 @@ template <typename Law>
   NewtonPoint points[2];
   NewtonPoint *at = points, *next = points + 1;
   NewtonSlopes slopes;
+  place_slopes(p, slopes);
   double root[kMostNewton];
   find_roots(p, root);
   for (int i = 0; i < p.n; ++i) at->z[i] = z[i];

@@ -233,10 +233,15 @@ void describe(Archive& a, RunnerModel& r) {
   describe(a, r.travel);
   describe(a, r.contact);
   for (std::int32_t& point : r.load_point) a.count(point, kMaxLoadPoints - 1);
-  const std::int64_t n = r.size, motions = std::int64_t{kMotions} * r.wheelsets;
+  a.count(r.stops, kMaxStopsOfRunner);
+  for (std::int32_t i = 0; i < r.stops; ++i)
+    for (double* x : {&r.stop[i].below, &r.stop[i].above, &r.stop[i].stiffness}) a.real(*x);
+  a.count(r.first_stop, kMaxRunners * kMaxStopsOfRunner);
+  const std::int64_t n = r.size, meets = interface_size(r);
   for (const double** of : {&r.mass, &r.rest}) a.reals(*of, n);
   for (const double** of : {&r.damping, &r.stiffness, &r.inverse}) a.reals(*of, n * n);
-  a.reals(r.compliance, motions * motions);
+  for (const double** of : {&r.stop_row, &r.stop_moved}) a.reals(*of, n * r.stops);
+  a.reals(r.compliance, meets * meets);
 }
 
 template <typename Archive>
@@ -327,6 +332,7 @@ void describe_track(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.vehicle_wheels; ++i) describe(a, m.vehicle_wheel[i]);
   a.count(m.runners, kMaxRunners);
   a.count(m.runner_wheelsets, kMaxRunnerWheelsets);
+  a.count(m.runner_stops, kMaxRunners * kMaxStopsOfRunner);
   for (std::int32_t i = 0; i < m.runners; ++i) describe(a, m.runner[i]);
   for (std::int32_t i = 0; i < m.signals; ++i) {
     a.count(m.signal[i].rail, 1);

@@ -101,12 +101,10 @@ bool load_is_valid(const LoadModel& l) noexcept {
   return ahead && travel_is_valid(l.travel);
 }
 
-/// External wheels need a track with loads only and one step a frame; each has its own inputs.
+/// External wheels need one step a frame; each has its own inputs.
 bool external_wheels_are_valid(const Model& m) noexcept {
   if (m.external_wheels == 0) return true;
-  if (m.wheelsets > 0 || m.vehicles > 0 || m.runners > 0 || m.fixed.count > 0 ||
-      m.steps_per_frame != 1)
-    return false;
+  if (m.steps_per_frame != 1) return false;
   for (std::int32_t i = 0; i < m.external_wheels; ++i)
     if (m.external_wheel[i].input + kExternalInputs > m.inputs) return false;
   return true;
@@ -148,30 +146,39 @@ bool contact_is_valid(const RollingContact& c) noexcept {
          are_not_negative(c.kalker, 4);
 }
 
-/// Wheelsets are among the bodies, and follow those of the runners before.
-bool runner_is_valid(const Model& m, const RunnerModel& r, std::int32_t first_wheelset) noexcept {
+bool stops_are_valid(const RunnerModel& r, std::int32_t first_stop) noexcept {
+  for (std::int32_t i = 0; i < r.stops; ++i)
+    if (!(r.stop[i].below >= 0.) || !(r.stop[i].above >= 0.) || !(r.stop[i].stiffness > 0.))
+      return false;
+  return r.first_stop == first_stop && (r.stops == 0 || (r.stop_row && r.stop_moved));
+}
+
+/// Wheelsets are among the bodies, and follow those of the runners before, as stops do.
+bool runner_is_valid(const Model& m, const RunnerModel& r, std::int32_t first_wheelset,
+                     std::int32_t first_stop) noexcept {
+  if (!stops_are_valid(r, first_stop)) return false;
   if (r.first < m.line_unknowns || r.first + r.size > m.unknowns || r.bodies < 1) return false;
   if (r.first_wheelset != first_wheelset || r.wheelsets < 1) return false;
   for (std::int32_t i = 0; i < r.wheelsets; ++i) {
     const RunnerWheelset& w = r.wheelset[i];
     if (w.first % kMotions != 0 || w.first / kMotions >= r.bodies || !(w.radius > 0.)) return false;
   }
-  const std::int64_t motions = std::int64_t{kMotions} * r.wheelsets;
   return travel_is_valid(r.travel) && contact_is_valid(r.contact) && r.mass && r.rest &&
          r.damping && r.stiffness && r.inverse && r.compliance &&
          are_above_zero(r.mass, std::int64_t{kMotions} * r.bodies) &&
          are_not_negative(r.mass, r.size) && diagonal_is_not_negative(r.inverse, r.size) &&
-         diagonal_is_not_negative(r.compliance, motions);
+         diagonal_is_not_negative(r.compliance, interface_size(r));
 }
 
 bool runners_are_valid(const Model& m) noexcept {
-  std::int32_t wheelsets = 0;
+  std::int32_t wheelsets = 0, stops = 0;
   for (std::int32_t i = 0; i < m.runners; ++i) {
-    if (!runner_is_valid(m, m.runner[i], wheelsets)) return false;
+    if (!runner_is_valid(m, m.runner[i], wheelsets, stops)) return false;
     wheelsets += m.runner[i].wheelsets;
+    stops += m.runner[i].stops;
   }
-  return wheelsets == m.runner_wheelsets && newton_size(m) <= kMostNewton &&
-         (m.lines == 0 || wheelsets <= kMaxSeatedWheelsets);
+  return wheelsets == m.runner_wheelsets && stops == m.runner_stops &&
+         newton_size(m) <= kMostNewton && (m.lines == 0 || wheelsets <= kMaxSeatedWheelsets);
 }
 
 /// Whether a wheel belongs to its vehicle, whose matrices have a row for it.

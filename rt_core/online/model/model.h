@@ -336,9 +336,9 @@ struct Model {
   VehicleModel vehicle[kMaxVehicles];
   VehicleWheel vehicle_wheel[kMaxWheels];
   RailSignal signal[kMaxSignals];
-  std::int32_t runners, runner_wheelsets;  // the latter of all runners
+  std::int32_t runners, runner_wheelsets, runner_stops;  // the latter two of all runners
   RunnerModel runner[kMaxRunners];
-  std::int32_t external_wheels;  // of a track alone with loads
+  std::int32_t external_wheels;
   ExternalWheelModel external_wheel[kMaxExternalWheels];
   SystemModel system;
   CheckModel check;

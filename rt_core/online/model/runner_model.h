@@ -25,7 +25,25 @@ struct RollingContact {
   double kalker[4];      // f11 N, f22 N, f23 N m, f33 N m2
 };
 
+/// A bump stop: a spring beyond a gap against and along its axis.
+struct StopModel {
+  double below, above;  // gaps, m
+  double stiffness;     // N/m
+};
+struct StopForce {
+  double force, slope, energy;  // N, on the body that moves; N/m; J
+};
+/// @param z  displacement along the axis, m
+inline StopForce stop_force(const StopModel& stop, double z) noexcept {
+  if (z < stop.above && z > -stop.below) return {0., 0., 0.};
+  const double pressed = z < stop.above ? z + stop.below : z - stop.above;
+  const double force = -stop.stiffness * pressed;
+  return {force, -stop.stiffness, -.5 * force * pressed};
+}
+
+inline constexpr int kWheelsetRank = 6;  // scalars of a wheelset: three forces of each wheel
 inline constexpr int kMaxRunners = 8;
+inline constexpr int kMaxStopsOfRunner = 16;
 inline constexpr int kMaxWheelsetsOfRunner = 8;
 inline constexpr int kMaxRunnerWheelsets = 16;  // of all runners
 inline constexpr int kMaxSeatedWheelsets = 8;   // of all on rails that give way
@@ -40,7 +58,7 @@ struct RunnerWheelset {
 };
 
 /// Rigid bodies in space on a linear suspension, in frames that move along the track,
-///   M q'' + C q' + K q = rest + forces of the rails + what the frames' motion makes.
+///   M q'' + C q' + K q = rest + forces of rails and stops + what the frames' motion makes.
 /// q are the six motions of each body, then the deflection of each damper that is in series with a
 /// spring; such a coordinate has no mass. The first body's x is held at its place along the track;
 /// the drive's force that this takes is published. The equation holds at the fraction s of the step
@@ -57,7 +75,18 @@ struct RunnerModel {
   const double *damping, *stiffness;  // [size][size]
   /// [size][size] of s K + s kv C + kg M without the first coordinate, whose row and column are 0.
   const double* inverse;
-  const double* compliance;  // [6 wheelsets][6 wheelsets] theta times its part for the wheelsets
+  std::int32_t first_stop, stops;  // the first one among those of all runners
+  StopModel stop[kMaxStopsOfRunner];
+  const double *stop_row, *stop_moved;  // [stops][size] over its coordinates; `inverse` times it
+  /// [6 wheelsets + stops][6 wheelsets + stops] theta times the part of the inverse for the
+  /// wheelsets' motions, then for the stops.
+  const double* compliance;
 };
+
+/// How many coordinates of a runner meet forces that are not linear: the motions of its wheelsets,
+/// then the displacements of its stops.
+inline std::int32_t interface_size(const RunnerModel& runner) noexcept {
+  return kMotions * runner.wheelsets + runner.stops;
+}
 
 }  // namespace railstep

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 
+#include "online/math/newton.h"
 #include "online/model/contact_id.h"
 #include "online/model/status.h"
 #include "online/model/system_workspace.h"
@@ -43,11 +44,36 @@ inline std::int32_t newton_size(const Model& model) noexcept {
     return model.runner_wheelsets == 0
                ? 0
                : contact_count(model) + model.fixed.count +
-                     (kMotions + 2 * kWheelSeatRows) * model.runner_wheelsets;
+                     (kMotions + 2 * kWheelSeatRows) * model.runner_wheelsets + model.runner_stops;
   std::int32_t most = 0;
   for (std::int32_t i = 0; i < model.runners; ++i)
-    if (kMotions * model.runner[i].wheelsets > most) most = kMotions * model.runner[i].wheelsets;
+    if (interface_size(model.runner[i]) > most) most = interface_size(model.runner[i]);
   return most;
+}
+/// Numbers of Newton's method: Y of a track, and its scratch.
+inline std::int64_t newton_doubles(const Model& model) noexcept {
+  constexpr std::int64_t ranks = kWheelsetRank;
+  const std::int64_t n = newton_size(model), sets = model.runner_wheelsets;
+  if (model.lines > 0) {
+    const std::int64_t scalars = n - (kMotions + 2 * kWheelSeatRows) * sets;
+    return n * n + newton_scratch(n, scalars + ranks * sets,
+                                  scalars + ranks * (kMotions + 2 * kWheelSeatRows) * sets);
+  }
+  std::int64_t most = 0;
+  for (std::int32_t i = 0; i < model.runners; ++i) {
+    const RunnerModel& r = model.runner[i];
+    const std::int64_t own = newton_scratch(interface_size(r), ranks * r.wheelsets + r.stops,
+                                            ranks * kMotions * r.wheelsets + r.stops);
+    if (own > most) most = own;
+  }
+  return most;
+}
+/// Whether unit responses of the lines are kept: not of condensed ones with tables.
+inline bool has_units(const Model& model) noexcept {
+  bool any = false;
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    any = any || model.line[l].modal.between == nullptr;
+  return any;
 }
 /// Coordinates of the coupled solve of a track: its rows and one-sided springs.
 inline std::int32_t port_count(const Model& model) noexcept {
@@ -71,7 +97,7 @@ struct Workspace {
   /// alone.
   double *unit, *unit_second;
   double* compliance;  // [ports][ports] of the coupled solve, m/N
-  double* newton;      // [3][newton_size][newton_size]
+  double* newton;      // newton_doubles()
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -148,11 +174,11 @@ inline std::int64_t start_doubles(const Model& model) noexcept {
          system_start_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
-  const std::int64_t rows = track_row_count(model), ports = port_count(model),
-                     newton = newton_size(model);
+  const std::int64_t rows = track_row_count(model), ports = port_count(model);
   const std::int64_t of_modes = model.form == Form::condensed ? 1 + 2 * rows : 0;
-  return (4 + 2 * rows + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
-         ports * ports + 3 * newton * newton +
+  const std::int64_t units = has_units(model) ? 2 * rows : 0;
+  return (4 + units + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
+         ports * ports + newton_doubles(model) +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -184,15 +210,15 @@ inline State state_on(const Model& model, double* memory) noexcept {
 }
 inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   const bool condensed = model.form == Form::condensed;
-  const std::int64_t n = model.unknowns, units = track_row_count(model) * n,
-                     ports = port_count(model), newton = newton_size(model);
+  const std::int64_t n = model.unknowns, rows = track_row_count(model) * n,
+                     units = has_units(model) ? rows : 0, ports = port_count(model);
   double* const unit = memory + 4 * n;
   double* const imaginary = unit + 2 * units;
   double* const row = imaginary + (condensed ? n : 0);
-  double* const system = row + (condensed ? 2 * units : 0);
+  double* const system = row + (condensed ? 2 * rows : 0);
   double* const compliance = system + system_workspace_doubles(model.system);
   double* const of_newton = compliance + ports * ports;
-  double* const external = of_newton + 3 * newton * newton;
+  double* const external = of_newton + newton_doubles(model);
   return {memory,
           memory + n,
           memory + 2 * n,

@@ -74,10 +74,36 @@ void find_motion(const RunnerStage& at, int wheelset, const State& s, const Work
   }
 }
 
+void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
+                double* free, double* start) noexcept {
+  const RunnerModel& r = at.runner;
+  const Scheme& c = at.model.scheme;
+  const double *u0 = s.u + r.first, *u_star = w.u_star + r.first, *g = s.g + r.first;
+  for (std::int32_t j = 0; j < r.stops; ++j) {
+    const double* const row = r.stop_row + std::ptrdiff_t{r.size} * j;
+    const double before = dot(row, u0, r.size);
+    free[j] = before + c.theta * (dot(row, u, r.size) - before);
+    start[j] =
+        before + c.theta * ((dot(row, u_star, r.size) + dot(row, g, r.size) / c.kg) - before);
+  }
+}
+
+void stop_law(const StopModel& stop, double z, double* force, const LawSlopes* slopes) noexcept {
+  const StopForce own = stop_force(stop, z);
+  *force = own.force;
+  if (slopes == nullptr) return;
+  *slopes->spread = 1.;
+  *slopes->slope = own.slope;
+}
+
 void move_by(const RunnerModel& runner, const double* force, double* u) noexcept {
-  for (int i = 0; i < kMotions * runner.wheelsets; ++i) {
-    const std::int32_t own = runner.wheelset[i / kMotions].first + i % kMotions;
-    const double* column = runner.inverse + std::ptrdiff_t{runner.size} * own;
+  const std::int32_t motions = kMotions * runner.wheelsets;
+  for (std::int32_t i = 0; i < interface_size(runner); ++i) {
+    const double* column = runner.stop_moved + std::ptrdiff_t{runner.size} * (i - motions);
+    if (i < motions) {
+      const std::int32_t own = runner.wheelset[i / kMotions].first + i % kMotions;
+      column = runner.inverse + std::ptrdiff_t{runner.size} * own;
+    }
 #pragma omp simd
     for (std::int32_t k = 0; k < runner.size; ++k) u[k] += column[k] * force[i];
   }
@@ -162,9 +188,9 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   const double theta = at.model.scheme.theta;
   double* const u = w.solved + r.first;
   move_freely(at, s, w, u);
-  LawBlock block[kMaxWheelsetsOfRunner];
+  LawBlock block[kMaxWheelsetsOfRunner + kMaxStopsOfRunner];
   WheelsetLaw law[kMaxWheelsetsOfRunner];
-  double z_free[kMostMotions], z[kMostMotions], force[kMostMotions];
+  double z_free[kMostInterfaces], z[kMostInterfaces], force[kMostInterfaces];
   const double speed = travelled(r.travel, at.time(theta)).speed;
   for (int i = 0; i < r.wheelsets; ++i) {
     WheelsetMotion motion;
@@ -179,10 +205,14 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
       law[i].rate_at_zero[k] = motion.rate_at_zero[k];
     }
   }
+  const std::int32_t motions = kMotions * r.wheelsets;
+  find_stops(at, s, w, u, z_free + motions, z + motions);
+  for (std::int32_t j = 0; j < r.stops; ++j) block[r.wheelsets + j] = {motions + j, 1, 1};
   const NewtonResult met = solve_laws(
-      {kMotions * r.wheelsets, r.wheelsets, r.compliance, block, z_free, w.newton,
+      {interface_size(r), r.wheelsets + r.stops, r.compliance, block, z_free, w.newton,
        kRunnerTolerance},
-      [&law](int b, const double* at_z, double* f, const LawSlopes* slopes) noexcept {
+      [&](int b, const double* at_z, double* f, const LawSlopes* slopes) noexcept {
+        if (b >= r.wheelsets) return stop_law(r.stop[b - r.wheelsets], *at_z, f, slopes);
         law[b].evaluate(at_z, f, slopes);
       },
       force, z);

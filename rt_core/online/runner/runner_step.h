@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-inline constexpr int kMostMotions = kMotions * kMaxWheelsetsOfRunner;
+inline constexpr int kMostInterfaces = kMotions * kMaxWheelsetsOfRunner + kMaxStopsOfRunner;
 /// Tolerance of Newton's method: penetrations are differences of lengths that are 1e4 times as
 /// large.
 inline constexpr double kRunnerTolerance = 1e-10;
@@ -40,10 +40,15 @@ struct WheelsetMotion {
 void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,
                  const double* u, WheelsetMotion& motion) noexcept;
 
-/// Adds the displacements by forces on the wheelsets. @param force  [6 wheelsets]
-void move_by(const RunnerModel& runner, const double* force, double* u) noexcept;
+/// Displacements of a runner's stops at the contacts' instant. @param free, start  [stops] out
+void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
+                double* free, double* start) noexcept;
 
-inline constexpr int kWheelsetRank = 6;
+/// The law of a stop, for solve_laws().
+void stop_law(const StopModel& stop, double z, double* force, const LawSlopes* slopes) noexcept;
+
+/// Adds the displacements by forces on the wheelsets and stops. @param force  [interface_size()]
+void move_by(const RunnerModel& runner, const double* force, double* u) noexcept;
 
 /// The law of one wheelset: its six motions, then those of the seats under its left and right
 /// wheel, if they give way: y, z and roll.

@@ -154,7 +154,7 @@ void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& o
   predict(model, state, w);
   advance_track(model, stage, state, w);
   if (has_ports(model))
-    collect_solve(couple(model, stage, state, w), outputs);
+    collect_solve(couple(model, stage, nullptr, state, w), outputs);
   else
     solve_bands(model, w);
   step_runners(model, stage, state, w, outputs);
@@ -175,7 +175,7 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
   advance_track(model, stage, state, w);
   if (model.external_wheels > 0) apply_external_forces(model, state.steps + 1, state, w, external);
   if (has_ports(model))
-    collect(model, state, couple(model, stage, state, w), outputs);
+    collect(model, state, couple(model, stage, external, state, w), outputs);
   else if (model.form == Form::banded)
     solve_bands(model, w);
   step_runners(model, stage, state, w, outputs);
@@ -224,23 +224,54 @@ namespace {
   state.latched = state.latched | (outputs.status & kLatched);
 }
 
-[[gnu::noinline]] Status respond(const Model& model, const double* inputs, const State& state,
-                                 Workspace& workspace, double* free, double* compliance) noexcept {
+constexpr double kTrialForce = 1e3;  // N
+
+/// The next frame under a force of an external wheel, kTrialForce along `row`; -1: no force.
+/// @param moved  [3 external_wheels] out: displacements of the rail under the wheels
+Status try_frame(const Model& model, const double* inputs, const State& state, Workspace& workspace,
+                 int row, ExternalContact* external, double* moved) noexcept {
   State tried = copied_state(model, state, workspace.external);
   const Status met = take_inputs(model, inputs, tried);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
     for (int d = 0; d < 3; ++d)
-      tried.input[model.external_wheel[n].input + kExternalForce + d] = 0.;
+      tried.input[model.external_wheel[n].input + kExternalForce + d] =
+          external_row(n, d) == row ? kTrialForce : 0.;
   Outputs outputs;
-  ExternalContact external[kMaxExternalWheels];
   start_frame(model, tried, outputs);
   make_step(model, tried, workspace, outputs, external);
   publish_external(model, tried, external, outputs);
   publish(model, tried, outputs);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
-    for (int d = 0; d < 3; ++d) free[external_row(n, d)] = outputs.external_displacement[n][d];
-  external_compliance(model, external, workspace, compliance);
+    for (int d = 0; d < 3; ++d) moved[external_row(n, d)] = outputs.external_displacement[n][d];
   return met | outputs.status;
+}
+
+/// Compliance beside other contacts: these give way too, so that each force is tried.
+void try_compliance(const Model& model, const double* inputs, const State& state,
+                    Workspace& workspace, const double* free, double* compliance) noexcept {
+  const std::int32_t count = external_row(model.external_wheels, 0);
+  ExternalContact external[kMaxExternalWheels];
+  for (std::int32_t j = 0; j < count; ++j) {
+    double moved[3 * kMaxExternalWheels];
+    static_cast<void>(try_frame(model, inputs, state, workspace, j, external, moved));
+    for (std::int32_t i = 0; i < count; ++i)
+      compliance[i * count + j] = (moved[i] - free[i]) / kTrialForce;
+  }
+  for (std::int32_t i = 0; i < count; ++i)
+    for (std::int32_t j = 0; j < i; ++j)
+      compliance[i * count + j] = compliance[j * count + i] =
+          .5 * (compliance[i * count + j] + compliance[j * count + i]);
+}
+
+[[gnu::noinline]] Status respond(const Model& model, const double* inputs, const State& state,
+                                 Workspace& workspace, double* free, double* compliance) noexcept {
+  ExternalContact external[kMaxExternalWheels];
+  const Status met = try_frame(model, inputs, state, workspace, -1, external, free);
+  if (has_ports(model) || model.runners > 0)
+    try_compliance(model, inputs, state, workspace, free, compliance);
+  else
+    external_compliance(model, external, workspace, compliance);
+  return met;
 }
 
 }  // namespace

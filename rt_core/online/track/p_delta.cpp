@@ -46,26 +46,37 @@ double add_p_delta(const Model& model, const Configuration& at, double roll, dou
 
 double add_levers(const Model& model, const Configuration& at, double xi, const double* normal,
                   RailRow& row, SeatMotions& motions) noexcept {
-  const PDeltaModel& seats = model.p_delta;
-  const double* lever = seats.lever[row.rail];
-  if (lever == nullptr) return 0.;
-  const std::int32_t bays = model.elements / seats.elements_per_bay;
-  const std::int32_t first = row.element / seats.elements_per_bay - (kPDeltaSeats / 2 - 1);
-  const bool shared = motions.first == first;
-  motions.first = first;
-  lever += static_cast<std::ptrdiff_t>(row.element) * kPDeltaSeats * (seats.points + 1);
+  const SeatLevers around = seat_levers(model, row.rail, row.element, xi);
+  const bool shared = motions.first == around.first;
+  motions.first = around.first;
   double higher = 0.;
-  for (std::int32_t s = 0; s < kPDeltaSeats; ++s) {
-    if (first + s < 0 || first + s > bays) continue;
-    const std::int32_t node = 2 * seats.elements_per_bay * (first + s);
-    const double roll_over = node_roll(model, row.rail, node, at, s, shared, motions);
-    const double arm =
-        normal[2] * roll_over * interpolate(lever + s * (seats.points + 1), seats.points, xi);
-    row.seat[row.seats] = node;
+  for (std::int32_t i = 0; i < around.count; ++i) {
+    const double roll_over =
+        node_roll(model, row.rail, around.node[i], at, around.number[i], shared, motions);
+    const double arm = normal[2] * roll_over * around.lever[i];
+    row.seat[row.seats] = around.node[i];
     row.lever[row.seats++] = arm;
     higher += .5 * roll_over * arm;
   }
   return higher;
+}
+
+SeatLevers seat_levers(const Model& model, std::int32_t rail, std::int32_t element,
+                       double xi) noexcept {
+  const PDeltaModel& seats = model.p_delta;
+  SeatLevers around{-kPDeltaSeats, 0, {}, {}, {}};
+  const double* lever = seats.lever[rail];
+  if (lever == nullptr) return around;
+  const std::int32_t bays = model.elements / seats.elements_per_bay;
+  around.first = element / seats.elements_per_bay - (kPDeltaSeats / 2 - 1);
+  lever += static_cast<std::ptrdiff_t>(element) * kPDeltaSeats * (seats.points + 1);
+  for (std::int32_t s = 0; s < kPDeltaSeats; ++s) {
+    if (around.first + s < 0 || around.first + s > bays) continue;
+    around.number[around.count] = s;
+    around.node[around.count] = 2 * seats.elements_per_bay * (around.first + s);
+    around.lever[around.count++] = interpolate(lever + s * (seats.points + 1), seats.points, xi);
+  }
+  return around;
 }
 
 }  // namespace railstep

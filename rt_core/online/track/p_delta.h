@@ -29,6 +29,18 @@ struct SeatMotions {
   double value[kMaxLines][kPDeltaSeats][2];  // a_z and b_y, before their weights in the rail
 };
 
+/// The seats around a point of a rail, and the share of its vertical force that each carries times
+/// the height of its pad above the axis, m.
+struct SeatLevers {
+  std::int32_t first, count;          // of the seats around: that of the first, and how many are
+  std::int32_t number[kPDeltaSeats];  // which of the seats around, from 0
+  std::int32_t node[kPDeltaSeats];    // of the rail
+  double lever[kPDeltaSeats];
+};
+/// None where the rolls over seats do not count.
+SeatLevers seat_levers(const Model& model, std::int32_t rail, std::int32_t element,
+                       double xi) noexcept;
+
 /// Adds to a row along a normal the rolls over the seats around, by which it rises.
 /// @returns rise of its point along the normal, m. Other parameters: those of add_p_delta()
 double add_levers(const Model& model, const Configuration& at, double xi, const double* normal,

@@ -214,11 +214,6 @@ TEST_CASE("features that external wheels cannot be combined with are refused in 
   const std::string wheel = " --set 'external_wheel=[{name=\"a\", rail=\"left\", limit_n=1e6}]' ";
   CHECK_THAT(told("moving_load", wheel),
              Contains("moving_load.toml:") && Contains("[step]") && Contains("E-STEP-05"));
-  CHECK_THAT(told("wheelset_on_track", wheel + "--set step.frame_s=50e-6"), Contains("E-STEP-03"));
-  CHECK_THAT(told("hanging_sleeper", wheel + "--set step.frame_s=0.2e-3"), Contains("E-PACK-24"));
-  CHECK_THAT(told("ballasted_track", wheel + "--set wheelset=[] --set step.frame_s=0.1e-3 "
-                                             "--set support.unilateral=true"),
-             Contains("[support] of pads that do not pull"));
   CHECK_THAT(told("moving_load", " --set 'external_wheel=[{name=\"a\", rail=\"left\"}]'"),
              Contains("limit_n"));
 }

@@ -270,10 +270,10 @@ TEST_CASE("the stated flops of a frame are not fewer than those counted by hand"
   REQUIRE(n == 40);  // 33 modes, padded
   CHECK(one->model().cost.flops >= n * (22 + 3 * 4 + 3 * 4));
   CHECK(one->model().cost.flops <= 3 * n * (22 + 3 * 4 + 3 * 4));
-  // Every pair of loads reads a table of 4 x 4 points: 4 + 1 cubics of 4 products and 3 sums, and
-  // the weights of 4 + 1 cubics, each with 4 products of three differences.
+  // Every pair of loads reads a table of 4 x 4 points: 4 + 1 cubics of 4 products and 3 sums. Each
+  // load has the weights of a cubic, 4 products of three differences.
   const auto many = model_of(32, true, true);
-  const std::int64_t pairs = 32 * 31 * (5 * 7 + 5 * 4 * 5);
+  const std::int64_t pairs = 32 * (31 * 5 * 7 + 4 * 5);
   CHECK(many->model().cost.flops >= n * (22 + 32 * 24) + pairs);
   // Banded: 22 to predict and correct an unknown, products with M and C by diagonals, and for each
   // panel of 8 rows a product with `left` columns back and forth and one with an 8 x 8 block.

@@ -1,9 +1,11 @@
 // A vehicle in space on straight, rigid rails: modes at a speed, critical speed and static wheel
 // loads, against a model with finite rotations, exact contact geometry and derivatives by the
 // complex step (Manchester passenger vehicle 1, set V1a).
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -120,6 +122,73 @@ TEST_CASE("static wheel loads of a vehicle in space are those of the reference",
   for (const auto& set : found.at("wheelsets")) {
     CHECK(std::fabs(set.at("y_m").get<double>()) < 1e-9);
     CHECK(std::fabs(set.at("sum_y_n").get<double>()) < 1e-4);
+  }
+}
+
+namespace {
+
+/// The ring with rails and supports 1e4 times as stiff.
+const std::string kStiffRing =
+    shipped("manchester_ring") +
+    " --set rail.young_pa=2.1e15 --set support.stiffness_x_n_per_m=5e11"
+    " --set support.stiffness_y_n_per_m=5e11 --set support.stiffness_z_n_per_m=2e12"
+    " --set support.stiffness_roll_n_m_per_rad=3e9 --set ballast.stiffness_z_n_per_m=5e11";
+
+}  // namespace
+
+TEST_CASE("on a stiff track a vehicle in space has the figures of rigid rails", "[critical]") {
+  const std::pair<const char*, double> known[] = {
+      {"0.091105769", 97.0437}, {"0.168206167", 93.5162}, {"0.294479742", 73.5024}};
+  for (const auto& [slope, speed] : known) {
+    INFO("slope " << slope);
+    const auto found =
+        answer("critical " + kStiffRing + " --from 60 --to 110 --set contact.slope=" + slope);
+    CHECK(found.at("critical_speed_m_per_s").get<double>() == Approx(speed).epsilon(1e-3));
+  }
+  const auto rigid = answer("modes " + kScene + " --speed 60").at("modes");
+  const auto stiff = answer("modes " + kStiffRing + " --speed 60").at("modes");
+  for (const auto& wanted : rigid) {
+    const double hz = wanted.at("frequency_hz").get<double>(),
+                 ratio = wanted.at("damping_ratio").get<double>();
+    INFO(hz << " Hz, damping " << ratio);
+    CHECK(std::any_of(stiff.begin(), stiff.end(), [&](const auto& m) {
+      return std::fabs(m.at("frequency_hz").template get<double>() / hz - 1.) < 1e-3 &&
+             std::fabs(m.at("damping_ratio").template get<double>() - ratio) < 1e-3;
+    }));
+  }
+}
+
+TEST_CASE("wheel loads on a track that gives way are those at which a run starts", "[critical]") {
+  const auto found = answer("static " + shipped("manchester_ring") +
+                            " --set irregularity.geometries='[\"gauge\"]'");
+  double sum = 0.;
+  for (const auto& wheel : found.at("wheels")) sum += wheel.at("q_n").get<double>();
+  CHECK(sum == Approx(9.81 * 44482.).epsilon(1e-8));
+  CHECK(found.at("wheelsets").size() == 4);
+}
+
+TEST_CASE("the motor car has the weights and the vertical modes of its source", "[critical]") {
+  const std::string car = kScene + " --set 'vehicle[0].file=\"../vehicles/gz18.toml\"'";
+  for (const auto& wheel : answer("static " + car).at("wheels"))
+    CHECK(wheel.at("q_n").get<double>() ==
+          Approx(9.81 * (30551. + 2. * 8900. + 4. * 1834. + 8.) / 8.).epsilon(1e-4));
+  // Car and frames that bounce on held wheelsets. The arms of the boxes also push the wheelsets
+  // along, as they end 13.5 mm above the axles: frames bounce by 2 % slower.
+  const double car_kg = 30551., frames_kg = 2. * 8900., air = 4. * 230e3, primary = 8. * 1.4e6,
+               air_damping = 4. * 20e3, primary_damping = 8. * 10e3;
+  Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+  A(0, 2) = A(1, 3) = 1.;
+  A.row(2) << -air / car_kg, air / car_kg, -air_damping / car_kg, air_damping / car_kg;
+  A.row(3) << air / frames_kg, -(air + primary) / frames_kg, air_damping / frames_kg,
+      -(air_damping + primary_damping) / frames_kg;
+  const auto modes = answer("modes " + car + " --speed 16.667").at("modes");
+  for (const std::complex<double>& s : A.eigenvalues()) {
+    const double hz = std::abs(s) / (2. * 3.14159265358979), ratio = -s.real() / std::abs(s);
+    INFO(hz << " Hz, damping " << ratio);
+    CHECK(std::any_of(modes.begin(), modes.end(), [&](const auto& m) {
+      return std::fabs(m.at("frequency_hz").template get<double>() / hz - 1.) < .025 &&
+             std::fabs(m.at("damping_ratio").template get<double>() / ratio - 1.) < .025;
+    }));
   }
 }
 
