@@ -267,7 +267,7 @@ class PackedModel {
   std::vector<LoadPoint> load_points_;
   std::vector<PackedRunner> runners_;
   double clipped_ = 0.;
-  Elements met_{};  // elements that the traffic visits (ring), else all
+  Elements met_{};            // elements that the traffic visits (ring), else all
   std::vector<bool> is_met_;  // each element; between parts of the traffic a ring has others
   bool moves_along_ = true;   // rows may have parts along x
   std::vector<std::unique_ptr<std::vector<double>>> reals_;

@@ -122,13 +122,14 @@ void add_between(const RowsOfBase& a, const RowsOfBase& b, bool same, double val
     }
 }
 
-/// Adds the compliance of a line to W by its table. A few bases at a time are on the stack.
+/// Adds the compliance of a line to W by its table. Some bases at a time are on the stack, those of
+/// a vehicle on eight wheels among them.
 void add_tabled(const LineModel& line, std::int32_t l, Coupling& c) noexcept {
-  constexpr int kAtOnce = 16;
+  constexpr int kAtOnce = 24;
+  CarriedRow carried[kAtOnce], before;
+  RowsOfBase rows[kAtOnce];
   for (int first = 0; first < c.bases; first += kAtOnce) {
     const int end = first + kAtOnce < c.bases ? first + kAtOnce : c.bases;
-    CarriedRow carried[kAtOnce], other;
-    RowsOfBase rows[kAtOnce];
     for (int i = first; i < end; ++i) {
       if (!c.acts[i][l]) continue;
       carry(line, base_row(c, i), carried[i - first]);
@@ -136,8 +137,9 @@ void add_tabled(const LineModel& line, std::int32_t l, Coupling& c) noexcept {
     }
     for (int j = 0; j < end; ++j) {
       if (!c.acts[j][l]) continue;
-      carry(line, base_row(c, j), other);
-      const RowsOfBase of_other = rows_of_base(c, j, line);
+      const RowsOfBase of_other = j < first ? rows_of_base(c, j, line) : rows[j - first];
+      if (j < first) carry(line, base_row(c, j), before);
+      const CarriedRow& other = j < first ? before : carried[j - first];
       for (int i = j > first ? j : first; i < end; ++i)
         if (c.acts[i][l])
           add_between(rows[i - first], of_other, i == j,

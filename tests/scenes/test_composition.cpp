@@ -1,0 +1,151 @@
+// Everything runs beside everything on every form of track: a vehicle in space with each partner
+// and each feature of the rails (docs/composition.md). A cell runs, its energy is balanced, and its
+// model file, its snapshot and a second run have the same bits.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "offline/energy/energy_account.h"
+#include "online/model/snapshot.h"
+#include "online/step/step.h"
+#include "run/simulation.h"
+#include "support/shipped.h"
+
+using namespace railstep;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+struct TrackForm {
+  const char *name, *scene;
+  Words words;
+  double start;  // of the vehicle, m; a partner stands 14 m ahead
+};
+
+const std::string kTrack = "rails=2,bay_m=0.6,elements_per_bay=2,rail_spacing_m=1.5";
+
+std::vector<TrackForm> forms() {
+  const std::string with_ends = "track={unknowns=\"full\",bays=50," + kTrack + "}";
+  const std::string endless = "track={unknowns=\"full\",length=\"endless\",bays=80," + kTrack + "}";
+  return {
+      {"rigid", "manchester_straight", {}, 13.},
+      {"with ends, full order", "manchester_ring", {with_ends, "condense={kind=\"full\"}"}, 13.},
+      {"with ends, condensed", "manchester_ring", {with_ends, "condense={kind=\"modal\"}"}, 13.},
+      {"window", "manchester_ring", {endless, "condense={kind=\"full\"}"}, 11.4},
+      {"ring", "manchester_ring", {endless, "condense={kind=\"modal\",modes_per_bay=2}"}, 11.4}};
+}
+
+/// A partner or a feature, and the words that bring it. 'AT' and 'V' stand for the partner's place
+/// and for the speed of all.
+struct Partner {
+  const char* name;
+  Words words;
+  /// Rigid rails do not give way, and all bays of a track without end are alike.
+  enum Needs { nothing, rails, ends } needs;
+};
+
+const std::vector<Partner> kPartners = {
+    {"alone", {}, Partner::nothing},
+    {"a load",
+     {"load=[{name=\"l\",rail=\"left\",force_z_n=-5e4,start_m=AT,speed_m_per_s=V}]"},
+     Partner::rails},
+    {"a wheelset",
+     {"wheelset=[{name=\"w\",wheels=[\"wl\",\"wr\"],mass_kg=1200.0,inertia_roll_kg_m2=700.0,"
+      "inertia_spin_kg_m2=100.0,inertia_yaw_kg_m2=700.0,radius_m=0.46,carried_mass_kg=8800.0,"
+      "start_m=AT,speed_m_per_s=V}]"},
+     Partner::nothing},
+    {"an upright bogie",
+     {"vehicle=[VEHICLE,{name=\"b\",file=\"../vehicles/manchester_bogie.toml\",rail=\"both\","
+      "start_m=AT,speed_m_per_s=V}]"},
+     Partner::nothing},
+    {"an external wheel",
+     {"external_wheel=[{name=\"e\",rail=\"left\",limit_n=1e6}]"},
+     Partner::nothing},
+    {"supports that do not pull",
+     {"support_change=[{from=20,to=26,ballast.unilateral=true}]"},
+     Partner::ends},
+    {"a gap under a sleeper",
+     {"support_change=[{from=20,to=22,ballast.gap_m=0.2e-3}]"},
+     Partner::ends},
+    {"rails with a cant", {"rail.cant=\"1:40\""}, Partner::rails},
+    {"rails that differ", {"rail.right.young_pa=1.9e11"}, Partner::rails},
+    {"unevenness",
+     {"irregularity={spectrum=\"german_low\",geometries=[\"vertical\",\"alignment\","
+      "\"cross_level\"]}"},
+     Partner::nothing}};
+
+std::string replaced(std::string text, const std::string& name, const std::string& value) {
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at))
+    text.replace(at, name.size(), value);
+  return text;
+}
+
+Scene scene_of(const TrackForm& form, const Partner& partner) {
+  const std::string speed = "25.0", start = std::to_string(form.start),
+                    vehicle =
+                        "{name=\"car\",file=\"../vehicles/manchester_1.toml\",start_m=" + start +
+                        ",speed_m_per_s=" + speed + "}";
+  Words words{"irregularity={spectrum=\"german_low\",geometries=[\"vertical\"]}", "step.dt_s=5e-4",
+              "step.frame_s=5e-4", "step.duration_s=0.02", "vehicle=[" + vehicle + "]"};
+  words.insert(words.end(), form.words.begin(), form.words.end());
+  for (const std::string& word : partner.words)
+    words.push_back(replaced(replaced(replaced(word, "VEHICLE", vehicle), "=V}", "=" + speed + "}"),
+                             "AT", std::to_string(form.start + 14.)));
+  return read_scene(shipped(form.scene), words);
+}
+
+/// Steps to the end of the scene, or to `steps`.
+void run(const Model& model, State& state, Workspace& workspace, std::int64_t steps) {
+  std::vector<double> input(static_cast<std::size_t>(model.inputs));
+  if (model.external_wheels > 0) {
+    input[0] = 30.;
+    input[4] = -2e4;
+  }
+  Outputs outputs{};
+  while (state.steps < steps) {
+    static_cast<void>(advance_frame(model, input.data(), state, workspace, outputs));
+    REQUIRE((outputs.status & Status::nonfinite_state) == Status::ok);
+    REQUIRE((outputs.status & Status::cap_reached) == Status::ok);
+    REQUIRE((outputs.status & Status::contact_ill_posed) == Status::ok);
+  }
+}
+
+void check_cell(const Scene& scene) {
+  Simulation made(scene), loaded(made.block(), "model");
+  const Model &model = made.model(), &file = loaded.model();
+  run(model, made.state, made.workspace, model.steps);
+  const std::uint64_t hash = state_hash(model, made.state);
+  run(file, loaded.state, loaded.workspace, model.steps / 2);
+  std::vector<unsigned char> kept(snapshot_bytes(file));
+  save_snapshot(file, loaded.state, kept.data());
+  run(file, loaded.state, loaded.workspace, model.steps);
+  CHECK(state_hash(file, loaded.state) == hash);
+  REQUIRE(restore_snapshot(file, kept.data(), kept.size(), loaded.state) == SnapshotStatus::ok);
+  run(file, loaded.state, loaded.workspace, model.steps);
+  CHECK(state_hash(file, loaded.state) == hash);
+  reset(model, made.state);
+  run(model, made.state, made.workspace, model.steps);
+  CHECK(state_hash(model, made.state) == hash);
+  if (model.external_wheels > 0) return;  // the account has no inputs
+  const EnergyBalance balance = balance_of(*made.packed(), model, model.steps);
+  CHECK(balance.error < 2e-3);
+}
+
+}  // namespace
+
+TEST_CASE("a vehicle in space runs beside everything on every form of track", "[composition]") {
+  for (const TrackForm& form : forms())
+    for (const Partner& partner : kPartners) {
+      const std::string name = form.name;
+      if (partner.needs != Partner::nothing && name == "rigid") continue;
+      if (partner.needs == Partner::ends && name.find("with ends") == std::string::npos) continue;
+      INFO(partner.name << " on a track: " << form.name);
+      try {
+        check_cell(scene_of(form, partner));
+      } catch (const std::exception& error) {
+        FAIL_CHECK(error.what());
+      }
+    }
+}
