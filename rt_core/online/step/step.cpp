@@ -247,10 +247,11 @@ Status try_frame(const Model& model, const double* inputs, const State& state, W
 }
 
 /// Compliance beside other contacts: these give way too, so that each force is tried.
+/// @param external  [external_wheels] overwritten
 void try_compliance(const Model& model, const double* inputs, const State& state,
-                    Workspace& workspace, const double* free, double* compliance) noexcept {
+                    Workspace& workspace, ExternalContact* external, const double* free,
+                    double* compliance) noexcept {
   const std::int32_t count = external_row(model.external_wheels, 0);
-  ExternalContact external[kMaxExternalWheels];
   for (std::int32_t j = 0; j < count; ++j) {
     double moved[3 * kMaxExternalWheels];
     static_cast<void>(try_frame(model, inputs, state, workspace, j, external, moved));
@@ -268,7 +269,7 @@ void try_compliance(const Model& model, const double* inputs, const State& state
   ExternalContact external[kMaxExternalWheels];
   const Status met = try_frame(model, inputs, state, workspace, -1, external, free);
   if (has_ports(model) || model.runners > 0)
-    try_compliance(model, inputs, state, workspace, free, compliance);
+    try_compliance(model, inputs, state, workspace, external, free, compliance);
   else
     external_compliance(model, external, workspace, compliance);
   return met;
