@@ -72,6 +72,13 @@ int port_of_coordinate(const Model& model, const Coupling& c, int scalars, int a
   return k < kMotions ? -1 : c.contacts + 2 * kWheelSeatRows * set + (k - kMotions);
 }
 
+/// A stop by its number among those of all runners.
+const StopModel& stop_of(const Model& model, int stop) noexcept {
+  std::int32_t r = 0;
+  while (r + 1 < model.runners && stop >= model.runner[r + 1].first_stop) ++r;
+  return model.runner[r].stop[stop - model.runner[r].first_stop];
+}
+
 void fill_compliance(const Model& model, const Coupling& c, int scalars, double* Y) noexcept {
   const int n = newton_size(model);
   for (int i = 0; i < n; ++i) {
@@ -143,7 +150,6 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
     move_freely(at, s, w, u);
     const int stop = first_stop(model, all.scalars) + runner.first_stop;
     find_stops(at, s, w, u, all.z_free + stop, all.start + stop);
-    for (int j = 0; j < runner.stops; ++j) all.stop[runner.first_stop + j] = runner.stop + j;
   }
   const double theta = model.scheme.theta;
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
@@ -197,7 +203,7 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
        w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance},
       [&](int b, const double* at, double* force, const LawSlopes* slopes) noexcept {
         if (b >= all.scalars + sets)
-          return stop_law(*all.stop[b - all.scalars - sets], *at, force, slopes);
+          return stop_law(stop_of(model, b - all.scalars - sets), *at, force, slopes);
         if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes);
         const PortForce own = port_force(c.law[b], *at);
         *force = -own.force;

@@ -18,7 +18,6 @@ void lean_wheel_seats(const Model& model, Coupling& c) noexcept;
 struct CoupledRunners {
   int scalars;  // contacts and one-sided springs, before the wheelsets among the coordinates
   WheelsetLaw law[kMaxSeatedWheelsets];
-  const StopModel* stop[kMostNewton];  // of all runners
   double z_free[kMostNewton], start[kMostNewton], force[kMostNewton];
 };
 
