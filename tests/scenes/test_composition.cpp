@@ -16,11 +16,11 @@ using namespace railstep;
 
 namespace {
 
-using Words = std::vector<std::string>;
+using Changes = std::vector<std::string>;
 
 struct TrackForm {
   const char *name, *scene;
-  Words words;
+  Changes words;
   double start;  // of the vehicle, m; a partner stands 14 m ahead
 };
 
@@ -41,7 +41,7 @@ std::vector<TrackForm> forms() {
 /// and for the speed of all.
 struct Partner {
   const char* name;
-  Words words;
+  Changes words;
   /// Rigid rails do not give way, and all bays of a track without end are alike.
   enum Needs { nothing, rails, ends } needs;
 };
@@ -87,8 +87,9 @@ Scene scene_of(const TrackForm& form, const Partner& partner) {
                     vehicle =
                         "{name=\"car\",file=\"../vehicles/manchester_1.toml\",start_m=" + start +
                         ",speed_m_per_s=" + speed + "}";
-  Words words{"irregularity={spectrum=\"german_low\",geometries=[\"vertical\"]}", "step.dt_s=5e-4",
-              "step.frame_s=5e-4", "step.duration_s=0.02", "vehicle=[" + vehicle + "]"};
+  Changes words{"irregularity={spectrum=\"german_low\",geometries=[\"vertical\"]}",
+                "step.dt_s=5e-4", "step.frame_s=5e-4", "step.duration_s=0.02",
+                "vehicle=[" + vehicle + "]"};
   words.insert(words.end(), form.words.begin(), form.words.end());
   for (const std::string& word : partner.words)
     words.push_back(replaced(replaced(replaced(word, "VEHICLE", vehicle), "=V}", "=" + speed + "}"),

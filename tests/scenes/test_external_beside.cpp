@@ -15,11 +15,11 @@ using namespace railstep;
 
 namespace {
 
-using Words = std::vector<std::string>;
+using Changes = std::vector<std::string>;
 
 const std::string kWheel = "external_wheel=[{name=\"e\",rail=\"left\",limit_n=1e6}]";
 
-Scene scene_of(const std::string& name, Words words, const std::string& more) {
+Scene scene_of(const std::string& name, Changes words, const std::string& more) {
   words.push_back(more);
   return read_scene(shipped(name), words);
 }
@@ -33,9 +33,9 @@ TEST_CASE("an external wheel beside others presses as a load at its place does",
   for (const char* scene : {"bogie_at_speed", "hanging_sleeper"}) {
     INFO(scene);
     const double dt = read_scene(shipped(scene), {}).step->dt, place = 13.8;
-    const Words words{"step.duration_s=0.05", "condense.kind=\"full\"",
-                      "step.frame_s=" + std::to_string(dt * 1e9) + "e-9"};
-    Words others = words;
+    const Changes words{"step.duration_s=0.05", "condense.kind=\"full\"",
+                        "step.frame_s=" + std::to_string(dt * 1e9) + "e-9"};
+    Changes others = words;
     if (std::string(scene) == "hanging_sleeper") others.push_back("load=[]");
     Simulation loaded(
         scene_of(scene, words,
@@ -67,7 +67,7 @@ TEST_CASE("the response under an external wheel holds with all that is beside it
           "[external_beside]") {
   struct Cell {
     const char* scene;
-    Words words;
+    Changes words;
     double place, error;  // the latter over C f
   };
   // The wheelset stands 0.2 m beside the external wheel: its Hertz contact shows.
@@ -77,7 +77,7 @@ TEST_CASE("the response under an external wheel holds with all that is beside it
                         {"wheelset_on_track", {"condense.kind=\"modal\""}, 3., .02},
                         {"manchester_ring", {}, 10., 1e-3}};
   for (const Cell& cell : cells) {
-    Words words = cell.words;
+    Changes words = cell.words;
     const double dt = read_scene(shipped(cell.scene), {}).step->dt;
     words.push_back("step.frame_s=" + std::to_string(dt * 1e9) + "e-9");
     Simulation run(scene_of(cell.scene, words, kWheel));

@@ -97,16 +97,17 @@ void stop_law(const StopModel& stop, double z, double* force, const LawSlopes* s
 }
 
 void move_by(const RunnerModel& runner, const double* force, double* u) noexcept {
-  const std::int32_t motions = kMotions * runner.wheelsets;
-  for (std::int32_t i = 0; i < interface_size(runner); ++i) {
-    const double* column = runner.stop_moved + std::ptrdiff_t{runner.size} * (i - motions);
-    if (i < motions) {
-      const std::int32_t own = runner.wheelset[i / kMotions].first + i % kMotions;
-      column = runner.inverse + std::ptrdiff_t{runner.size} * own;
-    }
+  const auto add = [&](const double* column, double by) noexcept {
 #pragma omp simd
-    for (std::int32_t k = 0; k < runner.size; ++k) u[k] += column[k] * force[i];
+    for (std::int32_t k = 0; k < runner.size; ++k) u[k] += column[k] * by;
+  };
+  const std::int32_t motions = kMotions * runner.wheelsets;
+  for (std::int32_t i = 0; i < motions; ++i) {
+    const std::int32_t own = runner.wheelset[i / kMotions].first + i % kMotions;
+    add(runner.inverse + std::ptrdiff_t{runner.size} * own, force[i]);
   }
+  for (std::int32_t j = 0; j < runner.stops; ++j)
+    add(runner.stop_moved + std::ptrdiff_t{runner.size} * j, force[motions + j]);
 }
 
 namespace {
