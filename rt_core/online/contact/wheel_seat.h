@@ -17,7 +17,7 @@ struct WheelSeatRow {
 /// serves both: every line has both rails alike.
 bool seats_mirror(const Model& model) noexcept;
 
-/// What the roll of the section under a seat does to its row along z.
+/// Effect of the roll of the section under a seat on its row along z.
 struct SeatLean {
   double lean, rise;  // m
 };
@@ -25,9 +25,10 @@ struct SeatLean {
 SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
                    double roll) noexcept;
 
-/// Of seats that mirror, the three rows under the left wheel of a wheelset without the effect of
-/// the roll of the section there. The place of the first two under the right wheel have what the
-/// rolls over the seats of both rails add to the rows along z.
+/// The rows of both seats under a wheelset, where seats mirror. The first three are those of the
+/// left seat, without the effect of the roll of the section there. If the model has levers
+/// (p_delta.h), the next two are the parts of the left and of the right row along z by the rolls
+/// over seats.
 /// @param seat, place  [2 kWheelSeatRows] out
 void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
                            double x, WheelSeatRow* seat, RailForce* place) noexcept;
