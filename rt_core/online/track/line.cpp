@@ -60,9 +60,16 @@ double axis_height(const Model& model, std::int32_t rail, std::int32_t element, 
 }
 
 bool carries(const LineModel& line, const RailRow& row) noexcept {
-  bool any = false;
-  for_carried(line, row, [&](std::int32_t, double) noexcept { any = true; });
-  return any;
+  if (line.rail_factor[row.rail] == 0.) return false;
+  // Most rows carry an unknown of the first node.
+  const std::int32_t* const table = line.unknown_of[row.rail];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 9; ++k)
+      if (row.coefficient[i][k] != 0. && table[table_place({row.element, i}, k)] >= 0) return true;
+  for (std::int32_t s = 0; s < row.seats; ++s)
+    for (int k = 5; k <= 7; k += 2)
+      if (table[table_place(row.seat[s], k)] >= 0) return true;
+  return false;
 }
 
 double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept {
