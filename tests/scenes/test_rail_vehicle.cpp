@@ -66,19 +66,26 @@ TEST_CASE("runs of a vehicle hunt from its linear critical speed on", "[rail_veh
 
 TEST_CASE("on a track that gives way runs hunt from the critical speed that is found there",
           "[rail_vehicle]") {
-  // With the modes and the step that a figure to 1 % takes: 2 modes a bay are too stiff along y,
-  // and steps of 1 ms let it hunt 7 % too early.
-  const auto at = [](double speed) {
-    return read_scene(shipped("manchester_ring"),
-                      {"irregularity.geometries=[\"gauge\"]", "condense.modes_per_bay=8",
-                       "step.dt_s=2.5e-4", "step.frame_s=2.5e-4", "contact.slope=0.168206167",
-                       set("vehicle[0].speed_m_per_s", speed)});
+  const auto at = [](double speed, Words changes = {}) {
+    changes.push_back("irregularity.geometries=[\"gauge\"]");
+    changes.push_back(set("vehicle[0].speed_m_per_s", speed));
+    return read_scene(shipped("manchester_ring"), changes);
   };
   const auto found = critical_speed_between(at(60.), 60., 120.);
   REQUIRE(found);
   CHECK(found->speed < .8 * 93.5162);
-  CHECK(growth(at(.99 * found->speed), 10.) < 0.);
-  CHECK(growth(at(1.01 * found->speed), 10.) > 0.);
+  // The linear theory takes the mean of what gives way over a bay, which is 1 % too late here.
+  const std::string fine = "step.dt_s=2.5e-4", fine_frame = "step.frame_s=2.5e-4",
+                    coarse = "step.dt_s=1.0e-3", coarse_frame = "step.frame_s=1.0e-3";
+  const Words runs[] = {{coarse, coarse_frame},
+                        {fine, fine_frame},
+                        {fine, fine_frame, "condense.modes_per_bay=8"},
+                        {coarse, coarse_frame, "condense.kind=\"full\""}};
+  for (const Words& changes : runs) {
+    CAPTURE(changes);
+    CHECK(growth(at(.98 * found->speed, changes), 10.) < 0.);
+    CHECK(growth(at(found->speed, changes), 10.) > 0.);
+  }
 }
 
 TEST_CASE("a vehicle that runs steadily keeps its static wheel loads", "[rail_vehicle]") {

@@ -111,8 +111,9 @@ Superelement::Rows DividedLine::load_rows(const LoadPoint& load_point, int point
   const int parts = own.parts();
   Eigen::MatrixXd rows(points + 1, (2 * parts + 1) * static_cast<int>(own.carried().size()));
   for (int p = 0; p <= points; ++p) {
-    Eigen::VectorXd row = own.row(static_cast<double>(p) * parts / points,
-                                  track_.lean(load_point.rail), load_point.y, load_point.z, 2);
+    Eigen::VectorXd row =
+        own.row(static_cast<double>(p) * parts / points, track_.lean(load_point.rail), load_point.y,
+                load_point.z, load_point.direction);
     sign(load_point.rail, row);
     rows.row(p) = row.transpose();
   }

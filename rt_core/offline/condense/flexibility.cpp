@@ -71,10 +71,11 @@ int range_of(const LineFlexibility::Strip& strip, int elements, int points, int 
   return range;
 }
 
-/// Whether a vertical force moves any of these unknowns, on y = 0 of an upright rail or anywhere.
-bool carries_any(const std::vector<int>& carried, bool upright) {
+/// Whether forces of load points move any of these unknowns.
+/// @param vertical  these are vertical ones on y = 0 of upright rails
+bool carries_any(const std::vector<int>& carried, bool vertical) {
   return std::any_of(carried.begin(), carried.end(), [&](int k) {
-    return k == 2 || k == 8 || (!upright && (k == 1 || k == 4 || k == 5 || k == 7));
+    return k == 2 || k == 8 || (!vertical && (k == 1 || k == 4 || k == 5 || k == 7));
   });
 }
 
@@ -123,7 +124,7 @@ struct ResidualFlexibility::Pair {
 ResidualFlexibility::~ResidualFlexibility() = default;
 
 ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
-                                         const std::vector<Basis>& bases, int points)
+                                         const std::vector<Basis>& bases, int points, bool lateral)
     : track_(track), lines_(lines), bases_(bases), points_(points) {
   if (points < 3)
     refuse("E-CONDENSE-09",
@@ -136,9 +137,9 @@ ResidualFlexibility::ResidualFlexibility(const Track& track, const std::vector<L
     const Line& line = lines_[i];
     const std::array<std::vector<int>, 2> carried = {carried_unknowns(line, 0),
                                                      carried_unknowns(line, 1)};
-    // Lines that a vertical force does not move are not needed.
-    const bool upright = track.cant == 0.;
-    if (!carries_any(carried[0], upright) && !carries_any(carried[1], upright)) continue;
+    // Lines that no force moves are not needed.
+    const bool vertical = track.cant == 0. && !lateral;
+    if (!carries_any(carried[0], vertical) && !carries_any(carried[1], vertical)) continue;
     Pair pair{&line, carried, exact_line(track_, line, points), nullptr};
     if (bases_.empty())
       pair.model = exact_line(track_, line, 1);
@@ -155,7 +156,7 @@ double ResidualFlexibility::weight(const Pair& pair, LoadPoint load_point) const
            "residual flexibility is asked for on a rail that the track does not have");
   const auto rail = static_cast<std::size_t>(load_point.rail);
   double row[9];
-  height_row(track_.lean(load_point.rail), load_point.y, load_point.z, row);
+  load_row(track_, load_point, row);
   const std::vector<int>& carried = pair.carried[rail];
   const bool moved =
       std::any_of(carried.begin(), carried.end(), [&](int k) { return row[k] != 0.; });

@@ -37,10 +37,11 @@ class ResidualFlexibility {
  public:
   /// @param lines  of the track, as assemble() gives them
   /// @param bases  one per line, or none for the track as it stands
-  /// @param points intervals per element, >= 3; tables are read by cubic interpolation Throws
-  /// Refused on fewer points and on bases of other lines.
+  /// @param points intervals per element, >= 3; tables are read by cubic interpolation
+  /// @param lateral  load points along y are asked for, not vertical ones alone
+  /// Throws Refused on fewer points and on bases of other lines.
   ResidualFlexibility(const Track& track, const std::vector<Line>& lines,
-                      const std::vector<Basis>& bases, int points);
+                      const std::vector<Basis>& bases, int points, bool lateral = false);
   ~ResidualFlexibility();
   ResidualFlexibility(const ResidualFlexibility&) = delete;
   ResidualFlexibility& operator=(const ResidualFlexibility&) = delete;

@@ -8,6 +8,15 @@
 
 namespace railstep {
 
+void load_row(const Track& track, const LoadPoint& load_point, double* row) {
+  const double lever[3] = {1., load_point.y, load_point.z};
+  const double along[3] = {0., load_point.direction == 1 ? 1. : 0.,
+                           load_point.direction == 2 ? 1. : 0.};
+  double own[3];
+  to_rail(track.lean(load_point.rail), along, own);
+  for (int k = 0; k < 9; ++k) row[k] = lever[k / 3] * own[k % 3];
+}
+
 int tabled_elements(const Track& track) {
   return track.ring ? track.elements_per_bay : track.elements();
 }

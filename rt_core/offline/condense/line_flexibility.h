@@ -14,12 +14,16 @@
 
 namespace railstep {
 
-/// A point of a rail's section at which a vertical force acts and its displacement is read.
+/// A point of a rail's section at which a force acts and its displacement along it is read.
 struct LoadPoint {
-  int rail;       // 0 left (+y), 1 right
-  double z;       // of the section's point above the axis, m
-  double y = 0.;  // beside it, m
+  int rail;           // 0 left (+y), 1 right
+  double z;           // of the section's point above the axis, m
+  double y = 0.;      // beside it, m
+  int direction = 2;  // of the track: 1 y, 2 z
 };
+
+/// Row of a load point over the unknowns [r, a, b] of a node under it. @param row  [9] out
+void load_row(const Track& track, const LoadPoint& load_point, double* row);
 
 /// Elements of the tables over places: the track's, or on a ring those of one bay, which every
 /// other bay repeats.

@@ -21,7 +21,7 @@ template <typename Take>
 void ReducedLine::read_load_point(const LoadPoint& load_point, int points, Elements at,
                                   const Take& take) const {
   double own[9];
-  height_row(track_.lean(load_point.rail), load_point.y, load_point.z, own);
+  load_row(track_, load_point, own);
   for (int e = at.first; e < at.last; ++e)
     for (int p = 0; p <= points; ++p) {
       const auto n = shape(2. * p / points - 1.);

@@ -60,8 +60,9 @@ Eigen::SparseMatrix<double> RefinedLine::columns(const LoadPoint& load_point, in
   Eigen::SparseMatrix<double> all(line_.unknowns(), points + 1);
   for (int p = 0; p <= points; ++p) {
     const double x = length * (element + static_cast<double>(p) / points);
-    all.col(p) =
-        point_row(track_, line_, {load_point.rail, x, load_point.y, load_point.z, 2}) / weight;
+    all.col(p) = point_row(track_, line_,
+                           {load_point.rail, x, load_point.y, load_point.z, load_point.direction}) /
+                 weight;
   }
   return all;
 }

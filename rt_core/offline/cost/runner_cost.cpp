@@ -57,7 +57,8 @@ Cost coupled_runners_cost(const Model& model) {
     seats = seats + 3 * cost.wheel_row + kPDeltaSeats * cost.node_roll;
   }
   return newton_cost(2LL * model.runner_wheelsets, scalars, n) + work(0, 4 * n * n) +
-         wheel_seat_row_count(model) * (work(300, 150) + seats + port_count(model) * kPairLookUp);
+         wheel_seat_row_count(model) * (work(300, 150) + seats + port_count(model) * kPairLookUp) +
+         wheel_seat_row_count(model) / kWheelSeatRows * 2 * (2 * kLookUp + work(60, 80));
 }
 
 Cost publish_runners_cost(const Model& model) {

@@ -41,15 +41,18 @@ void stand_on_seat(const Model& model, const RunnerModel& runner, int wheelset, 
   RailForce place[kWheelSeatRows];
   locate_wheel_seat(model, now, runner, element_place(model, runner, wheelset, at.steps, 0.), side,
                     seats, wheel.seat, place);
-  wheel.residual = 0.;
+  std::fill_n(wheel.residual, kWheelSeatRows, 0.);
   std::fill_n(wheel.moved, kWheelSeatRows, 0.);
   if (!wheel.seat[0].on_rail) return;
+  const int set = runner.first_wheelset + wheelset, own = 2 * set + side;
+  SeatFlexibility gives = seat_flexibility(model, runner, side, place[1]);
+  gives.along[1][1] -= residual_under(model, place[1]);  // among those of `acting`
   for (int k = 0; k < kWheelSeatRows; ++k)
-    wheel.moved[k] = along(model, wheel.seat[k], now) + wheel.seat[k].rise;
-  const auto own = 2 * (runner.first_wheelset + wheelset) + side;
-  wheel.residual = residual_displacement(model, acting.data(), static_cast<int>(acting.size()),
-                                         static_cast<int>(own));
-  wheel.moved[1] += wheel.residual;
+    wheel.residual[k] = moved_by_wheel(gives.along[k], wheel_force_of(at, set, side));
+  wheel.residual[1] +=
+      residual_displacement(model, acting.data(), static_cast<int>(acting.size()), own);
+  for (int k = 0; k < kWheelSeatRows; ++k)
+    wheel.moved[k] = along(model, wheel.seat[k], now) + (wheel.seat[k].rise + wheel.residual[k]);
 }
 
 /// Vertical forces of all wheels of runners on the rails.
@@ -104,11 +107,12 @@ double hertz_energy(const StandingRunner& standing) {
   return sum;
 }
 
-double residual_energy(const StandingRunner& standing) {
+double residual_energy(const RunnerModel& runner, const StandingRunner& standing) {
   double sum = 0.;
   for (const auto& wheelset : standing.wheels)
     for (const StandingWheel& wheel : wheelset)
-      sum -= .5 * wheel.force.generalised[2] * wheel.residual;
+      for (int k = 0; k < kWheelSeatRows; ++k)
+        sum += .5 * wheel.on_seat(runner.contact, k) * wheel.residual[k];
   return sum;
 }
 
@@ -145,6 +149,11 @@ ContactWork contact_work(const Model& model, const RunnerModel& r, const Standin
   return sum;
 }
 
+/// @param seat  State::seat
+RailRate rail_rate(const double* seat) {
+  return {seat[kWheelSeatRows], seat[kWheelSeatRows + 1], seat[kWheelSeatRows + 2]};
+}
+
 }  // namespace
 
 StandingRunner standing_runner(const Model& model, const RunnerModel& runner, const State& at) {
@@ -153,7 +162,8 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
   standing.speed = travelled(runner.travel, time).speed;
   const std::vector<RailForce> acting = wheel_forces_on_rails(model, at);
   for (int i = 0; i < runner.wheelsets; ++i) {
-    const RailsUnder uneven = rails_under(model, runner, i, at.steps, 0.);
+    RailsUnder slope;
+    const RailsUnder uneven = rails_under(model, runner, i, at.steps, 0., &slope);
     const std::int32_t first = runner.first + runner.wheelset[i].first;
     auto& wheels = standing.wheels.emplace_back();
     for (int side = 0; side < 2; ++side) {
@@ -165,9 +175,9 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
       under.y[side] += wheel.moved[0];
       under.z[side] += wheel.moved[1];
       RailRate rate{0., 0., 0.};
-      if (wheel.seat[0].on_rail && model.form == Form::banded)
-        rate = {along(model, wheel.seat[0], {at.v, {}}), along(model, wheel.seat[1], {at.v, {}}),
-                along(model, wheel.seat[2], {at.v, {}})};
+      if (wheel.seat[0].on_rail && keeps_seats(model))
+        rate = rail_rate(seat_motion_of(at, runner.first_wheelset + i, side));
+      rate.z += standing.speed * slope.z[side];
       wheel.force =
           wheel_force(runner, i, under, rate, side, standing.speed, at.u + first, at.v + first);
     }
@@ -184,7 +194,7 @@ RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& stan
     v[runner.wheelset[i].first + index_of(BodyMotion::pitch)] +=
         standing.speed / runner.wheelset[i].radius;
   return {.5 * v.dot(m.mass.cwiseProduct(v)), .5 * u.dot(m.stiffness * u) + stop_energy(runner, u),
-          hertz_energy(standing), residual_energy(standing)};
+          hertz_energy(standing), residual_energy(runner, standing)};
 }
 
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
@@ -199,7 +209,7 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
   const Eigen::VectorXd du = part_of(runner, lines_u.data()), dv = part_of(runner, lines_v.data());
   const ContactWork contact = contact_work(model, runner, before, after, du,
                                            {lines_u.data(), {lines_u.data(), lines_v.data()}});
-  const double residual = residual_energy(after) - residual_energy(before);
+  const double residual = residual_energy(runner, after) - residual_energy(runner, before);
   RunnerWork work{m.rest.dot(du), contact.drive, 0., contact.creep, 0.};
   work.loss = (contact.on_bodies + contact.on_seats) +
               (hertz_energy(after) - hertz_energy(before)) + contact.creep - contact.drive;

@@ -12,7 +12,7 @@ struct StandingWheel {
   WheelForce force;
   WheelSeatRow seat[kWheelSeatRows];  // rows of the rail under it; not on_rail on rigid rails
   double moved[kWheelSeatRows];       // of the seat, with its residual displacement, m, m, rad
-  double residual;                    // residual displacement along z alone, m
+  double residual[kWheelSeatRows];    // residual displacements alone
   double uneven_y, uneven_z;          // of the unloaded rail, m
   /// Force on the seat along row k, N, N m.
   double on_seat(const RollingContact& contact, int k) const {

@@ -4,6 +4,7 @@
 
 #include "offline/math/larger.h"
 #include "offline/pack/pack.h"
+#include "offline/pack/seat_residual.h"
 #include "offline/pack/step_compliance.h"
 
 namespace railstep {
@@ -175,7 +176,7 @@ void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor
     if (model_.form == Form::condensed)
       bases.push_back(with_springs(own.basis, lines.back().stiffness - own.line.stiffness));
   }
-  const ResidualFlexibility residual(reference, lines, bases, points);
+  const ResidualFlexibility residual(reference, lines, bases, points, model_.runners > 0);
   model_.residual.elements = tabled_elements(reference);
   std::vector<double> under, axis;
   for (const LoadPoint& point : load_points_) {
@@ -197,6 +198,8 @@ void PackedModel::add_residual(const Track& track, const std::vector<TrackSensor
       model_.residual.pair_points = pair.points;
       model_.residual.pair[a][b] = {pair.range, keep(std::move(pair.value))};
     }
+  if (model_.runners > 0)
+    model_.residual.seat = keep(seat_residual(residual, model_, load_points_));
   add_track_sensor_tables(residual, track_sensors);
 }
 

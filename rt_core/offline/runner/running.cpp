@@ -198,8 +198,6 @@ void add_track(const Runner& runner, const RollingContact& contact, double speed
     A->rightCols(seats).setZero();
     A->bottomRows(seats).setZero();
   }
-  linear.stiffness.bottomRightCorner(seats, seats) = track.stiffness;
-  linear.damping.bottomRightCorner(seats, seats) = track.damping;
   for (RunnerMatrices::Series& own : linear.series) {
     own.row.conservativeResize(n + seats);
     own.row.tail(seats).setZero();
@@ -220,6 +218,9 @@ void add_track(const Runner& runner, const RollingContact& contact, double speed
       seat += 3;
     }
   }
+  linear.stiffness.rightCols(seats) -= speed * linear.damping.rightCols(seats) * track.slope;
+  linear.stiffness.bottomRightCorner(seats, seats) += track.stiffness;
+  linear.damping.bottomRightCorner(seats, seats) += track.damping;
   take_modes(track, linear);
 }
 

@@ -28,6 +28,9 @@ struct LinearRunning {
 /// wheels, left and right of each wheelset in turn, as masses, dampers and springs.
 struct StandingTrack {
   Eigen::MatrixXd mass, damping, stiffness;  // [6 wheelsets][6 wheelsets], symmetric
+  /// Derivatives along x of the displacements in each seat by the displacements of all: the rail
+  /// under a wheel moves at the rate of its seat less speed times this.
+  Eigen::MatrixXd slope;
 };
 struct RunningOn {
   std::vector<RailsUnder> rails = {};  // under each wheelset; empty: straight and level

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "offline/math/refuse.h"
+#include "offline/pack/seat_residual.h"
 #include "offline/start/static_lines.h"
 #include "online/contact/wheel_seat.h"
 #include "online/model/progress.h"
@@ -82,29 +83,68 @@ Eigen::SparseMatrix<double> loaded_stiffness(const Model& model, const Line& lin
   return line.stiffness + taken;
 }
 
-/// The track condensed to its seats.
-StandingTrack condensed_to(const Model& model, const std::vector<Line>& lines, const Seats& seats) {
-  const auto n = static_cast<Index>(seats.row.size());
-  MatrixXd flexibility = MatrixXd::Zero(n, n);
-  std::vector<MatrixXd> moved;  // by unit forces
-  for (const Line& line : lines) {
-    MatrixXd rows(line.unknowns(), n);
-    for (Index i = 0; i < n; ++i)
-      rows.col(i) = contact_row(line, seats.row[static_cast<std::size_t>(i)].row, true);
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> stiffness(
-        loaded_stiffness(model, line, seats));
-    moved.push_back(stiffness.solve(rows));
-    flexibility += rows.transpose() * moved.back();
-  }
-  const MatrixXd stiffness = flexibility.inverse();
-  StandingTrack track{MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), stiffness};
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    const MatrixXd shape = moved[l] * stiffness;  // by unit displacements
-    track.mass += shape.transpose() * (lines[l].mass * shape);
-    track.damping += shape.transpose() * (lines[l].damping * shape);
-  }
-  return track;
+/// Rows of all seats over a line, [unknowns][rows].
+MatrixXd rows_of(const Line& line, const Seats& seats) {
+  MatrixXd rows(line.unknowns(), static_cast<Index>(seats.row.size()));
+  for (Index i = 0; i < rows.cols(); ++i)
+    rows.col(i) = contact_row(line, seats.row[static_cast<std::size_t>(i)].row, true);
+  return rows;
 }
+
+/// The track where a vehicle stands.
+struct Place {
+  Seats seats;
+  std::vector<SeatFlexibility> missed;  // of each seat, beyond what the lines have
+  Seats ahead, behind;                  // seats between which slopes are means
+  double apart;                         // of these, m
+};
+
+/// Means over places in a bay of what unit forces along the rows of all seats make there.
+class MeanResponse {
+ public:
+  explicit MeanResponse(Index rows)
+      : flexibility_(MatrixXd::Zero(rows, rows)),
+        slope_(flexibility_),
+        mass_(flexibility_),
+        damping_(flexibility_) {}
+
+  void add(const Model& model, const std::vector<Line>& lines, const Place& at) {
+    MatrixXd slope = MatrixXd::Zero(slope_.rows(), slope_.cols());
+    for (const Line& line : lines) {
+      const MatrixXd rows = rows_of(line, at.seats);
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> stiffness(
+          loaded_stiffness(model, line, at.seats));
+      const MatrixXd moved = stiffness.solve(rows);
+      flexibility_ += rows.transpose() * moved;
+      slope += (rows_of(line, at.ahead) - rows_of(line, at.behind)).transpose() * moved / at.apart;
+      mass_ += moved.transpose() * (line.mass * moved);
+      damping_ += moved.transpose() * (line.damping * moved);
+    }
+    for (std::size_t wheel = 0; wheel < at.missed.size(); ++wheel)
+      for (int i = 0; i < kWheelSeatRows; ++i)
+        for (int j = 0; j < kWheelSeatRows; ++j) {
+          const auto first = static_cast<Index>(kWheelSeatRows * wheel);
+          flexibility_(first + i, first + j) += at.missed[wheel].along[i][j];
+          // In the mean over a bay a force bends the rail ahead of it as that behind it.
+          slope(first + i, first + j) = 0.;
+        }
+    // On a rail that rises the contact moves ahead on the wheel: the rise does not count.
+    for (Index i = 1; i < slope.rows(); i += kWheelSeatRows) slope.row(i).setZero();
+    slope_ += slope;
+    ++places_;
+  }
+
+  /// Masses, dampers and springs with that response to slow forces.
+  StandingTrack track() const {
+    const MatrixXd stiffness = places_ * flexibility_.inverse();
+    return {stiffness * (mass_ / places_) * stiffness, stiffness * (damping_ / places_) * stiffness,
+            stiffness, slope_ / places_ * stiffness};
+  }
+
+ private:
+  MatrixXd flexibility_, slope_, mass_, damping_;  // sums
+  double places_ = 0.;
+};
 
 /// The springs by which a vertical force on a section that rolls turns it.
 void add_leans(const Model& model, const RunnerModel& runner, const State& start,
@@ -132,8 +172,13 @@ std::vector<RailsUnder> places_of(const Model& model, const RunnerModel& runner,
   std::vector<RailsUnder> places(static_cast<std::size_t>(runner.wheelsets));
   for (int wheel = 0; wheel < wheels; ++wheel) {
     RailsUnder& under = places[static_cast<std::size_t>(wheel / 2)];
-    under.y[wheel % 2] = moved(kWheelSeatRows * wheel);
-    under.z[wheel % 2] = moved(kWheelSeatRows * wheel + 1) +
+    const double* const force = wheel_force_of(start, runner.first_wheelset + wheel / 2, wheel % 2);
+    SeatFlexibility gives =
+        seat_flexibility(model, runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]);
+    gives.along[1][1] -= residual_under(
+        model, seats.place[static_cast<std::size_t>(wheel)]);  // among the forces on all places
+    under.y[wheel % 2] = moved(kWheelSeatRows * wheel) + moved_by_wheel(gives.along[0], force);
+    under.z[wheel % 2] = moved(kWheelSeatRows * wheel + 1) + moved_by_wheel(gives.along[1], force) +
                          residual_displacement(model, seats.place.data(), wheels, wheel);
   }
   return places;
@@ -148,15 +193,22 @@ RunningOn rails_at_rest(const PackedModel& packed, const Track& track, std::int3
   State start = state_on(model, memory.data());
   reset(model, start);
   const std::vector<Line> lines = lines_of(packed, track);
-  StandingTrack mean = condensed_to(model, lines, seats_of(model, own, start, 0.));
-  for (int i = 1; i < kPlaces; ++i) {
-    const StandingTrack there =
-        condensed_to(model, lines, seats_of(model, own, start, i * track.bay_length / kPlaces));
-    mean.mass += there.mass;
-    mean.damping += there.damping;
-    mean.stiffness += there.stiffness;
+  const MeshResidual missed(packed, linear_about_rest(track), lines);
+  MeanResponse response(2 * own.wheelsets * kWheelSeatRows);
+  const double apart = track.bay_length / kPlaces;
+  Seats behind = seats_of(model, own, start, 0.);
+  for (int i = 0; i < kPlaces; ++i) {
+    Seats seats = seats_of(model, own, start, (i + .5) * apart),
+          ahead = seats_of(model, own, start, (i + 1) * apart);
+    std::vector<SeatFlexibility> of_seats;
+    for (int wheel = 0; wheel < 2 * own.wheelsets; ++wheel)
+      of_seats.push_back(
+          missed.under(runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]));
+    response.add(model, lines,
+                 {std::move(seats), std::move(of_seats), ahead, std::move(behind), apart});
+    behind = std::move(ahead);
   }
-  for (MatrixXd* A : {&mean.mass, &mean.damping, &mean.stiffness}) *A /= kPlaces;
+  StandingTrack mean = response.track();
   add_leans(model, own, start, mean);
   return {places_of(model, own, start), std::move(mean)};
 }

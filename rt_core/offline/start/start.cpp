@@ -127,7 +127,8 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     put_lines(packed, pose.lines, state);
     pose.wheelsets.clear();
     pose.contact_force.assign(static_cast<std::size_t>(contact_count(model)), 0.);
-    SettledRunners settled = settle_runners(packed, at, time, acting, first_of_runners);
+    SettledRunners settled =
+        settle_runners(packed, pose.runners, at, time, acting, first_of_runners);
     double most = change_of(pose.runners, settled);
     pose.runners = std::move(settled);
     for (std::int32_t b = 0; b < model.wheelsets; ++b) {
@@ -180,7 +181,7 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
   if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
   pose.lines = static_lines(packed, statics, acting, gravity);
   put_lines(packed, pose.lines, state);
-  pose.runners = settle_runners(packed, at, time, acting, first_of_runners);
+  pose.runners = settle_runners(packed, now.runners, at, time, acting, first_of_runners);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& w = model.wheelset[b];
     const double up[3] = {0., 0., 1.}, rolled = travelled(w.travel, 0.).speed * time;
@@ -348,6 +349,7 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
     state.contact_force[vehicle_contact(model, i)] = at.vehicles.force[i];
   put_runners(packed, at.runners, before.runners, later.runners, span, state);
   put_port_forces(model, state);
+  put_seats(model, state);
   return memory;
 }
 

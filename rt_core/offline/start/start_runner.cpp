@@ -1,9 +1,12 @@
 #include "offline/start/start_runner.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "online/contact/wheel_seat.h"
+#include "online/model/progress.h"
 #include "online/runner/runner_contact.h"
+#include "online/step/step.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -116,8 +119,9 @@ void add_forces(const PackedModel& packed, const SettledRunners& runners, const 
   }
 }
 
-SettledRunners settle_runners(const PackedModel& packed, const Configuration& at, double time,
-                              const Acting& acting, std::size_t first_port) {
+SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& pressing,
+                              const Configuration& at, double time, const Acting& acting,
+                              std::size_t first_port) {
   const Model& model = packed.model();
   SettledRunners settled;
   for (std::int32_t r = 0; r < model.runners; ++r) {
@@ -133,9 +137,15 @@ SettledRunners settle_runners(const PackedModel& packed, const Configuration& at
         under.y[side] = uneven.y[side] - .5 * (uneven.y[0] + uneven.y[1]);
         const StaticSeat seat = seat_of(model, runner, i, side, at, time);
         if (!seat.row[0].on_rail) continue;
-        under.y[side] += moved_by(model, seat.row[0], at);
+        const auto set = static_cast<std::size_t>(runner.first_wheelset + i);
+        double force[kWheelForces];
+        keep_wheel_force(pressing.wheels[set][static_cast<std::size_t>(side)],
+                         runner.contact.crown_radius, force);
+        SeatFlexibility gives = seat_flexibility(model, runner, side, seat.place[1]);
+        gives.along[1][1] -= residual_under(model, seat.place[1]);  // among those of `acting`
+        under.y[side] += moved_by(model, seat.row[0], at) + moved_by_wheel(gives.along[0], force);
         under.z[side] +=
-            moved_by(model, seat.row[1], at) +
+            moved_by(model, seat.row[1], at) + moved_by_wheel(gives.along[1], force) +
             residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
                                   static_cast<int>(first_port++));
       }
@@ -149,6 +159,37 @@ SettledRunners settle_runners(const PackedModel& packed, const Configuration& at
     follow_alignment(own, model, runner, time, settled.steady.back());
   }
   return settled;
+}
+
+void put_seats(const Model& model, State& state) {
+  if (!keeps_seats(model)) return;
+  const Configuration at{state.u, {state.u, state.v}, track_offset(model, 0)};
+  Outputs outputs{};
+  publish_start(model, state, outputs);
+  RailForce force[kMaxRailForces];
+  const int forces = rail_forces(model, outputs, force);
+  // Those of the runners' wheels are the last ones.
+  int wheel = forces -
+              static_cast<int>(std::count(
+                  outputs.wheel_on_rail, outputs.wheel_on_rail + 2 * model.runner_wheelsets, true));
+  for (std::int32_t r = 0; r < model.runners; ++r)
+    for (int i = 0; i < model.runner[r].wheelsets; ++i)
+      for (int side = 0; side < 2; ++side) {
+        const RunnerModel& runner = model.runner[r];
+        const std::int32_t set = runner.first_wheelset + i;
+        double* const kept = seat_motion_of(state, set, side);
+        std::fill_n(kept, kSeatMotions, 0.);
+        const StaticSeat seat = seat_of(model, runner, i, side, at, 0.);
+        if (!seat.row[0].on_rail) continue;
+        const SeatFlexibility gives = seat_flexibility(model, runner, side, seat.place[1]);
+        for (int k = 0; k < kWheelSeatRows; ++k)
+          kept[k] = moved_by(model, seat.row[k], at) +
+                    moved_by_wheel(gives.along[k], wheel_force_of(state, set, side));
+        for (int j = 0; j < forces; ++j)
+          if (j != wheel)
+            kept[1] += force[j].force * residual_between(model, force[j], seat.place[1]);
+        ++wheel;
+      }
 }
 
 }  // namespace railstep

@@ -23,8 +23,12 @@ void add_forces(const PackedModel& packed, const SettledRunners& runners, const 
 /// Rail vehicles on rails as they lie. Rails that are not even in height are stood on; along y each
 /// wheelset goes with its rails, at the yaw at which it rolls along them, and the other bodies
 /// follow as their springs demand.
-/// @param acting  with add_forces() of these runners, from its port `first_port` on
-SettledRunners settle_runners(const PackedModel& packed, const Configuration& at, double time,
-                              const Acting& acting, std::size_t first_port);
+/// @param acting  with add_forces() of the runners `pressing`, from its port `first_port` on
+SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& pressing,
+                              const Configuration& at, double time, const Acting& acting,
+                              std::size_t first_port);
+
+/// Fills State::seat: the seats as they lie under the forces of the wheels, the rails at rest.
+void put_seats(const Model& model, State& state);
 
 }  // namespace railstep

@@ -83,12 +83,14 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
       double sum = 0.;
       if (is_on_rail(c, i) && is_on_rail(c, j))
         sum = model.scheme.theta * (c.W[i * c.ports + j] + body) +
-              (i == j ? residual_under(model, c.place[i])
-                      : residual_between(model, c.place[j], c.place[i]));
+              (i != j        ? residual_between(model, c.place[j], c.place[i])
+               : of_contacts ? residual_under(model, c.place[i])
+                             : 0.);
       else if (of_contacts && stands(c.contact[i]) && stands(c.contact[j]))
         sum = model.scheme.theta * body;
       c.W[i * c.ports + j] = c.W[j * c.ports + i] = sum;
     }
+  add_seat_flexibility(model, c);
 }
 
 /// Penetration by the track alone: the located one, plus the track's motion since then.

@@ -9,7 +9,8 @@ namespace railstep {
 double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
   double sum = c.by_loads[i];
   for (int j = 0; j < c.rows; ++j) {
-    if (!is_on_rail(c, j)) continue;
+    const bool own_seat = i == j && j >= c.contacts;
+    if (!is_on_rail(c, j) || own_seat) continue;
     // Vertical forces alone have residual displacements: of the rows of a seat the one along z.
     const int seat = j - c.contacts;
     const double force = seat < 0 ? s.contact_force[j]

@@ -19,37 +19,40 @@ void for_each_wheelset(const Model& model, Visit visit) noexcept {
       visit(model.runner[n], i, model.runner[n].first_wheelset + i);
 }
 
-/// Displacements and rates along the rows of banded lines, as u* and v* have them.
-struct Predicted {
-  double u[kMaxTrackRows], v[kMaxTrackRows];
-};
-void predict(const Model& model, const Workspace& w, const Coupling& c, Predicted& to) noexcept {
-  const auto by = [&](const double* x) noexcept {
-    return [&c, x](int base, std::int32_t, const LineModel& line) noexcept {
-      return motion(line, base_row(c, base), {x, {}});
-    };
+/// Slopes along x of the displacements of all rows of seats but those along z, as contacts are
+/// located: means over an element to either side, in which a seat's own deflection cancels; 0 in
+/// the last elements. On a rail that rises the contact moves ahead on the wheel, so that the rise
+/// does not count.
+void find_slopes(const Model& model, const State& s, const Workspace& w, const Coupling& c,
+                 double* slopes) noexcept {
+  const Configuration at = located_on(model, s, w);
+  const auto slope = [&](int base, std::int32_t, const LineModel& line) noexcept -> double {
+    if (base < c.contacts) return 0.;
+    RailRow row = base_row(c, base);
+    if (row.element == 0 || row.element + 1 >= model.elements) return 0.;
+    row.seats = 0;
+    ++row.element;
+    const double ahead = motion(line, row, at);
+    row.element -= 2;
+    return (ahead - motion(line, row, at)) / (2. * model.element_length);
   };
-  sum_rows(model, c, by(w.u_star), to.u);
-  sum_rows(model, c, by(w.v_star), to.v);
+  sum_rows(model, c, slope, slopes);
+  for (int i = c.contacts + 1; i < c.rows; i += kWheelSeatRows) slopes[i] = 0.;
 }
 
-/// Rate of a seat's row over its displacement at the contacts' instant.
-DepthSpeed rate_of(const Model& model, const State& s, const Coupling& c,
-                   const Predicted& predicted, int row) noexcept {
-  if (!is_on_rail(c, row)) return {0., 0.};
-  const double missed = residual_before(model, s, c, row) + c.seat[row - c.contacts].rise;
-  if (model.form == Form::condensed) return mean_speed(model.scheme, c.located[row] + missed);
-  return speed_at_end(model.scheme, predicted.u[row] + missed, predicted.v[row]);
+/// Part of the residual flexibility between two rows of a seat that follows the force of this step;
+/// the rest follows that of the last one. Forces act at theta of a step, in which the displacements
+/// along y and the roll must be, too: their rate is theirs less that at its start over theta dt.
+double at_once(const Model& model, int i, int j) noexcept {
+  return i == 1 && j == 1 ? 1. : model.scheme.theta;
 }
 
 /// Displacement of a seat's row by the last step's forces on all seats.
 double moved_before(const Model& model, const State& s, const Coupling& c, int row) noexcept {
   double sum = 0.;
-  for (std::int32_t wheel = 0; wheel < 2 * model.runner_wheelsets; ++wheel) {
-    const double* const force = s.wheel_force + std::ptrdiff_t{kWheelForces} * wheel;
-    const double* const W = c.W + row * c.ports + c.contacts + kWheelSeatRows * wheel;
-    sum += W[2] * force[3] - (W[0] * force[1] + W[1] * force[2]);
-  }
+  for (std::int32_t wheel = 0; wheel < 2 * model.runner_wheelsets; ++wheel)
+    sum += moved_by_wheel(c.W + row * c.ports + c.contacts + kWheelSeatRows * wheel,
+                          s.wheel_force + std::ptrdiff_t{kWheelForces} * wheel);
   return sum;
 }
 
@@ -101,6 +104,42 @@ void fill_compliance(const Model& model, const Coupling& c, int scalars, double*
   }
 }
 
+/// Displacements of the seats under a wheelset without forces of this step, and their rates at
+/// zero. On condensed lines seats are in the wheel's place in the middle of the step, and rates are
+/// those there. On banded lines they are in its place at the end, where rates jump as the wheel
+/// passes: they are those of the moving seat, less those of its going along.
+/// @param slope   [track rows] of banded lines
+/// @param enters  the wheelset was off the rails when the stage began
+void couple_seats(const Model& model, const State& s, const Coupling& c, const RunnerModel& runner,
+                  std::int32_t set, const double* slope, bool enters,
+                  CoupledRunners& all) noexcept {
+  const bool banded = model.form == Form::banded;
+  const int first = all.scalars + kOfWheelset * set;
+  WheelsetLaw& law = all.law[set];
+  for (int side = 0; side < 2; ++side) {
+    const int seat = wheel_seat_row(model, set, side), to = kMotions + kWheelSeatRows * side;
+    const SeatFlexibility own = seat_flexibility(model, runner, side, c.place[seat + 1]);
+    const double* const last = wheel_force_of(s, set, side);
+    for (int k = 0; k < kWheelSeatRows; ++k) {
+      const int row = seat + k;
+      double later[kWheelSeatRows];
+      for (int j = 0; j < kWheelSeatRows; ++j)
+        later[j] = (1. - at_once(model, k, j)) * own.along[k][j];
+      const double free = c.track_free[row] + moved_by_wheel(later, last);
+      all.z_free[first + to + k] = free;
+      all.start[first + to + k] = free + moved_before(model, s, c, row);
+      double before = 0.;
+      if (banded)
+        before = enters ? all.start[first + to + k] : seat_motion_of(s, set, side)[k];
+      else if (is_on_rail(c, row))
+        before = (c.located[row] + residual_before(model, s, c, row)) +
+                 (moved_by_wheel(own.along[k], last) + c.seat[row - c.contacts].rise);
+      law.rate_at_zero[to + k] = -law.seat_rate * before;
+      if (banded) law.rate_at_zero[to + k] -= law.speed * slope[row];
+    }
+  }
+}
+
 }  // namespace
 
 void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, const Workspace& w,
@@ -137,11 +176,25 @@ void lean_wheel_seats(const Model& model, Coupling& c) noexcept {
   lean_rows(c, c.located);
 }
 
+void add_seat_flexibility(const Model& model, Coupling& c) noexcept {
+  for_each_wheelset(model, [&](const RunnerModel& runner, int, std::int32_t set) noexcept {
+    for (int side = 0; side < 2; ++side) {
+      const int seat = wheel_seat_row(model, set, side);
+      if (!is_on_rail(c, seat)) continue;
+      const SeatFlexibility own = seat_flexibility(model, runner, side, c.place[seat + 1]);
+      for (int i = 0; i < kWheelSeatRows; ++i)
+        for (int j = 0; j < kWheelSeatRows; ++j)
+          c.W[(seat + i) * c.ports + seat + j] += at_once(model, i, j) * own.along[i][j];
+    }
+  });
+}
+
 void couple_runners(const Model& model, const Stage& stage, const State& s, Workspace& w,
                     const Coupling& c, CoupledRunners& all) noexcept {
   all.scalars = c.contacts + model.fixed.count;
-  Predicted predicted;
-  if (model.form == Form::banded) predict(model, w, c, predicted);
+  const bool banded = model.form == Form::banded;
+  double slope[kMaxTrackRows];
+  if (banded) find_slopes(model, s, w, c, slope);
   fill_compliance(model, c, all.scalars, w.newton);
   for (std::int32_t r = 0; r < model.runners; ++r) {
     const RunnerModel& runner = model.runner[r];
@@ -151,33 +204,20 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
     const int stop = first_stop(model, all.scalars) + runner.first_stop;
     find_stops(at, s, w, u, all.z_free + stop, all.start + stop);
   }
-  const double theta = model.scheme.theta;
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
     const RunnerStage at = stage_of(model, runner, stage);
     WheelsetMotion motion;
     find_motion(at, i, s, w, w.solved + runner.first, motion);
-    WheelsetLaw& law = all.law[set];
-    law = {&runner,
-           i,
-           true,
-           rails_under(model, runner, i, stage.step, at.before(theta)),
-           travelled(runner.travel, at.time(theta)).speed,
-           at.rate,
-           {},
-           {},
-           false};
+    WheelsetLaw& law = all.law[set] = law_of(at, i, true);
     const int first = all.scalars + kOfWheelset * set;
     for (int k = 0; k < kMotions; ++k) {
       all.z_free[first + k] = motion.free[k];
       all.start[first + k] = motion.start[k];
       law.rate_at_zero[k] = motion.rate_at_zero[k];
     }
-    for (int k = 0; k < 2 * kWheelSeatRows; ++k) {
-      const int row = wheel_seat_row(model, set, 0) + k;
-      all.z_free[first + kMotions + k] = c.track_free[row];
-      all.start[first + kMotions + k] = c.track_free[row] + moved_before(model, s, c, row);
-      law.rate_at_zero[kMotions + k] = rate_of(model, s, c, predicted, row).before;
-    }
+    const double place = element_place(model, runner, i, stage.step, stage.before + stage.span);
+    const bool enters = !(place >= 0. && place <= model.elements * model.element_length);
+    couple_seats(model, s, c, runner, set, slope, enters, all);
   });
 }
 
@@ -227,6 +267,26 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
   return met;
 }
 
+namespace {
+
+/// Stores the motions of the seats under a wheelset.
+void keep_seats(const Coupling& c, const CoupledRunners& all, std::int32_t set, State& s,
+                int first_row) noexcept {
+  const WheelsetLaw& law = all.law[set];
+  for (int side = 0; side < 2; ++side) {
+    double* const kept = seat_motion_of(s, set, side);
+    const bool on_rail = is_on_rail(c, first_row + kWheelSeatRows * side);
+    for (int k = 0; k < kWheelSeatRows; ++k) {
+      const int own = kMotions + kWheelSeatRows * side + k;
+      const double z = on_rail ? all.start[all.scalars + kOfWheelset * set + own] : 0.;
+      kept[k] = z;
+      kept[kWheelSeatRows + k] = on_rail ? law.seat_rate * z + law.rate_at_zero[own] : 0.;
+    }
+  }
+}
+
+}  // namespace
+
 Status move_coupled_runners(const Model& model, const Coupling& c, const CoupledRunners& all,
                             State& s, Workspace& w) noexcept {
   Status met = Status::ok;
@@ -238,6 +298,7 @@ Status move_coupled_runners(const Model& model, const Coupling& c, const Coupled
       for (int k = 0; k < kMotions; ++k)
         force[kMotions * i + k] = all.force[all.scalars + kOfWheelset * set + k];
       keep_wheel_forces(runner, i, all.law[set], s);
+      if (keeps_seats(model)) keep_seats(c, all, set, s, wheel_seat_row(model, set, 0));
       if (all.law[set].lost) met = met | Status::contact_lost;
       if (!is_on_rail(c, wheel_seat_row(model, set, 0))) met = met | Status::off_rail;
     }

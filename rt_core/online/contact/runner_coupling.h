@@ -14,6 +14,9 @@ void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, 
 /// Adds the effect of the rails' roll to seats that mirror. Their displacements must be known.
 void lean_wheel_seats(const Model& model, Coupling& c) noexcept;
 
+/// Adds the residual flexibility between the rows of each seat to W.
+void add_seat_flexibility(const Model& model, Coupling& c) noexcept;
+
 /// All of the runners for one stage.
 struct CoupledRunners {
   int scalars;  // contacts and one-sided springs, before the wheelsets among the coordinates

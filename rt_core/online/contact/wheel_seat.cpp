@@ -8,22 +8,6 @@ namespace {
 
 constexpr double kUp[3] = {0., 0., 1.};
 
-/// The centre of the crown in the rail's section: its contact with a centred wheel is in the middle
-/// of the railhead.
-struct SectionPoint {
-  double y, z;
-};
-SectionPoint crown_centre(const Model& model, const RollingContact& contact, int side) noexcept {
-  const Cant& cant = model.cant[side];
-  const CrownTop top = crown_top(cant, model.head_z[side], model.crown_radius[side]);
-  const double cosine = 1. / std::sqrt(1. + contact.slope * contact.slope);
-  const double outwards = contact.crown_radius * (contact.slope * cosine);
-  const double in_track[3] = {0., side == 0 ? outwards : -outwards, -contact.crown_radius * cosine};
-  double in_section[3];
-  to_rail(cant, in_track, in_section);
-  return {top.y + in_section[1], top.z + in_section[2]};
-}
-
 /// Row of a point of the section along a direction of the track.
 void fill_point_row(const Cant& cant, const SectionPoint& point, const double* shape,
                     const double* direction, RailRow& row) noexcept {
@@ -74,6 +58,43 @@ void fill_seat_rows(const Model& model, const SectionPoint& centre, int side, co
 }
 
 }  // namespace
+
+double side_of_crown(const RollingContact& contact, int side) noexcept {
+  const double cosine = 1. / std::sqrt(1. + contact.slope * contact.slope);
+  const double outwards = contact.crown_radius * (contact.slope * cosine);
+  return side == 0 ? outwards : -outwards;
+}
+
+SectionPoint crown_centre(const Model& model, const RollingContact& contact, int side) noexcept {
+  const Cant& cant = model.cant[side];
+  const CrownTop top = crown_top(cant, model.head_z[side], model.crown_radius[side]);
+  const double cosine = 1. / std::sqrt(1. + contact.slope * contact.slope);
+  const double in_track[3] = {0., side_of_crown(contact, side), -contact.crown_radius * cosine};
+  double in_section[3];
+  to_rail(cant, in_track, in_section);
+  return {top.y + in_section[1], top.z + in_section[2]};
+}
+
+SeatFlexibility seat_flexibility(const Model& model, const RunnerModel& runner, int side,
+                                 const RailForce& place) noexcept {
+  const ResidualModel& r = model.residual;
+  if (r.seat == nullptr || place.load_point == kNoLoadPoint)
+    return {{{0., 0., 0.}, {0., residual_under(model, place), 0.}, {0., 0., 0.}}};
+  const std::ptrdiff_t seat = 2 * (&runner - model.runner) + side,
+                       row = seat * r.elements + place.element % r.elements;
+  const Cubic at = cubic(r.points, place.xi);
+  const double* const value = r.seat + (row * (r.points + 1) + at.first) * kSeatResiduals;
+  double own[kSeatResiduals];
+  for (int i = 0; i < kSeatResiduals; ++i)
+    own[i] = (at.weight[0] * value[i] + at.weight[1] * value[kSeatResiduals + i]) +
+             (at.weight[2] * value[2 * kSeatResiduals + i] +
+              at.weight[3] * value[3 * kSeatResiduals + i]);
+  const auto of = [&own](SeatResidual which) noexcept { return own[static_cast<int>(which)]; };
+  const double yz = of(SeatResidual::yz), yr = of(SeatResidual::yr), zr = of(SeatResidual::zr);
+  return {{{of(SeatResidual::yy), yz, yr},
+           {yz, residual_under(model, place) + of(SeatResidual::zz), zr},
+           {yr, zr, of(SeatResidual::rr)}}};
+}
 
 bool seats_mirror(const Model& model) noexcept {
   const Cant &left = model.cant[0], &right = model.cant[1];

@@ -13,6 +13,32 @@ struct WheelSeatRow {
   RailRow row;
 };
 
+/// The centre of the crown in the rail's section: its contact with a centred wheel is in the middle
+/// of the railhead.
+struct SectionPoint {
+  double y, z;  // m
+};
+/// Its place along y from the top of the railhead, m.
+double side_of_crown(const RollingContact& contact, int side) noexcept;
+SectionPoint crown_centre(const Model& model, const RollingContact& contact, int side) noexcept;
+
+/// Residual displacements of a seat along its rows y, z and roll by unit forces along them, m/N,
+/// rad/N, rad/(N m); symmetric.
+struct SeatFlexibility {
+  double along[kWheelSeatRows][kWheelSeatRows];
+};
+/// @param place  of its row along z
+SeatFlexibility seat_flexibility(const Model& model, const RunnerModel& runner, int side,
+                                 const RailForce& place) noexcept;
+
+/// Displacement along a row by the forces of a wheel on its seat.
+/// @param flexibility  [kWheelSeatRows] of the row by unit forces along those of the seat
+/// @param wheel_force  [kWheelForces] State::wheel_force
+inline double moved_by_wheel(const double* flexibility, const double* wheel_force) noexcept {
+  return flexibility[2] * wheel_force[3] -
+         (flexibility[0] * wheel_force[1] + flexibility[1] * wheel_force[2]);
+}
+
 /// Whether seats at one place of both rails have rows that are mirror images, so that one of them
 /// serves both: every line has both rails alike.
 bool seats_mirror(const Model& model) noexcept;

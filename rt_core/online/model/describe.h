@@ -245,7 +245,7 @@ void describe(Archive& a, RunnerModel& r) {
 }
 
 template <typename Archive>
-void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
+void describe(Archive& a, ResidualModel& r, std::int32_t elements, std::int32_t runners) {
   a.count(r.load_points, kMaxLoadPoints);
   a.count(r.points, kMostRows);
   a.count(r.elements, elements);
@@ -260,6 +260,7 @@ void describe(Archive& a, ResidualModel& r, std::int32_t elements) {
       a.count(pair.range, elements);
       a.reals(pair.value, std::int64_t{r.elements} * (2 * pair.range + 1) * block);
     }
+  a.reals(r.seat, 2 * std::int64_t{runners} * r.elements * (r.points + 1) * kSeatResiduals);
 }
 
 template <typename Archive>
@@ -345,7 +346,7 @@ void describe_track(Archive& a, Model& m) {
     a.count(m.external_wheel[i].input, kMaxInputs);
     a.count(m.external_wheel[i].load_point, kMaxLoadPoints - 1);
   }
-  describe(a, m.residual, m.elements);
+  describe(a, m.residual, m.elements, m.runners);
   describe(a, m.p_delta, m.elements);
   describe(a, m.track_sensor, m);
   describe(a, m.fixed, m);

@@ -195,7 +195,8 @@ bool wheel_is_valid(const Model& m, std::int32_t i) noexcept {
 /// ports says so and gives no force.
 bool residual_is_valid(const Model& m) noexcept {
   const ResidualModel& r = m.residual;
-  const bool tables = r.under != nullptr || r.axis != nullptr || m.track_sensor.residual != nullptr;
+  const bool tables = r.under != nullptr || r.axis != nullptr || r.seat != nullptr ||
+                      m.track_sensor.residual != nullptr;
   if (tables && (r.points < 3 || r.elements < 1)) return false;
   for (std::int32_t i = 0; i < m.loads && tables; ++i)
     if (m.load[i].load_point >= r.load_points) return false;

@@ -218,8 +218,12 @@ struct PairModel {
   const double* value;  // [elements][2 range + 1][pair_points + 1][pair_points + 1] m/N, or null
 };
 
-/// The part of the static deflection under vertical forces that the model's unknowns miss, tabled
-/// over elements at equal steps of xi. Null pointers: not modelled.
+/// Residual flexibility of a seat between its rows; zz beyond that of the load point pressed.
+enum class SeatResidual { yy, yz, yr, zz, zr, rr };
+inline constexpr int kSeatResiduals = 6;
+
+/// The part of the static deflection under forces on the rails that the model's unknowns miss,
+/// tabled over elements at equal steps of xi. Null pointers: not modelled.
 struct ResidualModel {
   std::int32_t load_points;  // rails and heights at which vertical forces act
   std::int32_t points;       // intervals per element
@@ -228,6 +232,9 @@ struct ResidualModel {
   const double* axis;        // the same for the rail's axis under it
   std::int32_t pair_points;  // intervals per element of all pairs; 0: there are none
   PairModel pair[kMaxLoadPoints][kMaxLoadPoints];  // [force][displacement]
+  /// Of the seats of runners, by unit forces along their own rows y, z and roll: those of
+  /// SeatResidual. Null without runners.
+  const double* seat;  // [runners][2 rails][elements][points + 1][kSeatResiduals] m/N, ...
 };
 
 /// Levers of a vertical force on a railhead at the seats around it, as many behind as ahead: the

@@ -9,6 +9,7 @@
 namespace railstep {
 
 inline constexpr int kWheelForces = 4;  // kept of each wheel of a runner
+inline constexpr int kSeatMotions = 6;  // kept of each seat
 
 /// All numbers that a replay needs, and no others. The caller owns the memory, state_doubles() of
 /// it. LineModel says what u, v, a and g of a condensed line are.
@@ -23,14 +24,17 @@ struct State {
   double* port_force;     // [fixed ports] N, the same; 0: open
   double* wheel_force;    // [wheels of runners][kWheelForces] of the last step: N along x, y, z on
                           // the wheel, N m about x on the rail's section
-  double* multiplier;     // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
-                          // the force on the wheelset is its negative
-  double* quaternion;     // [system.bodies][4] body axes to ground
-  double* row_force;      // [rows] of the system's joints and springs, N; the force on its parts is
-                          // -G' of it, so a tensile force of a joint or spring is positive
-  double* kept;           // Newton's matrix of the system if it is kept over steps, or null
-  double* input;          // [inputs] N or N m: the last good ones
-  Status latched;         // kLatched bits that were met since the reset
+  /// [wheels of runners][kSeatMotions] on banded lines: y, z and roll of the seat under the wheel,
+  /// m and rad, then the rates of the rail there.
+  double* seat;
+  double* multiplier;  // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
+                       // the force on the wheelset is its negative
+  double* quaternion;  // [system.bodies][4] body axes to ground
+  double* row_force;   // [rows] of the system's joints and springs, N; the force on its parts is
+                       // -G' of it, so a tensile force of a joint or spring is positive
+  double* kept;        // Newton's matrix of the system if it is kept over steps, or null
+  double* input;       // [inputs] N or N m: the last good ones
+  Status latched;      // kLatched bits that were met since the reset
 };
 
 /// Status bits that stay set until reset(): a frame was lost or distorted.
@@ -162,16 +166,30 @@ inline double* wheel_force_of(const State& state, std::int32_t wheelset,
   return state.wheel_force + std::ptrdiff_t{kWheelForces} * (2 * wheelset + side);
 }
 
+/// Whether states keep the motions of seats.
+inline bool keeps_seats(const Model& model) noexcept {
+  return model.form == Form::banded && model.lines > 0;
+}
+/// The motions of the seat under a wheel of a runner, [kSeatMotions], if states keep them.
+inline double* seat_motion_of(const State& state, std::int32_t wheelset,
+                              std::int32_t side) noexcept {
+  return state.seat + std::ptrdiff_t{kSeatMotions} * (2 * wheelset + side);
+}
+
+/// Numbers of State::wheel_force and State::seat.
+inline std::int64_t runner_state_doubles(const Model& model) noexcept {
+  return 2LL * (kWheelForces + (keeps_seats(model) ? kSeatMotions : 0)) * model.runner_wheelsets;
+}
+
 inline std::int64_t state_doubles(const Model& model) noexcept {
   return 4LL * model.unknowns + contact_count(model) + model.fixed.count +
-         2LL * kWheelForces * model.runner_wheelsets + guide_rows(model) +
-         system_state_doubles(model.system) + model.inputs;
+         runner_state_doubles(model) + guide_rows(model) + system_state_doubles(model.system) +
+         model.inputs;
 }
 /// Size of the model's start: all of a state but Newton's matrix, which is not made yet.
 inline std::int64_t start_doubles(const Model& model) noexcept {
   return 4LL * model.unknowns + contact_count(model) + model.fixed.count +
-         2LL * kWheelForces * model.runner_wheelsets + guide_rows(model) +
-         system_start_doubles(model.system);
+         runner_state_doubles(model) + guide_rows(model) + system_start_doubles(model.system);
 }
 inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t rows = track_row_count(model), ports = port_count(model);
@@ -189,7 +207,8 @@ inline State state_on(const Model& model, double* memory) noexcept {
   double* const wheels = memory + 4 * n;
   double* const ports = wheels + contact_count(model);
   double* const runners = ports + model.fixed.count;
-  double* const guides = runners + 2LL * kWheelForces * model.runner_wheelsets;
+  double* const seats = runners + 2LL * kWheelForces * model.runner_wheelsets;
+  double* const guides = runners + runner_state_doubles(model);
   double* const system = guides + guide_rows(model);
   double* const rows = system + 4LL * model.system.bodies;
   return {0,
@@ -201,6 +220,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           wheels,
           ports,
           runners,
+          seats,
           guides,
           system,
           rows,

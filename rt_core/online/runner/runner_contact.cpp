@@ -60,14 +60,17 @@ double element_place(const Model& model, const RunnerModel& runner, int wheelset
 }
 
 RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheelset,
-                       std::int64_t step, double before) noexcept {
+                       std::int64_t step, double before, RailsUnder* slopes) noexcept {
   RailsUnder rails{};
+  if (slopes != nullptr) *slopes = {};
   if (model.signals == 0) return rails;
   const double x = element_place(model, runner, wheelset, step, before) +
                    (model.lines > 0 ? track_offset(model, step) : 0.);
   for (std::int32_t i = 0; i < model.signals; ++i) {
     const RailSignal& own = model.signal[i];
-    (own.direction == 1 ? rails.y : rails.z)[own.rail] += signal_at(own.signal, x).value;
+    const SignalValue found = signal_at(own.signal, x);
+    (own.direction == 1 ? rails.y : rails.z)[own.rail] += found.value;
+    if (slopes != nullptr) (own.direction == 1 ? slopes->y : slopes->z)[own.rail] += found.slope;
   }
   return rails;
 }

@@ -7,8 +7,9 @@ namespace railstep {
 // Wheels of runners on their rails.
 
 /// @param before  s before the end of the step
+/// @param slopes  out: derivatives along x; null: none
 RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheelset,
-                       std::int64_t step, double before) noexcept;
+                       std::int64_t step, double before, RailsUnder* slopes = nullptr) noexcept;
 
 /// Force of a rail on a wheel of a wheelset. @param u, v  [6] motions of the wheelset, their rates
 /// @param slopes  out: derivatives; null: none

@@ -112,22 +112,29 @@ void move_by(const RunnerModel& runner, const double* force, double* u) noexcept
 
 namespace {
 
+/// Whether the law takes a motion in the middle of the step.
+constexpr bool is_earlier(BodyMotion motion) noexcept {
+  return motion == BodyMotion::y || motion == BodyMotion::yaw;
+}
+
 /// Both factors of the slopes of one wheel's three forces.
+/// @param placed  change of a motion that creep depends on with the law's own
 /// @param seat  of its rail's y, z and roll among the n coordinates; 0: they are not among them
-void fill_slopes(const ContactSlopes& w, double rate, double crown_radius, int n, int side,
-                 int seat, const LawSlopes& to) noexcept {
+void fill_slopes(const ContactSlopes& w, double rate, double seat_rate, double placed,
+                 double crown_radius, int n, int side, int seat, const LawSlopes& to) noexcept {
   for (int k = 0; k < 3; ++k) {
     double* const own = to.slope + (3 * side + k) * n;
     for (int m = 0; m < n; ++m) own[m] = 0.;
     for (int m = 0; m < kMotions; ++m) own[m] = rate * w.by_rate[k][m];
-    for (int m = 0; m < 4; ++m) own[index_of(kPlaced[m])] += w.by_motion[k][m];
+    for (int m = 0; m < 4; ++m)
+      own[index_of(kPlaced[m])] += (is_earlier(kPlaced[m]) ? placed : 1.) * w.by_motion[k][m];
     double* const spread = to.spread + 3 * side + k;
     for (int m = 0; m < n; ++m) spread[m * kWheelsetRank] = m < kMotions ? w.spread[m][k] : 0.;
     if (seat == 0) continue;
     // The wheel's place counts over the rail.
-    own[seat] = -own[1];
-    own[seat + 1] = -own[2];
-    own[seat + 2] = rate * (crown_radius * w.by_across[k]);
+    own[seat] = (rate - seat_rate) * w.by_rate[k][1] - own[1];
+    own[seat + 1] = (rate - seat_rate) * w.by_rate[k][2] - own[2];
+    own[seat + 2] = seat_rate * (crown_radius * w.by_across[k]);
     spread[seat * kWheelsetRank] = -w.spread[1][k];
     spread[(seat + 1) * kWheelsetRank] = -w.spread[2][k];
     spread[(seat + 2) * kWheelsetRank] = k == 2 ? crown_radius : 0.;
@@ -139,34 +146,59 @@ void fill_slopes(const ContactSlopes& w, double rate, double crown_radius, int n
 void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slopes) noexcept {
   const int n = size();
   const double crown = runner->contact.crown_radius;
-  double v[kMotions];
+  double u[kMotions], v[kMotions];
   for (int k = 0; k < kMotions; ++k) {
     v[k] = rate * z[k] + rate_at_zero[k];
+    u[k] = is_earlier(BodyMotion{k}) ? z[k] - later * v[k] : z[k];
     force[k] = 0.;
   }
   lost = false;
   for (int side = 0; side < 2; ++side) {
     const int seat = kMotions + 3 * side;
     RailsUnder under = rails;
-    RailRate moving{0., 0., 0.};
+    RailRate moving{0., uneven_rate[side], 0.};
     if (seated) {
-      under.y[side] += z[seat];
+      const auto rate_along = [&](int k) noexcept {
+        return seat_rate * z[seat + k] + rate_at_zero[seat + k];
+      };
+      moving = {rate_along(0), moving.z + rate_along(1), rate_along(2)};
+      under.y[side] += z[seat] - later * moving.y;
       under.z[side] += z[seat + 1];
-      moving = {rate * z[seat] + rate_at_zero[seat], rate * z[seat + 1] + rate_at_zero[seat + 1],
-                rate * z[seat + 2] + rate_at_zero[seat + 2]};
     }
     ContactSlopes own;
-    const WheelForce f = wheel_force(*runner, wheelset, under, moving, side, speed, z, v,
+    const WheelForce f = wheel_force(*runner, wheelset, under, moving, side, speed, u, v,
                                      slopes == nullptr ? nullptr : &own);
     if (!(f.depth > 0.)) lost = true;
     for (int k = 0; k < kMotions; ++k) force[k] += f.generalised[k];
     keep_wheel_force(f, crown, kept[side]);
-    if (slopes != nullptr) fill_slopes(own, rate, crown, n, side, seated ? seat : 0, *slopes);
+    if (slopes != nullptr)
+      fill_slopes(own, rate, seat_rate, 1. - later * rate, crown, n, side, seated ? seat : 0,
+                  *slopes);
     if (!seated) continue;
     force[seat] = -f.generalised[1];
     force[seat + 1] = -f.generalised[2];
     force[seat + 2] = crown * f.across;
   }
+}
+
+WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated) noexcept {
+  const double theta = at.model.scheme.theta;
+  const bool banded = at.model.form == Form::banded;
+  WheelsetLaw law{};
+  law.runner = &at.runner;
+  law.wheelset = wheelset;
+  law.seated = seated;
+  RailsUnder slope;
+  law.rails = rails_under(at.model, at.runner, wheelset, at.stage.step, at.before(theta), &slope);
+  law.speed = travelled(at.runner.travel, at.time(theta)).speed;
+  law.rate = at.rate;
+  law.seat_rate = banded ? 1. / at.stage.span : at.rate;
+  law.later = banded ? 0. : (theta - .5) * at.model.scheme.dt;
+  for (int side = 0; side < 2; ++side) {
+    law.rails.y[side] -= law.later * (law.speed * slope.y[side]);
+    law.uneven_rate[side] = law.speed * slope.z[side];
+  }
+  return law;
 }
 
 Status status_of(NewtonStatus met) noexcept {
@@ -186,20 +218,16 @@ namespace {
 
 RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcept {
   const RunnerModel& r = at.runner;
-  const double theta = at.model.scheme.theta;
   double* const u = w.solved + r.first;
   move_freely(at, s, w, u);
   LawBlock block[kMaxWheelsetsOfRunner + kMaxStopsOfRunner];
   WheelsetLaw law[kMaxWheelsetsOfRunner];
   double z_free[kMostInterfaces], z[kMostInterfaces], force[kMostInterfaces];
-  const double speed = travelled(r.travel, at.time(theta)).speed;
   for (int i = 0; i < r.wheelsets; ++i) {
     WheelsetMotion motion;
     find_motion(at, i, s, w, u, motion);
     block[i] = {kMotions * i, kMotions, kWheelsetRank};
-    law[i] = {&r,    i,       false, rails_under(at.model, r, i, at.stage.step, at.before(theta)),
-              speed, at.rate, {},    {},
-              false};
+    law[i] = law_of(at, i, false);
     for (int k = 0; k < kMotions; ++k) {
       z_free[kMotions * i + k] = motion.free[k];
       z[kMotions * i + k] = motion.start[k];

@@ -57,7 +57,15 @@ struct WheelsetLaw {
   int wheelset;
   bool seated;
   RailsUnder rails;
-  double speed, rate;
+  /// Rates are these times the motions, of the wheelset and of the seats, and `rate_at_zero`.
+  double speed, rate, seat_rate;
+  /// Motions are those at theta of a step. Rates are in its middle, this much earlier, s, and so
+  /// are yaw and y, on which creep depends: where it looks ahead of its rates the vehicle hunts too
+  /// late. z and roll, by which the contact's stiff spring is pressed, stay together.
+  double later;
+  /// On a rail that rises at this rate by its unevenness the contact moves ahead on the wheel, by
+  /// as much as makes up for the wheel's own rise, m/s.
+  double uneven_rate[2];
   double rate_at_zero[kMotions + 6];
   double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
   bool lost;                     // a wheel was free there
@@ -68,6 +76,9 @@ struct WheelsetLaw {
   ///                in a step to be worth their work. Null: none
   void evaluate(const double* z, double* force, const LawSlopes* slopes) noexcept;
 };
+
+/// The law of a wheelset without its rates at zero.
+WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated) noexcept;
 
 /// Stores the forces on the wheels of a wheelset as a law last found them.
 void keep_wheel_forces(const RunnerModel& runner, int wheelset, const WheelsetLaw& law,
