@@ -22,7 +22,7 @@ using Changes = std::vector<std::string>;
 struct TrackForm {
   const char *name, *scene;
   Changes words;
-  double start;  // of the vehicle, m; a partner stands 14 m ahead
+  double start;  // of the vehicle, m; a partner stands 14.07 m ahead, not over a node
 };
 
 const std::string kTrack = "rails=2,bay_m=0.6,elements_per_bay=2,rail_spacing_m=1.5";
@@ -95,7 +95,7 @@ Scene scene_of(const TrackForm& form, const Partner& partner, const std::string&
   words.insert(words.end(), form.words.begin(), form.words.end());
   for (const std::string& word : partner.words)
     words.push_back(replaced(replaced(replaced(word, "VEHICLE", vehicle), "=V}", "=" + speed + "}"),
-                             "AT", std::to_string(form.start + 14.)));
+                             "AT", std::to_string(form.start + 14.07)));
   return read_scene(shipped(form.scene), words);
 }
 

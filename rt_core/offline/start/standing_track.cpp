@@ -201,6 +201,7 @@ RunningOn rails_at_rest(const PackedModel& packed, const Track& track, std::int3
     Seats seats = seats_of(model, own, start, (i + .5) * apart),
           ahead = seats_of(model, own, start, (i + 1) * apart);
     std::vector<SeatFlexibility> of_seats;
+    of_seats.reserve(seats.place.size());
     for (int wheel = 0; wheel < 2 * own.wheelsets; ++wheel)
       of_seats.push_back(
           missed.under(runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]));

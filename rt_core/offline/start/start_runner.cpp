@@ -137,7 +137,8 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
         under.y[side] = uneven.y[side] - .5 * (uneven.y[0] + uneven.y[1]);
         const StaticSeat seat = seat_of(model, runner, i, side, at, time);
         if (!seat.row[0].on_rail) continue;
-        const auto set = static_cast<std::size_t>(runner.first_wheelset + i);
+        const std::int32_t of_all = runner.first_wheelset + i;
+        const auto set = static_cast<std::size_t>(of_all);
         double force[kWheelForces];
         keep_wheel_force(pressing.wheels[set][static_cast<std::size_t>(side)],
                          runner.contact.crown_radius, force);
