@@ -142,7 +142,7 @@ std::vector<double> forces_of(const Model& model, const Outputs& outputs) {
   return all;
 }
 
-/// What stands keeps the vertical forces at which it starts, from the first step on.
+/// A vehicle and its partner at rest keep their vertical forces from the first step on.
 void check_standing(const Scene& scene) {
   Simulation made(scene);
   const Model& model = made.model();

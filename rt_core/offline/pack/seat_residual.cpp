@@ -16,8 +16,8 @@ std::vector<double> seat_residual(const ResidualFlexibility& residual, const Mod
       const RunnerModel& runner = model.runner[r];
       const Cant& cant = model.cant[side];
       const SectionPoint centre = crown_centre(model, runner.contact, side);
-      // Of what the rows along y and of the roll are made: displacements along y of the railhead
-      // and of the axis.
+      // The displacements along y of the railhead and of the axis make up the rows along y and of
+      // the roll.
       const LoadPoint head{side, model.head_z[side], 0., 1}, axis{side, 0., 0., 1},
           pressed = wheel[static_cast<std::size_t>(runner.load_point[side])];
       const std::vector<double> hh = residual.under(head), ha = residual.under(head, axis),

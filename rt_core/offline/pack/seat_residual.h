@@ -13,8 +13,8 @@ namespace railstep {
 std::vector<double> seat_residual(const ResidualFlexibility& residual, const Model& model,
                                   const std::vector<LoadPoint>& wheel);
 
-/// What the mesh of a track misses of its flexibility under the seats of a model's runners, however
-/// the model condenses it.
+/// The part of a track's flexibility under the seats of runners that its mesh misses. It does not
+/// depend on how the model condenses the track.
 class MeshResidual {
  public:
   /// @param track  at rest  @param lines  of it, those of the model

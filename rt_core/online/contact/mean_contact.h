@@ -4,7 +4,7 @@
 namespace railstep {
 
 /// Residual displacement of the rail under a wheel by the loads and by the forces of the step
-/// before at their new places, m; of a row of a seat without that by the forces on this seat.
+/// before at their new places, m. For a row of a seat the forces on that seat are left out.
 double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept;
 
 /// Makes the laws of Hertz contacts means over the step, from the penetration at its start in the

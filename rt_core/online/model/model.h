@@ -232,8 +232,8 @@ struct ResidualModel {
   const double* axis;        // the same for the rail's axis under it
   std::int32_t pair_points;  // intervals per element of all pairs; 0: there are none
   PairModel pair[kMaxLoadPoints][kMaxLoadPoints];  // [force][displacement]
-  /// Of the seats of runners, by unit forces along their own rows y, z and roll: those of
-  /// SeatResidual. Null without runners.
+  /// Displacements of each seat of the runners by unit forces along its own rows y, z and roll, in
+  /// the order of SeatResidual. Null without runners.
   const double* seat;  // [runners][2 rails][elements][points + 1][kSeatResiduals] m/N, ...
 };
 
