@@ -61,9 +61,6 @@ TEST_CASE("features without leaning rails refuse them", "[cant]") {
   const Ran flanged = railstep_program("run " + shipped_word("wheelset_flange") + lean);
   CHECK(flanged.code == 2);
   CHECK_THAT(flanged.err, Contains("E-PACK-15"));
-  const Ran machine = railstep_program("run " + shipped_word("exciter_on_track") + lean);
-  CHECK(machine.code == 2);
-  CHECK_THAT(machine.err, Contains("E-PACK-20"));
 }
 
 TEST_CASE("a wheelset that runs on leaning rails keeps the balance of energy", "[cant]") {

@@ -32,7 +32,8 @@ std::string about(const Scene& scene) {
 }
 
 std::string about(const SystemScene& scene) {
-  return lines(scene.file, scene.sum, scene.step, false);
+  return lines(scene.file, scene.sum, scene.step,
+               scene.track && scene.track->condense.kind.has_value());
 }
 
 }  // namespace railstep

@@ -234,6 +234,14 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
           names_of(scene, std::move(sensors.columns))};
 }
 
+std::vector<std::string> input_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const InputScene& input : scene.inputs) names.push_back(input.name);
+  for (const ExternalWheelScene& wheel : scene.external_wheels)
+    for (const char* quantity : kExternalInputNames) names.push_back(wheel.name + "." + quantity);
+  return names;
+}
+
 Built::Built(const Scene& scene) try {
   fix_cache_sizes();
   refuse_unstepped(scene);
@@ -241,9 +249,7 @@ Built::Built(const Scene& scene) try {
   if (track.ring && !scene.condense.kind) track = window_of(std::move(track));
   TracedTraffic traced = traffic_of(scene, track);
   about = railstep::about(scene);
-  for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
-  for (const ExternalWheelScene& wheel : scene.external_wheels)
-    for (const char* quantity : kExternalInputNames) inputs.push_back(wheel.name + "." + quantity);
+  inputs = input_names(scene);
   packed = std::make_unique<PackedModel>(track, traced.traffic, pack_options_of(scene));
   columns = columns_of(packed->model(), traced.names);
   const double gravity = scene.track.gravity ? kGravity : 0.;

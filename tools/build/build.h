@@ -73,6 +73,8 @@ struct TracedTraffic {
   TraceNames names;
 };
 TracedTraffic traffic_of(const Scene& scene, const Track& track);
+/// Names of the inputs of a track: of forces, then of external wheels.
+std::vector<std::string> input_names(const Scene& scene);
 /// Throws InputError.
 PackOptions pack_options_of(const Scene& scene);
 

@@ -25,7 +25,8 @@ void add_section(const BeamBar& made_of, const std::string& place, FlexibleBeam&
 SystemOptions options_of(const SystemScene& scene) {
   SystemOptions options = scene.options;
   options.scheme = scheme_of(scene.step);
-  options.energy_momentum = scene.step.scheme == TimeScheme::energy_momentum;
+  options.energy_momentum = scene.step.scheme == TimeScheme::energy_momentum ||
+                            (scene.track && scene.track->condense.kind);
   options.steps_per_frame = static_cast<int>(scene.step.steps_per_frame);
   options.steps = scene.step.steps;
   options.at_rest = scene.step.start == Start::equilibrium;
@@ -50,11 +51,6 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
                                         TraceNames& names) {
   if (!scene.track) return std::make_unique<PackedSystem>(system, options_of(scene));
   const Track track = track_of(*scene.track);
-  if (!fixed_ports(track).empty())
-    refuse("E-BODY-35",
-           "supports that do not pull, or have a gap, are not stepped beside bodies "
-           "and beams; expected a scene without gap_m and unilateral, or a track "
-           "alone");
   const TracedTraffic traced = traffic_of(*scene.track, track);
   names = traced.names;
   return std::make_unique<PackedSystem>(system, options_of(scene), track, traced.traffic,
@@ -66,6 +62,7 @@ std::unique_ptr<PackedSystem> packed_of(const SystemScene& scene, const System& 
 BuiltSystem::BuiltSystem(const SystemScene& scene) try
     : names(scene.names), system((fix_cache_sizes(), system_of(scene))) {
   about = railstep::about(scene);
+  if (scene.track) inputs = input_names(*scene.track);
   for (const InputScene& input : scene.inputs) inputs.push_back(input.name);
   TraceNames traced;
   packed = packed_of(scene, system, traced);

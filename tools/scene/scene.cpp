@@ -325,16 +325,9 @@ void read_rails(const Table& root, Scene& scene) {
                                "[[support_change]]");
 }
 
-Scene read_track_scene(const Table& root) {
-  Scene scene;
-  read_rails(root, scene);
-  root.attempt([&] {
-    if (const std::optional<Table> step = root.table_if("step"))
-      scene.step = read_track_step(*step, scene.track);
-  });
+void read_traffic(const Table& root, Scene& scene) {
   scene.condense = read_condense(root, scene.track);
   if (scene.step) read_contact(root, scene);
-  scene.statics = read_statics(root);
   root.attempt([&] { scene.stops = read_stops(root, scene); });
   root.attempt([&] { scene.loads = read_loads(root, scene); });
   root.attempt([&] { scene.wheelsets = read_wheelsets(root, scene, scene.inputs); });
@@ -345,14 +338,28 @@ Scene read_track_scene(const Table& root) {
   root.stop_if_refused();  // the readers below ask what runs on the track
   check_external_wheels(root, scene);
   root.attempt([&] { scene.defects = read_defects(root, scene); });
-  root.attempt([&] { scene.sensors = read_sensors(root, scene); });
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);
+}
+
+Scene read_track_scene(const Table& root) {
+  Scene scene;
+  read_rails(root, scene);
+  root.attempt([&] {
+    if (const std::optional<Table> step = root.table_if("step"))
+      scene.step = read_track_step(*step, scene.track);
+  });
+  scene.statics = read_statics(root);
+  read_traffic(root, scene);
+  root.attempt([&] { scene.sensors = read_sensors(root, scene); });
   if (scene.trace_supports && scene.track.endless)
-    output->refuse("supports", "E-SCENE-31",
-                   "the supports of a track without end pass under its traffic; expected "
-                   "[[sensor]] tables instead, as sensors follow the traffic bay by bay");
-  if (root.is_faultless()) check_names(root, scene);  // else entries of a list may be missing
+    root.table("output").refuse(
+        "supports", "E-SCENE-31",
+        "the supports of a track without end pass under its traffic; expected "
+        "[[sensor]] tables instead, as sensors follow the traffic bay by bay");
+  NameBook names;
+  if (root.is_faultless())
+    claim_names(root, scene, names);  // else entries of a list may be missing
   return scene;
 }
 

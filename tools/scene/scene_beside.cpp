@@ -6,32 +6,6 @@
 namespace railstep {
 namespace {
 
-/// Refuses tables that only a track alone may have.
-void refuse_foreign(const Table& root) {
-  if (root.has("wheelset"))
-    root.refuse("wheelset", "E-BODY-01",
-                "[[wheelset]] is not stepped beside bodies and beams; expected a "
-                "[[body]] with [[spring]] or [[joint]] to the rails, or [[load]]");
-  if (root.has("stop"))
-    root.refuse("stop", "E-BODY-02",
-                "[[stop]] is not stepped beside bodies and beams; expected a [[spring]] "
-                "between the rail and the ground");
-  if (root.has("vehicle"))
-    root.refuse("vehicle", "E-BODY-01",
-                "[[vehicle]] is not stepped beside bodies and beams; expected a [[body]] "
-                "with [[spring]] or [[joint]] to the rails, or [[load]]");
-  for (const char* key : {"irregularity", "defect"})
-    if (root.has(key))
-      root.refuse(key, "E-BODY-04",
-                  fmt::format("{} acts on wheels, which are not stepped beside bodies and beams; "
-                              "expected a scene without it",
-                              key));
-  if (root.has("static"))
-    root.refuse("static", "E-BODY-05",
-                "[static] belongs to `railstep static`, which takes a track alone; "
-                "expected a scene of a track and bodies without it");
-}
-
 StepScene read_step(const Table& t, const TrackScene& track) {
   if (t.has("scheme") && t.string("scheme") == "energy-momentum")
     t.refuse("scheme", "E-BODY-06",
@@ -79,17 +53,18 @@ void check_system(const Table& root, const SystemScene& scene, const TrackScene&
 }  // namespace
 
 Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names) {
-  refuse_foreign(root);
+  if (root.has("static"))
+    root.refuse("static", "E-BODY-05",
+                "[static] belongs to `railstep static`, which takes a track alone; "
+                "expected a scene of a track and bodies without it");
   Scene track;
   read_rails(root, track);
   check_model(root.table("track"), track.track);
   check_system(root, scene, track.track);
   track.step = read_step(root.table("step"), track.track);
-  track.condense = read_full_order(root);
-  for (const Table& load : root.tables("load")) static_cast<void>(names.claim(load));
-  track.loads = read_loads(root, track);
-  const std::optional<Table> output = root.table_if("output");
-  track.trace_supports = output && output->boolean("supports", false);
+  read_traffic(root, track);
+  read_residual_beside(root, track);
+  claim_names(root, track, names);
   return track;
 }
 

@@ -283,45 +283,34 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
   return static_cast<int>(inputs.size()) - 1;
 }
 
-void check_names(const Table& root, const Scene& scene) {
-  // A sensor may have its wheelset's name: only wheels, not wheelsets, have columns of their own.
-  std::map<std::string, std::string> traced, wheelsets;  // name -> where it was given first
-  const auto claim = [](auto& taken, const Table& t, std::string_view key,
-                        const std::string& name) {
-    const auto [first, is_new] = taken.emplace(name, t.name());
-    if (!is_new)
-      t.refuse(key, "E-RUNNER-19",
-               fmt::format("{} = \"{}\" is taken by [{}]; expected a name that is used once", key,
-                           name, first->second));
-  };
+void claim_names(const Table& root, const Scene& scene, NameBook& names) {
+  NameBook wheelsets;  // a sensor may have the name of a wheelset, which has no columns of its own
   const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
              sensors = root.tables("sensor"), stops = root.tables("stop");
-  for (std::size_t i = 0; i < loads.size(); ++i)
-    claim(traced, loads[i], "name", scene.loads[i].name);
+  for (std::size_t i = 0; i < loads.size(); ++i) names.claim(loads[i], "name", scene.loads[i].name);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    claim(wheelsets, bodies[i], "name", scene.wheelsets[i].name);
+    wheelsets.claim(bodies[i], "name", scene.wheelsets[i].name);
     for (const std::string& wheel : scene.wheelsets[i].wheels)
-      claim(traced, bodies[i], "wheels", wheel);
+      names.claim(bodies[i], "wheels", wheel);
   }
   const auto external = root.tables("external_wheel");
   for (std::size_t i = 0; i < external.size(); ++i)
-    claim(traced, external[i], "name", scene.external_wheels[i].name);
-  for (std::size_t i = 0; i < stops.size(); ++i)
-    claim(traced, stops[i], "name", scene.stops[i].name);
+    names.claim(external[i], "name", scene.external_wheels[i].name);
+  for (std::size_t i = 0; i < stops.size(); ++i) names.claim(stops[i], "name", scene.stops[i].name);
   // One table that stands on both rails makes two vehicles, whose names begin with its own.
   std::size_t vehicle = 0;
   for (const Table& t : root.tables("vehicle")) {
     const std::string name = t.string("name");
     while (vehicle < scene.vehicles.size() && scene.vehicles[vehicle].table == name)
-      claim(traced, t, "name", scene.vehicles[vehicle++].name);
+      names.claim(t, "name", scene.vehicles[vehicle++].name);
     for (const RailVehicleScene& own : scene.rail_vehicles) {
       if (own.name != name) continue;
-      claim(traced, t, "name", own.name);
-      for (const std::string& wheelset : own.wheelsets) claim(traced, t, "name", wheelset);
+      names.claim(t, "name", own.name);
+      for (const std::string& wheelset : own.wheelsets) names.claim(t, "name", wheelset);
     }
   }
-  for (std::size_t i = 0; i < sensors.size(); ++i)
-    claim(traced, sensors[i], "name", scene.sensors[i].name);
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+    names.claim(sensors[i], "name", scene.sensors[i].name);
 }
 
 }  // namespace railstep

@@ -59,29 +59,15 @@ CondenseScene read_condense(const Table& root, const TrackScene& track) {
   return c;
 }
 
-/// A track beside bodies is in full order, and its step has no residual flexibility.
-CondenseScene read_full_order(const Table& root) {
-  CondenseScene full;
-  full.residual_flexibility = false;
+void read_residual_beside(const Table& root, Scene& scene) {
+  if (scene.condense.kind || has_wheels(scene) || !scene.external_wheels.empty()) return;
+  scene.condense.residual_flexibility = false;
   const std::optional<Table> t = root.table_if("condense");
-  if (!t) return full;
-  if (const std::string kind = t->string("kind", "full"); kind != "full")
-    t->refuse("kind", "E-CONDENSE-29",
-              fmt::format("kind = \"{}\" is not stepped beside bodies and beams; expected \"full\"",
-                          kind));
-  for (const char* key : {"modes_per_bay", "highest_hz", "nodes_per_bay", "expansion_hz"})
-    if (t->has(key))
-      t->refuse(
-          key, "E-CONDENSE-30",
-          fmt::format("{} belongs to a condensed track, which is not stepped beside bodies and "
-                      "beams; expected kind = \"full\" without this key",
-                      key));
-  full.band_hz = read_band(*t, full.band_hz);
-  if (t->boolean("residual_flexibility", false))
+  if (t && t->boolean("residual_flexibility", false))
     t->refuse("residual_flexibility", "E-CONDENSE-31",
               "residual_flexibility = true would leave out the pull of joints and "
-              "springs at the rails; expected false beside bodies and beams");
-  return full;
+              "springs at the rails; expected false where bodies and loads alone are on a track in "
+              "full order");
 }
 
 }  // namespace railstep

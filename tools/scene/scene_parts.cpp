@@ -118,12 +118,16 @@ std::string NameBook::claim(const Table& t) {
     t.refuse("name", "E-BODY-19",
              "name = \"ground\" is kept for the ground, which does not move; expected "
              "another name");
+  claim(t, "name", name);
+  return name;
+}
+
+void NameBook::claim(const Table& t, std::string_view key, const std::string& name) {
   const auto [first, is_new] = owner_.emplace(name, t.name());
   if (!is_new)
-    t.refuse("name", "E-RUNNER-19",
-             fmt::format("name = \"{}\" is taken by [{}]; expected a name that is used once", name,
-                         first->second));
-  return name;
+    t.refuse(key, "E-RUNNER-19",
+             fmt::format("{} = \"{}\" is taken by [{}]; expected a name that is used once", key,
+                         name, first->second));
 }
 
 namespace {

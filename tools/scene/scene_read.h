@@ -1,6 +1,7 @@
 #pragma once
 // The parts of read_scene, one table each. Only scene*.cpp include this.
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +39,8 @@ void read_joints(const Table& root, const Table& rail, Scene& scene);
 double spacing_of_gauge(const Table& track, const Scene& scene, double gauge);
 /// [condense].
 CondenseScene read_condense(const Table& root, const TrackScene& track);
-/// [condense] beside bodies and beams, where a track is in full order.
-CondenseScene read_full_order(const Table& root);
+/// Residual flexibility of a track in full order beside bodies and beams, for its wheels alone.
+void read_residual_beside(const Table& root, Scene& scene);
 /// dt, frame and duration of [step]. The callers read the scheme and the start.
 StepScene read_times(const Table& step);
 /// [step] of a scene with a track.
@@ -105,7 +106,21 @@ OuterForce read_body_force(const Table& t, int direction, bool moment,
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// On a rail, a sleeper, a wheelset or a vehicle.
 SensorScene read_sensor(const Table& t, const Scene& scene);
-/// Throws InputError where a name of the trace stands twice.
-void check_names(const Table& root, const Scene& scene);
+/// Names that are used once, with the tables that gave them.
+class NameBook {
+ public:
+  /// The key `name` of a table. Throws InputError where it is not a valid name, or is taken.
+  std::string claim(const Table& t);
+  /// A name of a table's key. Throws InputError where it is taken.
+  void claim(const Table& t, std::string_view key, const std::string& name);
+
+ private:
+  std::map<std::string, std::string> owner_;  // name -> the table that gave it first
+};
+
+/// Claims all names of a track's trace. Throws InputError where a name stands twice.
+void claim_names(const Table& root, const Scene& scene, NameBook& names);
+/// What runs on a track whose rails and step are read, and what makes it uneven.
+void read_traffic(const Table& root, Scene& scene);
 
 }  // namespace railstep

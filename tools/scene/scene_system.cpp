@@ -89,6 +89,15 @@ void check_count(const Table& root, const System& system) {
         fmt::format("there are {} bodies and beams; expected at most {}", parts, kMaxSystemParts));
 }
 
+/// The system's inputs follow those of its track.
+void drop_inputs_of_track(SystemScene& scene) {
+  if (!scene.track) return;
+  const auto count = static_cast<std::ptrdiff_t>(scene.track->inputs.size());
+  scene.inputs.erase(scene.inputs.begin(), scene.inputs.begin() + count);
+  for (SystemForce& force : scene.system.forces)
+    if (force.input >= 0) force.input -= static_cast<int>(count);
+}
+
 SystemScene read_system_scene(const Table& root) {
   SystemScene scene;
   NameBook names;
@@ -100,6 +109,7 @@ SystemScene read_system_scene(const Table& root) {
   if (root.has("track")) {
     scene.track = read_track_beside(root, scene, names);
     scene.step = *scene.track->step;
+    scene.inputs = scene.track->inputs;  // read_forces() counts on from these
   } else {
     scene.step = read_system_step(root.table("step"));
   }
@@ -109,6 +119,7 @@ SystemScene read_system_scene(const Table& root) {
   read_joints(root, scene, names);
   read_springs(root, scene, names);
   read_forces(root, scene);
+  drop_inputs_of_track(scene);
   read_system_sensors(root, scene, names);
   return scene;
 }

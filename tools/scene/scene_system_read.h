@@ -9,18 +9,8 @@
 
 namespace railstep {
 
-/// The names of a scene; each is given once.
-class NameBook {
- public:
-  /// The key `name` of a table. Throws InputError where it is not a valid name, or is taken.
-  std::string claim(const Table& t);
-
- private:
-  std::map<std::string, std::string> owner_;  // name -> the table that gave it first
-};
-
-/// The track of a scene that has a system too, with its loads and its step. Throws InputError for
-/// tables that are not stepped beside bodies.
+/// The track of a scene that has a system too, with all that runs on it and its step. Throws
+/// InputError for what is not stepped beside bodies.
 Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names);
 
 void read_bodies(const Table& root, SystemScene& scene, NameBook& names);

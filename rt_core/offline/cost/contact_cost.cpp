@@ -1,5 +1,6 @@
 #include "offline/cost/line_cost.h"
 #include "online/contact/locate.h"
+#include "online/contact/system_coupling.h"
 #include "online/model/contact_id.h"
 
 namespace railstep {
@@ -100,7 +101,9 @@ Cost coupled_cost(const Model& model, std::int64_t contacts) {
   const std::int64_t ports = contacts + model.fixed.count;
   const Cost solve = wheel_seat_row_count(model) > 0 ? coupled_runners_cost(model)
                                                      : ports_cost(ports, model.scheme.mean != 0);
-  return iterations * (solve + work(lift + 3 * ports, lift) + model.wheelsets * work(150, 100));
+  const std::int64_t passes = couples_system(model) ? kSystemPasses : 1;
+  return passes * iterations *
+         (solve + work(lift + 3 * ports, lift) + model.wheelsets * work(150, 100));
 }
 
 }  // namespace

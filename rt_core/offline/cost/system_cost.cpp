@@ -1,4 +1,5 @@
 #include "offline/cost/line_cost.h"
+#include "online/contact/system_coupling.h"
 #include "online/model/system_workspace.h"
 
 namespace railstep {
@@ -50,7 +51,9 @@ class SystemCost {
   explicit SystemCost(const Model& model) : model_(model), s_(model.system) {}
 
   Cost step() const {
-    return start() + (s_.cap + std::int64_t{1}) * look() + s_.cap * newton() + leave() + finish();
+    const Cost solve = (s_.cap + std::int64_t{1}) * look() + s_.cap * newton();
+    if (!couples_system(model_)) return start() + solve + leave() + finish();
+    return start() + (kSystemPasses + std::int64_t{1}) * solve + coupled() + leave() + finish();
   }
 
  private:
@@ -180,6 +183,28 @@ class SystemCost {
     if (s_.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
       sum = sum + solve_rows() + moved() + work(2 * u + rows(), 7 * u + 3 * rows());
     return sum;
+  }
+
+  /// Ports and contacts that move the same lines.
+  Cost coupled() const {
+    const std::int64_t n = 9 * s_.ports, contacts = port_count(model_);
+    Cost read{}, back{};
+    for (std::int32_t l = 0; l < model_.lines; ++l) {
+      const LineCost line = line_cost(model_, model_.line[l]);
+      read = read + track_row_count(model_) * line.wheel_row;
+      if (model_.form == Form::condensed)
+        read = read + track_row_count(model_) * line.read;
+      else
+        back = back + solve_cost(model_.line[l].step);
+    }
+    const std::int64_t closings = model_.form == Form::condensed
+                                      ? std::int64_t{model_.fixed.count} * model_.line_unknowns
+                                      : model_.fixed.entries;
+    const Cost linear = work(4 * n * contacts, 3 * n * contacts);  // of ports by contacts, or back
+    return back + n * (read + work(4 * closings, 4 * closings)) +
+           contacts * (solve_rows() + work(2 * n + 40 * track_ends(), n + 40 * track_ends())) +
+           (contacts + 6 * (kSystemPasses + std::int64_t{1})) * linear +
+           (kSystemPasses + std::int64_t{1}) * track_ends() * work(20, 30);
   }
 
   Cost leave() const {

@@ -140,9 +140,11 @@ class JoinedAccount {
     const StoredEnergy line = track_ ? track_->stored() : StoredEnergy{};
     const EnergyFlow flow = track_ ? track_->flow() : EnergyFlow{};
     const SystemEnergy& e = system_.stored();
-    turned_over_ = std::max({turned_over_, line.total() + e.kinetic + e.strain + e.springs,
-                             std::abs(e.potential), std::abs(system_.work()), std::abs(flow.loads),
-                             std::abs(flow.weight), system_.dissipated() + flow.dissipated});
+    turned_over_ =
+        std::max({turned_over_, line.total() - line.forward + e.kinetic + e.strain + e.springs,
+                  std::abs(e.potential), std::abs(system_.work()), std::abs(flow.loads),
+                  std::abs(flow.weight), system_.dissipated() + flow.dissipated,
+                  track_ ? track_->turned_over() : 0.});
     const double missing = system_.imbalance() + (track_ ? track_->imbalance() : 0.);
     if (std::abs(missing) > std::abs(largest_)) largest_ = missing;
   }

@@ -265,8 +265,6 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
     model_.head_half_width[rail] = heads[rail].half_width;
   }
   model_.form = options.reduction ? Form::condensed : Form::banded;
-  if (track.cant != 0. && !traffic.held.empty())
-    refuse("E-PACK-20", "bodies are joined to rails with cant; expected rail.cant = 0");
   met_ = {0, track.elements()};
   is_met_.assign(static_cast<std::size_t>(track.elements()), true);
   if (options.endless) add_endless(track, traffic, options);
@@ -281,7 +279,8 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   add_fixed_ports(track);
   if (newton_size(model_) > kMostNewton) refuse_many_coordinates();
   for (const ExternalWheel& wheel : traffic.external_wheels) add_external(track, wheel);
-  if (options.gravity != 0. || has_preload(track)) add_weight(track, options.gravity);
+  if (options.gravity != 0. || has_preload(track) || !options.line_forces.empty())
+    add_weight(track, options);
   add_track_sensors(track, traffic.track_sensors);
   if (options.residual_flexibility && !track.rigid)
     add_residual(track, traffic.track_sensors, options.residual_points);
@@ -358,12 +357,13 @@ void take_inputs(const std::vector<double>& limits, Model& model) {
   }
 }
 
-void PackedModel::add_weight(const Track& track, double gravity) {
+void PackedModel::add_weight(const Track& track, const PackOptions& options) {
   const auto n = static_cast<std::size_t>(model_.unknowns);
   std::vector<double> force(n * static_cast<std::size_t>(parts(model_.form)), 0.);
   for (std::size_t l = 0; l < lines_.size(); ++l) {
     Eigen::VectorXd own = preload(track, lines_[l].line);
-    if (gravity != 0.) own += weight(track, lines_[l].line, gravity);
+    if (options.gravity != 0.) own += weight(track, lines_[l].line, options.gravity);
+    if (!options.line_forces.empty()) own += options.line_forces[l];
     const auto first = static_cast<std::size_t>(model_.line[l].first);
     if (model_.form == Form::banded) {
       std::copy(own.begin(), own.end(), force.begin() + static_cast<std::ptrdiff_t>(first));

@@ -179,6 +179,8 @@ struct PackOptions {
   std::optional<Reduction> reduction = std::nullopt;  // of each line; empty: full order
   std::int64_t steps = 0;                             // of the scene's run; 0: one frame
   std::optional<EndlessTrack> endless = std::nullopt;
+  /// Constant forces on the unknowns of each line that moves, beside weight; empty: none.
+  std::vector<Eigen::VectorXd> line_forces = {};
 };
 
 /// A line of the track as the model carries it.
@@ -252,7 +254,7 @@ class PackedModel {
   void add_runner(const Track& track, const RailVehicle& vehicle);
   [[noreturn]] void refuse_many_coordinates() const;
   TravelModel keep_travel(double speed, const std::vector<double>& speeds);
-  void add_weight(const Track& track, double gravity);
+  void add_weight(const Track& track, const PackOptions& options);
   void add_track_sensors(const Track& track, const std::vector<TrackSensor>& track_sensors);
   void add_residual(const Track& track, const std::vector<TrackSensor>& track_sensors, int points);
   void add_track_sensor_tables(const ResidualFlexibility& residual,

@@ -33,6 +33,7 @@ struct Pose {
   SettledVehicles vehicles;
   SettledRunners runners;
   std::vector<double> contact_force;  // [contacts] of wheelsets, N
+  Acting acting;                      // on the lines
 };
 
 /// Puts static displacements and velocities of a line into a state.
@@ -50,10 +51,11 @@ void put(const PackedLine& own, const LineModel& line, const Eigen::VectorXd& u,
   }
 }
 
-/// The forces of the loads, with everything that moves shifted by `time`.
-Acting loads_at(const Statics& statics, const PackedModel& packed, double time) {
+/// The forces of the loads, with everything that moves shifted by `time`, and those beside them.
+Acting loads_at(const Statics& statics, const PackedModel& packed, double time,
+                const Acting& beside) {
   const Model& model = packed.model();
-  Acting acting;
+  Acting acting = beside;
   for (std::int32_t i = 0; i < model.loads; ++i) {
     const LoadModel& load = model.load[i];
     const PlacedLoad at = place(model, load, 0);
@@ -100,11 +102,12 @@ double change_of(const SettledRunners& before, const SettledRunners& now) {
 /// to its forces. Contacts are those that the step finds, so that it keeps the start. The forces
 /// depend on the rails only by their small rolls, so that each iteration leaves at most 1e-3 of the
 /// last error, down to rounding. Everything that moves is shifted by `time`.
-Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time) {
+Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravity, double time,
+                 const Acting& beside) {
   constexpr int kMostIterations = 30;
   constexpr double kNothing = 1e-15, kRounding = 1e-12;  // m, rad
   const Model& model = packed.model();
-  const Acting loads = loads_at(statics, packed, time);
+  const Acting loads = loads_at(statics, packed, time, beside);
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());
   const Configuration at{state.u, {state.u, state.v}, track_offset(model, 0)};
@@ -123,6 +126,7 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
     const std::size_t first_of_runners = acting.ports.size();
     add_forces(packed, pose.runners, at, time, acting);
     if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
+    pose.acting = acting;
     pose.lines = static_lines(packed, statics, acting, gravity);
     put_lines(packed, pose.lines, state);
     pose.wheelsets.clear();
@@ -159,11 +163,11 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
 /// place passes it only after the wheel.
 /// @param now  the equilibrium at present
 Pose passing(const Statics& statics, const PackedModel& packed, double gravity, double time,
-             const Pose& now) {
+             const Pose& now, const Acting& beside) {
   const Model& model = packed.model();
   if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
-    return equilibrium(statics, packed, gravity, time);
-  Acting acting = loads_at(statics, packed, time);
+    return equilibrium(statics, packed, gravity, time, beside);
+  Acting acting = loads_at(statics, packed, time, beside);
   const std::size_t loads = acting.forces.size();
   for (ContactId i = 0; i < tread_count(model); ++i) {
     const WheelsetModel& w = model.wheelset[wheelset_of(model, i)];
@@ -179,6 +183,7 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
   add_forces(packed, now.runners, at, time, acting);
   Pose pose;
   if (model.vehicles > 0) pose.vehicles = settle_on_track(statics, packed, gravity, time, acting);
+  pose.acting = acting;
   pose.lines = static_lines(packed, statics, acting, gravity);
   put_lines(packed, pose.lines, state);
   pose.runners = settle_runners(packed, now.runners, at, time, acting, first_of_runners);
@@ -224,22 +229,43 @@ Window window(const Model& model, double length) {
     if (is_on(0.) && !is_on(w.from)) w.from = 0.;
     if (is_on(0.) && !is_on(w.to)) w.to = 0.;
   };
-  for (std::int32_t i = 0; i < model.loads; ++i)
-    narrow(place(model, model.load[i], 0).place, travelled(model.load[i].travel, 0.).speed);
-  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
-    const VehicleModel& own = model.vehicle[model.vehicle_wheel[i].vehicle];
-    narrow(own.start + model.vehicle_wheel[i].place, travelled(own.travel, 0.).speed);
-  }
-  for (std::int32_t r = 0; r < model.runners; ++r)
-    for (std::int32_t i = 0; i < model.runner[r].wheelsets; ++i)
-      narrow(model.runner[r].start + model.runner[r].wheelset[i].place,
-             travelled(model.runner[r].travel, 0.).speed);
-  for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    narrow(model.wheelset[b].start, travelled(model.wheelset[b].travel, 0.).speed);
+  for (const StartingPlace& at : starting_places(model)) narrow(at.place, at.speed);
   return w;
 }
 
 }  // namespace
+
+std::vector<StartingPlace> starting_places(const Model& model) {
+  std::vector<StartingPlace> all;
+  const auto add = [&all](double at, const auto& travel) {
+    all.push_back({at, travelled(travel, 0.).speed});
+  };
+  for (std::int32_t i = 0; i < model.loads; ++i)
+    add(place(model, model.load[i], 0).place, model.load[i].travel);
+  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
+    const VehicleModel& own = model.vehicle[model.vehicle_wheel[i].vehicle];
+    add(own.start + model.vehicle_wheel[i].place, own.travel);
+  }
+  for (std::int32_t r = 0; r < model.runners; ++r)
+    for (std::int32_t i = 0; i < model.runner[r].wheelsets; ++i)
+      add(model.runner[r].start + model.runner[r].wheelset[i].place, model.runner[r].travel);
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    add(model.wheelset[b].start, model.wheelset[b].travel);
+  return all;
+}
+
+std::vector<Eigen::VectorXd> standing_wheel_forces(const Track& track, const PackedModel& packed,
+                                                   double gravity, const Acting& beside,
+                                                   double time) {
+  const Statics statics(track);
+  Pose at = equilibrium(statics, packed, gravity, 0., beside);
+  if (time != 0.) at = passing(statics, packed, gravity, time, at, beside);
+  std::vector<Eigen::VectorXd> forces = line_forces(packed, track, at.acting);
+  const std::vector<Eigen::VectorXd> others =
+      line_forces(packed, track, loads_at(statics, packed, time, beside));
+  for (std::size_t l = 0; l < forces.size(); ++l) forces[l] -= others[l];
+  return forces;
+}
 
 double wheel_load(const WheelsetModel& w) {
   double vertical = w.weight;
@@ -313,16 +339,16 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
 }  // namespace
 
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
-                                         double gravity) {
+                                         double gravity, const Acting& beside) {
   const Model& model = packed.model();
   check_sides(model);
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());
   const Statics statics(track);
-  const Pose at = equilibrium(statics, packed, gravity, 0.);
+  const Pose at = equilibrium(statics, packed, gravity, 0., beside);
   const Window w = window(model, track.length());
-  const Pose later = passing(statics, packed, gravity, w.to, at);
-  const Pose before = passing(statics, packed, gravity, w.from, at);
+  const Pose later = passing(statics, packed, gravity, w.to, at, beside);
+  const Pose before = passing(statics, packed, gravity, w.from, at, beside);
   const double span = w.to > w.from ? w.to - w.from : 1.;  // s; 1 if there is no window
   for (std::size_t l = 0; l < packed.lines().size(); ++l) {
     put(packed.lines()[l], model.line[l], at.lines[l], (later.lines[l] - before.lines[l]) / span,

@@ -3,6 +3,7 @@
 
 #include "offline/pack/pack.h"
 #include "offline/pack/released.h"
+#include "offline/start/static_lines.h"
 #include "online/model/state.h"
 
 namespace railstep {
@@ -11,12 +12,26 @@ namespace railstep {
 /// included. Vertical force and roll balance give the load of each frictionless wheel of a
 /// wheelset. Velocities are those of the static shape that moves along with loads and wheels;
 /// accelerations are 0.
+/// @param beside  constant forces that press too
 /// @returns state_doubles() values
 /// Throws Refused if the track has a free rigid mode, or if a wheelset or a vehicle would lift a
 /// wheel. Under a lateral force on a wheelset it also throws if no flange holds the wheelset, if
 /// the force lifts it over its flange, or if there are other wheelsets or vehicles.
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
-                                         double gravity);
+                                         double gravity, const Acting& beside = {});
+
+/// Forces of all wheels over the unknowns of each line of the model, in the equilibrium at t = 0
+/// and where they are `time` later. Throws Refused as start_in_equilibrium().
+std::vector<Eigen::VectorXd> standing_wheel_forces(const Track& track, const PackedModel& packed,
+                                                   double gravity, const Acting& beside,
+                                                   double time);
+
+/// Where something that runs on the rails is at t = 0, m, and its speed, m/s.
+struct StartingPlace {
+  double place, speed;
+};
+/// Of all loads and wheels.
+std::vector<StartingPlace> starting_places(const Model& model);
 
 /// The state at step 0 of a track without end in its moving steady state: the motion repeats from
 /// bay to bay. Loads press with their force at the start, wheels with their static force, on an

@@ -63,6 +63,18 @@ void apply_port_forces(const PackedModel& packed, std::vector<Eigen::VectorXd>& 
 
 }  // namespace
 
+std::vector<Eigen::VectorXd> line_forces(const PackedModel& packed, const Track& track,
+                                         const Acting& acting) {
+  std::vector<Eigen::VectorXd> forces;
+  for (const PackedLine& own : packed.lines()) {
+    Eigen::VectorXd& load = forces.emplace_back(Eigen::VectorXd::Zero(own.line.unknowns()));
+    for (const PointForce& f : acting.forces)
+      load += f.force * row_of(track, packed, own.line, f.at);
+    for (const ContactForce& f : acting.contacts) load += f.force * row_of(packed, own.line, f.row);
+  }
+  return forces;
+}
+
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
                                           const Acting& acting, double gravity) {
   std::vector<Eigen::VectorXd> lines;
@@ -75,13 +87,12 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
     for (const PackedLine& own : packed.lines()) lines.push_back(all[own.index]);
     return lines;
   }
-  for (const PackedLine& own : packed.lines()) {
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(own.line.unknowns());
+  std::vector<Eigen::VectorXd> loads = line_forces(packed, statics.track(), acting);
+  for (std::size_t l = 0; l < loads.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    Eigen::VectorXd& load = loads[l];
     if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
     if (packed.model().fixed.count > 0) load += preload(statics.track(), own.line);
-    for (const PointForce& f : acting.forces)
-      load += f.force * row_of(statics.track(), packed, own.line, f.at);
-    for (const ContactForce& f : acting.contacts) load += f.force * row_of(packed, own.line, f.row);
     lines.push_back(
         own.basis.shapes.project(load).cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
   }

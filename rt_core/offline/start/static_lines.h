@@ -26,6 +26,10 @@ struct Acting {
 /// @param strains  false: without the part of the section's own strain (a_y, b_z)
 Eigen::VectorXd contact_row(const Line& line, const RailRow& row, bool strains);
 
+/// Forces over the unknowns of each line of the model.
+std::vector<Eigen::VectorXd> line_forces(const PackedModel& packed, const Track& track,
+                                         const Acting& acting);
+
 /// Static displacements of each line of the model: its unknowns, or its coordinates if condensed.
 /// They include the effect of the one-sided springs that are closed.
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,

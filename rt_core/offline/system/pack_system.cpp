@@ -6,6 +6,8 @@
 
 #include "offline/cost/cost.h"
 #include "offline/math/refuse.h"
+#include "offline/start/start.h"
+#include "offline/start/start_impact.h"
 #include "offline/system/pack_parts.h"
 #include "offline/system/pack_track_ports.h"
 #include "offline/system/start_system.h"
@@ -92,21 +94,22 @@ SystemOptions still_options(SystemOptions options, double dt) {
   return options;
 }
 
-/// The traffic with loads at their places `shift` seconds later, with their force at the start.
-Traffic shifted(Traffic traffic, double shift) {
-  for (MovingLoad& load : traffic.loads) {
+/// Loads at their places `shift` seconds later, with their force at the start, and no wheels.
+Traffic standing_loads(const Traffic& traffic, double shift) {
+  Traffic standing;
+  standing.held = traffic.held;
+  standing.loads = traffic.loads;
+  standing.head = traffic.head;
+  standing.right_head = traffic.right_head;
+  for (MovingLoad& load : standing.loads) {
     load.start += first_speed(load) * shift;
     load.frequency = 0.;
   }
-  return traffic;
+  return standing;
 }
 
-std::vector<PathOfLoad> paths(const Track& track, const Traffic& traffic) {
-  std::vector<PathOfLoad> all;
-  for (const MovingLoad& load : traffic.loads)
-    all.push_back({load.start, first_speed(load), track.length()});
-  return all;
-}
+/// Whether wheels run on a track.
+bool has_wheels(const Model& track) { return track_row_count(track) > 0 || track.runners > 0; }
 
 /// Checks indices of traced items against their number.
 std::vector<std::int32_t> indices(const std::vector<int>& traced, std::size_t count) {
@@ -118,12 +121,17 @@ std::vector<std::int32_t> indices(const std::vector<int>& traced, std::size_t co
   return {traced.begin(), traced.end()};
 }
 
-/// The start of a track with the lines as they are in a rest.
-std::vector<double> lines_at(const Model& track, const Rest& rest) {
-  std::vector<double> memory(static_cast<std::size_t>(state_doubles(track)), 0.);
-  const State state = state_on(track, memory.data());
-  std::copy_n(rest.u.begin(), track.unknowns, state.u);
-  std::copy_n(rest.v.begin(), track.unknowns, state.v);
+/// The start of a track beside a system in a rest. Lines in full order are as they are there.
+std::vector<double> start_beside(const Track& track, const PackedModel& packed, double gravity,
+                                 const Acting& ports, const Rest& rest) {
+  const Model& model = packed.model();
+  const bool banded = model.form == Form::banded, wheels = has_wheels(model);
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)), 0.);
+  if (wheels || !banded) memory = start_in_equilibrium(track, packed, gravity, ports);
+  if (!banded) return memory;
+  const State state = state_on(model, memory.data());
+  if (!wheels) std::copy_n(rest.u.begin(), model.line_unknowns, state.u);
+  std::copy_n(rest.v.begin(), model.line_unknowns, state.v);
   return memory;
 }
 
@@ -143,42 +151,79 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options)
         [&](double dt, double) {
           return std::make_unique<PackedSystem>(system, still_options(options, dt));
         },
-        {});
+        {}, 0.);
   build(system, options, nullptr, rest);
 }
 
 PackedSystem::PackedSystem(const System& system, const SystemOptions& options, const Track& track,
                            const Traffic& traffic, const PackOptions& track_options)
     : memory_(std::make_unique<Memory>()) {
-  if (!traffic.wheelsets.empty() || !traffic.vehicles.empty())
-    refuse("E-SYSTEM-58",
-           "a track beside a system of bodies carries wheelsets or vehicles; expected loads alone");
-  if (track_options.reduction)
-    refuse("E-SYSTEM-59", "a track beside a system of bodies is condensed; expected full order");
   if (options.constraint_method == ConstraintMethod::gear_gupta_leimkuhler)
     refuse("E-SYSTEM-60",
            "joints.hold is \"gear-gupta-leimkuhler\" beside a track; expected another joints.hold");
-  if (options.energy_momentum)
+  if (options.energy_momentum != track_options.reduction.has_value())
     refuse("E-SYSTEM-61",
-           "the energy-momentum scheme is given beside a track; expected another step.scheme");
+           "bodies take forces at the mean of a step beside condensed tracks alone, which hold "
+           "forces over a step; expected the option energy_momentum beside these, and not beside "
+           "tracks in full order");
   Traffic both = traffic;
   for (int rail = 0; rail < track.rails; ++rail) both.held.push_back(rail);
   memory_->track = std::make_unique<PackedModel>(track, both, track_options);
   std::optional<Rest> rest;
-  if (options.at_rest) {
-    rest = find_rest(
+  if (options.at_rest)
+    rest = rest_on_track(system, options, track, both, track_options);
+  else if (has_wheels(memory_->track->model()))
+    memory_->track->set_start(start_under_impact(track, *memory_->track, track_options.gravity));
+  model_ = memory_->track->model();
+  build(system, options, &track, rest);
+}
+
+/// The forces of the wheels and those of the system depend on each other by the rails alone, and
+/// change little with these, so that they settle when found in turn.
+Rest PackedSystem::rest_on_track(const System& system, const SystemOptions& options,
+                                 const Track& track, const Traffic& traffic,
+                                 const PackOptions& track_options) {
+  constexpr int kMostTurns = 30;
+  constexpr double kSettled = 1e-10;  // of the largest force
+  PackedModel& packed = *memory_->track;
+  const bool wheels = has_wheels(packed.model());
+  const double gravity = track_options.gravity;
+  Acting beside;
+  std::vector<double> before;
+  std::vector<Eigen::VectorXd> pressing;  // forces of the wheels, at a shift in time
+  double pressing_at = 0.;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    pressing.clear();
+    const Rest rest = find_rest(
         [&](double dt, double shift) {
           PackOptions still = track_options;
           still.scheme = backward_euler(dt);
           still.steps_per_frame = 1;
+          still.reduction.reset();
+          if (wheels && (pressing.empty() || shift != pressing_at))
+            pressing = standing_wheel_forces(track, packed, gravity, beside, pressing_at = shift);
+          still.line_forces = pressing;
           return std::make_unique<PackedSystem>(system, still_options(options, dt), track,
-                                                shifted(traffic, shift), still);
+                                                standing_loads(traffic, shift), still);
         },
-        paths(track, traffic));
-    memory_->track->set_start(lines_at(memory_->track->model(), *rest));
+        starting_places(packed.model()), track.length());
+    beside.contacts = forces_of_ports(packed.model(), rest.port, rest.port_force);
+    double most = 0., change = 0.;
+    for (std::size_t i = 0; i < rest.port_force.size(); ++i) {
+      most = std::max(most, std::abs(rest.port_force[i]));
+      if (!before.empty()) change = std::max(change, std::abs(rest.port_force[i] - before[i]));
+    }
+    const bool settled = !before.empty() && change <= kSettled * most;
+    if (wheels && !rest.port_force.empty() && !settled) {
+      before = rest.port_force;
+      continue;
+    }
+    packed.set_start(start_beside(track, packed, gravity, beside, rest));
+    return rest;
   }
-  model_ = memory_->track->model();
-  build(system, options, &track, rest);
+  refuse("E-SYSTEM-66",
+         "no static equilibrium of bodies and wheels on the same rails was found at the start; "
+         "expected step.start = \"released\", or joints and springs that hold the bodies");
 }
 
 void PackedSystem::build(const System& system, const SystemOptions& options, const Track* track,
@@ -192,6 +237,8 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   const auto own = static_cast<std::int32_t>(parts.constant_force.size());
   if (track != nullptr) memory_->widened.widen(own, model_);
   model_.unknowns = first + own;
+  for (PointForceModel& force : parts.forces)
+    if (force.input >= 0) force.input += model_.inputs;  // those of the track come first
   take_inputs(system.input_limits, model_);
   SystemModel& s = model_.system;
   const auto count = [](const auto& items) { return static_cast<std::int32_t>(items.size()); };
@@ -244,7 +291,7 @@ void PackedSystem::build(const System& system, const SystemOptions& options, con
   s.per_length = parts.per_length.data();
   s.ports = count(parts.ports);
   s.port = parts.ports.data();
-  memory_->ports = track_ports(model_);
+  memory_->ports = track_ports(model_, memory_->track.get());
   s.port_compliance = memory_->ports.compliance.data();
   s.port_shapes = memory_->ports.shapes.data();
   const SystemStartState start = start_system(system, parts, model_, rest ? &*rest : nullptr);

@@ -48,10 +48,12 @@ class PackedSystem {
   /// exist, points off their beam, motion out of a planar system, direct joints or joints without
   /// projections with rho_inf = 1, or at_rest without an equilibrium.
   PackedSystem(const System& system, const SystemOptions& options);
-  /// A system beside a linear track in full order without wheelsets. Joints, springs and sensors of
-  /// the system may name its rails; the track gives the scheme and the frames. A rail moves only
+  /// A system beside a linear track with ends and all that runs on it. Joints, springs and sensors
+  /// of the system may name its rails; the track gives the scheme and the frames. A rail moves only
   /// along the unknowns of its track. The joint forces at the start are those of the first step's
-  /// inertia, as a track has unknowns without mass. Residual flexibility does not act at ports.
+  /// inertia, as a track has unknowns without mass. Beside a condensed track, which holds forces
+  /// over a step, the option energy_momentum is expected; the residual flexibility of condensed
+  /// rails acts at ports, but not between ports and wheels.
   PackedSystem(const System& system, const SystemOptions& options, const Track& track,
                const Traffic& traffic, const PackOptions& track_options);
   PackedSystem(const PackedSystem&) = delete;
@@ -64,6 +66,8 @@ class PackedSystem {
 
  private:
   struct Memory;
+  Rest rest_on_track(const System& system, const SystemOptions& options, const Track& track,
+                     const Traffic& traffic, const PackOptions& track_options);
   void build(const System& system, const SystemOptions& options, const Track* track,
              const std::optional<Rest>& rest);
   Model model_{};

@@ -1,16 +1,21 @@
 #pragma once
 #include <vector>
 
-#include "online/model/model.h"
+#include "offline/start/static_lines.h"
 
 namespace railstep {
 
-/// Responses of the lines, by their step matrices S, to forces at the system's ports on rails.
+/// Responses of the lines in a step to forces at the system's ports on rails.
 struct TrackPorts {
-  std::vector<double> shapes;      // [9 ports][lines' unknowns] S^-1 B', m/N
-  std::vector<double> compliance;  // [9 ports][9 ports] B S^-1 B'
+  std::vector<double> shapes;      // SystemModel::port_shapes
+  std::vector<double> compliance;  // SystemModel::port_compliance
 };
-TrackPorts track_ports(const Model& model);
+/// @param track  of condensed lines
+TrackPorts track_ports(const Model& model, const PackedModel* track);
+
+/// Forces of ports against the rails as forces on these. @param force  [9 ports]
+std::vector<ContactForce> forces_of_ports(const Model& model, const std::vector<RailPortModel>& ports,
+                                          const std::vector<double>& force);
 
 /// Arrays of a track over all unknowns, extended by those of a system, which follow its own.
 class WidenedTrack {

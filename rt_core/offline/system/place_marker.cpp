@@ -63,11 +63,13 @@ void put_on_rail(const Part& part, const Vector3d& point, const Track* track, Sy
   port.element = std::min(static_cast<int>(along), track->elements() - 1);
   const auto n = shape(2. * (along - port.element) - 1.);
   for (std::size_t i = 0; i < 3; ++i) port.value[i] = n[i];
-  const double rest[9] = {point.x(), y, 0., 0., 1., 0., 0., 0., 1.};
+  const Cant lean = track->lean(part.index);
+  const double rest[9] = {point.x(), y,  0.,         0.,         lean.cosine,
+                          lean.sine, 0., -lean.sine, lean.cosine};
   for (int k = 0; k < 9; ++k) port.rest[k] = rest[k];
   marker.part = static_cast<std::int32_t>(parts.ports.size());
-  marker.position[1] = point.y() - y;
-  marker.position[2] = point.z();
+  const double from_axis[3] = {0., point.y() - y, point.z()};
+  to_rail(lean, from_axis, marker.position);
   parts.ports.push_back(port);
   parts.unknowns += 9;
 }
@@ -98,7 +100,10 @@ std::int32_t place_marker(const System& system, const Track* track, const Part& 
   } else if (part.kind == Part::Kind::rail) {
     m.kind = PartKind::rail;
     put_on_rail(part, point, track, parts, m);
-    set_frame(m, axes, Matrix3d::Identity());
+    const double* rest = parts.ports.back().rest;
+    Matrix3d section;
+    section << Vector3d::UnitX(), Vector3d(rest + 3), Vector3d(rest + 6);
+    set_frame(m, axes, section);
   } else {
     if (part.index < 0 || static_cast<std::size_t>(part.index) >= system.beams.size())
       refuse("E-SYSTEM-09", "it names beam " + std::to_string(part.index) +

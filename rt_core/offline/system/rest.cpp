@@ -10,6 +10,7 @@
 #include "offline/system/pack_system.h"
 #include "offline/system/system_energy.h"
 #include "online/step/step.h"
+#include "online/system/track_ports.h"
 
 namespace railstep {
 
@@ -76,10 +77,14 @@ class Still {
     const auto n = static_cast<std::size_t>(model().unknowns);
     const auto bodies = static_cast<std::size_t>(model().system.bodies);
     const auto rows = static_cast<std::size_t>(system_rows(model().system));
-    return {{state_.u, state_.u + n},
-            std::vector<double>(n, 0.),
-            {state_.quaternion, state_.quaternion + 4 * bodies},
-            {state_.row_force, state_.row_force + rows}};
+    Rest rest{{state_.u, state_.u + n},
+              std::vector<double>(n, 0.),
+              {state_.quaternion, state_.quaternion + 4 * bodies},
+              {state_.row_force, state_.row_force + rows},
+              {model().system.port, model().system.port + model().system.ports},
+              std::vector<double>(std::size_t{9} * static_cast<std::size_t>(model().system.ports))};
+    find_port_forces(model(), state_, workspace_, rest.port_force.data());
+    return rest;
   }
 
   /// Name of the body or beam that accelerates most; the track if none of these accelerates.
@@ -173,17 +178,17 @@ std::vector<double> rates(const Model& model, const Rest& before, const Rest& af
 
 }  // namespace
 
-Rest find_rest(const StillSystem& make, const std::vector<PathOfLoad>& loads) {
+Rest find_rest(const StillSystem& make, const std::vector<StartingPlace>& running, double length) {
   Rest rest = settle(make, 0., std::nullopt);
   constexpr double dt = 1e-4;  // s; 3 mm at 30 m/s, where the shape is straight to 1e-5
   double from = -dt, to = dt;
   bool moves = false;
-  for (const PathOfLoad& load : loads) {
-    moves = moves || load.speed != 0.;
+  for (const StartingPlace& own : running) {
+    moves = moves || own.speed != 0.;
     const auto leaves = [&](double t) {
-      const double x = load.start + load.speed * t;
-      const bool starts_on = load.start >= 0. && load.start <= load.length;
-      return starts_on && (x < 0. || x > load.length);
+      const double x = own.place + own.speed * t;
+      const bool starts_on = own.place >= 0. && own.place <= length;
+      return starts_on && (x < 0. || x > length);
     };
     if (leaves(from)) from = 0.;
     if (leaves(to)) to = 0.;

@@ -173,16 +173,16 @@ std::vector<double> start_quaternions(const System& system, const Rest* rest) {
 /// Displacements of the system's unknowns at the start.
 std::vector<double> start_places(const SystemModel& s, const Rest* rest) {
   std::vector<double> u(static_cast<std::size_t>(s.unknowns), 0.);
-  if (rest != nullptr) std::copy_n(rest->u.begin() + s.first, s.unknowns, u.begin());
+  if (rest != nullptr) std::copy_n(rest->u.end() - s.unknowns, s.unknowns, u.begin());
   return u;
 }
 
 /// Velocities as given, plus those of the rest that moves with loads; joints do not act yet.
-std::vector<double> start_rates(const System& system, const SystemParts& parts,
-                                const SystemModel& s, const Rest* rest) {
+std::vector<double> start_rates(const System& system, const SystemParts& parts, const Rest* rest) {
   std::vector<double> v = start_velocities(system, parts);
   if (rest == nullptr) return v;
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] += rest->v[static_cast<std::size_t>(s.first) + i];
+  const std::size_t first = rest->v.size() - v.size();
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += rest->v[first + i];
   return v;
 }
 
@@ -192,7 +192,7 @@ SystemStartState start_system(const System& system, const SystemParts& parts, co
                               const Rest* rest) {
   const SystemModel& s = model.system;
   const std::vector<double> quaternion = start_quaternions(system, rest), u = start_places(s, rest);
-  Standing at(model, quaternion, u, start_rates(system, parts, s, rest));
+  Standing at(model, quaternion, u, start_rates(system, parts, rest));
   check_joints(s, at.w, 1.);
   const std::int32_t joints = s.joint_rows, rows = system_rows(s), n = s.unknowns;
   const Mobility mobility(model);

@@ -4,6 +4,7 @@
 #include "online/contact/flange.h"
 #include "online/contact/mean_contact.h"
 #include "online/contact/runner_coupling.h"
+#include "online/contact/system_coupling.h"
 #include "online/contact/track_response.h"
 #include "online/contact/vehicle_contact.h"
 #include "online/contact/vehicle_response.h"
@@ -172,6 +173,20 @@ void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& 
   if (!settled) result.status = result.status | Status::cap_reached;
 }
 
+/// The same, and a system of bodies with them.
+void solve_all(const Model& model, const Stage& stage, State& s, Workspace& w, Coupling& c,
+               CoupledRunners* runners, CoupledSystem& beside, CoupleResult& result) noexcept {
+  solve_coupled(model, stage, s, w, c, runners, result);
+  if (!couples_system(model)) return;
+  bool settled = false;
+  for (int pass = 1; !(settled = settle_system(model, s, w, c, runners, beside)); ++pass) {
+    if (pass == kSystemPasses) break;
+    solve_coupled(model, stage, s, w, c, runners, result);
+  }
+  result.system = beside.result;
+  if (!settled) result.status = result.status | Status::cap_reached;
+}
+
 bool impact_is_unresolved_at(const Model& model, const Coupling& c, const State& s,
                              ContactId i) noexcept {
   if (is_flange(model, i)) return flange_impact_is_unresolved(model, c, s, i);
@@ -226,10 +241,12 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   if (model.scheme.mean != 0) find_means(model, state, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.contact_force[i];
+  CoupledSystem beside;
+  if (couples_system(model)) couple_system(model, state, w, c, beside);
   const bool has_runners = c.rows > c.contacts;
   CoupledRunners runners;
   if (has_runners) couple_runners(model, stage, state, w, c, runners);
-  solve_coupled(model, stage, state, w, c, has_runners ? &runners : nullptr, result);
+  solve_all(model, stage, state, w, c, has_runners ? &runners : nullptr, beside, result);
   if (has_runners)
     result.status = result.status | move_coupled_runners(model, c, runners, state, w);
   move_track(model, w, c);

@@ -221,6 +221,13 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
   });
 }
 
+void move_seat(const Coupling& c, int row, double by, CoupledRunners& all) noexcept {
+  const int seat = row - c.contacts, of_set = 2 * kWheelSeatRows;
+  const int at = all.scalars + kOfWheelset * (seat / of_set) + kMotions + seat % of_set;
+  all.z_free[at] += by;
+  all.start[at] += by;
+}
+
 NewtonResult solve_coupled_runners(const Model& model, const double* d_free, const Workspace& w,
                                    Coupling& c, CoupledRunners& all) noexcept {
   LawBlock block[kMostNewton];

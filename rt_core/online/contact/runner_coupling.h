@@ -29,6 +29,9 @@ struct CoupledRunners {
 void couple_runners(const Model& model, const Stage& stage, const State& s, Workspace& w,
                     const Coupling& c, CoupledRunners& runners) noexcept;
 
+/// Moves the seat of a row, by a displacement that W does not give.
+void move_seat(const Coupling& c, int row, double by, CoupledRunners& runners) noexcept;
+
 /// Solves all laws. @param d_free  [ports] of contacts and one-sided springs
 /// Forces against all rows go into c.force, and depths of scalar laws into c.penetration.
 NewtonResult solve_coupled_runners(const Model& model, const double* d_free, const Workspace& w,

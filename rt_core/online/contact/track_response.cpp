@@ -100,13 +100,6 @@ void subtract_held(const Complex& held, const Complex* shape, const double* forc
   }
 }
 
-/// Part of the displacement along a base by a line that a force there moves.
-double line_under(const Model& model, const Workspace& w, const Coupling& c, const LineModel& line,
-                  int base, const double* re, const double* im) noexcept {
-  if (model.form == Form::banded) return motion(line, base_row(c, base), {re, {}});
-  return modes_dot(base_of(model, w, line, base), {re + line.first, im + line.first}, line.size);
-}
-
 /// Adds the compliance of a line between two bases to W of their rows.
 /// @param same  the bases are one
 void add_between(const RowsOfBase& a, const RowsOfBase& b, bool same, double value,
@@ -165,6 +158,13 @@ void lean_compliance(Coupling& c) noexcept {
 
 }  // namespace
 
+double shape_under(const Model& model, const Workspace& w, const Coupling& c, int base,
+                   std::int32_t l, const double* re, const double* im) noexcept {
+  const LineModel& line = model.line[l];
+  if (model.form == Form::banded) return motion(line, base_row(c, base), {re, {}});
+  return modes_dot(base_of(model, w, line, base), {re + line.first, im + line.first}, line.size);
+}
+
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
   if (model.form == Form::condensed)
     respond_modes(model, w, c);
@@ -172,8 +172,8 @@ void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noex
     respond_bands(model, w, c);
   const bool condensed = model.form == Form::condensed;
   const double *re = condensed ? s.u : w.scaled, *im = condensed ? s.v : nullptr;
-  const auto under = [&](int base, std::int32_t, const LineModel& line) noexcept {
-    return line_under(model, w, c, line, base, re, im);
+  const auto under = [&](int base, std::int32_t l, const LineModel&) noexcept {
+    return shape_under(model, w, c, base, l, re, im);
   };
   sum_rows(model, c, under, c.located);
 }
@@ -181,8 +181,7 @@ void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noex
 double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int base,
                        std::int32_t l, const LineResponse& by) noexcept {
   const LineModel& line = model.line[l];
-  if (model.form == Form::condensed)
-    return line_under(model, w, c, line, base, by.first, by.second);
+  if (model.form == Form::condensed) return shape_under(model, w, c, base, l, by.first, by.second);
   const double* const half = w.unit + base * std::ptrdiff_t{model.unknowns};
   return panels_dot(common(c.panels[base][l], by.panels), half + line.first,
                     by.second + line.first);
@@ -219,9 +218,9 @@ void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexc
 }
 
 void find_track_motion(const Model& model, const Workspace& w, Coupling& c) noexcept {
-  const auto under = [&](int base, std::int32_t l, const LineModel& line) noexcept {
+  const auto under = [&](int base, std::int32_t l, const LineModel&) noexcept {
     return model.form == Form::condensed
-               ? line_under(model, w, c, line, base, w.solved, w.imaginary)
+               ? shape_under(model, w, c, base, l, w.solved, w.imaginary)
                : line_compliance(model, w, c, base, l, {c.panels[base][l], nullptr, w.solved});
   };
   sum_rows(model, c, under, c.moved);

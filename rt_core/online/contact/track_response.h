@@ -32,6 +32,10 @@ void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noex
 double line_compliance(const Model& model, const Workspace& w, const Coupling& c, int base,
                        std::int32_t l, const LineResponse& by) noexcept;
 
+/// The same of lines that are displaced by `re`, condensed ones by `re` and `im`, [unknowns].
+double shape_under(const Model& model, const Workspace& w, const Coupling& c, int base,
+                   std::int32_t l, const double* re, const double* im) noexcept;
+
 /// Displacements of the track under each wheel by a unit force at each other, at the step's end:
 /// the lower triangle of W, j <= i.
 void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept;

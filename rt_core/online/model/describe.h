@@ -375,7 +375,8 @@ void describe(Archive& a, Model& m) {
   for (std::int64_t* most : {&m.cost.flops, &m.cost.bytes, &m.cost.instructions}) a.integer(*most);
   a.count(m.system.unknowns, m.unknowns);
   if (m.elements > 0) describe_track(a, m);
-  if (m.system.unknowns > 0) describe(a, m.system, m.line_unknowns);
+  if (m.system.unknowns > 0)
+    describe(a, m.system, std::int64_t{parts(m.form)} * m.line_unknowns, m.unknowns);
 }
 
 /// The start, after a valid model, which determines its length.

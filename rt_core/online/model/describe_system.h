@@ -53,10 +53,11 @@ void describe_solve(Archive& a, SystemModel& s) {
     a.real(*x);
 }
 
-/// @param lines  unknowns of the track's lines
+/// @param lines     numbers of a port's shape
+/// @param unknowns  of the model
 template <typename Archive>
-void describe(Archive& a, SystemModel& s, std::int32_t lines) {
-  a.count(s.first, lines);
+void describe(Archive& a, SystemModel& s, std::int64_t lines, std::int32_t unknowns) {
+  a.count(s.first, unknowns);
   describe_counts(a, s);
   describe_solve(a, s);
   const std::int64_t ports = std::int64_t{9} * s.ports;

@@ -41,18 +41,19 @@ bool compliances_are_valid(const SystemModel& s) noexcept {
   return true;
 }
 
-/// Whether a track beside the system has only parts that are stepped there; without a track,
+/// Whether a track beside the system has ends and holds forces as the system does; without a track,
 /// whether there are no parts of one.
 bool stands_alone_or_beside(const Model& m) noexcept {
   const SystemModel& s = m.system;
-  if (s.first != m.line_unknowns || s.unknowns != m.unknowns - m.line_unknowns) return false;
-  if (m.form == Form::condensed || m.wheelsets != 0 || m.vehicles != 0 || m.vehicle_wheels != 0 ||
-      m.fixed.count != 0 || m.endless.bays != 0)
+  if (s.first < m.line_unknowns || s.unknowns != m.unknowns - s.first || m.endless.bays != 0)
     return false;
   if (m.elements > 0)
-    return s.mean == 0 && s.constraint_method != ConstraintMethod::gear_gupta_leimkuhler &&
+    return (s.mean != 0) == (m.form == Form::condensed) &&
+           s.constraint_method != ConstraintMethod::gear_gupta_leimkuhler &&
            (s.ports == 0 || (s.port_compliance && s.port_shapes && compliances_are_valid(s)));
-  return s.ports == 0 && m.line_unknowns == 0 && m.lines == 0 && m.loads == 0 && m.signals == 0;
+  return s.ports == 0 && s.first == 0 && m.lines == 0 && m.loads == 0 && m.signals == 0 &&
+         m.form == Form::banded && m.wheelsets == 0 && m.vehicles == 0 && m.vehicle_wheels == 0 &&
+         m.runners == 0 && m.fixed.count == 0 && m.external_wheels == 0;
 }
 
 /// Whether each unknown belongs to one direction or rotation.

@@ -84,6 +84,14 @@ inline std::int32_t port_count(const Model& model) noexcept {
   return track_row_count(model) + model.fixed.count;
 }
 
+/// Numbers that couple a system's ports on rails with other contacts, see
+/// contact/system_coupling.h; those of one banded solve come last.
+inline std::int64_t beside_doubles(const Model& model) noexcept {
+  const std::int64_t rows = 9LL * model.system.ports, ports = port_count(model);
+  if (rows == 0 || ports == 0) return 0;
+  return rows * (4 + 2 * ports) + (model.form == Form::banded ? model.line_unknowns : 0);
+}
+
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
   double* u_star;  // [unknowns]
@@ -102,6 +110,7 @@ struct Workspace {
   double *unit, *unit_second;
   double* compliance;  // [ports][ports] of the coupled solve, m/N
   double* newton;      // newton_doubles()
+  double* beside;      // beside_doubles()
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -196,7 +205,7 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t of_modes = model.form == Form::condensed ? 1 + 2 * rows : 0;
   const std::int64_t units = has_units(model) ? 2 * rows : 0;
   return (4 + units + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
-         ports * ports + newton_doubles(model) +
+         ports * ports + newton_doubles(model) + beside_doubles(model) +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -238,7 +247,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   double* const system = row + (condensed ? 2 * rows : 0);
   double* const compliance = system + system_workspace_doubles(model.system);
   double* const of_newton = compliance + ports * ports;
-  double* const external = of_newton + newton_doubles(model);
+  double* const beside = of_newton + newton_doubles(model);
+  double* const external = beside + beside_doubles(model);
   return {memory,
           memory + n,
           memory + 2 * n,
@@ -251,7 +261,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           unit,
           unit + units,
           compliance,
-          of_newton};
+          of_newton,
+          beside};
 }
 
 /// Copies a state to other memory, without the latched status.

@@ -164,8 +164,9 @@ struct SystemModel {
   const std::int32_t* traced_spring;  // [traced_springs] from the first spring row on
   const double* constant_force;       // [unknowns] N: weight
   const RailPortModel* port;
-  const double* port_compliance;  // [9 ports][9 ports] B S^-1 B', m/N
-  const double* port_shapes;      // [9 ports][lines' unknowns] S^-1 B', m/N
+  const double* port_compliance;  // [9 ports][9 ports] B S^-1 B', m/N, with residual flexibility
+  const double* port_shapes;      // [9 ports][parts][lines' unknowns] S^-1 B', m/N; of condensed
+                                  // lines under forces held over the step, real and imaginary
   const double* per_length;       // [unknowns] factors that make forces comparable: 1, or 1/m
 };
 

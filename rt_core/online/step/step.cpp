@@ -2,6 +2,7 @@
 
 #include "online/contact/couple.h"
 #include "online/contact/external.h"
+#include "online/contact/system_coupling.h"
 #include "online/math/float_mode.h"
 #include "online/math/tiny.h"
 #include "online/model/external_input.h"
@@ -11,6 +12,7 @@
 #include "online/step/input.h"
 #include "online/step/publish.h"
 #include "online/system/system_step.h"
+#include "online/system/track_ports.h"
 #include "online/track/moving_load.h"
 #include "online/track/shift_window.h"
 
@@ -140,6 +142,17 @@ void step_runners(const Model& model, const Stage& stage, State& s, Workspace& w
   if (met.iterations > outputs.iterations) outputs.iterations = met.iterations;
 }
 
+/// Bodies and what joins them, beside lines that are at the step's end; those that hold rails
+/// beside contacts are solved already.
+void step_system(const Model& model, State& s, Workspace& w, Outputs& outputs) noexcept {
+  const bool solved = couples_system(model);
+  if (!solved) begin_system(model, s, w);
+  read_ports(model, {w.solved, {w.solved, w.imaginary}},
+             system_workspace_on(model.system, w.system, s.kept).free_ports);
+  if (!solved) collect(solve_system(model, s, w), outputs);
+  leave_system(model, s, w);
+}
+
 /// Whether a stage's ports are solved together with its track.
 bool has_ports(const Model& model) noexcept { return port_count(model) > 0; }
 
@@ -174,12 +187,15 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
   }
   advance_track(model, stage, state, w);
   if (model.external_wheels > 0) apply_external_forces(model, state.steps + 1, state, w, external);
-  if (has_ports(model))
-    collect(model, state, couple(model, stage, external, state, w), outputs);
-  else if (model.form == Form::banded)
+  if (has_ports(model)) {
+    const CoupleResult met = couple(model, stage, external, state, w);
+    collect(model, state, met, outputs);
+    if (couples_system(model)) collect(met.system, outputs);
+  } else if (model.form == Form::banded) {
     solve_bands(model, w);
+  }
   step_runners(model, stage, state, w, outputs);
-  if (model.system.unknowns > 0) collect(solve_system(model, state, w), outputs);
+  if (model.system.unknowns > 0) step_system(model, state, w, outputs);
   finish_stage(model, stage, state, w);
   if (model.system.unknowns > 0) outputs.status = outputs.status | finish_system(model, state, w);
   ++state.steps;
@@ -268,7 +284,7 @@ void try_compliance(const Model& model, const double* inputs, const State& state
                                  Workspace& workspace, double* free, double* compliance) noexcept {
   ExternalContact external[kMaxExternalWheels];
   const Status met = try_frame(model, inputs, state, workspace, -1, external, free);
-  if (has_ports(model) || model.runners > 0)
+  if (has_ports(model) || model.runners > 0 || model.system.ports > 0)
     try_compliance(model, inputs, state, workspace, external, free, compliance);
   else
     external_compliance(model, external, workspace, compliance);

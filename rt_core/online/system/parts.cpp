@@ -6,6 +6,7 @@
 #include "online/system/rotation.h"
 #include "online/system/row.h"
 #include "online/system/rows.h"
+#include "online/system/track_ports.h"
 
 namespace railstep {
 
@@ -183,11 +184,9 @@ void add_port_motion(const SystemModel& s, double factor, const double* force,
 /// C g of an end on a rail. @returns number of values
 std::int32_t solve_track_end(const SystemModel& s, std::int32_t end, const double* gradient,
                              double* solved) noexcept {
-  const RowModel& row = s.row[s.end[end].row];
-  const MarkerModel& marker = s.marker[s.end[end].side == 0 ? row.a : row.b];
-  const std::int32_t n = 9 * s.ports;
+  const std::int32_t n = 9 * s.ports, port = port_of_end(s, end);
   for (std::int32_t i = 0; i < n; ++i) {
-    const double* C = s.port_compliance + std::ptrdiff_t{n} * i + 9 * marker.part;
+    const double* C = s.port_compliance + std::ptrdiff_t{n} * i + 9 * port;
     double sum = 0.;
     for (int k = 0; k < 9; ++k) sum += C[k] * gradient[k];
     solved[i] = sum;

@@ -138,20 +138,6 @@ void start_springs(const Model& model, double time, SystemWorkspace& w) noexcept
   }
 }
 
-/// Passes the step's end to the scheme's correction.
-void leave(const Model& model, SystemWorkspace& w, State& state, Workspace& workspace) noexcept {
-  const SystemModel& s = model.system;
-  if (s.ports > 0) {
-    solve_ports(s, w);
-    for (std::int32_t i = 0; i < 9 * s.ports; ++i)
-      w.x[s.port[0].first + i] += w.change[s.port[0].first + i];
-    subtract_line_motion(model, w.gradient, w.force, workspace.solved);
-  }
-  for (std::int32_t i = 0; i < s.unknowns; ++i) workspace.solved[s.first + i] = w.x[i] - w.shift[i];
-  for (std::int32_t r = 0; r < system_rows(s); ++r) state.row_force[r] = w.force[r];
-  for (std::int32_t i = 0; i < 4 * s.bodies; ++i) state.quaternion[i] = w.quaternion[i];
-}
-
 /// First and second rates of the joint rows.
 void set_rates(const SystemModel& s, double time, const Motions& at, SystemWorkspace& w) noexcept {
   MarkerJet a{}, b{};
@@ -197,7 +183,7 @@ bool project(const Model& model, double time, int order, const Motions& at, doub
     for (double* const taken : {rates, second}) {
       if (taken == nullptr) continue;
       subtract_row_motion(s, w, w.wanted, taken + s.first);
-      subtract_line_motion(model, w.gradient, w.wanted, taken);
+      subtract_line_motion(model, w.gradient, w.wanted, taken, nullptr);  // banded ones alone
     }
     set_rates(s, time, at, w);
   }
@@ -279,16 +265,21 @@ bool is_done(const SystemModel& s, const SystemWorkspace& w, const Size& left, c
 
 }  // namespace
 
+void begin_system(const Model& model, State& state, Workspace& workspace) noexcept {
+  const SystemModel& s = model.system;
+  SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
+  const SystemStart start = start_of(model, state, workspace);
+  guess(model, state, workspace, w);
+  place_start(model, start, w);
+  const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
+  if (s.mean != 0) start_springs(model, time - model.scheme.dt, w);
+  if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
+}
+
 SystemResult solve_system(const Model& model, State& state, Workspace& workspace) noexcept {
   const SystemModel& s = model.system;
   SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
   const SystemStart start = start_of(model, state, workspace);
-  const double time = static_cast<double>(state.steps + 1) * model.scheme.dt;
-  guess(model, state, workspace, w);
-  read_ports(model, workspace.solved, w.free_ports);
-  place_start(model, start, w);
-  if (s.mean != 0) start_springs(model, time - model.scheme.dt, w);
-  if (s.renew == Renew::kept) *w.tangent.age += *w.tangent.age > 0. ? 1. : 0.;
   SystemResult result{};
   Search search;
   for (std::int32_t done = 0;; ++done) {
@@ -319,9 +310,22 @@ SystemResult solve_system(const Model& model, State& state, Workspace& workspace
     search.step = step_size(s, w);
     if (s.constraint_method == ConstraintMethod::gear_gupta_leimkuhler) shift_step(model, w);
   }
-  leave(model, w, state, workspace);
   name_redundant(s, w.tangent, result);
   return result;
+}
+
+void leave_system(const Model& model, State& state, Workspace& workspace) noexcept {
+  const SystemModel& s = model.system;
+  SystemWorkspace w = system_workspace_on(s, workspace.system, state.kept);
+  if (s.ports > 0) {
+    solve_ports(s, w);
+    for (std::int32_t i = 0; i < 9 * s.ports; ++i)
+      w.x[s.port[0].first + i] += w.change[s.port[0].first + i];
+    subtract_line_motion(model, w.gradient, w.force, workspace.solved, workspace.imaginary);
+  }
+  for (std::int32_t i = 0; i < s.unknowns; ++i) workspace.solved[s.first + i] = w.x[i] - w.shift[i];
+  for (std::int32_t r = 0; r < system_rows(s); ++r) state.row_force[r] = w.force[r];
+  for (std::int32_t i = 0; i < 4 * s.bodies; ++i) state.quaternion[i] = w.quaternion[i];
 }
 
 Status finish_system(const Model& model, State& state, Workspace& workspace) noexcept {

@@ -83,13 +83,7 @@ TEST_CASE("keys that cannot be stepped beside bodies are refused", "[scene]") {
     CAPTURE(option);
     CHECK_THAT(beside_with({option}), Contains(said));
   };
-  refused("wheelset=[{name=\"w\"}]", "[E-BODY-01]");
-  refused("irregularity={spectrum=\"ore_low\"}", "E-BODY-04");
-  refused("defect=[{kind=\"dipped_joint\"}]", "E-BODY-04");
   refused("static.tolerance=1e-9", "E-BODY-05");
-  refused("condense.kind=\"modal\"", "E-CONDENSE-29");
-  refused("condense={kind=\"full\", modes_per_bay=2}", "E-CONDENSE-30");
-  refused("condense={kind=\"full\", highest_hz=200}", "E-CONDENSE-30");
   refused("condense.residual_flexibility=true", "E-CONDENSE-31");
   CHECK(beside_with({"condense={kind=\"full\", residual_flexibility=false}"}) == "accepted");
   refused("step.scheme=\"energy-momentum\"", "E-BODY-06");

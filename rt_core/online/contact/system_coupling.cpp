@@ -1,0 +1,143 @@
+#include "online/contact/system_coupling.h"
+
+#include "online/contact/track_response.h"
+#include "online/math/scalar.h"
+#include "online/system/track_ports.h"
+#include "online/track/closing.h"
+
+namespace railstep {
+
+namespace {
+
+/// Part of the largest displacement by the system's forces below which what is left does not count.
+constexpr double kSettled = 1e-11;
+
+CoupledSystem views(const Model& model, const Coupling& c, double* memory) noexcept {
+  const std::ptrdiff_t n = std::ptrdiff_t{9} * model.system.ports;
+  double* const by_port = memory + 2 * n;
+  double* const change = by_port + n * c.ports;
+  return {memory, memory + n, by_port, change, change + n * c.ports, {}};
+}
+
+/// Displacements of the ports by the lines without contacts.
+void find_free(const Model& model, Workspace& w, double* free) noexcept {
+  if (model.form == Form::condensed)
+    return read_ports(model, {w.solved, {w.solved, w.imaginary}}, free);
+  double* const line = w.beside + beside_doubles(model) - model.line_unknowns;
+  for (std::int32_t i = 0; i < model.line_unknowns; ++i) line[i] = w.solved[i];
+  for (std::int32_t l = 0; l < model.lines; ++l)
+    solve_backward(model.line[l].step, line + model.line[l].first);
+  read_ports(model, {line, {}}, free);
+}
+
+/// Displacements along the rows of all contacts by a unit force on each port.
+void find_by_port(const Model& model, const Workspace& w, const Coupling& c,
+                  double* by_port) noexcept {
+  for (std::int32_t k = 0; k < 9 * model.system.ports; ++k) {
+    double* const own = by_port + std::ptrdiff_t{c.ports} * k;
+    const PortShape shape = port_shape(model, k);
+    const auto under = [&](int base, std::int32_t l, const LineModel&) noexcept {
+      return shape_under(model, w, c, base, l, shape.re, shape.im);
+    };
+    sum_rows(model, c, under, own);
+    for (std::int32_t j = 0; j < model.fixed.count; ++j)
+      own[c.rows + j] = closing(model, j, shape.re, shape.im);
+  }
+}
+
+/// Motion of the ports by the contacts' forces: moved = free - by_port force.
+void move_ports(const Model& model, const Coupling& c, const CoupledSystem& beside,
+                double* moved) noexcept {
+  for (std::int32_t k = 0; k < 9 * model.system.ports; ++k) {
+    const double* own = beside.by_port + std::ptrdiff_t{c.ports} * k;
+    double sum = beside.free[k];
+    for (int i = 0; i < c.ports; ++i) sum -= own[i] * c.force[i];
+    moved[k] = sum;
+  }
+}
+
+/// Displacement along a contact's row by forces on the ports, where its law takes it.
+double moved_by(const Model& model, const Coupling& c, const CoupledSystem& beside, int row,
+                const double* force) noexcept {
+  double sum = 0.;
+  for (std::int32_t k = 0; k < 9 * model.system.ports; ++k)
+    sum += beside.by_port[std::ptrdiff_t{c.ports} * k + row] * force[k];
+  return model.scheme.theta * sum;
+}
+
+void solve_beside(const Model& model, State& s, Workspace& w, const Coupling& c,
+                  CoupledSystem& beside) noexcept {
+  move_ports(model, c, beside, system_workspace_on(model.system, w.system, s.kept).free_ports);
+  const SystemResult met = solve_system(model, s, w);
+  const std::int32_t most = beside.result.iterations;
+  beside.result = met;
+  if (most > met.iterations) beside.result.iterations = most;
+}
+
+/// Change of the system's forces by each contact's force, and its part in W.
+void add_compliance(const Model& model, const State& s, const Workspace& w, Coupling& c,
+                    const CoupledSystem& beside) noexcept {
+  const std::int32_t n = 9 * model.system.ports;
+  for (int j = 0; j < c.ports; ++j) {
+    double* const change = beside.change + std::ptrdiff_t{n} * j;
+    for (std::int32_t k = 0; k < n; ++k)
+      beside.moved[k] = -beside.by_port[std::ptrdiff_t{c.ports} * k + j];
+    find_port_change(model, s, w, beside.moved, change);
+  }
+  for (int i = 0; i < c.ports; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const double own =
+          .5 * (moved_by(model, c, beside, i, beside.change + std::ptrdiff_t{n} * j) +
+                moved_by(model, c, beside, j, beside.change + std::ptrdiff_t{n} * i));
+      c.W[i * c.ports + j] += own;
+      if (i != j) c.W[j * c.ports + i] += own;
+    }
+}
+
+}  // namespace
+
+void couple_system(const Model& model, State& s, Workspace& w, Coupling& c,
+                   CoupledSystem& beside) noexcept {
+  const std::int32_t n = 9 * model.system.ports;
+  beside = views(model, c, w.beside);
+  find_free(model, w, beside.free);
+  find_by_port(model, w, c, beside.by_port);
+  begin_system(model, s, w);
+  for (int i = c.contacts; i < c.rows; ++i) c.force[i] = 0.;  // not known yet
+  solve_beside(model, s, w, c, beside);
+  add_compliance(model, s, w, c, beside);
+  find_port_forces(model, s, w, beside.force);
+  for (int j = 0; j < c.ports; ++j)
+    for (std::int32_t k = 0; k < n; ++k)
+      beside.force[k] -= beside.change[std::ptrdiff_t{n} * j + k] * c.force[j];
+  for (int i = 0; i < c.ports; ++i) c.track_free[i] -= moved_by(model, c, beside, i, beside.force);
+}
+
+bool settle_system(const Model& model, State& s, Workspace& w, Coupling& c, CoupledRunners* runners,
+                   CoupledSystem& beside) noexcept {
+  const std::int32_t n = 9 * model.system.ports;
+  solve_beside(model, s, w, c, beside);
+  double *const missed = beside.moved, *const now = beside.moved + n;
+  find_port_forces(model, s, w, now);
+  for (std::int32_t k = 0; k < n; ++k) {
+    double expected = beside.force[k];
+    for (int j = 0; j < c.ports; ++j)
+      expected += beside.change[std::ptrdiff_t{n} * j + k] * c.force[j];
+    missed[k] = now[k] - expected;
+    beside.force[k] += missed[k];
+  }
+  double most = 0., largest = 0.;
+  for (int i = 0; i < c.ports; ++i) {
+    most = larger(most, magnitude(moved_by(model, c, beside, i, missed)));
+    largest = larger(largest, magnitude(moved_by(model, c, beside, i, now)));
+  }
+  if (most <= kSettled * largest) return true;
+  for (int i = 0; i < c.ports; ++i) {
+    const double by = moved_by(model, c, beside, i, missed);
+    c.track_free[i] -= by;
+    if (runners != nullptr && i >= c.contacts && i < c.rows) move_seat(c, i, -by, *runners);
+  }
+  return false;
+}
+
+}  // namespace railstep

@@ -1,0 +1,41 @@
+#pragma once
+#include "online/contact/runner_coupling.h"
+#include "online/system/system_step.h"
+
+namespace railstep {
+
+// A system of bodies whose joints and springs hold rails, beside contacts and one-sided springs.
+// Both move the same lines. Contacts take the system as linear about its present iterate, which
+// changes W and their free motion. The system then takes the contacts' forces as they are, and what
+// is left of its forces against their prediction moves the contacts again.
+
+/// Most solves of the contacts in a step.
+inline constexpr int kSystemPasses = 8;
+
+/// Whether a step couples a system with contacts.
+inline bool couples_system(const Model& model) noexcept {
+  return model.system.ports > 0 && port_count(model) > 0;
+}
+
+/// Views into Workspace::beside.
+struct CoupledSystem {
+  double* free;     // [9 ports] displacements of the rails without contacts and the system
+  double* force;    // [9 ports] forces of the system on its ports if there are no contacts
+  double* by_port;  // [9 ports][ports of contacts] displacement by a unit force on a port
+  double* change;   // [ports of contacts][9 ports] of the forces by a unit force of each
+  double* moved;    // [2][9 ports] scratch
+  SystemResult result;
+};
+
+/// Solves the system under the contacts' forces of the last step, and adds its part to W and to the
+/// free motion of the contacts. All of Coupling but the runners must be known.
+void couple_system(const Model& model, State& state, Workspace& workspace, Coupling& c,
+                   CoupledSystem& beside) noexcept;
+
+/// Solves the system under the present forces of the contacts. Moves the contacts, and the seats of
+/// runners if there are any, by what was not expected of its forces.
+/// @returns whether this is too little to count
+bool settle_system(const Model& model, State& state, Workspace& workspace, Coupling& c,
+                   CoupledRunners* runners, CoupledSystem& beside) noexcept;
+
+}  // namespace railstep
