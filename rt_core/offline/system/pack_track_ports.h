@@ -14,7 +14,8 @@ struct TrackPorts {
 TrackPorts track_ports(const Model& model, const PackedModel* track);
 
 /// Forces of ports against the rails as forces on these. @param force  [9 ports]
-std::vector<ContactForce> forces_of_ports(const Model& model, const std::vector<RailPortModel>& ports,
+std::vector<ContactForce> forces_of_ports(const Model& model,
+                                          const std::vector<RailPortModel>& ports,
                                           const std::vector<double>& force);
 
 /// Arrays of a track over all unknowns, extended by those of a system, which follow its own.
