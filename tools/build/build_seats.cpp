@@ -57,6 +57,8 @@ void change_seats(const std::vector<SeatChange>& changes, Track& track) {
   for (const SeatChange& change : changes)
     if (change.missing == Missing::sleeper)
       for (const int border : change.seats) track.changed_seats[border].sleeper.reset();
+  for (auto& [border, seat] : track.changed_seats) seat = with_pads_joined(seat);
+  if (track.sleeper) track.sleeper = with_pads_joined(*track.sleeper);
 }
 
 }  // namespace railstep

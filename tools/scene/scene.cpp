@@ -169,7 +169,12 @@ std::optional<SupportScene> read_support(const Table& root, const Scene& scene) 
 
 std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   const std::optional<Table> t = root.table_if("sleeper");
-  const std::optional<Table> ballast = root.table_if("ballast");
+  const std::optional<Table> ballast = root.table_if("ballast"),
+                             under_pad = root.table_if("under_sleeper_pad");
+  if (!t && under_pad)
+    under_pad->refuse("", "E-SUPPORT-02",
+                      "there is [under_sleeper_pad] but no [sleeper] on it; expected [sleeper] and "
+                      "[ballast], or none of the three");
   if (!t && !ballast) return std::nullopt;
   if (!ballast)
     t->refuse("", "E-SUPPORT-01",
@@ -191,6 +196,9 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   s.ballast_length = ballast->number("length_m", between(0.0, 5.0), 0.0);
   s.ballast_unilateral = ballast->boolean("unilateral", false);
   s.ballast_gap = ballast->number("gap_m", between(0.0, 0.1), 0.0);
+  if (under_pad)
+    s.under_pad = {under_pad->number("stiffness_z_n_per_m", above_upto(0.0, 1e13)),
+                   under_pad->number("damping_z_n_s_per_m", between(0.0, 1e11), 0.0)};
   if (s.ballast_length > 0.0 && scene.support->length == 0.0)
     ballast->refuse("length_m", "E-SUPPORT-09",
                     "length_m makes the sleeper pitch, but pads that are points do not feel "

@@ -69,6 +69,10 @@ const Property kProperties[] = {
      [](Seat& s, std::size_t i) -> double& { return s.ballast[i].length; }},
     {"ballast", "gap_m", Kind::other, between(0.0, 0.1),
      [](Seat& s, std::size_t i) -> double& { return s.ballast[i].gap; }},
+    {"under_sleeper_pad", "stiffness_z_n_per_m", Kind::stiffness, above_upto(0.0, 1e13),
+     [](Seat& s, std::size_t i) -> double& { return s.under_pad[i].stiffness; }},
+    {"under_sleeper_pad", "damping_z_n_s_per_m", Kind::damping, kDamping,
+     [](Seat& s, std::size_t i) -> double& { return s.under_pad[i].damping; }},
 };
 
 /// Seats `from` to `to`, or a list; all seats without these keys.
@@ -154,30 +158,43 @@ void check_held(const Table& t, const Property& property, const Scene& scene) {
              "ballast.length_m and support.length_m");
 }
 
-void read_part(const Table& change_table, const char* name, const Scene& scene,
+/// A change of something that the scene has; but a stiffness gives seats a pad under the sleeper.
+void check_has_part(const Table& t, std::string_view name, const Scene& scene) {
+  if (name == "support") return;
+  if (!scene.sleeper)
+    t.refuse(
+        "", "E-SUPPORT-11",
+        fmt::format("the scene has no [{}] to change; expected a change of support alone", name));
+  if (name == "under_sleeper_pad" && scene.sleeper->under_pad.stiffness == 0.0 &&
+      !t.has("stiffness_z_n_per_m"))
+    t.refuse("", "E-SUPPORT-11",
+             "the scene has no [under_sleeper_pad] to change; expected this table, or "
+             "stiffness_z_n_per_m beside the other keys of the change");
+}
+
+void read_part(const Table& change_table, std::string_view name, const Scene& scene,
                std::uint64_t stream, SeatChange& change) {
   const std::optional<Table> given = change_table.table_if(name);
   if (!given) return;
   const Table& t = *given;
-  const bool of_sleeper = std::string_view(name) != "support";
-  if (of_sleeper && !scene.sleeper)
-    t.refuse(
-        "", "E-SUPPORT-11",
-        fmt::format("the scene has no [{}] to change; expected a change of support alone", name));
-  if (std::string_view(name) == "sleeper" && change.sides[0] != change.sides[1])
+  check_has_part(t, name, scene);
+  if (name == "sleeper" && change.sides[0] != change.sides[1])
     t.refuse("", "E-SUPPORT-12", "one sleeper lies under both rails; expected rail = \"both\"");
   for (const Property& property : kProperties) {
-    if (std::string_view(property.table) != name) continue;
+    if (property.table != name) continue;
     check_held(t, property, scene);
     add_value(t, property.key, property.accepted, {property.of}, false, change);
   }
-  if (std::string_view(name) == "sleeper") return;
-  if (t.has("unilateral"))
-    (of_sleeper ? change.ballast_unilateral : change.pad_unilateral) = t.boolean("unilateral");
-  const Range factor = between(0.0, 1e6);
+  if (name == "sleeper") return;
+  const bool under_sleeper = name == "under_sleeper_pad";
+  if (!under_sleeper && t.has("unilateral"))
+    (name == "ballast" ? change.ballast_unilateral : change.pad_unilateral) =
+        t.boolean("unilateral");
+  const Range factor = between(0.0, 1e6),
+              of_springs = under_sleeper ? above_upto(0.0, 1e6) : factor;
   const std::vector<Of> stiffness = all_of(name, Kind::stiffness),
                         damping = all_of(name, Kind::damping);
-  add_value(t, "stiffness_factor", factor, stiffness, true, change);
+  add_value(t, "stiffness_factor", of_springs, stiffness, true, change);
   add_value(t, "damping_factor", factor, damping, true, change);
   add_scatter(t, "stiffness_scatter", stiffness, stream, change);
   add_scatter(t, "damping_scatter", damping, stream + 1, change);
@@ -206,6 +223,7 @@ SeatChange read_change(const Table& t, const Scene& scene) {
   read_part(t, "support", scene, 0, change);
   read_part(t, "sleeper", scene, 0, change);
   read_part(t, "ballast", scene, 2, change);
+  read_part(t, "under_sleeper_pad", scene, 4, change);
   change.missing = read_missing(t, scene, change);
   if (!change.scatter.empty())
     change.seed =
@@ -214,10 +232,11 @@ SeatChange read_change(const Table& t, const Scene& scene) {
     t.refuse("seed", "E-SUPPORT-16",
              "seed is given without scatter; expected stiffness_scatter or "
              "damping_scatter beside it");
-  if (!t.has("missing") && !t.has("support") && !t.has("sleeper") && !t.has("ballast"))
+  if (!t.has("missing") && !t.has("support") && !t.has("sleeper") && !t.has("ballast") &&
+      !t.has("under_sleeper_pad"))
     t.refuse("", "E-SUPPORT-17",
-             "nothing is changed; expected missing, or numbers in support, sleeper or "
-             "ballast");
+             "nothing is changed; expected missing, or numbers in support, sleeper, ballast or "
+             "under_sleeper_pad");
   return change;
 }
 

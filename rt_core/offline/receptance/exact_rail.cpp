@@ -104,8 +104,12 @@ ExactRailReceptance::Seat ExactRailReceptance::seat(const Part& part, double ome
   const ComplexNumber along(track_.support.stiffness[0], omega * track_.support.damping[0]);
   const ComplexNumber rotation = along * std::pow(track_.support.height_z, 2);
   if (!track_.sleeper) return {pad, 0., rotation, false};
-  const ComplexNumber ballast(track_.sleeper->ballast_stiffness[2],
-                              omega * track_.sleeper->ballast_damping[2]);
+  ComplexNumber ballast(track_.sleeper->ballast_stiffness[2],
+                        omega * track_.sleeper->ballast_damping[2]);
+  if (const Relaxing& own = track_.sleeper->relaxing; own.damping > 0.) {
+    const ComplexNumber damper(0., omega * own.damping);
+    ballast -= damper * damper / (own.stiffness + damper);
+  }
   return {pad, ballast - omega * omega * part.sleeper_mass, rotation, true};
 }
 

@@ -24,7 +24,8 @@ std::vector<int> carried(Unknowns unknowns) {
 /// Numbers the motions of a seat's sleeper in a part. Mirrored lateral motions cancel in a rigid
 /// sleeper: it stands still in the symmetric part; the sleeper of a single rail does not rotate.
 void number_sleeper(const Track& track, int border, Assembly& part) {
-  const std::optional<SleeperBody> body = track.seat(border).sleeper;
+  const Seat seat = track.seat(border);
+  const auto& body = seat.sleeper;
   if (!body) return;
   auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
   const bool space = moves_sideways(track.unknowns);
@@ -37,6 +38,13 @@ void number_sleeper(const Track& track, int border, Assembly& part) {
   if (along_y && part.mirror != Mirror::symmetric) sleeper[kAlongY] = part.count++;
   if (means) sleeper[kAlongZ] = part.count++;
   if (rotates) sleeper[kRoll] = part.count++;
+  for (const int rail : part.rails) {
+    const auto side = static_cast<std::size_t>(rail);
+    if (seat.ballast[side].relaxing.damping == 0.) continue;
+    sleeper[kRelaxing + side] = part.count++;
+    if (sleeper[kPitch] >= 0 && seat.ballast[side].length > 0.)
+      sleeper[kRelaxingPitch + side] = part.count++;
+  }
 }
 
 /// Numbers nodes along x, both rails' in turns, and a seat's sleeper behind its nodes, so that the
@@ -45,8 +53,7 @@ void number(const Track& track, Assembly& part) {
   const int nodes = track.nodes(), per_bay = 2 * track.elements_per_bay;
   for (Line::RailUnknowns& table : part.line.unknown_of)
     table.assign(static_cast<std::size_t>(nodes), {-1, -1, -1, -1, -1, -1, -1, -1, -1});
-  part.line.sleeper_unknown_of.assign(static_cast<std::size_t>(track.bays) + 1,
-                                      {-1, -1, -1, -1, -1, -1});
+  part.line.sleeper_unknown_of.assign(static_cast<std::size_t>(track.bays) + 1, kHeldSleeper);
   for (int node = 0; node < nodes - (track.ring ? 1 : 0); ++node) {
     for (const int rail : part.rails) {
       for (const int k : carried(track.unknowns))
@@ -112,6 +119,35 @@ void hold_along(const Track& track, int rail, Assembly& part) {
   }
 }
 
+/// Lets a part of the damper under `moves` act through a spring, whose compression e has no other
+/// stiffness. Its small mass makes it a motion of second order, which condensed lines can hold.
+void relax(Assembly& part, Row moves, int e, const Relaxing& own, double factor) {
+  constexpr double kFastest = 3e6;  // 1/s
+  if (e < 0) return;
+  Assembly::add(part.stiffness, {{e, 1.}}, factor * own.stiffness);
+  Assembly::add(part.mass, {{e, 1.}}, factor * own.damping / kFastest);
+  Assembly::add(part.damping, moves, -factor * own.damping);
+  push(moves, e, -1.);
+  Assembly::add(part.damping, moves, factor * own.damping);
+}
+
+/// What relaxes of the ballast on a seat, whose springs and dampers add_seat() has added.
+void add_relaxing(const Track& track, Assembly& part, int border) {
+  const Seat seat = track.seat(border);
+  const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
+  const double share = part.rails.size() == 2 ? std::sqrt(.5) : 1.;
+  for (const int rail : part.rails) {
+    const auto side = static_cast<std::size_t>(rail);
+    const Ballast& ballast = seat.ballast[side];
+    Row end;
+    push(end, sleeper[kAlongZ], share);
+    push(end, sleeper[kRoll], rail == 0 ? share : -share);
+    relax(part, end, sleeper[kRelaxing + side], ballast.relaxing, 1.);
+    relax(part, {{sleeper[kPitch], share}}, sleeper[kRelaxingPitch + side], ballast.relaxing,
+          ballast.length * ballast.length / 12.);
+  }
+}
+
 Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails) {
   Assembly part{mirror, std::move(rails)};
   part.line.rigid_section = track.unknowns == Unknowns::rigid_section;
@@ -122,6 +158,7 @@ Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails
     hold_along(track, rail, part);
   }
   for (int seat = 0; seat < track.seats(); ++seat) add_seat(track, part, seat);
+  for (int seat = 0; seat < track.seats(); ++seat) add_relaxing(track, part, seat);
   if (mirror != Mirror::none) {
     part.line.unknown_of[1] = part.line.unknown_of[0];
     part.line.cuts[1] = part.line.cuts[0];
@@ -301,22 +338,6 @@ void check(const Track& track) {
 }
 
 }  // namespace
-
-Seat seat_of(const Support& pad, const std::optional<Sleeper>& sleeper) {
-  Seat seat;
-  seat.pad = {pad, pad};
-  if (!sleeper) return seat;
-  const std::array<double, 3>& k = sleeper->ballast_stiffness;
-  seat.sleeper =
-      SleeperBody{sleeper->mass,
-                  sleeper->roll_inertia,
-                  sleeper->pitch_inertia,
-                  {k[0] > 0., k[1] > 0., pad.length > 0. && sleeper->ballast_length > 0.}};
-  const Ballast ballast{k, sleeper->ballast_damping, sleeper->ballast_length,
-                        sleeper->ballast_unilateral, sleeper->ballast_gap};
-  seat.ballast = {ballast, ballast};
-  return seat;
-}
 
 Seat Track::seat(int border) const {
   const auto changed = changed_seats.find(border);

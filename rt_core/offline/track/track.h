@@ -159,8 +159,22 @@ struct RailPoint {
 /// unknowns of its element, in the rail's own axes.
 Vector27 rail_row(const Cant& cant, double xi, double y, double z, int direction);
 
-/// Motions of a rigid sleeper, in the order of a line's table of unknowns.
-enum SleeperMotion { kAlongX, kAlongY, kAlongZ, kRoll, kYaw, kPitch, kSleeperMotions };
+/// Motions of a rigid sleeper, in the order of a line's table of unknowns; then, of the ballast
+/// under its left and its right end (in mirror coordinates the left one stands for both), how far
+/// what relaxes is compressed along z, and turned about y.
+enum SleeperMotion {
+  kAlongX,
+  kAlongY,
+  kAlongZ,
+  kRoll,
+  kYaw,
+  kPitch,
+  kRelaxing,
+  kRelaxingPitch = kRelaxing + 2,
+  kSleeperMotions = kRelaxingPitch + 2
+};
+inline constexpr std::array<int, kSleeperMotions> kHeldSleeper = {-1, -1, -1, -1, -1,
+                                                                  -1, -1, -1, -1, -1};
 
 /// One independent part of the track: M a + C v + K u = f with banded matrices. One-sided springs
 /// (fixed_port.h) are not in these matrices, but unknowns that they couple stay in one line.
