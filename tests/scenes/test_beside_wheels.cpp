@@ -124,3 +124,23 @@ TEST_CASE("a spring of a system pulls a leaning rail along the track's axes", "[
   CHECK(difference(joined, in_seat) < 1e-3);
   CHECK(difference(joined, forces_of(scene)) > 1e-2);
 }
+
+TEST_CASE("a body hangs on rails that do not give way, beside a wheelset", "[beside_wheels]") {
+  const std::string scene =
+      "schema = 1\n[track]\nform = \"rigid\"\nlength_m = 36.0\n"
+      "[step]\ndt_s = 0.5e-3\nduration_s = 0.05\n" +
+      kWheels +
+      "[[body]]\nname = \"box\"\nmass_kg = 100.0\ninertia_kg_m2 = [1.0, 1.0, 1.0]\n"
+      "position_m = [14.4, 0.75, -1.0]\n"
+      "[[spring]]\nname = \"hanger\"\nbetween = [\"rail left\", \"box\"]\ntrace = true\n"
+      "point_m = [14.4, 0.75, 0.0]\nother_point_m = [14.4, 0.75, -1.0]\n"
+      "stiffness_n_per_m = 3e4\ndamping_n_s_per_m = 30.0\n";
+  const auto file = fresh_folder("hangs") / "scene.toml";
+  std::ofstream(file) << scene;
+  const Rows trace = traced(file.string());
+  REQUIRE(trace.row.size() == 100);
+  for (const auto& row : trace.row) {
+    CHECK(std::fabs(row[trace.column("hanger.force_n")] - 981.) < 1e-5);
+    CHECK(std::fabs(row[trace.column("wl.force_z_n")] - .5 * 9200. * 9.81) < 1e-5);
+  }
+}

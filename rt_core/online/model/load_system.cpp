@@ -50,7 +50,8 @@ bool stands_alone_or_beside(const Model& m) noexcept {
   if (m.elements > 0)
     return (s.mean != 0) == (m.form == Form::condensed) &&
            s.constraint_method != ConstraintMethod::gear_gupta_leimkuhler &&
-           (s.ports == 0 || (s.port_compliance && s.port_shapes && compliances_are_valid(s)));
+           (s.ports == 0 || (s.port_compliance && (s.port_shapes || m.line_unknowns == 0) &&
+                             compliances_are_valid(s)));
   return s.ports == 0 && s.first == 0 && m.lines == 0 && m.loads == 0 && m.signals == 0 &&
          m.form == Form::banded && m.wheelsets == 0 && m.vehicles == 0 && m.vehicle_wheels == 0 &&
          m.runners == 0 && m.fixed.count == 0 && m.external_wheels == 0;
