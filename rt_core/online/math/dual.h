@@ -108,10 +108,4 @@ bool operator>(const Dual<n>& x, double y) noexcept {
   return x.value > y;
 }
 
-inline double value_of(double x) noexcept { return x; }
-template <int n>
-double value_of(const Dual<n>& x) noexcept {
-  return x.value;
-}
-
 }  // namespace railstep

@@ -82,18 +82,18 @@ struct ConeOnCrown {
     const Vector<T> across = {x - along * axle.x, y - along * axle.y, z - along * axle.z};
     return {x, along, sqrt(dot(across, across)), across};
   }
-  /// Newton's step to the point of the line that is nearest to the cone. It converges from
-  /// centimetres off, and one step from the solution also makes its derivatives right.
-  T nearer(const Point& p) const noexcept {
-    const T sine_x = p.across.x / p.far;
-    const T rise = sine_x + (side * c.slope) * axle.x;
-    return p.x - rise * p.far / (1. - axle.x * axle.x - sine_x * sine_x);
+  /// x of the point of the line that is nearest to the cone. Across the axle the line is off by the
+  /// root of level (x - vertex)^2 + least, which grows there as the cone does along it.
+  T nearest() const noexcept {
+    using std::sqrt;
+    const T along = y * axle.y + z * axle.z, square = axle.x * axle.x;
+    const T level = 1. - square;
+    const T vertex = along / level;
+    const T least = (y * y + z * z) - along * vertex;
+    const T steep = level * (level - (c.slope * c.slope) * square);
+    return axle.x * (vertex - (side * c.slope) * sqrt(least / steep));
   }
 };
-
-/// Steps of the search for the nearest point; the error of each is of the order of the square of
-/// the one before.
-inline constexpr int kNearestSteps = 4;
 
 }  // namespace tread_contact
 
@@ -115,13 +115,8 @@ struct WheelRows {
 template <typename T>
 WheelRows<T> wheel_rows(const RollingContact& c, double radius, double side, const T& y, const T& z,
                         const T& roll, const T& yaw) noexcept {
-  using tread_contact::ConeOnCrown;
-  const ConeOnCrown<double> searched(c, radius, side, value_of(y), value_of(z), value_of(roll),
-                                     value_of(yaw));
-  double x = 0.;
-  for (int i = 0; i < tread_contact::kNearestSteps; ++i) x = searched.nearer(searched.point(x));
-  const ConeOnCrown<T> pair(c, radius, side, y, z, roll, yaw);
-  const auto p = pair.point(pair.nearer(pair.point(T(x))));
+  const tread_contact::ConeOnCrown<T> pair(c, radius, side, y, z, roll, yaw);
+  const auto p = pair.point(pair.nearest());
   const auto& axle = pair.axle;
   WheelRows<T> rows;
   const T wheel = (radius + c.slope * c.half_distance) - (side * c.slope) * p.along;
