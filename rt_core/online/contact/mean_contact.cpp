@@ -8,6 +8,7 @@ namespace railstep {
 
 double residual_before(const Model& model, const State& s, const Coupling& c, int i) noexcept {
   double sum = c.by_loads[i];
+  if (c.place[i].load_point == kNoLoadPoint) return sum;
   for (int j = 0; j < c.rows; ++j) {
     const bool own_seat = i == j && j >= c.contacts;
     if (!is_on_rail(c, j) || own_seat) continue;

@@ -84,23 +84,26 @@ const StopModel& stop_of(const Model& model, int stop) noexcept {
 
 void fill_compliance(const Model& model, const Coupling& c, int scalars, double* Y) noexcept {
   const int n = newton_size(model);
+  int port[kMostNewton];
+  for (int i = 0; i < n; ++i) port[i] = port_of_coordinate(model, c, scalars, i);
   for (int i = 0; i < n; ++i) {
-    const int a = port_of_coordinate(model, c, scalars, i);
-    for (int j = 0; j < n; ++j) {
-      const int b = port_of_coordinate(model, c, scalars, j);
-      Y[i * n + j] = a < 0 || b < 0 ? 0. : c.W[a * c.ports + b];
-    }
+    double* const row = Y + i * n;
+    for (int j = 0; j < n; ++j) row[j] = 0.;
+    if (port[i] < 0) continue;
+    const double* const own = c.W + port[i] * c.ports;
+    for (int j = 0; j < n; ++j)
+      if (port[j] >= 0) row[j] = own[port[j]];
   }
   for (std::int32_t r = 0; r < model.runners; ++r) {
     const RunnerModel& runner = model.runner[r];
     const int motions = kMotions * runner.wheelsets, meets = interface_size(runner);
-    const auto at = [&](int k) noexcept {
-      return k < motions
-                 ? scalars + kOfWheelset * (runner.first_wheelset + k / kMotions) + k % kMotions
-                 : first_stop(model, scalars) + runner.first_stop + (k - motions);
-    };
+    int at[kMostInterfaces];
+    for (int k = 0; k < meets; ++k)
+      at[k] = k < motions
+                  ? scalars + kOfWheelset * (runner.first_wheelset + k / kMotions) + k % kMotions
+                  : first_stop(model, scalars) + runner.first_stop + (k - motions);
     for (int i = 0; i < meets; ++i)
-      for (int j = 0; j < meets; ++j) Y[at(i) * n + at(j)] = runner.compliance[i * meets + j];
+      for (int j = 0; j < meets; ++j) Y[at[i] * n + at[j]] = runner.compliance[i * meets + j];
   }
 }
 

@@ -1,6 +1,7 @@
 #include "online/math/newton.h"
 
 #include "online/math/dense.h"
+#include "online/math/lanes.h"
 
 namespace railstep {
 
@@ -133,12 +134,17 @@ bool is_usable(const NewtonProblem& p, const double* force) noexcept {
     if (end > p.n) return false;
   }
   if (end != p.n) return false;
-  for (int i = 0; i < p.n; ++i) {
-    if (!std::isfinite(p.z_free[i]) || !std::isfinite(force[i])) return false;
-    for (int j = 0; j < p.n; ++j)
-      if (!std::isfinite(p.Y[i * p.n + j])) return false;
+  // 0 times an infinity or NaN is NaN, and so is every sum with it.
+  double sum[kLanes] = {};
+  for (int i = 0; i < p.n; ++i) sum[0] += 0. * p.z_free[i] + 0. * force[i];
+  const int all = p.n * p.n;
+  int k = 0;
+  for (; k + kLanes <= all; k += kLanes) {
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) sum[l] += 0. * p.Y[k + l];
   }
-  return true;
+  for (; k < all; ++k) sum[1] += 0. * p.Y[k];
+  return lane_sum(sum) == 0.;
 }
 
 void find_roots(const NewtonProblem& p, double* root) noexcept {
