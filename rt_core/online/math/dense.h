@@ -21,22 +21,29 @@ inline double fast_dot(const double* x, const double* y, int n) noexcept {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/// y += A x, A [n][n] symmetric. Four columns at a time, so that y is read and written less often.
-inline void symmetric_multiply_add(const double* A, const double* x, double* y, int n) noexcept {
+/// y += A x, A of `count` columns [n], one after the other. Four columns at a time, so that y is
+/// read and written less often.
+inline void columns_multiply_add(const double* A, const double* x, double* y, int n,
+                                 int count) noexcept {
   int j = 0;
-  for (; j + 4 <= n; j += 4) {
+  for (; j + 4 <= count; j += 4) {
     const double *a0 = A + j * n, *a1 = a0 + n, *a2 = a1 + n, *a3 = a2 + n;
     const double x0 = x[j], x1 = x[j + 1], x2 = x[j + 2], x3 = x[j + 3];
 #pragma omp simd
     for (int i = 0; i < n; ++i)
       y[i] = (((y[i] + a0[i] * x0) + a1[i] * x1) + a2[i] * x2) + a3[i] * x3;
   }
-  for (; j < n; ++j) {
+  for (; j < count; ++j) {
     const double* const a = A + j * n;
     const double own = x[j];
 #pragma omp simd
     for (int i = 0; i < n; ++i) y[i] += a[i] * own;
   }
+}
+
+/// y += A x, A [n][n] symmetric.
+inline void symmetric_multiply_add(const double* A, const double* x, double* y, int n) noexcept {
+  columns_multiply_add(A, x, y, n, n);
 }
 
 enum class SmallSolve : unsigned char {

@@ -9,24 +9,23 @@ namespace {
 
 constexpr double kLeastPivot = 1e-12;  // of the largest number of the matrix
 
-/// Y B, [n][ranks]. Coordinates of two parts do not move each other: most of Y is 0.
+/// Y B, column by column, [ranks][n]. Most forces do not act on all coordinates of their law.
 void spread_through(const NewtonProblem& p, NewtonSlopes& s) noexcept {
   const double* spread = s.spread;
-  int first = 0;
+  double* column = s.moved;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
-    for (int i = 0; i < p.n; ++i) {
-      const double* y = p.Y + i * p.n + own.first;
-      double sum[kMostLaw] = {};
+    for (int k = 0; k < own.rank; ++k, column += p.n) {
+      for (int i = 0; i < p.n; ++i) column[i] = 0.;
       for (int m = 0; m < own.size; ++m) {
-        if (y[m] == 0.) continue;
+        const double by = spread[m * own.rank + k];
+        if (by == 0.) continue;
+        const double* const y = p.Y + (own.first + m) * p.n;
 #pragma omp simd
-        for (int k = 0; k < own.rank; ++k) sum[k] += y[m] * spread[m * own.rank + k];
+        for (int i = 0; i < p.n; ++i) column[i] += by * y[i];
       }
-      for (int k = 0; k < own.rank; ++k) s.moved[i * s.ranks + first + k] = sum[k];
     }
     spread += own.size * own.rank;
-    first += own.rank;
   }
 }
 
@@ -34,34 +33,38 @@ void spread_through(const NewtonProblem& p, NewtonSlopes& s) noexcept {
 void fill(const NewtonProblem& p, NewtonSlopes& s) noexcept {
   const int n = s.ranks;
   const double* slope = s.slope;
-  int first = 0;
+  int row = 0;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
-    for (int k = 0; k < own.rank; ++k) {
-      double* const row = s.factor + (first + k) * n;
-      for (int j = 0; j < n; ++j) row[j] = 0.;
-      for (int m = 0; m < own.size; ++m) {
-        const double by = slope[k * own.size + m];
-        const double* const moved = s.moved + (own.first + m) * n;
-#pragma omp simd
-        for (int j = 0; j < n; ++j) row[j] -= by * moved[j];
-      }
-      row[first + k] += 1.;
+    for (int k = 0; k < own.rank; ++k, ++row, slope += own.size) {
+      double* const to = s.factor + row * n;
+      for (int j = 0; j < n; ++j) to[j] = -fast_dot(slope, s.moved + j * p.n + own.first, own.size);
+      to[row] += 1.;
     }
-    slope += own.size * own.rank;
-    first += own.rank;
   }
+}
+
+/// Largest absolute value, by lanes that do not wait for each other.
+double largest_of(const double* x, int n) noexcept {
+  double most[kLanes] = {};
+  int i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      const double size = std::fabs(x[i + l]);
+      most[l] = size > most[l] ? size : most[l];
+    }
+  }
+  for (; i < n; ++i) most[0] = std::fabs(x[i]) > most[0] ? std::fabs(x[i]) : most[0];
+  for (int l = 1; l < kLanes; ++l) most[0] = most[l] > most[0] ? most[l] : most[0];
+  return most[0];
 }
 
 /// L U = A in place, with row exchanges. The largest of equal pivots is the first one.
 /// @param exchange  [n] out: row that took the place of each
 /// @returns false where a pivot is too small
 bool eliminate(double* A, int* exchange, int n) noexcept {
-  double largest = 0.;
-  for (int i = 0; i < n * n; ++i) {
-    const double size = std::fabs(A[i]);
-    largest = size > largest ? size : largest;
-  }
+  const double largest = largest_of(A, n * n);
   for (int j = 0; j < n; ++j) {
     int best = j;
     for (int i = j + 1; i < n; ++i)
@@ -155,12 +158,12 @@ void find_roots(const NewtonProblem& p, double* root) noexcept {
 }
 
 void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) noexcept {
-  double moved[kMostNewton], most = 0.;
+  double moved[kMostNewton], pressed[kMostNewton];
   for (int i = 0; i < p.n; ++i) {
     moved[i] = p.z_free[i];
-    const double own = std::fabs(at.force[i]) * root[i];
-    most = own > most ? own : most;
+    pressed[i] = at.force[i] * root[i];
   }
+  const double most = largest_of(pressed, p.n);
   symmetric_multiply_add(p.Y, at.force, moved, p.n);
   at.residual = 0.;
   for (int i = 0; i < p.n; ++i) {
@@ -205,8 +208,8 @@ void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const doubl
     }
   }
   substitute(slopes.factor, slopes.exchange, t, slopes.ranks);
-  for (int i = 0; i < p.n; ++i)
-    step[i] = fast_dot(slopes.moved + i * slopes.ranks, t, slopes.ranks) - missed[i];
+  for (int i = 0; i < p.n; ++i) step[i] = -missed[i];
+  columns_multiply_add(slopes.moved, t, step, p.n, slopes.ranks);
 }
 
 }  // namespace railstep

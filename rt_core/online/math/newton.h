@@ -67,7 +67,7 @@ void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) no
 /// directions; the matrix's leading minors are then positive, or nearly so.
 struct NewtonSlopes {
   double *spread, *slope;  // blocks, one by one
-  double* moved;           // [n][ranks] Y B
+  double* moved;           // [ranks][n] Y B, column by column
   double* factor;          // [ranks][ranks]
   int exchange[kMostNewton];
   int ranks;
