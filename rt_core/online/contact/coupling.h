@@ -67,8 +67,8 @@ inline void find_acting(const Model& model, Coupling& c) noexcept {
   }
 }
 
-/// The rows of the track that a base is a part of on a line: factor times it. A row along z also
-/// has -lean times that of the roll.
+/// The rows of the track that a base is a part of on a line: factor times it. Rows along y and z
+/// also have -lean times that of the roll.
 struct RowsOfBase {
   int count, row[2];
   double factor[2];
@@ -82,10 +82,10 @@ inline RowsOfBase rows_of_base(const Coupling& c, int base, const LineModel& lin
   return {2, {left + d, left + d + kWheelSeatRows}, {1., d == 1 ? right : -right}};
 }
 
-/// Subtracts from rows along z their part by the rolls. @param x  [rows]
+/// Subtracts from rows along y and z their part by the rolls. @param x  [rows]
 inline void lean_rows(const Coupling& c, double* x) noexcept {
   for (int i = c.contacts; i < c.rows; i += kWheelSeatRows)
-    x[i + 1] -= c.seat[i + 1 - c.contacts].lean * x[i + 2];
+    for (int d = 0; d < 2; ++d) x[i + d] -= c.seat[i + d - c.contacts].lean * x[i + 2];
 }
 
 /// Sums up over lines and bases. @param value  value(base, line's number, line)

@@ -172,11 +172,12 @@ void lean_wheel_seats(const Model& model, Coupling& c) noexcept {
       const std::int32_t first = wheel_seat_row(model, set, side);
       const SeatLean own = seat_lean(model, runner.contact, side, c.located[first + 2]);
       WheelSeatRow& along_z = c.seat[first + 1 - c.contacts];
-      along_z.lean = own.lean;
+      along_z.lean += own.lean;
       along_z.rise += own.rise;
+      c.located[first + 1] -= own.lean * c.located[first + 2];
+      if (model.form == Form::condensed) c.moved[first + 1] -= own.lean * c.moved[first + 2];
     }
   });
-  lean_rows(c, c.located);
 }
 
 void add_seat_flexibility(const Model& model, Coupling& c) noexcept {

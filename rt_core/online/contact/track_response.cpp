@@ -47,21 +47,32 @@ void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
 }
 
 /// Shapes of the bases in condensed lines, and unless there is a table the response to a unit force
-/// along each, held over the step.
-void respond_modes(const Model& model, Workspace& w, const Coupling& c) noexcept {
+/// along each, held over the step. Displacements of the lines along all rows, as they are located
+/// and without contact forces at the step's end, go to `located` and `moved`.
+void respond_modes(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
+  TwoMotions motion[kMaxTrackRows][kMaxLines];
   for (int i = 0; i < c.bases; ++i) {
     double* re = w.row + 2 * i * stride;
     const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
       if (!c.acts[i][l]) continue;
-      shape_row(line, base_row(c, i), re, re + stride);
+      motion[i][l] = shape_moving_row(line, base_row(c, i), {s.u, s.v}, {w.solved, w.imaginary}, re,
+                                      re + stride);
       if (is_tabled(line)) continue;
       modes_multiply(line.modal.held_force, base_of(model, w, line, i), w.unit + unit + line.first,
                      w.unit_second + unit + line.first, line.size);
     }
   }
+  const auto first = [&](int base, std::int32_t l, const LineModel&) noexcept {
+    return motion[base][l].first;
+  };
+  const auto second = [&](int base, std::int32_t l, const LineModel&) noexcept {
+    return motion[base][l].second;
+  };
+  sum_rows(model, c, first, c.located);
+  sum_rows(model, c, second, c.moved);
 }
 
 /// x -= sum of forces times the unit responses of a line, in whole panels, so that the line is read
@@ -141,18 +152,19 @@ void add_tabled(const LineModel& line, std::int32_t l, Coupling& c) noexcept {
   }
 }
 
-/// Takes rows along z with their part by the rolls, W in its lower triangle.
+/// Takes rows along y and z with their part by the rolls, W in its lower triangle.
 void lean_compliance(Coupling& c) noexcept {
   const auto at = [&](int a, int b) noexcept -> double& {
     return a > b ? c.W[a * c.ports + b] : c.W[b * c.ports + a];
   };
-  for (int z = c.contacts + 1; z < c.rows; z += kWheelSeatRows) {
-    const double lean = c.seat[z - c.contacts].lean;
-    if (lean == 0.) continue;
-    const double by_roll = at(z, z + 1);
-    for (int i = 0; i < c.rows; ++i) at(z, i) -= lean * at(z + 1, i);
+  for (int own = c.contacts; own < c.rows; ++own) {
+    const int roll = own + 2 - (own - c.contacts) % kWheelSeatRows;
+    const double lean = c.seat[own - c.contacts].lean;
+    if (own == roll || lean == 0.) continue;
+    const double by_roll = at(own, roll);
+    for (int i = 0; i < c.rows; ++i) at(own, i) -= lean * at(roll, i);
     // The row itself counts in both factors.
-    at(z, z) -= lean * (by_roll - lean * at(z + 1, z + 1));
+    at(own, own) -= lean * (by_roll - lean * at(roll, roll));
   }
 }
 
@@ -166,14 +178,10 @@ double shape_under(const Model& model, const Workspace& w, const Coupling& c, in
 }
 
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
-  if (model.form == Form::condensed)
-    respond_modes(model, w, c);
-  else
-    respond_bands(model, w, c);
-  const bool condensed = model.form == Form::condensed;
-  const double *re = condensed ? s.u : w.scaled, *im = condensed ? s.v : nullptr;
-  const auto under = [&](int base, std::int32_t l, const LineModel&) noexcept {
-    return shape_under(model, w, c, base, l, re, im);
+  if (model.form == Form::condensed) return respond_modes(model, s, w, c);
+  respond_bands(model, w, c);
+  const auto under = [&](int base, std::int32_t, const LineModel& line) noexcept {
+    return motion(line, base_row(c, base), {w.scaled, {}});
   };
   sum_rows(model, c, under, c.located);
 }
@@ -219,11 +227,9 @@ void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexc
 
 void find_track_motion(const Model& model, const Workspace& w, Coupling& c) noexcept {
   const auto under = [&](int base, std::int32_t l, const LineModel&) noexcept {
-    return model.form == Form::condensed
-               ? shape_under(model, w, c, base, l, w.solved, w.imaginary)
-               : line_compliance(model, w, c, base, l, {c.panels[base][l], nullptr, w.solved});
+    return line_compliance(model, w, c, base, l, {c.panels[base][l], nullptr, w.solved});
   };
-  sum_rows(model, c, under, c.moved);
+  if (model.form == Form::banded) sum_rows(model, c, under, c.moved);
   for (int i = 0; i < c.rows; ++i) c.moved[i] -= c.located[i];
 }
 
@@ -231,7 +237,8 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
   double row_force[kMaxTrackRows];
   for (int i = 0; i < c.rows; ++i) row_force[i] = c.force[i];
   for (int i = c.contacts; i < c.rows; i += kWheelSeatRows)
-    row_force[i + 2] -= c.seat[i + 1 - c.contacts].lean * row_force[i + 1];
+    for (int d = 0; d < 2; ++d)
+      row_force[i + 2] -= c.seat[i + d - c.contacts].lean * row_force[i + d];
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     const double *re[kMaxTrackRows], *im[kMaxTrackRows];

@@ -25,7 +25,8 @@ struct LineResponse {
 
 /// Solves banded lines forward for their own right-hand side (in workspace.solved), and for each
 /// wheel the lines that it acts on for a unit force there. On condensed lines the force is held
-/// over the step. It stores the displacement of the lines under each wheel when located.
+/// over the step. It stores the displacement of the lines under each wheel when located, and on
+/// condensed lines that without contact forces.
 void respond(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept;
 
 /// Displacement of line `l`, which forces along a base move, along it by a response of the line.

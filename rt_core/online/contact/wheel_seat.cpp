@@ -49,12 +49,27 @@ void clear(bool on_rail, int side, std::int32_t element, WheelSeatRow* seat,
   }
 }
 
+constexpr double kAlong[2][3] = {{0., 1., 0.}, {0., 0., 1.}};  // of a seat's rows along y and z
+
 void fill_seat_rows(const Model& model, const SectionPoint& centre, int side, const double* shape,
                     WheelSeatRow* seat) noexcept {
-  constexpr double kAlong[2][3] = {{0., 1., 0.}, {0., 0., 1.}};
   for (int d = 0; d < 2; ++d)
     fill_point_row(model.cant[side], centre, shape, kAlong[d], seat[d].row);
   fill_roll_row(shape, seat[2].row);
+}
+
+/// Whether no section of any line strains, so that it moves as its axis and its roll do.
+bool has_rigid_sections(const Model& model) noexcept {
+  bool rigid = true;
+  for (std::int32_t l = 0; l < model.lines; ++l) rigid = rigid && model.line[l].rigid_section != 0;
+  return rigid;
+}
+
+/// Displacement of a point of the section along a direction of the track by a unit of its roll, m.
+double by_roll(const Cant& cant, const SectionPoint& point, const double* direction) noexcept {
+  double along[3];
+  to_rail(cant, direction, along);
+  return point.y * along[2] - point.z * along[1];
 }
 
 }  // namespace
@@ -133,7 +148,13 @@ void locate_mirrored_seats(const Model& model, const Configuration& at, const Ru
   if (!on_rail) return;
   double shape[3];
   shape_functions(xi, shape);
-  fill_seat_rows(model, crown_centre(model, runner.contact, 0), 0, shape, seat);
+  const bool rigid = has_rigid_sections(model);
+  const SectionPoint crown = crown_centre(model, runner.contact, 0);
+  fill_seat_rows(model, rigid ? SectionPoint{0., 0.} : crown, 0, shape, seat);
+  for (int side = 0; side < 2 && rigid; ++side)
+    for (int d = 0; d < 2; ++d)
+      seat[kWheelSeatRows * side + d].lean =
+          -by_roll(model.cant[side], crown_centre(model, runner.contact, side), kAlong[d]);
   if (!has_levers(model)) return;
   SeatMotions motions;
   for (int side = 0; side < 2; ++side) {

@@ -9,7 +9,7 @@ namespace railstep {
 struct WheelSeatRow {
   bool on_rail;
   double rise;  // m, of second order in the roll of the rail (track/p_delta.h)
-  double lean;  // m: of the row along z, its part by the roll that is not in `row`, negative
+  double lean;  // m: of rows along y and z, their part by the roll that is not in `row`, negative
   RailRow row;
 };
 
@@ -52,9 +52,10 @@ SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
                    double roll) noexcept;
 
 /// The rows of both seats under a wheelset, where seats mirror. The first three are those of the
-/// left seat, without the effect of the roll of the section there. If the model has levers
-/// (p_delta.h), the next two are the parts of the left and of the right row along z by the rolls
-/// over seats.
+/// left seat, without the effect of the roll of the section there. On sections that do not strain
+/// rows along y and z are those of the axis: the crown has the roll besides, WheelSeatRow::lean. If
+/// the model has levers (p_delta.h), the next two are the parts of the left and of the right row
+/// along z by the rolls over seats.
 /// @param seat, place  [2 kWheelSeatRows] out
 void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
                            double x, WheelSeatRow* seat, RailForce* place) noexcept;

@@ -88,6 +88,8 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
 
 void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexcept {
   carried.count = 0;
+  carried.lowest = INT32_MAX;
+  carried.highest = -1;
   for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
     // The roll of a section that does not strain is its a_z and its b_y.
     const int last = carried.count - 1;
@@ -95,25 +97,55 @@ void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexc
       carried.weight[last] += weight;
       return;
     }
+    if (unknown < carried.lowest) carried.lowest = unknown;
+    if (unknown > carried.highest) carried.highest = unknown;
     carried.unknown[carried.count] = unknown;
     carried.weight[carried.count++] = weight;
   });
 }
 
+namespace {
+
+/// Row of the table between unknowns.
+const double* table_row(const Modal& modal, std::int32_t unknown) noexcept {
+  return modal.between + std::ptrdiff_t{unknown} * (unknown + 1) / 2;
+}
+
+/// Displacement along a by `count` unknowns of b, which are all before those of a in the table.
+template <int count>
+double between_apart(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept {
+  std::int32_t unknown[count];
+  double weight[count];
+  for (int k = 0; k < count; ++k) {
+    unknown[k] = b.unknown[k];
+    weight[k] = b.weight[k];
+  }
+  double sum = 0.;
+  for (int i = 0; i < a.count; ++i) {
+    const double* const of_a = table_row(modal, a.unknown[i]);
+    double along = 0.;
+    for (int k = 0; k < count; ++k) along += weight[k] * of_a[unknown[k]];
+    sum += a.weight[i] * along;
+  }
+  return sum;
+}
+
+}  // namespace
+
 double between(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept {
-  const auto row_of = [&](std::int32_t unknown) noexcept {
-    return modal.between + std::ptrdiff_t{unknown} * (unknown + 1) / 2;
-  };
-  const double* of_b[kMostCarried];
-  for (int k = 0; k < b.count; ++k) of_b[k] = row_of(b.unknown[k]);
+  // Rows of two places mostly lie apart in the table.
+  if (b.lowest > a.highest) return between(modal, b, a);
+  const bool apart = a.lowest > b.highest;
+  if (apart && b.count == 3) return between_apart<3>(modal, a, b);
+  if (apart && b.count == kPDeltaSeats) return between_apart<kPDeltaSeats>(modal, a, b);
   double sum = 0.;
   for (int i = 0; i < a.count; ++i) {
     const std::int32_t own = a.unknown[i];
-    const double* const of_a = row_of(own);
+    const double* const of_a = table_row(modal, own);
     double along = 0.;
     for (int k = 0; k < b.count; ++k) {
       const std::int32_t other = b.unknown[k];
-      along += b.weight[k] * (own > other ? of_a[other] : of_b[k][own]);
+      along += b.weight[k] * (own > other ? of_a[other] : table_row(modal, other)[own]);
     }
     sum += a.weight[i] * along;
   }
@@ -129,9 +161,11 @@ Panels panels_of(const LineModel& line, const RailRow& row) noexcept {
   return last < 0 ? Panels{0, 0} : Panels{first / kLanes, last / kLanes + 1};
 }
 
-void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept {
-  CarriedRow carried;
-  carry(line, row, carried);
+namespace {
+
+/// re, im  of the line
+void shape_carried(const LineModel& line, const CarriedRow& carried, double* re,
+                   double* im) noexcept {
   const double *shape[kMostCarried], *imaginary[kMostCarried];
   const double* const weight = carried.weight;
   const int count = carried.count;
@@ -149,8 +183,63 @@ void shape_row(const LineModel& line, const RailRow& row, double* re, double* im
         sum_im[l] += weight[i] * imaginary[i][k + l];
       }
     }
-    for (int l = 0; l < kLanes; ++l) re[line.first + k + l] = sum_re[l];
-    for (int l = 0; l < kLanes; ++l) im[line.first + k + l] = sum_im[l];
+    for (int l = 0; l < kLanes; ++l) re[k + l] = sum_re[l];
+    for (int l = 0; l < kLanes; ++l) im[k + l] = sum_im[l];
+  }
+}
+
+/// The shape of a row that carries `count` unknowns, and its motions as modes_dot() takes them, all
+/// of the line.
+template <int count>
+TwoMotions shape_and_move(const LineModel& line, const CarriedRow& carried, Complex first,
+                          Complex second, double* __restrict re, double* __restrict im) noexcept {
+  Complex shape[count];
+  double weight[count];
+  for (int i = 0; i < count; ++i) {
+    shape[i] = shape_of(line.modal, carried.unknown[i]);
+    weight[i] = carried.weight[i];
+  }
+  double sum[kLanes] = {}, other[kLanes] = {};
+  for (std::int32_t k = 0; k < line.size; k += kLanes) {
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      double own_re = 0., own_im = 0.;
+      for (int i = 0; i < count; ++i) {
+        own_re += weight[i] * shape[i].re[k + l];
+        own_im += weight[i] * shape[i].im[k + l];
+      }
+      sum[l] += own_re * first.re[k + l] - own_im * first.im[k + l];
+      other[l] += own_re * second.re[k + l] - own_im * second.im[k + l];
+      re[k + l] = own_re;
+      im[k + l] = own_im;
+    }
+  }
+  return {lane_sum(sum), lane_sum(other)};
+}
+
+}  // namespace
+
+void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept {
+  CarriedRow carried;
+  carry(line, row, carried);
+  shape_carried(line, carried, re + line.first, im + line.first);
+}
+
+TwoMotions shape_moving_row(const LineModel& line, const RailRow& row, Complex first,
+                            Complex second, double* re, double* im) noexcept {
+  const std::int32_t at = line.first;
+  const Complex own = {re + at, im + at}, one = {first.re + at, first.im + at},
+                other = {second.re + at, second.im + at};
+  CarriedRow carried;
+  carry(line, row, carried);
+  switch (carried.count) {
+    case 3:  // one motion of an element's nodes
+      return shape_and_move<3>(line, carried, one, other, re + at, im + at);
+    case kPDeltaSeats:  // rolls over the seats around
+      return shape_and_move<kPDeltaSeats>(line, carried, one, other, re + at, im + at);
+    default:
+      shape_carried(line, carried, re + at, im + at);
+      return {modes_dot(own, one, line.size), modes_dot(own, other, line.size)};
   }
 }
 

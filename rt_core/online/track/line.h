@@ -85,6 +85,7 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
 inline constexpr int kMostCarried = 3 * 9 + 2 * kPDeltaSeats;
 struct CarriedRow {
   int count;
+  std::int32_t lowest, highest;  // unknown
   std::int32_t unknown[kMostCarried];
   double weight[kMostCarried];
 };
@@ -100,6 +101,14 @@ Panels panels_of(const LineModel& line, const RailRow& row) noexcept;
 /// Shape of a row in the modes of a condensed line; the line's part of re and im [unknowns] is
 /// overwritten.
 void shape_row(const LineModel& line, const RailRow& row, double* re, double* im) noexcept;
+
+/// The same, and the part of the row's displacement by the line in two configurations of all lines'
+/// modes, which saves reading the shape twice.
+struct TwoMotions {
+  double first, second;
+};
+TwoMotions shape_moving_row(const LineModel& line, const RailRow& row, Complex first,
+                            Complex second, double* re, double* im) noexcept;
 
 /// shape += force * row for a condensed line: [unknowns] of all lines, complex.
 void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,
