@@ -20,8 +20,11 @@ Cost newton_cost(std::int64_t wheels, std::int64_t scalars, std::int64_t n) {
       work(2 * kWheelsetRank * n * n + 2 * n * ranks + 2 * kMostLaw * ranks * ranks +
                ranks * ranks * (2 * ranks / 3 + 4),
            2 * kWheelsetRank * n * n + 2 * kMostLaw * ranks * ranks + ranks * ranks * ranks);
-  const Cost step = work(2 * kMostLaw * ranks + 2 * ranks * ranks + 2 * n * ranks + 8 * n,
-                         2 * kMostLaw * ranks + 2 * ranks * ranks + 2 * n * ranks);
+  // One elimination's substitution, and one for each pass over the changes of slopes.
+  constexpr std::int64_t solves = 1 + kChangePasses;
+  const Cost step =
+      work(2 * kMostLaw * ranks + solves * (2 * ranks * ranks + 6 * ranks) + 2 * n * ranks + 8 * n,
+           2 * kMostLaw * ranks + solves * (2 * ranks * ranks + 6 * ranks) + 2 * n * ranks);
   const Cost scalar = branching(40, 20);
   return (trials + 1) * kNewtonSweeps * (scalars * scalar) +
          kNewtonSweeps * (trials * (wheels * kWheel + missed) + wheels * kWheelSlopes + missed +

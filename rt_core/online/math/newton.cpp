@@ -106,6 +106,25 @@ void substitute(const double* A, const int* exchange, double* b, int n) noexcept
   }
 }
 
+/// Takes the solution of (I - A) t = b to that of (I - D A) t = D b, A = S Y B and D the changes of
+/// the slopes of its scalars. With t = D x it is (I - A) x = b - A (I - D) x, whose right-hand side
+/// follows the last x. Each pass leaves as much of the error as slopes changed.
+void take_changes(const NewtonSlopes& s, const double* change, double* t) noexcept {
+  const int n = s.ranks;
+  double x[kMostNewton], rest[kMostNewton];
+  bool changed = false;
+  for (int i = 0; i < n; ++i) changed = changed || change[i] != 1.;
+  if (!changed) return;
+  for (int i = 0; i < n; ++i) x[i] = t[i];
+  for (int pass = 0; pass < kChangePasses; ++pass) {
+    for (int i = 0; i < n; ++i) rest[i] = (1. - change[i]) * x[i];
+    for (int i = 0; i < n; ++i) x[i] = t[i] + rest[i];
+    substitute(s.factor, s.exchange, rest, n);
+    for (int i = 0; i < n; ++i) x[i] -= rest[i];
+  }
+  for (int i = 0; i < n; ++i) t[i] = change[i] * x[i];
+}
+
 /// The step of each coordinate by itself. A law that falls faster than its part gives way stands.
 void step_alone(const NewtonProblem& p, const NewtonSlopes& s, const double* missed,
                 double* step) noexcept {
@@ -194,9 +213,9 @@ void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept {
   slopes.solvable = eliminate(slopes.factor, slopes.exchange, slopes.ranks);
 }
 
-void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const double* missed,
+void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const NewtonPoint& at,
                  double* step) noexcept {
-  if (!slopes.solvable) return step_alone(p, slopes, missed, step);
+  if (!slopes.solvable) return step_alone(p, slopes, at.missed, step);
   double t[kMostNewton];
   const double* slope = slopes.slope;
   int row = 0;
@@ -204,11 +223,12 @@ void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const doubl
     const LawBlock& own = p.block[b];
     for (int k = 0; k < own.rank; ++k, ++row) {
       t[row] = 0.;
-      for (int m = 0; m < own.size; ++m) t[row] -= *slope++ * missed[own.first + m];
+      for (int m = 0; m < own.size; ++m) t[row] -= *slope++ * at.missed[own.first + m];
     }
   }
   substitute(slopes.factor, slopes.exchange, t, slopes.ranks);
-  for (int i = 0; i < p.n; ++i) step[i] = -missed[i];
+  take_changes(slopes, at.change, t);
+  for (int i = 0; i < p.n; ++i) step[i] = -at.missed[i];
   columns_multiply_add(slopes.moved, t, step, p.n, slopes.ranks);
 }
 

@@ -20,6 +20,8 @@ struct LawSlopes {
   double* slope;   // [rank][size] of the scalars
 };
 
+inline constexpr int kChangePasses = 2;  // by which a step takes changes of slopes
+
 enum class NewtonStatus : std::uint8_t {
   converged,    // residual within kNewtonTolerance
   cap_reached,  // the best iterate; the residual says how good it is
@@ -42,6 +44,7 @@ inline constexpr double kNewtonTolerance = 1e-12;  // where a problem does not s
 struct NewtonPoint {
   double z[kMostNewton], force[kMostNewton];
   double missed[kMostNewton];  // z - z_free - Y F
+  double change[kMostNewton];  // of each scalar: its slope here over that of NewtonSlopes
   double residual;
 };
 
@@ -83,22 +86,26 @@ void place_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
 /// Factors I - S Y B by elimination with row exchanges; not solvable where a pivot is not above
 /// 1e-12 of the matrix. The laws' slopes must be known.
 void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
-/// Step from a point by slopes that may be those of another. Unless these are solvable it is
-/// -missed / (1 - Y_ii J_ii) of each coordinate by itself.
-void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const double* missed,
+/// Step from a point by slopes that may be those of another, as far as NewtonPoint::change does not
+/// say how they changed. Unless these are solvable it is -missed / (1 - Y_ii J_ii) of each
+/// coordinate by itself.
+void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const NewtonPoint& at,
                  double* step) noexcept;
 
-/// Forces at a point, and their slopes on request.
+/// Forces at a point, and either their slopes or how these changed.
 template <typename Law>
 void find_forces(const NewtonProblem& p, const Law& law, const double* root, NewtonSlopes* slopes,
                  NewtonPoint& at) noexcept {
   std::ptrdiff_t passed = 0;
+  double* change = at.change;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
     LawSlopes of_law{};
     if (slopes != nullptr) of_law = {slopes->spread + passed, slopes->slope + passed};
-    law(b, at.z + own.first, at.force + own.first, slopes == nullptr ? nullptr : &of_law);
+    for (int k = 0; k < own.rank; ++k) change[k] = 1.;
+    law(b, at.z + own.first, at.force + own.first, slopes == nullptr ? nullptr : &of_law, change);
     passed += std::ptrdiff_t{own.size} * own.rank;
+    change += own.rank;
   }
   find_missed(p, root, at);
 }
@@ -125,9 +132,10 @@ inline bool is_slow(double residual, double before, double tolerance, int steps_
 /// the laws' own slopes, which are kept as long as steps by them lessen the residual fast. A step
 /// that does not lessen it is halved, at most twice. Laws that are scalar, rising and without
 /// friction have a solver of their own, which cannot fail (ports.h).
-/// @param law    law(b, z, force, slopes) of block b: its coordinates, [size]; its forces, [size];
-///               and unless `slopes` is null, where the factors of their slopes go. Finite for
-///               finite z.
+/// @param law    law(b, z, force, slopes, change) of block b: its coordinates, [size]; its forces,
+///               [size]; unless `slopes` is null, where the factors of their slopes go; and [rank],
+///               by what the slope of each scalar has changed since it was last found, which a law
+///               may leave at 1. Finite for finite z.
 /// @param force  [n] out
 /// @param z      [n] in: a start; out: the solution
 /// Work: at most kNewtonSweeps eliminations, as many evaluations of all laws with slopes, and
@@ -157,7 +165,7 @@ template <typename Law>
       if (!slopes.solvable) weak = true;
     }
     double step[kMostNewton];
-    newton_step(p, slopes, at->missed, step);
+    newton_step(p, slopes, *at, step);
     double part = 1.;
     better = false;
     for (int halving = 0; halving < 3 && !better; ++halving, part *= .5) {
