@@ -203,8 +203,8 @@ TwoMotions shape_and_move(const LineModel& line, const CarriedRow& carried, Comp
   for (std::int32_t k = 0; k < line.size; k += kLanes) {
 #pragma omp simd
     for (int l = 0; l < kLanes; ++l) {
-      double own_re = 0., own_im = 0.;
-      for (int i = 0; i < count; ++i) {
+      double own_re = weight[0] * shape[0].re[k + l], own_im = weight[0] * shape[0].im[k + l];
+      for (int i = 1; i < count; ++i) {
         own_re += weight[i] * shape[i].re[k + l];
         own_im += weight[i] * shape[i].im[k + l];
       }
