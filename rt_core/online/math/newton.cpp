@@ -9,6 +9,24 @@ namespace {
 
 constexpr double kLeastPivot = 1e-12;  // of the largest number of the matrix
 
+/// y += sum of factors times rows [n], four at a time.
+void add_rows(const double* const* row, const double* factor, int count, int n,
+              double* __restrict y) noexcept {
+  int m = 0;
+  for (; m + 4 <= count; m += 4) {
+    const double *a = row[m], *b = row[m + 1], *c = row[m + 2], *d = row[m + 3];
+    const double f0 = factor[m], f1 = factor[m + 1], f2 = factor[m + 2], f3 = factor[m + 3];
+#pragma omp simd
+    for (int i = 0; i < n; ++i) y[i] = (((y[i] + f0 * a[i]) + f1 * b[i]) + f2 * c[i]) + f3 * d[i];
+  }
+  for (; m < count; ++m) {
+    const double* const own = row[m];
+    const double by = factor[m];
+#pragma omp simd
+    for (int i = 0; i < n; ++i) y[i] += by * own[i];
+  }
+}
+
 /// Y B, column by column, [ranks][n]. Most forces do not act on all coordinates of their law.
 void spread_through(const NewtonProblem& p, NewtonSlopes& s) noexcept {
   const double* spread = s.spread;
@@ -16,14 +34,16 @@ void spread_through(const NewtonProblem& p, NewtonSlopes& s) noexcept {
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
     for (int k = 0; k < own.rank; ++k, column += p.n) {
-      for (int i = 0; i < p.n; ++i) column[i] = 0.;
+      const double* row[kMostLaw];
+      double factor[kMostLaw];
+      int count = 0;
       for (int m = 0; m < own.size; ++m) {
-        const double by = spread[m * own.rank + k];
-        if (by == 0.) continue;
-        const double* const y = p.Y + (own.first + m) * p.n;
-#pragma omp simd
-        for (int i = 0; i < p.n; ++i) column[i] += by * y[i];
+        if (spread[m * own.rank + k] == 0.) continue;
+        row[count] = p.Y + (own.first + m) * p.n;
+        factor[count++] = spread[m * own.rank + k];
       }
+      for (int i = 0; i < p.n; ++i) column[i] = 0.;
+      add_rows(row, factor, count, p.n, column);
     }
     spread += own.size * own.rank;
   }
