@@ -111,7 +111,18 @@ const double* table_row(const Modal& modal, std::int32_t unknown) noexcept {
   return modal.between + std::ptrdiff_t{unknown} * (unknown + 1) / 2;
 }
 
-/// Displacement along a by `count` unknowns of b, which are all before those of a in the table.
+/// The displacements of a's unknowns by a unit force along b, with their weights in a.
+template <typename Along>
+double sum_along(const CarriedRow& a, const Along& along_of) noexcept {
+  double sum = 0.;
+  for (int i = 0; i < a.count; ++i) {
+    const double along = along_of(a.unknown[i]);
+    sum += a.weight[i] * along;
+  }
+  return sum;
+}
+
+/// between() where the `count` unknowns of b are all before those of a in the table.
 template <int count>
 double between_apart(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept {
   std::int32_t unknown[count];
@@ -120,36 +131,32 @@ double between_apart(const Modal& modal, const CarriedRow& a, const CarriedRow& 
     unknown[k] = b.unknown[k];
     weight[k] = b.weight[k];
   }
-  double sum = 0.;
-  for (int i = 0; i < a.count; ++i) {
-    const double* const of_a = table_row(modal, a.unknown[i]);
+  return sum_along(a, [&](std::int32_t own) noexcept {
+    const double* const of_a = table_row(modal, own);
     double along = 0.;
     for (int k = 0; k < count; ++k) along += weight[k] * of_a[unknown[k]];
-    sum += a.weight[i] * along;
-  }
-  return sum;
+    return along;
+  });
 }
 
 }  // namespace
 
-double between(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept {
+double between(const Modal& modal, const CarriedRow& one, const CarriedRow& other_one) noexcept {
   // Rows of two places mostly lie apart in the table.
-  if (b.lowest > a.highest) return between(modal, b, a);
+  const bool behind = other_one.lowest > one.highest;
+  const CarriedRow &a = behind ? other_one : one, &b = behind ? one : other_one;
   const bool apart = a.lowest > b.highest;
   if (apart && b.count == 3) return between_apart<3>(modal, a, b);
   if (apart && b.count == kPDeltaSeats) return between_apart<kPDeltaSeats>(modal, a, b);
-  double sum = 0.;
-  for (int i = 0; i < a.count; ++i) {
-    const std::int32_t own = a.unknown[i];
+  return sum_along(a, [&](std::int32_t own) noexcept {
     const double* const of_a = table_row(modal, own);
     double along = 0.;
     for (int k = 0; k < b.count; ++k) {
       const std::int32_t other = b.unknown[k];
       along += b.weight[k] * (own > other ? of_a[other] : table_row(modal, other)[own]);
     }
-    sum += a.weight[i] * along;
-  }
-  return sum;
+    return along;
+  });
 }
 
 Panels panels_of(const LineModel& line, const RailRow& row) noexcept {
