@@ -129,9 +129,10 @@ void substitute(const double* A, const int* exchange, double* b, int n) noexcept
 /// Takes the solution of (I - A) t = b to that of (I - D A) t = D b, A = S Y B and D the changes of
 /// the slopes of its scalars. With t = D x it is (I - A) x = b - A (I - D) x, whose right-hand side
 /// follows the last x. Each pass leaves as much of the error as slopes changed.
-void take_changes(const NewtonSlopes& s, const double* change, double* t) noexcept {
+/// @param rest  [ranks] scratch
+void take_changes(const NewtonSlopes& s, const double* change, double* rest, double* t) noexcept {
   const int n = s.ranks;
-  double x[kMostNewton], rest[kMostNewton];
+  double x[kMostNewton];
   bool changed = false;
   for (int i = 0; i < n; ++i) changed = changed || change[i] != 1.;
   if (!changed) return;
@@ -197,12 +198,12 @@ void find_roots(const NewtonProblem& p, double* root) noexcept {
 }
 
 void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) noexcept {
-  double moved[kMostNewton], pressed[kMostNewton];
+  double moved[kMostNewton];
   for (int i = 0; i < p.n; ++i) {
     moved[i] = p.z_free[i];
-    pressed[i] = at.force[i] * root[i];
+    at.missed[i] = at.force[i] * root[i];
   }
-  const double most = largest_of(pressed, p.n);
+  const double most = largest_of(at.missed, p.n);
   symmetric_multiply_add(p.Y, at.force, moved, p.n);
   at.residual = 0.;
   for (int i = 0; i < p.n; ++i) {
@@ -247,7 +248,7 @@ void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const Newto
     }
   }
   substitute(slopes.factor, slopes.exchange, t, slopes.ranks);
-  take_changes(slopes, at.change, t);
+  take_changes(slopes, at.change, step, t);
   for (int i = 0; i < p.n; ++i) step[i] = -at.missed[i];
   columns_multiply_add(slopes.moved, t, step, p.n, slopes.ranks);
 }
