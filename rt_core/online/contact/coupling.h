@@ -88,19 +88,21 @@ inline void lean_rows(const Coupling& c, double* x) noexcept {
     for (int d = 0; d < 2; ++d) x[i + d] -= c.seat[i + d - c.contacts].lean * x[i + 2];
 }
 
+/// Adds a line's displacement along a base to those of its rows. @param x  [rows]
+inline void add_to_rows(const Coupling& c, int base, const LineModel& line, double own,
+                        double* x) noexcept {
+  const RowsOfBase rows = rows_of_base(c, base, line);
+  for (int k = 0; k < rows.count; ++k) x[rows.row[k]] += rows.factor[k] * own;
+}
+
 /// Sums up over lines and bases. @param value  value(base, line's number, line)
 /// @param x  [rows] out
 template <typename Value>
 void sum_rows(const Model& model, const Coupling& c, const Value& value, double* x) noexcept {
   for (int i = 0; i < c.rows; ++i) x[i] = 0.;
   for (int i = 0; i < c.bases; ++i)
-    for (std::int32_t l = 0; l < model.lines; ++l) {
-      const LineModel& line = model.line[l];
-      if (!c.acts[i][l]) continue;
-      const double own = value(i, l, line);
-      const RowsOfBase rows = rows_of_base(c, i, line);
-      for (int k = 0; k < rows.count; ++k) x[rows.row[k]] += rows.factor[k] * own;
-    }
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      if (c.acts[i][l]) add_to_rows(c, i, model.line[l], value(i, l, model.line[l]), x);
   lean_rows(c, x);
 }
 

@@ -51,28 +51,24 @@ void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
 /// and without contact forces at the step's end, go to `located` and `moved`.
 void respond_modes(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
-  TwoMotions motion[kMaxTrackRows][kMaxLines];
+  for (int i = 0; i < c.rows; ++i) c.located[i] = c.moved[i] = 0.;
   for (int i = 0; i < c.bases; ++i) {
     double* re = w.row + 2 * i * stride;
     const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
       if (!c.acts[i][l]) continue;
-      motion[i][l] = shape_moving_row(line, base_row(c, i), {s.u, s.v}, {w.solved, w.imaginary}, re,
-                                      re + stride);
+      const TwoMotions own = shape_moving_row(line, base_row(c, i), {s.u, s.v},
+                                              {w.solved, w.imaginary}, re, re + stride);
+      add_to_rows(c, i, line, own.first, c.located);
+      add_to_rows(c, i, line, own.second, c.moved);
       if (is_tabled(line)) continue;
       modes_multiply(line.modal.held_force, base_of(model, w, line, i), w.unit + unit + line.first,
                      w.unit_second + unit + line.first, line.size);
     }
   }
-  const auto first = [&](int base, std::int32_t l, const LineModel&) noexcept {
-    return motion[base][l].first;
-  };
-  const auto second = [&](int base, std::int32_t l, const LineModel&) noexcept {
-    return motion[base][l].second;
-  };
-  sum_rows(model, c, first, c.located);
-  sum_rows(model, c, second, c.moved);
+  lean_rows(c, c.located);
+  lean_rows(c, c.moved);
 }
 
 /// x -= sum of forces times the unit responses of a line, in whole panels, so that the line is read
