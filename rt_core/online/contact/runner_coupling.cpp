@@ -252,11 +252,10 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
   const NewtonResult met = solve_laws(
       {n, all.scalars + sets + model.runner_stops, w.newton, block, all.z_free,
        w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance},
-      [&](int b, const double* at, double* force, const LawSlopes* slopes,
-          double* change) noexcept {
+      [&](int b, const double* at, double* force, const LawSlopes* slopes, double* steep) noexcept {
         if (b >= all.scalars + sets)
           return stop_law(stop_of(model, b - all.scalars - sets), *at, force, slopes);
-        if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes, change);
+        if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes, steep);
         const PortForce own = port_force(c.law[b], *at);
         *force = -own.force;
         if (slopes == nullptr) return;
@@ -265,10 +264,10 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
       },
       all.force, z);
   // The last point that was tried need not be the best one.
-  double change[kWheelsetRank];
+  double steep[kWheelsetRank];
   for (int i = 0; i < sets && met.status != NewtonStatus::converged; ++i) {
     const int first = all.scalars + kOfWheelset * i;
-    all.law[i].evaluate(z + first, all.force + first, nullptr, change);
+    all.law[i].evaluate(z + first, all.force + first, nullptr, steep);
   }
   for (int i = 0; i < n; ++i) {
     const int port = port_of_coordinate(model, c, all.scalars, i);

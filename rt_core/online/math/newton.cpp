@@ -130,11 +130,14 @@ void substitute(const double* A, const int* exchange, double* b, int n) noexcept
 /// the slopes of its scalars. With t = D x it is (I - A) x = b - A (I - D) x, whose right-hand side
 /// follows the last x. Each pass leaves as much of the error as slopes changed.
 /// @param rest  [ranks] scratch
-void take_changes(const NewtonSlopes& s, const double* change, double* rest, double* t) noexcept {
+void take_changes(const NewtonSlopes& s, const double* steep, double* rest, double* t) noexcept {
   const int n = s.ranks;
-  double x[kMostNewton];
+  double x[kMostNewton], change[kMostNewton];
   bool changed = false;
-  for (int i = 0; i < n; ++i) changed = changed || change[i] != 1.;
+  for (int i = 0; i < n; ++i) {
+    change[i] = s.steep[i] > 0. ? steep[i] / s.steep[i] : 1.;
+    changed = changed || change[i] != 1.;
+  }
   if (!changed) return;
   for (int i = 0; i < n; ++i) x[i] = t[i];
   for (int pass = 0; pass < kChangePasses; ++pass) {
@@ -248,7 +251,7 @@ void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const Newto
     }
   }
   substitute(slopes.factor, slopes.exchange, t, slopes.ranks);
-  take_changes(slopes, at.change, step, t);
+  take_changes(slopes, at.steep, step, t);
   for (int i = 0; i < p.n; ++i) step[i] = -at.missed[i];
   columns_multiply_add(slopes.moved, t, step, p.n, slopes.ranks);
 }

@@ -44,7 +44,7 @@ inline constexpr double kNewtonTolerance = 1e-12;  // where a problem does not s
 struct NewtonPoint {
   double z[kMostNewton], force[kMostNewton];
   double missed[kMostNewton];  // z - z_free - Y F
-  double change[kMostNewton];  // of each scalar: its slope here over that of NewtonSlopes
+  double steep[kMostNewton];   // of each scalar: its slope here, in any unit of its own
   double residual;
 };
 
@@ -69,9 +69,10 @@ void find_missed(const NewtonProblem& p, const double* root, NewtonPoint& at) no
 /// (I - S Y B) t = -S missed. Normal forces and creep forces have steep slopes in their own
 /// directions; the matrix's leading minors are then positive, or nearly so.
 struct NewtonSlopes {
-  double *spread, *slope;  // blocks, one by one
-  double* moved;           // [ranks][n] Y B, column by column
-  double* factor;          // [ranks][ranks]
+  double *spread, *slope;     // blocks, one by one
+  double* moved;              // [ranks][n] Y B, column by column
+  double* factor;             // [ranks][ranks]
+  double steep[kMostNewton];  // NewtonPoint::steep where they were found
   int exchange[kMostNewton];
   int ranks;
   bool solvable;
@@ -86,27 +87,28 @@ void place_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
 /// Factors I - S Y B by elimination with row exchanges; not solvable where a pivot is not above
 /// 1e-12 of the matrix. The laws' slopes must be known.
 void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
-/// Step from a point by slopes that may be those of another, as far as NewtonPoint::change does not
+/// Step from a point by slopes that may be those of another, as far as NewtonPoint::steep does not
 /// say how they changed. Unless these are solvable it is -missed / (1 - Y_ii J_ii) of each
 /// coordinate by itself.
 void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const NewtonPoint& at,
                  double* step) noexcept;
 
-/// Forces at a point, and either their slopes or how these changed.
+/// Forces at a point, and their slopes on request.
 template <typename Law>
 void find_forces(const NewtonProblem& p, const Law& law, const double* root, NewtonSlopes* slopes,
                  NewtonPoint& at) noexcept {
   std::ptrdiff_t passed = 0;
-  double* change = at.change;
+  double* steep = at.steep;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
     LawSlopes of_law{};
     if (slopes != nullptr) of_law = {slopes->spread + passed, slopes->slope + passed};
-    for (int k = 0; k < own.rank; ++k) change[k] = 1.;
-    law(b, at.z + own.first, at.force + own.first, slopes == nullptr ? nullptr : &of_law, change);
+    for (int k = 0; k < own.rank; ++k) steep[k] = 1.;
+    law(b, at.z + own.first, at.force + own.first, slopes == nullptr ? nullptr : &of_law, steep);
     passed += std::ptrdiff_t{own.size} * own.rank;
-    change += own.rank;
+    steep += own.rank;
   }
+  for (int k = 0; slopes != nullptr && k < slopes->ranks; ++k) slopes->steep[k] = at.steep[k];
   find_missed(p, root, at);
 }
 
@@ -132,10 +134,10 @@ inline bool is_slow(double residual, double before, double tolerance, int steps_
 /// the laws' own slopes, which are kept as long as steps by them lessen the residual fast. A step
 /// that does not lessen it is halved, at most twice. Laws that are scalar, rising and without
 /// friction have a solver of their own, which cannot fail (ports.h).
-/// @param law    law(b, z, force, slopes, change) of block b: its coordinates, [size]; its forces,
+/// @param law    law(b, z, force, slopes, steep) of block b: its coordinates, [size]; its forces,
 ///               [size]; unless `slopes` is null, where the factors of their slopes go; and [rank],
-///               by what the slope of each scalar has changed since it was last found, which a law
-///               may leave at 1. Finite for finite z.
+///               each scalar's slope in a unit of its own, which a law may leave at 1 where it
+///               does not change. Finite for finite z.
 /// @param force  [n] out
 /// @param z      [n] in: a start; out: the solution
 /// Work: at most kNewtonSweeps eliminations, as many evaluations of all laws with slopes, and

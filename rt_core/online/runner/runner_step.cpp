@@ -144,7 +144,7 @@ void fill_slopes(const ContactSlopes& w, double rate, double seat_rate, double p
 }  // namespace
 
 void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slopes,
-                           double* change) noexcept {
+                           double* steep) noexcept {
   const int n = size();
   const double crown = runner->contact.crown_radius;
   double u[kMotions], v[kMotions];
@@ -172,13 +172,10 @@ void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slop
     if (!(f.depth > 0.)) lost = true;
     for (int k = 0; k < kMotions; ++k) force[k] += f.generalised[k];
     keep_wheel_force(f, crown, kept[side]);
-    if (slopes != nullptr) {
+    steep[3 * side] = f.depth > 0. ? std::sqrt(f.depth) : 0.;
+    if (slopes != nullptr)
       fill_slopes(own, rate, seat_rate, 1. - later * rate, crown, n, side, seated ? seat : 0,
                   *slopes);
-      slope_depth[side] = f.depth;
-    } else if (slope_depth[side] > 0.) {
-      change[3 * side] = f.depth > 0. ? std::sqrt(f.depth / slope_depth[side]) : 0.;
-    }
     if (!seated) continue;
     force[seat] = -f.generalised[1];
     force[seat + 1] = -f.generalised[2];
@@ -245,15 +242,15 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   const NewtonResult met = solve_laws(
       {interface_size(r), r.wheelsets + r.stops, r.compliance, block, z_free, w.newton,
        kRunnerTolerance},
-      [&](int b, const double* at_z, double* f, const LawSlopes* slopes, double* change) noexcept {
+      [&](int b, const double* at_z, double* f, const LawSlopes* slopes, double* steep) noexcept {
         if (b >= r.wheelsets) return stop_law(r.stop[b - r.wheelsets], *at_z, f, slopes);
-        law[b].evaluate(at_z, f, slopes, change);
+        law[b].evaluate(at_z, f, slopes, steep);
       },
       force, z);
   // The last point that was tried need not be the best one.
-  double change[kWheelsetRank];
+  double steep[kWheelsetRank];
   for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)
-    law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr, change);
+    law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr, steep);
   move_by(r, force, u);
   RunnerResult result{status_of(met.status), met.iterations};
   for (int i = 0; i < r.wheelsets; ++i) {

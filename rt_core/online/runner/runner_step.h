@@ -69,14 +69,14 @@ struct WheelsetLaw {
   double rate_at_zero[kMotions + 6];
   double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
   bool lost;                     // a wheel was free there
-  double slope_depth[2];         // of each wheel where slopes were last found, m
 
   int size() const noexcept { return seated ? kMotions + 6 : kMotions; }
   /// @param slopes  out: of the normal and creep forces of both wheels, which are kWheelsetRank
   ///                scalars. How their directions turn, and the creep moment, change it too little
   ///                in a step to be worth their work. Null: none
-  /// @param change  out: of the normal forces' slopes, unless slopes are found
-  void evaluate(const double* z, double* force, const LawSlopes* slopes, double* change) noexcept;
+  /// @param steep   [kWheelsetRank] out: slopes of the normal forces, as roots of depths; of other
+  ///                scalars they do not change
+  void evaluate(const double* z, double* force, const LawSlopes* slopes, double* steep) noexcept;
 };
 
 /// The law of a wheelset without its rates at zero.
