@@ -130,10 +130,10 @@ void couple_seats(const Model& model, const State& s, const Coupling& c, const R
         later[j] = (1. - at_once(model, k, j)) * own.along[k][j];
       const double free = c.track_free[row] + moved_by_wheel(later, last);
       all.z_free[first + to + k] = free;
-      all.start[first + to + k] = free + moved_before(model, s, c, row);
+      all.motion[first + to + k] = free + moved_before(model, s, c, row);
       double before = 0.;
       if (banded)
-        before = enters ? all.start[first + to + k] : seat_motion_of(s, set, side)[k];
+        before = enters ? all.motion[first + to + k] : seat_motion_of(s, set, side)[k];
       else if (is_on_rail(c, row))
         before = (c.located[row] + residual_before(model, s, c, row)) +
                  (moved_by_wheel(own.along[k], last) + c.seat[row - c.contacts].rise);
@@ -206,7 +206,7 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
     double* const u = w.solved + runner.first;
     move_freely(at, s, w, u);
     const int stop = first_stop(model, all.scalars) + runner.first_stop;
-    find_stops(at, s, w, u, all.z_free + stop, all.start + stop);
+    find_stops(at, s, w, u, all.z_free + stop, all.motion + stop);
   }
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
     const RunnerStage at = stage_of(model, runner, stage);
@@ -216,7 +216,7 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
     const int first = all.scalars + kOfWheelset * set;
     for (int k = 0; k < kMotions; ++k) {
       all.z_free[first + k] = motion.free[k];
-      all.start[first + k] = motion.start[k];
+      all.motion[first + k] = motion.start[k];
       law.rate_at_zero[k] = motion.rate_at_zero[k];
     }
     const double place = element_place(model, runner, i, stage.step, stage.before + stage.span);
@@ -229,13 +229,13 @@ void move_seat(const Coupling& c, int row, double by, CoupledRunners& all) noexc
   const int seat = row - c.contacts, of_set = 2 * kWheelSeatRows;
   const int at = all.scalars + kOfWheelset * (seat / of_set) + kMotions + seat % of_set;
   all.z_free[at] += by;
-  all.start[at] += by;
+  all.motion[at] += by;
 }
 
 NewtonResult solve_coupled_runners(const Model& model, const double* d_free, const Workspace& w,
                                    Coupling& c, CoupledRunners& all) noexcept {
   LawBlock block[kMostNewton];
-  double z[kMostNewton];
+  double* const z = all.motion;
   const int n = newton_size(model), sets = model.runner_wheelsets;
   for (int i = 0; i < all.scalars; ++i) {
     const int port = port_of(c, i);
@@ -248,7 +248,6 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
     block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, kWheelsetRank};
   for (int i = 0; i < model.runner_stops; ++i)
     block[all.scalars + sets + i] = {first_stop(model, all.scalars) + i, 1, 1};
-  for (int i = all.scalars; i < n; ++i) z[i] = all.start[i];
   const NewtonResult met = solve_laws(
       {n, all.scalars + sets + model.runner_stops, w.newton, block, all.z_free,
        w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance},
@@ -275,7 +274,6 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
     c.force[port] = -all.force[i];
     if (i < all.scalars) c.penetration[port] = z[i];
   }
-  for (int i = all.scalars; i < n; ++i) all.start[i] = z[i];
   return met;
 }
 
@@ -290,7 +288,7 @@ void keep_seats(const Coupling& c, const CoupledRunners& all, std::int32_t set, 
     const bool on_rail = is_on_rail(c, first_row + kWheelSeatRows * side);
     for (int k = 0; k < kWheelSeatRows; ++k) {
       const int own = kMotions + kWheelSeatRows * side + k;
-      const double z = on_rail ? all.start[all.scalars + kOfWheelset * set + own] : 0.;
+      const double z = on_rail ? all.motion[all.scalars + kOfWheelset * set + own] : 0.;
       kept[k] = z;
       kept[kWheelSeatRows + k] = on_rail ? law.seat_rate * z + law.rate_at_zero[own] : 0.;
     }

@@ -21,7 +21,9 @@ void add_seat_flexibility(const Model& model, Coupling& c) noexcept;
 struct CoupledRunners {
   int scalars;  // contacts and one-sided springs, before the wheelsets among the coordinates
   WheelsetLaw law[kMaxSeatedWheelsets];
-  double z_free[kMostNewton], start[kMostNewton], force[kMostNewton];
+  /// Coordinates without forces of this step; where Newton's method starts, then what it found.
+  double z_free[kMostNewton], motion[kMostNewton];
+  double force[kMostNewton];
 };
 
 /// Moves the runners without contact into `solved`, and fills Y and the laws of the wheelsets.
