@@ -9,8 +9,8 @@ namespace railstep {
 
 namespace {
 
-/// Part of the largest displacement by the system's forces below which what is left does not count.
-constexpr double kSettled = 1e-11;
+/// Displacement of contacts, m, below which what is left of it is rounding.
+constexpr double kRounding = 1e-14;
 
 CoupledSystem views(const Model& model, const Coupling& c, double* memory) noexcept {
   const std::ptrdiff_t n = std::ptrdiff_t{9} * model.system.ports;
@@ -131,7 +131,7 @@ bool settle_system(const Model& model, State& s, Workspace& w, Coupling& c, Coup
     most = larger(most, magnitude(moved_by(model, c, beside, i, missed)));
     largest = larger(largest, magnitude(moved_by(model, c, beside, i, now)));
   }
-  if (most <= kSettled * largest) return true;
+  if (most <= model.system.tolerance * largest || most <= kRounding) return true;
   for (int i = 0; i < c.ports; ++i) {
     const double by = moved_by(model, c, beside, i, missed);
     c.track_free[i] -= by;
