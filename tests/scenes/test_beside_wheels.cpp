@@ -18,7 +18,7 @@ namespace {
 const std::string kVehicles = std::string(RAILSTEP_SOURCE) + "/config/vehicles/";
 
 std::string track_of(double cant, const std::string& condense, const std::string& start) {
-  return "schema = 1\n[track]\nunknowns = \"rigid-section\"\nrails = 2\nbays = 40\nbay_m = 0.6\n"
+  return "schema = 1\n[track]\nunknowns = \"rigid-section\"\nrails = 2\nbays = 60\nbay_m = 0.6\n"
          "elements_per_bay = 2\nrail_spacing_m = 1.5\n"
          "[rail]\nprofile = \"" +
          std::string(RAILSTEP_SOURCE) +
@@ -43,7 +43,7 @@ const std::string
         "[contact]\nwheel = \"cone\"\nslope = 0.1\nrail = \"crown\"\nnormal = \"hertz\"\n"
         "hertz_n_per_m15 = 9.4e10\ncreep = \"linear\"\nkalker = [9.25e6, 8.52e6, 1.95e4, 53.8]\n"
         "[[vehicle]]\nname = \"car\"\nfile = \"" +
-        kVehicles + "manchester_1.toml\"\nstart_m = 12.0\nspeed_m_per_s = 10.0\n";
+        kVehicles + "manchester_1.toml\"\nstart_m = 22.0\nspeed_m_per_s = 10.0\n";
 
 // A spring and a damper under the left rail at x = 14.4 m: those of a seat, or a spring of a system
 // to the ground, so long that it stays upright.
@@ -56,7 +56,7 @@ const std::string kInSeat =
                       "[[joint]]\nname = \"hold\"\nkind = \"fixed\"\nbetween = [\"ground\", "
                       "\"far\"]\npoint_m = [0.0, 50.0, 0.0]\n"
                       "[[spring]]\nbetween = [\"rail left\", \"ground\"]\n"
-                      "point_m = [14.4, 0.75, 0.0]\nother_point_m = [14.4, 0.75, -1e4]\n"
+                      "point_m = [14.4, 0.75, 0.0]\nother_point_m = [14.4, 0.75, -200.0]\n"
                       "stiffness_n_per_m = 3e7\ndamping_n_s_per_m = 3e4\n";
 
 using Forces = std::vector<std::vector<double>>;

@@ -159,7 +159,8 @@ std::vector<double> forces_of(const Model& model, const Outputs& outputs) {
 }
 
 /// A vehicle and its partner at rest keep their vertical forces from the first step on.
-void check_standing(const AnyScene& scene) {
+/// @param bound  of their change, over the largest
+void check_standing(const AnyScene& scene, double bound) {
   const auto simulation = simulation_of(scene);
   Simulation& made = *simulation;
   const Model& model = made.model();
@@ -175,7 +176,7 @@ void check_standing(const AnyScene& scene) {
       most = std::max(most, std::fabs(now[i] - start[i]));
   }
   CHECK(largest > 4e4);
-  CHECK(most < 1e-7 * largest);
+  CHECK(most < bound * largest);
 }
 
 /// Visits all cells that have a meaning.
@@ -208,6 +209,10 @@ TEST_CASE("a vehicle in space stands still beside everything that stands", "[com
     const std::string name = partner.name;
     // External forces begin with the first frame; along y uneven rails push the bodies.
     if (name == "an external wheel" || name == "unevenness") return;
-    check_standing(scene_of(form, partner, "0.0"));
+    // Condensed rails leave out the section's own strain, so that a joint off a rail's axis is open
+    // by it at the start.
+    const bool opens =
+        name == "bodies joined to rails" && std::string(form.name) != "with ends, full order";
+    check_standing(scene_of(form, partner, "0.0"), opens ? 1e-3 : 1e-7);
   });
 }

@@ -187,6 +187,7 @@ Rest PackedSystem::rest_on_track(const System& system, const SystemOptions& opti
   constexpr double kSettled = 1e-10;  // of the largest force
   PackedModel& packed = *memory_->track;
   const bool wheels = has_wheels(packed.model());
+  const bool condensed = track_options.reduction.has_value();
   const double gravity = track_options.gravity;
   Acting beside;
   std::vector<double> before;
@@ -200,11 +201,14 @@ Rest PackedSystem::rest_on_track(const System& system, const SystemOptions& opti
           still.scheme = backward_euler(dt);
           still.steps_per_frame = 1;
           still.reduction.reset();
-          if (wheels && (pressing.empty() || shift != pressing_at))
-            pressing = standing_wheel_forces(track, packed, gravity, beside, pressing_at = shift);
+          if (condensed) still.gravity = 0.;  // all forces are among those of the lines
+          if ((wheels || condensed) && (pressing.empty() || shift != pressing_at))
+            pressing = standing_line_forces(track, packed, gravity, beside, pressing_at = shift);
           still.line_forces = pressing;
-          return std::make_unique<PackedSystem>(system, still_options(options, dt), track,
-                                                standing_loads(traffic, shift), still);
+          Traffic standing = standing_loads(traffic, shift);
+          if (condensed) standing.loads.clear();
+          return std::make_unique<PackedSystem>(system, still_options(options, dt), track, standing,
+                                                still);
         },
         starting_places(packed.model()), track.length());
     beside.contacts = forces_of_ports(packed.model(), rest.port, rest.port_force);
