@@ -195,7 +195,7 @@ Rest PackedSystem::rest_on_track(const System& system, const SystemOptions& opti
   double pressing_at = 0.;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     pressing.clear();
-    const Rest rest = find_rest(
+    Rest rest = find_rest(
         [&](double dt, double shift) {
           PackOptions still = track_options;
           still.scheme = backward_euler(dt);

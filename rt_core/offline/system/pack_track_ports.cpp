@@ -87,7 +87,8 @@ void add_port_motion(const Model& model, double* g) {
 TrackPorts track_ports(const Model& model, const PackedModel* track) {
   const SystemModel& s = model.system;
   const auto rows = std::size_t{9} * static_cast<std::size_t>(s.ports);
-  const auto n = static_cast<std::size_t>(parts(model.form) * model.line_unknowns);
+  const auto n =
+      static_cast<std::size_t>(parts(model.form)) * static_cast<std::size_t>(model.line_unknowns);
   TrackPorts ports{std::vector<double>(rows * n, 0.), std::vector<double>(rows * rows, 0.)};
   std::vector<double> column(rows);
   for (std::size_t i = 0; i < rows; ++i) {
