@@ -136,21 +136,26 @@ Status status_of(PortStatus met) noexcept {
   return Status::contact_ill_posed;
 }
 
+/// Penetration of a port without the forces of all.
+double free_depth(const Model& model, const State& s, const Coupling& c, int port) noexcept {
+  if (port >= c.contacts || !stands(c.contact[port])) return c.track_free[port];
+  return c.track_free[port] - model.scheme.theta * (is_of_wheelset(model, port)
+                                                        ? free_lift(model, s, c, port)
+                                                        : vehicle_lift(model, c, port));
+}
+
 /// Ports for given multipliers.
 /// @param runners  null: there are none on this track
 Solved solve(const Model& model, const State& s, const Workspace& w, Coupling& c,
              CoupledRunners* runners) noexcept {
-  double d_free[kPorts + kMaxWheelSeatRows];
-  for (int i = 0; i < c.ports; ++i) {
-    d_free[i] = c.track_free[i];
-    if (i >= c.contacts || !stands(c.contact[i])) continue;
-    d_free[i] -= model.scheme.theta *
-                 (is_of_wheelset(model, i) ? free_lift(model, s, c, i) : vehicle_lift(model, c, i));
-  }
   if (runners != nullptr) {
-    const NewtonResult met = solve_coupled_runners(model, d_free, w, c, *runners);
+    for (int i = 0; i < runners->scalars; ++i)
+      runners->z_free[i] = free_depth(model, s, c, port_of(c, i));
+    const NewtonResult met = solve_coupled_runners(model, w, c, *runners);
     return {status_of(met.status), met.iterations};
   }
+  double d_free[kPorts];
+  for (int i = 0; i < c.ports; ++i) d_free[i] = free_depth(model, s, c, i);
   const PortResult met = solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
   return {status_of(met.status), met.iterations};
 }
@@ -175,15 +180,12 @@ void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& 
 
 /// The same, and a system of bodies with them.
 void solve_all(const Model& model, const Stage& stage, State& s, Workspace& w, Coupling& c,
-               CoupledRunners* runners, CoupledSystem& beside, CoupleResult& result) noexcept {
-  solve_coupled(model, stage, s, w, c, runners, result);
-  if (!couples_system(model)) return;
+               CoupledRunners* runners, CoupleResult& result) noexcept {
   bool settled = false;
-  for (int pass = 1; !(settled = settle_system(model, s, w, c, runners, beside)); ++pass) {
-    if (pass == kSystemPasses) break;
+  for (int pass = 0; pass < kSystemPasses && !settled; ++pass) {
     solve_coupled(model, stage, s, w, c, runners, result);
+    settled = !couples_system(model) || settle_system(model, s, w, c, runners, result.system);
   }
-  result.system = beside.result;
   if (!settled) result.status = result.status | Status::cap_reached;
 }
 
@@ -241,12 +243,11 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   if (model.scheme.mean != 0) find_means(model, state, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.contact_force[i];
-  CoupledSystem beside;
-  if (couples_system(model)) couple_system(model, state, w, c, beside);
+  if (couples_system(model)) couple_system(model, state, w, c, result.system);
   const bool has_runners = c.rows > c.contacts;
   CoupledRunners runners;
   if (has_runners) couple_runners(model, stage, state, w, c, runners);
-  solve_all(model, stage, state, w, c, has_runners ? &runners : nullptr, beside, result);
+  solve_all(model, stage, state, w, c, has_runners ? &runners : nullptr, result);
   if (has_runners)
     result.status = result.status | move_coupled_runners(model, c, runners, state, w);
   move_track(model, w, c);

@@ -56,11 +56,6 @@ double moved_before(const Model& model, const State& s, const Coupling& c, int r
   return sum;
 }
 
-/// Index of a scalar law among the ports.
-int port_of(const Coupling& c, int scalar) noexcept {
-  return scalar < c.contacts ? scalar : c.rows + (scalar - c.contacts);
-}
-
 /// The first stop among the coordinates of Newton's method, behind all wheelsets.
 int first_stop(const Model& model, int scalars) noexcept {
   return scalars + kOfWheelset * model.runner_wheelsets;
@@ -232,8 +227,8 @@ void move_seat(const Coupling& c, int row, double by, CoupledRunners& all) noexc
   all.motion[at] += by;
 }
 
-NewtonResult solve_coupled_runners(const Model& model, const double* d_free, const Workspace& w,
-                                   Coupling& c, CoupledRunners& all) noexcept {
+NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupling& c,
+                                   CoupledRunners& all) noexcept {
   LawBlock block[kMostNewton];
   double* const z = all.motion;
   const int n = newton_size(model), sets = model.runner_wheelsets;
@@ -241,7 +236,7 @@ NewtonResult solve_coupled_runners(const Model& model, const double* d_free, con
     const int port = port_of(c, i);
     const PortLaw& law = c.law[i];
     block[i] = {i, 1, 1};
-    all.z_free[i] = z[i] = d_free[port];
+    z[i] = all.z_free[i];
     if (c.force[port] > 0. || law.bilateral) z[i] = port_depth(law, c.force[port]);
   }
   for (int i = 0; i < sets; ++i)

@@ -34,10 +34,15 @@ void couple_runners(const Model& model, const Stage& stage, const State& s, Work
 /// Moves the seat of a row, by a displacement that W does not give.
 void move_seat(const Coupling& c, int row, double by, CoupledRunners& runners) noexcept;
 
-/// Solves all laws. @param d_free  [ports] of contacts and one-sided springs
+/// Index of a scalar law among the ports.
+inline int port_of(const Coupling& c, int scalar) noexcept {
+  return scalar < c.contacts ? scalar : c.rows + (scalar - c.contacts);
+}
+
+/// Solves all laws. The free depths of scalar laws must be the first of z_free.
 /// Forces against all rows go into c.force, and depths of scalar laws into c.penetration.
-NewtonResult solve_coupled_runners(const Model& model, const double* d_free, const Workspace& w,
-                                   Coupling& c, CoupledRunners& runners) noexcept;
+NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupling& c,
+                                   CoupledRunners& runners) noexcept;
 
 /// Moves the runners by their forces, and stores these.
 /// @returns contact_lost where a wheel is free, off_rail where one is beyond the rail's ends

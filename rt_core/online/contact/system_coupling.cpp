@@ -12,11 +12,21 @@ namespace {
 /// Displacement of contacts, m, below which what is left of it is rounding.
 constexpr double kRounding = 1e-14;
 
-CoupledSystem views(const Model& model, const Coupling& c, double* memory) noexcept {
+/// Views into Workspace::beside. They are not kept on the stack of couple(), which all scenes pay
+/// for.
+struct CoupledSystem {
+  double* free;     // [9 ports] displacements of the rails without contacts and the system
+  double* force;    // [9 ports] forces of the system on its ports if there are no contacts
+  double* by_port;  // [9 ports][ports of contacts] displacement by a unit force on a port
+  double* change;   // [ports of contacts][9 ports] of the forces by a unit force of each
+  double* moved;    // [2][9 ports] scratch
+};
+CoupledSystem views(const Model& model, const Coupling& c, const Workspace& w) noexcept {
   const std::ptrdiff_t n = std::ptrdiff_t{9} * model.system.ports;
-  double* const by_port = memory + 2 * n;
+  double* const free = w.beside;
+  double* const by_port = free + 2 * n;
   double* const change = by_port + n * c.ports;
-  return {memory, memory + n, by_port, change, change + n * c.ports, {}};
+  return {free, free + n, by_port, change, change + n * c.ports};
 }
 
 /// Displacements of the ports by the lines without contacts.
@@ -66,12 +76,11 @@ double moved_by(const Model& model, const Coupling& c, const CoupledSystem& besi
 }
 
 void solve_beside(const Model& model, State& s, Workspace& w, const Coupling& c,
-                  CoupledSystem& beside) noexcept {
+                  const CoupledSystem& beside, SystemResult& result) noexcept {
   move_ports(model, c, beside, system_workspace_on(model.system, w.system, s.kept).free_ports);
-  const SystemResult met = solve_system(model, s, w);
-  const std::int32_t most = beside.result.iterations;
-  beside.result = met;
-  if (most > met.iterations) beside.result.iterations = most;
+  const std::int32_t most = result.iterations;
+  result = solve_system(model, s, w);
+  if (most > result.iterations) result.iterations = most;
 }
 
 /// Change of the system's forces by each contact's force, and its part in W.
@@ -97,14 +106,14 @@ void add_compliance(const Model& model, const State& s, const Workspace& w, Coup
 }  // namespace
 
 void couple_system(const Model& model, State& s, Workspace& w, Coupling& c,
-                   CoupledSystem& beside) noexcept {
+                   SystemResult& result) noexcept {
   const std::int32_t n = 9 * model.system.ports;
-  beside = views(model, c, w.beside);
+  const CoupledSystem beside = views(model, c, w);
   find_free(model, w, beside.free);
   find_by_port(model, w, c, beside.by_port);
   begin_system(model, s, w);
   for (int i = c.contacts; i < c.rows; ++i) c.force[i] = 0.;  // not known yet
-  solve_beside(model, s, w, c, beside);
+  solve_beside(model, s, w, c, beside, result);
   add_compliance(model, s, w, c, beside);
   find_port_forces(model, s, w, beside.force);
   for (int j = 0; j < c.ports; ++j)
@@ -114,9 +123,10 @@ void couple_system(const Model& model, State& s, Workspace& w, Coupling& c,
 }
 
 bool settle_system(const Model& model, State& s, Workspace& w, Coupling& c, CoupledRunners* runners,
-                   CoupledSystem& beside) noexcept {
+                   SystemResult& result) noexcept {
+  const CoupledSystem beside = views(model, c, w);
   const std::int32_t n = 9 * model.system.ports;
-  solve_beside(model, s, w, c, beside);
+  solve_beside(model, s, w, c, beside, result);
   double *const missed = beside.moved, *const now = beside.moved + n;
   find_port_forces(model, s, w, now);
   for (std::int32_t k = 0; k < n; ++k) {

@@ -17,25 +17,16 @@ inline bool couples_system(const Model& model) noexcept {
   return model.system.ports > 0 && port_count(model) > 0;
 }
 
-/// Views into Workspace::beside.
-struct CoupledSystem {
-  double* free;     // [9 ports] displacements of the rails without contacts and the system
-  double* force;    // [9 ports] forces of the system on its ports if there are no contacts
-  double* by_port;  // [9 ports][ports of contacts] displacement by a unit force on a port
-  double* change;   // [ports of contacts][9 ports] of the forces by a unit force of each
-  double* moved;    // [2][9 ports] scratch
-  SystemResult result;
-};
-
 /// Solves the system under the contacts' forces of the last step, and adds its part to W and to the
 /// free motion of the contacts. All of Coupling but the runners must be known.
+/// @param result  of the system's solve, with the most iterations of all in the step
 void couple_system(const Model& model, State& state, Workspace& workspace, Coupling& c,
-                   CoupledSystem& beside) noexcept;
+                   SystemResult& result) noexcept;
 
 /// Solves the system under the present forces of the contacts. Moves the contacts, and the seats of
 /// runners if there are any, by what was not expected of its forces.
 /// @returns whether this is too little to count
 bool settle_system(const Model& model, State& state, Workspace& workspace, Coupling& c,
-                   CoupledRunners* runners, CoupledSystem& beside) noexcept;
+                   CoupledRunners* runners, SystemResult& result) noexcept;
 
 }  // namespace railstep
