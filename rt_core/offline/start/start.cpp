@@ -350,7 +350,8 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
 }  // namespace
 
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
-                                         double gravity, const Acting& beside) {
+                                         double gravity, const Acting& beside,
+                                         const std::vector<double>& rate) {
   const Model& model = packed.model();
   check_sides(model);
   std::vector<double> memory = start_released(packed);
@@ -358,8 +359,13 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
   const Statics statics(track);
   const Pose at = equilibrium(statics, packed, gravity, 0., beside);
   const Window w = window(model, track.length());
-  const Pose later = passing(statics, packed, gravity, w.to, at, beside);
-  const Pose before = passing(statics, packed, gravity, w.from, at, beside);
+  const auto beside_at = [&](double time) {
+    Acting moved = beside;
+    for (std::size_t i = 0; i < rate.size(); ++i) moved.contacts[i].force += rate[i] * time;
+    return moved;
+  };
+  const Pose later = passing(statics, packed, gravity, w.to, at, beside_at(w.to));
+  const Pose before = passing(statics, packed, gravity, w.from, at, beside_at(w.from));
   const double span = w.to > w.from ? w.to - w.from : 1.;  // s; 1 if there is no window
   for (std::size_t l = 0; l < packed.lines().size(); ++l) {
     put(packed.lines()[l], model.line[l], at.lines[l], (later.lines[l] - before.lines[l]) / span,

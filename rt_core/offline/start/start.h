@@ -12,13 +12,15 @@ namespace railstep {
 /// included. Vertical force and roll balance give the load of each frictionless wheel of a
 /// wheelset. Velocities are those of the static shape that moves along with loads and wheels;
 /// accelerations are 0.
-/// @param beside  constant forces that press too
+/// @param beside  forces that press too
+/// @param rate    [beside.contacts] of the change of these, N/s; empty: they do not change
 /// @returns state_doubles() values
 /// Throws Refused if the track has a free rigid mode, or if a wheelset or a vehicle would lift a
 /// wheel. Under a lateral force on a wheelset it also throws if no flange holds the wheelset, if
 /// the force lifts it over its flange, or if there are other wheelsets or vehicles.
 std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& packed,
-                                         double gravity, const Acting& beside = {});
+                                         double gravity, const Acting& beside = {},
+                                         const std::vector<double>& rate = {});
 
 /// Forces of all wheels over the unknowns of each line of the model, in the equilibrium at t = 0
 /// and where they are `time` later. Of condensed lines the forces of all that presses but `beside`,

@@ -127,7 +127,9 @@ std::vector<double> start_beside(const Track& track, const PackedModel& packed, 
   const Model& model = packed.model();
   const bool banded = model.form == Form::banded, wheels = has_wheels(model);
   std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)), 0.);
-  if (wheels || !banded) memory = start_in_equilibrium(track, packed, gravity, ports);
+  std::vector<double> rate;
+  for (const double own : rest.port_rate) rate.push_back(-own);  // the ports press with -force
+  if (wheels || !banded) memory = start_in_equilibrium(track, packed, gravity, ports, rate);
   if (!banded) return memory;
   const State state = state_on(model, memory.data());
   if (!wheels) std::copy_n(rest.u.begin(), model.line_unknowns, state.u);

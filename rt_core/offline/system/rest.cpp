@@ -197,6 +197,8 @@ Rest find_rest(const StillSystem& make, const std::vector<StartingPlace>& runnin
   const Rest before = from < 0. ? settle(make, from, rest) : rest;
   const Rest after = to > 0. ? settle(make, to, rest) : rest;
   rest.v = rates(make(kFirstStep, 0.)->model(), before, after, to - from);
+  for (std::size_t i = 0; i < rest.port_force.size(); ++i)
+    rest.port_rate.push_back((after.port_force[i] - before.port_force[i]) / (to - from));
   return rest;
 }
 

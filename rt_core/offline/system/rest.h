@@ -16,7 +16,8 @@ struct Rest {
   std::vector<double> quaternion;  // [bodies][4]
   std::vector<double> row_force;   // [rows] N
   std::vector<RailPortModel> port;
-  std::vector<double> port_force;  // [9 ports] against the rails, N and N m
+  std::vector<double> port_force;      // [9 ports] against the rails, N and N m
+  std::vector<double> port_rate = {};  // of these as loads and wheels move along, N/s; or empty
 };
 
 /// The same system by backward Euler with steps of dt, with loads and wheels at their places
