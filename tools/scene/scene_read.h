@@ -120,7 +120,7 @@ class NameBook {
 
 /// Claims all names of a track's trace. Throws InputError where a name stands twice.
 void claim_names(const Table& root, const Scene& scene, NameBook& names);
-/// What runs on a track whose rails and step are read, and what makes it uneven.
+/// Reads all that runs on a track, and its irregularities. Its rails and its step must be read.
 void read_traffic(const Table& root, Scene& scene);
 
 }  // namespace railstep

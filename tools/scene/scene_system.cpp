@@ -16,8 +16,8 @@ constexpr const char* kSystemKeys[] = {"body",  "beam",   "joint", "spring",
 
 /// Refuses tables that belong to a track.
 void refuse_track_keys(const Table& root) {
-  for (const char* key : {"rail", "support", "sleeper", "ballast", "load", "wheelset", "vehicle",
-                          "condense", "static", "output"})
+  for (const char* key : {"rail", "support", "sleeper", "ballast", "under_sleeper_pad", "load",
+                          "wheelset", "vehicle", "condense", "static", "output"})
     if (root.has(key))
       root.refuse(
           key, "E-BODY-26",

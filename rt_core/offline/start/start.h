@@ -34,7 +34,7 @@ std::vector<Eigen::VectorXd> standing_line_forces(const Track& track, const Pack
 struct StartingPlace {
   double place, speed;
 };
-/// Of all loads and wheels.
+/// Finds the starting places of all loads and wheels.
 std::vector<StartingPlace> starting_places(const Model& model);
 
 /// The state at step 0 of a track without end in its moving steady state: the motion repeats from

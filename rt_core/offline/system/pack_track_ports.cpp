@@ -144,7 +144,7 @@ void WidenedTrack::put_start(const Model& track, const Model& both,
     all.a[i] = banded ? own.g[i] : own.a[i];
     all.g[i] = own.g[i];
   }
-  // What follows these, up to the system's own numbers, is the track's alone.
+  // The numbers behind these, up to those of the system, belong to the track alone.
   std::copy(own.contact_force, own.quaternion, all.contact_force);
   if (both.system.ports == 0 || !banded) return;
   for (double* rates : {all.v, all.a, all.g}) add_port_motion(both, rates);

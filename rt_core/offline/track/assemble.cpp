@@ -131,7 +131,7 @@ void relax(Assembly& part, Row moves, int e, const Relaxing& own, double factor)
   Assembly::add(part.damping, moves, factor * own.damping);
 }
 
-/// What relaxes of the ballast on a seat, whose springs and dampers add_seat() has added.
+/// Adds the part of a seat's ballast that relaxes. add_seat() has added its springs and dampers.
 void add_relaxing(const Track& track, Assembly& part, int border) {
   const Seat seat = track.seat(border);
   const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];

@@ -24,7 +24,7 @@ struct Support {
 /// Elastic layer glued under one end of a sleeper, along z in series with its ballast. A scene
 /// gives it; with_pads_joined() makes one bed of both, which is all that the track knows.
 struct UnderSleeperPad {
-  double stiffness = 0.;  // N/m; 0: there is no pad
+  double stiffness = 0.;  // N/m; 0 without a pad
   double damping = 0.;    // N s/m
 
   bool operator==(const UnderSleeperPad&) const = default;
@@ -33,7 +33,7 @@ struct UnderSleeperPad {
 /// A spring that stands in series with part of a damper, so that this part's force relaxes.
 struct Relaxing {
   double stiffness = 0.;  // N/m
-  double damping = 0.;    // of that part, N s/m; 0: there is none
+  double damping = 0.;    // of that part, N s/m; 0 without such a part
 
   bool operator==(const Relaxing&) const = default;
 };

@@ -16,7 +16,7 @@ constexpr double kRounding = 1e-14;
 /// for.
 struct CoupledSystem {
   double* free;     // [9 ports] displacements of the rails without contacts and the system
-  double* force;    // [9 ports] forces of the system on its ports if there are no contacts
+  double* force;    // [9 ports] forces of the system on its ports without contact forces
   double* by_port;  // [9 ports][ports of contacts] displacement by a unit force on a port
   double* change;   // [ports of contacts][9 ports] of the forces by a unit force of each
   double* moved;    // [2][9 ports] scratch
