@@ -260,20 +260,21 @@ std::vector<Eigen::VectorXd> standing_line_forces(const Track& track, const Pack
   const Statics statics(track);
   Pose at = equilibrium(statics, packed, gravity, 0., beside);
   if (time != 0.) at = passing(statics, packed, gravity, time, at, beside);
-  const bool condensed = packed.model().form == Form::condensed;
-  std::vector<Eigen::VectorXd> forces = line_forces(packed, track, at.acting);
-  const std::vector<Eigen::VectorXd> others =
-      line_forces(packed, track, condensed ? beside : loads_at(statics, packed, time, beside));
+  if (packed.model().form == Form::banded) {
+    std::vector<Eigen::VectorXd> forces = line_forces(packed, track, at.acting);
+    const std::vector<Eigen::VectorXd> others =
+        line_forces(packed, track, loads_at(statics, packed, time, beside));
+    for (std::size_t l = 0; l < forces.size(); ++l) forces[l] -= others[l];
+    return forces;
+  }
+  auto& contacts = at.acting.contacts;  // those beside are the first
+  contacts.erase(contacts.begin(),
+                 contacts.begin() + static_cast<std::ptrdiff_t>(beside.contacts.size()));
+  std::vector<Eigen::VectorXd> forces = open_lines(packed, track, at.acting, gravity);
   for (std::size_t l = 0; l < forces.size(); ++l) {
-    forces[l] -= others[l];
-    if (!condensed) continue;
     const PackedLine& own = packed.lines()[l];
-    const Eigen::VectorXd preloads = preload(track, own.line);
-    forces[l] += preloads;
-    if (gravity != 0.) forces[l] += weight(track, own.line, gravity);
-    const Eigen::VectorXd y = own.basis.shapes.project(forces[l]).cwiseQuotient(
-        Eigen::VectorXd(own.basis.omega.cwiseAbs2()));
-    forces[l] = own.line.stiffness * own.basis.shapes.displacement(y) - preloads;
+    forces[l] = own.line.stiffness * own.basis.shapes.displacement(forces[l]);
+    forces[l] -= preload(track, own.line);  // the model that takes them has its own
   }
   return forces;
 }

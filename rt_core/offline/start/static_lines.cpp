@@ -75,6 +75,19 @@ std::vector<Eigen::VectorXd> line_forces(const PackedModel& packed, const Track&
   return forces;
 }
 
+std::vector<Eigen::VectorXd> open_lines(const PackedModel& packed, const Track& track,
+                                        const Acting& acting, double gravity) {
+  std::vector<Eigen::VectorXd> lines = line_forces(packed, track, acting);
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const PackedLine& own = packed.lines()[l];
+    if (gravity != 0.) lines[l] += weight(track, own.line, gravity);
+    if (packed.model().fixed.count > 0) lines[l] += preload(track, own.line);
+    lines[l] = own.basis.shapes.project(lines[l]).cwiseQuotient(
+        Eigen::VectorXd(own.basis.omega.cwiseAbs2()));
+  }
+  return lines;
+}
+
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,
                                           const Acting& acting, double gravity) {
   std::vector<Eigen::VectorXd> lines;
@@ -87,15 +100,7 @@ std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Stati
     for (const PackedLine& own : packed.lines()) lines.push_back(all[own.index]);
     return lines;
   }
-  std::vector<Eigen::VectorXd> loads = line_forces(packed, statics.track(), acting);
-  for (std::size_t l = 0; l < loads.size(); ++l) {
-    const PackedLine& own = packed.lines()[l];
-    Eigen::VectorXd& load = loads[l];
-    if (gravity != 0.) load += weight(statics.track(), own.line, gravity);
-    if (packed.model().fixed.count > 0) load += preload(statics.track(), own.line);
-    lines.push_back(
-        own.basis.shapes.project(load).cwiseQuotient(Eigen::VectorXd(own.basis.omega.cwiseAbs2())));
-  }
+  lines = open_lines(packed, statics.track(), acting, gravity);
   if (packed.model().fixed.count > 0) apply_port_forces(packed, lines);
   return lines;
 }

@@ -30,6 +30,10 @@ Eigen::VectorXd contact_row(const Line& line, const RailRow& row, bool strains);
 std::vector<Eigen::VectorXd> line_forces(const PackedModel& packed, const Track& track,
                                          const Acting& acting);
 
+/// Static displacements of condensed lines, in their coordinates, with all one-sided springs open.
+std::vector<Eigen::VectorXd> open_lines(const PackedModel& packed, const Track& track,
+                                        const Acting& acting, double gravity);
+
 /// Static displacements of each line of the model: its unknowns, or its coordinates if condensed.
 /// They include the effect of the one-sided springs that are closed.
 std::vector<Eigen::VectorXd> static_lines(const PackedModel& packed, const Statics& statics,

@@ -137,9 +137,23 @@ void add_pad(const Track& track, Assembly& part, int border, int rail, const Sea
   }
 }
 
+/// Lets a part of the damper under `moves` act through a spring, whose compression e has no other
+/// stiffness. Its small mass makes it a motion of second order, which condensed lines can hold.
+void relax(Assembly& part, Row moves, int e, const Relaxing& own, double factor) {
+  constexpr double kFastest = 3e6;  // 1/s
+  if (e < 0) return;
+  Assembly::add(part.stiffness, {{e, 1.}}, factor * own.stiffness);
+  Assembly::add(part.mass, {{e, 1.}}, factor * own.damping / kFastest);
+  Assembly::add(part.damping, moves, -factor * own.damping);
+  push(moves, e, -1.);
+  Assembly::add(part.damping, moves, factor * own.damping);
+}
+
 /// Springs and dampers under one end of the sleeper; spread over a length L they hold its pitch by
 /// k L^2/12.
-void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast) {
+/// @param relaxing, relaxing_pitch  unknowns of the part that relaxes; -1: there is none
+void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast, int relaxing,
+                 int relaxing_pitch) {
   for (std::size_t d = 0; d < 3; ++d) {
     const Row end = rows.end(d);
     if (d == 2 && ballast.one_sided()) {
@@ -152,6 +166,8 @@ void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast) {
   const double arm = ballast.length * ballast.length / 12.;
   Assembly::add(part.stiffness, rows.pitch(), ballast.stiffness[2] * arm);
   Assembly::add(part.damping, rows.pitch(), ballast.damping[2] * arm);
+  relax(part, rows.end(2), relaxing, ballast.relaxing, 1.);
+  relax(part, rows.pitch(), relaxing_pitch, ballast.relaxing, arm);
 }
 
 /// The sleeper's own inertia.
@@ -171,11 +187,14 @@ void add_body(const Track& track, Assembly& part, int border, const SleeperBody&
 
 void add_seat(const Track& track, Assembly& part, int border) {
   const Seat seat = track.seat(border);
+  const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
   for (const int rail : part.rails) {
     const auto side = static_cast<std::size_t>(rail);
     const SeatRows rows(track, part, border, rail);
     add_pad(track, part, border, rail, rows, seat.pad[side]);
-    if (seat.sleeper) add_ballast(part, rows, seat.ballast[side]);
+    if (seat.sleeper)
+      add_ballast(part, rows, seat.ballast[side], sleeper[kRelaxing + side],
+                  sleeper[kRelaxingPitch + side]);
   }
   if (seat.sleeper) add_body(track, part, border, *seat.sleeper);
 }

@@ -119,35 +119,6 @@ void hold_along(const Track& track, int rail, Assembly& part) {
   }
 }
 
-/// Lets a part of the damper under `moves` act through a spring, whose compression e has no other
-/// stiffness. Its small mass makes it a motion of second order, which condensed lines can hold.
-void relax(Assembly& part, Row moves, int e, const Relaxing& own, double factor) {
-  constexpr double kFastest = 3e6;  // 1/s
-  if (e < 0) return;
-  Assembly::add(part.stiffness, {{e, 1.}}, factor * own.stiffness);
-  Assembly::add(part.mass, {{e, 1.}}, factor * own.damping / kFastest);
-  Assembly::add(part.damping, moves, -factor * own.damping);
-  push(moves, e, -1.);
-  Assembly::add(part.damping, moves, factor * own.damping);
-}
-
-/// Adds the part of a seat's ballast that relaxes. add_seat() has added its springs and dampers.
-void add_relaxing(const Track& track, Assembly& part, int border) {
-  const Seat seat = track.seat(border);
-  const auto& sleeper = part.line.sleeper_unknown_of[static_cast<std::size_t>(border)];
-  const double share = part.rails.size() == 2 ? std::sqrt(.5) : 1.;
-  for (const int rail : part.rails) {
-    const auto side = static_cast<std::size_t>(rail);
-    const Ballast& ballast = seat.ballast[side];
-    Row end;
-    push(end, sleeper[kAlongZ], share);
-    push(end, sleeper[kRoll], rail == 0 ? share : -share);
-    relax(part, end, sleeper[kRelaxing + side], ballast.relaxing, 1.);
-    relax(part, {{sleeper[kPitch], share}}, sleeper[kRelaxingPitch + side], ballast.relaxing,
-          ballast.length * ballast.length / 12.);
-  }
-}
-
 Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails) {
   Assembly part{mirror, std::move(rails)};
   part.line.rigid_section = track.unknowns == Unknowns::rigid_section;
@@ -158,7 +129,6 @@ Assembly assemble_part(const Track& track, Mirror mirror, std::vector<int> rails
     hold_along(track, rail, part);
   }
   for (int seat = 0; seat < track.seats(); ++seat) add_seat(track, part, seat);
-  for (int seat = 0; seat < track.seats(); ++seat) add_relaxing(track, part, seat);
   if (mirror != Mirror::none) {
     part.line.unknown_of[1] = part.line.unknown_of[0];
     part.line.cuts[1] = part.line.cuts[0];
