@@ -1,6 +1,6 @@
 // Runs a fuzzer without libFuzzer: every named file, then mutations of these for a number of
-// seconds; each seed gives other mutations. An input that ends the program is kept in
-// ./failed-<program>.
+// seconds; each seed gives other mutations. An input that ends the program, or that runs when the
+// program is told to end (SIGTERM), is kept in ./failed-<program>.
 // Usage: fuzz_<target> [SECONDS [SEED]] FILE_OR_FOLDER...
 #include <fcntl.h>
 #include <unistd.h>
@@ -119,7 +119,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 int main(int argc, char** argv) {
   failed = "failed-" + std::filesystem::path(argv[0]).filename().string();
-  for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS})
+  for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGTERM})
     std::signal(signal, keep_input);
   int first = 1;
   const auto number = [&] {

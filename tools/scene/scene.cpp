@@ -366,8 +366,7 @@ Scene read_track_scene(const Table& root) {
         "the supports of a track without end pass under its traffic; expected "
         "[[sensor]] tables instead, as sensors follow the traffic bay by bay");
   NameBook names;
-  if (root.is_faultless())
-    claim_names(root, scene, names);  // else entries of a list may be missing
+  claim_names(root, scene, names);
   return scene;
 }
 

@@ -284,6 +284,7 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
 }
 
 void claim_names(const Table& root, const Scene& scene, NameBook& names) {
+  if (!root.is_faultless()) return;  // entries of a list may be missing
   NameBook wheelsets;  // a sensor may have the name of a wheelset, which has no columns of its own
   const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
              sensors = root.tables("sensor"), stops = root.tables("stop");

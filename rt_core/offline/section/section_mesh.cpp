@@ -19,6 +19,7 @@ constexpr double kFinest = 0.01;                // of the triangle size, at a re
 constexpr double kShortest = 1e-6;              // of the outline's size: never halved below
 constexpr double kReentrant = 20.0 / 57.29578;  // rad beyond straight, more than any chorded arc
 constexpr std::size_t kMostMeshPoints = 200000;
+constexpr std::size_t kMostPieces = 20000;  // of the boundary: each point is held against each
 
 Point middle(const Point& a, const Point& b) { return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])}; }
 
@@ -185,10 +186,13 @@ class Refiner {
   }
 
   void check_count() const {
-    if (mesh_.points().size() > kMostMeshPoints)
-      refuse("E-SECTION-27",
-             "the outline of the section is too fine: its triangles need more than " +
-                 std::to_string(kMostMeshPoints) + " points; use fewer points in the outline");
+    if (mesh_.points().size() <= kMostMeshPoints && segments_.size() <= kMostPieces) return;
+    refuse("E-SECTION-27",
+           "the outline of the section is too fine or has a part too narrow: its triangles need "
+           "more than " +
+               std::to_string(kMostMeshPoints) + " points, or more than " +
+               std::to_string(kMostPieces) +
+               " of them on the outline; expected fewer points, and no sliver");
   }
 
   std::vector<Point> outline_, corners_;

@@ -20,7 +20,8 @@ struct SectionMesh {
 /// @param half  from right_half
 /// @param size  widest triangle, m; shrinks to size/100 at re-entrant corners (over 200 degrees),
 ///              growing with 0.3 times the distance, because the gradients there are singular
-/// @throws Refused when the outline is too fine for 200000 points of that size
+/// @throws Refused when it needs more than 200000 points, or 20000 on the outline: sides too short,
+///         or a part too narrow
 SectionMesh mesh_half(const HalfPolygon& half, double size);
 
 /// The same for a whole outline, which may be unsymmetric: simple, counter-clockwise.

@@ -91,6 +91,11 @@ TEST_CASE("two points, and repeated points, are refused", "[bad_input][cli]") {
               {"p.toml:4:", "E-SECTION-14", "rows 3 and 4"});
 }
 
+TEST_CASE("an outline with a sliver is refused before its triangles take minutes",
+          "[bad_input][cli]") {
+  fit_refuses("p.csv", "0,0\n30,0\n0.0003,10\n0,40\n", {"E-SECTION-27", "20000", "sliver"});
+}
+
 TEST_CASE("millimetres given as metres are refused with the unit named", "[bad_input][cli]") {
   fit_refuses("p.csv", "0,0\n75,0\n75,172\n0,172\n", {"E-SECTION-21", "172 m high"}, " --unit m");
   fit_refuses("p.csv", "0,0\n75,0\n75,0.172\n0,0.172\n", {"E-SECTION-21", "75 m wide"},

@@ -85,6 +85,8 @@ TEST_CASE("keys that cannot be stepped beside bodies are refused", "[scene]") {
   };
   refused("static.tolerance=1e-9", "E-BODY-05");
   refused("condense.residual_flexibility=true", "E-CONDENSE-31");
+  CHECK_THAT(beside_with({"load=[{name=\"load\"}]"}),
+             Contains("[load[0]]") && Contains("E-KEY-01"));
   CHECK(beside_with({"condense={kind=\"full\", residual_flexibility=false}"}) == "accepted");
   refused("step.scheme=\"energy-momentum\"", "E-BODY-06");
   refused("step.scheme=\"tr-bdf2\"", "E-BODY-07");
