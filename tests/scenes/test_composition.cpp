@@ -62,6 +62,10 @@ const std::vector<Partner> kPartners = {
      {"vehicle=[VEHICLE,{name=\"b\",file=\"../vehicles/manchester_bogie.toml\",rail=\"both\","
       "start_m=AT,speed_m_per_s=V}]"},
      Partner::nothing},
+    {"forces on its bodies",
+     {"vehicle[0].force=[{body=\"car\",direction=\"z\",table=[[0.0,-2e4]]},"
+      "{body=\"bogie_1\",direction=\"pitch\",table=[[0.0,1e3]]}]"},
+     Partner::nothing},
     {"an external wheel",
      {"external_wheel=[{name=\"e\",rail=\"left\",limit_n=1e6}]"},
      Partner::nothing},

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "offline/energy/line_energy.h"
-#include "offline/energy/vehicle_energy.h"
+#include "offline/energy/suspended_energy.h"
 #include "online/contact/vehicle_contact.h"
 #include "online/step/step.h"
 #include "online/track/closing.h"
@@ -108,7 +108,7 @@ class PassiveRun {
     }
     for (std::int32_t i = 0; i < model_.vehicles; ++i) {
       const VehicleModel& v = model_.vehicle[i];
-      const VehicleEnergy own = vehicle_energy(v, at);
+      const SuspendedEnergy own = suspended_energy(v, at);
       sum += own.kinetic + own.strain;
     }
     for (std::int32_t j = 0; j < model_.fixed.count; ++j) {
@@ -123,7 +123,7 @@ class PassiveRun {
     double sum = 0.;
     for (std::int32_t i = 0; i < model_.vehicles; ++i)
       for (int k = 0; k < model_.vehicle[i].size; ++k)
-        sum += model_.vehicle[i].weight[k] * at.u[model_.vehicle[i].first + k];
+        sum -= model_.vehicle[i].rest[k] * at.u[model_.vehicle[i].first + k];
     return sum;
   }
 
@@ -189,7 +189,7 @@ class PassiveRun {
       for (int k = 0; k < v.size; ++k) {
         const double u0 = old_.u[v.first + k], u1 = run_.state.u[v.first + k];
         const double way = std::abs(u1 - u0), all = std::abs(u0) + std::abs(u1);
-        size += 4. / (dt_ * dt_) * v.mass[k] * way * all + v.weight[k] * all;
+        size += 4. / (dt_ * dt_) * v.mass[k] * way * all - v.rest[k] * all;
         size += std::abs(v.stiffness[k * v.size + k]) * all * all;
       }
     }

@@ -45,8 +45,9 @@ inline std::unique_ptr<PackedModel> small_model(bool modal, bool wheels) {
     traffic.loads[0].amplitude = 1e3;
     traffic.loads[0].frequency = 50.;
     traffic.loads[1].speeds = {0., 10., .01, 20.};
-    traffic.track_sensors = {{.displacement = 1., .wheelset = 0, .coordinate = 2},
-                             {.displacement = 1., .coordinate = 1, .vehicle = 1}};
+    traffic.track_sensors = {
+        {.displacement = 1., .runner = RunnerSum{RunnerSum::Of::wheelset, 0, {{2, 1.}}}},
+        {.displacement = 1., .runner = RunnerSum{RunnerSum::Of::vehicle, 1, {{1, 1.}}}}};
   }
   traffic.track_sensors.push_back({.rest = .1,
                                    .displacement = 1.,

@@ -54,14 +54,9 @@ double value_at_start(const std::vector<double>& table) {
   return table_value(table.data(), static_cast<std::int32_t>(table.size() / 2), 0.);
 }
 
-/// N, or N m; 0 of one that is given frame by frame.
-double force_at_start(const OuterForce& force) {
-  return force.input < 0 ? value_at_start(force.table) : 0.;
-}
-
 void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) {
   for (const OuterForce& force : w.forces)
-    if (force_at_start(force) != 0.)
+    if (first_force(force) != 0.)
       throw InputError("E-STATIC-01", fmt::format("{}: static takes the weight alone of wheelset "
                                                   "{}; expected forces that are 0 at t = 0",
                                                   scene.file.string(), w.name));
@@ -71,8 +66,7 @@ void add_wheelset(const Scene& scene, const WheelsetScene& w, Problem& problem) 
 /// The loads of a vehicle's wheels on a level rail that does not give way.
 void add_vehicle(const Scene& scene, const VehicleScene& v, Problem& problem) try {
   VehicleMatrices matrices = vehicle_matrices(v.vehicle, v.gravity);
-  for (const OuterForce& force : v.forces)
-    matrices.weight[force.direction] -= force_at_start(force);
+  for (const OuterForce& force : v.forces) matrices.weight[force.direction] -= first_force(force);
   const VehicleRest rest = vehicle_at_rest(matrices);
   for (std::size_t i = 0; i < v.vehicle.wheels.size(); ++i)
     add_wheel(scene, problem, v.rail, v.start + v.vehicle.wheels[i].place,

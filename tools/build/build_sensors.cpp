@@ -3,6 +3,9 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <initializer_list>
+#include <optional>
+#include <utility>
 
 #include "build/build.h"
 #include "build/build_endless.h"
@@ -17,7 +20,7 @@ struct Direction {
   double rest = 0.;   // m; x along the track's elements
   double moved = 0.;  // at the start, of a sensor that moves with the traffic
   Functional track;
-  int wheelset = -1;
+  std::optional<RunnerSum> runner;  // in place of `track`
 };
 using Point = std::array<Direction, 3>;
 
@@ -32,8 +35,10 @@ Point point_of(const RailSensor& sensor, const Track& track, double z, double ax
   rest[2] += axis_z;
   Point point;
   for (int d = 0; d < 3; ++d)
-    point[static_cast<std::size_t>(d)] = {
-        rest[static_cast<std::size_t>(d)], 0., {.rail = {{{rail, sensor.position, 0., z, d}, 1.}}}};
+    point[static_cast<std::size_t>(d)] = {rest[static_cast<std::size_t>(d)],
+                                          0.,
+                                          {.rail = {{{rail, sensor.position, 0., z, d}, 1.}}},
+                                          {}};
   return point;
 }
 
@@ -61,28 +66,53 @@ Point point_of(const WheelsetSensor& sensor, const Scene& scene, const Track& tr
   point[0].rest = origin + w.start;
   point[0].moved = origin;
   point[2].rest = crown_top(track.lean(0), head.top_z, head.crown_radius).height + w.radius;
-  for (Direction& direction : point) direction.wheelset = static_cast<int>(sensor.wheelset);
+  for (int d = 0; d < 3; ++d)
+    point[static_cast<std::size_t>(d)].runner = {
+        RunnerSum::Of::wheelset, sensor.wheelset, {{d, 1.}}};
   return point;
 }
 
-/// Motion of a point of a vehicle's body: z as in its body's columns, and the rates of z.
-void add_vehicle_point(const std::string& name, const VehicleSensor& sensor, const Scene& scene,
-                       Sensors& sensors) {
-  const std::vector<int> first = first_coordinates(scene.vehicles[sensor.vehicle].vehicle);
-  const auto add = [&](const char* quantity, TrackSensor track_sensor) {
-    track_sensor.vehicle = static_cast<int>(sensor.vehicle);
-    track_sensor.coordinate = first[sensor.body];
-    track_sensor.lever = -sensor.ahead;  // pitch turns what is ahead down
-    sensors.columns.push_back(name + quantity);
+/// Displacement, velocity and acceleration along an axis.
+void add_motion(const std::string& name, const char* axis, const RunnerSum& sum, Sensors& sensors) {
+  const auto add = [&](const char* quantity, const char* unit, TrackSensor track_sensor) {
+    track_sensor.runner = sum;
+    sensors.columns.push_back(fmt::format("{}.{}{}_{}", name, quantity, axis, unit));
     sensors.track_sensors.push_back(std::move(track_sensor));
   };
-  add(".z_m", {.displacement = 1.});
-  add(".vz_m_per_s", {.velocity = 1.});
-  add(".az_m_per_s2", {.acceleration = 1.});
+  add("", "m", {.displacement = 1.});
+  add("v", "m_per_s", {.velocity = 1.});
+  add("a", "m_per_s2", {.acceleration = 1.});
+}
+
+/// Motion of a point of a vehicle's body: z as in its body's columns.
+void add_vehicle_point(const std::string& name, const VehicleSensor& sensor, const Scene& scene,
+                       Sensors& sensors) {
+  const int z = first_coordinates(scene.vehicles[sensor.vehicle].vehicle)[sensor.body];
+  RunnerSum sum{RunnerSum::Of::vehicle, sensor.vehicle, {{z, 1.}}};
+  if (sensor.ahead != 0.) sum.parts.push_back({z + 1, -sensor.ahead});  // pitch turns it down
+  add_motion(name, "z", sum, sensors);
+}
+
+/// The same in space, along y and z. Axle boxes do not spin with their wheelset.
+void add_point_in_space(const std::string& name, const RailVehicleSensor& sensor,
+                        const Scene& scene, Sensors& sensors) {
+  const RunnerBody& body = scene.rail_vehicles[sensor.vehicle].runner.bodies[sensor.body];
+  const auto sum = [&](std::initializer_list<std::pair<BodyMotion, double>> parts) {
+    RunnerSum made{RunnerSum::Of::rail_vehicle, sensor.vehicle, {}};
+    for (const auto& [motion, factor] : parts)
+      if (motion != BodyMotion::pitch || !body.is_wheelset())
+        made.parts.push_back({kMotions * static_cast<int>(sensor.body) + index_of(motion), factor});
+    return made;
+  };
+  const auto& [x, y, z] = sensor.point;
+  add_motion(name, "y", sum({{BodyMotion::y, 1.}, {BodyMotion::roll, -z}, {BodyMotion::yaw, x}}),
+             sensors);
+  add_motion(name, "z", sum({{BodyMotion::z, 1.}, {BodyMotion::roll, y}, {BodyMotion::pitch, -x}}),
+             sensors);
 }
 
 /// The motions of a rail vehicle's bodies other than wheelsets, which have columns of their own.
-void add_bodies(const RailVehicleScene& vehicle, int index, Sensors& sensors) {
+void add_bodies(const RailVehicleScene& vehicle, std::size_t index, Sensors& sensors) {
   constexpr const char* kNames[kMotions] = {"x_m",      "y_m",       "z_m",
                                             "roll_rad", "pitch_rad", "yaw_rad"};
   for (std::size_t b = 0; b < vehicle.runner.bodies.size(); ++b) {
@@ -90,8 +120,8 @@ void add_bodies(const RailVehicleScene& vehicle, int index, Sensors& sensors) {
     if (body.is_wheelset()) continue;
     for (int k = 1; k < kMotions; ++k) {  // x is prescribed
       TrackSensor sensor{.displacement = 1.};
-      sensor.rail_vehicle = index;
-      sensor.coordinate = kMotions * static_cast<int>(b) + k;
+      sensor.runner = {
+          RunnerSum::Of::rail_vehicle, index, {{kMotions * static_cast<int>(b) + k, 1.}}};
       sensors.columns.push_back(fmt::format("{}.{}.{}", vehicle.name, body.name, kNames[k]));
       sensors.track_sensors.push_back(std::move(sensor));
     }
@@ -109,15 +139,14 @@ void add_point(const std::string& name, const Point& point, Sensors& sensors) {
         break;
       case SensorQuantity::displacement:
         track_sensor = {
-            .rest = own.moved, .displacement = 1., .along = d == 0 && own.wheelset >= 0};
+            .rest = own.moved, .displacement = 1., .along = d == 0 && own.runner.has_value()};
         break;
       case SensorQuantity::velocity:
         track_sensor = {.velocity = 1.};
         break;
     }
     track_sensor.track = own.track;
-    track_sensor.wheelset = own.wheelset;
-    track_sensor.coordinate = d;
+    track_sensor.runner = own.runner;
     sensors.columns.push_back(fmt::format("{}.{}", name, column.name));
     sensors.track_sensors.push_back(std::move(track_sensor));
   }
@@ -186,13 +215,15 @@ void move_on(SensorScene& sensor, int behind, const Track& track) {
 }
 
 /// Heights of a vehicle's bodies over their places on a level rail without weight, and pitches.
-void add_bodies(const VehicleScene& scene, int vehicle, Sensors& sensors) {
+void add_bodies(const VehicleScene& scene, std::size_t vehicle, Sensors& sensors) {
   const std::vector<int> first = first_coordinates(scene.vehicle);
   for (std::size_t b = 0; b + 1 < first.size(); ++b)
     for (int c = first[b]; c < first[b + 1]; ++c) {
       sensors.columns.push_back(fmt::format("{}.{}.{}", scene.name, scene.bodies[b],
                                             c == first[b] ? "z_m" : "pitch_rad"));
-      sensors.track_sensors.push_back({.displacement = 1., .coordinate = c, .vehicle = vehicle});
+      TrackSensor sensor{.displacement = 1.};
+      sensor.runner = {RunnerSum::Of::vehicle, vehicle, {{c, 1.}}};
+      sensors.track_sensors.push_back(std::move(sensor));
     }
 }
 
@@ -210,10 +241,9 @@ void add_rail_sensor(const std::string& name, const RailSensor& sensor, const Sc
 Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& sections,
                    const Railhead& head) {
   Sensors sensors;
-  for (std::size_t i = 0; i < scene.vehicles.size(); ++i)
-    add_bodies(scene.vehicles[i], static_cast<int>(i), sensors);
+  for (std::size_t i = 0; i < scene.vehicles.size(); ++i) add_bodies(scene.vehicles[i], i, sensors);
   for (std::size_t i = 0; i < scene.rail_vehicles.size(); ++i)
-    add_bodies(scene.rail_vehicles[i], static_cast<int>(i), sensors);
+    add_bodies(scene.rail_vehicles[i], i, sensors);
   const int behind = scene.track.endless ? bays_behind(scene) : 0;
   for (SensorScene sensor : scene.sensors) {
     move_on(sensor, behind, track);
@@ -224,6 +254,8 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
                 sensors);
     else if (const auto* vehicle = std::get_if<VehicleSensor>(&sensor.on))
       add_vehicle_point(sensor.name, *vehicle, scene, sensors);
+    else if (const auto* in_space = std::get_if<RailVehicleSensor>(&sensor.on))
+      add_point_in_space(sensor.name, *in_space, scene, sensors);
     else
       add_point(sensor.name,
                 point_of(std::get<WheelsetSensor>(sensor.on), scene, track, head,

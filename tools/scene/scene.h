@@ -216,9 +216,13 @@ struct VehicleSensor {
   std::size_t vehicle, body;  // indices into Scene::vehicles and its bodies
   double ahead;               // of the body's middle, m
 };
+struct RailVehicleSensor {
+  std::size_t vehicle, body;    // indices into Scene::rail_vehicles and its bodies
+  std::array<double, 3> point;  // from the body's centre at rest, m
+};
 struct SensorScene {
   std::string name;
-  std::variant<RailSensor, SleeperSensor, WheelsetSensor, VehicleSensor> on;
+  std::variant<RailSensor, SleeperSensor, WheelsetSensor, VehicleSensor, RailVehicleSensor> on;
 };
 
 /// One scene of a track, every number checked and in SI. config/README.md, "Scenes", has it key by

@@ -51,7 +51,22 @@ double first_radius(const Runner& runner) {
   return kWheelRadius;
 }
 
+/// [[vehicle.force]] along a motion of a body.
+OuterForce read_force_in_space(const Table& t, const Runner& runner,
+                               std::vector<InputScene>& inputs) {
+  const auto body = static_cast<int>(read_forced_body(t, body_names(runner)));
+  const auto motion =
+      static_cast<int>(t.choice("direction", {"x", "y", "z", "roll", "pitch", "yaw"}));
+  return read_body_force(t, kMotions * body + motion, motion >= index_of(BodyMotion::roll), inputs);
+}
+
 }  // namespace
+
+std::vector<std::string> body_names(const Runner& runner) {
+  std::vector<std::string> names;
+  for (const RunnerBody& body : runner.bodies) names.push_back(body.name);
+  return names;
+}
 
 bool is_rail_vehicle(const Table& t) {
   constexpr const char* kType = "rail_vehicle";
@@ -61,7 +76,8 @@ bool is_rail_vehicle(const Table& t) {
   return vehicle && vehicle->has("type") && vehicle->string("type") == kType;
 }
 
-RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scene& scene) {
+RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scene& scene,
+                                   std::vector<InputScene>& inputs) {
   if (scene.track.rails == 1)
     t.refuse("", "E-VEHICLE-26",
              "a rail vehicle runs on two rails, but the track has one; expected track.rails = 2");
@@ -76,6 +92,8 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   const SpeedScene speed = read_speed(t, std::nullopt);
   v.speed = speed.speed;
   v.speeds = speed.speeds;
+  for (const Table& force : t.tables("force"))
+    v.forces.push_back(read_force_in_space(force, v.runner, inputs));
   return v;
 }
 

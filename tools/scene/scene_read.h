@@ -78,7 +78,9 @@ std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
 /// Whether a [[vehicle]] is a rail vehicle in space, by its own type or that of its file.
 bool is_rail_vehicle(const Table& t);
 /// A [[vehicle]] that is one, and [contact].
-RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scene& scene);
+/// @param inputs  the inputs of its forces are added to it
+RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scene& scene,
+                                   std::vector<InputScene>& inputs);
 /// Bodies, wheelsets and elements of a rail vehicle, from its file or from its own table.
 Runner read_runner(const Table& t);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
@@ -103,6 +105,9 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
 /// A force by `table`, [[t_s, N or N m], ...], or by an input of each frame.
 OuterForce read_body_force(const Table& t, int direction, bool moment,
                            std::vector<InputScene>& inputs);
+std::vector<std::string> body_names(const Runner& runner);
+/// The body of a [[vehicle.force]], by its name among the vehicle's bodies.
+std::size_t read_forced_body(const Table& t, const std::vector<std::string>& bodies);
 std::vector<SensorScene> read_sensors(const Table& root, const Scene& scene);
 /// On a rail, a sleeper, a wheelset or a vehicle.
 SensorScene read_sensor(const Table& t, const Scene& scene);

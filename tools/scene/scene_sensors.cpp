@@ -28,19 +28,44 @@ WheelsetSensor read_wheelset_sensor(const Table& t, const Scene& scene) {
   return {index_of(t, "wheelset", t.string("wheelset"), names)};
 }
 
-/// A point of a vehicle's body.
-VehicleSensor read_vehicle_sensor(const Table& t, const Scene& scene) {
-  std::vector<std::string> vehicles;
-  for (const VehicleScene& v : scene.vehicles) vehicles.push_back(v.name);
-  const std::size_t vehicle = index_of(t, "vehicle", t.string("vehicle"), vehicles);
+const Range kFromMiddle = between(-100.0, 100.0);  // m
+
+/// A body of a vehicle: the first one unless the table names another.
+std::size_t read_sensed_body(const Table& t, const std::vector<std::string>& bodies) {
+  return t.has("body") ? index_of(t, "body", t.string("body"), bodies) : 0;
+}
+
+/// A point of a vehicle's body over one rail.
+VehicleSensor read_upright_sensor(const Table& t, const Scene& scene, std::size_t vehicle) {
   const VehicleScene& own = scene.vehicles[vehicle];
-  const std::size_t body = t.has("body") ? index_of(t, "body", t.string("body"), own.bodies) : 0;
-  VehicleSensor sensor{vehicle, body, t.number("x_m", between(-100.0, 100.0), 0.0)};
+  const std::size_t body = read_sensed_body(t, own.bodies);
+  VehicleSensor sensor{vehicle, body, t.number("x_m", kFromMiddle, 0.0)};
   if (sensor.ahead != 0.0 && own.vehicle.bodies[body].pitch_inertia == 0.0)
     t.refuse("x_m", "E-SENSOR-06",
              fmt::format("x_m = {:.15g}, but {} does not pitch; expected x_m = 0", sensor.ahead,
                          own.bodies[body]));
   return sensor;
+}
+
+/// A point of a vehicle's body in space.
+RailVehicleSensor read_sensor_in_space(const Table& t, const Scene& scene, std::size_t vehicle) {
+  const std::size_t body = read_sensed_body(t, body_names(scene.rail_vehicles[vehicle].runner));
+  return {vehicle,
+          body,
+          {t.number("x_m", kFromMiddle, 0.0), t.number("y_m", kFromMiddle, 0.0),
+           t.number("z_m", kFromMiddle, 0.0)}};
+}
+
+void read_vehicle_sensor(const Table& t, const Scene& scene, SensorScene& sensor) {
+  std::vector<std::string> vehicles;
+  for (const VehicleScene& v : scene.vehicles) vehicles.push_back(v.name);
+  for (const RailVehicleScene& v : scene.rail_vehicles) vehicles.push_back(v.name);
+  const std::size_t vehicle = index_of(t, "vehicle", t.string("vehicle"), vehicles),
+                    upright = scene.vehicles.size();
+  if (vehicle < upright)
+    sensor.on = read_upright_sensor(t, scene, vehicle);
+  else
+    sensor.on = read_sensor_in_space(t, scene, vehicle - upright);
 }
 
 RailSensor read_rail_sensor(const Table& t, const Scene& scene) {
@@ -92,7 +117,7 @@ SensorScene read_sensor(const Table& t, const Scene& scene) {
       sensor.on = read_wheelset_sensor(t, scene);
       break;
     default:
-      sensor.on = read_vehicle_sensor(t, scene);
+      read_vehicle_sensor(t, scene, sensor);
   }
   return sensor;
 }

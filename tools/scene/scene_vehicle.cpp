@@ -139,17 +139,12 @@ void check_wheels(const Table& t, const Scene& scene, const VehicleScene& v,
 
 /// [[vehicle.force]] along the height or the pitch of a body.
 OuterForce read_force(const Table& t, const VehicleScene& v, std::vector<InputScene>& inputs) {
-  const std::string name = t.string("body");
-  const auto found = std::find(v.bodies.begin(), v.bodies.end(), name);
-  if (found == v.bodies.end())
-    t.refuse("body", "E-VEHICLE-12",
-             fmt::format("body = \"{}\" is not a body of this vehicle; expected one of {}", name,
-                         fmt::join(v.bodies, ", ")));
-  const auto body = static_cast<std::size_t>(found - v.bodies.begin());
+  const std::size_t body = read_forced_body(t, v.bodies);
   const int pitch = static_cast<int>(t.choice("direction", {"z", "pitch"}));
   if (pitch == 1 && v.vehicle.bodies[body].pitch_inertia == 0.)
     t.refuse("direction", "E-VEHICLE-13",
-             fmt::format("direction = \"pitch\", but {} does not pitch; expected \"z\"", name));
+             fmt::format("direction = \"pitch\", but {} does not pitch; expected \"z\"",
+                         v.bodies[body]));
   return read_body_force(t, first_coordinates(v.vehicle)[body] + pitch, pitch == 1, inputs);
 }
 
@@ -205,13 +200,23 @@ void read_vehicle(const Table& t, const Scene& scene, std::vector<VehicleScene>&
 
 }  // namespace
 
+std::size_t read_forced_body(const Table& t, const std::vector<std::string>& bodies) {
+  const std::string name = t.string("body");
+  const auto found = std::find(bodies.begin(), bodies.end(), name);
+  if (found == bodies.end())
+    t.refuse("body", "E-VEHICLE-12",
+             fmt::format("body = \"{}\" is not a body of this vehicle; expected one of {}", name,
+                         fmt::join(bodies, ", ")));
+  return static_cast<std::size_t>(found - bodies.begin());
+}
+
 std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
                                         std::vector<InputScene>& inputs,
                                         std::vector<RailVehicleScene>& rail_vehicles) {
   std::vector<VehicleScene> vehicles;
   root.each("vehicle", [&](const Table& t) {
     if (is_rail_vehicle(t))
-      rail_vehicles.push_back(read_rail_vehicle(root, t, scene));
+      rail_vehicles.push_back(read_rail_vehicle(root, t, scene, inputs));
     else
       read_vehicle(t, scene, vehicles, inputs);
   });

@@ -49,18 +49,14 @@ Cost vehicles_cost(const Model& model, std::int64_t contacts) {
 /// Positions of wheelsets and vehicles, looked up a few times a step, and forces on their bodies.
 Cost tables_cost(const Model& model) {
   Cost sum{};
-  const auto forces = [&sum](const BodyForce* force, std::int32_t count) {
-    for (std::int32_t i = 0; i < count; ++i)
-      sum = sum + 2 * (branching(2, 4) + table_cost(force[i].points));
-  };
   for (std::int32_t w = 0; w < model.wheelsets; ++w) {
-    sum = sum + 10 * table_cost(model.wheelset[w].travel.rows);
-    forces(model.wheelset[w].force, model.wheelset[w].forces);
+    sum = sum + 10 * table_cost(model.wheelset[w].travel.rows) +
+          forces_cost(model.wheelset[w].force, model.wheelset[w].forces);
   }
   for (std::int32_t v = 0; v < model.vehicles; ++v) {
     const VehicleModel& own = model.vehicle[v];
-    sum = sum + (6 + 8 * own.wheels) * table_cost(own.travel.rows);
-    forces(own.force, own.forces);
+    sum = sum + (6 + 8 * own.wheels) * table_cost(own.travel.rows) +
+          forces_cost(own.force, own.forces);
   }
   return sum;
 }

@@ -56,4 +56,12 @@ inline constexpr Cost table_cost(std::int64_t rows) {
   return rows == 0 ? Cost{} : branching(8, 6 + 2 * halvings);
 }
 
+/// Cost of forces of tables and inputs, twice a step.
+inline Cost forces_cost(const BodyForce* force, std::int32_t count) {
+  Cost sum{};
+  for (std::int32_t i = 0; i < count; ++i)
+    sum = sum + 2 * (branching(2, 4) + table_cost(force[i].points));
+  return sum;
+}
+
 }  // namespace railstep

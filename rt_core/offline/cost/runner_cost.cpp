@@ -44,7 +44,7 @@ Cost runners_cost(const Model& model) {
     const std::int64_t products = model.form == Form::condensed ? 3 : 2;
     sum = sum + work(2 * products * n * n + 20 * n, products * n * n + 12 * n) +
           work(2 * n * meets + 8 * n * own.stops, n * meets + n + 8 * n * own.stops) + solved +
-          3 * table_cost(own.travel.rows) +
+          3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
           own.wheelsets * (branching(40, 40) + model.signals * kSignal);
   }
   return sum;

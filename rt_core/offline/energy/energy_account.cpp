@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "offline/energy/single_steps.h"
-#include "offline/energy/vehicle_energy.h"
 #include "offline/math/larger.h"
-#include "online/contact/body_force.h"
 #include "online/contact/vehicle_contact.h"
 #include "online/model/progress.h"
+#include "online/runner/body_force.h"
 #include "online/step/step.h"
 #include "online/track/closing.h"
 #include "online/track/shift_window.h"
@@ -26,6 +25,13 @@ double outer_force(const Model& model, const WheelsetModel& w, int direction, co
   for (std::int32_t i = 0; i < w.forces; ++i)
     if (w.force[i].direction == direction) sum += force_at(w.force[i], time, at.input);
   return sum;
+}
+
+/// Forces of the rail on a vehicle's wheels, over its coordinates.
+Eigen::VectorXd wheel_forces_on(const Model& model, const VehicleModel& v, const State& at) {
+  const double* const force = at.contact_force + vehicle_contact(model, v.first_wheel);
+  return Eigen::Map<const Eigen::MatrixXd>(v.row, v.size, v.wheels) *
+         Eigen::Map<const Eigen::VectorXd>(force, v.wheels);
 }
 
 bool is_held(const WheelsetModel& w, int k) {
@@ -73,7 +79,7 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
     sum.forward += .5 * w.mass[0] * speed * (2. * v[0] - speed);
   }
   for (std::int32_t b = 0; b < model_.vehicles; ++b) {
-    const VehicleEnergy own = vehicle_energy(model_.vehicle[b], at.state);
+    const SuspendedEnergy own = suspended_energy(model_.vehicle[b], at.state);
     sum.kinetic += own.kinetic;
     sum.strain += own.strain;
   }
@@ -245,22 +251,24 @@ double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const
   return sum;
 }
 
-void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
-  const VehicleWork work = vehicle_work(model_, model_.vehicle[b], last_.state, now.state);
+void EnergyAccount::add_suspended(const SuspendedWork& work) {
   flow_.weight += work.weight;
   flow_.forces += work.forces;
   flow_.dissipated += work.dissipated;
   flow_.loss += work.loss;
+}
+
+void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
+  add_suspended(suspended_work(model_, model_.vehicle[b], last_.state, now.state));
   flow_.guides += vehicle_passage(now, b);
 }
 
 void EnergyAccount::add_runner(const Standing& now, std::size_t i) {
   const RunnerWork work = runner_work(model_, model_.runner[i], last_.runners[i], last_.state,
                                       now.runners[i], now.state);
-  flow_.weight += work.weight;
+  add_suspended(work);
   flow_.guides += work.drive;
-  flow_.dissipated += work.dissipated + work.creep;
-  flow_.loss += work.loss;
+  flow_.dissipated += work.creep;
 }
 
 double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
@@ -319,9 +327,11 @@ void EnergyAccount::add_start(const Standing& now) {
     flow_.loss +=
         .5 * lines_[l].unbalanced(last_.lines[l], f.data()).dot(now.lines[l].u - last_.lines[l].u);
   for (std::int32_t b = 0; b < model_.vehicles; ++b)
-    flow_.loss += .5 * vehicle_unbalanced(model_, model_.vehicle[b], s, now.state);
+    flow_.loss +=
+        .5 * suspended_unbalanced(model_, model_.vehicle[b],
+                                  wheel_forces_on(model_, model_.vehicle[b], s), s, now.state);
   for (std::size_t i = 0; i < now.runners.size(); ++i)
-    flow_.loss += .5 * runner_unbalanced(model_.runner[i], last_.runners[i], s, now.state);
+    flow_.loss += .5 * runner_unbalanced(model_, model_.runner[i], last_.runners[i], s, now.state);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
     const WheelsetModel& w = model_.wheelset[b];
     const WheelsetContacts own = contacts_of(model_, b);

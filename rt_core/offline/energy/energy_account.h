@@ -103,6 +103,7 @@ class EnergyAccount {
   void add_contacts(const Standing& now);
   void add_port(const Standing& now, std::int32_t j);
   void add_wheelset(const Standing& now, std::int32_t b);
+  void add_suspended(const SuspendedWork& work);
   void add_vehicle(const Standing& now, std::int32_t b);
   void add_runner(const Standing& now, std::size_t i);
   double vehicle_passage(const Standing& now, std::int32_t b) const;

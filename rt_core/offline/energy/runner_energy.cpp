@@ -11,22 +11,6 @@
 namespace railstep {
 namespace {
 
-using RunnerVector = Eigen::Map<const Eigen::VectorXd>;
-
-struct RunnerMaps {
-  RunnerVector mass, rest;
-  Eigen::Map<const Eigen::MatrixXd> damping, stiffness;  // symmetric
-  explicit RunnerMaps(const RunnerModel& r)
-      : mass(r.mass, r.size),
-        rest(r.rest, r.size),
-        damping(r.damping, r.size, r.size),
-        stiffness(r.stiffness, r.size, r.size) {}
-};
-
-RunnerVector part_of(const RunnerModel& runner, const double* values) {
-  return {values + runner.first, runner.size};
-}
-
 double along(const Model& model, const WheelSeatRow& seat, const Configuration& at) {
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], seat.row, at);
@@ -80,21 +64,21 @@ Eigen::VectorXd forces_of(const RunnerModel& runner, const StandingRunner& stand
 }
 
 /// Forces of the bump stops over all coordinates.
-Eigen::VectorXd stop_forces(const RunnerModel& runner, const RunnerVector& u) {
+Eigen::VectorXd stop_forces(const RunnerModel& runner, const BodiesVector& u) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(runner.size);
   for (std::int32_t j = 0; j < runner.stops; ++j) {
-    const RunnerVector row(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size);
+    const BodiesVector row(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size);
     force += stop_force(runner.stop[j], row.dot(u)).force * row;
   }
   return force;
 }
 
-double stop_energy(const RunnerModel& runner, const RunnerVector& u) {
+double stop_energy(const RunnerModel& runner, const BodiesVector& u) {
   double sum = 0.;
   for (std::int32_t j = 0; j < runner.stops; ++j)
     sum += stop_force(
                runner.stop[j],
-               RunnerVector(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size).dot(u))
+               BodiesVector(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size).dot(u))
                .energy;
   return sum;
 }
@@ -187,62 +171,48 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
 
 RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& standing,
                            const State& at) {
-  const RunnerMaps m(runner);
-  const RunnerVector u = part_of(runner, at.u);
-  Eigen::VectorXd v = part_of(runner, at.v);
-  for (int i = 0; i < runner.wheelsets; ++i)
-    v[runner.wheelset[i].first + index_of(BodyMotion::pitch)] +=
-        standing.speed / runner.wheelset[i].radius;
-  return {.5 * v.dot(m.mass.cwiseProduct(v)), .5 * u.dot(m.stiffness * u) + stop_energy(runner, u),
+  SuspendedEnergy own = suspended_energy(runner, at);
+  for (int i = 0; i < runner.wheelsets; ++i) {  // spins with the part that goes with the speed
+    const RunnerWheelset& set = runner.wheelset[i];
+    const double roll = standing.speed / set.radius,
+                 beyond = at.v[runner.first + set.first + index_of(BodyMotion::pitch)];
+    own.kinetic += set.spin_inertia * roll * (beyond + .5 * roll);
+  }
+  return {own.kinetic, own.strain + stop_energy(runner, part_of(runner, at.u)),
           hertz_energy(standing), residual_energy(runner, standing)};
 }
 
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
                        const State& from, const StandingRunner& after, const State& to) {
-  const RunnerMaps m(runner);
   const double dt = model.scheme.dt;
   std::vector<double> lines_u(static_cast<std::size_t>(model.unknowns)), lines_v = lines_u;
   for (std::size_t i = 0; i < lines_u.size(); ++i) {
     lines_u[i] = to.u[i] - from.u[i];
     lines_v[i] = to.v[i] - from.v[i];
   }
-  const Eigen::VectorXd du = part_of(runner, lines_u.data()), dv = part_of(runner, lines_v.data());
+  const Eigen::VectorXd du = part_of(runner, lines_u.data());
   const ContactWork contact = contact_work(model, runner, before, after, du,
                                            {lines_u.data(), {lines_u.data(), lines_v.data()}});
   const double residual = residual_energy(runner, after) - residual_energy(runner, before);
-  RunnerWork work{m.rest.dot(du), contact.drive, 0., contact.creep, 0.};
-  work.loss = (contact.on_bodies + contact.on_seats) +
-              (hertz_energy(after) - hertz_energy(before)) + contact.creep - contact.drive;
-  const RunnerVector u0 = part_of(runner, from.u), u1 = part_of(runner, to.u);
+  RunnerWork work{suspended_work(model, runner, from, to), contact.drive, contact.creep};
+  work.loss += (contact.on_bodies + contact.on_seats) +
+               (hertz_energy(after) - hertz_energy(before)) + contact.creep - contact.drive;
+  const BodiesVector u0 = part_of(runner, from.u), u1 = part_of(runner, to.u);
   work.loss += .5 * (stop_forces(runner, u0) + stop_forces(runner, u1)).dot(du) +
                (stop_energy(runner, u1) - stop_energy(runner, u0));
   work.drive -= contact.on_seats - contact.on_lines - residual;
   // The frames accelerate.
   const double faster = (after.speed - before.speed) / dt;
   for (std::int32_t b = 0; b < runner.bodies; ++b)
-    work.drive -= m.mass[kMotions * b] * faster * du[kMotions * b];
-  if (model.form == Form::condensed) {
-    work.dissipated = du.dot(m.damping * du) / dt;
-    return work;
-  }
-  const Eigen::VectorXd v0 = part_of(runner, from.v), v1 = part_of(runner, to.v);
-  const Eigen::VectorXd v = .5 * (v0 + v1);
-  const Eigen::VectorXd g = .5 * (part_of(runner, from.g) + part_of(runner, to.g));
-  const Eigen::VectorXd eu = du - dt * v, ev = dv - dt * g;
-  work.dissipated = .5 * dt * (v0.dot(m.damping * v0) + v1.dot(m.damping * v1));
-  work.loss += eu.dot(m.mass.cwiseProduct(g) + m.damping * v) - v.dot(m.mass.cwiseProduct(ev)) -
-               .25 * dt * dv.dot(m.damping * dv);
+    work.drive -= runner.mass[kMotions * b] * faster * du[kMotions * b];
   return work;
 }
 
-double runner_unbalanced(const RunnerModel& runner, const StandingRunner& standing, const State& at,
-                         const State& after) {
-  const RunnerMaps m(runner);
-  const Eigen::VectorXd left =
-      forces_of(runner, standing) + stop_forces(runner, part_of(runner, at.u)) + m.rest -
-      m.mass.cwiseProduct(part_of(runner, at.g)) - m.damping * part_of(runner, at.v) -
-      m.stiffness * part_of(runner, at.u);
-  return left.dot(part_of(runner, after.u) - part_of(runner, at.u));
+double runner_unbalanced(const Model& model, const RunnerModel& runner,
+                         const StandingRunner& standing, const State& at, const State& after) {
+  const Eigen::VectorXd force =
+      forces_of(runner, standing) + stop_forces(runner, part_of(runner, at.u));
+  return suspended_unbalanced(model, runner, force, at, after);
 }
 
 void add_seat_forces(const Model& model, const RunnerModel& runner, const StandingRunner& standing,

@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "offline/energy/suspended_energy.h"
 #include "online/contact/wheel_seat.h"
 #include "online/runner/runner_contact.h"
 
@@ -38,22 +39,19 @@ RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& stan
                            const State& at);
 
 /// Flows of energy in a step between two states, J. Means over the step are trapezoidal.
-struct RunnerWork {
-  double weight;      // of weights and preloads
-  double drive;       // of the drive: against creep and acceleration, over uneven rails, and along
-                      // rails that give way
-  double dissipated;  // by dampers
-  double creep;       // by creep, not below 0
-  /// Loss of the scheme: that of the bodies as VehicleWork::loss, and the work of the mean force of
-  /// a contact beyond its spring's energy, its creep and the drive's work.
-  double loss;
+/// `loss` also has the work of the mean force of a contact beyond its spring's energy, its creep
+/// and the drive's work.
+struct RunnerWork : SuspendedWork {
+  double drive;  // of the drive: against creep and acceleration, over uneven rails, and along rails
+                 // that give way
+  double creep;  // by creep, not below 0
 };
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
                        const State& from, const StandingRunner& after, const State& to);
 
 /// Work in the first step of the forces that are out of balance at a start, J.
-double runner_unbalanced(const RunnerModel& runner, const StandingRunner& standing, const State& at,
-                         const State& after);
+double runner_unbalanced(const Model& model, const RunnerModel& runner,
+                         const StandingRunner& standing, const State& at, const State& after);
 
 /// Adds the forces on the seats to those on the unknowns of banded lines.
 void add_seat_forces(const Model& model, const RunnerModel& runner, const StandingRunner& standing,

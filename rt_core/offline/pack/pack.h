@@ -45,10 +45,14 @@ struct Flange {
 
 /// A force from outside on a wheelset or a vehicle.
 struct OuterForce {
-  int direction;  // 0 x, 1 y, 2 z of a wheelset; of a vehicle its coordinate (first_coordinates())
+  int direction;  // 0 x, 1 y, 2 z of a wheelset; else the vehicle's coordinate: of one over one
+                  // rail as first_coordinates(), in space kMotions times the body, and BodyMotion
   std::vector<double> table = {};  // t (s), N, t, N, ...; empty: an input
   int input = -1;                  // index among Traffic::input_limits, without a table
 };
+
+/// Force at t = 0, N or N m; 0 of an input.
+double first_force(const OuterForce& force);
 
 /// A rigid wheelset on both rails, as a scene gives it. Its treads are cylinders without friction.
 struct Wheelset {
@@ -94,6 +98,7 @@ struct RailVehicle {
   double start = 0., speed = 0.;    // of its origin, m, m/s
   std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
   double gravity = kGravity;        // m/s2
+  std::vector<OuterForce> forces = {};
 };
 
 /// Stiffness of a bonded contact, N/m: it yields a millionth of what the stiffest rail does.
@@ -114,17 +119,26 @@ struct Railhead {
   double gauge_half_width = .035;  // m, at kGaugeDepth below the top
 };
 
+/// A sum over coordinates of a wheelset, or of a vehicle over one rail or in space.
+struct RunnerSum {
+  enum class Of { wheelset, vehicle, rail_vehicle };
+  Of of;
+  std::size_t index;  // among those of the traffic
+  struct Part {
+    int coordinate;  // as OuterForce::direction
+    double factor;
+  };
+  std::vector<Part> parts;
+};
+
 /// A scalar that frames publish: rest + displacement * D(u) + velocity * D(v). D is a sum over the
-/// track, or one coordinate of a wheelset or a vehicle.
+/// track, or over a runner.
 struct TrackSensor {
   double rest = 0.;
   double displacement = 0., velocity = 0.;  // factors
+  double acceleration = 0.;                 // factor of D(a), of a vehicle
   Functional track = {};
-  int wheelset = -1, coordinate = 0;  // of a track sensor on a wheelset; 0 x, 1 y, 2 z
-  int vehicle = -1;                   // of a track sensor on a vehicle; `coordinate` is its own
-  int rail_vehicle = -1;              // the same on a rail vehicle
-  double lever = 0.;                  // factor of a vehicle's next coordinate, which is added
-  double acceleration = 0.;           // factor of it, of a track sensor on a vehicle
+  std::optional<RunnerSum> runner = std::nullopt;  // in place of `track`
   struct PortForce {
     int port;       // among fixed_ports() of the track
     double factor;  // of its force
@@ -192,11 +206,22 @@ struct PackedLine {
   ModeGroups modes;                     // of a condensed line
 };
 
-/// A rail vehicle as it was packed.
+/// A rail vehicle as it was packed; `rest` has its forces of tables at t = 0 too.
 struct PackedRunner {
   RailVehicle vehicle;
   RunnerMatrices matrices;
 };
+
+/// The matrices of bodies on a linear suspension: SuspendedModel.
+struct SuspendedMatrices {
+  Eigen::VectorXd mass, rest;
+  Eigen::MatrixXd damping, stiffness;
+};
+
+/// Column by column.
+inline std::vector<double> column_by_column(const Eigen::MatrixXd& A) {
+  return {A.data(), A.data() + A.size()};
+}
 
 /// A model and the memory that its views look into. Not copied: views would look into the original.
 ///
@@ -252,10 +277,16 @@ class PackedModel {
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
+  /// @param is_held  the first coordinate has its place from the travel
+  /// @returns the step's inverse, [size][size]
+  Eigen::MatrixXd add_suspended(const SuspendedMatrices& m, bool is_held,
+                                const std::vector<OuterForce>& forces, SuspendedModel& packed);
   [[noreturn]] void refuse_many_coordinates() const;
   TravelModel keep_travel(double speed, const std::vector<double>& speeds);
   void add_weight(const Track& track, const PackOptions& options);
   void add_track_sensors(const Track& track, const std::vector<TrackSensor>& track_sensors);
+  /// The first coordinate among the state's unknowns.
+  std::int32_t first_unknown(const RunnerSum& runner) const;
   void add_residual(const Track& track, const std::vector<TrackSensor>& track_sensors, int points);
   void add_track_sensor_tables(const ResidualFlexibility& residual,
                                const std::vector<TrackSensor>& track_sensors);

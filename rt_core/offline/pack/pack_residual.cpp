@@ -51,6 +51,17 @@ void append(std::vector<double>& to, const std::vector<double>& values) {
 
 }  // namespace
 
+std::int32_t PackedModel::first_unknown(const RunnerSum& runner) const {
+  switch (runner.of) {
+    case RunnerSum::Of::wheelset:
+      return model_.wheelset[runner.index].first;
+    case RunnerSum::Of::vehicle:
+      return model_.vehicle[runner.index].first;
+    default:
+      return model_.runner[runner.index].first;
+  }
+}
+
 void PackedModel::add_track_sensors(const Track& track,
                                     const std::vector<TrackSensor>& track_sensors) {
   std::vector<std::int32_t> start = {0}, index;
@@ -83,31 +94,16 @@ void PackedModel::add_track_sensors(const Track& track,
         entry(velocity + static_cast<int>(k), -c.imag());
       }
     }
-    if (track_sensor.wheelset >= 0) {
-      const std::int32_t at =
-          model_.wheelset[track_sensor.wheelset].first + track_sensor.coordinate;
-      entry(at, track_sensor.displacement);
-      entry(model_.unknowns + at, track_sensor.velocity);
-    }
     for (const TrackSensor::PortForce& force : track_sensor.ports)
       entry(2 * model_.unknowns + force.port, force.factor);
-    if (track_sensor.vehicle >= 0) {
-      const std::int32_t at = model_.vehicle[track_sensor.vehicle].first + track_sensor.coordinate;
-      const std::int32_t g = 2 * model_.unknowns + model_.fixed.count;
-      for (const int next : {0, 1}) {
-        const double part = next == 0 ? 1. : track_sensor.lever;
-        entry(at + next, part * track_sensor.displacement);
-        entry(model_.unknowns + at + next, part * track_sensor.velocity);
-        entry(g + at + next, part * track_sensor.acceleration);
+    if (track_sensor.runner)
+      for (const RunnerSum::Part& part : track_sensor.runner->parts) {
+        const std::int32_t at = first_unknown(*track_sensor.runner) + part.coordinate;
+        entry(at, part.factor * track_sensor.displacement);
+        entry(model_.unknowns + at, part.factor * track_sensor.velocity);
+        entry(2 * model_.unknowns + model_.fixed.count + at,
+              part.factor * track_sensor.acceleration);
       }
-    }
-    if (track_sensor.rail_vehicle >= 0) {
-      const std::int32_t at =
-          model_.runner[track_sensor.rail_vehicle].first + track_sensor.coordinate;
-      entry(at, track_sensor.displacement);
-      entry(model_.unknowns + at, track_sensor.velocity);
-      entry(2 * model_.unknowns + model_.fixed.count + at, track_sensor.acceleration);
-    }
     start.push_back(static_cast<std::int32_t>(index.size()));
     rest.push_back(track_sensor.rest);
   }
@@ -209,9 +205,8 @@ void PackedModel::add_track_sensor_tables(const ResidualFlexibility& residual,
   std::vector<double> values;
   for (const TrackSensor& track_sensor : track_sensors) {
     table.push_back(-1);
-    const bool of_track =
-        track_sensor.wheelset < 0 && track_sensor.vehicle < 0 && track_sensor.rail_vehicle < 0;
-    if (!of_track || (track_sensor.displacement == 0. && track_sensor.velocity == 0.)) continue;
+    if (track_sensor.runner || (track_sensor.displacement == 0. && track_sensor.velocity == 0.))
+      continue;
     const ResidualFlexibility::Near near = near_at_once(residual, load_points_, track_sensor, met_);
     if (all_zero(near.value)) continue;
     table.back() = static_cast<std::int32_t>(first.size());

@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <string>
 
 #include "offline/math/refuse.h"
@@ -10,16 +9,11 @@ namespace railstep {
 namespace {
 
 /// The matrices with a coordinate without mass for each damper that is in series with a spring.
-struct Extended {
-  Eigen::VectorXd mass, rest;
-  Eigen::MatrixXd damping, stiffness;
-};
-
-Extended extended(const RunnerMatrices& m) {
+SuspendedMatrices extended(const RunnerMatrices& m) {
   const Eigen::Index n = m.mass.size(), series = static_cast<Eigen::Index>(m.series.size());
-  Extended e{Eigen::VectorXd::Zero(n + series), Eigen::VectorXd::Zero(n + series),
-             Eigen::MatrixXd::Zero(n + series, n + series),
-             Eigen::MatrixXd::Zero(n + series, n + series)};
+  SuspendedMatrices e{Eigen::VectorXd::Zero(n + series), Eigen::VectorXd::Zero(n + series),
+                      Eigen::MatrixXd::Zero(n + series, n + series),
+                      Eigen::MatrixXd::Zero(n + series, n + series)};
   e.mass.head(n) = m.mass;
   e.rest.head(n) = m.rest;
   e.damping.topLeftCorner(n, n) = m.damping;
@@ -34,20 +28,6 @@ Extended extended(const RunnerMatrices& m) {
   }
   return e;
 }
-
-/// (s K + s kv C + kg M)^-1 without the first coordinate, symmetric to the last bit.
-Eigen::MatrixXd held_inverse(const Extended& m, const Scheme& scheme, double s) {
-  Eigen::MatrixXd A = s * m.stiffness + s * scheme.kv * m.damping;
-  A.diagonal() += scheme.kg * m.mass;
-  const Eigen::Index n = A.rows() - 1;
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  const Eigen::MatrixXd own = A.bottomRightCorner(n, n).partialPivLu().inverse();
-  inverse.bottomRightCorner(n, n) = .5 * (own + own.transpose());
-  return inverse;
-}
-
-/// Column by column.
-std::vector<double> values(const Eigen::MatrixXd& A) { return {A.data(), A.data() + A.size()}; }
 
 /// The motions of all wheelsets among a runner's coordinates.
 std::vector<Eigen::Index> motions_of(const RunnerModel& runner) {
@@ -117,8 +97,8 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
            "there are more rail vehicles in space than a model takes; expected at "
            "most " +
                std::to_string(kMaxRunners));
-  const RunnerMatrices matrices = runner_matrices(vehicle.runner, vehicle.gravity);
-  const Extended m = extended(matrices);
+  RunnerMatrices matrices = runner_matrices(vehicle.runner, vehicle.gravity);
+  const SuspendedMatrices m = extended(matrices);
   const auto n = static_cast<std::int32_t>(m.mass.size());
   if (n > kMaxRunnerUnknowns)
     refuse("E-PACK-55", "a rail vehicle has " + std::to_string(n) +
@@ -127,31 +107,24 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
                             std::to_string(kMaxRunnerUnknowns) +
                             ": six of each body, and one of each damper in series with a spring");
   RunnerModel& packed = model_.runner[model_.runners];
-  packed.first = model_.unknowns;
-  packed.size = n;
   packed.bodies = static_cast<std::int32_t>(vehicle.runner.bodies.size());
   add_wheelsets(vehicle.runner, model_, packed);
   add_stops(matrices, model_, packed);
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
   packed.contact = vehicle.contact;
-  const bool held = model_.form == Form::condensed;
-  const Eigen::MatrixXd inverse = held_inverse(m, model_.scheme, held ? .5 : 1.);
+  const Eigen::MatrixXd inverse = add_suspended(m, true, vehicle.forces, packed);
   const Eigen::MatrixXd stops = stop_rows(matrices, n);
   const Eigen::MatrixXd compliance =
       model_.scheme.theta * interface_compliance(packed, inverse, stops);
-  packed.mass = keep(values(m.mass));
-  packed.rest = keep(values(m.rest));
-  packed.damping = keep(values(m.damping));
-  packed.stiffness = keep(values(m.stiffness));
-  packed.inverse = keep(values(inverse));
-  packed.stop_row = keep(values(stops));
-  packed.stop_moved = keep(values(inverse * stops));
-  packed.compliance = keep(values(compliance));
+  packed.stop_row = keep(column_by_column(stops));
+  packed.stop_moved = keep(column_by_column(inverse * stops));
+  packed.compliance = keep(column_by_column(compliance));
   ++model_.runners;
-  model_.unknowns += (n + kLanes - 1) / kLanes * kLanes;
   for (const int rail : {0, 1})
     packed.load_point[rail] = model_.lines > 0 ? load_point_of_wheel(rail) : 0;
+  for (const OuterForce& force : vehicle.forces)
+    matrices.rest[force.direction] += first_force(force);
   runners_.push_back({vehicle, matrices});
 }
 

@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <cmath>
 #include <string>
 
@@ -12,20 +11,6 @@
 namespace railstep {
 
 namespace {
-
-std::vector<double> row_by_row(const Eigen::MatrixXd& A) {
-  std::vector<double> values;
-  for (Eigen::Index i = 0; i < A.rows(); ++i)
-    for (Eigen::Index j = 0; j < A.cols(); ++j) values.push_back(A(i, j));
-  return values;
-}
-
-/// (s K + s kv C + kg M)^-1, made symmetric to the last bit.
-Eigen::MatrixXd step_inverse(const VehicleMatrices& m, const Scheme& scheme, double s) {
-  const Eigen::MatrixXd A = s * m.stiffness + s * scheme.kv * m.damping + scheme.kg * m.mass;
-  const Eigen::MatrixXd inverse = A.fullPivLu().inverse();
-  return .5 * (inverse + inverse.transpose());
-}
 
 ContactModel contact_of(const RunningVehicle& vehicle, double radius, const Railhead& head,
                         const Material& material) {
@@ -106,29 +91,17 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
                             std::to_string(vehicle.vehicle.wheels.size()) + ", one for each wheel");
   const auto rail = static_cast<std::size_t>(vehicle.rail);
   VehicleModel& packed = model_.vehicle[model_.vehicles];
-  packed.first = model_.unknowns;
-  packed.size = n;
   packed.first_wheel = model_.vehicle_wheels;
   packed.wheels = wheels;
   packed.start = model_.endless.origin + vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
-  const Eigen::MatrixXd inverse =
-      step_inverse(m, model_.scheme, model_.form == Form::condensed ? .5 : 1.);
-  const Eigen::MatrixXd response = m.wheels * inverse;
-  const Eigen::MatrixXd compliance = response * m.wheels.transpose();
-  packed.mass = keep(row_by_row(m.mass.diagonal()));
-  packed.damping = keep(row_by_row(m.damping));
-  packed.stiffness = keep(row_by_row(m.stiffness));
-  packed.weight = keep(row_by_row(m.weight));
-  packed.inverse = keep(row_by_row(inverse));
-  packed.row = keep(row_by_row(m.wheels));
-  packed.response = keep(row_by_row(response));
-  for (const OuterForce& force : vehicle.forces)
-    if (force.direction < 0 || force.direction >= n)
-      refuse("E-PACK-44", "a force acts along coordinate " + std::to_string(force.direction) +
-                              " of a vehicle; expected 0 to " + std::to_string(n - 1));
-  packed.forces = keep(vehicle.forces, packed.force, "vehicle");
-  packed.compliance = keep(row_by_row(.5 * (compliance + compliance.transpose())));
+  const Eigen::MatrixXd inverse = add_suspended(
+      {m.mass.diagonal(), -m.weight, m.damping, m.stiffness}, false, vehicle.forces, packed);
+  const Eigen::MatrixXd response = inverse * m.wheels.transpose();
+  const Eigen::MatrixXd compliance = m.wheels * response;
+  packed.row = keep(column_by_column(m.wheels.transpose()));
+  packed.response = keep(column_by_column(response));
+  packed.compliance = keep(column_by_column(.5 * (compliance + compliance.transpose())));
   for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i) {
     const Vehicle::Wheel& wheel = vehicle.vehicle.wheels[i];
     VehicleWheel& own = model_.vehicle_wheel[model_.vehicle_wheels++];
@@ -140,7 +113,6 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
     if (!vehicle.tread.empty()) own.tread = keep(vehicle.tread[i]);
   }
   ++model_.vehicles;
-  model_.unknowns += (n + kLanes - 1) / kLanes * kLanes;
 }
 
 }  // namespace railstep

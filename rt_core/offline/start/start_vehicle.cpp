@@ -8,9 +8,9 @@
 #include "offline/contact/hertz.h"
 #include "offline/math/refuse.h"
 #include "offline/start/static_lines.h"
-#include "online/contact/body_force.h"
 #include "online/contact/wheel.h"
 #include "online/model/progress.h"
+#include "online/runner/body_force.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -55,7 +55,7 @@ Together together(const Model& model) {
     const VehicleModel& v = model.vehicle[b];
     all.stiffness.block(n, n, v.size, v.size) = Rows(v.stiffness, v.size, v.size);
     all.row.block(v.first_wheel, n, v.wheels, v.size) = Rows(v.row, v.wheels, v.size);
-    all.weight.segment(n, v.size) = Eigen::Map<const Eigen::VectorXd>(v.weight, v.size);
+    all.weight.segment(n, v.size) = -Eigen::Map<const Eigen::VectorXd>(v.rest, v.size);
     add_forces(v, 0., nullptr, lift.data() + n);
     n += v.size;
   }

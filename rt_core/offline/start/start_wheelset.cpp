@@ -4,7 +4,7 @@
 
 #include "offline/contact/hertz.h"
 #include "offline/math/refuse.h"
-#include "online/contact/body_force.h"
+#include "online/runner/body_force.h"
 
 namespace railstep {
 

@@ -1,12 +1,12 @@
 #include "online/contact/vehicle_response.h"
 
-#include "online/contact/body_force.h"
 #include "online/contact/damper.h"
 #include "online/contact/impact.h"
 #include "online/contact/mean_contact.h"
 #include "online/contact/track_response.h"
 #include "online/contact/vehicle_contact.h"
 #include "online/math/dense.h"
+#include "online/runner/suspended.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -27,14 +27,6 @@ const double* row_of(const Model& model, ContactId wheel) noexcept {
   return v.row + among_own(model, wheel) * v.size;
 }
 
-/// y += A x, A [n][n].
-void multiply_add(const double* A, const double* x, double* y, int n) noexcept {
-  for (int i = 0; i < n; ++i) y[i] += dot(A + i * n, x, n);
-}
-
-/// Fraction of the step at which the equation of motion holds.
-double held_at(const Model& model) noexcept { return model.form == Form::condensed ? .5 : 1.; }
-
 DepthSpeed speed_of(const Model& model, double time, const State& s, const Workspace& w,
                     const Coupling& c, ContactId i) noexcept {
   const WheelContact& at = c.contact[i];
@@ -46,7 +38,7 @@ DepthSpeed speed_of(const Model& model, double time, const State& s, const Works
     along += slope_under(model, at, located);
     missed = residual_before(model, s, c, i);
   }
-  const double when = time - (1. - held_at(model)) * model.scheme.dt;
+  const double when = time - (1. - held_fraction(model)) * model.scheme.dt;
   const double passing = travelled(v.travel, when).speed * along;
   if (model.form == Form::condensed) {
     DepthSpeed speed = mean_speed(
@@ -67,21 +59,9 @@ DepthSpeed speed_of(const Model& model, double time, const State& s, const Works
 
 void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
                    Coupling& c) noexcept {
-  const double kg = model.scheme.kg, kv = model.scheme.kv, held = held_at(model);
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
-    const VehicleModel& v = model.vehicle[b];
-    const double *u_star = w.u_star + v.first, *v_star = w.v_star + v.first;
-    double force[kMaxVehicleUnknowns], moved[kMaxVehicleUnknowns], rate[kMaxVehicleUnknowns];
-    for (int k = 0; k < v.size; ++k) {
-      force[k] = v.mass[k] * (kg * u_star[k]) - v.weight[k];
-      rate[k] = held * (kv * u_star[k] - v_star[k]) - (1. - held) * s.v[v.first + k];
-      moved[k] = -(1. - held) * s.u[v.first + k];
-      c.vehicle[b][k] = 0.;
-    }
-    add_forces(v, time, s.input, force);
-    multiply_add(v.damping, rate, force, v.size);
-    multiply_add(v.stiffness, moved, force, v.size);
-    multiply_add(v.inverse, force, c.vehicle[b], v.size);
+    double force[kMaxVehicleUnknowns] = {};
+    move_freely(model, model.vehicle[b], time, s, w, force, c.vehicle[b]);
   }
 }
 

@@ -5,9 +5,7 @@ namespace railstep {
 
 // Vehicles in a step's coupled problem. Their wheels follow those of the wheelsets.
 
-/// Motion of each vehicle without contact:
-///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 - weight
-///                             + its forces at the step's end.
+/// Motion of each vehicle without contact.
 void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
                    Coupling& c) noexcept;
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "online/contact/body_force.h"
 #include "online/contact/couple.h"
 #include "online/contact/impact.h"
+#include "online/runner/body_force.h"
 #include "online/track/travel.h"
 
 namespace railstep {

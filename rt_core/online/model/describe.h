@@ -195,20 +195,26 @@ void describe(Archive& a, VehicleWheel& w) {
 }
 
 template <typename Archive>
+void describe(Archive& a, SuspendedModel& b, std::int32_t most) {
+  a.count(b.first, kMostUnknowns);
+  a.count(b.size, most);
+  a.real(b.start);
+  describe(a, b.travel);
+  const std::int64_t n = b.size;
+  for (const double** of : {&b.mass, &b.rest}) a.reals(*of, n);
+  for (const double** of : {&b.damping, &b.stiffness, &b.inverse}) a.reals(*of, n * n);
+  a.count(b.forces, kMaxBodyForces);
+  for (std::int32_t i = 0; i < b.forces; ++i) describe(a, b.force[i], most - 1);
+}
+
+template <typename Archive>
 void describe(Archive& a, VehicleModel& v) {
-  a.count(v.first, kMostUnknowns);
-  a.count(v.size, kMaxVehicleUnknowns);
+  describe(a, v, kMaxVehicleUnknowns);
   a.count(v.first_wheel, kMaxWheels);
   a.count(v.wheels, kMaxWheels);
-  a.real(v.start);
-  describe(a, v.travel);
   const std::int64_t n = v.size, wheels = v.wheels;
-  for (const double** of : {&v.mass, &v.weight}) a.reals(*of, n);
-  for (const double** of : {&v.damping, &v.stiffness, &v.inverse}) a.reals(*of, n * n);
   for (const double** of : {&v.row, &v.response}) a.reals(*of, wheels * n);
   a.reals(v.compliance, wheels * wheels);
-  a.count(v.forces, kMaxBodyForces);
-  for (std::int32_t i = 0; i < v.forces; ++i) describe(a, v.force[i], kMaxVehicleUnknowns - 1);
 }
 
 template <typename Archive>
@@ -219,8 +225,7 @@ void describe(Archive& a, RollingContact& c) {
 
 template <typename Archive>
 void describe(Archive& a, RunnerModel& r) {
-  a.count(r.first, kMostUnknowns);
-  a.count(r.size, kMaxRunnerUnknowns);
+  describe(a, r, kMaxRunnerUnknowns);
   a.count(r.bodies, r.size / kMotions);
   a.count(r.first_wheelset, kMaxRunnerWheelsets);
   a.count(r.wheelsets, kMaxWheelsetsOfRunner);
@@ -229,8 +234,6 @@ void describe(Archive& a, RunnerModel& r) {
     a.count(w.first, kMaxRunnerUnknowns);
     for (double* x : {&w.place, &w.radius, &w.spin_inertia}) a.real(*x);
   }
-  a.real(r.start);
-  describe(a, r.travel);
   describe(a, r.contact);
   for (std::int32_t& point : r.load_point) a.count(point, kMaxLoadPoints - 1);
   a.count(r.stops, kMaxStopsOfRunner);
@@ -238,8 +241,6 @@ void describe(Archive& a, RunnerModel& r) {
     for (double* x : {&r.stop[i].below, &r.stop[i].above, &r.stop[i].stiffness}) a.real(*x);
   a.count(r.first_stop, kMaxRunners * kMaxStopsOfRunner);
   const std::int64_t n = r.size, meets = interface_size(r);
-  for (const double** of : {&r.mass, &r.rest}) a.reals(*of, n);
-  for (const double** of : {&r.damping, &r.stiffness, &r.inverse}) a.reals(*of, n * n);
   for (const double** of : {&r.stop_row, &r.stop_moved}) a.reals(*of, n * r.stops);
   a.reals(r.compliance, meets * meets);
 }

@@ -130,13 +130,17 @@ bool flanges_are_valid(const Model& m) noexcept {
   return true;
 }
 
+bool suspended_is_valid(const Model& m, const SuspendedModel& b) noexcept {
+  if (b.first < m.line_unknowns || b.first + b.size > m.unknowns || b.size < 1) return false;
+  for (std::int32_t i = 0; i < b.forces; ++i)
+    if (b.force[i].direction >= b.size || !force_is_valid(m, b.force[i])) return false;
+  return travel_is_valid(b.travel) && b.mass && b.rest && b.damping && b.stiffness && b.inverse &&
+         are_not_negative(b.mass, b.size) && diagonal_is_not_negative(b.inverse, b.size);
+}
+
 bool vehicle_is_valid(const Model& m, const VehicleModel& v) noexcept {
-  if (v.first < m.line_unknowns || v.first + v.size > m.unknowns || v.size < 1 || v.wheels < 1)
-    return false;
-  for (std::int32_t i = 0; i < v.forces; ++i)
-    if (v.force[i].direction >= v.size || !force_is_valid(m, v.force[i])) return false;
-  return v.first_wheel + v.wheels <= m.vehicle_wheels && travel_is_valid(v.travel) && v.mass &&
-         v.damping && v.stiffness && v.weight && v.inverse && v.row && v.response && v.compliance &&
+  return suspended_is_valid(m, v) && v.wheels >= 1 &&
+         v.first_wheel + v.wheels <= m.vehicle_wheels && v.row && v.response && v.compliance &&
          are_above_zero(v.mass, v.size) && diagonal_is_above_zero(v.inverse, v.size) &&
          diagonal_is_above_zero(v.compliance, v.wheels);
 }
@@ -156,17 +160,14 @@ bool stops_are_valid(const RunnerModel& r, std::int32_t first_stop) noexcept {
 /// Wheelsets are among the bodies, and follow those of the runners before, as stops do.
 bool runner_is_valid(const Model& m, const RunnerModel& r, std::int32_t first_wheelset,
                      std::int32_t first_stop) noexcept {
-  if (!stops_are_valid(r, first_stop)) return false;
-  if (r.first < m.line_unknowns || r.first + r.size > m.unknowns || r.bodies < 1) return false;
+  if (!suspended_is_valid(m, r) || !stops_are_valid(r, first_stop) || r.bodies < 1) return false;
   if (r.first_wheelset != first_wheelset || r.wheelsets < 1) return false;
   for (std::int32_t i = 0; i < r.wheelsets; ++i) {
     const RunnerWheelset& w = r.wheelset[i];
     if (w.first % kMotions != 0 || w.first / kMotions >= r.bodies || !(w.radius > 0.)) return false;
   }
-  return travel_is_valid(r.travel) && contact_is_valid(r.contact) && r.mass && r.rest &&
-         r.damping && r.stiffness && r.inverse && r.compliance &&
+  return contact_is_valid(r.contact) && r.compliance &&
          are_above_zero(r.mass, std::int64_t{kMotions} * r.bodies) &&
-         are_not_negative(r.mass, r.size) && diagonal_is_not_negative(r.inverse, r.size) &&
          diagonal_is_not_negative(r.compliance, interface_size(r));
 }
 

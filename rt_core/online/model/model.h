@@ -18,7 +18,6 @@ inline constexpr int kMaxLoads = 32;
 inline constexpr int kMaxWheelsets = 4;
 inline constexpr int kMaxVehicles = 16;
 inline constexpr int kMaxVehicleUnknowns = 16;  // of one vehicle
-inline constexpr int kMaxBodyForces = 4;        // on one wheelset or vehicle
 inline constexpr int kMaxInputs = 96;           // forces and places of each frame
 inline constexpr int kMaxExternalWheels = 16;
 inline constexpr int kMaxSignals = 32;    // irregularities and defects of the rails
@@ -119,13 +118,6 @@ struct LoadModel {
   std::int32_t load_point;    // rail and height at which its vertical force acts
 };
 
-/// A force on a wheelset's centre or along a vehicle's coordinate: a table over time, or an input.
-struct BodyForce {
-  std::int32_t direction, points;  // 0 x, 1 y, 2 z, or coordinate; rows of the table, 0: input
-  const double* table;             // [points][2]  s, N; linear between, constant outside
-  std::int32_t input;              // index of the input, or -1
-};
-
 /// Deviation of a railhead from its straight line over the place along it.
 struct RailSignal {
   std::int32_t rail, direction;  // 0 left, 1 right; 1 y, 2 z
@@ -189,25 +181,14 @@ struct VehicleWheel {
   SignalModel tread;        // deviation of its radius over the distance rolled
 };
 
-/// Rigid bodies on springs and dampers that bounce and pitch over one rail,
-///   M q'' + C q' + K q = B' f + forces - weight,
-/// q counts from where the wheels touch a rail at rest without a force in any spring, B q is the
-/// height of the wheels, and f the rail's forces on them. The equation holds at the fraction s of
-/// the step: 1, its end, with banded lines; 1/2 if forces are held over it, with condensed ones.
-struct VehicleModel {
-  std::int32_t first, size;          // its unknowns among the state's
+/// A vehicle that bounces and pitches over one rail. q counts from where the wheels touch a rail at
+/// rest without a force in any spring, B q is the height of the wheels, and B' f are the rail's
+/// forces f on them.
+struct VehicleModel : SuspendedModel {
   std::int32_t first_wheel, wheels;  // among the vehicles' wheels
-  double start;                      // place of its origin at t = 0, m
-  TravelModel travel;
-  const double* mass;                 // [size] diagonal, kg, kg m2
-  const double *damping, *stiffness;  // [size][size]
-  const double* weight;               // [size] N
-  const double* inverse;              // [size][size] of s K + s kv C + kg M
-  const double* row;                  // [wheels][size] B
-  const double* response;             // [wheels][size] inverse B'
-  const double* compliance;           // [wheels][wheels] B inverse B', m/N
-  std::int32_t forces;
-  BodyForce force[kMaxBodyForces];  // N; N m on pitch
+  const double* row;                 // [wheels][size] B
+  const double* response;            // [wheels][size] inverse B'
+  const double* compliance;          // [wheels][wheels] B inverse B', m/N
 };
 
 /// Residual flexibility between ports of two kinds: the first in element e at point p, the second
@@ -351,6 +332,12 @@ struct Model {
   CheckModel check;
   unsigned char sum[32];  // SHA-256 of the payload it was loaded from; zeros without one
 };
+
+/// Fraction of the step at which the equations of suspended bodies hold: 1, its end, with banded
+/// lines; 1/2 with condensed ones, which hold forces over the step.
+inline double held_fraction(const Model& model) noexcept {
+  return model.form == Form::condensed ? .5 : 1.;
+}
 
 /// Number of unknowns of a state, from the first on, that are modes of condensed lines.
 inline std::int32_t modal_unknowns(const Model& model) noexcept {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "online/model/travel_model.h"
+#include "online/model/suspended_model.h"
 
 namespace railstep {
 
@@ -57,24 +57,15 @@ struct RunnerWheelset {
   double spin_inertia;  // kg m2
 };
 
-/// Rigid bodies in space on a linear suspension, in frames that move along the track,
-///   M q'' + C q' + K q = rest + forces of rails and stops + what the frames' motion makes.
-/// q are the six motions of each body, then the deflection of each damper that is in series with a
-/// spring; such a coordinate has no mass. The first body's x is held at its place along the track;
-/// the drive's force that this takes is published. The equation holds at the fraction s of the step
-/// at which that of a vehicle holds.
-struct RunnerModel {
-  std::int32_t first, size;                        // its coordinates among the state's unknowns
+/// A vehicle in space on both rails. q are the six motions of each body, then the deflection of
+/// each damper that is in series with a spring; such a coordinate has no mass. The first body's x
+/// is held at its place along the track: its row and column of `inverse` are 0, and the drive's
+/// force that this takes is published.
+struct RunnerModel : SuspendedModel {
   std::int32_t bodies, first_wheelset, wheelsets;  // the first one among those of all runners
   RunnerWheelset wheelset[kMaxWheelsetsOfRunner];
-  double start;  // place of its origin at t = 0, m
-  TravelModel travel;
   RollingContact contact;
-  std::int32_t load_point[2];         // on left and right rail: height at which its wheels press
-  const double *mass, *rest;          // [size] diagonal, kg, kg m2; N, N m
-  const double *damping, *stiffness;  // [size][size]
-  /// [size][size] of s K + s kv C + kg M without the first coordinate, whose row and column are 0.
-  const double* inverse;
+  std::int32_t load_point[2];      // on left and right rail: height at which its wheels press
   std::int32_t first_stop, stops;  // the first one among those of all runners
   StopModel stop[kMaxStopsOfRunner];
   const double *stop_row, *stop_moved;  // [stops][size] over its coordinates; `inverse` times it

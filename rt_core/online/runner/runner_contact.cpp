@@ -1,6 +1,7 @@
 #include "online/runner/runner_contact.h"
 
 #include "online/math/dense.h"
+#include "online/runner/body_force.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -10,10 +11,14 @@ namespace {
 constexpr double kLargeTurn = .1;  // rad, of a body in its frame: sines are 0.2 % off
 
 /// Force of the drive on the first body ahead: what the motion along x leaves over.
-double drive_force(const RunnerModel& runner, const State& at, double acceleration) noexcept {
-  return dot(runner.stiffness, at.u + runner.first, runner.size) +
-         dot(runner.damping, at.v + runner.first, runner.size) + runner.mass[0] * acceleration -
-         runner.rest[0];
+double drive_force(const RunnerModel& runner, const State& at, double time) noexcept {
+  const double acceleration = travelled(runner.travel, time).acceleration;
+  double force = dot(runner.stiffness, at.u + runner.first, runner.size) +
+                 dot(runner.damping, at.v + runner.first, runner.size) +
+                 runner.mass[0] * acceleration - runner.rest[0];
+  for (std::int32_t i = 0; i < runner.forces; ++i)
+    if (runner.force[i].direction == 0) force -= force_at(runner.force[i], time, at.input);
+  return force;
 }
 
 bool has_large_turn(const RunnerModel& runner, const State& at) noexcept {
@@ -81,7 +86,7 @@ Status publish_runners(const Model& model, const State& at, Outputs& outputs) no
   for (std::int32_t n = 0; n < model.runners; ++n) {
     const RunnerModel& runner = model.runner[n];
     for (int i = 0; i < runner.wheelsets; ++i) publish_wheelset(model, runner, i, at, outputs);
-    outputs.drive_force[n] = drive_force(runner, at, travelled(runner.travel, time).acceleration);
+    outputs.drive_force[n] = drive_force(runner, at, time);
     if (has_large_turn(runner, at)) met = met | Status::large_turn;
   }
   return met;

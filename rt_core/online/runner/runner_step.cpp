@@ -2,16 +2,18 @@
 
 #include "online/math/dense.h"
 #include "online/runner/runner_contact.h"
+#include "online/runner/suspended.h"
 #include "online/track/travel.h"
 
 namespace railstep {
 
 namespace {
 
-/// Adds the forces of the frames' acceleration and the wheelsets' spins, N and N m. The gyroscopic
+/// The forces of the frames' acceleration and the wheelsets' spins, N and N m. The gyroscopic
 /// moments are those of the rates that the last acceleration leads to.
-void add_frame_forces(const RunnerStage& at, const State& s, const Workspace& w,
-                      double* force) noexcept {
+/// @param force  [size] out
+void find_frame_forces(const RunnerStage& at, const State& s, const Workspace& w,
+                       double* force) noexcept {
   const RunnerModel& r = at.runner;
   const Travelled way = travelled(r.travel, at.time(at.held));
   const double later = at.held * at.model.scheme.kv / at.model.scheme.kg;
@@ -19,6 +21,7 @@ void add_frame_forces(const RunnerStage& at, const State& s, const Workspace& w,
     const double v0 = s.v[r.first + k], v1 = w.v_star[r.first + k];
     return (v0 + at.held * (v1 - v0)) + later * s.g[r.first + k];
   };
+  for (std::int32_t k = 0; k < r.size; ++k) force[k] = 0.;
   for (std::int32_t b = 0; b < r.bodies; ++b)
     force[kMotions * b] -= r.mass[kMotions * b] * way.acceleration;
   for (std::int32_t i = 0; i < r.wheelsets; ++i) {
@@ -37,29 +40,14 @@ void add_frame_forces(const RunnerStage& at, const State& s, const Workspace& w,
 
 RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept {
   const Scheme& c = model.scheme;
-  const bool held = model.form == Form::condensed;
-  return {model, runner, stage, held ? .5 : 1., held ? 1. / (c.theta * c.dt) : c.kv};
+  const bool condensed = model.form == Form::condensed;
+  return {model, runner, stage, held_fraction(model), condensed ? 1. / (c.theta * c.dt) : c.kv};
 }
 
 void move_freely(const RunnerStage& at, const State& s, const Workspace& w, double* u) noexcept {
-  const RunnerModel& r = at.runner;
-  const Scheme& c = at.model.scheme;
-  const double *u_star = w.u_star + r.first, *v_star = w.v_star + r.first;
-  const double *u0 = s.u + r.first, *v0 = s.v + r.first;
-  double force[kMaxRunnerUnknowns], rate[kMaxRunnerUnknowns];
-  for (std::int32_t k = 0; k < r.size; ++k) {
-    force[k] = r.mass[k] * (c.kg * u_star[k]) + r.rest[k];
-    rate[k] = at.held * (c.kv * u_star[k] - v_star[k]) - (1. - at.held) * v0[k];
-    u[k] = 0.;
-  }
-  add_frame_forces(at, s, w, force);
-  symmetric_multiply_add(r.damping, rate, force, r.size);
-  if (at.held < 1.) {
-    double moved[kMaxRunnerUnknowns];
-    for (std::int32_t k = 0; k < r.size; ++k) moved[k] = -(1. - at.held) * u0[k];
-    symmetric_multiply_add(r.stiffness, moved, force, r.size);
-  }
-  symmetric_multiply_add(r.inverse, force, u, r.size);
+  double force[kMaxRunnerUnknowns];
+  find_frame_forces(at, s, w, force);
+  move_freely(at.model, at.runner, at.time(1.), s, w, force, u);
 }
 
 void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,

@@ -11,12 +11,12 @@ inline double force_at(const BodyForce& force, double time, const double* input)
                           : table_value(force.table, force.points, time);
 }
 
-/// Adds a vehicle's forces at a time to those along its coordinates.
-/// @param sum  [vehicle.size]
-inline void add_forces(const VehicleModel& vehicle, double time, const double* input,
+/// Adds the forces of tables and inputs at a time to those along a vehicle's coordinates.
+/// @param sum  [bodies.size]
+inline void add_forces(const SuspendedModel& bodies, double time, const double* input,
                        double* sum) noexcept {
-  for (std::int32_t i = 0; i < vehicle.forces; ++i)
-    sum[vehicle.force[i].direction] += force_at(vehicle.force[i], time, input);
+  for (std::int32_t i = 0; i < bodies.forces; ++i)
+    sum[bodies.force[i].direction] += force_at(bodies.force[i], time, input);
 }
 
 }  // namespace railstep
