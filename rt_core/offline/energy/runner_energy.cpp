@@ -29,8 +29,7 @@ void stand_on_seat(const Model& model, const RunnerModel& runner, int wheelset, 
   std::fill_n(wheel.moved, kWheelSeatRows, 0.);
   if (!wheel.seat[0].on_rail) return;
   const int set = runner.first_wheelset + wheelset, own = 2 * set + side;
-  SeatFlexibility gives = seat_flexibility(model, runner, side, place[1]);
-  gives.along[1][1] -= residual_under(model, place[1]);  // among those of `acting`
+  const SeatFlexibility gives = seat_flexibility_beside(model, runner, side, place[1]);
   for (int k = 0; k < kWheelSeatRows; ++k)
     wheel.residual[k] = moved_by_wheel(gives.along[k], wheel_force_of(at, set, side));
   wheel.residual[1] +=

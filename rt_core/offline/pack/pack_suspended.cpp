@@ -39,7 +39,7 @@ Eigen::MatrixXd PackedModel::add_suspended(const SuspendedMatrices& m, bool is_h
     if (force.direction < 0 || force.direction > most)
       refuse("E-PACK-44", "a force acts along coordinate " + std::to_string(force.direction) +
                               " of a vehicle; expected 0 to " + std::to_string(most));
-  const Eigen::MatrixXd inverse = step_inverse(m, model_.scheme, held_fraction(model_), is_held);
+  Eigen::MatrixXd inverse = step_inverse(m, model_.scheme, held_fraction(model_), is_held);
   packed.first = model_.unknowns;
   packed.size = n;
   packed.mass = keep(column_by_column(m.mass));

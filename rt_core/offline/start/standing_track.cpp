@@ -173,10 +173,8 @@ std::vector<RailsUnder> places_of(const Model& model, const RunnerModel& runner,
   for (int wheel = 0; wheel < wheels; ++wheel) {
     RailsUnder& under = places[static_cast<std::size_t>(wheel / 2)];
     const double* const force = wheel_force_of(start, runner.first_wheelset + wheel / 2, wheel % 2);
-    SeatFlexibility gives =
-        seat_flexibility(model, runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]);
-    gives.along[1][1] -= residual_under(
-        model, seats.place[static_cast<std::size_t>(wheel)]);  // among the forces on all places
+    const SeatFlexibility gives = seat_flexibility_beside(
+        model, runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]);
     under.y[wheel % 2] = moved(kWheelSeatRows * wheel) + moved_by_wheel(gives.along[0], force);
     under.z[wheel % 2] = moved(kWheelSeatRows * wheel + 1) + moved_by_wheel(gives.along[1], force) +
                          residual_displacement(model, seats.place.data(), wheels, wheel);

@@ -142,8 +142,7 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
         double force[kWheelForces];
         keep_wheel_force(pressing.wheels[set][static_cast<std::size_t>(side)],
                          runner.contact.crown_radius, force);
-        SeatFlexibility gives = seat_flexibility(model, runner, side, seat.place[1]);
-        gives.along[1][1] -= residual_under(model, seat.place[1]);  // among those of `acting`
+        const SeatFlexibility gives = seat_flexibility_beside(model, runner, side, seat.place[1]);
         under.y[side] += moved_by(model, seat.row[0], at) + moved_by_wheel(gives.along[0], force);
         under.z[side] +=
             moved_by(model, seat.row[1], at) + moved_by_wheel(gives.along[1], force) +

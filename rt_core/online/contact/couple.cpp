@@ -137,11 +137,12 @@ Status status_of(PortStatus met) noexcept {
 }
 
 /// Penetration of a port without the forces of all.
-double free_depth(const Model& model, const State& s, const Coupling& c, int port) noexcept {
+double free_depth(const Model& model, const State& s, const Workspace& w, const Coupling& c,
+                  int port) noexcept {
   if (port >= c.contacts || !stands(c.contact[port])) return c.track_free[port];
   return c.track_free[port] - model.scheme.theta * (is_of_wheelset(model, port)
                                                         ? free_lift(model, s, c, port)
-                                                        : vehicle_lift(model, c, port));
+                                                        : vehicle_lift(model, w, port));
 }
 
 /// Ports for given multipliers.
@@ -150,12 +151,12 @@ Solved solve(const Model& model, const State& s, const Workspace& w, Coupling& c
              CoupledRunners* runners) noexcept {
   if (runners != nullptr) {
     for (int i = 0; i < runners->scalars; ++i)
-      runners->z_free[i] = free_depth(model, s, c, port_of(c, i));
+      runners->z_free[i] = free_depth(model, s, w, c, port_of(c, i));
     const NewtonResult met = solve_coupled_runners(model, w, c, *runners);
     return {status_of(met.status), met.iterations};
   }
   double d_free[kPorts];
-  for (int i = 0; i < c.ports; ++i) d_free[i] = free_depth(model, s, c, i);
+  for (int i = 0; i < c.ports; ++i) d_free[i] = free_depth(model, s, w, c, i);
   const PortResult met = solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
   return {status_of(met.status), met.iterations};
 }
@@ -227,6 +228,7 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   c.mirrored = c.rows > c.contacts && seats_mirror(model);
   c.of_set = !c.mirrored ? 2 * kWheelSeatRows : kWheelSeatRows + (has_levers(model) ? 2 : 0);
   c.bases = c.contacts + c.of_set * ((c.rows - c.contacts) / (2 * kWheelSeatRows));
+  c.shapes_levers = model.fixed.count > 0 || couples_system(model);
   c.W = w.compliance;
   const double time = time_of(model.scheme, stage);
   locate_contacts(model, stage, state, w, c);
@@ -235,7 +237,7 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   if (c.mirrored) lean_wheel_seats(model, c);
   find_residual_by_loads(model, stage, external, c);
   free_wheelsets(model, stage, state, w, c);
-  free_vehicles(model, time, state, w, c);
+  free_vehicles(model, time, state, w);
   find_vehicle_laws(model, time, state, w, c);
   find_flange_laws(model, state, w, c);
   compliance(model, w, c);

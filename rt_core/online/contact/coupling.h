@@ -24,6 +24,7 @@ struct Coupling {
   int bases;                  // rows along which the lines are moved: see base_row()
   bool mirrored;              // one base serves the seats of both rails
   int of_set;                 // bases of a wheelset of runners
+  bool shapes_levers;         // the shapes of bases by levers are needed, else those of the rolls
   WheelContact contact[kMaxWheels];
   WheelSeatRow seat[kMaxWheelSeatRows];
   RailForce place[kMaxTrackRows];
@@ -33,9 +34,8 @@ struct Coupling {
   double located[kMaxTrackRows];  // displacement of the lines when contacts were located, m
   double moved[kMaxTrackRows];    // without contact forces since then, m
   FreeWheelset wheelset[kMaxWheelsets];
-  double vehicle[kMaxVehicles][kMaxVehicleUnknowns];  // coordinates without wheel forces
-  double* W;                                          // [ports][ports] m/N
-  PortLaw law[kPorts];                                // of the contacts, then of the fixed ports
+  double* W;            // [ports][ports] m/N
+  PortLaw law[kPorts];  // of the contacts, then of the fixed ports
   /// Penetration from the track and the frozen geometry, of a seat the displacement, m, rad.
   double track_free[kPorts + kMaxWheelSeatRows];
   double force[kPorts + kMaxWheelSeatRows];  // N, N m, against each row
@@ -58,6 +58,14 @@ inline int seat_of_base(const Coupling& c, int base) noexcept {
 inline const RailRow& base_row(const Coupling& c, int base) noexcept {
   return base < c.contacts ? c.contact[base].row : c.seat[seat_of_base(c, base)].row;
 }
+/// Whether a base is the part of a row by the levers of a rail.
+inline bool is_by_levers(const Coupling& c, int base) noexcept {
+  return c.mirrored && base >= c.contacts && (base - c.contacts) % c.of_set >= kWheelSeatRows;
+}
+/// The roll of the right rail by a line where seats mirror, in place of that of the left one.
+constexpr double right_roll(const LineModel& line) noexcept {
+  return line.rail_factor[1] == line.rail_factor[0] ? -1. : 1.;
+}
 /// Finds which lines forces along each base move, Coupling::acts.
 inline void find_acting(const Model& model, Coupling& c) noexcept {
   for (int i = 0; i < c.bases; ++i) {
@@ -78,8 +86,8 @@ inline RowsOfBase rows_of_base(const Coupling& c, int base, const LineModel& lin
   const int d = (base - c.contacts) % c.of_set, left = c.contacts + seat_of_base(c, base) - d;
   if (d >= kWheelSeatRows)
     return {1, {left + 1 + kWheelSeatRows * (d - kWheelSeatRows), 0}, {1., 0.}};
-  const double right = line.rail_factor[1] == line.rail_factor[0] ? 1. : -1.;
-  return {2, {left + d, left + d + kWheelSeatRows}, {1., d == 1 ? right : -right}};
+  const double roll = right_roll(line);
+  return {2, {left + d, left + d + kWheelSeatRows}, {1., d == 1 ? -roll : roll}};
 }
 
 /// Subtracts from rows along y and z their part by the rolls. @param x  [rows]

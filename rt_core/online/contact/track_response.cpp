@@ -13,6 +13,14 @@ Complex base_of(const Model& model, const Workspace& w, const LineModel& line, i
 /// Whether the compliance between places of a line is in a table.
 bool is_tabled(const LineModel& line) noexcept { return line.modal.between != nullptr; }
 
+/// The response to a unit force along a base, unless there is a table.
+void hold_base(const Model& model, const LineModel& line, int base, Workspace& w) noexcept {
+  if (is_tabled(line)) return;
+  const std::ptrdiff_t unit = base * std::ptrdiff_t{model.unknowns} + line.first;
+  modes_multiply(line.modal.held_force, base_of(model, w, line, base), w.unit + unit,
+                 w.unit_second + unit, line.size);
+}
+
 /// Halfway solve of a banded line for a base.
 /// @param unit  where the base's responses begin in the workspace
 /// @param at    out: its panels
@@ -46,15 +54,59 @@ void respond_bands(const Model& model, Workspace& w, Coupling& c) noexcept {
     }
 }
 
-/// Shapes of the bases in condensed lines, and unless there is a table the response to a unit force
-/// along each, held over the step. Displacements of the lines along all rows, as they are located
-/// and without contact forces at the step's end, go to `located` and `moved`.
+/// The shape of a base in a line, and unless there is a table the response to a unit force along
+/// it, held over the step.
+void shape_base(const Model& model, const LineModel& line, int base, Workspace& w,
+                const Coupling& c) noexcept {
+  double* const re = w.row + 2 * static_cast<std::ptrdiff_t>(base) * model.unknowns;
+  shape_row(line, base_row(c, base), re, re + model.unknowns);
+  hold_base(model, line, base, w);
+}
+
+/// Bases by the levers of both rails under a wheelset: the rolls over seats move them.
+/// @param left  that of the left rail
+void respond_levers(const Model& model, const State& s, Workspace& w, Coupling& c,
+                    int left) noexcept {
+  TwoMotions roll[2][kPDeltaSeats] = {};
+  const RailRow& row = base_row(c, left);
+  for (std::int32_t l = 0; l < model.lines; ++l) {
+    if (!c.acts[left][l]) continue;
+    TwoMotions own[kPDeltaSeats];
+    move_rolls(model.line[l], row, {s.u, s.v}, {w.solved, w.imaginary}, own);
+    const double right = right_roll(model.line[l]);
+    for (std::int32_t k = 0; k < row.seats; ++k) {
+      roll[0][k].first += own[k].first;
+      roll[0][k].second += own[k].second;
+      roll[1][k].first += right * own[k].first;
+      roll[1][k].second += right * own[k].second;
+    }
+  }
+  for (int side = 0; side < 2; ++side) {
+    RailRow& levers = c.seat[seat_of_base(c, left + side)].row;
+    const int z = rows_of_base(c, left + side, model.line[0]).row[0];
+    c.seat[z - c.contacts].rise = lean_on_seats(roll[side], levers);
+    for (std::int32_t k = 0; k < levers.seats; ++k) {
+      c.located[z] += levers.lever[k] * roll[side][k].first;
+      c.moved[z] += levers.lever[k] * roll[side][k].second;
+    }
+    for (std::int32_t l = 0; l < model.lines; ++l)
+      if (c.acts[left + side][l] && (c.shapes_levers || !is_tabled(model.line[l])))
+        shape_base(model, model.line[l], left + side, w, c);
+  }
+}
+
+/// Shapes of the bases in condensed lines, and their responses. Displacements of the lines along
+/// all rows, as they are located and without contact forces at the step's end, go to `located` and
+/// `moved`.
 void respond_modes(const Model& model, const State& s, Workspace& w, Coupling& c) noexcept {
   const std::ptrdiff_t stride = model.unknowns;
   for (int i = 0; i < c.rows; ++i) c.located[i] = c.moved[i] = 0.;
   for (int i = 0; i < c.bases; ++i) {
+    if (is_by_levers(c, i)) {
+      respond_levers(model, s, w, c, i++);
+      continue;
+    }
     double* re = w.row + 2 * i * stride;
-    const std::ptrdiff_t unit = i * stride;
     for (std::int32_t l = 0; l < model.lines; ++l) {
       const LineModel& line = model.line[l];
       if (!c.acts[i][l]) continue;
@@ -62,9 +114,7 @@ void respond_modes(const Model& model, const State& s, Workspace& w, Coupling& c
                                               {w.solved, w.imaginary}, re, re + stride);
       add_to_rows(c, i, line, own.first, c.located);
       add_to_rows(c, i, line, own.second, c.moved);
-      if (is_tabled(line)) continue;
-      modes_multiply(line.modal.held_force, base_of(model, w, line, i), w.unit + unit + line.first,
-                     w.unit_second + unit + line.first, line.size);
+      hold_base(model, line, i, w);
     }
   }
   lean_rows(c, c.located);
@@ -143,22 +193,34 @@ void add_tabled(const LineModel& line, std::int32_t l, Coupling& c) noexcept {
   constexpr int kAtOnce = 24;
   CarriedRow carried[kAtOnce], before;
   RowsOfBase rows[kAtOnce];
+  bool is_left[kAtOnce];  // by levers of the left rail; those of the right rail, which follow,
+                          // carry the same unknowns
   for (int first = 0; first < c.bases; first += kAtOnce) {
     const int end = first + kAtOnce < c.bases ? first + kAtOnce : c.bases;
     for (int i = first; i < end; ++i) {
       if (!c.acts[i][l]) continue;
       carry(line, base_row(c, i), carried[i - first]);
       rows[i - first] = rows_of_base(c, i, line);
+      is_left[i - first] = i + 1 < end && is_by_levers(c, i) && is_by_levers(c, i + 1);
     }
     for (int j = 0; j < end; ++j) {
       if (!c.acts[j][l]) continue;
       const RowsOfBase of_other = j < first ? rows_of_base(c, j, line) : rows[j - first];
       if (j < first) carry(line, base_row(c, j), before);
       const CarriedRow& other = j < first ? before : carried[j - first];
-      for (int i = j > first ? j : first; i < end; ++i)
-        if (c.acts[i][l])
-          add_between(rows[i - first], of_other, i == j,
-                      between(line.modal, carried[i - first], other), c);
+      for (int i = j > first ? j : first; i < end; ++i) {
+        if (!c.acts[i][l]) continue;
+        const CarriedRow& own = carried[i - first];
+        if (!is_left[i - first]) {
+          add_between(rows[i - first], of_other, i == j, between(line.modal, own, other), c);
+          continue;
+        }
+        double both[2];
+        between(line.modal, own, carried[i + 1 - first], other, both);
+        add_between(rows[i - first], of_other, i == j, both[0], c);
+        ++i;
+        add_between(rows[i - first], of_other, false, both[1], c);
+      }
     }
   }
 }
@@ -244,6 +306,32 @@ void find_track_motion(const Model& model, const Workspace& w, Coupling& c) noex
   for (int i = 0; i < c.rows; ++i) c.moved[i] -= c.located[i];
 }
 
+namespace {
+
+/// Shapes that a line is moved along, at most.
+constexpr int kMostMoved = kMaxWheels + kMaxSeatedWheelsets * (kWheelSeatRows + kMostRollParts);
+
+/// The forces on a line along the rolls over seats by the levers of both rails.
+/// @param left   base of those of the left rail
+/// @param shape, force  [kMostRollParts] out
+/// @returns their number
+int add_roll_forces(const LineModel& line, const double* row_force, const Coupling& c, int left,
+                    Complex* shape, double* force) noexcept {
+  const RailRow &own = base_row(c, left), &other = base_row(c, left + 1);
+  const double of_left = row_force[rows_of_base(c, left, line).row[0]],
+               of_right = right_roll(line) * row_force[rows_of_base(c, left + 1, line).row[0]];
+  RollPart part[kMostRollParts];
+  const int count = roll_parts(line, own, part);
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t s = part[i].seat;
+    shape[i] = part[i].shape;
+    force[i] = part[i].weight * (of_left * own.lever[s] + of_right * other.lever[s]);
+  }
+  return count;
+}
+
+}  // namespace
+
 void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
   double row_force[kMaxTrackRows];
   for (int i = 0; i < c.rows; ++i) row_force[i] = c.force[i];
@@ -253,11 +341,15 @@ void move_track(const Model& model, Workspace& w, const Coupling& c) noexcept {
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     const double *re[kMaxTrackRows], *im[kMaxTrackRows];
-    Complex shape[kMaxTrackRows];
-    double force[kMaxTrackRows];
+    Complex shape[kMostMoved];
+    double force[kMostMoved];
     int count = 0;
     for (int i = 0; i < c.bases; ++i) {
       if (!c.acts[i][l]) continue;
+      if (is_by_levers(c, i) && is_tabled(line) && !c.shapes_levers) {
+        count += add_roll_forces(line, row_force, c, i++, shape + count, force + count);
+        continue;
+      }
       const std::ptrdiff_t unit = i * std::ptrdiff_t{model.unknowns} + line.first;
       const RowsOfBase rows = rows_of_base(c, i, line);
       double own = 0.;

@@ -57,11 +57,11 @@ DepthSpeed speed_of(const Model& model, double time, const State& s, const Works
 
 }  // namespace
 
-void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
-                   Coupling& c) noexcept {
+void free_vehicles(const Model& model, double time, const State& s, Workspace& w) noexcept {
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
+    const VehicleModel& v = model.vehicle[b];
     double force[kMaxVehicleUnknowns] = {};
-    move_freely(model, model.vehicle[b], time, s, w, force, c.vehicle[b]);
+    move_freely(model, v, time, s, w, force, w.solved + v.first);
   }
 }
 
@@ -87,9 +87,9 @@ double vehicle_offset(const Model& model, const State& s, const Coupling& c, Con
          (1. - model.scheme.theta) * dot(row_of(model, i), s.u + v.first, v.size);
 }
 
-double vehicle_lift(const Model& model, const Coupling& c, ContactId i) noexcept {
-  return dot(row_of(model, i), c.vehicle[vehicle_wheel(model, i).vehicle],
-             vehicle_of(model, i).size);
+double vehicle_lift(const Model& model, const Workspace& w, ContactId i) noexcept {
+  const VehicleModel& v = vehicle_of(model, i);
+  return dot(row_of(model, i), w.solved + v.first, v.size);
 }
 
 double vehicle_lift_before(const Model& model, const State& s, ContactId i) noexcept {
@@ -101,7 +101,6 @@ void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const VehicleModel& v = model.vehicle[b];
     double* u = w.solved + v.first;
-    for (int k = 0; k < v.size; ++k) u[k] = c.vehicle[b][k];
     for (int i = 0; i < v.wheels; ++i) {
       const double force = c.force[vehicle_contact(model, v.first_wheel + i)];
       for (int k = 0; k < v.size; ++k) u[k] += v.response[i * v.size + k] * force;

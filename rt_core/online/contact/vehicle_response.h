@@ -5,9 +5,8 @@ namespace railstep {
 
 // Vehicles in a step's coupled problem. Their wheels follow those of the wheelsets.
 
-/// Motion of each vehicle without contact.
-void free_vehicles(const Model& model, double time, const State& s, const Workspace& w,
-                   Coupling& c) noexcept;
+/// Motion of each vehicle without contact, in `solved`.
+void free_vehicles(const Model& model, double time, const State& s, Workspace& w) noexcept;
 
 /// Laws of the vehicles' wheels over the step. A damper acts on the rate of penetration at the
 /// step's end, kv (d - d*) + v* plus the effect of the wheel's motion along the rail; if forces are
@@ -24,7 +23,7 @@ double vehicle_compliance(const Model& model, ContactId i, ContactId j) noexcept
 double vehicle_offset(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
 
 /// Height of wheel i at the step's end without contact forces.
-double vehicle_lift(const Model& model, const Coupling& c, ContactId i) noexcept;
+double vehicle_lift(const Model& model, const Workspace& w, ContactId i) noexcept;
 
 /// Height of wheel i at the step's start.
 double vehicle_lift_before(const Model& model, const State& s, ContactId i) noexcept;

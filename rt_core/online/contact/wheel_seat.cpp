@@ -49,6 +49,14 @@ void clear(bool on_rail, int side, std::int32_t element, WheelSeatRow* seat,
   }
 }
 
+void take_levers(const SeatLevers& around, RailRow& row) noexcept {
+  row.seats = around.count;
+  for (std::int32_t i = 0; i < around.count; ++i) {
+    row.seat[i] = around.node[i];
+    row.lever[i] = around.lever[i];
+  }
+}
+
 constexpr double kAlong[2][3] = {{0., 1., 0.}, {0., 0., 1.}};  // of a seat's rows along y and z
 
 void fill_seat_rows(const Model& model, const SectionPoint& centre, int side, const double* shape,
@@ -92,9 +100,15 @@ SectionPoint crown_centre(const Model& model, const RollingContact& contact, int
 
 SeatFlexibility seat_flexibility(const Model& model, const RunnerModel& runner, int side,
                                  const RailForce& place) noexcept {
+  SeatFlexibility all = seat_flexibility_beside(model, runner, side, place);
+  all.along[1][1] += residual_under(model, place);
+  return all;
+}
+
+SeatFlexibility seat_flexibility_beside(const Model& model, const RunnerModel& runner, int side,
+                                        const RailForce& place) noexcept {
   const ResidualModel& r = model.residual;
-  if (r.seat == nullptr || place.load_point == kNoLoadPoint)
-    return {{{0., 0., 0.}, {0., residual_under(model, place), 0.}, {0., 0., 0.}}};
+  if (r.seat == nullptr || place.load_point == kNoLoadPoint) return {};
   const std::ptrdiff_t seat = 2 * (&runner - model.runner) + side,
                        row = seat * r.elements + place.element % r.elements;
   const Cubic at = cubic(r.points, place.xi);
@@ -107,7 +121,7 @@ SeatFlexibility seat_flexibility(const Model& model, const RunnerModel& runner, 
   const auto of = [&own](SeatResidual which) noexcept { return own[static_cast<int>(which)]; };
   const double yz = of(SeatResidual::yz), yr = of(SeatResidual::yr), zr = of(SeatResidual::zr);
   return {{{of(SeatResidual::yy), yz, yr},
-           {yz, residual_under(model, place) + of(SeatResidual::zz), zr},
+           {yz, of(SeatResidual::zz), zr},
            {yr, zr, of(SeatResidual::rr)}}};
 }
 
@@ -115,7 +129,8 @@ bool seats_mirror(const Model& model) noexcept {
   const Cant &left = model.cant[0], &right = model.cant[1];
   bool mirror = left.cosine == right.cosine && left.sine == -right.sine &&
                 model.head_z[0] == model.head_z[1] &&
-                model.crown_radius[0] == model.crown_radius[1];
+                model.crown_radius[0] == model.crown_radius[1] &&
+                (model.p_delta.lever[0] == nullptr) == (model.p_delta.lever[1] == nullptr);
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineModel& line = model.line[l];
     const double of_left = line.rail_factor[0], of_right = line.rail_factor[1];
@@ -162,8 +177,20 @@ void locate_mirrored_seats(const Model& model, const Configuration& at, const Ru
     row = {};
     row.rail = side;
     row.element = element;
-    seat[kWheelSeatRows * side + 1].rise = -add_levers(model, at, xi, kUp, row, motions);
+    if (model.form == Form::condensed)
+      take_levers(seat_levers(model, side, element, xi), row);
+    else
+      seat[kWheelSeatRows * side + 1].rise = -add_levers(model, at, xi, kUp, row, motions);
   }
+}
+
+double lean_on_seats(const TwoMotions* roll, RailRow& row) noexcept {
+  double rise = 0.;
+  for (std::int32_t s = 0; s < row.seats; ++s) {
+    row.lever[s] *= roll[s].first;
+    rise -= .5 * roll[s].first * row.lever[s];
+  }
+  return rise;
 }
 
 void locate_wheel_seat(const Model& model, const Configuration& at, const RunnerModel& runner,

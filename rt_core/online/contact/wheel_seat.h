@@ -30,6 +30,9 @@ struct SeatFlexibility {
 /// @param place  of its row along z
 SeatFlexibility seat_flexibility(const Model& model, const RunnerModel& runner, int side,
                                  const RailForce& place) noexcept;
+/// The same without residual_under(), which forces along z of all wheels have among them.
+SeatFlexibility seat_flexibility_beside(const Model& model, const RunnerModel& runner, int side,
+                                        const RailForce& place) noexcept;
 
 /// Displacement along a row by the forces of a wheel on its seat.
 /// @param flexibility  [kWheelSeatRows] of the row by unit forces along those of the seat
@@ -55,10 +58,16 @@ SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
 /// left seat, without the effect of the roll of the section there. On sections that do not strain
 /// rows along y and z are those of the axis: the crown has the roll besides, WheelSeatRow::lean. If
 /// the model has levers (p_delta.h), the next two are the parts of the left and of the right row
-/// along z by the rolls over seats.
+/// along z by the rolls over seats. On condensed lines these have SeatLevers::lever, which is not
+/// times the rolls yet: lean_on_seats().
 /// @param seat, place  [2 kWheelSeatRows] out
 void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
                            double x, WheelSeatRow* seat, RailForce* place) noexcept;
+
+/// Multiplies the levers of a row with the rolls over its seats.
+/// @param roll  [row.seats] rad
+/// @returns how much its point rises, m
+double lean_on_seats(const TwoMotions* roll, RailRow& row) noexcept;
 
 /// The rows of the seat under a wheel at a place along the model's elements, with the effect of the
 /// rail's roll.

@@ -49,19 +49,39 @@ void spread_through(const NewtonProblem& p, NewtonSlopes& s) noexcept {
   }
 }
 
-/// I - S Y B, [ranks][ranks].
+/// Rows of one law in I - S Y B, without I.
+/// @param slope   [rank][size]
+/// @param factor  the first of these rows in the first of `ranks` columns
+template <int rank>
+void fill_rows(const NewtonProblem& p, const LawBlock& own, const double* slope,
+               const NewtonSlopes& s, double* factor) noexcept {
+  double across[kMostLaw][rank];
+  for (int k = 0; k < rank; ++k)
+    for (int m = 0; m < own.size; ++m) across[m][k] = slope[k * own.size + m];
+  for (int j = 0; j < s.ranks; ++j) {
+    const double* const moved = s.moved + j * p.n + own.first;
+    double sum[rank] = {};
+    for (int m = 0; m < own.size; ++m)
+      for (int k = 0; k < rank; ++k) sum[k] -= across[m][k] * moved[m];
+    for (int k = 0; k < rank; ++k) factor[j * s.ranks + k] = sum[k];
+  }
+}
+
+/// I - S Y B, [ranks][ranks], column by column.
 void fill(const NewtonProblem& p, NewtonSlopes& s) noexcept {
-  const int n = s.ranks;
+  constexpr int kAtOnce = 6;  // three forces of two wheels
   const double* slope = s.slope;
-  int row = 0;
+  double* factor = s.factor;
   for (int b = 0; b < p.blocks; ++b) {
     const LawBlock& own = p.block[b];
-    for (int k = 0; k < own.rank; ++k, ++row, slope += own.size) {
-      double* const to = s.factor + row * n;
-      for (int j = 0; j < n; ++j) to[j] = -fast_dot(slope, s.moved + j * p.n + own.first, own.size);
-      to[row] += 1.;
-    }
+    int k = 0;
+    for (; k + kAtOnce <= own.rank; k += kAtOnce)
+      fill_rows<kAtOnce>(p, own, slope + k * own.size, s, factor + k);
+    for (; k < own.rank; ++k) fill_rows<1>(p, own, slope + k * own.size, s, factor + k);
+    slope += own.size * own.rank;
+    factor += own.rank;
   }
+  for (int i = 0; i < s.ranks; ++i) s.factor[i * s.ranks + i] += 1.;
 }
 
 /// Largest absolute value, by lanes that do not wait for each other.
@@ -80,49 +100,55 @@ double largest_of(const double* x, int n) noexcept {
   return most[0];
 }
 
-/// L U = A in place, with row exchanges. The largest of equal pivots is the first one.
+/// L U = A in place, with row exchanges; the diagonal then has the inverse pivots. The largest of
+/// equal pivots is the first one.
+/// @param A  [n][n] column by column
 /// @param exchange  [n] out: row that took the place of each
 /// @returns false where a pivot is too small
 bool eliminate(double* A, int* exchange, int n) noexcept {
   const double largest = largest_of(A, n * n);
   for (int j = 0; j < n; ++j) {
     int best = j;
-    for (int i = j + 1; i < n; ++i)
-      if (std::fabs(A[i * n + j]) > std::fabs(A[best * n + j])) best = i;
-    exchange[j] = best;
     double* const pivot = A + j * n;
-    if (best != j) {
-      double* const other = A + best * n;
-      for (int k = 0; k < n; ++k) {
-        const double kept = pivot[k];
-        pivot[k] = other[k];
-        other[k] = kept;
-      }
+    for (int i = j + 1; i < n; ++i)
+      if (std::fabs(pivot[i]) > std::fabs(pivot[best])) best = i;
+    exchange[j] = best;
+    for (int k = 0; best != j && k < n; ++k) {
+      const double kept = A[k * n + j];
+      A[k * n + j] = A[k * n + best];
+      A[k * n + best] = kept;
     }
     if (!(std::fabs(pivot[j]) > kLeastPivot * largest)) return false;
-    const double inverse = 1. / pivot[j];
-    for (int i = j + 1; i < n; ++i) {
-      double* const row = A + i * n;
-      const double factor = row[j] * inverse;
-      row[j] = factor;
+    pivot[j] = 1. / pivot[j];
+    for (int i = j + 1; i < n; ++i) pivot[i] *= pivot[j];
+    for (int k = j + 1; k < n; ++k) {
+      double* const column = A + k * n;
+      const double factor = column[j];
 #pragma omp simd
-      for (int k = j + 1; k < n; ++k) row[k] -= factor * pivot[k];
+      for (int i = j + 1; i < n; ++i) column[i] -= pivot[i] * factor;
     }
   }
   return true;
 }
 
-/// Solves L U x = b in place.
+/// Solves L U x = b in place, by columns, whose sums do not wait for each other.
 void substitute(const double* A, const int* exchange, double* b, int n) noexcept {
   for (int j = 0; j < n; ++j) {
     const double kept = b[exchange[j]];
     b[exchange[j]] = b[j];
     b[j] = kept;
   }
-  for (int j = 1; j < n; ++j) b[j] -= fast_dot(A + j * n, b, j);
+  for (int j = 0; j < n; ++j) {
+    const double* const column = A + j * n;
+    const double own = b[j];
+#pragma omp simd
+    for (int i = j + 1; i < n; ++i) b[i] -= column[i] * own;
+  }
   for (int j = n - 1; j >= 0; --j) {
-    const double* const row = A + j * n;
-    b[j] = (b[j] - fast_dot(row + j + 1, b + j + 1, n - 1 - j)) / row[j];
+    const double* const column = A + j * n;
+    const double own = b[j] *= column[j];
+#pragma omp simd
+    for (int i = 0; i < j; ++i) b[i] -= column[i] * own;
   }
 }
 

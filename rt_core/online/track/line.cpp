@@ -9,6 +9,17 @@ Complex shape_of(const Modal& modal, std::int32_t row) noexcept {
   return {re, re + modal.count};
 }
 
+/// Calls visit(unknown, weight) for those unknowns of the roll over a node that a line has. The
+/// roll of a section that does not strain is one unknown, its a_z and its b_y.
+template <typename Visit>
+void for_roll(const LineModel& line, std::int32_t rail, std::int32_t node, Visit visit) noexcept {
+  const std::int32_t* const table = line.unknown_of[rail];
+  const std::int32_t a = table[table_place(node, 5)], b = table[table_place(node, 7)];
+  const double of_a = .5 * weight_of(line, rail, 5), of_b = -.5 * weight_of(line, rail, 7);
+  if (a >= 0) visit(a, a == b ? of_a + of_b : of_a);
+  if (b >= 0 && b != a) visit(b, of_b);
+}
+
 /// Calls visit(unknown, weight) for those unknowns of a row that a line has.
 template <typename Visit>
 void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcept {
@@ -21,11 +32,9 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
       visit(unknown, weight_of(line, row.rail, k) * row.coefficient[i][k]);
     }
   for (std::int32_t s = 0; s < row.seats; ++s)
-    for (int k = 5; k <= 7; k += 2) {
-      const std::int32_t unknown = table[table_place(row.seat[s], k)];
-      if (unknown >= 0)
-        visit(unknown, (k == 5 ? .5 : -.5) * weight_of(line, row.rail, k) * row.lever[s]);
-    }
+    for_roll(line, row.rail, row.seat[s], [&](std::int32_t unknown, double weight) noexcept {
+      visit(unknown, weight * row.lever[s]);
+    });
 }
 
 }  // namespace
@@ -159,6 +168,24 @@ double between(const Modal& modal, const CarriedRow& one, const CarriedRow& othe
   });
 }
 
+void between(const Modal& modal, const CarriedRow& one, const CarriedRow& two, const CarriedRow& b,
+             double (&sum)[2]) noexcept {
+  sum[0] = sum[1] = 0.;
+  const double* of_b[kMostCarried];
+  for (int k = 0; k < b.count; ++k) of_b[k] = table_row(modal, b.unknown[k]);
+  for (int i = 0; i < one.count; ++i) {
+    const std::int32_t own = one.unknown[i];
+    const double* const of_own = table_row(modal, own);
+    double along = 0.;
+    for (int k = 0; k < b.count; ++k) {
+      const std::int32_t other = b.unknown[k];
+      along += b.weight[k] * (own > other ? of_own[other] : of_b[k][own]);
+    }
+    sum[0] += one.weight[i] * along;
+    sum[1] += two.weight[i] * along;
+  }
+}
+
 Panels panels_of(const LineModel& line, const RailRow& row) noexcept {
   std::int32_t first = line.size, last = -1;
   for_carried(line, row, [&](std::int32_t unknown, double) noexcept {
@@ -242,12 +269,57 @@ TwoMotions shape_moving_row(const LineModel& line, const RailRow& row, Complex f
   switch (carried.count) {
     case 3:  // one motion of an element's nodes
       return shape_and_move<3>(line, carried, one, other, re + at, im + at);
-    case kPDeltaSeats:  // rolls over the seats around
-      return shape_and_move<kPDeltaSeats>(line, carried, one, other, re + at, im + at);
     default:
       shape_carried(line, carried, re + at, im + at);
       return {modes_dot(own, one, line.size), modes_dot(own, other, line.size)};
   }
+}
+
+int roll_parts(const LineModel& line, const RailRow& row, RollPart* part) noexcept {
+  int count = 0;
+  for (std::int32_t s = 0; s < row.seats; ++s)
+    for_roll(line, row.rail, row.seat[s], [&](std::int32_t unknown, double weight) noexcept {
+      part[count++] = {s, weight, shape_of(line.modal, unknown)};
+    });
+  return count;
+}
+
+namespace {
+
+/// Adds the motions of `count` parts: each mode is read once for all of them.
+template <int count>
+void add_moved(const RollPart* part, Complex first, Complex second, int size,
+               TwoMotions* motion) noexcept {
+  constexpr int kSums = kLanes / 2;
+  double one[count][kSums] = {}, other[count][kSums] = {};
+  for (int k = 0; k < size; k += kSums)
+    for (int i = 0; i < count; ++i) {
+      const Complex own = part[i].shape;
+#pragma omp simd
+      for (int l = 0; l < kSums; ++l) {
+        one[i][l] += own.re[k + l] * first.re[k + l] - own.im[k + l] * first.im[k + l];
+        other[i][l] += own.re[k + l] * second.re[k + l] - own.im[k + l] * second.im[k + l];
+      }
+    }
+  const auto sum = [](const double* s) noexcept { return (s[0] + s[2]) + (s[1] + s[3]); };
+  for (int i = 0; i < count; ++i) {
+    motion[part[i].seat].first += part[i].weight * sum(one[i]);
+    motion[part[i].seat].second += part[i].weight * sum(other[i]);
+  }
+}
+
+}  // namespace
+
+void move_rolls(const LineModel& line, const RailRow& row, Complex first, Complex second,
+                TwoMotions* motion) noexcept {
+  const std::int32_t at = line.first;
+  const Complex one = {first.re + at, first.im + at}, other = {second.re + at, second.im + at};
+  for (std::int32_t s = 0; s < row.seats; ++s) motion[s] = {0., 0.};
+  RollPart part[kMostRollParts];
+  const int count = roll_parts(line, row, part);
+  int i = 0;
+  for (; i + 3 <= count; i += 3) add_moved<3>(part + i, one, other, line.size, motion);
+  for (; i < count; ++i) add_moved<1>(part + i, one, other, line.size, motion);
 }
 
 void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,

@@ -94,6 +94,9 @@ void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexc
 /// Displacement along one row by a unit force along the other, held over the step, by the table of
 /// a condensed line.
 double between(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept;
+/// The same for two rows that carry the same unknowns. @param sum  out
+void between(const Modal& modal, const CarriedRow& one, const CarriedRow& two, const CarriedRow& b,
+             double (&sum)[2]) noexcept;
 
 /// Panels of a banded line that hold the unknowns of a row; none for a line that it does not move.
 Panels panels_of(const LineModel& line, const RailRow& row) noexcept;
@@ -109,6 +112,20 @@ struct TwoMotions {
 };
 TwoMotions shape_moving_row(const LineModel& line, const RailRow& row, Complex first,
                             Complex second, double* re, double* im) noexcept;
+
+/// A part of the roll over a seat: weight times the motion of a shape in the modes of a line.
+struct RollPart {
+  std::int32_t seat;  // its number in the row
+  double weight;
+  Complex shape;
+};
+inline constexpr int kMostRollParts = 2 * kPDeltaSeats;
+/// The rolls over the seats of a row by a condensed line. @param part  [kMostRollParts] out
+/// @returns the number of parts
+int roll_parts(const LineModel& line, const RailRow& row, RollPart* part) noexcept;
+/// Their motions in two configurations of all lines' modes. @param motion  [row.seats] out
+void move_rolls(const LineModel& line, const RailRow& row, Complex first, Complex second,
+                TwoMotions* motion) noexcept;
 
 /// shape += force * row for a condensed line: [unknowns] of all lines, complex.
 void spread_modes(const LineModel& line, const RailRow& row, double force, double* re,
