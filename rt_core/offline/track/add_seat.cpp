@@ -151,7 +151,7 @@ void relax(Assembly& part, Row moves, int e, const Relaxing& own, double factor)
 
 /// Springs and dampers under one end of the sleeper; spread over a length L they hold its pitch by
 /// k L^2/12.
-/// @param relaxing, relaxing_pitch  unknowns of the part that relaxes; -1: there is none
+/// @param relaxing, relaxing_pitch  unknowns of the part that relaxes; -1 where nothing relaxes
 void add_ballast(Assembly& part, const SeatRows& rows, const Ballast& ballast, int relaxing,
                  int relaxing_pitch) {
   for (std::size_t d = 0; d < 3; ++d) {

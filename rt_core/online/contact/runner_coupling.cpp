@@ -142,7 +142,7 @@ void couple_seats(const Model& model, const State& s, const Coupling& c, const R
 
 void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                         Coupling& c) noexcept {
-  const double ahead = (model.form == Form::condensed ? .5 : 1.) * stage.span;
+  const double ahead = held_fraction(model) * stage.span;
   const double before = stage.before + (stage.span - ahead);
   const Configuration at = located_on(model, s, w);
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {

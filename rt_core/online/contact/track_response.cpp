@@ -102,7 +102,7 @@ void respond_modes(const Model& model, const State& s, Workspace& w, Coupling& c
   const std::ptrdiff_t stride = model.unknowns;
   for (int i = 0; i < c.rows; ++i) c.located[i] = c.moved[i] = 0.;
   for (int i = 0; i < c.bases; ++i) {
-    if (is_by_levers(c, i)) {
+    if (is_by_levers(c, i)) {  // the next base is that of the right rail
       respond_levers(model, s, w, c, i++);
       continue;
     }

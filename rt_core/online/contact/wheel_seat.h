@@ -58,8 +58,8 @@ SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
 /// left seat, without the effect of the roll of the section there. On sections that do not strain
 /// rows along y and z are those of the axis: the crown has the roll besides, WheelSeatRow::lean. If
 /// the model has levers (p_delta.h), the next two are the parts of the left and of the right row
-/// along z by the rolls over seats. On condensed lines these have SeatLevers::lever, which is not
-/// times the rolls yet: lean_on_seats().
+/// along z by the rolls over seats. On condensed lines their levers are those of SeatLevers, and
+/// lean_on_seats() multiplies them with the rolls.
 /// @param seat, place  [2 kWheelSeatRows] out
 void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
                            double x, WheelSeatRow* seat, RailForce* place) noexcept;
