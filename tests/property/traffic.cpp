@@ -117,7 +117,9 @@ Document random_wheelset(Draw& draw, const Document& scene, const double* common
   if (draw.chance(.7)) w["carried_mass_kg"] = draw.of_any_size(500., 1e4);
   if (draw.chance(.2))
     w["guide"] = {{"method", "baumgarte"}, {"alpha_per_s", 100.}, {"beta_per_s", 100.}};
-  const bool flange = moves_sideways(scene) && has_shape(scene) && !scene["rail"].contains("cant");
+  else if (draw.chance(.3))
+    w["guide"] = {{"method", "elimination"}};
+  const bool flange = moves_sideways(scene) && has_shape(scene);
   if (flange && draw.chance(.5)) add_flange(draw, w);
   if (draw.chance(.5)) {
     const bool aside = moves_sideways(scene) && draw.chance(.6);

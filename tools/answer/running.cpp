@@ -39,15 +39,8 @@ void add_wheelset(const std::string& name, const double* left, const double* rig
                              -(left[0] + right[0])});
 }
 
-/// About the vehicle under its weight and its forces at t = 0.
-RunnerMatrices matrices_of(const RailVehicleScene& v) {
-  RunnerMatrices matrices = runner_matrices(v.runner, kGravity);
-  for (const OuterForce& force : v.forces) matrices.rest[force.direction] += first_force(force);
-  return matrices;
-}
-
 void add_loads_on_rigid(const RailVehicleScene& v, RunningLoads& loads) {
-  const SteadyRunning steady = steady_running(v.runner, matrices_of(v), v.contact, v.speed);
+  const SteadyRunning steady = steady_running(v.runner, loaded_matrices(v), v.contact, v.speed);
   const auto forces = wheel_forces(v.runner, v.contact, v.speed, steady);
   std::size_t set = 0;
   for (std::size_t b = 0; b < v.runner.bodies.size(); ++b) {
@@ -83,7 +76,7 @@ std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
   std::vector<RunningMode> all;
   for (std::size_t i = 0; i < rails.size(); ++i) {
     const RailVehicleScene& v = scene.rail_vehicles[i];
-    const RunnerMatrices m = matrices_of(v);
+    const RunnerMatrices m = loaded_matrices(v);
     const SteadyRunning steady = steady_running(v.runner, m, v.contact, speed, rails[i].rails);
     const std::vector<RunningMode> own =
         running_modes(linear_running(v.runner, m, v.contact, speed, steady, rails[i]));
@@ -101,7 +94,7 @@ std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double
   for (std::size_t i = 0; i < rails.size(); ++i) {
     const RailVehicleScene& v = scene.rail_vehicles[i];
     const auto own =
-        critical_running_speed(v.runner, matrices_of(v), v.contact, from, to, rails[i]);
+        critical_running_speed(v.runner, loaded_matrices(v), v.contact, from, to, rails[i]);
     if (own && (!least || own->speed < least->speed)) least = own;
   }
   return least;

@@ -204,6 +204,9 @@ TraceNames names_of(const Scene& scene, std::vector<std::string> track_sensors) 
       names.wheels.push_back(fmt::format("{}.wheel_{}", vehicle.name, i + 1));
   for (const RailVehicleScene& vehicle : scene.rail_vehicles) {
     names.runners.push_back(vehicle.name);
+    names.rods.insert(names.rods.end(), vehicle.rods.begin(), vehicle.rods.end());
+    names.bump_stops.insert(names.bump_stops.end(), vehicle.bump_stops.begin(),
+                            vehicle.bump_stops.end());
     for (const std::string& set : vehicle.wheelsets) {
       names.runner_wheelsets.push_back(set);
       names.runner_wheels.insert(names.runner_wheels.end(), {set + "_left", set + "_right"});

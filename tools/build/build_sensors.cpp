@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Core>
 #include <array>
 #include <initializer_list>
 #include <optional>
@@ -112,20 +113,42 @@ void add_point_in_space(const std::string& name, const RailVehicleSensor& sensor
 }
 
 /// The motions of a rail vehicle's bodies other than wheelsets, which have columns of their own.
-void add_bodies(const RailVehicleScene& vehicle, std::size_t index, Sensors& sensors) {
+void add_bodies(const RailVehicleScene& vehicle, const RailVehicleScene::Part& part,
+                std::size_t index, Sensors& sensors) {
   constexpr const char* kNames[kMotions] = {"x_m",      "y_m",       "z_m",
                                             "roll_rad", "pitch_rad", "yaw_rad"};
-  for (std::size_t b = 0; b < vehicle.runner.bodies.size(); ++b) {
+  for (std::size_t b = part.first; b < part.first + part.bodies; ++b) {
     const RunnerBody& body = vehicle.runner.bodies[b];
     if (body.is_wheelset()) continue;
     for (int k = 1; k < kMotions; ++k) {  // x is prescribed
       TrackSensor sensor{.displacement = 1.};
       sensor.runner = {
           RunnerSum::Of::rail_vehicle, index, {{kMotions * static_cast<int>(b) + k, 1.}}};
-      sensors.columns.push_back(fmt::format("{}.{}.{}", vehicle.name, body.name, kNames[k]));
+      sensors.columns.push_back(fmt::format("{}.{}.{}", part.name, body.name, kNames[k]));
       sensors.track_sensors.push_back(std::move(sensor));
     }
   }
+}
+
+/// The tension of a coupler by its elongation. Rigid rods have columns of their own.
+void add_coupler(const RailVehicleScene& vehicle, const RunnerElement& element, std::size_t index,
+                 Sensors& sensors) {
+  const Eigen::VectorXd row = elongation(vehicle.runner, element);
+  TrackSensor sensor{.rest = element.preload[0],
+                     .displacement = element.stiffness[0],
+                     .velocity = element.damping[0]};
+  sensor.runner = {RunnerSum::Of::rail_vehicle, index, {}};
+  for (Eigen::Index k = 0; k < row.size(); ++k)
+    if (row[k] != 0.) sensor.runner->parts.push_back({static_cast<int>(k), row[k]});
+  sensors.columns.push_back(element.name + ".force_n");
+  sensors.track_sensors.push_back(std::move(sensor));
+}
+
+void add_in_space(const RailVehicleScene& vehicle, std::size_t index, Sensors& sensors) {
+  for (const RailVehicleScene::Part& part : vehicle.parts)
+    add_bodies(vehicle, part, index, sensors);
+  for (const std::size_t e : vehicle.couplers)
+    add_coupler(vehicle, vehicle.runner.elements[e], index, sensors);
 }
 
 void add_point(const std::string& name, const Point& point, Sensors& sensors) {
@@ -243,7 +266,7 @@ Sensors sensors_of(const Scene& scene, const Track& track, const RailSections& s
   Sensors sensors;
   for (std::size_t i = 0; i < scene.vehicles.size(); ++i) add_bodies(scene.vehicles[i], i, sensors);
   for (std::size_t i = 0; i < scene.rail_vehicles.size(); ++i)
-    add_bodies(scene.rail_vehicles[i], i, sensors);
+    add_in_space(scene.rail_vehicles[i], i, sensors);
   const int behind = scene.track.endless ? bays_behind(scene) : 0;
   for (SensorScene sensor : scene.sensors) {
     move_on(sensor, behind, track);

@@ -23,6 +23,10 @@ struct ColumnNames {
         return names.runner_wheelsets;
       case ColumnOf::runner:
         return names.runners;
+      case ColumnOf::rod:
+        return names.rods;
+      case ColumnOf::bump_stop:
+        return names.bump_stops;
       case ColumnOf::external_wheel:
         return names.external_wheels;
       case ColumnOf::sensor:

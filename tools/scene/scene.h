@@ -166,10 +166,18 @@ struct VehicleScene : RunningVehicle {
   std::vector<WheelTread> treads;
 };
 
-/// A vehicle in space on both rails.
+/// A vehicle in space on both rails, or a train of several that are coupled.
 struct RailVehicleScene : RailVehicle {
-  std::string name;
+  std::string name;  // of the first
+  struct Part {
+    std::string name;           // of its [[vehicle]]
+    std::size_t first, bodies;  // among those of the runner
+  };
+  std::vector<Part> parts;
   std::vector<std::string> wheelsets;  // NAME.BODY; their wheels are NAME.BODY_left and _right
+  std::vector<std::string> rods;       // of rigid rods, in the order of the runner's elements
+  std::vector<std::string> bump_stops;
+  std::vector<std::size_t> couplers;  // elements along a line whose force is traced
 };
 
 /// The speed of largest magnitude of a load, a wheelset or a vehicle, m/s.

@@ -154,8 +154,9 @@ LoadScene read_load(const Table& t, const Scene& scene) {
 void read_guide(const Table& wheelset, WheelsetScene& w) {
   const std::optional<Table> t = wheelset.table_if("guide");
   if (!t) return;
-  const bool baumgarte = t->choice("method", {"augmented_lagrangian", "baumgarte"}, 0) == 1;
-  w.guide = baumgarte ? Guide::baumgarte : Guide::augmented_lagrangian;
+  w.guide = Guide{static_cast<std::int32_t>(
+      t->choice("method", {"augmented_lagrangian", "baumgarte", "elimination"}, 0))};
+  const bool baumgarte = w.guide == Guide::baumgarte;
   w.cap = static_cast<int>(t->integer("cap", 1, 1000, w.cap));
   w.tolerance = t->number("tolerance", between(1e-15, 1e-2), w.tolerance);
   if (!baumgarte && (t->has("alpha_per_s") || t->has("beta_per_s")))
@@ -283,6 +284,22 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
   return static_cast<int>(inputs.size()) - 1;
 }
 
+namespace {
+
+/// The names of a vehicle in space, its wheelsets and its rigid rods.
+void claim_in_space(const Table& t, const std::string& name, const Scene& scene, NameBook& names) {
+  for (const RailVehicleScene& own : scene.rail_vehicles)
+    for (const RailVehicleScene::Part& part : own.parts) {
+      if (part.name != name) continue;
+      names.claim(t, "name", name);
+      for (const auto* all : {&own.wheelsets, &own.rods, &own.bump_stops})
+        for (const std::string& of_part : *all)
+          if (of_part.starts_with(name + ".")) names.claim(t, "name", of_part);
+    }
+}
+
+}  // namespace
+
 void claim_names(const Table& root, const Scene& scene, NameBook& names) {
   if (!root.is_faultless()) return;  // entries of a list may be missing
   NameBook wheelsets;  // a sensor may have the name of a wheelset, which has no columns of its own
@@ -304,12 +321,9 @@ void claim_names(const Table& root, const Scene& scene, NameBook& names) {
     const std::string name = t.string("name");
     while (vehicle < scene.vehicles.size() && scene.vehicles[vehicle].table == name)
       names.claim(t, "name", scene.vehicles[vehicle++].name);
-    for (const RailVehicleScene& own : scene.rail_vehicles) {
-      if (own.name != name) continue;
-      names.claim(t, "name", own.name);
-      for (const std::string& wheelset : own.wheelsets) names.claim(t, "name", wheelset);
-    }
+    claim_in_space(t, name, scene, names);
   }
+  for (const Table& t : root.tables("coupler")) names.claim(t, "name", t.string("name"));
   for (std::size_t i = 0; i < scene.sensors.size(); ++i)
     names.claim(sensors[i], "name", scene.sensors[i].name);
 }

@@ -85,8 +85,12 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   v.name = checked_name(t, "name", t.string("name"));
   if (!t.has("file")) static_cast<void>(t.string("type"));
   v.runner = read_runner_of(t);
+  v.parts = {{v.name, 0, v.runner.bodies.size()}};
   for (const RunnerBody& body : v.runner.bodies)
     if (body.is_wheelset()) v.wheelsets.push_back(v.name + "." + body.name);
+  for (const RunnerElement& element : v.runner.elements)
+    if (element.kind == RunnerElement::Kind::rod) v.rods.push_back(v.name + "." + element.name);
+  for (const RunnerStop& stop : v.runner.stops) v.bump_stops.push_back(v.name + "." + stop.name);
   v.contact = read_rolling(root, scene, first_radius(v.runner));
   v.start = t.number("start_m", between(-1e6, 1e6), 0.0);
   const SpeedScene speed = read_speed(t, std::nullopt);

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "scene/scene.h"
@@ -83,6 +84,15 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
                                    std::vector<InputScene>& inputs);
 /// Bodies, wheelsets and elements of a rail vehicle, from its file or from its own table.
 Runner read_runner(const Table& t);
+/// An element or a bump stop by its type, without its name and its bodies.
+using RunnerPart = std::variant<RunnerElement, RunnerStop>;
+RunnerPart read_runner_part(const Table& t);
+void add_part(Runner& runner, const RunnerElement& element);
+void add_part(Runner& runner, const RunnerStop& stop);
+/// The name of kGround where two bodies are named.
+inline constexpr const char* kGroundName = "ground";
+/// [[coupler]] between vehicles in space, which are one afterwards, or between one and the ground.
+void read_couplers(const Table& root, std::vector<RailVehicleScene>& vehicles);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
 std::vector<WheelTread> read_wheel_treads(const Table& t, const Scene& scene,
                                           const VehicleScene& own);

@@ -47,11 +47,20 @@ VehicleSensor read_upright_sensor(const Table& t, const Scene& scene, std::size_
   return sensor;
 }
 
+/// A vehicle of a train.
+struct InSpace {
+  std::size_t train;
+  RailVehicleScene::Part part;
+};
+
 /// A point of a vehicle's body in space.
-RailVehicleSensor read_sensor_in_space(const Table& t, const Scene& scene, std::size_t vehicle) {
-  const std::size_t body = read_sensed_body(t, body_names(scene.rail_vehicles[vehicle].runner));
-  return {vehicle,
-          body,
+RailVehicleSensor read_sensor_in_space(const Table& t, const Scene& scene, const InSpace& of) {
+  const std::vector<std::string> bodies = body_names(scene.rail_vehicles[of.train].runner);
+  const auto first = bodies.begin() + static_cast<std::ptrdiff_t>(of.part.first);
+  const std::size_t body =
+      read_sensed_body(t, {first, first + static_cast<std::ptrdiff_t>(of.part.bodies)});
+  return {of.train,
+          of.part.first + body,
           {t.number("x_m", kFromMiddle, 0.0), t.number("y_m", kFromMiddle, 0.0),
            t.number("z_m", kFromMiddle, 0.0)}};
 }
@@ -59,13 +68,18 @@ RailVehicleSensor read_sensor_in_space(const Table& t, const Scene& scene, std::
 void read_vehicle_sensor(const Table& t, const Scene& scene, SensorScene& sensor) {
   std::vector<std::string> vehicles;
   for (const VehicleScene& v : scene.vehicles) vehicles.push_back(v.name);
-  for (const RailVehicleScene& v : scene.rail_vehicles) vehicles.push_back(v.name);
+  std::vector<InSpace> in_space;
+  for (std::size_t i = 0; i < scene.rail_vehicles.size(); ++i)
+    for (const RailVehicleScene::Part& part : scene.rail_vehicles[i].parts) {
+      vehicles.push_back(part.name);
+      in_space.push_back({i, part});
+    }
   const std::size_t vehicle = index_of(t, "vehicle", t.string("vehicle"), vehicles),
                     upright = scene.vehicles.size();
   if (vehicle < upright)
     sensor.on = read_upright_sensor(t, scene, vehicle);
   else
-    sensor.on = read_sensor_in_space(t, scene, vehicle - upright);
+    sensor.on = read_sensor_in_space(t, scene, in_space[vehicle - upright]);
 }
 
 RailSensor read_rail_sensor(const Table& t, const Scene& scene) {

@@ -220,6 +220,7 @@ std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
     else
       read_vehicle(t, scene, vehicles, inputs);
   });
+  read_couplers(root, rail_vehicles);
   return vehicles;
 }
 

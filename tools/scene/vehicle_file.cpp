@@ -58,8 +58,9 @@ int runner_body(const Table& t, const Runner& runner, const BogiePlace& place,
   for (const std::string& wanted : own)
     for (std::size_t b = 0; b < runner.bodies.size(); ++b)
       if (runner.bodies[b].name == wanted) return static_cast<int>(b);
-  std::vector<std::string> names;
-  for (const RunnerBody& b : runner.bodies) names.push_back(b.name);
+  if (name == kGroundName) return kGround;
+  std::vector<std::string> names = body_names(runner);
+  names.emplace_back(kGroundName);
   t.refuse("between", "E-VEHICLE-20",
            fmt::format("\"{}\" is not a body or wheelset of this vehicle; expected one of {}", name,
                        fmt::join(names, ", ")));
@@ -91,6 +92,13 @@ RunnerElement read_line(const Table& t, bool stiff, bool damped, bool series) {
 RunnerElement read_traction_rod(const Table& t) {
   RunnerElement e = read_line(t, true, false, false);
   e.damping[0] = t.number("damping_n_s_per_m", kDampingRange, 0.0);
+  return e;
+}
+
+RunnerElement read_rigid_rod(const Table& t) {
+  RunnerElement e = read_line(t, false, false, false);
+  e.kind = RunnerElement::Kind::rod;
+  e.preload[0] = t.number("preload_n", kPreloadRange, 0.0);
   return e;
 }
 
@@ -142,7 +150,7 @@ RunnerElement read_anti_roll_bar(const Table& t) {
 enum { kBumpStop = 8 };
 std::size_t element_type(const Table& t) {
   return t.choice("type", {"spring", "damper", "spring_damper", "maxwell", "traction_rod",
-                           "bushing", "shear_spring", "anti_roll_bar", "bump_stop"});
+                           "bushing", "shear_spring", "anti_roll_bar", "bump_stop", "rigid_rod"});
 }
 
 RunnerElement read_typed_element(const Table& t, std::size_t type) {
@@ -161,8 +169,10 @@ RunnerElement read_typed_element(const Table& t, std::size_t type) {
       return read_bushing(t);
     case 6:
       return read_shear_spring(t);
-    default:
+    case 7:
       return read_anti_roll_bar(t);
+    default:
+      return read_rigid_rod(t);
   }
 }
 
@@ -182,12 +192,17 @@ RunnerElement placed(RunnerElement e, const BogiePlace& place) {
   return e;
 }
 
-RunnerStop read_stop(const Table& t, const BogiePlace& place) {
+RunnerStop read_stop(const Table& t) {
   RunnerStop s{};
-  s.point = place.at(three_numbers(t, "point_m", kPlaceRange));
+  s.point = three_numbers(t, "point_m", kPlaceRange);
   s.axis = static_cast<int>(t.choice("axis", {"x", "y", "z"}));
   const auto [below, above] = t.number_or_pair("clearance_m", between(0.0, 10.0));
   s.law = {below, above, t.number("stiffness_n_per_m", above_upto(0.0, 1e13))};
+  return s;
+}
+
+RunnerStop placed(RunnerStop s, const BogiePlace& place) {
+  s.point = place.at(s.point);
   if (place.turned && s.axis != 2) std::swap(s.law.below, s.law.above);
   return s;
 }
@@ -199,11 +214,16 @@ RunnerStop mirrored(RunnerStop s) {
   return s;
 }
 
+/// Place across the vehicle at which an element acts, m.
+double side_of(const RunnerElement& e) { return e.point_a[1] != 0. ? e.point_a[1] : e.point_b[1]; }
+double side_of(const RunnerStop& s) { return s.point[1]; }
+
 /// Adds an element or a stop, and on request the same on the other side.
-/// @param y, add  of its point; adds one of a name
+/// @param add  adds one of a name
 template <typename Part, typename Add>
-void add_mirrored(const Table& t, const Part& part, double y, const Add& add) {
+void add_mirrored(const Table& t, const Part& part, const Add& add) {
   if (!t.boolean("mirror", false)) return add(part, "");
+  const double y = side_of(part);
   if (y == 0.)
     t.refuse("mirror", "E-VEHICLE-22",
              "mirror = true, but the element lies in the middle of the vehicle; expected a point "
@@ -213,27 +233,17 @@ void add_mirrored(const Table& t, const Part& part, double y, const Add& add) {
 }
 
 void read_runner_element(const Table& t, const BogiePlace& place, Runner& runner) {
-  const std::size_t type = element_type(t);
-  RunnerStop stop{};
-  RunnerElement e{};
-  if (type == kBumpStop)
-    stop = read_stop(t, place);
-  else
-    e = placed(read_typed_element(t, type), place);
+  const RunnerPart part = read_runner_part(t);
   const std::string name = checked_name(t, "name", t.string("name")) + place.suffix;
   const std::vector<std::string> between = t.strings("between", 2, 2);
   if (between.size() != 2) return;  // its error is kept
-  const auto add_to = [&](auto& parts) {
-    return [&](auto part, const char* side) {
-      part.a = runner_body(t, runner, place, between[0]);
-      part.b = runner_body(t, runner, place, between[1]);
-      part.name = name + side;
-      parts.push_back(part);
-    };
+  const auto add = [&](auto one, const char* side) {
+    one.a = runner_body(t, runner, place, between[0]);
+    one.b = runner_body(t, runner, place, between[1]);
+    one.name = name + side;
+    add_part(runner, one);
   };
-  if (type == kBumpStop) return add_mirrored(t, stop, stop.point[1], add_to(runner.stops));
-  const double y = e.point_a[1] != 0. ? e.point_a[1] : e.point_b[1];
-  add_mirrored(t, e, y, add_to(runner.elements));
+  std::visit([&](const auto& own) { add_mirrored(t, placed(own, place), add); }, part);
 }
 
 void read_runner_bodies(const Table& t, const BogiePlace& place, Runner& runner) {
@@ -258,6 +268,15 @@ std::vector<BogiePlace> read_bogie_places(const Table& bogie) {
 }
 
 }  // namespace
+
+RunnerPart read_runner_part(const Table& t) {
+  const std::size_t type = element_type(t);
+  if (type == kBumpStop) return read_stop(t);
+  return read_typed_element(t, type);
+}
+
+void add_part(Runner& runner, const RunnerElement& element) { runner.elements.push_back(element); }
+void add_part(Runner& runner, const RunnerStop& stop) { runner.stops.push_back(stop); }
 
 Runner read_runner(const Table& t) {
   Runner runner;

@@ -42,9 +42,13 @@ Cost runners_cost(const Model& model) {
     const Cost solved =
         model.lines > 0 ? Cost{} : newton_cost(2LL * own.wheelsets, own.stops, meets);
     const std::int64_t products = model.form == Form::condensed ? 3 : 2;
+    const std::int64_t motions = kMotions * std::int64_t{own.wheelsets},
+                       held = constraint_count(own);
     sum = sum + work(2 * products * n * n + 20 * n, products * n * n + 12 * n) +
-          work(2 * n * meets + 8 * n * own.stops, n * meets + n + 8 * n * own.stops) + solved +
-          3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
+          work(2 * n * meets + 8 * n * own.stops, n * meets + n + 8 * n * own.stops) +
+          work(held * (2 * n + 2 * motions + (2 * n + 2) * own.stops),
+               held * (2 * n + motions + 2 * n * own.stops)) +
+          solved + 3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
           own.wheelsets * (branching(40, 40) + model.signals * kSignal);
   }
   return sum;
@@ -69,8 +73,9 @@ Cost publish_runners_cost(const Model& model) {
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
     const std::int64_t n = own.size;
-    sum = sum + work(4 * n + 10, 4 * n) + (1 + own.wheelsets) * table_cost(own.travel.rows) +
-          own.wheelsets * branching(40, 40);
+    const std::int64_t rows = own.rods + own.stops;
+    sum = sum + rows * (work(2 * n, 2 * n) + branching(10, 5)) +
+          own.wheelsets * table_cost(own.travel.rows) + own.wheelsets * branching(40, 40);
   }
   return sum;
 }

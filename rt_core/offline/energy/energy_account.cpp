@@ -34,9 +34,7 @@ Eigen::VectorXd wheel_forces_on(const Model& model, const VehicleModel& v, const
          Eigen::Map<const Eigen::VectorXd>(force, v.wheels);
 }
 
-bool is_held(const WheelsetModel& w, int k) {
-  return w.guide == Guide::augmented_lagrangian && (k == 0 || k == 5);
-}
+bool is_held(const WheelsetModel& w, int k) { return is_projected(w.guide) && (k == 0 || k == 5); }
 
 }  // namespace
 

@@ -41,7 +41,7 @@ struct EnergyFlow {
 /// The carriers that move loads and wheels along supply the change of residual energy due to the
 /// change of place (residual_work). A guide does the work that its wheelset's motion along x needs,
 /// from the acceleration of the state by either method:
-///   m g dx - F dx, or d(m v^2 / 2) - F dx if the velocity is projected (augmented Lagrangian),
+///   m g dx - F dx, or d(m v^2 / 2) - F dx if the velocity is projected (not by Baumgarte),
 /// F the other forces along x. Among these a contact does f da, a the approach, by the motion along
 /// x alone. The multiplier is not taken, for its round-off is the penalty times that of x; the
 /// step's own normal is not taken, as it is up to 1e-4 rad off that of a squeezed railhead, and at

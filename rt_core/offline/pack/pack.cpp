@@ -10,6 +10,7 @@
 #include "offline/cost/cost.h"
 #include "offline/math/refuse.h"
 #include "offline/pack/released.h"
+#include "online/contact/wheel_seat.h"
 #include "online/math/newton.h"
 #include "online/model/external_input.h"
 
@@ -197,12 +198,21 @@ std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce*
   return static_cast<std::int32_t>(forces.size());
 }
 
+namespace {
+
+/// The point on a head's side, y across its section, that lies kGaugeDepth below the head's top as
+/// the rail leans.
+SectionPoint gauge_face(const Cant& cant, const Railhead& head, double y) {
+  const double height = crown_top(cant, head.top_z, head.crown_radius).height - kGaugeDepth;
+  return {y, (height - cant.sine * y) / cant.cosine};
+}
+
+}  // namespace
+
 /// Adds flanges to the last wheelset. `clearance` further in, each face would touch the gauge face.
 void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
                              const std::array<Railhead, 2>& heads) {
   const Flange& flange = *wheelset.flange;
-  if (track.cant != 0.)
-    refuse("E-PACK-15", "a wheelset has flanges, but the rails have cant; expected rail.cant = 0");
   FlangeModel& packed = model_.flange[model_.flanges++];
   if (contact_count(model_) > kMaxWheels)
     refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
@@ -220,9 +230,13 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
   for (const int rail : {0, 1}) {
     const Railhead& head = heads[static_cast<std::size_t>(rail)];
     const double inward = rail == 0 ? -1. : 1.;
-    packed.gauge[rail][0] = inward * head.gauge_half_width;
-    packed.gauge[rail][1] = head.top_z - kGaugeDepth;
-    packed.point[rail][0] = model_.rail_y[rail] + packed.gauge[rail][0] + inward * flange.clearance;
+    const SectionPoint gauge = gauge_face(model_.cant[rail], head, inward * head.gauge_half_width);
+    packed.gauge[rail][0] = gauge.y;
+    packed.gauge[rail][1] = gauge.z;
+    const double own[3] = {0., gauge.y, gauge.z};
+    double in_track[3];
+    to_track(model_.cant[rail], own, in_track);
+    packed.point[rail][0] = model_.rail_y[rail] + in_track[1] + inward * flange.clearance;
     packed.point[rail][1] = -(wheelset.radius + kGaugeDepth);
   }
 }

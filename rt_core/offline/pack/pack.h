@@ -206,7 +206,10 @@ struct PackedLine {
   ModeGroups modes;                     // of a condensed line
 };
 
-/// A rail vehicle as it was packed; `rest` has its forces of tables at t = 0 too.
+/// Matrices of a rail vehicle under its weight and its forces of tables at t = 0.
+RunnerMatrices loaded_matrices(const RailVehicle& vehicle);
+
+/// A rail vehicle as it was packed, with its loaded matrices.
 struct PackedRunner {
   RailVehicle vehicle;
   RunnerMatrices matrices;
@@ -216,6 +219,13 @@ struct PackedRunner {
 struct SuspendedMatrices {
   Eigen::VectorXd mass, rest;
   Eigen::MatrixXd damping, stiffness;
+  Eigen::MatrixXd held;  // [n][constraints] rows, as columns, that stay 0
+};
+
+/// How bodies respond to forces in a step.
+struct SuspendedResponse {
+  Eigen::MatrixXd inverse;   // [n][n] of the coordinates, symmetric to the last bit
+  Eigen::MatrixXd reaction;  // [constraints][n] of the constraints' forces along their rows
 };
 
 /// Column by column.
@@ -277,10 +287,8 @@ class PackedModel {
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
-  /// @param is_held  the first coordinate has its place from the travel
-  /// @returns the step's inverse, [size][size]
-  Eigen::MatrixXd add_suspended(const SuspendedMatrices& m, bool is_held,
-                                const std::vector<OuterForce>& forces, SuspendedModel& packed);
+  SuspendedResponse add_suspended(const SuspendedMatrices& m, const std::vector<OuterForce>& forces,
+                                  SuspendedModel& packed);
   [[noreturn]] void refuse_many_coordinates() const;
   TravelModel keep_travel(double speed, const std::vector<double>& speeds);
   void add_weight(const Track& track, const PackOptions& options);

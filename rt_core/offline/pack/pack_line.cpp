@@ -76,27 +76,30 @@ std::pair<std::complex<double>, std::complex<double>> constant_and_linear(std::c
 namespace {
 
 /// A table of more numbers than this is not made.
-constexpr std::int64_t kMostTabled = 1 << 18;
+constexpr std::int64_t kMostTabled = 1 << 19;
 
 /// Whether a table between the rows of a line takes less work for a pair of wheels than its modes,
 /// if a wheel's row has `carried` of them.
 bool has_table(const Modal& modal, std::int64_t carried) {
-  return std::int64_t{modal.rows} * (modal.rows + 1) / 2 <= kMostTabled &&
-         carried * carried <= modal.count;
+  return std::int64_t{modal.rows} * modal.rows <= kMostTabled && carried * carried <= modal.count;
 }
 
 /// Modal::between.
 std::vector<double> table_between(const Modal& modal) {
   const auto size = static_cast<std::size_t>(modal.count);
-  std::vector<double> re(size), im(size), table;
+  const auto rows = static_cast<std::size_t>(modal.rows);
+  std::vector<double> re(size), im(size), table(rows * rows);
   const auto shape = [&](std::int32_t row) {
     const double* at = modal.shape + std::ptrdiff_t{2} * row * modal.count;
     return Complex{at, at + modal.count};
   };
   for (std::int32_t a = 0; a < modal.rows; ++a) {
     modes_multiply(modal.held_force, shape(a), re.data(), im.data(), modal.count);
-    for (std::int32_t b = 0; b <= a; ++b)
-      table.push_back(modes_dot(shape(b), {re.data(), im.data()}, modal.count));
+    for (std::int32_t b = 0; b <= a; ++b) {
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      table[i * rows + j] = table[j * rows + i] =
+          modes_dot(shape(b), {re.data(), im.data()}, modal.count);
+    }
   }
   return table;
 }
@@ -143,8 +146,10 @@ void PackedModel::keep_tables(const Line& line, LineModel& packed, const Number&
     std::vector<std::int32_t> unknowns(9 * table.size(), -1);
     for (std::size_t node = 0; node < table.size(); ++node)
       for (std::size_t k = 0; k < 9 && is_met_[node / 3]; ++k)
-        if (table[node][k] >= 0 && (moves_along_ || k % 3 != 0))
+        if (table[node][k] >= 0 && (moves_along_ || k % 3 != 0)) {
           unknowns[9 * node + k] = static_cast<std::int32_t>(number(table[node][k], k));
+          if (unknowns[9 * node + k] >= 0) packed.components |= 1 << k;
+        }
     return keep(std::move(unknowns));
   };
   packed.unknown_of[0] = packed.unknown_of[1] = keep_table(first_table(line));

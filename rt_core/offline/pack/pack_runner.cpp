@@ -8,16 +8,20 @@ namespace railstep {
 
 namespace {
 
-/// The matrices with a coordinate without mass for each damper that is in series with a spring.
+/// The matrices with a coordinate without mass for each damper that is in series with a spring. The
+/// first body's x is held, then the lengths of the rods.
 SuspendedMatrices extended(const RunnerMatrices& m) {
   const Eigen::Index n = m.mass.size(), series = static_cast<Eigen::Index>(m.series.size());
   SuspendedMatrices e{Eigen::VectorXd::Zero(n + series), Eigen::VectorXd::Zero(n + series),
                       Eigen::MatrixXd::Zero(n + series, n + series),
-                      Eigen::MatrixXd::Zero(n + series, n + series)};
+                      Eigen::MatrixXd::Zero(n + series, n + series),
+                      Eigen::MatrixXd::Zero(n + series, 1 + m.rods.cols())};
   e.mass.head(n) = m.mass;
   e.rest.head(n) = m.rest;
   e.damping.topLeftCorner(n, n) = m.damping;
   e.stiffness.topLeftCorner(n, n) = m.stiffness;
+  e.held(0, 0) = 1.;
+  e.held.topRightCorner(n, m.rods.cols()) = m.rods;
   for (Eigen::Index i = 0; i < series; ++i) {
     const RunnerMatrices::Series& own = m.series[static_cast<std::size_t>(i)];
     Eigen::VectorXd row = Eigen::VectorXd::Zero(n + series);
@@ -70,6 +74,16 @@ void add_stops(const RunnerMatrices& m, Model& model, RunnerModel& packed) {
   }
 }
 
+void add_rods(const RunnerMatrices& m, Model& model, RunnerModel& packed) {
+  packed.first_rod = model.runner_rods;
+  packed.rods = static_cast<std::int32_t>(m.rods.cols());
+  model.runner_rods += packed.rods;
+  if (packed.rods > kMaxRodsOfRunner || model.runner_rods > kMaxRunnerRods)
+    refuse("E-PACK-59", "rail vehicles have more rigid rods than a model takes; expected at most " +
+                            std::to_string(kMaxRodsOfRunner) + " of one and " +
+                            std::to_string(kMaxRunnerRods) + " of all");
+}
+
 void add_wheelsets(const Runner& runner, Model& model, RunnerModel& packed) {
   packed.first_wheelset = model.runner_wheelsets;
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
@@ -89,6 +103,13 @@ void add_wheelsets(const Runner& runner, Model& model, RunnerModel& packed) {
 
 }  // namespace
 
+RunnerMatrices loaded_matrices(const RailVehicle& vehicle) {
+  RunnerMatrices matrices = runner_matrices(vehicle.runner, vehicle.gravity);
+  for (const OuterForce& force : vehicle.forces)
+    matrices.rest[force.direction] += first_force(force);
+  return matrices;
+}
+
 void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   if (track.rails != 2)
     refuse("E-PACK-52", "a rail vehicle in space runs on one rail; expected a track of two");
@@ -97,7 +118,7 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
            "there are more rail vehicles in space than a model takes; expected at "
            "most " +
                std::to_string(kMaxRunners));
-  RunnerMatrices matrices = runner_matrices(vehicle.runner, vehicle.gravity);
+  const RunnerMatrices matrices = runner_matrices(vehicle.runner, vehicle.gravity);
   const SuspendedMatrices m = extended(matrices);
   const auto n = static_cast<std::int32_t>(m.mass.size());
   if (n > kMaxRunnerUnknowns)
@@ -110,22 +131,24 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   packed.bodies = static_cast<std::int32_t>(vehicle.runner.bodies.size());
   add_wheelsets(vehicle.runner, model_, packed);
   add_stops(matrices, model_, packed);
+  add_rods(matrices, model_, packed);
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
   packed.contact = vehicle.contact;
-  const Eigen::MatrixXd inverse = add_suspended(m, true, vehicle.forces, packed);
+  SuspendedResponse step = add_suspended(m, vehicle.forces, packed);
   const Eigen::MatrixXd stops = stop_rows(matrices, n);
   const Eigen::MatrixXd compliance =
-      model_.scheme.theta * interface_compliance(packed, inverse, stops);
+      model_.scheme.theta * interface_compliance(packed, step.inverse, stops);
   packed.stop_row = keep(column_by_column(stops));
-  packed.stop_moved = keep(column_by_column(inverse * stops));
+  packed.stop_moved = keep(column_by_column(step.inverse * stops));
+  packed.rod_row = keep(column_by_column(m.held.rightCols(packed.rods)));
+  step.reaction.bottomRows(packed.rods) *= -1.;  // a tension acts against an elongation
+  packed.reaction = keep(column_by_column(step.reaction.transpose()));
   packed.compliance = keep(column_by_column(compliance));
   ++model_.runners;
   for (const int rail : {0, 1})
     packed.load_point[rail] = model_.lines > 0 ? load_point_of_wheel(rail) : 0;
-  for (const OuterForce& force : vehicle.forces)
-    matrices.rest[force.direction] += first_force(force);
-  runners_.push_back({vehicle, matrices});
+  runners_.push_back({vehicle, loaded_matrices(vehicle)});
 }
 
 void PackedModel::refuse_many_coordinates() const {

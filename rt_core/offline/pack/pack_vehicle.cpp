@@ -95,9 +95,10 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   packed.wheels = wheels;
   packed.start = model_.endless.origin + vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
-  const Eigen::MatrixXd inverse = add_suspended(
-      {m.mass.diagonal(), -m.weight, m.damping, m.stiffness}, false, vehicle.forces, packed);
-  const Eigen::MatrixXd response = inverse * m.wheels.transpose();
+  const SuspendedResponse step =
+      add_suspended({m.mass.diagonal(), -m.weight, m.damping, m.stiffness, Eigen::MatrixXd(n, 0)},
+                    vehicle.forces, packed);
+  const Eigen::MatrixXd response = step.inverse * m.wheels.transpose();
   const Eigen::MatrixXd compliance = m.wheels * response;
   packed.row = keep(column_by_column(m.wheels.transpose()));
   packed.response = keep(column_by_column(response));

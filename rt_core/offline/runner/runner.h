@@ -17,6 +17,9 @@ struct RunnerBody {
   [[nodiscard]] bool is_wheelset() const { return radius > 0.; }
 };
 
+/// The frame that goes along the track with the vehicle, in place of a body.
+inline constexpr int kGround = -1;
+
 /// A linear element of a suspension between two bodies. Deflections count from the loaded vehicle
 /// at rest on straight, level track.
 ///
@@ -24,23 +27,24 @@ struct RunnerBody {
 /// halfway between the points at which both bodies meet, which coincide at rest. So the stiffness
 /// is symmetric and momentum is kept, with preloads too.
 /// `line`: a spring along the line between a point of each body; only entry 0 counts.
+/// `rod`: a rigid rod along that line, without stiffness or damping. It carries what it has to.
 struct RunnerElement {
-  enum class Kind { mid_frame, line };
+  enum class Kind { mid_frame, line, rod };
   std::string name;
   Kind kind;
-  int a, b;                                // bodies
+  int a, b;                                // bodies; one of them may be kGround
   std::array<double, 3> point_a, point_b;  // at rest, as RunnerBody::centre
   std::array<double, 6> stiffness{};       // N/m, N/m, N/m, N m/rad, N m/rad, N m/rad
   std::array<double, 6> damping{};         // N s/m and N m s/rad
   std::array<double, 6> series{};          // of a spring in series with the damper; 0: it is rigid
-  std::array<double, 6> preload{};         // force on `a` at rest, N and N m; of a line its tension
+  std::array<double, 6> preload{};  // force on `a` at rest, N and N m; of a line or rod its tension
 };
 
 /// A bump stop between two bodies: a spring along an axis of the track that presses once body `a`
 /// has moved against `b` by more than a gap.
 struct RunnerStop {
   std::string name;
-  int a, b;                     // bodies
+  int a, b;                     // bodies; one of them may be kGround
   std::array<double, 3> point;  // at rest, as RunnerBody::centre
   int axis;                     // 0 x, 1 y, 2 z
   StopModel law;

@@ -106,13 +106,30 @@ bool is_spin(const Runner& runner, Index k) {
          runner.bodies[static_cast<std::size_t>(k / kMotions)].is_wheelset();
 }
 
+/// Newton's step of all coordinates but the first, then of the tensions of rods.
+VectorXd step_with_rods(const MatrixXd& J, const MatrixXd& rods, const VectorXd& left,
+                        const VectorXd& u) {
+  const Index n = J.rows() - 1, held = rods.cols();
+  const double scale = J.diagonal().cwiseAbs().maxCoeff();
+  MatrixXd A = MatrixXd::Zero(n + held, n + held);
+  A.topLeftCorner(n, n) = J.bottomRightCorner(n, n);
+  A.topRightCorner(n, held) = scale * rods.bottomRows(n);
+  A.bottomLeftCorner(held, n) = scale * rods.bottomRows(n).transpose();
+  VectorXd b(n + held);
+  b.head(n) = left.tail(n);
+  b.tail(held) = -scale * (rods.transpose() * u);
+  VectorXd step = A.partialPivLu().solve(b);
+  step.tail(held) *= scale;
+  return step;
+}
+
 }  // namespace
 
 SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
                              const RollingContact& contact, double speed,
                              const std::vector<RailsUnder>& rails) {
   const Index n = m.mass.size();
-  SteadyRunning s{VectorXd::Zero(n), VectorXd::Zero(n), 0.};
+  SteadyRunning s{VectorXd::Zero(n), VectorXd::Zero(n), 0., VectorXd::Zero(m.rods.cols())};
   s.displacement = first_guess(runner, m, contact, rails);
   const auto touches = [&](const SteadyRunning& tried) {
     return all_touch(runner, contact, speed, tried, rails);
@@ -124,12 +141,13 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
     const Contacts c = contacts_at(runner, contact, speed, s.displacement, s.rate, rails);
     const MatrixXd stiffness = stiffness_at(m, s.displacement);
     const VectorXd left = m.rest + c.force + stop_forces(m, s.displacement) -
-                          m.stiffness * s.displacement - m.damping * s.rate;
+                          m.stiffness * s.displacement - m.damping * s.rate - m.rods * s.tension;
     MatrixXd J = stiffness - c.by_displacement;
     for (Index k = 0; k < n; ++k)
       if (is_spin(runner, k)) J.col(k) = m.damping.col(k) - c.by_rate.col(k);
     s.resistance = -left[0];
-    const VectorXd step = J.bottomRightCorner(n - 1, n - 1).partialPivLu().solve(left.tail(n - 1));
+    const VectorXd all = step_with_rods(J, m.rods, left, s.displacement);
+    const VectorXd step = all.head(n - 1);
     const double change = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(change)) break;
     SteadyRunning next = s;
@@ -138,6 +156,7 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
       next = s;
       for (Index k = 1; k < n; ++k)
         (is_spin(runner, k) ? next.rate : next.displacement)[k] += part * step[k - 1];
+      next.tension += part * all.tail(m.rods.cols());
       if (touches(next)) break;
     }
     s = std::move(next);
@@ -202,6 +221,8 @@ void add_track(const Runner& runner, const RollingContact& contact, double speed
     own.row.conservativeResize(n + seats);
     own.row.tail(seats).setZero();
   }
+  linear.rods.conservativeResize(n + seats, Eigen::NoChange);
+  linear.rods.bottomRows(seats).setZero();
   Index seat = n;
   std::size_t set = 0;
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
@@ -232,7 +253,7 @@ LinearRunning linear_running(const Runner& runner, const RunnerMatrices& m,
   const Contacts c =
       contacts_at(runner, contact, speed, steady.displacement, steady.rate, on.rails);
   LinearRunning linear{m.mass, m.damping - c.by_rate,
-                       stiffness_at(m, steady.displacement) - c.by_displacement, m.series};
+                       stiffness_at(m, steady.displacement) - c.by_displacement, m.series, m.rods};
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     const RunnerBody& body = runner.bodies[b];
     if (!body.is_wheelset()) continue;

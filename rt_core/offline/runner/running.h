@@ -13,6 +13,7 @@ struct SteadyRunning {
   Eigen::VectorXd displacement;  // [n] of its motions; 0 for spins
   Eigen::VectorXd rate;          // [n] 0 but for spins, beyond speed / radius
   double resistance;             // force ahead that keeps the speed, N
+  Eigen::VectorXd tension;       // of each rod, N
 };
 
 /// Small motions about it, M q'' + C q' + K q + sum of row' force of `series` = 0, gyroscopic
@@ -22,6 +23,7 @@ struct LinearRunning {
   Eigen::VectorXd mass;
   Eigen::MatrixXd damping, stiffness;
   std::vector<RunnerMatrices::Series> series;
+  Eigen::MatrixXd rods;  // as of RunnerMatrices
 };
 
 /// Rails that give way under a vehicle as they stand: y, z and roll of the seats under each of its

@@ -1,6 +1,7 @@
 #include "offline/runner/stability.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -16,18 +17,28 @@ using Eigen::VectorXd;
 
 constexpr double kLeastHz = .01;
 
-/// Eigenvalues of q'' = -M^-1 (C q' + K q + row' force), force' = k (row q' - force / c), in
-/// coordinates sqrt(M) q and with forces over sqrt(k).
-Eigen::VectorXcd eigenvalues(const LinearRunning& l) {
-  const Index n = l.mass.size(), series = static_cast<Index>(l.series.size());
+/// Columns x such that q = x p has unit mass and keeps the lengths of all rods.
+MatrixXd free_motions(const LinearRunning& l) {
+  const Index n = l.mass.size();
   const VectorXd scale = l.mass.cwiseSqrt().cwiseInverse();
+  if (l.rods.cols() == 0) return scale.asDiagonal();
+  const Eigen::ColPivHouseholderQR<MatrixXd> held(scale.asDiagonal() * l.rods);
+  const MatrixXd all = held.householderQ() * MatrixXd::Identity(n, n);
+  return scale.asDiagonal() * all.rightCols(n - held.rank());
+}
+
+/// Eigenvalues of q'' = -M^-1 (C q' + K q + row' force), force' = k (row q' - force / c), in
+/// coordinates free_motions() and with forces over sqrt(k).
+Eigen::VectorXcd eigenvalues(const LinearRunning& l) {
+  const MatrixXd x = free_motions(l);
+  const Index n = x.cols(), series = static_cast<Index>(l.series.size());
   MatrixXd A = MatrixXd::Zero(2 * n + series, 2 * n + series);
   A.block(0, n, n, n).setIdentity();
-  A.block(n, 0, n, n) = -(scale.asDiagonal() * l.stiffness * scale.asDiagonal());
-  A.block(n, n, n, n) = -(scale.asDiagonal() * l.damping * scale.asDiagonal());
+  A.block(n, 0, n, n) = -(x.transpose() * l.stiffness * x);
+  A.block(n, n, n, n) = -(x.transpose() * l.damping * x);
   for (Index i = 0; i < series; ++i) {
     const RunnerMatrices::Series& s = l.series[static_cast<std::size_t>(i)];
-    const VectorXd row = std::sqrt(s.stiffness) * (scale.asDiagonal() * s.row);
+    const VectorXd row = std::sqrt(s.stiffness) * (x.transpose() * s.row);
     A.block(n, 2 * n + i, n, 1) = -row;
     A.block(2 * n + i, n, 1, n) = row.transpose();
     A(2 * n + i, 2 * n + i) = -s.stiffness / s.damping;

@@ -25,12 +25,13 @@ Matrix3d cross_matrix(const Vector3d& v) {
 
 /// One end of an element: a point of a body.
 struct End {
-  int first;  // coordinate of the body
+  int first;  // coordinate of the body; -1: it is the ground
   bool wheelset;
   Vector3d arm;  // from the body's centre to the point, m
 };
 
 End end_of(const Runner& runner, int body, const std::array<double, 3>& point) {
+  if (body == kGround) return {-1, false, Vector3d::Zero()};
   const RunnerBody& b = runner.bodies[static_cast<std::size_t>(body)];
   return {kMotions * body, b.is_wheelset(), vector(point) - vector(b.centre)};
 }
@@ -38,7 +39,7 @@ End end_of(const Runner& runner, int body, const std::array<double, 3>& point) {
 /// Rotation of the body at an end. The axle boxes of a wheelset do not spin with it.
 Rows rotation(const End& end, Eigen::Index n) {
   Rows r = Rows::Zero(3, n);
-  for (int d = 0; d < 3; ++d)
+  for (int d = 0; d < 3 && end.first >= 0; ++d)
     if (d != 1 || !end.wheelset) r(d, end.first + 3 + d) = 1.;
   return r;
 }
@@ -46,7 +47,7 @@ Rows rotation(const End& end, Eigen::Index n) {
 /// Displacement of the point of an end, of first order.
 Rows displacement(const End& end, Eigen::Index n) {
   Rows r = -cross_matrix(end.arm) * rotation(end, n);
-  for (int d = 0; d < 3; ++d) r(d, end.first + d) = 1.;
+  for (int d = 0; d < 3 && end.first >= 0; ++d) r(d, end.first + d) = 1.;
   return r;
 }
 
@@ -67,6 +68,8 @@ MatrixXd bend(const End& end, const Vector3d& p, Eigen::Index n) {
   return m;
 }
 
+bool is_along_line(const RunnerElement& e) { return e.kind != RunnerElement::Kind::mid_frame; }
+
 Vector3d direction(const RunnerElement& e) {
   const Vector3d way = vector(e.point_b) - vector(e.point_a);
   return way / way.norm();
@@ -74,7 +77,7 @@ Vector3d direction(const RunnerElement& e) {
 
 /// Force on body `a` at rest.
 Vector3d preload_force(const RunnerElement& e) {
-  if (e.kind == RunnerElement::Kind::line) return e.preload[0] * direction(e);
+  if (is_along_line(e)) return e.preload[0] * direction(e);
   return {e.preload[0], e.preload[1], e.preload[2]};
 }
 
@@ -87,7 +90,7 @@ std::vector<Spring> springs(const Runner& runner, const RunnerElement& e) {
   const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
   const End a = end_of(runner, e.a, e.point_a), b = end_of(runner, e.b, e.point_b);
   const Rows moved = displacement(a, n) - displacement(b, n);
-  if (e.kind == RunnerElement::Kind::line) return {{0, -moved.transpose() * direction(e)}};
+  if (is_along_line(e)) return {{0, -moved.transpose() * direction(e)}};
   const Rows turned = rotation(a, n) - rotation(b, n);
   std::vector<Spring> all;
   all.reserve(kMotions);
@@ -103,7 +106,7 @@ MatrixXd geometric_stiffness(const Runner& runner, const RunnerElement& e) {
   const Vector3d p = preload_force(e);
   const Rows moved = displacement(a, n) - displacement(b, n);
   MatrixXd g = bend(b, p, n) - bend(a, p, n);
-  if (e.kind == RunnerElement::Kind::line) {
+  if (is_along_line(e)) {
     const Vector3d along = direction(e);
     const double length = (vector(e.point_b) - vector(e.point_a)).norm();
     const Matrix3d across = Matrix3d::Identity() - along * along.transpose();
@@ -118,24 +121,24 @@ MatrixXd geometric_stiffness(const Runner& runner, const RunnerElement& e) {
 VectorXd preload(const Runner& runner, const RunnerElement& e) {
   const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
   VectorXd sum = VectorXd::Zero(n);
-  const double sign = e.kind == RunnerElement::Kind::line ? -1. : 1.;  // tension pulls `a` to `b`
+  const double sign = is_along_line(e) ? -1. : 1.;  // tension pulls `a` to `b`
   for (const Spring& s : springs(runner, e)) sum += sign * e.preload[s.entry] * s.row;
   return sum;
 }
 
 void check_bodies(const Runner& runner, const std::string& name, int a, int b) {
   const auto is_body = [&](int body) {
-    return body >= 0 && body < static_cast<int>(runner.bodies.size());
+    return body >= kGround && body < static_cast<int>(runner.bodies.size());
   };
   if (!is_body(a) || !is_body(b) || a == b)
-    refuse("E-SUSPENSION-01",
-           "element " + name +
-               " does not join two bodies of its vehicle; expected two different ones");
+    refuse("E-SUSPENSION-01", "element " + name +
+                                  " does not join two bodies of its vehicle, or a body and the "
+                                  "ground; expected two different ones");
 }
 
 void check_element(const Runner& runner, const RunnerElement& e) {
   check_bodies(runner, e.name, e.a, e.b);
-  if (e.kind == RunnerElement::Kind::line && !((vector(e.point_b) - vector(e.point_a)).norm() > 0.))
+  if (is_along_line(e) && !((vector(e.point_b) - vector(e.point_a)).norm() > 0.))
     refuse("E-SUSPENSION-02",
            "element " + e.name + " has no length; expected two points that differ");
   for (std::size_t d = 0; d < e.stiffness.size(); ++d)
@@ -185,6 +188,27 @@ void check_balance(const Runner& runner, const VectorXd& rest, double weight) {
   }
 }
 
+void add_rod(const Runner& runner, const RunnerElement& e, RunnerMatrices& m) {
+  m.rods.conservativeResize(Eigen::NoChange, m.rods.cols() + 1);
+  m.rods.rightCols(1) = elongation(runner, e);
+  m.stiffness += geometric_stiffness(runner, e);
+}
+
+/// The deflection of least norm under a load, and the tensions of rods that keep their lengths.
+std::pair<VectorXd, VectorXd> deflection_under(const MatrixXd& K, const MatrixXd& rods,
+                                               const VectorXd& load) {
+  const Eigen::Index n = K.rows(), held = rods.cols();
+  const double scale = K.diagonal().maxCoeff();  // entries of one size, for the rank
+  MatrixXd A = MatrixXd::Zero(n + held, n + held);
+  A.topLeftCorner(n, n) = K;
+  A.topRightCorner(n, held) = scale * rods;
+  A.bottomLeftCorner(held, n) = scale * rods.transpose();
+  VectorXd b = VectorXd::Zero(n + held);
+  b.head(n) = load;
+  const VectorXd solved = A.completeOrthogonalDecomposition().solve(b);
+  return {solved.head(n), scale * solved.tail(held)};
+}
+
 }  // namespace
 
 RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
@@ -195,7 +219,8 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
                    MatrixXd::Zero(n, n),
                    -weights(runner, gravity),
                    {},
-                   {}};
+                   {},
+                   MatrixXd::Zero(n, 0)};
   for (std::size_t b = 0; b < runner.bodies.size(); ++b)
     for (int d = 0; d < 3; ++d) {
       const auto first = kMotions * static_cast<Eigen::Index>(b);
@@ -203,6 +228,10 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
       m.mass[first + 3 + d] = runner.bodies[b].inertia[static_cast<std::size_t>(d)];
     }
   for (const RunnerElement& e : runner.elements) {
+    if (e.kind == RunnerElement::Kind::rod) {
+      add_rod(runner, e, m);
+      continue;
+    }
     for (const Spring& s : springs(runner, e)) {
       const double damping = e.damping[s.entry], series = e.series[s.entry];
       m.stiffness += e.stiffness[s.entry] * s.row * s.row.transpose();
@@ -221,6 +250,10 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
     m.stops.push_back({moved.row(s.axis), s.law});
   }
   return m;
+}
+
+VectorXd elongation(const Runner& runner, const RunnerElement& element) {
+  return springs(runner, element).front().row;
 }
 
 VectorXd stop_forces(const RunnerMatrices& m, const VectorXd& u) {
@@ -242,16 +275,20 @@ void balance_preloads(Runner& runner, double gravity) {
   const auto n = static_cast<Eigen::Index>(kMotions * runner.bodies.size());
   VectorXd rest = -weights(runner, gravity);
   const double weight = -rest.sum();
-  MatrixXd K = MatrixXd::Zero(n, n);
-  std::vector<RunnerElement*> open;
+  MatrixXd K = MatrixXd::Zero(n, n), rods = MatrixXd::Zero(n, 0);
+  std::vector<RunnerElement*> open, open_rods;
   for (RunnerElement& e : runner.elements) {
     if (has_preload(e)) {
       rest += preload(runner, e);
-      continue;
+    } else if (e.kind == RunnerElement::Kind::rod) {
+      open_rods.push_back(&e);
+      rods.conservativeResize(Eigen::NoChange, rods.cols() + 1);
+      rods.rightCols(1) = elongation(runner, e);
+    } else {
+      open.push_back(&e);
+      for (const Spring& s : springs(runner, e))
+        K += e.stiffness[s.entry] * s.row * s.row.transpose();
     }
-    open.push_back(&e);
-    for (const Spring& s : springs(runner, e))
-      K += e.stiffness[s.entry] * s.row * s.row.transpose();
   }
   VectorXd load = rest;
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
@@ -259,12 +296,18 @@ void balance_preloads(Runner& runner, double gravity) {
     const auto first = kMotions * static_cast<Eigen::Index>(b);
     K.middleRows(first, kMotions).setZero();
     K.middleCols(first, kMotions).setZero();
+    rods.middleRows(first, kMotions).setZero();
     K.diagonal().segment(first, kMotions).setConstant(K.diagonal().maxCoeff());
     load.segment(first, kMotions).setZero();
   }
-  const VectorXd sunk = K.completeOrthogonalDecomposition().solve(load);
+  const auto [sunk, tension] = deflection_under(K, rods, load);
+  for (std::size_t i = 0; i < open_rods.size(); ++i) {
+    if (std::fabs(tension[static_cast<Eigen::Index>(i)]) > 1e-12 * weight)
+      open_rods[i]->preload[0] = tension[static_cast<Eigen::Index>(i)];
+    rest += preload(runner, *open_rods[i]);
+  }
   for (RunnerElement* e : open) {
-    const double sign = e->kind == RunnerElement::Kind::line ? 1. : -1.;
+    const double sign = is_along_line(*e) ? 1. : -1.;
     for (const Spring& s : springs(runner, *e)) {
       const double force = sign * e->stiffness[s.entry] * s.row.dot(sunk);
       if (std::fabs(force) > 1e-12 * weight) e->preload[s.entry] = force;

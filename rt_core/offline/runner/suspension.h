@@ -6,8 +6,9 @@
 
 namespace railstep {
 
-/// M q'' + C q' + K q + sum of row' force of `series` = rest + forces of the rails, about the
-/// loaded vehicle at rest. q are the six motions of each body, in their order.
+/// M q'' + C q' + K q + sum of row' force of `series` + rods' tension = rest + forces of the rails,
+/// about the loaded vehicle at rest. The preloads of rods are part of their tension. q are the six
+/// motions of each body, in their order.
 struct RunnerMatrices {
   /// A damper in series with a spring: force' = stiffness (row q' - force / damping).
   struct Series {
@@ -23,6 +24,7 @@ struct RunnerMatrices {
     StopModel law;
   };
   std::vector<Stop> stops;
+  Eigen::MatrixXd rods;  // [n][rods] elongation of each, which stays 0
 };
 
 /// Forces of the bump stops over the coordinates at a displacement.
@@ -38,6 +40,9 @@ Eigen::MatrixXd stiffness_at(const RunnerMatrices& matrices, const Eigen::Vector
 /// are moments make no geometric stiffness.
 /// Throws Refused on bodies that are not there, and on masses, stiffness or damping out of range.
 RunnerMatrices runner_matrices(const Runner& runner, double gravity);
+
+/// Elongation of an element along a line over the coordinates of its vehicle, [n].
+Eigen::VectorXd elongation(const Runner& runner, const RunnerElement& element);
 
 /// Gives the elements whose preload is 0 in all entries the force that they carry where the
 /// vehicle stands under its weight with its wheelsets held: of linear springs without geometric

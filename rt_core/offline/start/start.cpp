@@ -333,6 +333,10 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
         now.steady[r].rate + (later.steady[r].displacement - before.steady[r].displacement) / span;
     std::copy(u.begin(), u.end(), state.u + first);
     std::copy(v.begin(), v.end(), state.v + first);
+    double* const reaction = reactions_of(model, state, model.runner[r]);
+    reaction[0] = now.steady[r].resistance +
+                  model.runner[r].mass[0] * travelled(model.runner[r].travel, 0.).acceleration;
+    std::copy(now.steady[r].tension.begin(), now.steady[r].tension.end(), reaction + 1);
     // A damper in series with a spring has no force.
     const auto& series = packed.runners()[r].matrices.series;
     for (std::size_t i = 0; i < series.size(); ++i) {

@@ -61,11 +61,17 @@ void follow_alignment(const PackedRunner& own, const Model& model, const RunnerM
   // Bump stops may begin to press, or let go.
   constexpr int kTurns = 20;
   const Eigen::VectorXd before = steady.displacement, held = stop_forces(own.matrices, before);
-  Eigen::VectorXd moved = given;
+  Eigen::VectorXd moved = given, more = Eigen::VectorXd::Zero(own.matrices.rods.cols());
+  const Eigen::Index rods = own.matrices.rods.cols();
   for (int turn = 0; turn < kTurns; ++turn) {
-    Eigen::MatrixXd K = stiffness_at(own.matrices, before + moved);
-    Eigen::VectorXd force =
-        stop_forces(own.matrices, before + moved) - held - own.matrices.stiffness * moved;
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n + rods, n + rods);
+    K.topLeftCorner(n, n) = stiffness_at(own.matrices, before + moved);
+    K.topRightCorner(n, rods) = own.matrices.rods;
+    K.bottomLeftCorner(rods, n) = own.matrices.rods.transpose();
+    Eigen::VectorXd force(n + rods);
+    force.head(n) = stop_forces(own.matrices, before + moved) - held -
+                    own.matrices.stiffness * moved - own.matrices.rods * more;
+    force.tail(rods) = -own.matrices.rods.transpose() * moved;
     for (Eigen::Index k = 0; k < n; ++k) {
       if (!is_given[static_cast<std::size_t>(k)]) continue;
       K.row(k).setZero();
@@ -73,11 +79,13 @@ void follow_alignment(const PackedRunner& own, const Model& model, const RunnerM
       K(k, k) = 1.;
       force[k] = 0.;
     }
-    const Eigen::VectorXd step = K.fullPivLu().solve(force);
+    const Eigen::VectorXd solved = K.fullPivLu().solve(force), step = solved.head(n);
     moved += step;
+    more += solved.tail(rods);
     if (own.matrices.stops.empty() || step.cwiseAbs().maxCoeff() < 1e-14) break;
   }
   steady.displacement += moved;
+  steady.tension += more;
 }
 
 }  // namespace

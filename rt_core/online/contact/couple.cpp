@@ -5,6 +5,7 @@
 #include "online/contact/mean_contact.h"
 #include "online/contact/runner_coupling.h"
 #include "online/contact/system_coupling.h"
+#include "online/contact/track_compliance.h"
 #include "online/contact/track_response.h"
 #include "online/contact/vehicle_contact.h"
 #include "online/contact/vehicle_response.h"

@@ -26,7 +26,7 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
                     State& state, Workspace& workspace) noexcept;
 
 /// After the scheme's correction, projects velocities and accelerations of guided coordinates onto
-/// the guide (augmented Lagrangian; the inertia is diagonal, so that the projection is exact).
+/// the guide (not by Baumgarte; the inertia is diagonal, so that the projection is exact).
 void project_guides(const Model& model, const Stage& stage, State& state) noexcept;
 
 }  // namespace railstep

@@ -11,6 +11,7 @@ namespace railstep {
 struct FreeWheelset {
   double compliance[6];  // m/N or rad/(N m)
   double free[6];
+  double held[kGuideRows];  // force of a guide by elimination on the track, without contact
 };
 
 inline constexpr int kMaxWheelSeatRows = 2 * kWheelSeatRows * kMaxSeatedWheelsets;

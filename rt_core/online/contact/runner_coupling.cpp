@@ -188,7 +188,7 @@ void add_seat_flexibility(const Model& model, Coupling& c) noexcept {
   });
 }
 
-void couple_runners(const Model& model, const Stage& stage, const State& s, Workspace& w,
+void couple_runners(const Model& model, const Stage& stage, State& s, Workspace& w,
                     const Coupling& c, CoupledRunners& all) noexcept {
   all.scalars = c.contacts + model.fixed.count;
   const bool banded = model.form == Form::banded;
@@ -310,7 +310,7 @@ Status move_coupled_runners(const Model& model, const Coupling& c, const Coupled
     for (int j = 0; j < runner.stops; ++j)
       force[kMotions * runner.wheelsets + j] =
           all.force[first_stop(model, all.scalars) + runner.first_stop + j];
-    move_by(runner, force, w.solved + runner.first);
+    move_by(runner, force, w.solved + runner.first, reactions_of(model, s, runner));
   }
   return met;
 }

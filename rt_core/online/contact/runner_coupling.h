@@ -28,7 +28,7 @@ struct CoupledRunners {
 
 /// Moves the runners without contact into `solved`, and fills Y and the laws of the wheelsets.
 /// Rows, W and track_free of the seats must be known.
-void couple_runners(const Model& model, const Stage& stage, const State& s, Workspace& w,
+void couple_runners(const Model& model, const Stage& stage, State& s, Workspace& w,
                     const Coupling& c, CoupledRunners& runners) noexcept;
 
 /// Moves the seat of a row, by a displacement that W does not give.

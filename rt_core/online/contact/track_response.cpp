@@ -10,9 +10,6 @@ Complex base_of(const Model& model, const Workspace& w, const LineModel& line, i
   return {re, re + model.unknowns};
 }
 
-/// Whether the compliance between places of a line is in a table.
-bool is_tabled(const LineModel& line) noexcept { return line.modal.between != nullptr; }
-
 /// The response to a unit force along a base, unless there is a table.
 void hold_base(const Model& model, const LineModel& line, int base, Workspace& w) noexcept {
   if (is_tabled(line)) return;
@@ -84,7 +81,7 @@ void respond_levers(const Model& model, const State& s, Workspace& w, Coupling& 
   for (int side = 0; side < 2; ++side) {
     RailRow& levers = c.seat[seat_of_base(c, left + side)].row;
     const int z = rows_of_base(c, left + side, model.line[0]).row[0];
-    c.seat[z - c.contacts].rise = lean_on_seats(roll[side], levers);
+    c.seat[z - c.contacts].rise = -lean_on_seats(roll[side], 1., levers);
     for (std::int32_t k = 0; k < levers.seats; ++k) {
       c.located[z] += levers.lever[k] * roll[side][k].first;
       c.moved[z] += levers.lever[k] * roll[side][k].second;
@@ -172,75 +169,6 @@ void subtract_held(const Complex& held, const Complex* shape, const double* forc
   }
 }
 
-/// Adds the compliance of a line between two bases to W of their rows.
-/// @param same  the bases are one
-void add_between(const RowsOfBase& a, const RowsOfBase& b, bool same, double value,
-                 Coupling& c) noexcept {
-  for (int k = 0; k < a.count; ++k)
-    for (int m = 0; m < b.count; ++m) {
-      const int own = a.row[k], other = b.row[m];
-      if (same && own < other) continue;
-      const int more = own > other ? own : other, less = own > other ? other : own;
-      // Two bases that are parts of one row count both ways.
-      const double both = !same && own == other ? 2. : 1.;
-      c.W[more * c.ports + less] += both * (a.factor[k] * b.factor[m]) * value;
-    }
-}
-
-/// Adds the compliance of a line to W by its table. Some bases at a time are on the stack, those of
-/// a vehicle on eight wheels among them.
-void add_tabled(const LineModel& line, std::int32_t l, Coupling& c) noexcept {
-  constexpr int kAtOnce = 24;
-  CarriedRow carried[kAtOnce], before;
-  RowsOfBase rows[kAtOnce];
-  bool is_left[kAtOnce];  // by levers of the left rail; those of the right rail, which follow,
-                          // carry the same unknowns
-  for (int first = 0; first < c.bases; first += kAtOnce) {
-    const int end = first + kAtOnce < c.bases ? first + kAtOnce : c.bases;
-    for (int i = first; i < end; ++i) {
-      if (!c.acts[i][l]) continue;
-      carry(line, base_row(c, i), carried[i - first]);
-      rows[i - first] = rows_of_base(c, i, line);
-      is_left[i - first] = i + 1 < end && is_by_levers(c, i) && is_by_levers(c, i + 1);
-    }
-    for (int j = 0; j < end; ++j) {
-      if (!c.acts[j][l]) continue;
-      const RowsOfBase of_other = j < first ? rows_of_base(c, j, line) : rows[j - first];
-      if (j < first) carry(line, base_row(c, j), before);
-      const CarriedRow& other = j < first ? before : carried[j - first];
-      for (int i = j > first ? j : first; i < end; ++i) {
-        if (!c.acts[i][l]) continue;
-        const CarriedRow& own = carried[i - first];
-        if (!is_left[i - first]) {
-          add_between(rows[i - first], of_other, i == j, between(line.modal, own, other), c);
-          continue;
-        }
-        double both[2];
-        between(line.modal, own, carried[i + 1 - first], other, both);
-        add_between(rows[i - first], of_other, i == j, both[0], c);
-        ++i;
-        add_between(rows[i - first], of_other, false, both[1], c);
-      }
-    }
-  }
-}
-
-/// Takes rows along y and z with their part by the rolls, W in its lower triangle.
-void lean_compliance(Coupling& c) noexcept {
-  const auto at = [&](int a, int b) noexcept -> double& {
-    return a > b ? c.W[a * c.ports + b] : c.W[b * c.ports + a];
-  };
-  for (int own = c.contacts; own < c.rows; ++own) {
-    const int roll = own + 2 - (own - c.contacts) % kWheelSeatRows;
-    const double lean = c.seat[own - c.contacts].lean;
-    if (own == roll || lean == 0.) continue;
-    const double by_roll = at(own, roll);
-    for (int i = 0; i < c.rows; ++i) at(own, i) -= lean * at(roll, i);
-    // The row itself counts in both factors.
-    at(own, own) -= lean * (by_roll - lean * at(roll, roll));
-  }
-}
-
 }  // namespace
 
 double shape_under(const Model& model, const Workspace& w, const Coupling& c, int base,
@@ -266,36 +194,6 @@ double line_compliance(const Model& model, const Workspace& w, const Coupling& c
   const double* const half = w.unit + base * std::ptrdiff_t{model.unknowns};
   return panels_dot(common(c.panels[base][l], by.panels), half + line.first,
                     by.second + line.first);
-}
-
-namespace {
-
-/// Adds the compliance of a line to W by the responses to each base.
-void add_summed(const Model& model, const Workspace& w, std::int32_t l, Coupling& c) noexcept {
-  const LineModel& line = model.line[l];
-  for (int j = 0; j < c.bases; ++j) {
-    if (!c.acts[j][l]) continue;
-    const std::ptrdiff_t unit = j * std::ptrdiff_t{model.unknowns};
-    const LineResponse by{c.panels[j][l], w.unit + unit, w.unit_second + unit};
-    const RowsOfBase rows = rows_of_base(c, j, line);
-    for (int i = j; i < c.bases; ++i)
-      if (c.acts[i][l])
-        add_between(rows_of_base(c, i, line), rows, i == j, line_compliance(model, w, c, i, l, by),
-                    c);
-  }
-}
-
-}  // namespace
-
-void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
-  for (int i = 0; i < c.rows; ++i)
-    for (int j = 0; j <= i; ++j) c.W[i * c.ports + j] = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l)
-    if (is_tabled(model.line[l]))
-      add_tabled(model.line[l], l, c);
-    else
-      add_summed(model, w, l, c);
-  lean_compliance(c);
 }
 
 void find_track_motion(const Model& model, const Workspace& w, Coupling& c) noexcept {

@@ -37,10 +37,6 @@ double line_compliance(const Model& model, const Workspace& w, const Coupling& c
 double shape_under(const Model& model, const Workspace& w, const Coupling& c, int base,
                    std::int32_t l, const double* re, const double* im) noexcept;
 
-/// Displacements of the track under each wheel by a unit force at each other, at the step's end:
-/// the lower triangle of W, j <= i.
-void track_compliance(const Model& model, const Workspace& w, Coupling& c) noexcept;
-
 /// Finds the displacements without contact forces since the contacts were located, Coupling::moved.
 void find_track_motion(const Model& model, const Workspace& w, Coupling& c) noexcept;
 

@@ -49,14 +49,6 @@ void clear(bool on_rail, int side, std::int32_t element, WheelSeatRow* seat,
   }
 }
 
-void take_levers(const SeatLevers& around, RailRow& row) noexcept {
-  row.seats = around.count;
-  for (std::int32_t i = 0; i < around.count; ++i) {
-    row.seat[i] = around.node[i];
-    row.lever[i] = around.lever[i];
-  }
-}
-
 constexpr double kAlong[2][3] = {{0., 1., 0.}, {0., 0., 1.}};  // of a seat's rows along y and z
 
 void fill_seat_rows(const Model& model, const SectionPoint& centre, int side, const double* shape,
@@ -182,15 +174,6 @@ void locate_mirrored_seats(const Model& model, const Configuration& at, const Ru
     else
       seat[kWheelSeatRows * side + 1].rise = -add_levers(model, at, xi, kUp, row, motions);
   }
-}
-
-double lean_on_seats(const TwoMotions* roll, RailRow& row) noexcept {
-  double rise = 0.;
-  for (std::int32_t s = 0; s < row.seats; ++s) {
-    row.lever[s] *= roll[s].first;
-    rise -= .5 * roll[s].first * row.lever[s];
-  }
-  return rise;
 }
 
 void locate_wheel_seat(const Model& model, const Configuration& at, const RunnerModel& runner,

@@ -64,11 +64,6 @@ SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
 void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
                            double x, WheelSeatRow* seat, RailForce* place) noexcept;
 
-/// Multiplies the levers of a row with the rolls over its seats.
-/// @param roll  [row.seats] rad
-/// @returns how much its point rises, m
-double lean_on_seats(const TwoMotions* roll, RailRow& row) noexcept;
-
 /// The rows of the seat under a wheel at a place along the model's elements, with the effect of the
 /// rail's roll.
 /// @param seats  of one configuration

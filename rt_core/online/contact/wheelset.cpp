@@ -49,15 +49,21 @@ double multiplier_of(const double* multiplier, int k) noexcept {
   return multiplier[k == kGuided[1] ? 1 : 0];
 }
 
+/// Force of a wheelset's contacts along one of its coordinates.
+double contact_force_on(const Model& model, int b, const Coupling& c, int k) noexcept {
+  const WheelsetContacts own = contacts_of(model, b);
+  double force = 0.;
+  for (int n = 0; n < own.count; ++n)
+    force += c.contact[own.at[n]].body_row[k] * c.force[own.at[n]];
+  return force;
+}
+
 /// Coordinates of a wheelset under its wheel forces and multipliers.
 void move_body(const Model& model, int b, const Coupling& c, const double* multiplier,
                double* p) noexcept {
   const WheelsetModel& set = model.wheelset[b];
-  const WheelsetContacts own = contacts_of(model, b);
   for (int k = 0; k < 6; ++k) {
-    double force = 0.;
-    for (int n = 0; n < own.count; ++n)
-      force += c.contact[own.at[n]].body_row[k] * c.force[own.at[n]];
+    double force = contact_force_on(model, b, c, k);
     if (is_guided_by_force(set, k)) force -= multiplier_of(multiplier, k);
     p[k] = c.wheelset[b].free[k] + c.wheelset[b].compliance[k] * force;
   }
@@ -79,9 +85,14 @@ void free_wheelsets(const Model& model, const Stage& stage, const State& s, cons
       c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k]);
       c.wheelset[b].free[k] = p[k] + c.wheelset[b].compliance[k] * force[k];
     }
-    for (const int k : kGuided) {
+    for (int i = 0; i < kGuideRows; ++i) {
+      const int k = kGuided[i];
       const Travelled goal = target(model, set, k, stage);
-      if (set.guide == Guide::augmented_lagrangian) {
+      if (set.guide == Guide::elimination) {
+        c.wheelset[b].compliance[k] = 0.;
+        c.wheelset[b].free[k] = goal.distance;
+        c.wheelset[b].held[i] = kg * set.mass[k] * (p[k] - goal.distance) + force[k];
+      } else if (set.guide == Guide::augmented_lagrangian) {
         // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
         const double penalty = kPenalty * kg * set.mass[k];
         c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k] + penalty);
@@ -160,6 +171,8 @@ bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace&
       const int k = kGuided[i];
       const double miss = p[k] - target(model, set, k, stage).distance;
       if (std::fabs(miss) > violation) violation = std::fabs(miss);
+      if (set.guide == Guide::elimination)
+        multiplier[i] = c.wheelset[b].held[i] + contact_force_on(model, b, c, k);
       if (set.guide != Guide::augmented_lagrangian) continue;
       multiplier[i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
       if (!(std::fabs(miss) <= set.tolerance)) settled = false;
@@ -188,7 +201,7 @@ bool tread_impact_is_unresolved(const Model& model, const Coupling& c, const Sta
 void project_guides(const Model& model, const Stage& stage, State& state) noexcept {
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
-    if (set.guide != Guide::augmented_lagrangian) continue;
+    if (!is_projected(set.guide)) continue;
     for (const int k : kGuided) {
       const Travelled goal = target(model, set, k, stage);
       state.v[set.first + k] = goal.speed;

@@ -51,7 +51,7 @@ void describe(Archive& a, Modal& m, int size) {
   }
   a.count(m.rows, kMostRows);
   a.reals(m.shape, std::int64_t{2} * m.rows * size);
-  a.reals(m.between, std::int64_t{m.rows} * (m.rows + 1) / 2);
+  a.reals(m.between, std::int64_t{m.rows} * m.rows);
 }
 
 template <typename Archive>
@@ -92,11 +92,13 @@ void describe(Archive& a, Model& m, std::int32_t at) {
     line.modal = twin.modal;
     line.shift = twin.shift;
     for (int rail = 0; rail < 2; ++rail) line.unknown_of[rail] = twin.unknown_of[rail];
+    line.components = twin.components;
     return;
   }
   a.count(line.size, kMostUnknowns);
   if (m.endless.bays > 0) describe(a, line.shift, line.size);
   const std::int64_t table = std::int64_t{27} * m.elements;
+  a.count(line.components, (1 << 9) - 1);
   std::int32_t second = line.unknown_of[0] != line.unknown_of[1] ? 1 : 0;
   a.integers(line.unknown_of[0], table);
   a.count(second, 1);
@@ -159,7 +161,7 @@ void describe(Archive& a, WheelsetModel& w) {
     a.real(*x);
   describe(a, w.travel);
   std::int32_t guide = static_cast<std::int32_t>(w.guide);
-  a.count(guide, 1);
+  a.count(guide, static_cast<std::int32_t>(Guide::elimination));
   w.guide = static_cast<Guide>(guide);
   a.count(w.cap, kMostGuideIterations);
   a.count(w.forces, kMaxBodyForces);
@@ -239,10 +241,14 @@ void describe(Archive& a, RunnerModel& r) {
   a.count(r.stops, kMaxStopsOfRunner);
   for (std::int32_t i = 0; i < r.stops; ++i)
     for (double* x : {&r.stop[i].below, &r.stop[i].above, &r.stop[i].stiffness}) a.real(*x);
-  a.count(r.first_stop, kMaxRunners * kMaxStopsOfRunner);
+  a.count(r.first_stop, kMaxRunnerStops);
   const std::int64_t n = r.size, meets = interface_size(r);
   for (const double** of : {&r.stop_row, &r.stop_moved}) a.reals(*of, n * r.stops);
   a.reals(r.compliance, meets * meets);
+  a.count(r.first_rod, kMaxRunnerRods);
+  a.count(r.rods, kMaxRodsOfRunner);
+  a.reals(r.rod_row, n * r.rods);
+  a.reals(r.reaction, n * constraint_count(r));
 }
 
 template <typename Archive>
@@ -334,7 +340,8 @@ void describe_track(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.vehicle_wheels; ++i) describe(a, m.vehicle_wheel[i]);
   a.count(m.runners, kMaxRunners);
   a.count(m.runner_wheelsets, kMaxRunnerWheelsets);
-  a.count(m.runner_stops, kMaxRunners * kMaxStopsOfRunner);
+  a.count(m.runner_stops, kMaxRunnerStops);
+  a.count(m.runner_rods, kMaxRunnerRods);
   for (std::int32_t i = 0; i < m.runners; ++i) describe(a, m.runner[i]);
   for (std::int32_t i = 0; i < m.signals; ++i) {
     a.count(m.signal[i].rail, 1);

@@ -157,11 +157,16 @@ bool stops_are_valid(const RunnerModel& r, std::int32_t first_stop) noexcept {
   return r.first_stop == first_stop && (r.stops == 0 || (r.stop_row && r.stop_moved));
 }
 
-/// Wheelsets are among the bodies, and follow those of the runners before, as stops do.
-bool runner_is_valid(const Model& m, const RunnerModel& r, std::int32_t first_wheelset,
-                     std::int32_t first_stop) noexcept {
-  if (!suspended_is_valid(m, r) || !stops_are_valid(r, first_stop) || r.bodies < 1) return false;
-  if (r.first_wheelset != first_wheelset || r.wheelsets < 1) return false;
+/// How many wheelsets, stops and rods runners have.
+struct RunnerCounts {
+  std::int32_t wheelsets = 0, stops = 0, rods = 0;
+};
+
+/// Wheelsets are among the bodies, and follow those of the runners before, as stops and rods do.
+bool runner_is_valid(const Model& m, const RunnerModel& r, const RunnerCounts& before) noexcept {
+  if (!suspended_is_valid(m, r) || !stops_are_valid(r, before.stops) || r.bodies < 1) return false;
+  if (r.first_wheelset != before.wheelsets || r.wheelsets < 1) return false;
+  if (r.first_rod != before.rods || !r.reaction || (r.rods > 0 && !r.rod_row)) return false;
   for (std::int32_t i = 0; i < r.wheelsets; ++i) {
     const RunnerWheelset& w = r.wheelset[i];
     if (w.first % kMotions != 0 || w.first / kMotions >= r.bodies || !(w.radius > 0.)) return false;
@@ -172,14 +177,16 @@ bool runner_is_valid(const Model& m, const RunnerModel& r, std::int32_t first_wh
 }
 
 bool runners_are_valid(const Model& m) noexcept {
-  std::int32_t wheelsets = 0, stops = 0;
+  RunnerCounts all;
   for (std::int32_t i = 0; i < m.runners; ++i) {
-    if (!runner_is_valid(m, m.runner[i], wheelsets, stops)) return false;
-    wheelsets += m.runner[i].wheelsets;
-    stops += m.runner[i].stops;
+    if (!runner_is_valid(m, m.runner[i], all)) return false;
+    all.wheelsets += m.runner[i].wheelsets;
+    all.stops += m.runner[i].stops;
+    all.rods += m.runner[i].rods;
   }
-  return wheelsets == m.runner_wheelsets && stops == m.runner_stops &&
-         newton_size(m) <= kMostNewton && (m.lines == 0 || wheelsets <= kMaxSeatedWheelsets);
+  return all.wheelsets == m.runner_wheelsets && all.stops == m.runner_stops &&
+         all.rods == m.runner_rods && newton_size(m) <= kMostNewton &&
+         (m.lines == 0 || all.wheelsets <= kMaxSeatedWheelsets);
 }
 
 /// Whether a wheel belongs to its vehicle, whose matrices have a row for it.

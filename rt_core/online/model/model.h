@@ -70,8 +70,8 @@ struct Modal {
   Complex old_force, new_force, held_force;  // s
   std::int32_t rows;
   const double* shape;  // [rows][2][count] real and imaginary parts, kg^-1/2
-  /// Re shape held_force shape' of each pair of rows a >= b, [a (a + 1) / 2 + b] m/N; null where
-  /// the modes are summed in the step.
+  /// Re shape held_force shape' between rows, [rows][rows] m/N, symmetric; null where the modes are
+  /// summed in the step.
   const double* between;
 };
 
@@ -96,6 +96,7 @@ struct LineModel {
   /// line. Both rails have one table if they are mirror images, or if the line has one rail.
   /// Elements share the unknowns of their border if the rail is not cut there.
   const std::int32_t* unknown_of[2];
+  std::int32_t components;     // bit k is set if a node of these tables has an unknown k
   double rail_factor[2];       // weight of the line in left and right rail; 0: it lacks that rail
   std::int32_t mirrored;       // right rail: y components change sign
   std::int32_t rigid_section;  // a_z and b_y are one unknown, the roll a_z
@@ -124,7 +125,10 @@ struct RailSignal {
   SignalModel signal;
 };
 
-enum class Guide : std::int32_t { augmented_lagrangian, baumgarte };
+/// How a wheelset's guide holds its coordinates. By elimination they are no unknowns.
+enum class Guide : std::int32_t { augmented_lagrangian, baumgarte, elimination };
+/// Whether rates and accelerations of guided coordinates are set to those of the guide.
+constexpr bool is_projected(Guide guide) noexcept { return guide != Guide::baumgarte; }
 inline constexpr int kGuideRows = 2;  // coordinates that a wheelset's guide holds: x and yaw
 
 /// A rigid wheelset on both rails. Coordinates are x, y, z of its centre from its start, then roll,
@@ -324,7 +328,7 @@ struct Model {
   VehicleModel vehicle[kMaxVehicles];
   VehicleWheel vehicle_wheel[kMaxWheels];
   RailSignal signal[kMaxSignals];
-  std::int32_t runners, runner_wheelsets, runner_stops;  // the latter two of all runners
+  std::int32_t runners, runner_wheelsets, runner_stops, runner_rods;  // the latter of all runners
   RunnerModel runner[kMaxRunners];
   std::int32_t external_wheels;
   ExternalWheelModel external_wheel[kMaxExternalWheels];

@@ -44,6 +44,9 @@ inline StopForce stop_force(const StopModel& stop, double z) noexcept {
 inline constexpr int kWheelsetRank = 6;  // scalars of a wheelset: three forces of each wheel
 inline constexpr int kMaxRunners = 8;
 inline constexpr int kMaxStopsOfRunner = 16;
+inline constexpr int kMaxRunnerStops = kMaxRunners * kMaxStopsOfRunner;  // of all runners
+inline constexpr int kMaxRodsOfRunner = 8;
+inline constexpr int kMaxRunnerRods = 16;  // of all runners
 inline constexpr int kMaxWheelsetsOfRunner = 8;
 inline constexpr int kMaxRunnerWheelsets = 16;  // of all runners
 inline constexpr int kMaxSeatedWheelsets = 8;   // of all on rails that give way
@@ -58,9 +61,9 @@ struct RunnerWheelset {
 };
 
 /// A vehicle in space on both rails. q are the six motions of each body, then the deflection of
-/// each damper that is in series with a spring; such a coordinate has no mass. The first body's x
-/// is held at its place along the track: its row and column of `inverse` are 0, and the drive's
-/// force that this takes is published.
+/// each damper that is in series with a spring; such a coordinate has no mass. Constraints hold the
+/// first body's x at its place along the track, by the force of the drive, and the lengths of rigid
+/// rods. `inverse` is that of what they leave free, so that they hold to rounding.
 struct RunnerModel : SuspendedModel {
   std::int32_t bodies, first_wheelset, wheelsets;  // the first one among those of all runners
   RunnerWheelset wheelset[kMaxWheelsetsOfRunner];
@@ -69,6 +72,10 @@ struct RunnerModel : SuspendedModel {
   std::int32_t first_stop, stops;  // the first one among those of all runners
   StopModel stop[kMaxStopsOfRunner];
   const double *stop_row, *stop_moved;  // [stops][size] over its coordinates; `inverse` times it
+  std::int32_t first_rod, rods;         // the first one among those of all runners
+  const double* rod_row;                // [rods][size] elongation of each
+  const double* reaction;  // [1 + rods][size] force ahead of the drive, then the tension of
+                           // each rod, by a unit force along each coordinate
   /// [6 wheelsets + stops][6 wheelsets + stops] theta times the part of the inverse for the
   /// wheelsets' motions, then for the stops.
   const double* compliance;
@@ -79,5 +86,8 @@ struct RunnerModel : SuspendedModel {
 inline std::int32_t interface_size(const RunnerModel& runner) noexcept {
   return kMotions * runner.wheelsets + runner.stops;
 }
+
+/// The constraints of a runner: its drive, then its rods.
+inline std::int32_t constraint_count(const RunnerModel& runner) noexcept { return 1 + runner.rods; }
 
 }  // namespace railstep

@@ -27,6 +27,8 @@ struct State {
   /// [wheels of runners][kSeatMotions] on banded lines: y, z and roll of the seat under the wheel,
   /// m and rad, then the rates of the rail there.
   double* seat;
+  double* reaction;    // [runners + their rods] N, of the last step: of each runner the force ahead
+                       // of its drive, then the tensions of its rods
   double* multiplier;  // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
                        // the force on the wheelset is its negative
   double* quaternion;  // [system.bodies][4] body axes to ground
@@ -146,7 +148,9 @@ struct Outputs {
   /// By wheelset: force on the track along y, N, then displacement, m, and yaw, rad.
   double wheelset_sum_y[kMaxRunnerWheelsets], wheelset_y[kMaxRunnerWheelsets];
   double wheelset_yaw[kMaxRunnerWheelsets];
-  double drive_force[kMaxRunners];  // ahead on each rail vehicle, which keeps its speed, N
+  double drive_force[kMaxRunners];     // ahead on each rail vehicle, which keeps its speed, N
+  double rod_tension[kMaxRunnerRods];  // N, of the rigid rods of rail vehicles
+  double stop_force[kMaxRunnerStops];  // N, of their bump stops along the axis, on the first body
   /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];
   double external_place[kMaxExternalWheels];            // m along the model's elements
@@ -185,9 +189,19 @@ inline double* seat_motion_of(const State& state, std::int32_t wheelset,
   return state.seat + std::ptrdiff_t{kSeatMotions} * (2 * wheelset + side);
 }
 
+/// The forces of a runner's constraints, [constraint_count].
+inline double* reactions_of(const Model& model, const State& state,
+                            const RunnerModel& runner) noexcept {
+  return state.reaction + (&runner - model.runner) + runner.first_rod;
+}
+
 /// Numbers of State::wheel_force and State::seat.
-inline std::int64_t runner_state_doubles(const Model& model) noexcept {
+inline std::int64_t wheel_state_doubles(const Model& model) noexcept {
   return 2LL * (kWheelForces + (keeps_seats(model) ? kSeatMotions : 0)) * model.runner_wheelsets;
+}
+/// Those, and those of State::reaction.
+inline std::int64_t runner_state_doubles(const Model& model) noexcept {
+  return wheel_state_doubles(model) + model.runners + model.runner_rods;
 }
 
 inline std::int64_t state_doubles(const Model& model) noexcept {
@@ -217,6 +231,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
   double* const ports = wheels + contact_count(model);
   double* const runners = ports + model.fixed.count;
   double* const seats = runners + 2LL * kWheelForces * model.runner_wheelsets;
+  double* const reactions = runners + wheel_state_doubles(model);
   double* const guides = runners + runner_state_doubles(model);
   double* const system = guides + guide_rows(model);
   double* const rows = system + 4LL * model.system.bodies;
@@ -230,6 +245,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           ports,
           runners,
           seats,
+          reactions,
           guides,
           system,
           rows,

@@ -1,7 +1,6 @@
 #include "online/runner/runner_contact.h"
 
 #include "online/math/dense.h"
-#include "online/runner/body_force.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -10,15 +9,25 @@ namespace {
 
 constexpr double kLargeTurn = .1;  // rad, of a body in its frame: sines are 0.2 % off
 
-/// Force of the drive on the first body ahead: what the motion along x leaves over.
-double drive_force(const RunnerModel& runner, const State& at, double time) noexcept {
-  const double acceleration = travelled(runner.travel, time).acceleration;
-  double force = dot(runner.stiffness, at.u + runner.first, runner.size) +
-                 dot(runner.damping, at.v + runner.first, runner.size) +
-                 runner.mass[0] * acceleration - runner.rest[0];
-  for (std::int32_t i = 0; i < runner.forces; ++i)
-    if (runner.force[i].direction == 0) force -= force_at(runner.force[i], time, at.input);
-  return force;
+/// The forces of a runner's constraints, and how far its rods are from their lengths.
+void publish_constraints(const Model& model, const RunnerModel& runner, const State& at,
+                         Outputs& out) noexcept {
+  const double* const reaction = reactions_of(model, at, runner);
+  out.drive_force[&runner - model.runner] = reaction[0];
+  for (std::int32_t j = 0; j < runner.rods; ++j) {
+    out.rod_tension[runner.first_rod + j] = reaction[1 + j];
+    const double* const row = runner.rod_row + std::ptrdiff_t{runner.size} * j;
+    const double longer = std::fabs(dot(row, at.u + runner.first, runner.size));
+    if (longer > out.constraint_violation) out.constraint_violation = longer;
+  }
+}
+
+void publish_stops(const RunnerModel& runner, const State& at, Outputs& out) noexcept {
+  for (std::int32_t j = 0; j < runner.stops; ++j) {
+    const double* const row = runner.stop_row + std::ptrdiff_t{runner.size} * j;
+    out.stop_force[runner.first_stop + j] =
+        stop_force(runner.stop[j], dot(row, at.u + runner.first, runner.size)).force;
+  }
 }
 
 bool has_large_turn(const RunnerModel& runner, const State& at) noexcept {
@@ -82,11 +91,11 @@ RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheels
 
 Status publish_runners(const Model& model, const State& at, Outputs& outputs) noexcept {
   Status met = Status::ok;
-  const double time = static_cast<double>(at.steps) * model.scheme.dt;
   for (std::int32_t n = 0; n < model.runners; ++n) {
     const RunnerModel& runner = model.runner[n];
     for (int i = 0; i < runner.wheelsets; ++i) publish_wheelset(model, runner, i, at, outputs);
-    outputs.drive_force[n] = drive_force(runner, at, time);
+    publish_constraints(model, runner, at, outputs);
+    publish_stops(runner, at, outputs);
     if (has_large_turn(runner, at)) met = met | Status::large_turn;
   }
   return met;

@@ -44,10 +44,14 @@ RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage&
   return {model, runner, stage, held_fraction(model), condensed ? 1. / (c.theta * c.dt) : c.kv};
 }
 
-void move_freely(const RunnerStage& at, const State& s, const Workspace& w, double* u) noexcept {
+void move_freely(const RunnerStage& at, State& s, const Workspace& w, double* u) noexcept {
+  const RunnerModel& r = at.runner;
   double force[kMaxRunnerUnknowns];
   find_frame_forces(at, s, w, force);
-  move_freely(at.model, at.runner, at.time(1.), s, w, force, u);
+  move_freely(at.model, r, at.time(1.), s, w, force, u);
+  double* const reaction = reactions_of(at.model, s, r);
+  for (std::int32_t c = 0; c < constraint_count(r); ++c)
+    reaction[c] = dot(r.reaction + std::ptrdiff_t{r.size} * c, force, r.size);
 }
 
 void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,
@@ -84,7 +88,7 @@ void stop_law(const StopModel& stop, double z, double* force, const LawSlopes* s
   *slopes->slope = own.slope;
 }
 
-void move_by(const RunnerModel& runner, const double* force, double* u) noexcept {
+void move_by(const RunnerModel& runner, const double* force, double* u, double* reaction) noexcept {
   const auto add = [&](const double* column, double by) noexcept {
 #pragma omp simd
     for (std::int32_t k = 0; k < runner.size; ++k) u[k] += column[k] * by;
@@ -93,9 +97,16 @@ void move_by(const RunnerModel& runner, const double* force, double* u) noexcept
   for (std::int32_t i = 0; i < motions; ++i) {
     const std::int32_t own = runner.wheelset[i / kMotions].first + i % kMotions;
     add(runner.inverse + std::ptrdiff_t{runner.size} * own, force[i]);
+    for (std::int32_t c = 0; c < constraint_count(runner); ++c)
+      reaction[c] += runner.reaction[std::ptrdiff_t{runner.size} * c + own] * force[i];
   }
-  for (std::int32_t j = 0; j < runner.stops; ++j)
+  for (std::int32_t j = 0; j < runner.stops; ++j) {
+    const double* const row = runner.stop_row + std::ptrdiff_t{runner.size} * j;
     add(runner.stop_moved + std::ptrdiff_t{runner.size} * j, force[motions + j]);
+    for (std::int32_t c = 0; c < constraint_count(runner); ++c)
+      reaction[c] += dot(runner.reaction + std::ptrdiff_t{runner.size} * c, row, runner.size) *
+                     force[motions + j];
+  }
 }
 
 namespace {
@@ -239,7 +250,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   double steep[kWheelsetRank];
   for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)
     law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr, steep);
-  move_by(r, force, u);
+  move_by(r, force, u, reactions_of(at.model, s, r));
   RunnerResult result{status_of(met.status), met.iterations};
   for (int i = 0; i < r.wheelsets; ++i) {
     if (law[i].lost) result.status = result.status | Status::contact_lost;

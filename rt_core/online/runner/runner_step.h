@@ -27,8 +27,10 @@ struct RunnerStage {
 };
 RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept;
 
-/// Displacements at the stage's end without contact. @param u  [size] out
-void move_freely(const RunnerStage& at, const State& s, const Workspace& w, double* u) noexcept;
+/// Displacements at the stage's end without contact, and in the state the forces of the
+/// constraints.
+/// @param u  [size] out
+void move_freely(const RunnerStage& at, State& s, const Workspace& w, double* u) noexcept;
 
 /// The motions of one wheelset at the contacts' instant.
 struct WheelsetMotion {
@@ -47,8 +49,9 @@ void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const
 /// The law of a stop, for solve_laws().
 void stop_law(const StopModel& stop, double z, double* force, const LawSlopes* slopes) noexcept;
 
-/// Adds the displacements by forces on the wheelsets and stops. @param force  [interface_size()]
-void move_by(const RunnerModel& runner, const double* force, double* u) noexcept;
+/// Adds the displacements by forces on the wheelsets and stops, and the forces of the constraints.
+/// @param force  [interface_size()] @param reaction  [constraint_count()]
+void move_by(const RunnerModel& runner, const double* force, double* u, double* reaction) noexcept;
 
 /// The law of one wheelset: its six motions, then those of the seats under its left and right
 /// wheel, if they give way: y, z and roll.

@@ -37,6 +37,9 @@ inline constexpr OutputColumn<kMaxRunnerWheelsets> kRunnerWheelsetColumns[] = {
     {"y_m", &Outputs::wheelset_y},
     {"yaw_rad", &Outputs::wheelset_yaw}};
 inline constexpr OutputColumn<kMaxRunners> kRunnerColumns[] = {{"drive_n", &Outputs::drive_force}};
+inline constexpr OutputColumn<kMaxRunnerRods> kRodColumns[] = {{"force_n", &Outputs::rod_tension}};
+inline constexpr OutputColumn<kMaxRunnerStops> kBumpStopColumns[] = {
+    {"force_n", &Outputs::stop_force}};
 
 /// A column of the rail under an external wheel.
 struct ExternalColumn {
@@ -88,6 +91,8 @@ enum class ColumnOf {
   runner_wheel,
   runner_wheelset,
   runner,
+  rod,
+  bump_stop,
   external_wheel,
   sensor,
   joint,
@@ -106,6 +111,9 @@ void for_each_column(const Model& model, Visit& visit) {
   for (std::int32_t i = 0; i < model.runner_wheelsets; ++i)
     visit(ColumnOf::runner_wheelset, i, kRunnerWheelsetColumns);
   for (std::int32_t i = 0; i < model.runners; ++i) visit(ColumnOf::runner, i, kRunnerColumns);
+  for (std::int32_t i = 0; i < model.runner_rods; ++i) visit(ColumnOf::rod, i, kRodColumns);
+  for (std::int32_t i = 0; i < model.runner_stops; ++i)
+    visit(ColumnOf::bump_stop, i, kBumpStopColumns);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     visit(ColumnOf::external_wheel, i, kExternalColumns);
   visit(model.track_sensor);

@@ -1,5 +1,7 @@
 #include "online/track/line.h"
 
+#include <bit>
+
 namespace railstep {
 
 namespace {
@@ -26,7 +28,8 @@ void for_carried(const LineModel& line, const RailRow& row, Visit visit) noexcep
   if (line.rail_factor[row.rail] == 0.) return;
   const std::int32_t* const table = line.unknown_of[row.rail];
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k) {
+    for (auto left = static_cast<std::uint32_t>(line.components); left != 0; left &= left - 1) {
+      const int k = std::countr_zero(left);
       const std::int32_t unknown = table[table_place({row.element, i}, k)];
       if (unknown < 0 || row.coefficient[i][k] == 0.) continue;
       visit(unknown, weight_of(line, row.rail, k) * row.coefficient[i][k]);
@@ -73,8 +76,10 @@ bool carries(const LineModel& line, const RailRow& row) noexcept {
   // Most rows carry an unknown of the first node.
   const std::int32_t* const table = line.unknown_of[row.rail];
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k)
+    for (auto left = static_cast<std::uint32_t>(line.components); left != 0; left &= left - 1) {
+      const int k = std::countr_zero(left);
       if (row.coefficient[i][k] != 0. && table[table_place({row.element, i}, k)] >= 0) return true;
+    }
   for (std::int32_t s = 0; s < row.seats; ++s)
     for (int k = 5; k <= 7; k += 2)
       if (table[table_place(row.seat[s], k)] >= 0) return true;
@@ -97,8 +102,6 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
 
 void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexcept {
   carried.count = 0;
-  carried.lowest = INT32_MAX;
-  carried.highest = -1;
   for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
     // The roll of a section that does not strain is its a_z and its b_y.
     const int last = carried.count - 1;
@@ -106,8 +109,6 @@ void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexc
       carried.weight[last] += weight;
       return;
     }
-    if (unknown < carried.lowest) carried.lowest = unknown;
-    if (unknown > carried.highest) carried.highest = unknown;
     carried.unknown[carried.count] = unknown;
     carried.weight[carried.count++] = weight;
   });
@@ -115,74 +116,34 @@ void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexc
 
 namespace {
 
-/// Row of the table between unknowns.
-const double* table_row(const Modal& modal, std::int32_t unknown) noexcept {
-  return modal.between + std::ptrdiff_t{unknown} * (unknown + 1) / 2;
-}
-
-/// The displacements of a's unknowns by a unit force along b, with their weights in a.
-template <typename Along>
-double sum_along(const CarriedRow& a, const Along& along_of) noexcept {
-  double sum = 0.;
-  for (int i = 0; i < a.count; ++i) {
-    const double along = along_of(a.unknown[i]);
-    sum += a.weight[i] * along;
-  }
-  return sum;
-}
-
-/// between() where the `count` unknowns of b are all before those of a in the table.
-template <int count>
-double between_apart(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept {
-  std::int32_t unknown[count];
-  double weight[count];
+/// Numbers of three rows of the table, with their weights. @param adds  to y; else y is overwritten
+template <bool adds>
+void read_three(const double* const* row, const double* weight, const std::int32_t* unknown,
+                int count, double* y) noexcept {
+  const double *a = row[0], *b = row[1], *c = row[2];
   for (int k = 0; k < count; ++k) {
-    unknown[k] = b.unknown[k];
-    weight[k] = b.weight[k];
+    const std::int32_t at = unknown[k];
+    const double sum = (weight[0] * a[at] + weight[1] * b[at]) + weight[2] * c[at];
+    y[k] = adds ? y[k] + sum : sum;
   }
-  return sum_along(a, [&](std::int32_t own) noexcept {
-    const double* const of_a = table_row(modal, own);
-    double along = 0.;
-    for (int k = 0; k < count; ++k) along += weight[k] * of_a[unknown[k]];
-    return along;
-  });
 }
 
 }  // namespace
 
-double between(const Modal& modal, const CarriedRow& one, const CarriedRow& other_one) noexcept {
-  // Rows of two places mostly lie apart in the table.
-  const bool behind = other_one.lowest > one.highest;
-  const CarriedRow &a = behind ? other_one : one, &b = behind ? one : other_one;
-  const bool apart = a.lowest > b.highest;
-  if (apart && b.count == 3) return between_apart<3>(modal, a, b);
-  if (apart && b.count == kPDeltaSeats) return between_apart<kPDeltaSeats>(modal, a, b);
-  return sum_along(a, [&](std::int32_t own) noexcept {
-    const double* const of_a = table_row(modal, own);
-    double along = 0.;
-    for (int k = 0; k < b.count; ++k) {
-      const std::int32_t other = b.unknown[k];
-      along += b.weight[k] * (own > other ? of_a[other] : table_row(modal, other)[own]);
+void read_table(const Modal& modal, const CarriedPart& own, const std::int32_t* unknown, int count,
+                double* y) noexcept {
+  for (int i = 0; i < own.count; i += 3) {
+    const double* row[3];
+    double weight[3] = {};
+    for (int m = 0; m < 3; ++m) {
+      const int at = i + m < own.count ? i + m : i;  // with weight 0 it is no more than read
+      row[m] = modal.between + std::ptrdiff_t{own.unknown[at]} * modal.rows;
+      if (i + m < own.count) weight[m] = own.weight[at];
     }
-    return along;
-  });
-}
-
-void between(const Modal& modal, const CarriedRow& one, const CarriedRow& two, const CarriedRow& b,
-             double (&sum)[2]) noexcept {
-  sum[0] = sum[1] = 0.;
-  const double* of_b[kMostCarried];
-  for (int k = 0; k < b.count; ++k) of_b[k] = table_row(modal, b.unknown[k]);
-  for (int i = 0; i < one.count; ++i) {
-    const std::int32_t own = one.unknown[i];
-    const double* const of_own = table_row(modal, own);
-    double along = 0.;
-    for (int k = 0; k < b.count; ++k) {
-      const std::int32_t other = b.unknown[k];
-      along += b.weight[k] * (own > other ? of_own[other] : of_b[k][own]);
-    }
-    sum[0] += one.weight[i] * along;
-    sum[1] += two.weight[i] * along;
+    if (i == 0)
+      read_three<false>(row, weight, unknown, count, y);
+    else
+      read_three<true>(row, weight, unknown, count, y);
   }
 }
 

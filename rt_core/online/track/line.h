@@ -85,18 +85,26 @@ void spread(const LineModel& line, const RailRow& row, double force, double* rhs
 inline constexpr int kMostCarried = 3 * 9 + 2 * kPDeltaSeats;
 struct CarriedRow {
   int count;
-  std::int32_t lowest, highest;  // unknown
   std::int32_t unknown[kMostCarried];
   double weight[kMostCarried];
 };
 void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexcept;
 
-/// Displacement along one row by a unit force along the other, held over the step, by the table of
-/// a condensed line.
-double between(const Modal& modal, const CarriedRow& a, const CarriedRow& b) noexcept;
-/// The same for two rows that carry the same unknowns. @param sum  out
-void between(const Modal& modal, const CarriedRow& one, const CarriedRow& two, const CarriedRow& b,
-             double (&sum)[2]) noexcept;
+/// The same, in memory of another.
+struct CarriedPart {
+  int count;
+  const std::int32_t* unknown;
+  const double* weight;
+};
+/// Whether the compliance between places of a line is in a table.
+inline bool is_tabled(const LineModel& line) noexcept { return line.modal.between != nullptr; }
+/// Displacements of unknowns by a unit force along a row, held over the step, by the table of a
+/// condensed line.
+/// @param own      of the row, at least one unknown
+/// @param unknown  [count]
+/// @param y        [count] out
+void read_table(const Modal& modal, const CarriedPart& own, const std::int32_t* unknown, int count,
+                double* y) noexcept;
 
 /// Panels of a banded line that hold the unknowns of a row; none for a line that it does not move.
 Panels panels_of(const LineModel& line, const RailRow& row) noexcept;

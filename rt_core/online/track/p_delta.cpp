@@ -49,16 +49,29 @@ double add_levers(const Model& model, const Configuration& at, double xi, const 
   const SeatLevers around = seat_levers(model, row.rail, row.element, xi);
   const bool shared = motions.first == around.first;
   motions.first = around.first;
-  double higher = 0.;
-  for (std::int32_t i = 0; i < around.count; ++i) {
-    const double roll_over =
+  take_levers(around, row);
+  TwoMotions roll[kPDeltaSeats];
+  for (std::int32_t i = 0; i < around.count; ++i)
+    roll[i].first =
         node_roll(model, row.rail, around.node[i], at, around.number[i], shared, motions);
-    const double arm = normal[2] * roll_over * around.lever[i];
-    row.seat[row.seats] = around.node[i];
-    row.lever[row.seats++] = arm;
-    higher += .5 * roll_over * arm;
+  return lean_on_seats(roll, normal[2], row);
+}
+
+void take_levers(const SeatLevers& around, RailRow& row) noexcept {
+  row.seats = around.count;
+  for (std::int32_t i = 0; i < around.count; ++i) {
+    row.seat[i] = around.node[i];
+    row.lever[i] = around.lever[i];
   }
-  return higher;
+}
+
+double lean_on_seats(const TwoMotions* roll, double up, RailRow& row) noexcept {
+  double rise = 0.;
+  for (std::int32_t s = 0; s < row.seats; ++s) {
+    row.lever[s] *= up * roll[s].first;
+    rise += .5 * roll[s].first * row.lever[s];
+  }
+  return rise;
 }
 
 SeatLevers seat_levers(const Model& model, std::int32_t rail, std::int32_t element,

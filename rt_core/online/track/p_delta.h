@@ -41,7 +41,17 @@ struct SeatLevers {
 SeatLevers seat_levers(const Model& model, std::int32_t rail, std::int32_t element,
                        double xi) noexcept;
 
-/// Adds to a row along a normal the rolls over the seats around, by which it rises.
+/// Puts levers into a row that has none yet. lean_on_seats() multiplies them with the rolls.
+void take_levers(const SeatLevers& around, RailRow& row) noexcept;
+
+/// Multiplies the levers of a row with the rolls over their seats.
+/// @param roll  [row.seats] rad, `first` of each
+/// @param up    component along z of the row's direction
+/// @returns rise along it, m
+double lean_on_seats(const TwoMotions* roll, double up, RailRow& row) noexcept;
+
+/// Adds to a row along a normal the rolls over the seats around, by which it rises. The row has
+/// none yet.
 /// @returns rise of its point along the normal, m. Other parameters: those of add_p_delta()
 double add_levers(const Model& model, const Configuration& at, double xi, const double* normal,
                   RailRow& row, SeatMotions& motions) noexcept;

@@ -101,23 +101,31 @@ TEST_CASE("a wheel dropped on a rigid rail bounces with its energy", "[wheelset]
   CHECK_THAT(rebound, WithinRel(.1, 2e-3));
 }
 
-TEST_CASE("both methods of the guide hold, with the same motion", "[wheelset]") {
+TEST_CASE("all methods of the guide hold, with the same motion", "[wheelset]") {
   const auto run_to = [](Guide guide) {
     Wheelset w = paper_wheelset(3.2);
     w.start = 2.;
     w.speed = 10.;
     w.guide = guide;
     w.alpha = w.beta = 200.;
+    w.forces = {{0, {0., 5e3}}};
     ModelRun run = wheelset_run(paper_track(), w, options(1e-4));
     run.state.v[run.model().wheelset[0].first] = 10.;
     run.until(.2);
     CHECK(run.outputs.constraint_violation < 1e-9);
     CHECK_THAT(run.body()[0], WithinAbs(2., 1e-9));
-    return std::array{run.body()[2], run.outputs.contact_force[0]};
+    return std::array{run.body()[2], run.outputs.contact_force[0], guide_of(run.state, 0)[0],
+                      run.outputs.constraint_violation};
   };
-  const auto a = run_to(Guide::augmented_lagrangian), b = run_to(Guide::baumgarte);
+  const auto a = run_to(Guide::augmented_lagrangian), b = run_to(Guide::baumgarte),
+             c = run_to(Guide::elimination);
   CHECK_THAT(a[0], WithinRel(b[0], 1e-6));
   CHECK_THAT(a[1], WithinRel(b[1], 1e-6));
+  CHECK_THAT(c[0], WithinRel(a[0], 1e-10));
+  CHECK_THAT(c[1], WithinRel(a[1], 1e-8));
+  CHECK_THAT(c[2], WithinRel(a[2], 1e-3));  // the other's is the penalty times what it misses
+  CHECK_THAT(c[2], WithinRel(5e3, 1e-2));   // what the wheels' slope on the rails adds is small
+  CHECK(c[3] == 0.);
 }
 
 TEST_CASE("a status reports an impact that the step cannot follow", "[wheelset]") {

@@ -132,7 +132,7 @@ EnergyAccount account_of(ModelRun& run) {
 TEST_CASE("energies of an accelerating wheelset balance as at a constant speed",
           "[wheelset][energy]") {
   for (const bool modal : {false, true})
-    for (const Guide guide : {Guide::augmented_lagrangian, Guide::baumgarte}) {
+    for (const Guide guide : {Guide::augmented_lagrangian, Guide::baumgarte, Guide::elimination}) {
       std::vector<double> error;
       for (const double dt : {2e-4, 1e-4, 5e-5}) {
         Wheelset even = quick(guide);
