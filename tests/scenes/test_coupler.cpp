@@ -200,6 +200,21 @@ TEST_CASE("the energy of a train on a rod is balanced", "[coupler]") {
   }
 }
 
+TEST_CASE("the drive of a wheelset takes the creep of its own wheels", "[coupler]") {
+  // A lone wheelset of 10 t: the first body is the one that rolls. It hunts after a while.
+  const std::string set =
+      "vehicle=[{name=\"one\",type=\"rail_vehicle\",speed_m_per_s=30.0,wheelset=[{name=\"set\","
+      "mass_kg=1e4,inertia_kg_m2=[1e3,1e2,1e3],place_m=0.0}]}]";
+  const Scene scene = read_scene(shipped("manchester_straight"), {set, "step.duration_s=0.05"});
+  double resistance = 0.;
+  for (const WheelLoad& wheel : running_loads(scene).wheels) resistance -= wheel.t_x;
+  CHECK(resistance > 5.);
+  const Traced run(scene);
+  CHECK(run["one.drive_n"].front() == Approx(resistance).epsilon(1e-6));
+  // Newton's method ends at 1e-10 of the wheels' 49 kN.
+  CHECK(run["one.drive_n"].back() == Approx(resistance).margin(1e-4));
+}
+
 TEST_CASE("sensors and forces find the bodies of each vehicle of a train", "[coupler]") {
   const Traced run(
       train(coupler(kRod),

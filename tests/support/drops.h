@@ -94,7 +94,7 @@ struct Drop {
   /// Energy of the track, the wheels, the contacts and their residual flexibility, J.
   double energy() const {
     const WheelsetModel& w = model().wheelset[0];
-    double sum = .5 * w.mass[2] * wheel(state.v) * wheel(state.v) + w.weight * wheel(state.u);
+    double sum = .5 * w.mass[2] * wheel(state.v) * wheel(state.v) - w.rest[2] * wheel(state.u);
     for (std::size_t l = 0; l < lines.size(); ++l) {
       const auto n = lines[l].unknowns();
       const Eigen::Map<const Eigen::VectorXd> u(state.u + model().line[l].first, n);

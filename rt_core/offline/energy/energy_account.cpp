@@ -34,8 +34,6 @@ Eigen::VectorXd wheel_forces_on(const Model& model, const VehicleModel& v, const
          Eigen::Map<const Eigen::VectorXd>(force, v.wheels);
 }
 
-bool is_held(const WheelsetModel& w, int k) { return is_projected(w.guide) && (k == 0 || k == 5); }
-
 }  // namespace
 
 EnergyAccount::EnergyAccount(const PackedModel& packed, const Model& model, const State& start)
@@ -71,10 +69,9 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
   const double time = static_cast<double>(at.state.steps) * model_.scheme.dt;
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) {
     const WheelsetModel& w = model_.wheelset[b];
-    const double* v = at.state.v + w.first;
-    for (int k = 0; k < 6; ++k) sum.kinetic += .5 * w.mass[k] * v[k] * v[k];
+    sum.kinetic += suspended_energy(w, at.state).kinetic;
     const double speed = travelled(w.travel, time).speed;
-    sum.forward += .5 * w.mass[0] * speed * (2. * v[0] - speed);
+    sum.forward += .5 * w.mass[0] * speed * (2. * at.state.v[w.first] - speed);
   }
   for (std::int32_t b = 0; b < model_.vehicles; ++b) {
     const SuspendedEnergy own = suspended_energy(model_.vehicle[b], at.state);
@@ -277,20 +274,14 @@ double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
   const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
   const bool held = model_.form == Form::condensed;
   const double sum = passage_work(now, b) - (held ? f1 : .5 * (f0 + f1)) * du;
-  if (is_held(w, 0)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
+  if (is_projected(w.guide)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
   const double g = held ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
   return sum + w.mass[0] * g * du;
 }
 
-double EnergyAccount::body_loss(const Standing& now, const WheelsetModel& w, int k) const {
+double EnergyAccount::inertia_loss(const Standing& now, const WheelsetModel& w, int k) const {
   const int i = w.first + k;
   const double dt = model_.scheme.dt, du = now.state.u[i] - last_.state.u[i];
-  if (model_.form == Form::condensed) {
-    if (k > 2) return 0.;
-    const double f0 = outer_force(model_, w, k, last_.state);
-    return .5 * (f0 - outer_force(model_, w, k, now.state)) * du;
-  }
-  if (is_held(w, k)) return 0.;
   const double v = .5 * (last_.state.v[i] + now.state.v[i]);
   const double g = .5 * (last_.state.g[i] + now.state.g[i]);
   return w.mass[k] * ((du - dt * v) * g - v * (now.state.v[i] - last_.state.v[i] - dt * g));
@@ -298,12 +289,11 @@ double EnergyAccount::body_loss(const Standing& now, const WheelsetModel& w, int
 
 void EnergyAccount::add_wheelset(const Standing& now, std::int32_t b) {
   const WheelsetModel& w = model_.wheelset[b];
-  const auto moved = [&](int k) { return now.state.u[w.first + k] - last_.state.u[w.first + k]; };
-  flow_.weight -= w.weight * moved(2);
-  for (int k = 0; k < 3; ++k)
-    flow_.forces += .5 * moved(k) *
-                    (outer_force(model_, w, k, last_.state) + outer_force(model_, w, k, now.state));
-  for (int k = 0; k < 6; ++k) flow_.loss += body_loss(now, w, k);
+  SuspendedWork work = suspended_work(model_, w, last_.state, now.state);
+  // The guide sets the rates of what it holds.
+  for (const int k : kGuided)
+    if (is_projected(w.guide) && model_.form == Form::banded) work.loss -= inertia_loss(now, w, k);
+  add_suspended(work);
   flow_.guides += guide_work(now, b);
 }
 
@@ -335,8 +325,7 @@ void EnergyAccount::add_start(const Standing& now) {
     const WheelsetContacts own = contacts_of(model_, b);
     for (int k = 1; k < 5; ++k) {  // x and yaw are guided
       const int at = w.first + k;
-      double force = -w.mass[k] * s.g[at] - (k == 2 ? w.weight : 0.);
-      if (k < 3) force += outer_force(model_, w, k, s);
+      double force = w.rest[k] - w.mass[k] * s.g[at] + outer_force(model_, w, k, s);
       for (int n = 0; n < own.count; ++n)
         force += last_.contacts.contact[own.at[n]].body_row[k] * s.contact_force[own.at[n]];
       flow_.loss += .5 * force * (now.state.u[at] - s.u[at]);

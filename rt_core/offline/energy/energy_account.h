@@ -110,7 +110,8 @@ class EnergyAccount {
   double wheel_force(const Standing& now, int wheel) const;
   double passage_work(const Standing& now, std::int32_t b) const;
   double guide_work(const Standing& now, std::int32_t b) const;
-  double body_loss(const Standing& now, const WheelsetModel& w, int k) const;
+  /// What the scheme takes out of the inertia of a coordinate of a wheelset on a banded track.
+  double inertia_loss(const Standing& now, const WheelsetModel& w, int k) const;
   void add_start(const Standing& now);
   void note();
 

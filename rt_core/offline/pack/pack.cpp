@@ -135,6 +135,28 @@ void PackedModel::add_irregularity(const Track& track, const RailIrregularity& i
                                      keep(irregularity.signal)};
 }
 
+namespace {
+
+SuspendedMatrices matrices_of(const Wheelset& w, const Scheme& scheme) {
+  SuspendedMatrices m{Eigen::VectorXd::Constant(kMotions, w.mass),
+                      Eigen::VectorXd::Zero(kMotions),
+                      Eigen::MatrixXd::Zero(kMotions, kMotions),
+                      Eigen::MatrixXd::Zero(kMotions, kMotions),
+                      Eigen::MatrixXd(kMotions, 0),
+                      Eigen::VectorXd::Zero(kMotions)};
+  m.mass.tail(3) << w.inertia_roll, w.inertia_spin, w.inertia_yaw;
+  m.rest[index_of(BodyMotion::z)] = -w.weight;
+  if (w.guide != Guide::augmented_lagrangian) m.held = Eigen::MatrixXd::Zero(kMotions, kGuideRows);
+  for (int i = 0; i < kGuideRows; ++i)
+    if (w.guide == Guide::augmented_lagrangian)
+      m.penalty[kGuided[i]] = kGuidePenalty * scheme.kg * m.mass[kGuided[i]];
+    else
+      m.held(kGuided[i], i) = 1.;
+  return m;
+}
+
+}  // namespace
+
 void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
                                const std::array<Railhead, 2>& heads) {
   if (track.rails != 2)
@@ -150,13 +172,7 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
              "the mass, an inertia or the radius of a wheelset is not above 0; expected numbers "
              "above 0");
   WheelsetModel& packed = model_.wheelset[model_.wheelsets++];
-  packed.first = model_.unknowns;
-  model_.unknowns += 8;
-  const double m = wheelset.mass;
-  const double masses[6] = {
-      m, m, m, wheelset.inertia_roll, wheelset.inertia_spin, wheelset.inertia_yaw};
-  for (int k = 0; k < 6; ++k) packed.mass[k] = masses[k];
-  packed.weight = wheelset.weight;
+  add_suspended(matrices_of(wheelset, model_.scheme), wheelset.forces, packed, "wheelset");
   packed.radius = wheelset.radius;
   packed.tread_half_width = wheelset.tread_half_width;
   packed.start = model_.endless.origin + wheelset.start;
@@ -175,7 +191,6 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   packed.tolerance = wheelset.tolerance;
   packed.alpha = wheelset.alpha;
   packed.beta = wheelset.beta;
-  packed.forces = keep(wheelset.forces, packed.force, "wheelset");
   for (const std::size_t rail : {0u, 1u}) packed.tread[rail] = keep(wheelset.tread[rail]);
   if (wheelset.flange) add_flange(track, wheelset, heads);
 }

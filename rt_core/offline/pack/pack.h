@@ -219,7 +219,8 @@ struct PackedRunner {
 struct SuspendedMatrices {
   Eigen::VectorXd mass, rest;
   Eigen::MatrixXd damping, stiffness;
-  Eigen::MatrixXd held;  // [n][constraints] rows, as columns, that stay 0
+  Eigen::MatrixXd held;          // [n][constraints] rows, as columns, that stay 0
+  Eigen::VectorXd penalty = {};  // [n] on coordinates that penalties hold, N/m; empty: none
 };
 
 /// How bodies respond to forces in a step.
@@ -287,8 +288,9 @@ class PackedModel {
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
+  /// @param body  "wheelset" or "vehicle", for messages
   SuspendedResponse add_suspended(const SuspendedMatrices& m, const std::vector<OuterForce>& forces,
-                                  SuspendedModel& packed);
+                                  SuspendedModel& packed, const char* body = "vehicle");
   [[noreturn]] void refuse_many_coordinates() const;
   TravelModel keep_travel(double speed, const std::vector<double>& speeds);
   void add_weight(const Track& track, const PackOptions& options);

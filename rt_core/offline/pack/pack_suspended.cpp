@@ -22,6 +22,7 @@ void clear_held(const Eigen::MatrixXd& free, Eigen::MatrixXd& inverse) {
 SuspendedResponse step_response(const SuspendedMatrices& m, const Scheme& scheme, double s) {
   Eigen::MatrixXd A = s * m.stiffness + s * scheme.kv * m.damping;
   A.diagonal() += scheme.kg * m.mass;
+  if (m.penalty.size() > 0) A.diagonal() += m.penalty;
   const Eigen::MatrixXd free = A.partialPivLu().inverse();
   SuspendedResponse made{.5 * (free + free.transpose()), Eigen::MatrixXd::Zero(0, A.rows())};
   if (m.held.cols() == 0) return made;
@@ -51,14 +52,14 @@ double first_force(const OuterForce& force) {
 
 SuspendedResponse PackedModel::add_suspended(const SuspendedMatrices& m,
                                              const std::vector<OuterForce>& forces,
-                                             SuspendedModel& packed) {
+                                             SuspendedModel& packed, const char* body) {
   const auto n = static_cast<std::int32_t>(m.mass.size());
   // Coordinates without mass are the last ones; nothing pushes them from outside.
   const auto most = static_cast<int>((m.mass.array() > 0.).count()) - 1;
   for (const OuterForce& force : forces)
     if (force.direction < 0 || force.direction > most)
       refuse("E-PACK-44", "a force acts along coordinate " + std::to_string(force.direction) +
-                              " of a vehicle; expected 0 to " + std::to_string(most));
+                              " of a " + body + "; expected 0 to " + std::to_string(most));
   SuspendedResponse response = step_response(m, model_.scheme, held_fraction(model_));
   packed.first = model_.unknowns;
   packed.size = n;
@@ -67,7 +68,7 @@ SuspendedResponse PackedModel::add_suspended(const SuspendedMatrices& m,
   packed.damping = keep(column_by_column(m.damping));
   packed.stiffness = keep(column_by_column(m.stiffness));
   packed.inverse = keep(column_by_column(response.inverse));
-  packed.forces = keep(forces, packed.force, "vehicle");
+  packed.forces = keep(forces, packed.force, body);
   model_.unknowns += (n + kLanes - 1) / kLanes * kLanes;
   return response;
 }

@@ -280,7 +280,7 @@ std::vector<Eigen::VectorXd> standing_line_forces(const Track& track, const Pack
 }
 
 double wheel_load(const WheelsetModel& w) {
-  double vertical = w.weight;
+  double vertical = -w.rest[index_of(BodyMotion::z)];
   for (std::int32_t i = 0; i < w.forces; ++i) {
     const double force = force_at(w.force[i], 0., nullptr);
     if (w.force[i].direction == 2) vertical -= force;

@@ -58,6 +58,17 @@ LoadModel load_of(const Model& model, int wheel, double force) {
   return load;
 }
 
+/// Leaves a wheelset's vertical forces of tables, as they are at t = 0.
+void keep_vertical_forces(WheelsetModel& w) {
+  std::int32_t kept = 0;
+  for (std::int32_t i = 0; i < w.forces; ++i) {
+    if (w.force[i].direction != index_of(BodyMotion::z) || w.force[i].input >= 0) continue;
+    w.force[kept] = w.force[i];
+    w.force[kept++].points = 1;  // before its second row a table has the value of its first one
+  }
+  w.forces = kept;
+}
+
 /// The model on an even track, with forces that keep their values at the start.
 Model evened(const Model& model) {
   Model even = model;
@@ -71,8 +82,7 @@ Model evened(const Model& model) {
   }
   for (std::int32_t b = 0; b < even.wheelsets; ++b) {
     WheelsetModel& w = even.wheelset[b];
-    w.weight = 2. * wheel_load(w);
-    w.forces = 0;
+    keep_vertical_forces(w);
     w.tread[0] = w.tread[1] = {};
   }
   for (std::int32_t i = 0; i < even.vehicle_wheels; ++i) even.vehicle_wheel[i].tread = {};

@@ -64,7 +64,7 @@ Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
     stance.number[2] = flange_contact(model, flange_number(0, side));
     stance.contact[2] = face[side];
   }
-  const Eigen::Vector3d applied(aside, force_along(w, 2) - w.weight, 0.);
+  const Eigen::Vector3d applied(aside, force_along(w, 2) + w.rest[2], 0.);
   stance.force = rows_of(stance).partialPivLu().solve(-applied.tail(stance.count));
   for (int i = 0; i < stance.count; ++i) {
     if (stance.contact[static_cast<std::size_t>(i)].on_rail && stance.force[i] > 0.) continue;

@@ -143,7 +143,7 @@ double free_depth(const Model& model, const State& s, const Workspace& w, const 
   if (port >= c.contacts || !stands(c.contact[port])) return c.track_free[port];
   return c.track_free[port] - model.scheme.theta * (is_of_wheelset(model, port)
                                                         ? free_lift(model, s, c, port)
-                                                        : vehicle_lift(model, w, port));
+                                                        : lift_by(model, c, port, w.solved));
 }
 
 /// Ports for given multipliers.

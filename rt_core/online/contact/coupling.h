@@ -2,14 +2,15 @@
 #include "online/contact/ports.h"
 #include "online/contact/wheel.h"
 #include "online/contact/wheel_seat.h"
+#include "online/math/dense.h"
 #include "online/math/newton.h"
+#include "online/model/contact_id.h"
 #include "online/track/residual.h"
 
 namespace railstep {
 
 /// A wheelset's six coordinates in a step, before wheel forces and multipliers.
 struct FreeWheelset {
-  double compliance[6];  // m/N or rad/(N m)
   double free[6];
   double held[kGuideRows];  // force of a guide by elimination on the track, without contact
 };
@@ -42,6 +43,17 @@ struct Coupling {
   double force[kPorts + kMaxWheelSeatRows];  // N, N m, against each row
   double penetration[kPorts];                // m; of scenes without runners [ports]
 };
+
+/// The lift of a contact off its rail over the coordinates of its bodies, in the step's geometry.
+inline const double* lift_row(const Model& model, const Coupling& c, ContactId i) noexcept {
+  return is_of_wheelset(model, i) ? c.contact[i].body_row : row_of_wheel(model, i);
+}
+/// The lift of a contact by displacements or rates of all unknowns.
+inline double lift_by(const Model& model, const Coupling& c, ContactId i,
+                      const double* u) noexcept {
+  const SuspendedModel& own = bodies_of(model, i);
+  return dot(lift_row(model, c, i), u + own.first, own.size);
+}
 
 inline bool is_on_rail(const Coupling& c, int row) noexcept {
   return row < c.contacts ? c.contact[row].on_rail : c.seat[row - c.contacts].on_rail;

@@ -13,27 +13,20 @@ namespace {
 /// take 1000 m/s^2.
 constexpr double kInactiveGap = 1e-3;
 
-/// Increase of a wheelset's distance from its rail at a contact by changes of its coordinates.
-double lift(const WheelContact& at, const double* p, const double* from) noexcept {
-  double sum = 0.;
-  for (int k = 0; k < 6; ++k) sum += at.body_row[k] * (p[k] - (from == nullptr ? 0. : from[k]));
-  return sum;
-}
-
-DepthSpeed speed_of(const Model& model, const State& s, const Workspace& w, const WheelContact& at,
-                    const WheelsetModel& set) noexcept {
-  const std::int32_t first = set.first;
-  const double passing = at.slope * s.v[first], *located = w.scaled + first;
+DepthSpeed speed_of(const Model& model, const State& s, const Workspace& w, const Coupling& c,
+                    ContactId i) noexcept {
+  const WheelContact& at = c.contact[i];
+  const double passing = at.slope * s.v[bodies_of(model, i).first];
+  const double located = at.penetration + lift_by(model, c, i, w.scaled);
   if (model.form == Form::condensed) {
-    DepthSpeed speed = mean_speed(model.scheme, at.penetration + lift(at, located, s.u + first));
+    DepthSpeed speed = mean_speed(model.scheme, located - lift_by(model, c, i, s.u));
     speed.before += passing;
     return speed;
   }
   const double moved = rail_height(model, at.row, {w.u_star, {}}) -
                        rail_height(model, at.row, located_on(model, s, w));
-  const double d_star = at.penetration + moved - lift(at, w.u_star + first, located);
-  const double rate =
-      rail_height(model, at.row, {w.v_star, {}}) - lift(at, w.v_star + first, nullptr);
+  const double d_star = (located + moved) - lift_by(model, c, i, w.u_star);
+  const double rate = rail_height(model, at.row, {w.v_star, {}}) - lift_by(model, c, i, w.v_star);
   return speed_at_end(model.scheme, d_star, passing + rate);
 }
 
@@ -62,8 +55,7 @@ void find_flange_laws(const Model& model, const State& s, const Workspace& w,
     const FlangeModel& flange = flange_of(model, i);
     c.law[i] = {flange.contact.hertz, flange.contact.stiffness, 0.};
     if (flange.contact.damping == 0. || !c.contact[i].on_rail) continue;
-    add_damper(flange.contact.damping,
-               speed_of(model, s, w, c.contact[i], model.wheelset[flange.wheelset]), c.law[i]);
+    add_damper(flange.contact.damping, speed_of(model, s, w, c, i), c.law[i]);
   }
 }
 
@@ -75,7 +67,7 @@ bool flange_impact_is_unresolved(const Model& model, const Coupling& c, const St
   double inverse_mass = 0.;
   for (int k = 1; k < 5; ++k)  // x and yaw are guided
     inverse_mass += at.body_row[k] * at.body_row[k] / set.mass[k];
-  const double speed = at.slope * s.v[set.first] - lift(at, s.v + set.first, nullptr);
+  const double speed = at.slope * s.v[set.first] - lift_by(model, c, contact, s.v);
   if (flange.contact.hertz > 0.)
     return impact_is_unresolved(flange.contact.hertz, inverse_mass, speed, model.scheme.dt);
   return spring_impact_is_unresolved(flange.contact.stiffness, inverse_mass, speed,

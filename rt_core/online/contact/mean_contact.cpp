@@ -1,8 +1,6 @@
 #include "online/contact/mean_contact.h"
 
 #include "online/contact/track_response.h"
-#include "online/contact/vehicle_response.h"
-#include "online/contact/wheelset.h"
 
 namespace railstep {
 
@@ -30,8 +28,7 @@ void find_means(const Model& model, const State& s, Coupling& c) noexcept {
     if (!(c.law[i].hertz > 0.) || !(at.on_rail || at.on_ground)) continue;
     // track_free has the track and the loads at the step's end, and no position of the body that
     // carries the wheel.
-    double from = c.track_free[i] - (is_of_wheelset(model, i) ? wheelset_lift_before(model, s, c, i)
-                                                              : vehicle_lift_before(model, s, i));
+    double from = c.track_free[i] - lift_by(model, c, i, s.u);
     if (at.on_rail) from += (residual_before(model, s, c, i) - c.by_loads[i]) - c.moved[i];
     c.law[i].mean = true;
     c.law[i].from = from;

@@ -22,16 +22,10 @@ int among_own(const Model& model, ContactId wheel) noexcept {
   return among_vehicle_wheels(model, wheel) - vehicle_of(model, wheel).first_wheel;
 }
 
-const double* row_of(const Model& model, ContactId wheel) noexcept {
-  const VehicleModel& v = vehicle_of(model, wheel);
-  return v.row + among_own(model, wheel) * v.size;
-}
-
 DepthSpeed speed_of(const Model& model, double time, const State& s, const Workspace& w,
                     const Coupling& c, ContactId i) noexcept {
   const WheelContact& at = c.contact[i];
   const VehicleModel& v = vehicle_of(model, i);
-  const double* row = row_of(model, i);
   const Configuration located = located_on(model, s, w);
   double along = at.slope, missed = 0.;
   if (at.on_rail) {
@@ -42,12 +36,12 @@ DepthSpeed speed_of(const Model& model, double time, const State& s, const Works
   const double passing = travelled(v.travel, when).speed * along;
   if (model.form == Form::condensed) {
     DepthSpeed speed = mean_speed(
-        model.scheme, c.located[i] + at.irregularity + missed - dot(row, s.u + v.first, v.size));
+        model.scheme, c.located[i] + at.irregularity + missed - lift_by(model, c, i, s.u));
     speed.before += passing;
     return speed;
   }
-  double d_star = at.irregularity + missed - dot(row, w.u_star + v.first, v.size);
-  double rate = -dot(row, w.v_star + v.first, v.size);
+  double d_star = at.irregularity + missed - lift_by(model, c, i, w.u_star);
+  double rate = -lift_by(model, c, i, w.v_star);
   if (at.on_rail) {
     d_star += rail_height(model, at.row, {w.u_star, {}});
     rate += rail_height(model, at.row, {w.v_star, {}});
@@ -82,19 +76,8 @@ double vehicle_compliance(const Model& model, ContactId i, ContactId j) noexcept
 }
 
 double vehicle_offset(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept {
-  const VehicleModel& v = vehicle_of(model, i);
   return (c.located[i] + c.contact[i].irregularity) -
-         (1. - model.scheme.theta) * dot(row_of(model, i), s.u + v.first, v.size);
-}
-
-double vehicle_lift(const Model& model, const Workspace& w, ContactId i) noexcept {
-  const VehicleModel& v = vehicle_of(model, i);
-  return dot(row_of(model, i), w.solved + v.first, v.size);
-}
-
-double vehicle_lift_before(const Model& model, const State& s, ContactId i) noexcept {
-  const VehicleModel& v = vehicle_of(model, i);
-  return dot(row_of(model, i), s.u + v.first, v.size);
+         (1. - model.scheme.theta) * lift_by(model, c, i, s.u);
 }
 
 void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept {
@@ -111,7 +94,7 @@ void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept
 bool vehicle_impact_is_unresolved(const Model& model, const Coupling& c, const State& s,
                                   ContactId wheel) noexcept {
   const VehicleModel& v = vehicle_of(model, wheel);
-  const double* row = row_of(model, wheel);
+  const double* row = row_of_wheel(model, wheel);
   const double hertz = vehicle_wheel(model, wheel).contact.hertz;
   const double time = static_cast<double>(s.steps) * model.scheme.dt;
   double speed = c.contact[wheel].slope * travelled(v.travel, time).speed, inverse_mass = 0.;

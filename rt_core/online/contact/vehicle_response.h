@@ -22,12 +22,6 @@ double vehicle_compliance(const Model& model, ContactId i, ContactId j) noexcept
 /// step's start, without the effect of the coordinates at the step's end.
 double vehicle_offset(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
 
-/// Height of wheel i at the step's end without contact forces.
-double vehicle_lift(const Model& model, const Workspace& w, ContactId i) noexcept;
-
-/// Height of wheel i at the step's start.
-double vehicle_lift_before(const Model& model, const State& s, ContactId i) noexcept;
-
 /// Moves the vehicles under the contact forces.
 void move_vehicles(const Model& model, Workspace& w, const Coupling& c) noexcept;
 

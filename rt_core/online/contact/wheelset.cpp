@@ -11,12 +11,6 @@ namespace railstep {
 
 namespace {
 
-constexpr int kGuided[kGuideRows] = {0, 5};  // x and yaw
-
-/// Penalty of the augmented Lagrangian over the coordinate's inertia term kg m: each iteration
-/// leaves 1/(1 + kPenalty) of the violation.
-constexpr double kPenalty = 1e3;
-
 /// Target of a guided coordinate at a stage's end; x counts from the start, or from the last bay
 /// border.
 Travelled target(const Model& model, const WheelsetModel& w, int guided, const Stage& at) noexcept {
@@ -29,14 +23,15 @@ Travelled target(const Model& model, const WheelsetModel& w, int guided, const S
 ///   Ix r'' = Iy s' y' - Ix y'^2 r,   Iz y'' = -Iy s' r' + 2 Ix y' r' r
 void applied_force(const WheelsetModel& w, double time, const double* input, const double* p,
                    const double* v, double* force) noexcept {
-  for (int k = 0; k < 6; ++k) force[k] = 0.;
-  force[2] = -w.weight;
-  for (std::int32_t i = 0; i < w.forces; ++i)
-    force[w.force[i].direction] += force_at(w.force[i], time, input);
+  for (int k = 0; k < 6; ++k) force[k] = w.rest[k];
+  add_forces(w, time, input, force);
   const double spin = travelled(w.travel, time).speed / w.radius + v[4];
-  force[3] = w.mass[4] * spin * v[5] - w.mass[3] * v[5] * v[5] * p[3];
-  force[5] = -w.mass[4] * spin * v[3] + 2. * w.mass[3] * v[5] * v[3] * p[3];
+  force[3] += w.mass[4] * spin * v[5] - w.mass[3] * v[5] * v[5] * p[3];
+  force[5] += -w.mass[4] * spin * v[3] + 2. * w.mass[3] * v[5] * v[3] * p[3];
 }
+
+/// Displacement along a coordinate by a unit force along it, m/N or rad/(N m).
+double compliance_of(const WheelsetModel& set, int k) noexcept { return set.inverse[7 * k]; }
 
 bool is_guided(int k) noexcept { return k == kGuided[0] || k == kGuided[1]; }
 
@@ -65,15 +60,23 @@ void move_body(const Model& model, int b, const Coupling& c, const double* multi
   for (int k = 0; k < 6; ++k) {
     double force = contact_force_on(model, b, c, k);
     if (is_guided_by_force(set, k)) force -= multiplier_of(multiplier, k);
-    p[k] = c.wheelset[b].free[k] + c.wheelset[b].compliance[k] * force;
+    p[k] = c.wheelset[b].free[k] + compliance_of(set, k) * force;
   }
+}
+
+/// g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end, with v and u as g makes them.
+double baumgarte_acceleration(const WheelsetModel& set, const Scheme& c, const Travelled& goal,
+                              double p, double v) noexcept {
+  const double beta2 = set.beta * set.beta;
+  return (goal.acceleration - 2. * set.alpha * (v - goal.speed) - beta2 * (p - goal.distance)) /
+         (1. + 2. * set.alpha * c.kv / c.kg + beta2 / c.kg);
 }
 
 }  // namespace
 
 void free_wheelsets(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                     Coupling& c) noexcept {
-  const double kg = model.scheme.kg, kv = model.scheme.kv;
+  const double kg = model.scheme.kg;
   const double time = time_of(model.scheme, stage);
   for (std::int32_t b = 0; b < model.wheelsets; ++b) {
     const WheelsetModel& set = model.wheelset[b];
@@ -81,30 +84,26 @@ void free_wheelsets(const Model& model, const Stage& stage, const State& s, cons
     const double* v = w.v_star + set.first;
     double force[6];
     applied_force(set, time, s.input, p, v, force);
-    for (int k = 0; k < 6; ++k) {
-      c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k]);
-      c.wheelset[b].free[k] = p[k] + c.wheelset[b].compliance[k] * force[k];
-    }
+    // Added to u*, so that what rests keeps its place to the last bit.
+    double* const free = c.wheelset[b].free;
+    for (int k = 0; k < 6; ++k) free[k] = p[k] + compliance_of(set, k) * force[k];
     for (int i = 0; i < kGuideRows; ++i) {
       const int k = kGuided[i];
       const Travelled goal = target(model, set, k, stage);
-      if (set.guide == Guide::elimination) {
-        c.wheelset[b].compliance[k] = 0.;
-        c.wheelset[b].free[k] = goal.distance;
-        c.wheelset[b].held[i] = kg * set.mass[k] * (p[k] - goal.distance) + force[k];
-      } else if (set.guide == Guide::augmented_lagrangian) {
-        // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
-        const double penalty = kPenalty * kg * set.mass[k];
-        c.wheelset[b].compliance[k] = 1. / (kg * set.mass[k] + penalty);
-        c.wheelset[b].free[k] = c.wheelset[b].compliance[k] *
-                                (kg * set.mass[k] * p[k] + force[k] + penalty * goal.distance);
-      } else {
-        const double beta2 = set.beta * set.beta;
-        const double g = (goal.acceleration - 2. * set.alpha * (v[k] - goal.speed) -
-                          beta2 * (p[k] - goal.distance)) /
-                         (1. + 2. * set.alpha * kv / kg + beta2 / kg);
-        c.wheelset[b].compliance[k] = 0.;
-        c.wheelset[b].free[k] = p[k] + g / kg;
+      const double inertia = kg * set.mass[k];
+      c.wheelset[b].held[i] = inertia * (p[k] - goal.distance) + force[k];
+      switch (set.guide) {
+        case Guide::augmented_lagrangian:
+          // (kg m + penalty) u = kg m u* + F - multiplier + penalty * goal
+          free[k] = compliance_of(set, k) *
+                    (inertia * p[k] + force[k] + kGuidePenalty * inertia * goal.distance);
+          break;
+        case Guide::baumgarte:
+          free[k] = p[k] + baumgarte_acceleration(set, model.scheme, goal, p[k], v[k]) / kg;
+          break;
+        case Guide::elimination:
+          free[k] = goal.distance;
+          break;
       }
     }
   }
@@ -116,18 +115,15 @@ double wheelset_compliance(const Model& model, const Coupling& c, ContactId i,
   const std::int32_t b = wheelset_of(model, i);
   if (b != wheelset_of(model, j)) return sum;
   for (int k = 0; k < 6; ++k)
-    sum += c.contact[i].body_row[k] * c.wheelset[b].compliance[k] * c.contact[j].body_row[k];
+    sum +=
+        c.contact[i].body_row[k] * compliance_of(model.wheelset[b], k) * c.contact[j].body_row[k];
   return sum;
 }
 
 double wheelset_offset(const Model& model, const State& s, const Workspace& w, const Coupling& c,
                        ContactId i) noexcept {
-  const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
-  double sum = c.contact[i].penetration;
-  for (int k = 0; k < 6; ++k)
-    sum += c.contact[i].body_row[k] *
-           (w.scaled[first + k] - (1. - model.scheme.theta) * s.u[first + k]);
-  return sum;
+  return c.contact[i].penetration +
+         (lift_by(model, c, i, w.scaled) - (1. - model.scheme.theta) * lift_by(model, c, i, s.u));
 }
 
 double free_lift(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept {
@@ -137,17 +133,9 @@ double free_lift(const Model& model, const State& s, const Coupling& c, ContactI
   for (int k = 0; k < 6; ++k) {
     double p = own.free[k];
     if (is_guided_by_force(model.wheelset[b], k))
-      p -= own.compliance[k] * multiplier_of(guide_of(s, b), k);
+      p -= compliance_of(model.wheelset[b], k) * multiplier_of(guide_of(s, b), k);
     sum += c.contact[i].body_row[k] * p;
   }
-  return sum;
-}
-
-double wheelset_lift_before(const Model& model, const State& s, const Coupling& c,
-                            ContactId i) noexcept {
-  const std::int32_t first = model.wheelset[wheelset_of(model, i)].first;
-  double sum = 0.;
-  for (int k = 0; k < 6; ++k) sum += c.contact[i].body_row[k] * s.u[first + k];
   return sum;
 }
 
@@ -174,7 +162,7 @@ bool move_wheelsets(const Model& model, const Stage& stage, State& s, Workspace&
       if (set.guide == Guide::elimination)
         multiplier[i] = c.wheelset[b].held[i] + contact_force_on(model, b, c, k);
       if (set.guide != Guide::augmented_lagrangian) continue;
-      multiplier[i] += kPenalty * model.scheme.kg * set.mass[k] * miss;
+      multiplier[i] += kGuidePenalty * model.scheme.kg * set.mass[k] * miss;
       if (!(std::fabs(miss) <= set.tolerance)) settled = false;
     }
   }

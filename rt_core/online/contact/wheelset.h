@@ -5,8 +5,7 @@ namespace railstep {
 
 // Wheelsets in a step's coupled problem, on their treads and flanges (model/contact_id.h).
 
-/// Motion of each wheelset without contact, and its compliance. A coordinate on Baumgarte's guide
-/// has no compliance: g = x'' - 2 alpha (v - x') - beta^2 (u - x) at the step's end.
+/// Motion of each wheelset without contact.
 void free_wheelsets(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                     Coupling& c) noexcept;
 
@@ -22,10 +21,6 @@ double wheelset_offset(const Model& model, const State& s, const Workspace& w, c
 
 /// Distance by which contact i leaves its rail over the step without contact forces.
 double free_lift(const Model& model, const State& s, const Coupling& c, ContactId i) noexcept;
-
-/// Distance of contact i from its rail at the step's start, in the step's geometry.
-double wheelset_lift_before(const Model& model, const State& s, const Coupling& c,
-                            ContactId i) noexcept;
 
 /// Largest number of iterations of the guides' augmented Lagrangian around the contacts.
 std::int32_t guide_iterations(const Model& model) noexcept;

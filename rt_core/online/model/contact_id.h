@@ -88,6 +88,16 @@ inline std::int32_t rail_of(const Model& model, ContactId contact) noexcept {
   if (is_flange(model, contact)) return among_flanges(model, contact) % 2;
   return is_of_wheelset(model, contact) ? contact % 2 : vehicle_wheel(model, contact).rail;
 }
+/// The bodies that carry a contact.
+inline const SuspendedModel& bodies_of(const Model& model, ContactId contact) noexcept {
+  if (is_of_wheelset(model, contact)) return model.wheelset[wheelset_of(model, contact)];
+  return model.vehicle[vehicle_wheel(model, contact).vehicle];
+}
+/// The height of a vehicle's wheel over the coordinates of the vehicle, [size].
+inline const double* row_of_wheel(const Model& model, ContactId wheel) noexcept {
+  const VehicleModel& own = model.vehicle[vehicle_wheel(model, wheel).vehicle];
+  return own.row + (among_vehicle_wheels(model, wheel) - own.first_wheel) * own.size;
+}
 /// Rail and height at which a contact's vertical force acts; kNoLoadPoint for a flange.
 inline std::int32_t load_point_of(const Model& model, ContactId contact) noexcept {
   if (is_flange(model, contact)) return kNoLoadPoint;

@@ -153,24 +153,6 @@ void describe(Archive& a, BodyForce& f, std::int32_t directions) {
 }
 
 template <typename Archive>
-void describe(Archive& a, WheelsetModel& w) {
-  a.count(w.first, kMostUnknowns);
-  for (double& x : w.mass) a.real(x);
-  for (double* x : {&w.weight, &w.radius, &w.tread_half_width, &w.start, &w.rest_z, &w.hertz[0],
-                    &w.hertz[1], &w.tolerance, &w.alpha, &w.beta})
-    a.real(*x);
-  describe(a, w.travel);
-  std::int32_t guide = static_cast<std::int32_t>(w.guide);
-  a.count(guide, static_cast<std::int32_t>(Guide::elimination));
-  w.guide = static_cast<Guide>(guide);
-  a.count(w.cap, kMostGuideIterations);
-  a.count(w.forces, kMaxBodyForces);
-  for (std::int32_t i = 0; i < w.forces; ++i) describe(a, w.force[i], 2);
-  for (std::int32_t& point : w.load_point) a.count(point, kMaxLoadPoints - 1);
-  for (SignalModel& tread : w.tread) describe(a, tread);
-}
-
-template <typename Archive>
 void describe(Archive& a, ContactModel& c) {
   for (double* x : {&c.hertz, &c.stiffness, &c.damping}) a.real(*x);
 }
@@ -207,6 +189,20 @@ void describe(Archive& a, SuspendedModel& b, std::int32_t most) {
   for (const double** of : {&b.damping, &b.stiffness, &b.inverse}) a.reals(*of, n * n);
   a.count(b.forces, kMaxBodyForces);
   for (std::int32_t i = 0; i < b.forces; ++i) describe(a, b.force[i], most - 1);
+}
+
+template <typename Archive>
+void describe(Archive& a, WheelsetModel& w) {
+  describe(a, w, kMotions);
+  for (double* x : {&w.radius, &w.tread_half_width, &w.rest_z, &w.hertz[0], &w.hertz[1],
+                    &w.tolerance, &w.alpha, &w.beta})
+    a.real(*x);
+  std::int32_t guide = static_cast<std::int32_t>(w.guide);
+  a.count(guide, static_cast<std::int32_t>(Guide::elimination));
+  w.guide = static_cast<Guide>(guide);
+  a.count(w.cap, kMostGuideIterations);
+  for (std::int32_t& point : w.load_point) a.count(point, kMaxLoadPoints - 1);
+  for (SignalModel& tread : w.tread) describe(a, tread);
 }
 
 template <typename Archive>

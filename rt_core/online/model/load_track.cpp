@@ -110,14 +110,6 @@ bool external_wheels_are_valid(const Model& m) noexcept {
   return true;
 }
 
-bool wheelset_is_valid(const Model& m, const WheelsetModel& w) noexcept {
-  if (w.first < m.line_unknowns || w.first + 8 > m.unknowns || w.cap < 1) return false;
-  if (!are_above_zero(w.mass, 6) || !are_above_zero(w.hertz, 2) || !(w.radius > 0.)) return false;
-  for (std::int32_t i = 0; i < w.forces; ++i)
-    if (!force_is_valid(m, w.force[i])) return false;
-  return travel_is_valid(w.travel) && signal_is_valid(w.tread[0]) && signal_is_valid(w.tread[1]);
-}
-
 /// Flanges are in the order of their wheelsets, one pair each, and count as wheels among the ports.
 bool flanges_are_valid(const Model& m) noexcept {
   if (contact_count(m) > kMaxWheels) return false;
@@ -136,6 +128,12 @@ bool suspended_is_valid(const Model& m, const SuspendedModel& b) noexcept {
     if (b.force[i].direction >= b.size || !force_is_valid(m, b.force[i])) return false;
   return travel_is_valid(b.travel) && b.mass && b.rest && b.damping && b.stiffness && b.inverse &&
          are_not_negative(b.mass, b.size) && diagonal_is_not_negative(b.inverse, b.size);
+}
+
+bool wheelset_is_valid(const Model& m, const WheelsetModel& w) noexcept {
+  return w.size == kMotions && suspended_is_valid(m, w) && w.cap >= 1 && w.radius > 0. &&
+         are_above_zero(w.mass, kMotions) && are_above_zero(w.hertz, 2) &&
+         signal_is_valid(w.tread[0]) && signal_is_valid(w.tread[1]);
 }
 
 bool vehicle_is_valid(const Model& m, const VehicleModel& v) noexcept {

@@ -129,27 +129,27 @@ struct RailSignal {
 enum class Guide : std::int32_t { augmented_lagrangian, baumgarte, elimination };
 /// Whether rates and accelerations of guided coordinates are set to those of the guide.
 constexpr bool is_projected(Guide guide) noexcept { return guide != Guide::baumgarte; }
-inline constexpr int kGuideRows = 2;  // coordinates that a wheelset's guide holds: x and yaw
+inline constexpr int kGuideRows = 2;                // coordinates that a wheelset's guide holds
+inline constexpr int kGuided[kGuideRows] = {0, 5};  // x and yaw
+/// Penalty of the augmented Lagrangian over the coordinate's inertia term kg m: each iteration
+/// leaves 1/(1 + kGuidePenalty) of the violation.
+inline constexpr double kGuidePenalty = 1e3;
 
 /// A rigid wheelset on both rails. Coordinates are x, y, z of its centre from its start, then roll,
 /// spin (beyond speed / radius) and yaw. Cylinders of one radius roll on circular railhead crowns
 /// without friction. The guide holds x on its travel and yaw = 0.
-struct WheelsetModel {
-  std::int32_t first;  // of its six coordinates among the state's unknowns
-  double mass[6];      // kg, kg, kg, roll, spin, yaw inertia kg m2
-  double weight;       // N, down; of the wheelset and what it carries
+///
+/// As of SuspendedModel its origin is its centre at the start; on a track without end x counts the
+/// way within a bay. `rest` has the weight of it and of what it carries. `inverse` is diagonal:
+/// 0 where the guide prescribes a coordinate, and with the penalty where that is how it holds.
+struct WheelsetModel : SuspendedModel {
   double radius, tread_half_width;
-  double start;  // of the centre, m; on a track without end along the elements, from which
-  // coordinate x then counts the way within a bay
-  TravelModel travel;
   double rest_z;    // height of the centre over the left rail's axis when it touches, m
   double hertz[2];  // C of P = C d^1.5 on left and right rail, N/m^1.5
   Guide guide;
-  std::int32_t cap;    // iterations of the augmented Lagrangian
-  double tolerance;    // m and rad
-  double alpha, beta;  // of Baumgarte, 1/s
-  std::int32_t forces;
-  BodyForce force[kMaxBodyForces];
+  std::int32_t cap;            // iterations of the augmented Lagrangian
+  double tolerance;            // m and rad
+  double alpha, beta;          // of Baumgarte, 1/s
   std::int32_t load_point[2];  // on left and right rail: height at which its vertical force acts
   SignalModel tread[2];        // of the left and right wheel: deviation from `radius` over the
   // distance rolled

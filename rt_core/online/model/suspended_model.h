@@ -14,7 +14,7 @@ struct BodyForce {
 
 /// Rigid bodies on linear springs and dampers, in frames that move along the track,
 ///   M q'' + C q' + K q = rest + forces of tables and inputs + what acts at their interfaces.
-/// Vehicles differ in their interfaces: contacts with the rails, and springs that are not linear.
+/// Wheelsets and vehicles differ in their interfaces: contacts, and springs that are not linear.
 /// The equation holds at the fraction s = held_fraction() of the step.
 struct SuspendedModel {
   std::int32_t first, size;           // its coordinates among the state's unknowns

@@ -41,19 +41,12 @@ std::int32_t first_beyond(const State& s, std::int32_t first, std::int32_t last,
   return first;
 }
 
-/// First unknown of the wheelset or vehicle to which a contact belongs.
-std::int32_t first_unknown_of(const Model& model, ContactId contact) noexcept {
-  return is_of_wheelset(model, contact)
-             ? model.wheelset[wheelset_of(model, contact)].first
-             : model.vehicle[vehicle_wheel(model, contact).vehicle].first;
-}
-
 /// First unknown of a body whose contact, orientation or joint has too large numbers, or -1. They
 /// are high powers of unknowns, which overflow long before the unknowns do.
 std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) noexcept {
   for (ContactId i = 0; i < contact_count(model); ++i)
     if (!is_moderate(out.contact_gap[i]) || !is_moderate(s.contact_force[i]))
-      return first_unknown_of(model, i);
+      return bodies_of(model, i).first;
   const SystemModel& system = model.system;
   for (std::int32_t b = 0; b < system.bodies; ++b)
     for (int k = 0; k < 4; ++k)

@@ -32,7 +32,7 @@ double energy(const ModelRun& run) {
     const double v = run.state.v[w.first + k];
     sum += .5 * w.mass[k] * v * v;
   }
-  sum += w.weight * run.state.u[w.first + 2];
+  sum -= w.rest[2] * run.state.u[w.first + 2];
   WheelContact sides[2];
   find_contacts(model, w, {run.state.u, {run.state.u, run.state.v}}, sides);
   for (const WheelContact& side : sides) {
