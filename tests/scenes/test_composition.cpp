@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "offline/energy/energy_account.h"
@@ -125,12 +126,15 @@ AnyScene scene_of(const TrackForm& form, const Partner& partner, const std::stri
            ",1.0,0.46],stiffness_n_per_m=[1e7,4e6,1e6],"
            "damping_n_s_per_m=[1e4,4e3,1e4],mirror=true}";
   };
+  const std::pair<std::string, std::string> names[] = {{"VEHICLE", vehicle},
+                                                       {"=V}", "=" + speed + "}"},
+                                                       {"=V,", "=" + speed + ","},
+                                                       {"AT", std::to_string(form.start + 14.07)},
+                                                       {"PRIMARY1", primary("w1", "1.0")},
+                                                       {"PRIMARY2", primary("w2", "-1.0")}};
   for (std::string word : partner.words) {
-    word = replaced(replaced(word, "VEHICLE", vehicle), "=V}", "=" + speed + "}");
-    word = replaced(replaced(word, "=V,", "=" + speed + ","), "AT",
-                    std::to_string(form.start + 14.07));
-    words.push_back(replaced(replaced(word, "PRIMARY1", primary("w1", "1.0")), "PRIMARY2",
-                             primary("w2", "-1.0")));
+    for (const auto& [name, text] : names) word = replaced(word, name, text);
+    words.push_back(word);
   }
   return read_any_scene(shipped(form.scene), words);
 }
