@@ -40,7 +40,7 @@ struct EnergyFlow {
 /// displacement of the material point under it, with means over a step: (F0 row0 + F1 row1)/2 du.
 /// The carriers that move loads and wheels along supply the change of residual energy due to the
 /// change of place (residual_work). A guide does the work that its wheelset's motion along x needs,
-/// from the acceleration of the state by either method:
+/// from the acceleration of the state, by any method:
 ///   m g dx - F dx, or d(m v^2 / 2) - F dx if the velocity is projected (not by Baumgarte),
 /// F the other forces along x. Among these a contact does f da, a the approach, by the motion along
 /// x alone. The multiplier is not taken, for its round-off is the penalty times that of x; the
@@ -110,7 +110,8 @@ class EnergyAccount {
   double wheel_force(const Standing& now, int wheel) const;
   double passage_work(const Standing& now, std::int32_t b) const;
   double guide_work(const Standing& now, std::int32_t b) const;
-  /// What the scheme takes out of the inertia of a coordinate of a wheelset on a banded track.
+  /// Energy that the scheme takes out of the inertia of one coordinate of a wheelset on a banded
+  /// track, J.
   double inertia_loss(const Standing& now, const WheelsetModel& w, int k) const;
   void add_start(const Standing& now);
   void note();

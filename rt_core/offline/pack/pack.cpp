@@ -10,7 +10,6 @@
 #include "offline/cost/cost.h"
 #include "offline/math/refuse.h"
 #include "offline/pack/released.h"
-#include "online/contact/wheel_seat.h"
 #include "online/math/newton.h"
 #include "online/model/external_input.h"
 
@@ -135,66 +134,6 @@ void PackedModel::add_irregularity(const Track& track, const RailIrregularity& i
                                      keep(irregularity.signal)};
 }
 
-namespace {
-
-SuspendedMatrices matrices_of(const Wheelset& w, const Scheme& scheme) {
-  SuspendedMatrices m{Eigen::VectorXd::Constant(kMotions, w.mass),
-                      Eigen::VectorXd::Zero(kMotions),
-                      Eigen::MatrixXd::Zero(kMotions, kMotions),
-                      Eigen::MatrixXd::Zero(kMotions, kMotions),
-                      Eigen::MatrixXd(kMotions, 0),
-                      Eigen::VectorXd::Zero(kMotions)};
-  m.mass.tail(3) << w.inertia_roll, w.inertia_spin, w.inertia_yaw;
-  m.rest[index_of(BodyMotion::z)] = -w.weight;
-  if (w.guide != Guide::augmented_lagrangian) m.held = Eigen::MatrixXd::Zero(kMotions, kGuideRows);
-  for (int i = 0; i < kGuideRows; ++i)
-    if (w.guide == Guide::augmented_lagrangian)
-      m.penalty[kGuided[i]] = kGuidePenalty * scheme.kg * m.mass[kGuided[i]];
-    else
-      m.held(kGuided[i], i) = 1.;
-  return m;
-}
-
-}  // namespace
-
-void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
-                               const std::array<Railhead, 2>& heads) {
-  if (track.rails != 2)
-    refuse("E-PACK-10",
-           "a wheelset stands on two rails, but the track has one; expected track.rails = 2");
-  if (model_.wheelsets == kMaxWheelsets)
-    refuse("E-PACK-11", "there are more wheelsets than a model takes; expected at most " +
-                            std::to_string(kMaxWheelsets));
-  for (const double inertia : {wheelset.mass, wheelset.inertia_roll, wheelset.inertia_spin,
-                               wheelset.inertia_yaw, wheelset.radius})
-    if (!(inertia > 0.))
-      refuse("E-PACK-12",
-             "the mass, an inertia or the radius of a wheelset is not above 0; expected numbers "
-             "above 0");
-  WheelsetModel& packed = model_.wheelset[model_.wheelsets++];
-  add_suspended(matrices_of(wheelset, model_.scheme), wheelset.forces, packed, "wheelset");
-  packed.radius = wheelset.radius;
-  packed.tread_half_width = wheelset.tread_half_width;
-  packed.start = model_.endless.origin + wheelset.start;
-  packed.travel = keep_travel(wheelset.speed, wheelset.speeds);
-  packed.rest_z =
-      crown_top(model_.cant[0], heads[0].top_z, heads[0].crown_radius).height + wheelset.radius;
-  for (const int rail : {0, 1}) {
-    const Railhead& head = heads[static_cast<std::size_t>(rail)];
-    const Material material = track.bar(rail).material;
-    packed.hertz[rail] =
-        hertz_constant(wheelset.radius, head.crown_radius, material.young, material.poisson);
-    packed.load_point[rail] = load_point_of_wheel(rail);
-  }
-  packed.guide = wheelset.guide;
-  packed.cap = wheelset.cap;
-  packed.tolerance = wheelset.tolerance;
-  packed.alpha = wheelset.alpha;
-  packed.beta = wheelset.beta;
-  for (const std::size_t rail : {0u, 1u}) packed.tread[rail] = keep(wheelset.tread[rail]);
-  if (wheelset.flange) add_flange(track, wheelset, heads);
-}
-
 std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce* force,
                                const char* body) {
   const std::string on = std::string(" on a ") + body;
@@ -211,49 +150,6 @@ std::int32_t PackedModel::keep(const std::vector<OuterForce>& forces, BodyForce*
                 own.input};
   }
   return static_cast<std::int32_t>(forces.size());
-}
-
-namespace {
-
-/// The point on a head's side, y across its section, that lies kGaugeDepth below the head's top as
-/// the rail leans.
-SectionPoint gauge_face(const Cant& cant, const Railhead& head, double y) {
-  const double height = crown_top(cant, head.top_z, head.crown_radius).height - kGaugeDepth;
-  return {y, (height - cant.sine * y) / cant.cosine};
-}
-
-}  // namespace
-
-/// Adds flanges to the last wheelset. `clearance` further in, each face would touch the gauge face.
-void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
-                             const std::array<Railhead, 2>& heads) {
-  const Flange& flange = *wheelset.flange;
-  FlangeModel& packed = model_.flange[model_.flanges++];
-  if (contact_count(model_) > kMaxWheels)
-    refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
-                            std::to_string(kMaxWheels));
-  packed.wheelset = model_.wheelsets - 1;
-  packed.normal[0] = -std::sin(flange.angle);
-  packed.normal[1] = std::cos(flange.angle);
-  packed.tip = -(wheelset.radius + flange.height);
-  packed.contact = {0., flange.stiffness, flange.damping};
-  const Material material = track.bar(0).material;
-  const double around = (wheelset.radius + kGaugeDepth) / std::cos(flange.angle);
-  if (flange.corner_radius > 0.)
-    packed.contact = {
-        hertz_constant(around, flange.corner_radius, material.young, material.poisson), 0., 0.};
-  for (const int rail : {0, 1}) {
-    const Railhead& head = heads[static_cast<std::size_t>(rail)];
-    const double inward = rail == 0 ? -1. : 1.;
-    const SectionPoint gauge = gauge_face(model_.cant[rail], head, inward * head.gauge_half_width);
-    packed.gauge[rail][0] = gauge.y;
-    packed.gauge[rail][1] = gauge.z;
-    const double own[3] = {0., gauge.y, gauge.z};
-    double in_track[3];
-    to_track(model_.cant[rail], own, in_track);
-    packed.point[rail][0] = model_.rail_y[rail] + in_track[1] + inward * flange.clearance;
-    packed.point[rail][1] = -(wheelset.radius + kGaugeDepth);
-  }
 }
 
 void PackedModel::set_start(std::vector<double> state) {

@@ -18,7 +18,7 @@ void clear_held(const Eigen::MatrixXd& free, Eigen::MatrixXd& inverse) {
   }
 }
 
-/// Of (s K + s kv C + kg M) q = force + held reaction, held' q = 0.
+/// The response by (s K + s kv C + kg M) q = force + held reaction with held' q = 0.
 SuspendedResponse step_response(const SuspendedMatrices& m, const Scheme& scheme, double s) {
   Eigen::MatrixXd A = s * m.stiffness + s * scheme.kv * m.damping;
   A.diagonal() += scheme.kg * m.mass;

@@ -27,8 +27,8 @@ void add_between(const RowsOfBase& a, const RowsOfBase& b, bool same, double val
     }
 }
 
-/// What some bases carry of a line, one behind the other: those of a vehicle on eight wheels are
-/// all of them.
+/// The unknowns of a line that some bases carry, base after base. There is room for all bases of a
+/// vehicle on eight wheels.
 struct CarriedBases {
   static constexpr int kMost = 24, kMostUnknowns = 10 * kMostCarried;
   int first, end;  // the bases

@@ -125,7 +125,7 @@ struct RailSignal {
   SignalModel signal;
 };
 
-/// How a wheelset's guide holds its coordinates. By elimination they are no unknowns.
+/// How a wheelset's guide holds its coordinates. Elimination prescribes them.
 enum class Guide : std::int32_t { augmented_lagrangian, baumgarte, elimination };
 /// Whether rates and accelerations of guided coordinates are set to those of the guide.
 constexpr bool is_projected(Guide guide) noexcept { return guide != Guide::baumgarte; }

@@ -136,7 +136,7 @@ void read_table(const Modal& modal, const CarriedPart& own, const std::int32_t* 
     const double* row[3];
     double weight[3] = {};
     for (int m = 0; m < 3; ++m) {
-      const int at = i + m < own.count ? i + m : i;  // with weight 0 it is no more than read
+      const int at = i + m < own.count ? i + m : i;  // else its weight is 0
       row[m] = modal.between + std::ptrdiff_t{own.unknown[at]} * modal.rows;
       if (i + m < own.count) weight[m] = own.weight[at];
     }
